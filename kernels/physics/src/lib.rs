@@ -30,6 +30,7 @@ pub mod origin;
 pub mod particles;
 pub mod placement;
 pub mod quoted;
+pub mod ranks;
 pub mod reported;
 pub mod run;
 pub mod scene;

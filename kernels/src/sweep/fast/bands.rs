@@ -24,7 +24,7 @@
 //! beyond the last row are, on a periodic side, those of the first rows, which band A leaves alone in stage 1.
 
 use super::contacts::{Discs, Evaluate, Notes, SumColumns};
-use super::finder::{Cursor, Finder, Rows};
+use super::finder::{Cursor, Finder, Rows, Share};
 use super::pairs::{Pairs, SENTINELS, Touches};
 use crate::InstructionSet;
 use crate::backend::Precision;
@@ -37,7 +37,10 @@ use std::ops::Range;
 /// Rows that one thread sweeps, and what it keeps for that.
 #[derive(Clone, Debug)]
 struct Band<F> {
-    rows: Range<usize>,
+    /// The rows to be swept in each of the two stages, and those beside whose search pairs are found.
+    rows: [Vec<Range<usize>>; 3],
+    /// Whether its notes are this rank's.
+    is_own: bool,
     found: F,
     notes: Notes,
     pairs: u64,
@@ -61,6 +64,39 @@ pub struct Met {
     pub contacts: u64,
     /// The deepest of them (a fraction of the sum of the radii).
     pub deepest: f64,
+    /// What all of that but the pairs listed is the sum of, band by band.
+    pub of_bands: Vec<OfBand>,
+}
+
+/// What a band has met.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct OfBand {
+    /// As of all.
+    pub pairs: u64,
+    /// As of all.
+    pub dissipated: f64,
+    /// As of all.
+    pub energy: [f64; 2],
+    /// As of all.
+    pub contacts: u64,
+    /// As of all.
+    pub deepest: f64,
+}
+
+impl Met {
+    /// Of bands, added up in their order.
+    #[inline]
+    pub fn of(of_bands: Vec<OfBand>) -> Met {
+        let mut met = Met::default();
+        for band in &of_bands {
+            met.pairs += band.pairs;
+            met.dissipated += band.dissipated;
+            met.energy.iter_mut().zip(band.energy).for_each(|(sum, of_band)| *sum += of_band);
+            met.contacts += band.contacts;
+            met.deepest = met.deepest.max(band.deepest);
+        }
+        Met { of_bands, ..met }
+    }
 }
 
 /// A law over all contacts, each met once.
@@ -91,13 +127,34 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
     /// For rows of discs.
     #[inline]
     pub fn new(rows: Rows) -> Self {
-        let count = (rows.count / rows.band.max(2 * rows.ahead)).max(1);
-        let bands = (0..count).map(|band| Band {
-            rows: band * rows.count / count..(band + 1) * rows.count / count,
-            found: F::default(),
-            notes: Notes::default(),
-            pairs: 0,
+        Sweep::of_share(rows, None)
+    }
+
+    /// For those rows of discs that one of several ranks sees to: sums are right for all discs that are no farther from its rows than its margin, if
+    /// the discs are there on which they depend. All others' are not.
+    ///
+    /// Who has a disc beside a band of another rank does that band's pairs again, in the same order, rather than be told sums of them: those could
+    /// not be added in the order of one rank alone.
+    #[inline]
+    pub fn of_share(rows: Rows, share: Option<&Share>) -> Self {
+        let ahead = rows.ahead;
+        let bands = rows.bands().map(|band| {
+            let inner = band.end.saturating_sub(ahead).max(band.start);
+            let stages = [band.start..inner, inner..band.end, band.clone()];
+            let own = share.is_none_or(|share| share.rows.contains(&band.start));
+            let rows = match share {
+                None => stages.map(|stage| vec![stage]),
+                // Partners lie ahead, but those of pairs beside rows also behind.
+                Some(share) => {
+                    let near = [share.margin + ahead, share.margin];
+                    let [first, last, beside] = stages;
+                    let of = |stage: &Range<usize>, near: [usize; 2]| share.near(stage, near, rows.count);
+                    [of(&first, near), of(&last, near), of(&beside, [near[0], near[0]])]
+                }
+            };
+            Band { rows, is_own: own, found: F::default(), notes: Notes::default(), pairs: 0 }
         });
+        let bands = bands.filter(|band| band.is_own || band.rows.iter().any(|rows| !rows.is_empty()));
         Sweep { rows, bands: bands.collect(), parts: vec![] }
     }
 
@@ -126,70 +183,75 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
         let mut columns = sums.map(|sum| (sum.len(), sum.as_mut_ptr()));
         assert!(L::SUMS.iter().all(|sum| columns[sum.column::<2>()].0 >= count), "sums of {count} discs");
         let sums = SumColumns(columns.each_mut().map(|column| column.1));
-        let sweep = |band: &mut Band<F>, rows: Range<usize>| -> Result<(), ProgramError> {
-            let mut cursor = Cursor::at(rows.start);
-            while cursor.row < rows.end {
-                finder.find(discs.place, rows.clone(), &mut cursor, &mut band.found, set)?;
-                let pairs = finder.pairs(&band.found);
-                band.pairs += pairs.count() as u64;
-                let (sentinel, notes) = (count as u32, &mut band.notes);
-                dispatch_native(set, Evaluate { law, pairs: &pairs, sentinel, discs, sums, asked, notes })?;
+        let sentinel = count as u32;
+        let sweep = |band: &mut Band<F>, stage: usize| -> Result<(), ProgramError> {
+            let Band { rows, found, notes, pairs: met, .. } = band;
+            for rows in &rows[stage] {
+                let mut cursor = Cursor::at(rows.start);
+                while cursor.row < rows.end {
+                    finder.find(discs.place, rows.clone(), &mut cursor, found, set)?;
+                    let pairs = finder.pairs(found);
+                    *met += pairs.count() as u64;
+                    dispatch_native(
+                        set,
+                        Evaluate { law, pairs: &pairs, sentinel, discs, sums, asked, notes },
+                    )?;
+                }
             }
             Ok(())
-        };
-        let overlap = self.rows.ahead;
-        // First all inner rows, then all last ones.
-        let rows_of = |band: &Band<F>, stage: usize| {
-            let Range { start, end } = band.rows;
-            let inner = end.saturating_sub(overlap).max(start);
-            if stage == 0 { start..inner } else { inner..end }
         };
         let threads = threads();
         if is_cheaper_apart(finder.tried(), self.bands.len(), threads) {
             self.parts.resize_with(PARTS * threads, F::default);
             for stage in 0..2 {
-                for band in &mut self.bands {
-                    let all = finder.searched(rows_of(band, stage));
-                    let length = all.len().div_ceil(PARTS * threads).max(1);
-                    let cut = pieces(all, length).zip(&mut self.parts);
-                    let searched = on_threads(cut, |(part, found)| {
-                        finder.find_part(discs.place, part, found);
-                        found
-                    });
-                    for found in searched {
-                        let pairs = finder.pairs(found);
-                        band.pairs += pairs.count() as u64;
-                        let (sentinel, notes) = (count as u32, &mut band.notes);
-                        dispatch_native(
-                            set,
-                            Evaluate { law, pairs: &pairs, sentinel, discs, sums, asked, notes },
-                        )?;
+                for Band { rows, notes, pairs: met, .. } in &mut self.bands {
+                    for rows in &rows[stage] {
+                        let all = finder.searched(rows.clone());
+                        let length = all.len().div_ceil(PARTS * threads).max(1);
+                        let cut = pieces(all, length).zip(&mut self.parts);
+                        let searched = on_threads(cut, |(part, found)| {
+                            finder.find_part(discs.place, part, found);
+                            found
+                        });
+                        for found in searched {
+                            let pairs = finder.pairs(found);
+                            *met += pairs.count() as u64;
+                            dispatch_native(
+                                set,
+                                Evaluate { law, pairs: &pairs, sentinel, discs, sums, asked, notes },
+                            )?;
+                        }
                     }
                 }
             }
         } else {
-            in_stages(&mut self.bands, 2, |band, stage| sweep(band, rows_of(band, stage)))?;
+            in_stages(&mut self.bands, 2, sweep)?;
         }
-        let mut beside = Touches::default();
-        finder.find_beside_rows(&mut beside);
-        let pairs = &beside;
-        if pairs.count() > 0 {
-            let Band { notes, pairs: count_of_band, .. } = &mut self.bands[0];
-            *count_of_band += pairs.count() as u64;
-            let sentinel = count as u32;
-            dispatch_native(set, Evaluate { law, pairs: &pairs, sentinel, discs, sums, asked, notes })?;
+        for Band { rows, notes, pairs: met, .. } in &mut self.bands {
+            let mut beside = Touches::default();
+            rows[2].iter().for_each(|rows| finder.find_beside(rows.clone(), &mut beside));
+            let pairs = &beside;
+            if pairs.count() > 0 {
+                *met += pairs.count() as u64;
+                dispatch_native(set, Evaluate { law, pairs: &pairs, sentinel, discs, sums, asked, notes })?;
+            }
         }
-        let mut met = Met::default();
+        let (mut of_bands, mut deep, mut not_finite) = (vec![], vec![], vec![]);
         for band in &mut self.bands {
-            met.pairs += std::mem::take(&mut band.pairs);
-            met.deep.append(&mut band.notes.deep);
-            met.not_finite.append(&mut band.notes.not_finite);
-            met.dissipated += std::mem::take(&mut band.notes.dissipated);
-            let energy = std::mem::take(&mut band.notes.energy);
-            met.energy.iter_mut().zip(energy).for_each(|(sum, of_band)| *sum += of_band);
-            met.contacts += std::mem::take(&mut band.notes.contacts);
-            met.deepest = met.deepest.max(std::mem::take(&mut band.notes.deepest));
+            let (notes, pairs) = (&mut band.notes, std::mem::take(&mut band.pairs));
+            if band.is_own {
+                of_bands.push(OfBand {
+                    pairs,
+                    dissipated: notes.dissipated,
+                    energy: notes.energy,
+                    contacts: notes.contacts,
+                    deepest: notes.deepest,
+                });
+                deep.append(&mut notes.deep);
+                not_finite.append(&mut notes.not_finite);
+            }
+            notes.clear();
         }
-        Ok(met)
+        Ok(Met { deep, not_finite, ..Met::of(of_bands) })
     }
 }

@@ -91,6 +91,17 @@ pub(super) struct Notes {
     pub(super) deepest: f64,
 }
 
+impl Notes {
+    /// Forgets all but the room for it.
+    pub(super) fn clear(&mut self) {
+        let (mut deep, mut not_finite) =
+            (std::mem::take(&mut self.deep), std::mem::take(&mut self.not_finite));
+        deep.clear();
+        not_finite.clear();
+        *self = Notes { deep, not_finite, ..Notes::default() };
+    }
+}
+
 /// Evaluates the law for pairs.
 pub(super) struct Evaluate<'a, S, P, L, Q> {
     pub(super) law: &'a L,

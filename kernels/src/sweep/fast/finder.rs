@@ -18,6 +18,52 @@ pub struct Rows {
     pub band: usize,
 }
 
+impl Rows {
+    /// The rows of each band.
+    #[inline]
+    pub fn bands(&self) -> impl ExactSizeIterator<Item = Range<usize>> + use<> {
+        let rows = self.count;
+        let count = (rows / self.band.max(2 * self.ahead)).max(1);
+        (0..count).map(move |band| band * rows / count..(band + 1) * rows / count)
+    }
+}
+
+/// What one of several ranks sees to: whole bands, whose sums and notes are its own. Its discs may be in rows beside them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Share {
+    /// The rows of its bands.
+    pub rows: Range<usize>,
+    /// How many rows beyond these its discs may be.
+    pub margin: usize,
+}
+
+impl Share {
+    /// Those of some rows that lie at most `below` rows before the own ones or `above` behind them, all rows being `count`: the first follow on the
+    /// last.
+    #[inline]
+    pub fn near(&self, rows: &Range<usize>, [below, above]: [usize; 2], count: usize) -> Vec<Range<usize>> {
+        let near = (self.rows.start + count).saturating_sub(below)..self.rows.end + count + above;
+        let mut found: Vec<Range<usize>> = vec![];
+        for around in 0..3 {
+            let [start, end] = [rows.start, rows.end].map(|row| row + around * count);
+            let (start, end) = (start.max(near.start), end.min(near.end));
+            if start < end {
+                found.push(start - around * count..end - around * count);
+            }
+        }
+        found.sort_by_key(|rows| rows.start);
+        // Where a rank is near itself around the box, rows come twice.
+        found.dedup_by(|next, last| {
+            let joins = next.start <= last.end;
+            if joins {
+                last.end = last.end.max(next.end);
+            }
+            joins
+        });
+        found
+    }
+}
+
 /// Finds pairs of discs that may touch: every pair that does, once, and others as few as it likes.
 ///
 /// # Safety
@@ -65,9 +111,9 @@ pub unsafe trait Finder<S, P: Precision>: Sync {
     #[inline]
     fn find_part(&self, _places: [&[S]; 2], _part: Range<usize>, _found: &mut Self::Found) {}
 
-    /// Appends the pairs that are found in no row.
+    /// Appends the pairs that are found beside the search of some rows.
     #[inline]
-    fn find_beside_rows(&self, _: &mut Touches<P>) {}
+    fn find_beside(&self, _rows: Range<usize>, _: &mut Touches<P>) {}
 
     /// What was found.
     fn pairs<'a>(&'a self, found: &'a Self::Found) -> impl Pairs<P> + 'a;

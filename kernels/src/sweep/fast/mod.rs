@@ -41,9 +41,9 @@ mod sectors;
 mod verlet;
 
 pub use advance::{Advance, Copies, DisplacementLimit, Motion, Passed};
-pub use bands::{Met, Sweep};
+pub use bands::{Met, OfBand, Sweep};
 pub use contacts::Discs;
-pub use finder::{Cursor, Finder, Rows};
+pub use finder::{Cursor, Finder, Rows, Share};
 pub use grid::{Grid, GridError};
 pub use pairs::{Pairs, SENTINELS, Touches};
 pub use sectors::Sectors;

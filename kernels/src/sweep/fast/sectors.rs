@@ -66,6 +66,12 @@ impl Sectors {
         Sectors { grid, reach, sector: vec![NOWHERE; discs], starts, members: vec![] }
     }
 
+    /// The same sectors, with room for `discs` discs and none in them.
+    #[inline]
+    pub fn emptied(&self, discs: usize) -> Self {
+        Sectors::new(self.grid, discs, self.reach)
+    }
+
     /// Which sectors there are.
     #[inline]
     pub fn grid(&self) -> &Grid {

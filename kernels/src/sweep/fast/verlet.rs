@@ -121,6 +121,12 @@ impl VerletList {
     pub fn entries(&self) -> usize {
         self.pairs.len()
     }
+
+    /// Pairs listed in some rows.
+    #[inline]
+    pub fn entries_of(&self, rows: Range<usize>) -> usize {
+        (self.rows[rows.end] - self.rows[rows.start]) as usize
+    }
 }
 
 // SAFETY: the lists hold members of sectors, which are numbers of discs below `discs`; a pair is of sectors in the row and in it

@@ -39,7 +39,7 @@ impl Step {
             Phase::Forces => &[Part::Forces],
             Phase::Correct => &[Part::Corrector],
             // Only the fast engine has it, which has no programs.
-            Phase::CorrectPredict => &[],
+            Phase::CorrectPredict | Phase::Halo => &[],
         };
         // Every part binds all arrays of the step.
         let [mut sum, mut baseline] = [parts.len() as f64 * host.bind, 0.0];

@@ -5,7 +5,7 @@ use super::found::Found;
 use super::options::{SchemeKind, SortKind};
 use crate::domain::Domain;
 use crate::method::pairwise::search::{LatticeSearch, ListSearch, OnConflict, Search, SectorSearch};
-use crate::method::pairwise::{Dynamics, Engine, Sort, Stepping, System, WithLaw, WithScheme};
+use crate::method::pairwise::{Dynamics, Sort, Stepping, System, WithLaw, WithScheme, begin};
 use crate::method::{Failure, FailureKind};
 use crate::particles::Particles;
 use crate::scene::Precision;
@@ -102,7 +102,7 @@ fn of_precision<S: backend::Precision, P: backend::Precision>(
         search: Q,
         particles: Particles,
     ) -> Result<Box<dyn Stepping>, Failure> {
-        Ok(Box::new(Engine::<S, P, Q, _>::new(dynamics, system, search, set, particles)?))
+        begin::<S, P, Q, _>((dynamics, system, set), search, particles)
     }
     let all = (dynamics, system, set);
     match found.clone() {

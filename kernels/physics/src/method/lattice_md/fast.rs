@@ -75,6 +75,7 @@ pub(super) fn reach(particles: &Particles) -> f64 {
 }
 
 /// The contact law and the integrator of a model, and the motion of its walls.
+#[derive(Clone)]
 struct Granular {
     model: Model,
     walls: WallMotion,
@@ -118,7 +119,7 @@ fn stepping<S: Precision, P: Precision, Q: Search<S, P> + 'static>(
         seed: 0,
     };
     let granular = Granular { model: model.clone(), walls };
-    Ok(Box::new(pairwise::Engine::<S, P, Q, _>::new(granular, system, search, set, particles)?))
+    pairwise::begin::<S, P, Q, _>((granular, system, set), search, particles)
 }
 
 /// A fast simulation.
@@ -154,7 +155,7 @@ impl FastMd {
 
     /// What moving walls put in (energy/time).
     fn wall_power(&self) -> f64 {
-        wall_power(&self.model, self.walls, self.time(), self.stepping.grains().len(), || {
+        wall_power(&self.model, self.walls, self.time(), self.stepping.grain_count(), || {
             self.stepping.forces()
         })
     }
@@ -223,7 +224,7 @@ impl Engine for FastMd {
         match length {
             Length::Pairs => self.met,
             _ => {
-                let [grains, discs] = [self.stepping.grains().len(), self.stepping.discs()];
+                let [grains, discs] = [self.stepping.grain_count(), self.stepping.discs()];
                 Lengths::new(&self.model, grains, discs).range(length).len() as u64
             }
         }

@@ -105,7 +105,6 @@ mod tests {
             ("law.cohesionless=false", "temperature"),
             ("law.normal_damping=0.3", "pressure"),
             ("law.normal_damping=0.3", "flow"),
-            ("domain.periodic=[true, false]", "temperature"),
         ] {
             assert!(both(&[law], quantity).1.is_none(), "{law} {quantity}");
         }

@@ -16,6 +16,17 @@ pub(super) struct Looked {
     strays: Vec<Move>,
 }
 
+/// A disc that is no other rank's and has changed its cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Moved {
+    /// Which of the scene's discs it is.
+    pub(super) number: u32,
+    /// From row to row.
+    pub(super) rows: [usize; 2],
+    /// The periods that it has crossed.
+    pub(super) periods: [f64; 2],
+}
+
 impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D> {
     /// A position (length), from the place in a cell.
     fn position_in_cell(&self, cell: [usize; 2], place: [f64; 2]) -> [f64; 2] {
@@ -30,10 +41,20 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
 
     /// The cell of a disc at a position (length), and its place there.
     pub(super) fn locate(&self, disc: usize, position: [f64; 2]) -> Result<Move, Failure> {
+        let from = self.seen_from_first_cell(disc, position);
+        self.in_its_cell(from).ok_or_else(|| self.stray(from, 1))
+    }
+
+    /// The row of a position (length); none where there is no cell.
+    pub(super) fn row_at(&self, position: [f64; 2]) -> Option<usize> {
+        Some(self.in_its_cell(self.seen_from_first_cell(0, position))?.cell[1])
+    }
+
+    /// A disc at a position (length), seen from the first cell.
+    fn seen_from_first_cell(&self, disc: usize, position: [f64; 2]) -> Move {
         let frame = self.search.cells().grid().frame;
         let place = [0, 1].map(|axis| position[axis] - (frame.origin[axis] + 0.5 * frame.edge[axis]));
-        let from = Move { disc, cell: [0, 0], place, periods: [0.0; 2] };
-        self.in_its_cell(from).ok_or_else(|| self.stray(from, 1))
+        Move { disc, cell: [0, 0], place, periods: [0.0; 2] }
     }
 
     /// The cell and place of a disc at a place that may be outside the cell it is seen from; none if it belongs to no
@@ -68,26 +89,44 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
 
     /// Brings the cells up to date after a pass: walls, the discs beyond their limit, the halo, the lists.
     pub(super) fn keep_cells(&mut self, left: &[u32]) -> Result<(), Failure> {
-        let mut walls = Vec::new();
-        if let Some(prescribed) = self.prescribed() {
-            self.give_walls_their_velocity();
-            for disc in self.start.grain_count()..self.start.len() {
-                let at = self.start.all()[self.state.number(disc)].position;
-                let [dx, dy] = prescribed.displacement;
-                walls.push(self.locate(disc, [at[0] + dx, at[1] + dy])?);
-            }
-        }
         if self.search.lists().is_some() {
-            return self.keep_lists(left, &walls);
+            if self.is_stale(left)? {
+                self.list_again()?;
+            }
+            return Ok(());
         }
-        let mut moves = self.changes_of(vec![self.look(left.iter().map(|&disc| disc as usize))])?;
+        self.keep_in_cells(left).map(drop)
+    }
+
+    /// The walls where they are now, where they move.
+    fn walls_now(&mut self) -> Result<Vec<Move>, Failure> {
+        let Some(prescribed) = self.prescribed() else { return Ok(vec![]) };
+        self.give_walls_their_velocity();
+        let now = |disc: usize| {
+            let at = self.start.all()[self.state.number(disc)].position;
+            let [dx, dy] = prescribed.displacement;
+            self.locate(disc, [at[0] + dx, at[1] + dy])
+        };
+        (self.state.grains()..self.state.len()).map(now).collect()
+    }
+
+    /// Brings the cells up to date where there are no lists.
+    pub(super) fn keep_in_cells(&mut self, left: &[u32]) -> Result<Vec<Moved>, Failure> {
+        let walls = self.walls_now()?;
+        let left = left.iter().map(|&disc| disc as usize).chain(self.neighbours());
+        let mut moves = self.changes_of(vec![self.look(left)])?;
         self.changes += moves.len();
         moves.extend(walls);
-        self.change_cells(&moves)?;
+        let moved = self.change_cells(&moves)?;
         match self.reaches_beyond_box() {
-            true => self.beyond_box().map_or(Ok(()), Err),
-            false => Ok(()),
+            true => self.beyond_box().map_or(Ok(moved), Err),
+            false => Ok(moved),
         }
+    }
+
+    /// The grains that another rank moves.
+    pub(super) fn neighbours(&self) -> Range<usize> {
+        self.state.moving()..self.state.grains()
     }
 
     /// Whether a disc may be outside the box and yet in a cell.
@@ -122,6 +161,8 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
             match self.in_its_cell(from) {
                 Some(to) if to == from => {}
                 Some(to) => looked.moves.push(to),
+                // Its own rank will say so.
+                None if self.neighbours().contains(&disc) => {}
                 None => looked.strays.push(from),
             }
         }
@@ -137,12 +178,13 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         }
     }
 
-    /// Moves walls within the cells in which they are listed, and makes the lists again if a disc has gone too far.
-    fn keep_lists(&mut self, left: &[u32], walls: &[Move]) -> Result<(), Failure> {
+    /// Moves walls within the cells in which they are listed, and tells whether lists are to be made again because a disc has gone too far.
+    pub(super) fn is_stale(&mut self, left: &[u32]) -> Result<bool, Failure> {
+        let walls = self.walls_now()?;
         let edge = self.search.cells().grid().frame.edge;
         let domain = self.system.domain;
         let mut stale = !left.is_empty();
-        for to in walls {
+        for to in &walls {
             let (from, cell) = (self.search.cells().cell(to.disc).unwrap_or_default(), to.cell);
             let centre = |cell: [usize; 2]| [0, 1].map(|axis| cell[axis] as f64 * edge[axis]);
             let way = domain.displacement(centre(from), centre(cell));
@@ -162,13 +204,16 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
             let place = self.state.place(first as usize);
             return Err(self.stray(Move { disc: first as usize, cell, place, periods: [0.0; 2] }, count));
         }
-        if stale {
-            let looked = over_pieces(0..self.start.len(), |discs| self.look(discs));
-            let moves = self.changes_of(looked)?;
-            self.change_cells(&moves)?;
-            self.put_in_order();
-        }
-        Ok(())
+        Ok(stale)
+    }
+
+    /// Makes the lists again.
+    pub(super) fn list_again(&mut self) -> Result<Vec<Moved>, Failure> {
+        let looked = over_pieces(0..self.state.len(), |discs| self.look(discs));
+        let moves = self.changes_of(looked)?;
+        let moved = self.change_cells(&moves)?;
+        self.put_in_order();
+        Ok(moved)
     }
 
     /// The discs that may leave through an open side before lists are made again.
@@ -186,10 +231,12 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
                 !(reach..=domain.length(axis) - reach).contains(&along)
             })
         };
+        let others = self.neighbours();
         let near = |discs: Range<usize>| -> Vec<u32> {
-            discs.filter(|&disc| near(disc)).map(|disc| disc as u32).collect()
+            let own = discs.filter(|disc| !others.contains(disc));
+            own.filter(|&disc| near(disc)).map(|disc| disc as u32).collect()
         };
-        over_pieces(0..self.start.len(), near).concat()
+        over_pieces(0..self.state.len(), near).concat()
     }
 
     /// Whether a disc is beyond an open side.
@@ -199,14 +246,22 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         self.in_its_cell(from).is_none()
     }
 
-    /// Moves discs into their new cells; if two want one that must be one disc's, none is moved.
-    pub(super) fn change_cells(&mut self, moves: &[Move]) -> Result<(), Failure> {
+    /// Moves discs into their new cells; if two want one that must be one disc's, none is moved. Gives those of them that are no other rank's.
+    pub(super) fn change_cells(&mut self, moves: &[Move]) -> Result<Vec<Moved>, Failure> {
         if self.search.cells().is_exclusive() {
             self.refuse_conflicts(moves)?;
         }
+        let others = self.neighbours();
+        let own = moves.iter().filter(|to| !others.contains(&to.disc));
+        let moved = own.map(|to| {
+            let from = self.search.cells().cell(to.disc).unwrap_or(to.cell);
+            let number = self.state.number(to.disc) as u32;
+            Moved { number, rows: [from[1], to.cell[1]], periods: to.periods }
+        });
+        let moved = moved.collect();
         moves.iter().for_each(|to| self.search.cells_mut().leave(to.disc));
         for to in moves {
-            if to.disc < self.start.grain_count() {
+            if to.disc < self.state.moving() {
                 self.elapsed.crossings.add(self.state.number(to.disc), to.periods);
             }
             self.state.put(to.disc, to.place);
@@ -214,7 +269,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
             debug_assert!(entered.is_ok(), "looked for above");
         }
         self.search.cells_mut().arrange(&self.state);
-        Ok(())
+        Ok(moved)
     }
 
     /// Finds two discs that want one cell.

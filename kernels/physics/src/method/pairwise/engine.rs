@@ -1,7 +1,7 @@
 //! The engine: all forces, then corrector and next predictor in one pass.
 
 use super::search::{Cells, Search};
-use super::state::{Move, State};
+use super::state::{Members, Move, State};
 use super::{
     CarriedBy, Crossings, Dynamics, Elapsed, Named, Phase, Prescribed, Sort, System, WithLaw, WithScheme,
     not_finite,
@@ -11,6 +11,7 @@ use crate::method::{Clock, Failure};
 use crate::particles::Particles;
 use std::collections::BTreeSet;
 use std::ops::Range;
+use std::sync::Arc;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::Scheme;
@@ -28,13 +29,16 @@ pub struct Engine<S, P, Q, D> {
     pub(super) dynamics: D,
     pub(super) system: System,
     pub(super) set: InstructionSet,
-    pub(super) start: Particles,
+    /// All particles of the scene at its start.
+    pub(super) start: Arc<Particles>,
     pub(super) state: State<S>,
     /// Force along x, along y, torque.
     pub(super) sums: [Vec<P>; 3],
     pub(super) search: Q,
     /// Changes of cells since the discs were put in order.
     pub(super) changes: usize,
+    /// How often the discs were put in order.
+    pub(super) orders: u64,
     /// Whether the state is predicted and its forces are not yet known.
     pub(super) awaits_forces: bool,
     /// Discs that are so near to an open side that they may leave through it before lists are made again.
@@ -54,35 +58,72 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         set: InstructionSet,
         particles: Particles,
     ) -> Result<Self, Failure> {
-        let carried = dynamics.with_scheme(CarriedBy { dt: system.dt });
+        let members = Members::all(&particles);
         let crossings = Crossings::new(system.followed, particles.len());
+        let elapsed = Elapsed::new(system.dt, crossings);
+        let mut engine = Engine::of((dynamics, system, set), search, Arc::new(particles), members, elapsed);
+        engine.take_their_places()?;
+        Ok(engine)
+    }
+
+    /// Some of the particles of a scene, in no cells yet.
+    pub(super) fn of(
+        (dynamics, system, set): (D, System, InstructionSet),
+        search: Q,
+        start: Arc<Particles>,
+        members: Members,
+        elapsed: Elapsed,
+    ) -> Self {
+        let carried = dynamics.with_scheme(CarriedBy { dt: system.dt });
+        let sums = [0, 1, 2].map(|_| vec![P::default(); members.numbers.len()]);
         let mut engine = Engine {
-            state: State::new(&system, &carried, &particles),
-            sums: [0, 1, 2].map(|_| vec![P::default(); particles.len()]),
-            elapsed: Elapsed::new(system.dt, crossings),
+            state: State::new(&system, &carried, &start, members),
+            sums,
+            elapsed,
             dynamics,
             system,
             search,
             set,
-            start: particles,
+            start,
             changes: 0,
+            orders: 0,
             awaits_forces: false,
             boundary_candidates: vec![],
         };
         engine.give_walls_their_velocity();
+        engine
+    }
+
+    /// Has other members from now on, in no cells yet and all of them at the start.
+    pub(super) fn hold(&mut self, members: Members, search: Q) {
+        let carried = self.dynamics.with_scheme(CarriedBy { dt: self.system.dt });
+        self.sums = [0, 1, 2].map(|_| vec![P::default(); members.numbers.len()]);
+        self.state = State::new(&self.system, &carried, &self.start, members);
+        self.search = search;
+        self.changes = 0;
+        self.awaits_forces = false;
+        self.boundary_candidates.clear();
+        self.give_walls_their_velocity();
+    }
+
+    /// Puts all discs into the cells of their places at the start.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub(super) fn take_their_places(&mut self) -> Result<(), Failure> {
         let located = |discs: Range<usize>| -> Result<Vec<Move>, Failure> {
-            discs.map(|disc| engine.locate(disc, engine.start.all()[disc].place())).collect()
+            discs.map(|disc| self.locate(disc, self.start.all()[self.state.number(disc)].place())).collect()
         };
-        let moves = alone_if(engine.is_small(), || over_parts(0..engine.start.len(), located));
+        let moves = alone_if(self.is_small(), || over_parts(0..self.state.len(), located));
         let moves: Vec<Vec<Move>> = moves.into_iter().collect::<Result<_, _>>()?;
-        engine.change_cells(&moves.concat())?;
-        engine.put_in_order();
-        Ok(engine)
+        self.change_cells(&moves.concat())?;
+        self.put_in_order();
+        Ok(())
     }
 
     /// Whether the discs are so few that one thread does all the work.
     pub(super) fn is_small(&self) -> bool {
-        self.start.len() < FEW
+        self.state.len() < FEW
     }
 
     /// How the discs that no force moves stand, where they move at all.
@@ -98,11 +139,12 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     /// Numbers the discs in the order of their cells, so that neighbours are near in memory, and makes lists again where
     /// there are such; gives what each disc was before. No sum depends on the numbers.
     pub(super) fn put_in_order(&mut self) -> Vec<u32> {
-        let grains = self.start.grain_count();
+        let (moving, grains) = (self.state.moving(), self.state.grains());
         let mut order = self.search.cells().order();
-        if grains < order.len() {
-            // Grains stay the first ones.
-            order.sort_by_key(|&disc| disc as usize >= grains);
+        if moving < order.len() {
+            // Those that are moved here stay the first ones, and all grains before the others.
+            let kind = |disc: usize| (disc >= moving, disc >= grains);
+            order.sort_by_key(|&disc| kind(disc as usize));
         }
         self.search.cells_mut().renumber(&order);
         self.state.renumber(&order);
@@ -112,47 +154,48 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         self.search.make_lists(&self.state);
         self.boundary_candidates = self.discs_near_open_sides();
         self.changes = 0;
+        self.orders += 1;
         order
     }
 
     pub(super) fn moved_on(&mut self) -> Result<Vec<u32>, Failure> {
+        let passed = self.passed()?;
         let mut timings = self.elapsed.timings;
-        if self.system.sort == Sort::EveryStep || self.changes > self.start.grain_count() / 4 {
-            timings.time(Phase::Index, || _ = self.put_in_order());
-        }
-        let passed = timings.time(Phase::CorrectPredict, || self.pass())?;
-        self.elapsed.steps += 1;
-        self.awaits_forces = true;
         let kept = timings.time(Phase::Index, || keep_awake(|| self.keep_cells(&passed.left)));
         self.elapsed.timings = timings;
         kept?;
         Ok(passed.far)
     }
 
+    /// Moves the discs one step on; their cells are yet to be brought up to date.
+    pub(super) fn passed(&mut self) -> Result<Passed, ProgramError> {
+        let mut timings = self.elapsed.timings;
+        if self.system.sort == Sort::EveryStep || self.changes > self.state.grains() / 4 {
+            timings.time(Phase::Index, || _ = self.put_in_order());
+        }
+        let passed = timings.time(Phase::CorrectPredict, || self.pass())?;
+        self.elapsed.steps += 1;
+        self.awaits_forces = true;
+        self.elapsed.timings = timings;
+        Ok(passed)
+    }
+
     fn pass(&mut self) -> Result<Passed, ProgramError> {
-        let Engine { dynamics, system, state, sums, search, start, set, elapsed, .. } = self;
+        let Engine { dynamics, system, state, sums, search, set, elapsed, .. } = self;
         let Elapsed { steps, .. } = *elapsed;
-        dynamics.with_scheme(Passing {
-            system,
-            state,
-            sums,
-            search,
-            discs: start.grain_count(),
-            steps,
-            set: *set,
-        })
+        dynamics.with_scheme(Passing { system, state, sums, search, steps, set: *set })
     }
 
     pub(super) fn add_forces(&mut self, asked: Asked) -> Result<Met, ProgramError> {
-        let Engine { dynamics, system, state, sums, search, start, set, .. } = self;
-        // Grains' sums are zero already.
-        sums.iter_mut().for_each(|sum| sum[start.grain_count()..].fill(P::default()));
+        let Engine { dynamics, system, state, sums, search, set, .. } = self;
+        // Those of discs that are moved are zero already.
+        sums.iter_mut().for_each(|sum| sum[state.moving()..].fill(P::default()));
         dynamics.with_law(Sweeping { system, state, sums, search, asked, set: *set })
     }
 
     /// Stops at pairs of a grain whose force is no finite number.
     pub(super) fn refuse_not_finite(&self, met: &Met) -> Result<(), Failure> {
-        let grains = self.start.grain_count();
+        let grains = self.state.grains();
         let pairs = met.not_finite.iter().map(|pair| pair.map(|disc| disc as usize));
         // Two fixed discs have no effective mass: what they do to each other means nothing.
         let of_grains = pairs.filter(|pair| pair.iter().any(|&disc| disc < grains));
@@ -167,12 +210,17 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         }
     }
 
+    /// Force along x and y and torque on a disc.
+    pub(super) fn force_on(&self, disc: usize) -> [f64; 3] {
+        [0, 1, 2].map(|sum| self.sums[sum][disc].to_f64())
+    }
+
     /// A degree of freedom of some discs from `first` on at the end of the step, and its rates of change. The state stays as it is.
     pub(super) fn correct(&self, freedom: usize, first: usize, [values, rates]: [&mut [f64]; 2]) {
         let Engine { system, state, sums, .. } = self;
         let steps = self.elapsed.steps;
         let is_standing = steps == 0 || self.awaits_forces;
-        let moving = if is_standing { 0 } else { self.start.grain_count() };
+        let moving = if is_standing { 0 } else { state.moving() };
         let moving = moving.saturating_sub(first).min(values.len());
         let [(values, others), (rates, rates_of_others)] =
             [values, rates].map(|column| column.split_at_mut(moving));
@@ -201,7 +249,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Named for Engine<
     }
 
     fn grains(&self) -> Range<usize> {
-        0..self.start.grain_count()
+        0..self.state.grains()
     }
 
     fn number(&self, disc: usize) -> usize {
@@ -237,7 +285,6 @@ struct Passing<'a, S, P, Q> {
     state: &'a mut State<S>,
     sums: &'a mut [Vec<P>; 3],
     search: &'a mut Q,
-    discs: usize,
     steps: u64,
     set: InstructionSet,
 }
@@ -246,7 +293,8 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> WithScheme for Passing<'_, S, 
     type Output = Result<Passed, ProgramError>;
 
     fn with<C: Scheme>(self, scheme: C) -> Self::Output {
-        let Passing { system, state, sums, search, discs, steps, set } = self;
+        let Passing { system, state, sums, search, steps, set } = self;
+        let discs = state.moving();
         let (columns, inverse, ids) = state.for_advance();
         let (limit, copies) = search.displacement_limit();
         let advance = Advance {

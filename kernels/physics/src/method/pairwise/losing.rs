@@ -1,5 +1,6 @@
 //! What lets a method go on without particles that were thrown out of the box.
 
+use super::cells::Moved;
 use super::search::Search;
 use super::{Dynamics, Engine};
 use crate::method::Failure;
@@ -15,7 +16,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         };
         let is_unfit = |&disc: &usize| !is_finite(disc) || self.is_outside(disc);
         let mut unfit: Vec<usize> =
-            (0..self.start.len()).filter(is_unfit).map(|disc| self.state.number(disc)).collect();
+            (0..self.state.len()).filter(is_unfit).map(|disc| self.state.number(disc)).collect();
         unfit.sort_unstable();
         unfit
     }
@@ -24,12 +25,12 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     ///
     /// # Errors
     /// [`Failure`] if a particle belongs to no cell.
-    pub(super) fn settle_all(&mut self) -> Result<(), Failure> {
-        let looked = self.look(0..self.start.len());
+    pub(super) fn settle_all(&mut self) -> Result<Vec<Moved>, Failure> {
+        let looked = self.look(0..self.state.len());
         let moves = self.changes_of(vec![looked])?;
-        self.change_cells(&moves)?;
+        let moved = self.change_cells(&moves)?;
         self.put_in_order();
         self.awaits_forces = true;
-        Ok(())
+        Ok(moved)
     }
 }

@@ -12,7 +12,7 @@
 use super::search::Search;
 use super::{Dynamics, Engine, WithLaw, Work};
 use crate::observe::{ContactSums, GrainSums, Scenery};
-use crate::particles::{Kind, Particles, in_space};
+use crate::particles::{Kind, Particle, Particles, in_space};
 use std::marker::PhantomData;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::Inertia;
@@ -23,12 +23,10 @@ use stripmine_kernels::{InstructionSet, alone_if, in_parts, in_pieces, over_part
 
 /// All discs at the end of a step, an entry a disc in the order in memory and sentinels behind.
 pub(super) struct Corrected {
-    place: [Vec<f64>; 2],
-    velocity: [Vec<f64>; 2],
+    pub(super) place: [Vec<f64>; 2],
+    pub(super) velocity: [Vec<f64>; 2],
     /// Empty where discs do not turn.
-    omega: Vec<f64>,
-    /// Which disc in memory each of the scene's is.
-    disc: Vec<u32>,
+    pub(super) omega: Vec<f64>,
     /// The farthest that the correction moved a disc (length).
     moved: f64,
 }
@@ -37,7 +35,6 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     /// The discs at the end of the step.
     pub(super) fn corrected_discs(&self) -> Corrected {
         alone_if(self.is_small(), || {
-            let disc = self.disc_of_each();
             let mut moved = [0.0; 2];
             let mut column = |freedom: usize| {
                 let [mut value, mut rate] = self.corrected_column(freedom);
@@ -54,7 +51,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
             };
             let [[x, vx], [y, vy]] = [0, 1].map(&mut column);
             let [_, omega] = if self.system.freedoms == 3 { column(2) } else { [vec![], vec![]] };
-            Corrected { place: [x, y], velocity: [vx, vy], omega, disc, moved: moved[0].hypot(moved[1]) }
+            Corrected { place: [x, y], velocity: [vx, vy], omega, moved: moved[0].hypot(moved[1]) }
         })
     }
 
@@ -66,8 +63,8 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     }
 
     /// A degree of freedom of every disc in memory at the end of the step, and its rate of change, on all threads.
-    fn corrected_column(&self, freedom: usize) -> [Vec<f64>; 2] {
-        let [mut value, mut rate] = [0, 1].map(|_| vec![0.0; self.start.len()]);
+    pub(super) fn corrected_column(&self, freedom: usize) -> [Vec<f64>; 2] {
+        let [mut value, mut rate] = [0, 1].map(|_| vec![0.0; self.state.len()]);
         in_parts([&mut value, &mut rate], |first, columns| self.correct(freedom, first, columns));
         [value, rate]
     }
@@ -77,7 +74,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     pub(super) fn standing(&self) -> Particles {
         let (grains, discs) = (self.start.grain_count(), self.disc_of_each());
         let walls = in_space(self.prescribed().unwrap_or_default().velocity);
-        let mut particles = self.start.clone();
+        let mut particles = Particles::clone(&self.start);
         alone_if(self.is_small(), || {
             for freedom in 0..3 {
                 let turns = freedom < self.system.freedoms;
@@ -125,36 +122,34 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
 
     /// Sums over the grains.
     pub(super) fn grain_sums(&self, corrected: &Corrected, scenery: &Scenery, work: &Work<'_>) -> GrainSums {
-        let grains = self.start.grains();
-        let has_gravity = scenery.gravity != [0.0; 2];
-        let parts = alone_if(self.is_small(), || {
-            over_parts(0..grains.len(), |numbers| {
-                let mut sums = GrainSums::default();
-                for number in numbers {
-                    let (grain, disc) = (&grains[number], corrected.disc[number] as usize);
-                    let velocity = corrected.velocity.each_ref().map(|along| along[disc]);
-                    let omega = corrected.omega.get(disc).copied().unwrap_or(0.0);
-                    let place = || corrected.place.each_ref().map(|along| along[disc]);
-                    let unwrapped = || self.seen_from_origin(disc, place());
-                    sums.add(scenery, grain, velocity, omega, || scenery.domain.wrapped(unwrapped()));
-                    if has_gravity {
-                        sums.gravity_work += work(number, grain, unwrapped());
-                    }
-                }
-                sums
+        let discs = self.disc_of_each();
+        alone_if(self.is_small(), || {
+            sums_of_grains(self.start.grains(), (scenery, work), |number| {
+                self.standing_disc(corrected, discs[number] as usize)
             })
-        });
-        let mut sums = GrainSums::default();
-        parts.iter().for_each(|part| sums.join(part));
-        sums
+        })
+    }
+
+    /// A disc at the end of the step.
+    pub(super) fn standing_disc(&self, corrected: &Corrected, disc: usize) -> Standing {
+        let [place, velocity] = [&corrected.place, &corrected.velocity]
+            .map(|columns| columns.each_ref().map(|along| along[disc]));
+        let omega = corrected.omega.get(disc).copied().unwrap_or(0.0);
+        Standing { position: self.seen_from_origin(disc, place), velocity, omega }
     }
 
     /// Sums over the contacts.
     pub(super) fn contact_sums(&self, corrected: &Corrected) -> ContactSums {
+        let met = self.contacts_met(corrected);
+        contact_sums(&met)
+    }
+
+    /// What a sweep meets at the end of the step.
+    pub(super) fn contacts_met(&self, corrected: &Corrected) -> Met {
         alone_if(self.is_small(), || {
             let (mut radius, mut inverse_mass) = (vec![], vec![]);
             if self.system.inertia == Inertia::Varying {
-                [radius, inverse_mass] = [0, 1].map(|_| vec![0.0; self.start.len()]);
+                [radius, inverse_mass] = [0, 1].map(|_| vec![0.0; self.state.len()]);
                 in_parts([&mut radius, &mut inverse_mass], |first, [radius, inverse_mass]| {
                     for (at, (radius, inverse_mass)) in radius.iter_mut().zip(inverse_mass).enumerate() {
                         let disc = &self.start.all()[self.state.number(first + at)];
@@ -182,11 +177,47 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
             };
             let met = self.dynamics.with_law(observing);
             // The machine has had this law and this instruction set in every step.
-            let Met { energy: [elastic, virial], contacts: count, deepest, .. } =
-                met.unwrap_or_else(|_| Met { energy: [f64::NAN; 2], ..Met::default() });
-            ContactSums { count, elastic, virial, deepest }
+            met.unwrap_or_else(|_| Met { energy: [f64::NAN; 2], ..Met::default() })
         })
     }
+}
+
+/// Sums over the contacts that a sweep has met.
+pub(super) fn contact_sums(met: &Met) -> ContactSums {
+    let &Met { energy: [elastic, virial], contacts: count, deepest, .. } = met;
+    ContactSums { count, elastic, virial, deepest }
+}
+
+/// A disc at the end of a step, its position consistent with the periods that are counted as crossed (length).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Standing {
+    pub(super) position: [f64; 2],
+    pub(super) velocity: [f64; 2],
+    pub(super) omega: f64,
+}
+
+/// Sums over grains, in the scene's order.
+pub(super) fn sums_of_grains(
+    grains: &[Particle],
+    (scenery, work): (&Scenery, &Work<'_>),
+    standing: impl Fn(usize) -> Standing + Sync,
+) -> GrainSums {
+    let has_gravity = scenery.gravity != [0.0; 2];
+    let parts = over_parts(0..grains.len(), |numbers| {
+        let mut sums = GrainSums::default();
+        for number in numbers {
+            let (grain, standing) = (&grains[number], standing(number));
+            let Standing { position, velocity, omega } = standing;
+            sums.add(scenery, grain, velocity, omega, || scenery.domain.wrapped(position));
+            if has_gravity {
+                sums.gravity_work += work(number, grain, position);
+            }
+        }
+        sums
+    });
+    let mut sums = GrainSums::default();
+    parts.iter().for_each(|part| sums.join(part));
+    sums
 }
 
 /// A sweep that observes.

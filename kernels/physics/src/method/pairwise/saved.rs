@@ -11,15 +11,15 @@ use stripmine_kernels::isa::Element;
 use stripmine_kernels::{alone_if, in_pieces};
 
 const SUMS: [&str; 3] = ["Fx", "Fy", "torque"];
-const CELL: [&str; 2] = ["cell.column", "cell.row"];
+pub(super) const CELL: [&str; 2] = ["cell.column", "cell.row"];
 const MADE_AT: [&str; 2] = ["listed.x", "listed.y"];
 /// How often lists were made: one entry, whatever the discs.
 const LISTS_MADE: &str = "listed.made";
 
 impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D> {
-    /// A column in the scene's order, from a value for each disc, where it is known which disc each of the scene's is.
+    /// A column with an entry for each of some discs.
     fn column<T: Element>(&self, discs: &[u32], value: impl Fn(usize) -> T + Sync) -> Column {
-        let mut column = vec![T::default(); self.start.len()];
+        let mut column = vec![T::default(); discs.len()];
         alone_if(self.is_small(), || {
             in_pieces(&mut column, |first, piece| {
                 piece.iter_mut().zip(&discs[first..]).for_each(|(to, &disc)| *to = value(disc as usize));
@@ -28,30 +28,40 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         real_column(column.into_iter())
     }
 
-    /// Everything that the next step depends on, by name.
+    /// Everything that the next step depends on, by name, in the scene's order.
     pub(super) fn saved(&self) -> Vec<(String, Column)> {
+        let mut columns = self.columns_of(&self.disc_of_each());
+        columns.extend(self.columns_of_all());
+        columns
+    }
+
+    /// What is no one disc's: how often lists were made, and the periods that were crossed.
+    pub(super) fn columns_of_all(&self) -> impl Iterator<Item = (String, Column)> {
+        let made = self.search.lists().map(|lists| (LISTS_MADE.to_owned(), Column::U64(vec![lists.made()])));
+        made.into_iter().chain(self.elapsed.crossings.columns())
+    }
+
+    /// Of the same what is a disc's own, with an entry for each of some discs.
+    pub(super) fn columns_of(&self, discs: &[u32]) -> Vec<(String, Column)> {
         let mut columns = Vec::new();
-        let discs = self.disc_of_each();
         for (names, rows) in STATE.iter().zip(&self.state.columns) {
             for (name, column) in names.iter().zip(rows) {
-                columns.push((name.label().to_owned(), self.column(&discs, |disc| column[disc])));
+                columns.push((name.label().to_owned(), self.column(discs, |disc| column[disc])));
             }
         }
         for (name, sum) in SUMS.iter().zip(&self.sums) {
-            columns.push(((*name).to_owned(), self.column(&discs, |disc| sum[disc])));
+            columns.push(((*name).to_owned(), self.column(discs, |disc| sum[disc])));
         }
         for (axis, name) in CELL.iter().enumerate() {
             let cell = |disc| self.search.cells().cell(disc).map_or(f64::NAN, |cell| cell[axis] as f64);
-            columns.push(((*name).to_owned(), self.column(&discs, cell)));
+            columns.push(((*name).to_owned(), self.column(discs, cell)));
         }
         if let Some(lists) = self.search.lists() {
             for (axis, name) in MADE_AT.iter().enumerate() {
                 let made_at = lists.made_at(axis);
-                columns.push(((*name).to_owned(), self.column(&discs, |disc| made_at[disc])));
+                columns.push(((*name).to_owned(), self.column(discs, |disc| made_at[disc])));
             }
-            columns.push((LISTS_MADE.to_owned(), Column::U64(vec![lists.made()])));
         }
-        columns.extend(self.elapsed.crossings.columns());
         columns
     }
 
@@ -62,18 +72,41 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     /// A sentence, if the columns are not those of these discs.
     pub(super) fn take_up(&mut self, steps: u64, columns: &[(String, Column)]) -> Result<(), String> {
         let numbers = self.state.numbers().to_vec();
+        let made = match (self.search.lists(), columns.iter().find(|(name, _)| name == LISTS_MADE)) {
+            (None, _) => 0,
+            (Some(_), Some((_, Column::U64(made)))) if made.len() == 1 && made[0] < 1 << 53 => made[0],
+            _ => return Err(format!("the column {LISTS_MADE} is missing, or no count")),
+        };
+        self.elapsed.crossings.take_up(columns)?;
+        self.take_up_discs(columns, numbers, self.start.len())?;
+        self.search.set_lists_made(made);
+        self.elapsed.steps = steps;
+        self.give_walls_their_velocity();
+        Ok(())
+    }
+
+    /// Takes up what [`columns_of`](Self::columns_of) gave; `entries` tells the entry of each disc in memory, of `length` in all.
+    ///
+    /// # Errors
+    /// As [`take_up`](Self::take_up).
+    pub(super) fn take_up_discs(
+        &mut self,
+        columns: &[(String, Column)],
+        entries: Vec<u32>,
+        length: usize,
+    ) -> Result<(), String> {
+        let in_order = Entries { columns, entries, length };
         for (names, rows) in STATE.iter().zip(&mut self.state.columns) {
             for (name, column) in names.iter().zip(rows) {
-                let values = in_order::<S>(columns, name.label(), &numbers)?;
+                let values = in_order.of::<S>(name.label())?;
                 // The sentinels stay.
                 column[..values.len()].copy_from_slice(&values);
             }
         }
         for (name, sum) in SUMS.iter().zip(&mut self.sums) {
-            *sum = in_order::<P>(columns, name, &numbers)?;
+            *sum = in_order.of::<P>(name)?;
         }
-        let cells =
-            [in_order::<f64>(columns, CELL[0], &numbers)?, in_order::<f64>(columns, CELL[1], &numbers)?];
+        let cells = [in_order.of::<f64>(CELL[0])?, in_order.of::<f64>(CELL[1])?];
         let counts = self.search.cells().grid().counts;
         let inside =
             |axis: usize, &cell: &f64| (0.0..counts[axis] as f64).contains(&cell) && cell.fract() == 0.0;
@@ -81,20 +114,10 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
             return Err("a cell lies outside the lattice".to_owned());
         }
         let made_at = match self.search.lists() {
-            Some(_) => Some([
-                in_order::<S>(columns, MADE_AT[0], &numbers)?,
-                in_order::<S>(columns, MADE_AT[1], &numbers)?,
-            ]),
+            Some(_) => Some([in_order.of::<S>(MADE_AT[0])?, in_order.of::<S>(MADE_AT[1])?]),
             None => None,
         };
-        let lists_made = columns.iter().find(|(name, _)| name == LISTS_MADE).map(|(_, column)| column);
-        let lists_made = match lists_made {
-            Some(Column::U64(made)) if made.len() == 1 && made[0] < 1 << 53 => made[0],
-            _ if made_at.is_some() => return Err(format!("the column {LISTS_MADE} is missing, or no count")),
-            _ => 0,
-        };
-        self.elapsed.crossings.take_up(columns)?;
-        (0..numbers.len()).for_each(|disc| self.search.cells_mut().leave(disc));
+        (0..self.state.len()).for_each(|disc| self.search.cells_mut().leave(disc));
         for (disc, (&column, &row)) in cells[0].iter().zip(&cells[1]).enumerate() {
             let cell = [column as usize, row as usize];
             let to = Move { disc, cell, place: self.state.place(disc), periods: [0.0; 2] };
@@ -103,9 +126,9 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         }
         self.search.cells_mut().arrange(&self.state);
         // Lists are made of the places at which they were made before, so that they are the same.
-        let now: Vec<[f64; 2]> = (0..self.start.len()).map(|disc| self.state.place(disc)).collect();
+        let now: Vec<[f64; 2]> = (0..self.state.len()).map(|disc| self.state.place(disc)).collect();
         // What is taken up is not kept beside the lists.
-        drop((cells, numbers));
+        drop((cells, in_order));
         if let Some(made_at) = made_at {
             for (axis, places) in made_at.into_iter().enumerate() {
                 self.state.columns[axis][0][..places.len()].copy_from_slice(&places);
@@ -115,15 +138,21 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         for (disc, before) in order.into_iter().enumerate() {
             self.state.put(disc, now[before as usize]);
         }
-        self.search.set_lists_made(lists_made);
-        self.elapsed.steps = steps;
-        self.give_walls_their_velocity();
         Ok(())
     }
 }
 
-/// The column of a name, in the order of the discs in memory, whose numbers in the scene are given.
-fn in_order<T: Element>(columns: &[(String, Column)], name: &str, numbers: &[u32]) -> Result<Vec<T>, String> {
-    let values = find_column::<T>(columns, name, numbers.len())?;
-    Ok(numbers.iter().map(|&number| values[number as usize]).collect())
+/// Columns, and which entry of theirs is that of each disc in memory.
+struct Entries<'c> {
+    columns: &'c [(String, Column)],
+    entries: Vec<u32>,
+    length: usize,
+}
+
+impl Entries<'_> {
+    /// The column of a name, in the order of the discs in memory.
+    fn of<T: Element>(&self, name: &str) -> Result<Vec<T>, String> {
+        let values = find_column::<T>(self.columns, name, self.length)?;
+        Ok(self.entries.iter().map(|&entry| values[entry as usize]).collect())
+    }
 }

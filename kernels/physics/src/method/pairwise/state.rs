@@ -16,6 +16,25 @@ pub struct Move {
     pub periods: [f64; 2],
 }
 
+/// Which of the scene's discs there are: those that are moved here, grains that another rank moves, and discs that no force moves.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Members {
+    /// Their numbers in the scene, in that order.
+    pub numbers: Vec<u32>,
+    /// How many are moved here.
+    pub moving: usize,
+    /// How many are grains.
+    pub grains: usize,
+}
+
+impl Members {
+    /// All of a scene's.
+    pub fn all(particles: &Particles) -> Members {
+        let grains = particles.grain_count();
+        Members { numbers: (0..particles.len() as u32).collect(), moving: grains, grains }
+    }
+}
+
 /// Columns with an entry a disc, grains first, and two discs behind them that never touch.
 #[derive(Clone, Debug)]
 pub struct State<S> {
@@ -32,6 +51,7 @@ pub struct State<S> {
     numbers: Vec<u32>,
     /// The ids of the discs, by which they draw random numbers.
     ids: Vec<u32>,
+    moving: usize,
     grains: usize,
 }
 
@@ -39,17 +59,19 @@ pub struct State<S> {
 type Moved<'a, S> = (&'a mut [Vec<Vec<S>>], [&'a [S]; 2], &'a [u32]);
 
 impl<S: Precision> State<S> {
-    /// Of `particles`, in the form in which the scheme carries them from step to step.
-    pub fn new(system: &System, carried: &Carried, particles: &Particles) -> Self {
+    /// Of those of `particles` that are members, in the form in which the scheme carries them from step to step.
+    pub fn new(system: &System, carried: &Carried, particles: &Particles, members: Members) -> Self {
         let velocity_scale = carried.scales[1];
-        let discs = particles.all();
+        let Members { numbers: discs, moving, grains } = members;
         // The thread that fills a piece is the first to touch its memory.
         let column = |value: &(dyn Fn(&Particle) -> f64 + Sync), sentinel: f64| -> Vec<S> {
             let mut values = vec![S::default(); discs.len() + SENTINELS];
             let (of_discs, of_sentinels) = values.split_at_mut(discs.len());
             of_sentinels.fill(S::from_f64(sentinel));
             in_pieces(of_discs, |first, piece| {
-                piece.iter_mut().zip(&discs[first..]).for_each(|(to, disc)| *to = S::from_f64(value(disc)));
+                let all = particles.all();
+                let values = discs[first..].iter().map(|&number| value(&all[number as usize]));
+                piece.iter_mut().zip(values).for_each(|(to, value)| *to = S::from_f64(value));
             });
             values
         };
@@ -73,17 +95,32 @@ impl<S: Precision> State<S> {
             let inertia = |disc: &Particle| system.inertia_factor * disc.mass * disc.radius * disc.radius;
             inverse[1] = column(&|disc| of_grain(disc, 1.0 / inertia(disc)), 1.0);
         }
-        let numbers = (0..discs.len() as u32).collect();
         State {
             columns,
             velocity_scale,
             alike: system.radius,
             radius,
             inverse,
-            numbers,
-            ids: discs.iter().map(|disc| disc.id).collect(),
-            grains: particles.grain_count(),
+            ids: discs.iter().map(|&number| particles.all()[number as usize].id).collect(),
+            numbers: discs,
+            moving,
+            grains,
         }
+    }
+
+    /// How many discs there are here.
+    pub fn len(&self) -> usize {
+        self.numbers.len()
+    }
+
+    /// How many of them are moved here: the first ones.
+    pub fn moving(&self) -> usize {
+        self.moving
+    }
+
+    /// How many of them are grains: those that are moved here, and those that another rank moves behind them.
+    pub fn grains(&self) -> usize {
+        self.grains
     }
 
     /// Which of the scene's discs a disc is.
@@ -116,6 +153,22 @@ impl<S: Precision> State<S> {
     /// The places of all discs and sentinels.
     pub fn places(&self) -> [&[S]; 2] {
         [&self.columns[0][0], &self.columns[1][0]]
+    }
+
+    /// Place and velocity of a disc, as the columns have them, and its spin where discs turn: all that a sweep reads of it and that changes.
+    pub fn swept(&self, disc: usize) -> impl Iterator<Item = f64> + use<'_, S> {
+        let planar = (0..2).flat_map(move |axis| [0, 1].map(|k| self.columns[axis][k][disc].to_f64()));
+        planar.chain(self.columns.get(2).map(|angle| angle[1][disc].to_f64()))
+    }
+
+    /// Puts there what [`swept`](Self::swept) gave elsewhere.
+    pub fn put_swept(&mut self, disc: usize, mut values: impl FnMut() -> f64) {
+        for axis in 0..2 {
+            (0..2).for_each(|k| self.columns[axis][k][disc] = S::from_f64(values()));
+        }
+        if let Some(angle) = self.columns.get_mut(2) {
+            angle[1][disc] = S::from_f64(values());
+        }
     }
 
     /// Puts a disc at a place.

@@ -38,6 +38,9 @@ pub trait Stepping: Named + Send {
     /// How many discs there are.
     fn discs(&self) -> usize;
 
+    /// How many of them forces move.
+    fn grain_count(&self) -> usize;
+
     /// How many discs are in cells that are another disc's.
     fn shared_cells(&self) -> usize;
 
@@ -115,8 +118,12 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Engi
         self.start.len()
     }
 
+    fn grain_count(&self) -> usize {
+        self.state.grains()
+    }
+
     fn shared_cells(&self) -> usize {
-        self.search.cells().shared_cells()
+        self.search.cells().shared_cells(&|_| true)
     }
 
     fn lists(&self) -> Option<(usize, u64)> {
@@ -160,7 +167,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Engi
     fn forces(&self) -> Vec<[f64; 3]> {
         let mut forces = vec![[0.0; 3]; self.start.len()];
         for disc in 0..self.start.len() {
-            forces[self.state.number(disc)] = [0, 1, 2].map(|sum| self.sums[sum][disc].to_f64());
+            forces[self.state.number(disc)] = self.force_on(disc);
         }
         forces
     }
@@ -174,7 +181,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Engi
     }
 
     fn settle(&mut self) -> Result<(), Failure> {
-        self.settle_all()
+        self.settle_all().map(drop)
     }
 
     fn columns(&self) -> Vec<(String, Column)> {

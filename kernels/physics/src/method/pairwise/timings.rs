@@ -25,6 +25,7 @@ macro_rules! define_phases {
 define_phases! {
     (Predict, "predict", "prediction of the state"),
     (CorrectPredict, "correct_predict", "correction of one step and prediction of the next in one pass"),
+    (Halo, "halo", "discs near those of other ranks: told and heard of"),
     (Index, "index", "cells, Index, lattice vectors, or the upkeep of the lists"),
     (Forces, "forces", "the law over all pairs"),
     (Correct, "correct", "correction of the state"),

@@ -103,13 +103,14 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
     }
 
     /// Discs in shared cells with all discs around them, and with each other.
-    fn find_beside_rows(&self, found: &mut Touches<P>) {
+    fn find_beside(&self, rows: Range<usize>, found: &mut Touches<P>) {
         let occupancy = self.occupancy;
         let (shared, shape) = (occupancy.shared_cells(), occupancy.shape());
         let Grid { frame, counts, periodic } = occupancy.grid();
         let half = occupancy.half_width() as isize;
         let cell_offset = |offset: [isize; 2]| [0, 1].map(|axis| offset[axis] as f64 * frame.edge[axis]);
-        for (at, &(disc, [column, row])) in shared.iter().enumerate() {
+        let those = shared.iter().enumerate().filter(|(_, (_, [_, row]))| rows.contains(row));
+        for (at, &(disc, [column, row])) in those {
             for offset in (-half..=half).flat_map(|rows| (-half..=half).map(move |columns| [columns, rows])) {
                 let position = shape.position(column as isize + offset[0], row as isize + offset[1]);
                 let there = occupancy.index()[position];

@@ -86,6 +86,27 @@ impl Occupancy {
         }
     }
 
+    /// The same lattice, of as many discs in the scene, with room for `discs` of them and none in it.
+    ///
+    /// # Panics
+    /// If there are 2³² − 3 discs or more.
+    #[inline]
+    pub fn emptied(&self, discs: usize) -> Self {
+        assert!(discs < u32::MAX as usize - SENTINELS, "{discs} discs are too many to number");
+        Occupancy {
+            discs,
+            cell: vec![NOWHERE; discs],
+            index: vec![discs as u32; self.index.len()],
+            place: [vec![FAR; self.place[0].len()], vec![0.0; self.place[1].len()]],
+            radius: self.radius.as_ref().map(|radius| vec![0.0; radius.len()]),
+            occupied: Bits::new(&self.shape, self.half_width),
+            images: self.images.clone(),
+            outside: discs,
+            shared: vec![],
+            ..*self
+        }
+    }
+
     /// The lattice.
     #[inline]
     pub fn shape(&self) -> &LatticeShape {

@@ -157,7 +157,7 @@ fn charged(phase: Phase, amounts: &Amounts) -> Amounts {
     match phase {
         Phase::Forces => Amounts { cells, candidates, contacts, ..none },
         Phase::Index => Amounts { cells, ..none },
-        Phase::Predict | Phase::CorrectPredict | Phase::Correct => none,
+        Phase::Predict | Phase::CorrectPredict | Phase::Halo | Phase::Correct => none,
     }
 }
 

@@ -8,7 +8,7 @@ use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::{Asked, Law};
 use stripmine_kernels::sweep::fast::lattice::{Candidates, Codes, Lattice, Occupancy, Taken};
-use stripmine_kernels::sweep::fast::{Copies, Discs, DisplacementLimit, Grid, Met, Sweep};
+use stripmine_kernels::sweep::fast::{Copies, Discs, DisplacementLimit, Grid, Met, Rows, Share, Sweep};
 use stripmine_kernels::sweep::lattice::{Frame, LatticeShape};
 
 define_words! {
@@ -59,6 +59,10 @@ impl<S: Precision> Cells<S> for LatticeCells {
         Ok(())
     }
 
+    fn settle(&mut self, disc: usize, place: [f64; 2]) {
+        self.occupancy.settle(disc, place);
+    }
+
     fn arrange(&mut self, state: &State<S>) {
         let occupancy = &mut self.occupancy;
         // Discs that shared the cell of one that has gone have it to themselves.
@@ -89,8 +93,8 @@ impl<S: Precision> Cells<S> for LatticeCells {
         (self.on_conflict == OnConflict::Stop).then(|| self.occupancy.disc(column, row)).flatten()
     }
 
-    fn shared_cells(&self) -> usize {
-        self.occupancy.shared_cells().len()
+    fn shared_cells(&self, counts: &dyn Fn(usize) -> bool) -> usize {
+        self.occupancy.shared_cells().iter().filter(|shared| counts(shared.0 as usize)).count()
     }
 }
 
@@ -99,6 +103,7 @@ pub struct LatticeSearch<P> {
     cells: LatticeCells,
     codes: Codes<P>,
     sweep: Sweep<Candidates>,
+    share: Option<Share>,
     /// The smallest radius (length).
     smallest: f64,
 }
@@ -120,12 +125,25 @@ impl<P: Precision> LatticeSearch<P> {
         let lattice = Lattice { occupancy: &occupancy, codes: &codes, slack: 0.0 };
         let sweep = Sweep::new(rows::<S, P, _>(&lattice));
         let smallest = smallest.unwrap_or(1.0);
-        LatticeSearch { cells: LatticeCells { occupancy, on_conflict }, codes, sweep, smallest }
+        LatticeSearch { cells: LatticeCells { occupancy, on_conflict }, codes, sweep, share: None, smallest }
     }
 }
 
 impl<S: Precision, P: Precision> Search<S, P> for LatticeSearch<P> {
     type Cells = LatticeCells;
+
+    fn emptied(&self, discs: usize, share: Share) -> Self {
+        let occupancy = self.cells.occupancy.emptied(discs);
+        let codes = Codes::new(&occupancy, occupancy.grid().frame);
+        let lattice = Lattice { occupancy: &occupancy, codes: &codes, slack: 0.0 };
+        let sweep = Sweep::of_share(rows::<S, P, _>(&lattice), Some(&share));
+        let cells = LatticeCells { occupancy, on_conflict: self.cells.on_conflict };
+        LatticeSearch { cells, codes, sweep, share: Some(share), smallest: self.smallest }
+    }
+
+    fn rows(&self) -> Rows {
+        rows::<S, P, _>(&Lattice { occupancy: &self.cells.occupancy, codes: &self.codes, slack: 0.0 })
+    }
 
     fn cells(&self) -> &LatticeCells {
         &self.cells
@@ -163,6 +181,6 @@ impl<S: Precision, P: Precision> Search<S, P> for LatticeSearch<P> {
         let codes = Codes::new(occupancy, occupancy.grid().frame);
         // Two discs may each have come nearer; no contact distance is less than two smallest radii.
         let slack = moved / self.smallest;
-        observed(law, &Lattice { occupancy, codes: &codes, slack }, discs, set)
+        observed(law, &Lattice { occupancy, codes: &codes, slack }, self.share.as_ref(), discs, set)
     }
 }

@@ -8,13 +8,14 @@ use stripmine_kernels::in_pieces;
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::{Asked, Law};
 use stripmine_kernels::sweep::fast::{
-    Copies, Discs, DisplacementLimit, Grid, Met, Sectors, Sweep, Touches, VerletList,
+    Copies, Discs, DisplacementLimit, Grid, Met, Rows, Sectors, Share, Sweep, Touches, VerletList,
 };
 
 /// The sectors in which discs were when the lists were made, and the lists.
 pub struct ListSearch<S, P> {
     sectors: Sectors,
     sweep: Sweep<Touches<P>>,
+    share: Option<Share>,
     listed: Listed<S>,
 }
 
@@ -34,12 +35,24 @@ impl<S: Precision, P: Precision> ListSearch<S, P> {
         let sectors = Sectors::new(grid, discs, reach);
         let sweep = Sweep::new(rows::<S, P, _>(&sectors));
         let listed = Listed { list: None, skin, made_at: [vec![], vec![]], made: 0 };
-        ListSearch { sectors, sweep, listed }
+        ListSearch { sectors, sweep, share: None, listed }
     }
 }
 
 impl<S: Precision, P: Precision> Search<S, P> for ListSearch<S, P> {
     type Cells = Sectors;
+
+    fn emptied(&self, discs: usize, share: Share) -> Self {
+        let sectors = self.sectors.emptied(discs);
+        let sweep = Sweep::of_share(rows::<S, P, _>(&sectors), Some(&share));
+        let Listed { skin, made, .. } = self.listed;
+        let listed = Listed { list: None, skin, made_at: [vec![], vec![]], made };
+        ListSearch { sectors, sweep, share: Some(share), listed }
+    }
+
+    fn rows(&self) -> Rows {
+        rows::<S, P, _>(&self.sectors)
+    }
 
     fn cells(&self) -> &Sectors {
         &self.sectors
@@ -76,7 +89,7 @@ impl<S: Precision, P: Precision> Search<S, P> for ListSearch<S, P> {
         set: InstructionSet,
     ) -> Result<Met, ProgramError> {
         match &self.listed.list {
-            Some(list) => observed(law, list, discs, set),
+            Some(list) => observed(law, list, self.share.as_ref(), discs, set),
             None => Ok(Met::default()),
         }
     }
@@ -107,6 +120,11 @@ impl<S: Precision> Listed<S> {
     /// Pairs listed.
     pub fn entries(&self) -> usize {
         self.list.as_ref().map_or(0, VerletList::entries)
+    }
+
+    /// Pairs listed in some rows of sectors.
+    pub fn entries_of(&self, rows: std::ops::Range<usize>) -> usize {
+        self.list.as_ref().map_or(0, |list| list.entries_of(rows))
     }
 
     /// How often lists were made.

@@ -15,7 +15,9 @@ use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::{Asked, Law};
 use stripmine_kernels::sweep::fast::lattice::Taken;
-use stripmine_kernels::sweep::fast::{Copies, Discs, DisplacementLimit, Finder, Grid, Met, Rows, Sweep};
+use stripmine_kernels::sweep::fast::{
+    Copies, Discs, DisplacementLimit, Finder, Grid, Met, Rows, Share, Sweep,
+};
 
 /// Cells, and which discs are in them. A disc's place is seen from the centre of its cell.
 pub trait Cells<S: Precision>: Send + Sync {
@@ -33,6 +35,9 @@ pub trait Cells<S: Precision>: Send + Sync {
     /// # Errors
     /// [`Taken`] if the cell is another disc's.
     fn enter(&mut self, to: &Move, state: &State<S>) -> Result<(), Taken>;
+
+    /// A disc that stays in its cell is at another place there.
+    fn settle(&mut self, _disc: usize, _place: [f64; 2]) {}
 
     /// What is to be done when discs have changed their cells.
     fn arrange(&mut self, state: &State<S>);
@@ -53,8 +58,8 @@ pub trait Cells<S: Precision>: Send + Sync {
         None
     }
 
-    /// How many discs are in cells that are another disc's, where one disc has a cell.
-    fn shared_cells(&self) -> usize {
+    /// How many of some discs are in cells that are another disc's, where one disc has a cell.
+    fn shared_cells(&self, _counts: &dyn Fn(usize) -> bool) -> usize {
         0
     }
 }
@@ -65,6 +70,12 @@ pub trait Cells<S: Precision>: Send + Sync {
 pub trait Search<S: Precision, P: Precision>: Send + Sync {
     /// The kind of cells.
     type Cells: Cells<S>;
+
+    /// The same for as many discs in the scene, with room for `discs` of them, none in it, and those rows that a rank sees to.
+    fn emptied(&self, discs: usize, share: Share) -> Self;
+
+    /// The rows of cells that a sweep is made for.
+    fn rows(&self) -> Rows;
 
     /// The cells.
     fn cells(&self) -> &Self::Cells;
@@ -118,12 +129,20 @@ pub trait Search<S: Precision, P: Precision>: Send + Sync {
 fn observed<F: Finder<f64, f64>, L: Law<2> + Sync>(
     law: &L,
     finder: &F,
+    share: Option<&Share>,
     discs: &Discs<'_, f64>,
     set: InstructionSet,
 ) -> Result<Met, ProgramError> {
     let mut sums = [0, 1, 2].map(|_| vec![0.0; discs.place[0].len()]);
     let asked = Asked { energy: true, ..Asked::default() };
-    Sweep::new(finder.rows()).run(law, finder, discs, sums.each_mut().map(Vec::as_mut_slice), asked, set)
+    Sweep::of_share(finder.rows(), share).run(
+        law,
+        finder,
+        discs,
+        sums.each_mut().map(Vec::as_mut_slice),
+        asked,
+        set,
+    )
 }
 
 /// The rows that a sweep for a finder is made for.

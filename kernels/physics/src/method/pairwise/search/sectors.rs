@@ -7,7 +7,9 @@ use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::{Asked, Law};
 use stripmine_kernels::sweep::fast::lattice::Taken;
-use stripmine_kernels::sweep::fast::{Copies, Discs, DisplacementLimit, Grid, Met, Sectors, Sweep, Touches};
+use stripmine_kernels::sweep::fast::{
+    Copies, Discs, DisplacementLimit, Grid, Met, Rows, Sectors, Share, Sweep, Touches,
+};
 
 impl<S: Precision> Cells<S> for Sectors {
     fn grid(&self) -> Grid {
@@ -44,6 +46,7 @@ impl<S: Precision> Cells<S> for Sectors {
 pub struct SectorSearch<P> {
     sectors: Sectors,
     sweep: Sweep<Touches<P>>,
+    share: Option<Share>,
 }
 
 impl<P: Precision> SectorSearch<P> {
@@ -51,12 +54,22 @@ impl<P: Precision> SectorSearch<P> {
     pub fn new<S: Precision>(grid: Grid, discs: usize, reach: f64) -> Self {
         let sectors = Sectors::new(grid, discs, reach);
         let sweep = Sweep::new(rows::<S, P, _>(&sectors));
-        SectorSearch { sectors, sweep }
+        SectorSearch { sectors, sweep, share: None }
     }
 }
 
 impl<S: Precision, P: Precision> Search<S, P> for SectorSearch<P> {
     type Cells = Sectors;
+
+    fn emptied(&self, discs: usize, share: Share) -> Self {
+        let sectors = self.sectors.emptied(discs);
+        let sweep = Sweep::of_share(rows::<S, P, _>(&sectors), Some(&share));
+        SectorSearch { sectors, sweep, share: Some(share) }
+    }
+
+    fn rows(&self) -> Rows {
+        rows::<S, P, _>(&self.sectors)
+    }
 
     fn cells(&self) -> &Sectors {
         &self.sectors
@@ -88,6 +101,6 @@ impl<S: Precision, P: Precision> Search<S, P> for SectorSearch<P> {
         _: f64,
         set: InstructionSet,
     ) -> Result<Met, ProgramError> {
-        observed(law, &self.sectors, discs, set)
+        observed(law, &self.sectors, self.share.as_ref(), discs, set)
     }
 }

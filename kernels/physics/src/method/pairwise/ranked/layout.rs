@@ -1,0 +1,137 @@
+//! Which rank has which bands, and what it must know of its neighbours.
+
+use std::ops::Range;
+use stripmine_kernels::sweep::fast::{Rows, Share};
+
+/// Discs may be so many rows away from where they were when ranks were given their discs; then that is done again. No bit depends on it.
+const MARGIN: usize = 4;
+
+/// On which side of a rank a row lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Side {
+    Below,
+    Above,
+}
+
+/// The bands of each rank: some that follow each other, as whole ones, so that sums are what they are on one rank.
+#[derive(Clone, Debug)]
+pub(super) struct Layout {
+    rows: Rows,
+    is_periodic: bool,
+    bands: Vec<Range<usize>>,
+    /// The first band of each rank, and the end.
+    first: Vec<usize>,
+}
+
+impl Layout {
+    /// With bands of about as much work for each of `ranks`, by the weight of each band. A function of the weights alone.
+    pub(super) fn new(rows: Rows, is_periodic: bool, weights: &[u64], ranks: usize) -> Layout {
+        let bands: Vec<Range<usize>> = rows.bands().collect();
+        let all: u64 = weights.iter().sum();
+        let (mut first, mut before, mut band) = (vec![0], 0, 0);
+        for rank in 1..ranks {
+            let goal = all * rank as u64 / ranks as u64;
+            // Each has one at least, and leaves one for each that follows.
+            let most = bands.len() - (ranks - rank);
+            before += weights[band];
+            band += 1;
+            while band < most && before + weights[band] / 2 < goal {
+                before += weights[band];
+                band += 1;
+            }
+            first.push(band);
+        }
+        first.push(bands.len());
+        Layout { rows, is_periodic, bands, first }
+    }
+
+    /// The band of a row.
+    pub(super) fn band(&self, row: usize) -> usize {
+        self.bands.partition_point(|band| band.end <= row).min(self.bands.len() - 1)
+    }
+
+    /// The rank of a row.
+    pub(super) fn owner(&self, row: usize) -> usize {
+        self.first.partition_point(|&first| first <= self.band(row)) - 1
+    }
+
+    /// What a rank sees to.
+    pub(super) fn share(&self, rank: usize) -> Share {
+        let [first, end] = [self.first[rank], self.first[rank + 1]];
+        Share { rows: self.bands[first].start..self.bands[end - 1].end, margin: MARGIN }
+    }
+
+    /// On which side of a rank's rows a row lies, if it is so near that its discs matter there.
+    pub(super) fn side(&self, rank: usize, row: usize) -> Option<Side> {
+        let Share { rows, margin } = self.share(rank);
+        // Discs of the rank may have gone that far, theirs too, and partners are that far ahead.
+        let reach = 2 * margin + self.rows.ahead;
+        if rows.contains(&row) {
+            return None;
+        }
+        // Rows from one to another on the way up.
+        let up = |from: usize, to: usize| {
+            let straight = to.checked_sub(from);
+            straight.or(self.is_periodic.then(|| (to + self.rows.count).saturating_sub(from)))
+        };
+        let is_near = |rows: Option<usize>| rows.is_some_and(|rows| rows <= reach);
+        if is_near(up(row, rows.start)) {
+            Some(Side::Below)
+        } else if is_near(up(rows.end - 1, row)) {
+            Some(Side::Above)
+        } else {
+            None
+        }
+    }
+
+    /// Whether a disc that was in a row is farther from it than margins are for.
+    pub(super) fn has_strayed(&self, from: usize, to: usize) -> bool {
+        let away = from.abs_diff(to);
+        let away = if self.is_periodic { away.min(self.rows.count - away) } else { away };
+        away > MARGIN
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every band has one rank, every rank a band, and no rank has much more than its part.
+    #[test]
+    fn bands_are_dealt_out_by_their_weight() {
+        let rows = Rows { count: 640, ahead: 2, band: 16 };
+        let bands = rows.bands().len() as u64;
+        for ranks in [1, 2, 3, 7, 8, 40] {
+            for heap in [false, true] {
+                let weights: Vec<u64> =
+                    (0..bands).map(|band| if heap && band > 9 { 0 } else { 100 + band }).collect();
+                let layout = Layout::new(rows, true, &weights, ranks);
+                let shares: Vec<Share> = (0..ranks).map(|rank| layout.share(rank)).collect();
+                assert_eq!((shares[0].rows.start, shares[ranks - 1].rows.end), (0, 640));
+                assert!(shares.windows(2).all(|pair| pair[0].rows.end == pair[1].rows.start));
+                assert!((0..640).all(|row| shares[layout.owner(row)].rows.contains(&row)));
+                let most = shares.iter().map(|share| {
+                    let there =
+                        (0..bands as usize).filter(|&band| share.rows.contains(&layout.bands[band].start));
+                    there.map(|band| weights[band]).sum::<u64>()
+                });
+                let all: u64 = weights.iter().sum();
+                assert!(most.max().unwrap() <= all / ranks as u64 + 150, "{ranks} ranks, heap {heap}");
+            }
+        }
+    }
+
+    /// Sides are those of the ring where rows are periodic, and of a stack where they are not.
+    #[test]
+    fn rows_near_a_rank_lie_on_one_side_of_it() {
+        let rows = Rows { count: 64, ahead: 2, band: 16 };
+        for is_periodic in [true, false] {
+            let layout = Layout::new(rows, is_periodic, &[1; 4], 4);
+            let side = |row| layout.side(0, row);
+            assert_eq!((side(0), side(15)), (None, None));
+            assert_eq!((side(16), side(25), side(26)), (Some(Side::Above), Some(Side::Above), None));
+            let below = is_periodic.then_some(Side::Below);
+            assert_eq!((side(63), side(54), side(53)), (below, below, None));
+        }
+    }
+}

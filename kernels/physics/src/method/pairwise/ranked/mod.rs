@@ -1,0 +1,590 @@
+//! Several ranks that step the discs of one scene, each those of some bands of rows.
+//!
+//! ```text
+//! the first rank    is the simulation that everyone else sees; tells all what is next, adds up in the order of bands
+//! the others        do as they are told, until there is nothing left to do
+//!
+//! a step:  advance | halo: neighbours' discs | cells or lists | report | forces of the own bands | report
+//! ```
+//!
+//! Bits are those of one rank: bands are a function of the scene, each is swept whole by the rank that has it, and what its discs get from the
+//! band below is summed again by that rank, pair by pair, in place of being told the sum. Which rank has which bands changes no bit.
+
+mod layout;
+mod wire;
+mod worker;
+
+use super::cells::Moved;
+use super::observing::{Standing, contact_sums, sums_of_grains};
+use super::search::Search;
+use super::state::Members;
+use super::{Crossings, Dynamics, Elapsed, Engine, Named, Stepping, System, Work, wrapped};
+use crate::domain::Domain;
+use crate::io::checkpoint::Column;
+use crate::method::{Clock, Failure};
+use crate::observe::{Scenery, Sums};
+use crate::particles::{Particles, States, in_space};
+use crate::ranks::{self, Gone, Parcel, Reader, local};
+use std::ops::Range;
+use std::sync::Arc;
+use std::thread::{self, JoinHandle};
+use stripmine_kernels::InstructionSet;
+use stripmine_kernels::backend::Precision;
+use stripmine_kernels::law::Asked;
+use stripmine_kernels::sweep::fast::{Met, OfBand};
+use wire::{Record, column_like, ended, put_columns, take_band, take_columns, take_failure};
+use worker::{What, Worker};
+
+/// Discs that are stepped by as many ranks as [`ranks::count`] says: by an [`Engine`] alone, or by several.
+///
+/// # Errors
+/// As [`Engine::new`], or if the scene has fewer bands than there are ranks.
+pub fn begin<S, P, Q, D>(
+    (dynamics, system, set): (D, System, InstructionSet),
+    search: Q,
+    particles: Particles,
+) -> Result<Box<dyn Stepping>, Failure>
+where
+    S: Precision,
+    P: Precision,
+    Q: Search<S, P> + 'static,
+    D: Dynamics + Clone + 'static,
+{
+    match ranks::count() {
+        1 => Ok(Box::new(Engine::<S, P, Q, D>::new(dynamics, system, search, set, particles)?)),
+        count => Ok(Box::new(Ranked::<S, P, Q, D>::new((dynamics, system, set), search, particles, count)?)),
+    }
+}
+
+/// What the first rank tells all to do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Do {
+    Advance,
+    Forces(Asked),
+    SkipForces,
+    Look(What),
+    Contacts,
+    Listed,
+    Unfit,
+    Settle,
+    Restore,
+    End,
+}
+
+impl Do {
+    fn put(self, parcel: &mut Parcel) {
+        let what = |what: What| {
+            [What::Standing, What::Columns, What::Forces, What::Velocities].iter().position(|it| *it == what)
+        };
+        let words = match self {
+            Do::Advance => [0, 0],
+            Do::Forces(asked) => [1, usize::from(asked.dissipation) + 2 * usize::from(asked.energy)],
+            Do::SkipForces => [2, 0],
+            Do::Look(it) => [3, what(it).unwrap_or_default()],
+            Do::Contacts => [4, 0],
+            Do::Listed => [5, 0],
+            Do::Unfit => [6, 0],
+            Do::Settle => [7, 0],
+            Do::Restore => [8, 0],
+            Do::End => [9, 0],
+        };
+        words.into_iter().for_each(|word| parcel.push(word));
+        parcel.numbers([if let Do::Forces(Asked { watched: Some(depth), .. }) = self {
+            depth
+        } else {
+            f64::NAN
+        }]);
+    }
+
+    fn take(reader: &mut Reader<'_>) -> Do {
+        let [code, more] = [(); 2].map(|()| reader.count());
+        let depth = reader.number();
+        match code {
+            0 => Do::Advance,
+            1 => Do::Forces(Asked {
+                watched: (!depth.is_nan()).then_some(depth),
+                dissipation: more & 1 == 1,
+                energy: more & 2 == 2,
+            }),
+            2 => Do::SkipForces,
+            3 => Do::Look([What::Standing, What::Columns, What::Forces, What::Velocities][more.min(3)]),
+            4 => Do::Contacts,
+            5 => Do::Listed,
+            6 => Do::Unfit,
+            7 => Do::Settle,
+            8 => Do::Restore,
+            _ => Do::End,
+        }
+    }
+}
+
+impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Worker<S, P, Q, D> {
+    /// Does what the first rank says until it says that this is the end, or has ended itself.
+    fn serve(mut self) {
+        while let Ok(parcel) = self.ranks.tell(None) {
+            let mut reader = parcel.read();
+            let Ok(Some(own)) = self.follow(&mut reader) else { return };
+            if self.ranks.gather(own).is_err() {
+                return;
+            }
+        }
+    }
+
+    /// Does what a parcel says; what is to be gathered of it, nothing at the end.
+    fn follow(&mut self, reader: &mut Reader<'_>) -> Result<Option<Parcel>, Gone> {
+        self.hear_of_crossings(reader);
+        let is_to_migrate = reader.count() > 0;
+        let what = Do::take(reader);
+        let moved_over = if is_to_migrate { self.migrate()? } else { Ok(()) };
+        let said = |result: Result<(), String>| {
+            let mut parcel = Parcel::new();
+            parcel.text(&result.err().unwrap_or_default());
+            parcel
+        };
+        Ok(Some(match what {
+            Do::Advance => self.advance()?,
+            Do::Forces(asked) => {
+                let mut parcel = said(moved_over);
+                parcel.0.extend(self.compute_forces(asked)?.0);
+                parcel
+            }
+            Do::SkipForces => {
+                self.engine.skip_forces();
+                said(moved_over)
+            }
+            Do::Look(what) => self.each_own(what),
+            Do::Contacts => self.contacts()?,
+            Do::Listed => self.listed(),
+            Do::Unfit => self.unfit(),
+            Do::Settle => {
+                let moved: Result<Vec<Moved>, Failure> = self.engine.settle_all();
+                self.report(moved, &[])
+            }
+            Do::Restore => {
+                let steps = reader.count() as u64;
+                let columns = take_columns(reader);
+                said(self.restore(steps, &columns))
+            }
+            Do::End => return Ok(None),
+        }))
+    }
+}
+
+/// The first rank, which speaks for all.
+struct Ranked<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> {
+    worker: Worker<S, P, Q, D>,
+    threads: Vec<JoinHandle<()>>,
+    /// What all are to know before they do something: periods crossed, by rank, and whether discs are dealt out anew.
+    crossed: Vec<(usize, usize, [f64; 2])>,
+    is_to_migrate: bool,
+    shared_cells: usize,
+    /// Discs that a step or its forces have given, grains first, whichever rank has them.
+    named: Vec<Record>,
+}
+
+impl<S, P, Q, D> Ranked<S, P, Q, D>
+where
+    S: Precision,
+    P: Precision,
+    Q: Search<S, P> + 'static,
+    D: Dynamics + Clone + 'static,
+{
+    fn new(
+        (dynamics, system, set): (D, System, InstructionSet),
+        search: Q,
+        particles: Particles,
+        count: usize,
+    ) -> Result<Self, Failure> {
+        let bands = search.rows().bands().len();
+        if count > bands {
+            let what = format!("{count} ranks are more than the {bands} bands of rows that the scene has");
+            let remedy = format!("take at most {bands} ranks, or more particles");
+            return Err(Failure::new(worker::TOO_MANY, what, remedy));
+        }
+        let start = Arc::new(particles);
+        let crossings = || Crossings::new(system.followed, start.len());
+        let none = || Members { numbers: vec![], moving: 0, grains: 0 };
+        let per_rank = rayon::current_num_threads();
+        let mut ranks = local::ranks(count, per_rank);
+        let rest = ranks.split_off(1);
+        let share = worker::all_rows(search.rows());
+        let engine = |search: Q| {
+            let elapsed = Elapsed::new(system.dt, crossings());
+            let all = (dynamics.clone(), system.clone(), set);
+            Engine::<S, P, Q, D>::of(all, search, start.clone(), none(), elapsed)
+        };
+        let mut threads = vec![];
+        for ranks in rest {
+            let engine = engine(search.emptied(0, share.clone()));
+            let work = move || {
+                let mut begun = Parcel::new();
+                // It goes to the first rank, with the channels, whatever becomes of the rest.
+                match Worker::new(Box::new(ranks), engine) {
+                    Ok(worker) => {
+                        wire::put_failure(None, &mut begun);
+                        if worker.ranks.gather(begun).is_ok() {
+                            worker.serve();
+                        }
+                    }
+                    Err((ranks, failure)) => {
+                        wire::put_failure(Some(&failure), &mut begun);
+                        // Where the first rank has ended too there is no one to hear it.
+                        let _ = ranks.gather(begun);
+                    }
+                }
+            };
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(per_rank).build();
+            let spawned = pool.map_err(|error| error.to_string()).and_then(|pool| {
+                thread::Builder::new().spawn(move || pool.install(work)).map_err(|error| error.to_string())
+            });
+            threads.push(spawned.map_err(|error| {
+                let what = format!("no thread can be had for a rank: {error}");
+                Failure::new(worker::TOO_MANY, what, "take fewer ranks or --threads")
+            })?);
+        }
+        let first = ranks.remove(0);
+        let engine = engine(search.emptied(0, share));
+        let worker = match Worker::new(Box::new(first), engine) {
+            Ok(worker) => worker,
+            Err((ranks, failure)) => {
+                // The others have begun, or failed as well.
+                let _ = ranks.gather(Parcel::new());
+                drop(ranks);
+                threads.into_iter().for_each(|thread| _ = thread.join());
+                return Err(failure);
+            }
+        };
+        let mut begun = Parcel::new();
+        wire::put_failure(None, &mut begun);
+        let clock = worker.engine.clock();
+        let said = worker.ranks.gather(begun).map_err(|gone| ended(gone, clock));
+        let failure = said.map(|all| all.iter().find_map(|parcel| take_failure(&mut parcel.read())));
+        let ranked =
+            Ranked { worker, threads, crossed: vec![], is_to_migrate: false, shared_cells: 0, named: vec![] };
+        if let Some(failure) = failure? {
+            return Err(failure);
+        }
+        Ok(ranked)
+    }
+}
+
+impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Ranked<S, P, Q, D> {
+    fn engine(&self) -> &Engine<S, P, Q, D> {
+        &self.worker.engine
+    }
+
+    /// What all say to something that they are told to do; nothing else is to be known before it.
+    fn ask(&self, what: Do) -> Result<Vec<Parcel>, Gone> {
+        let mut parcel = Parcel::new();
+        parcel.push(0);
+        parcel.push(0);
+        what.put(&mut parcel);
+        self.worker.ranks.tell(Some(parcel))?;
+        let own = match what {
+            Do::Look(what) => self.worker.each_own(what),
+            Do::Contacts => self.worker.contacts()?,
+            Do::Listed => self.worker.listed(),
+            _ => self.worker.unfit(),
+        };
+        self.worker.ranks.gather(own)
+    }
+
+    /// The same of what changes something.
+    fn order(&mut self, what: Do, more: impl FnOnce(&mut Parcel)) -> Result<Vec<Parcel>, Failure> {
+        let mut parcel = Parcel::new();
+        let crossed = std::mem::take(&mut self.crossed);
+        parcel.push(crossed.len());
+        for (rank, number, periods) in crossed {
+            parcel.push(rank);
+            parcel.push(number);
+            parcel.numbers(periods);
+        }
+        parcel.push(usize::from(std::mem::take(&mut self.is_to_migrate)));
+        what.put(&mut parcel);
+        more(&mut parcel);
+        let clock = self.clock();
+        let said = || -> Result<Vec<Parcel>, Gone> {
+            let parcel = self.worker.ranks.tell(Some(parcel))?;
+            match self.worker.follow(&mut parcel.read())? {
+                Some(own) => self.worker.ranks.gather(own),
+                None => Ok(vec![]),
+            }
+        };
+        said().map_err(|gone| ended(gone, clock))
+    }
+
+    /// What came of a step: discs that moved far.
+    fn heard(&mut self, reports: &[Parcel]) -> Result<Vec<u32>, Failure> {
+        let (mut failures, mut far, mut shared) = (vec![], vec![], 0);
+        for (rank, report) in reports.iter().enumerate() {
+            let mut reader = report.read();
+            failures.extend(take_failure(&mut reader).map(|failure| (rank, failure)));
+            let count = reader.count();
+            far.extend((0..count).map(|_| Record::take(&mut reader)));
+            let count = reader.count();
+            for _ in 0..count {
+                let (number, periods) = (reader.count(), reader.numbers());
+                self.crossed.push((rank, number, periods));
+            }
+            self.is_to_migrate |= reader.count() > 0;
+            shared += reader.count();
+        }
+        self.shared_cells = shared;
+        first_of(failures)?;
+        Ok(self.name(far))
+    }
+
+    /// Keeps discs to be named, and gives their places.
+    fn name(&mut self, discs: Vec<Record>) -> Vec<u32> {
+        let mut named = discs.clone();
+        named.sort_by_key(|disc| (!disc.is_grain, disc.number));
+        named.dedup_by_key(|disc| disc.number);
+        let at =
+            |disc: &Record| named.iter().position(|it| it.number == disc.number).unwrap_or_default() as u32;
+        let places = discs.iter().map(at).collect();
+        self.named = named;
+        places
+    }
+
+    /// For each of the scene's discs what its rank says; nothing where a rank has ended: the next step says so.
+    fn each<const N: usize>(&self, what: What) -> Vec<[f64; N]> {
+        let mut all = vec![[f64::NAN; N]; self.engine().start.len()];
+        for parcel in self.ask(Do::Look(what)).unwrap_or_default() {
+            let mut reader = parcel.read();
+            for number in reader.counts() {
+                all[number as usize] = reader.numbers();
+            }
+        }
+        all
+    }
+
+    /// Position, angle and their rates of each of the scene's discs at the end of the step.
+    fn standing(&self) -> Vec<[f64; 6]> {
+        self.each(What::Standing)
+    }
+
+    /// The numbers of bands in their order, of all ranks.
+    fn bands(reports: &[Parcel]) -> Vec<OfBand> {
+        let of = |parcel: &Parcel| -> Vec<OfBand> {
+            let mut reader = parcel.read();
+            (0..reader.count()).map(|_| take_band(&mut reader)).collect()
+        };
+        reports.iter().flat_map(of).collect()
+    }
+}
+
+/// The failure that one rank alone would have named, with the rank that it comes from.
+fn first_of(failures: Vec<(usize, Failure)>) -> Result<(), Failure> {
+    let first = |failure: &Failure| failure.culprits.first().map(|culprit| culprit.id);
+    let count = failures.iter().map(|(_, failure)| failure.count).max().unwrap_or(0);
+    match failures.into_iter().min_by_key(|(_, failure)| first(failure)) {
+        Some((rank, failure)) => {
+            let message = format!("{} (rank {rank})", failure.message);
+            Err(Failure { message, count, ..failure })
+        }
+        None => Ok(()),
+    }
+}
+
+impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Drop for Ranked<S, P, Q, D> {
+    fn drop(&mut self) {
+        // Who has ended already needs not be told.
+        let _ = self.order(Do::End, |_| {});
+        self.threads.drain(..).for_each(|thread| _ = thread.join());
+    }
+}
+
+impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Named for Ranked<S, P, Q, D> {
+    fn clock(&self) -> Clock {
+        self.engine().clock()
+    }
+
+    fn domain(&self) -> Domain {
+        self.engine().domain()
+    }
+
+    fn grains(&self) -> Range<usize> {
+        0..self.named.partition_point(|disc| disc.is_grain)
+    }
+
+    fn number(&self, disc: usize) -> usize {
+        self.named[disc].number
+    }
+
+    fn id(&self, disc: usize) -> u32 {
+        self.named[disc].id
+    }
+
+    fn position(&self, disc: usize) -> [f64; 2] {
+        self.named[disc].position
+    }
+
+    fn velocity(&self, disc: usize) -> [f64; 2] {
+        self.named[disc].velocity
+    }
+
+    fn radius(&self, disc: usize) -> f64 {
+        self.named[disc].radius
+    }
+}
+
+impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Ranked<S, P, Q, D> {
+    fn advance(&mut self) -> Result<Vec<u32>, Failure> {
+        let reports = self.order(Do::Advance, |_| {})?;
+        self.heard(&reports)
+    }
+
+    fn compute_forces(&mut self, asked: Asked) -> Result<Met, Failure> {
+        let reports = self.order(Do::Forces(asked), |_| {})?;
+        let (mut failures, mut deep) = (vec![], vec![]);
+        let mut of_bands = vec![];
+        for (rank, report) in reports.iter().enumerate() {
+            let mut reader = report.read();
+            refuse(&reader.text(), self.clock())?;
+            failures.extend(take_failure(&mut reader).map(|failure| (rank, failure)));
+            let count = reader.count();
+            of_bands.extend((0..count).map(|_| take_band(&mut reader)));
+            let count = reader.count();
+            deep.extend((0..2 * count).map(|_| Record::take(&mut reader)));
+        }
+        first_of(failures)?;
+        let deep = self.name(deep).chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
+        Ok(Met { deep, ..Met::of(of_bands) })
+    }
+
+    fn elapsed(&self) -> &Elapsed {
+        &self.engine().elapsed
+    }
+
+    fn elapsed_mut(&mut self) -> &mut Elapsed {
+        &mut self.worker.engine.elapsed
+    }
+
+    fn discs(&self) -> usize {
+        self.engine().start.len()
+    }
+
+    fn grain_count(&self) -> usize {
+        self.engine().start.grain_count()
+    }
+
+    fn shared_cells(&self) -> usize {
+        self.shared_cells
+    }
+
+    fn lists(&self) -> Option<(usize, u64)> {
+        let made = self.engine().search.lists()?.made();
+        let listed = self.ask(Do::Listed).unwrap_or_default();
+        Some((listed.iter().map(|parcel| parcel.read().count()).sum(), made))
+    }
+
+    fn particles(&self) -> Particles {
+        wrapped(self.unwrapped(), &self.engine().system.domain)
+    }
+
+    fn states(&self, states: &mut States) {
+        let domain = self.engine().system.domain;
+        for (number, [x, y, _, vx, vy, _]) in self.standing().into_iter().enumerate() {
+            states.put(number, domain.wrapped([x, y]), [vx, vy]);
+        }
+    }
+
+    fn positions(&self) -> Vec<[f32; 3]> {
+        let domain = self.engine().system.domain;
+        let place = |[x, y, ..]: [f64; 6]| domain.wrapped(in_space([x, y])).map(|along| along as f32);
+        self.standing().into_iter().map(place).collect()
+    }
+
+    fn unwrapped(&self) -> Particles {
+        let mut particles = Particles::clone(&self.engine().start);
+        let grains = particles.grain_count();
+        let walls = in_space(self.engine().prescribed().unwrap_or_default().velocity);
+        let standing = self.standing();
+        for (number, (particle, [x, y, angle, vx, vy, omega])) in
+            particles.all_mut().iter_mut().zip(standing).enumerate()
+        {
+            particle.position = in_space([x, y]);
+            if number < grains {
+                (particle.velocity, particle.angle, particle.omega) = (in_space([vx, vy]), angle, omega);
+            } else {
+                particle.velocity = walls;
+            }
+        }
+        particles
+    }
+
+    fn predicted_velocities(&self) -> Vec<[f64; 2]> {
+        self.each(What::Velocities)
+    }
+
+    fn forces(&self) -> Vec<[f64; 3]> {
+        self.each(What::Forces)
+    }
+
+    fn skip_forces(&mut self) {
+        // What a rank says that has ended, the next step says.
+        let _ = self.order(Do::SkipForces, |_| {});
+    }
+
+    fn unfit(&self) -> Vec<usize> {
+        let all = self.ask(Do::Unfit).unwrap_or_default();
+        let mut unfit: Vec<usize> =
+            all.iter().flat_map(|parcel| parcel.read().counts()).map(|number| number as usize).collect();
+        unfit.sort_unstable();
+        unfit
+    }
+
+    fn settle(&mut self) -> Result<(), Failure> {
+        let reports = self.order(Do::Settle, |_| {})?;
+        self.is_to_migrate = true;
+        self.heard(&reports).map(drop)
+    }
+
+    fn columns(&self) -> Vec<(String, Column)> {
+        let like = self.engine().columns_of(&[]);
+        let discs = self.engine().start.len();
+        let mut values = vec![vec![f64::NAN; discs]; like.len()];
+        for parcel in self.ask(Do::Look(What::Columns)).unwrap_or_default() {
+            let mut reader = parcel.read();
+            let numbers = reader.counts();
+            for column in &mut values {
+                numbers.iter().for_each(|&number| column[number as usize] = reader.number());
+            }
+        }
+        let columns = like.into_iter().zip(values);
+        let columns = columns.map(|((name, like), values)| (name, column_like(&like, values)));
+        columns.chain(self.engine().columns_of_all()).collect()
+    }
+
+    fn restore(&mut self, steps: u64, columns: &[(String, Column)]) -> Result<(), String> {
+        self.is_to_migrate = false;
+        let reports = self.order(Do::Restore, |parcel| {
+            parcel.push(steps as usize);
+            put_columns(columns, parcel);
+        });
+        let reports = reports.map_err(|failure| failure.what())?;
+        let why = reports.iter().map(|parcel| parcel.read().text()).find(|why| !why.is_empty());
+        why.map_or(Ok(()), Err)
+    }
+
+    fn sums(&self, scenery: &Scenery, work: &Work<'_>) -> Sums {
+        let standing = self.standing();
+        let grains = sums_of_grains(self.engine().start.grains(), (scenery, work), |number| {
+            let [x, y, _, vx, vy, omega] = standing[number];
+            Standing { position: [x, y], velocity: [vx, vy], omega }
+        });
+        let reports = self.ask(Do::Contacts).unwrap_or_default();
+        let met = Met::of(Self::bands(&reports));
+        Sums { grains, contacts: contact_sums(&met) }
+    }
+}
+
+/// A failure of what a rank says that went wrong, if it says something.
+fn refuse(why: &str, at: Clock) -> Result<(), Failure> {
+    if why.is_empty() {
+        return Ok(());
+    }
+    let what = format!("discs cannot be dealt out to the ranks: {why}");
+    let remedy = "report this with the scene";
+    Err(Failure::new(crate::method::FailureKind::MACHINE, what, remedy).at(at))
+}

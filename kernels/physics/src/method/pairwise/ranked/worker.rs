@@ -1,0 +1,495 @@
+//! The part of one rank: its discs, those of its neighbours that stand near them, and what is done with them when the first rank says so.
+//!
+//! ```text
+//! discs in memory    moved here | of other ranks, near these | walls, on every rank
+//! ```
+//!
+//! Between two *migrations* it is always the same discs. Those that are moved here may meanwhile go some rows beyond the rank's own ones
+//! ([`Layout`]); the sweep is made for that, and when one has gone farther, all ranks deal out their discs anew. Neighbours' discs get their places and velocities
+//! from their own rank at every step, and then change cells as these do there.
+
+use super::layout::{Layout, Side};
+use super::wire::{Record, column_like, entries, put_band, put_failure};
+use crate::io::checkpoint::Column;
+use crate::method::pairwise::cells::Moved;
+use crate::method::pairwise::observing::Corrected;
+use crate::method::pairwise::search::{Cells, Search};
+use crate::method::pairwise::state::Members;
+use crate::method::pairwise::{Dynamics, Engine, Named, Phase, Stepping};
+use crate::method::{Failure, FailureKind};
+use crate::ranks::{Gone, Parcel, Ranks, Reader};
+use std::collections::HashMap;
+use stripmine_kernels::backend::Precision;
+use stripmine_kernels::law::Asked;
+use stripmine_kernels::sweep::fast::{Rows, Share};
+
+/// Columns by their names.
+pub(super) type Columns = Vec<(String, Column)>;
+
+/// The part of a rank.
+pub(super) struct Worker<S, P, Q, D> {
+    pub(super) ranks: Box<dyn Ranks>,
+    pub(super) engine: Engine<S, P, Q, D>,
+    layout: Layout,
+    /// Discs by their numbers in the scene, rising: those to tell the ranks below and above of, and those that these tell of.
+    to: [Vec<u32>; 2],
+    from: [Vec<u32>; 2],
+    /// The same by their places in memory, of when the discs were put in order that often.
+    to_in_memory: [Vec<u32>; 2],
+    from_in_memory: [Vec<u32>; 2],
+    ordered: u64,
+    /// In which rows discs were at the last migration that have changed cells since.
+    homes: HashMap<u32, usize>,
+}
+
+impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Worker<S, P, Q, D> {
+    /// Takes its part of the start; `engine` has no discs yet.
+    ///
+    /// # Errors
+    /// The failure, and the rank, which is to say so.
+    pub(super) fn new(
+        ranks: Box<dyn Ranks>,
+        engine: Engine<S, P, Q, D>,
+    ) -> Result<Self, (Box<dyn Ranks>, Failure)> {
+        let rows = engine.search.rows();
+        let is_periodic = engine.search.cells().grid().periodic[1];
+        let layout = Layout::new(rows, is_periodic, &vec![1; rows.bands().len()], ranks.count());
+        let none = || [vec![], vec![]];
+        let mut worker = Worker {
+            ranks,
+            engine,
+            layout,
+            to: none(),
+            from: none(),
+            to_in_memory: none(),
+            from_in_memory: none(),
+            ordered: 0,
+            homes: HashMap::new(),
+        };
+        let start = worker.engine.start.clone();
+        // One that is in no row is named by its rank when it takes its place.
+        let row = |number: usize| worker.engine.row_at(start.all()[number].place()).unwrap_or(0);
+        let rows: Vec<u32> = (0..start.len()).map(|number| row(number) as u32).collect();
+        worker.take_part(&rows);
+        if let Err(failure) = worker.engine.take_their_places() {
+            return Err((worker.ranks, failure));
+        }
+        worker.look_up();
+        Ok(worker)
+    }
+
+    /// Holds those discs of the scene that are this rank's or near them, by the rows that all of the scene's are in.
+    fn take_part(&mut self, rows: &[u32]) {
+        let grains = self.engine.start.grain_count();
+        let mut weights = vec![0; self.layout_bands()];
+        rows[..grains].iter().for_each(|&row| weights[self.layout.band(row as usize)] += 1);
+        self.deal_out(&weights);
+        let rank = self.ranks.rank();
+        let of = |numbers: std::ops::Range<usize>, is_wanted: &dyn Fn(usize) -> bool| -> Vec<u32> {
+            numbers.filter(|&number| is_wanted(rows[number] as usize)).map(|number| number as u32).collect()
+        };
+        let own = of(0..grains, &|row| self.layout.owner(row) == rank);
+        let near = of(0..grains, &|row| self.layout.side(rank, row).is_some());
+        let walls = of(grains..rows.len(), &|_| true);
+        let row_of = |number: u32| rows[number as usize] as usize;
+        self.hold(own, near, walls, row_of);
+    }
+
+    fn layout_bands(&self) -> usize {
+        self.engine.search.rows().bands().len()
+    }
+
+    /// Bands by their weights.
+    fn deal_out(&mut self, weights: &[u64]) {
+        let (rows, periodic) = (self.engine.search.rows(), self.engine.search.cells().grid().periodic[1]);
+        self.layout = Layout::new(rows, periodic, weights, self.ranks.count());
+    }
+
+    /// Holds discs of this rank, those of others that are near, and walls, none of them in its cell yet.
+    fn hold(&mut self, own: Vec<u32>, near: Vec<u32>, walls: Vec<u32>, row: impl Fn(u32) -> usize) {
+        let (rank, count) = (self.ranks.rank(), self.ranks.count());
+        let [below, above] = [(rank + count - 1) % count, (rank + 1) % count];
+        let on_side = |discs: &[u32], rank: usize, side: Side| -> Vec<u32> {
+            discs.iter().copied().filter(|&disc| self.layout.side(rank, row(disc)) == Some(side)).collect()
+        };
+        // What lies below a rank comes from the rank below it, which tells it upwards.
+        self.from = [on_side(&near, rank, Side::Below), on_side(&near, rank, Side::Above)];
+        self.to = [on_side(&own, below, Side::Above), on_side(&own, above, Side::Below)];
+        self.homes.clear();
+        let (moving, grains) = (own.len(), own.len() + near.len());
+        let numbers: Vec<u32> = own.into_iter().chain(near).chain(walls).collect();
+        let search = self.engine.search.emptied(numbers.len(), self.layout.share(rank));
+        self.engine.hold(Members { numbers, moving, grains }, search);
+    }
+
+    /// Looks up where in memory the discs are that are told of.
+    fn look_up(&mut self) {
+        let numbers = self.engine.state.numbers();
+        let mut wanted = vec![0_u64; self.engine.start.len().div_ceil(64)];
+        let all = || self.to.iter().chain(&self.from).flatten();
+        all().for_each(|&number| wanted[number as usize / 64] |= 1 << (number % 64));
+        let is_wanted = |number: &u32| wanted[*number as usize / 64] >> (number % 64) & 1 == 1;
+        let in_memory: HashMap<u32, u32> =
+            numbers.iter().copied().zip(0..).filter(|(number, _)| is_wanted(number)).collect();
+        let places = |numbers: &Vec<u32>| numbers.iter().map(|number| in_memory[number]).collect();
+        self.to_in_memory = self.to.each_ref().map(places);
+        self.from_in_memory = self.from.each_ref().map(places);
+        self.ordered = self.engine.orders;
+    }
+
+    /// One step on; what the first rank is to know of it.
+    pub(super) fn advance(&mut self) -> Result<Parcel, Gone> {
+        let passed = self.engine.passed();
+        if self.ordered != self.engine.orders {
+            self.look_up();
+        }
+        let mut timings = self.engine.elapsed.timings;
+        let told = timings.time(Phase::Halo, || self.tell_neighbours());
+        self.engine.elapsed.timings = timings;
+        told?;
+        let (kept, far) = match passed {
+            Ok(passed) => {
+                let mut timings = self.engine.elapsed.timings;
+                let kept = timings.time(Phase::Index, || self.keep(&passed.left))?;
+                self.engine.elapsed.timings = timings;
+                (kept, passed.far)
+            }
+            // Every rank has these instructions, or none has.
+            Err(error) => (Err(error.into()), vec![]),
+        };
+        Ok(self.report(kept, &far))
+    }
+
+    /// Cells or lists after a step: lists are made again by all ranks or by none.
+    fn keep(&mut self, left: &[u32]) -> Result<Result<Vec<Moved>, Failure>, Gone> {
+        if self.engine.search.lists().is_none() {
+            return Ok(self.engine.keep_in_cells(left));
+        }
+        // The largest that a rank says holds for all.
+        const FRESH: usize = 0;
+        const STALE: usize = 1;
+        const FAILED: usize = 2;
+        let stale = self.engine.is_stale(left);
+        let mut own = Parcel::new();
+        own.push(stale.as_ref().map_or(FAILED, |&stale| if stale { STALE } else { FRESH }));
+        let all = self.ranks.gather(own)?;
+        let said = all.into_iter().max_by_key(|parcel| parcel.read().count());
+        let said = self.ranks.tell(said)?.read().count();
+        Ok(match stale {
+            Err(failure) => Err(failure),
+            Ok(_) if said == STALE => self.engine.list_again(),
+            Ok(_) => Ok(vec![]),
+        })
+    }
+
+    /// What became of discs that change cells, and discs that moved far.
+    pub(super) fn report(&mut self, moved: Result<Vec<Moved>, Failure>, far: &[u32]) -> Parcel {
+        let mut parcel = Parcel::new();
+        put_failure(moved.as_ref().err(), &mut parcel);
+        let moved = moved.unwrap_or_default();
+        parcel.push(far.len());
+        far.iter().for_each(|&disc| self.record(disc as usize).put(&mut parcel));
+        // Walls cross nothing that is counted.
+        let grains = self.engine.start.grain_count();
+        let crosses = |it: &&Moved| it.periods != [0.0; 2] && (it.number as usize) < grains;
+        let crossed: Vec<&Moved> = moved.iter().filter(crosses).collect();
+        parcel.push(crossed.len());
+        for &&Moved { number, periods, .. } in &crossed {
+            parcel.push(number as usize);
+            parcel.numbers(periods);
+        }
+        let mut has_strayed = false;
+        for &Moved { number, rows: [from, to], .. } in &moved {
+            let home = *self.homes.entry(number).or_insert(from);
+            has_strayed |= self.layout.has_strayed(home, to);
+        }
+        parcel.push(usize::from(has_strayed));
+        parcel.push(self.engine.search.cells().shared_cells(&|disc| self.is_own(disc)));
+        parcel
+    }
+
+    /// A disc as others know it.
+    pub(super) fn record(&self, disc: usize) -> Record {
+        let engine = &self.engine;
+        Record {
+            number: engine.number(disc),
+            is_grain: disc < engine.state.grains(),
+            id: engine.id(disc),
+            position: engine.position(disc),
+            velocity: engine.velocity(disc),
+            radius: engine.radius(disc),
+        }
+    }
+
+    /// Whether this rank speaks for a disc: for those that it moves, and for walls in its rows.
+    fn is_own(&self, disc: usize) -> bool {
+        let engine = &self.engine;
+        let in_own_rows = || {
+            let row = engine.search.cells().cell(disc).map_or(0, |cell| cell[1]);
+            self.layout.owner(row) == self.ranks.rank()
+        };
+        disc < engine.state.moving() || disc >= engine.state.grains() && in_own_rows()
+    }
+
+    /// The discs that it speaks for.
+    fn own(&self) -> Vec<u32> {
+        let discs = 0..self.engine.state.len();
+        discs.filter(|&disc| self.is_own(disc)).map(|disc| disc as u32).collect()
+    }
+
+    /// Tells the neighbours of the discs that stand near them, and hears of theirs.
+    fn tell_neighbours(&mut self) -> Result<(), Gone> {
+        let state = &self.engine.state;
+        let parcels = self.to_in_memory.each_ref().map(|discs| {
+            let mut parcel = Parcel::new();
+            discs.iter().for_each(|&disc| parcel.numbers(state.swept(disc as usize)));
+            parcel
+        });
+        let heard = self.ranks.halo(parcels)?;
+        for (parcel, discs) in heard.iter().zip(&self.from_in_memory) {
+            let mut reader = parcel.read();
+            for &disc in discs {
+                let disc = disc as usize;
+                self.engine.state.put_swept(disc, || reader.number());
+                let place = self.engine.state.place(disc);
+                self.engine.search.cells_mut().settle(disc, place);
+            }
+        }
+        Ok(())
+    }
+
+    /// All forces; what the first rank is to know of them.
+    pub(super) fn compute_forces(&mut self, asked: Asked) -> Result<Parcel, Gone> {
+        let met = self.engine.compute_forces(asked);
+        let mut parcel = Parcel::new();
+        put_failure(met.as_ref().err(), &mut parcel);
+        let met = met.unwrap_or_default();
+        parcel.push(met.of_bands.len());
+        met.of_bands.iter().for_each(|band| put_band(band, &mut parcel));
+        parcel.push(met.deep.len());
+        for disc in met.deep.iter().flatten() {
+            self.record(*disc as usize).put(&mut parcel);
+        }
+        Ok(parcel)
+    }
+
+    /// Deals out the discs anew: each to the rank of the row that it is in now.
+    pub(super) fn migrate(&mut self) -> Result<Result<(), String>, Gone> {
+        let state = &self.engine.state;
+        let row = |disc: usize| self.engine.search.cells().cell(disc).map_or(0, |cell| cell[1]);
+        let mut weights = vec![0; self.layout_bands()];
+        (0..state.moving()).for_each(|disc| weights[self.layout.band(row(disc))] += 1);
+        let mut parcel = Parcel::new();
+        parcel.counts(weights.into_iter());
+        let gathered = self.ranks.gather(parcel)?;
+        let sums = gathered.iter().map(|parcel| parcel.read().counts()).reduce(|mut sums, of_rank| {
+            sums.iter_mut().zip(of_rank).for_each(|(sum, of_rank)| *sum += of_rank);
+            sums
+        });
+        let said = sums.map(|sums| {
+            let mut parcel = Parcel::new();
+            parcel.counts(sums.into_iter());
+            parcel
+        });
+        let weights = self.ranks.tell(said)?.read().counts();
+        self.deal_out(&weights);
+        let state = &self.engine.state;
+        let row = |disc: usize| self.engine.search.cells().cell(disc).map_or(0, |cell| cell[1]);
+        let parcels = (0..self.ranks.count()).map(|rank| {
+            let own = |disc: &usize| self.layout.owner(row(*disc)) == rank;
+            let near = |disc: &usize| self.layout.side(rank, row(*disc)).is_some();
+            let of = |is_sent: &dyn Fn(&usize) -> bool| -> Vec<u32> {
+                (0..state.moving()).filter(is_sent).map(|disc| disc as u32).collect()
+            };
+            let (own, near) = (of(&own), of(&near));
+            let mut parcel = Parcel::new();
+            for discs in [&own, &near] {
+                parcel.counts(discs.iter().map(|&disc| state.number(disc as usize) as u64));
+            }
+            let sent = [own, near].concat();
+            self.engine.columns_of(&sent).iter().for_each(|(_, column)| parcel.numbers(entries(column)));
+            parcel
+        });
+        let came = self.ranks.migrate(parcels.collect())?;
+        Ok(self.take_over(&came))
+    }
+
+    /// Takes over what came from every rank.
+    fn take_over(&mut self, came: &[Parcel]) -> Result<(), String> {
+        let template = self.engine.columns_of(&[]);
+        let mut discs: Vec<(bool, u32, Vec<f64>)> = vec![];
+        for parcel in came {
+            let mut reader = parcel.read();
+            let [own, near] = [(); 2].map(|()| reader.counts());
+            let numbers = own.iter().map(|number| (false, *number)).chain(near.iter().map(|it| (true, *it)));
+            let begin = discs.len();
+            discs.extend(numbers.map(|(is_near, number)| (is_near, number as u32, vec![])));
+            for _ in 0..template.len() {
+                discs[begin..].iter_mut().for_each(|disc| disc.2.push(reader.number()));
+            }
+        }
+        discs.sort_unstable_by_key(|&(is_near, number, _)| (is_near, number));
+        let (grains, all) = (self.engine.state.grains(), self.engine.state.len());
+        let mut walls: Vec<u32> = (grains..all).map(|disc| disc as u32).collect();
+        walls.sort_unstable_by_key(|&disc| self.engine.state.number(disc as usize));
+        let of_walls = self.engine.columns_of(&walls);
+        let walls: Vec<u32> =
+            walls.iter().map(|&disc| self.engine.state.number(disc as usize) as u32).collect();
+        let columns: Columns = (template.iter().zip(&of_walls).enumerate())
+            .map(|(at, ((name, like), (_, of_walls)))| {
+                let values = discs.iter().map(|disc| disc.2[at]).chain(entries(of_walls));
+                (name.clone(), column_like(like, values.collect()))
+            })
+            .collect();
+        let rows: HashMap<u32, usize> = {
+            let at = columns.iter().position(|(name, _)| name == crate::method::pairwise::saved::CELL[1]);
+            let at = at.unwrap_or_default();
+            discs.iter().map(|disc| (disc.1, disc.2[at] as usize)).collect()
+        };
+        let of = |near: bool| discs.iter().filter(move |disc| disc.0 == near).map(|disc| disc.1).collect();
+        let (own, near): (Vec<u32>, Vec<u32>) = (of(false), of(true));
+        let made = self.engine.search.lists().map(|lists| lists.made());
+        self.hold(own, near, walls, |number| rows.get(&number).copied().unwrap_or_default());
+        let length = self.engine.state.len();
+        self.engine.take_up_discs(&columns, (0..length as u32).collect(), length)?;
+        made.into_iter().for_each(|made| self.engine.search.set_lists_made(made));
+        // It is done between a step and its forces.
+        self.engine.awaits_forces = true;
+        self.look_up();
+        Ok(())
+    }
+
+    /// Takes up the state of the whole scene.
+    pub(super) fn restore(&mut self, steps: u64, columns: &Columns) -> Result<(), String> {
+        let rows = columns.iter().find(|(name, _)| name == crate::method::pairwise::saved::CELL[1]);
+        let count = self.engine.search.rows().count;
+        let rows: Vec<u32> = rows.map_or(vec![], |(_, column)| {
+            entries(column).into_iter().map(|row| (row as u32).min(count as u32 - 1)).collect()
+        });
+        if rows.len() != self.engine.start.len() {
+            return Err("the rows of the discs are missing".to_owned());
+        }
+        self.take_part(&rows);
+        self.engine.take_up(steps, columns)?;
+        self.look_up();
+        Ok(())
+    }
+
+    /// The discs that it speaks for, each with what is asked of it.
+    pub(super) fn each_own(&self, what: What) -> Parcel {
+        let discs = self.own();
+        let mut parcel = Parcel::new();
+        let engine = &self.engine;
+        parcel.counts(discs.iter().map(|&disc| engine.number(disc as usize) as u64));
+        match what {
+            What::Standing => {
+                let columns = [0, 1, 2].map(|freedom| {
+                    let turns = freedom < engine.system.freedoms;
+                    if turns { engine.corrected_column(freedom) } else { [vec![], vec![]] }
+                });
+                for &disc in &discs {
+                    let disc = disc as usize;
+                    let [values, rates] = [0, 1]
+                        .map(|k| [0, 1, 2].map(|it: usize| columns[it][k].get(disc).copied().unwrap_or(0.0)));
+                    let position = engine.seen_from_origin(disc, [values[0], values[1]]);
+                    parcel.numbers(position.into_iter().chain([values[2]]).chain(rates));
+                }
+            }
+            What::Columns => {
+                let columns = engine.columns_of(&discs);
+                columns.iter().for_each(|(_, column)| parcel.numbers(entries(column)));
+            }
+            What::Forces => {
+                discs.iter().for_each(|&disc| parcel.numbers(engine.force_on(disc as usize)));
+            }
+            What::Velocities => {
+                discs.iter().for_each(|&disc| parcel.numbers(engine.velocity(disc as usize)));
+            }
+        }
+        parcel
+    }
+
+    /// Those of its discs that belong to no cell, or of which a number is not finite.
+    pub(super) fn unfit(&self) -> Parcel {
+        let own: std::collections::HashSet<usize> =
+            self.own().into_iter().map(|disc| self.engine.number(disc as usize)).collect();
+        let unfit = self.engine.unfit_discs().into_iter().filter(|number| own.contains(number));
+        let unfit: Vec<u64> = unfit.map(|number| number as u64).collect();
+        let mut parcel = Parcel::new();
+        parcel.counts(unfit.into_iter());
+        parcel
+    }
+
+    /// What its bands meet at the end of the step.
+    pub(super) fn contacts(&self) -> Result<Parcel, Gone> {
+        let mut corrected = self.engine.corrected_discs();
+        let parcels = self.to_in_memory.each_ref().map(|discs| {
+            let mut parcel = Parcel::new();
+            discs
+                .iter()
+                .for_each(|&disc| parcel.numbers(of_corrected(&mut corrected, disc).map(|value| *value)));
+            parcel
+        });
+        let heard = self.ranks.halo(parcels)?;
+        for (parcel, discs) in heard.iter().zip(&self.from_in_memory) {
+            let mut reader = parcel.read();
+            for &disc in discs {
+                of_corrected(&mut corrected, disc).for_each(|value| *value = reader.number());
+            }
+        }
+        let met = self.engine.contacts_met(&corrected);
+        let mut parcel = Parcel::new();
+        parcel.push(met.of_bands.len());
+        met.of_bands.iter().for_each(|band| put_band(band, &mut parcel));
+        Ok(parcel)
+    }
+
+    /// Pairs that its rows have listed.
+    pub(super) fn listed(&self) -> Parcel {
+        let rows = self.layout.share(self.ranks.rank()).rows;
+        let mut parcel = Parcel::new();
+        parcel.push(self.engine.search.lists().map_or(0, |lists| lists.entries_of(rows)));
+        parcel
+    }
+
+    /// Periods that discs of other ranks have crossed.
+    pub(super) fn hear_of_crossings(&mut self, reader: &mut Reader<'_>) {
+        let own = self.ranks.rank();
+        let count = reader.count();
+        for _ in 0..count {
+            let (rank, number) = (reader.count(), reader.count());
+            let periods = reader.numbers();
+            if rank != own {
+                self.engine.elapsed.crossings.add(number, periods);
+            }
+        }
+    }
+}
+
+/// What a sweep reads of a corrected disc.
+fn of_corrected(corrected: &mut Corrected, disc: u32) -> impl Iterator<Item = &mut f64> {
+    let disc = disc as usize;
+    let Corrected { place, velocity, omega, .. } = corrected;
+    place.iter_mut().chain(velocity).map(move |along| &mut along[disc]).chain(omega.get_mut(disc))
+}
+
+/// What may be asked of each disc.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum What {
+    /// Position, angle, and the rates of the three, at the end of the step.
+    Standing,
+    /// Everything that the next step depends on.
+    Columns,
+    /// Force along x and y and torque.
+    Forces,
+    /// The velocity that the last predictor left.
+    Velocities,
+}
+
+/// All rows, for a search that holds no discs yet.
+pub(super) fn all_rows(rows: Rows) -> Share {
+    Share { rows: 0..rows.count, margin: 0 }
+}
+
+/// Failures of a scene that has fewer bands than there are ranks.
+pub(super) const TOO_MANY: FailureKind = FailureKind::new("too-many-ranks");

@@ -1,0 +1,231 @@
+//! The same bits on any number of ranks.
+
+use rand::RngExt;
+use std::sync::atomic::AtomicBool;
+use stripmine_kernels::noise::{self, Stream};
+use stripmine_physics::method::{METHODS, Prepared, Purpose, Snapshot, Until, load};
+use stripmine_physics::ranks;
+
+/// A scene of several bands, and how many steps of it are made.
+struct Scene {
+    preset: &'static str,
+    overrides: &'static [&'static str],
+    steps: u64,
+}
+
+/// Hot discs, which go many rows: nearly all of them come to another rank.
+const HOT: &[&str] = &[
+    "particles.generate=mesh",
+    "particles.spacing=1.3",
+    "particles.count=900",
+    "particles.temperature=1.0",
+    "domain.sides=[10.0, 180.0]",
+    "law.stiffness=20000",
+    "integrator.dt=0.001",
+    "run.steps=6000",
+];
+
+const SCENES: &[Scene] = &[
+    Scene { preset: "bench", overrides: HOT, steps: 5000 },
+    // All of one size, or not; heaps at one end.
+    Scene {
+        preset: "bench",
+        overrides: &[
+            "particles.radius_spread=0.05",
+            "particles.radius_cut=0.1",
+            "domain.gravity=[0.0, -5.0]",
+        ],
+        steps: 800,
+    },
+    // Moving walls, friction, an end that is closed.
+    Scene {
+        preset: "shaken-box",
+        overrides: &[
+            "domain.sides=[0.5, 3.0]",
+            "particles.fill_height=1.5",
+            "particles.count=700",
+            "run.time=1",
+        ],
+        steps: 1000,
+    },
+    Scene { preset: "langevin-dense", overrides: &["domain.sides=[12.0, 140.0]", "run.time=3"], steps: 500 },
+    Scene {
+        preset: "langevin-dense",
+        overrides: &[
+            "domain.sides=[12.0, 140.0]",
+            "law.kind=wca",
+            "integrator.kind=stochastic",
+            "run.time=3",
+        ],
+        steps: 500,
+    },
+    // So long a step that particles are thrown out, and the run goes on without them.
+    Scene {
+        preset: "langevin-dense",
+        overrides: &["domain.sides=[12.0, 140.0]", "integrator.dt=0.03", "run.most_lost=1000", "run.time=9"],
+        steps: 60,
+    },
+];
+const SEARCHES: [&str; 3] = ["lattice", "sectors", "neighbor-list"];
+const RANKS: [usize; 5] = [2, 3, 4, 7, 8];
+
+impl Scene {
+    fn prepared(&self, more: &[String]) -> Result<Prepared, String> {
+        let hot: &[&str] = if self.preset == "bench" { HOT } else { &[] };
+        let overrides =
+            hot.iter().chain(self.overrides).map(|&text| text.to_owned()).chain(more.iter().cloned());
+        let loaded = load(self.preset, &overrides.collect::<Vec<_>>(), METHODS);
+        loaded.map(|(prepared, _)| prepared).map_err(|errors| errors.to_string())
+    }
+}
+
+/// What there is to be seen of a run now and then, and what stopped it.
+#[derive(Debug, Default, PartialEq)]
+struct Seen {
+    observed: Vec<Vec<u64>>,
+    snapshots: Vec<Snapshot>,
+    checksums: Vec<String>,
+    positions: Vec<Vec<[u32; 3]>>,
+    events: String,
+    words: String,
+    failure: Option<(u64, String, Vec<u32>)>,
+}
+
+/// How often it is looked at a run.
+const LOOKS: u64 = 4;
+
+/// A run on some ranks; why it does not begin.
+fn seen(prepared: &Prepared, ranks: usize, steps: u64) -> Result<Seen, String> {
+    ranks::over(ranks, || {
+        let mut simulation = prepared.start(Purpose::Run).map_err(|failure| failure.to_string())?;
+        let mut seen = Seen::default();
+        for part in 0..=LOOKS {
+            let until = Until::Steps(part * steps / LOOKS);
+            if let Err(failure) = simulation.advance(&[until], &AtomicBool::new(false)) {
+                let ids = failure.culprits.iter().map(|culprit| culprit.id).collect();
+                let at = failure.at.map_or(0, |at| at.steps);
+                seen.failure = Some((at, failure.kind.name().to_owned(), ids));
+                break;
+            }
+            seen.observed.push(simulation.observe().iter().map(|value| value.to_bits()).collect());
+            seen.snapshots.push(simulation.snapshot());
+            seen.checksums.push(simulation.particles().checksum());
+            seen.positions.push(simulation.positions().iter().map(|place| place.map(f32::to_bits)).collect());
+        }
+        seen.events = simulation.take_events();
+        seen.words = simulation.in_words();
+        Ok(seen)
+    })
+}
+
+/// The first that differs, in a sentence.
+fn difference(alone: &Seen, together: &Seen) -> Option<String> {
+    for (part, (a, b)) in alone.snapshots.iter().zip(&together.snapshots).enumerate() {
+        let columns = a.columns.iter().zip(&b.columns);
+        if let Some(((name, _), _)) = columns.into_iter().find(|(a, b)| a != b) {
+            return Some(format!("the column {name} of part {part}"));
+        }
+        if a.counters != b.counters {
+            return Some(format!("counters of part {part}: {:?}, {:?}", a.counters, b.counters));
+        }
+    }
+    (alone.failure != together.failure)
+        .then(|| format!("{:?}, {:?}", alone.failure, together.failure))
+        .or_else(|| (alone.observed != together.observed).then(|| "what is observed".to_owned()))
+        .or_else(|| (alone != together).then(|| "positions, events or words".to_owned()))
+}
+
+#[test]
+fn bits_are_those_of_one_rank() {
+    let mut compared = 0;
+    for (number, scene) in SCENES.iter().enumerate() {
+        for (search, precision) in SEARCHES.into_iter().zip(["f64", "mixed", "f32"]) {
+            let more = [format!("search.by={search}"), format!("machine.precision={precision}")];
+            let Ok(prepared) = scene.prepared(&more) else { continue };
+            let alone = seen(&prepared, 1, scene.steps).unwrap();
+            for ranks in RANKS {
+                let what = format!("{} {number} {search} {precision} on {ranks} ranks", scene.preset);
+                match seen(&prepared, ranks, scene.steps) {
+                    Err(why) if why.contains("bands of rows") => break,
+                    Err(why) => panic!("{what}: {why}"),
+                    Ok(together) => assert_eq!(difference(&alone, &together), None, "{what}"),
+                }
+                compared += 1;
+            }
+        }
+    }
+    println!("{compared} runs");
+    assert!(compared >= 40, "{compared}");
+}
+
+/// A state goes on with on another number of ranks.
+#[test]
+fn a_run_goes_on_with_on_another_number_of_ranks() {
+    for (scene, search) in SCENES.iter().zip(SEARCHES.into_iter().cycle()).take(5) {
+        let Ok(prepared) = scene.prepared(&[format!("search.by={search}")]) else { continue };
+        let stop = AtomicBool::new(false);
+        let [half, end] = [scene.steps / 2, scene.steps].map(Until::Steps);
+        let whole = seen(&prepared, 1, scene.steps).unwrap();
+        let Some(last) = whole.snapshots.last() else { continue };
+        let (clock, state) = ranks::over(2, || {
+            let mut first = prepared.start(Purpose::Run).unwrap();
+            first.advance(&[half], &stop).unwrap();
+            (first.clock(), first.snapshot())
+        });
+        for ranks in [1, 3] {
+            ranks::over(ranks, || {
+                let mut second = prepared.start(Purpose::Run).unwrap();
+                second.restore(clock, state.clone()).unwrap();
+                second.advance(&[end], &stop).unwrap();
+                assert!(second.snapshot() == *last, "{} {search}: from 2 on {ranks} ranks", scene.preset);
+            });
+        }
+    }
+}
+
+/// More ranks than bands are refused with the most that the scene takes.
+#[test]
+fn too_many_ranks_are_refused() {
+    let prepared = SCENES[0].prepared(&["search.by=sectors".to_owned()]).unwrap();
+    let why = seen(&prepared, 12, 1).unwrap_err();
+    assert!(why.contains("12 ranks are more than the 9 bands") && why.contains("at most 9 ranks"), "{why}");
+}
+
+/// Random scenes of both methods, whatever comes of them.
+#[test]
+#[ignore = "long: cargo test --release --test ranks -- --ignored --nocapture"]
+fn random_scenes_have_the_bits_of_one_rank() {
+    let mut random = Stream::new(43, noise::Purpose::Test, 0);
+    let (mut compared, mut failed) = (0, 0);
+    while compared < 300 {
+        let scene = &SCENES[random.random_range(0..SCENES.len())];
+        let search = SEARCHES[random.random_range(0..3)];
+        let precision = ["f64", "mixed", "f32"][random.random_range(0..3)];
+        let mut more = vec![
+            format!("search.by={search}"),
+            format!("machine.precision={precision}"),
+            format!("particles.seed={}", random.random_range(1..1000)),
+        ];
+        if scene.preset == "bench" {
+            let periodic = [random.random_bool(0.8), random.random_bool(0.8)];
+            let width = random.random_range(6..20);
+            let height = random.random_range(60..240);
+            more.push(format!("domain.periodic={periodic:?}"));
+            more.push(format!("domain.sides=[{width}.5, {height}.5]"));
+            more.push(format!("particles.count={}", random.random_range(40..width * height / 2)));
+            more.push(format!("integrator.values={}", random.random_range(4..7)));
+        }
+        let Ok(prepared) = scene.prepared(&more) else { continue };
+        let steps = random.random_range(40..scene.steps);
+        let ranks = random.random_range(2..9);
+        let threads = random.random_range(1..3);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let Ok(together) = pool.install(|| seen(&prepared, ranks, steps)) else { continue };
+        let alone = seen(&prepared, 1, steps).unwrap();
+        let what = format!("{} {more:?} on {ranks} ranks, {threads} threads, {steps} steps", scene.preset);
+        assert_eq!(difference(&alone, &together), None, "{what}");
+        failed += usize::from(alone.failure.is_some());
+        compared += 1;
+    }
+    println!("{compared} runs, {failed} of them ended by a failure");
+}
