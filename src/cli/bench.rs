@@ -1,9 +1,10 @@
 //! `stripmine bench`: one throughput measurement of moving particles.
 
+use super::run::MOST_RANKS;
 use crate::console::{Common, Failure, clear_progress, count, print, print_json, progress};
 use crate::report::{Cell, Rows, Table, terminal};
 use crate::study::history::{self, Record};
-use crate::study::scaling::{Scaling, scaling};
+use crate::study::scaling::{Crew, OfThreads, Scaling, scaling};
 use clap::{Arg, ArgAction, ArgMatches, Args, value_parser};
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -11,6 +12,7 @@ use std::path::PathBuf;
 use stripmine_physics::method::throughput::{Measurement, MeasurementError, Throughput, throughput};
 use stripmine_physics::method::{Bench, BenchOption, Entry, Methods, Takes};
 use stripmine_physics::number::{counted, significant};
+use stripmine_physics::ranks;
 use stripmine_physics::scene::{SceneErrors, Values};
 
 /// One throughput measurement of moving particles
@@ -24,6 +26,9 @@ pub(super) struct BenchVerb {
     /// Appends the measurement to this file as a line with date, commit and machine; `chart history` draws it
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
+    /// Ranks that share the particles, each with as many threads; several numbers, such as 1,2, in turn
+    #[arg(long, value_delimiter = ',', value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_RANKS)))]
+    ranks: Vec<u16>,
     /// Repeats
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..))]
     repeats: u16,
@@ -106,7 +111,7 @@ impl BenchVerb {
         let given = self.overrides(bench, matches, methods)?;
         // Before anything takes its time.
         self.record.as_deref().map_or(Ok(()), history::admits)?;
-        if common.threads.len() > 1 {
+        if common.threads.len() > 1 || self.ranks.len() > 1 {
             return self.on_several(entry, bench, &given, common);
         }
         let bar = progress(common, "bench");
@@ -127,7 +132,8 @@ impl BenchVerb {
         given: &[Override],
         show: impl Fn(f64),
     ) -> Result<Throughput, MeasurementError> {
-        throughput(self.measurement(entry, bench, given)?, show)
+        let ranks = self.ranks.first().copied().map_or(1, usize::from);
+        ranks::over(ranks, || throughput(self.measurement(entry, bench, given)?, show))
     }
 
     fn measurement(
@@ -144,7 +150,7 @@ impl BenchVerb {
         Ok(Measurement { bench, prepared, equilibration: 200.max(steps / 10), steps, repeats })
     }
 
-    /// The bench on several numbers of threads, in turn.
+    /// The bench on several numbers of ranks and threads, in turn.
     fn on_several(
         &self,
         entry: &'static Entry,
@@ -152,10 +158,16 @@ impl BenchVerb {
         given: &[Override],
         common: &Common,
     ) -> Result<(), Failure> {
-        let threads: Vec<usize> = common.threads.iter().copied().map(usize::from).collect();
+        let or_one = |given: &[u16], default: usize| -> Vec<usize> {
+            let given = given.iter().copied().map(usize::from);
+            if given.len() == 0 { vec![default] } else { given.collect() }
+        };
+        let threads = or_one(&common.threads, 1);
+        let of_ranks = |ranks: usize| threads.iter().map(move |&threads| Crew { ranks, threads });
+        let crews: Vec<Crew> = or_one(&self.ranks, 1).into_iter().flat_map(of_ranks).collect();
         let bar = progress(common, "bench");
         let show = |share: f64| bar.set_position((1e3 * share) as u64);
-        let found = scaling(&|| self.measurement(entry, bench, given), &threads, show);
+        let found = scaling(&|| self.measurement(entry, bench, given), &crews, show);
         clear_progress();
         let found = found.map_err(|error| refused(error, given))?;
         if common.json {
@@ -177,12 +189,13 @@ fn by_threads(found: &Scaling) -> Table {
         format!("{gain} times on {threads}")
     });
     Rows::of(&found.by_threads)
-        .cell("threads", |it| Cell::Number(it.threads as f64, 0))
+        .cell("ranks", |it| Cell::Number(it.crew.ranks as f64, 0))
+        .cell("threads of each", |it| Cell::Number(it.crew.threads as f64, 0))
         .cell("million a second, best", |it| Cell::Number(1e-6 * it.rate[0], 2))
         .cell("median", |it| Cell::Number(1e-6 * it.rate[1], 2))
         .cell("gain", |it| Cell::Number(it.gain, 2))
         .cell("efficiency", |it| {
-            Cell::Number(it.gain * found.by_threads[0].threads as f64 / it.threads as f64, 2)
+            Cell::Number(it.gain * found.by_threads[0].crew.all() as f64 / it.crew.all() as f64, 2)
         })
         .table(
             "threads",
@@ -200,13 +213,12 @@ fn by_threads(found: &Scaling) -> Table {
 /// What each phase gains.
 fn by_phases(found: &Scaling) -> Table {
     let mut rows = Rows::of(&found.phases).text("phase", |it| it.name.clone());
-    for (at, threads) in found.by_threads.iter().enumerate() {
-        let threads = counted(threads.threads, "thread", "threads");
-        rows = rows.cell(format!("ns, {threads}"), move |it| Cell::Number(it.nanoseconds[at], 2));
+    for (at, OfThreads { crew: Crew { ranks, threads }, .. }) in found.by_threads.iter().enumerate() {
+        rows = rows.cell(format!("ns, {ranks} × {threads}"), move |it| Cell::Number(it.nanoseconds[at], 2));
     }
     rows.cell("serial part (%)", |it| it.serial.map_or(Cell::Nothing, |part| Cell::Number(100.0 * part, 1)))
         .text("of", |it| if it.is_beside { "particle, each time" } else { "particle and step" })
-        .table("phases", "Phases, and the part of each that does not gain")
+        .table("phases", "Phases, ranks × threads of each, and the part of each phase that does not gain")
         .note("Best repeats. Below 0: it gains more than there are threads, by caches.".to_owned())
 }
 

@@ -1,9 +1,11 @@
-//! One bench on several numbers of threads: what each phase gains, and which part of it does not.
+//! One bench on several numbers of ranks and threads: what each phase gains, and which part of it does not.
 
 use serde::Serialize;
 use serde_json::{Map, Value};
+use std::collections::BTreeSet;
 use std::time::Instant;
 use stripmine_physics::method::throughput::{Measurement, MeasurementError, Throughput, TimedRun};
+use stripmine_physics::ranks;
 
 /// The name of the whole step among its phases, of what is in no phase, and of what is done beside steps: the start, a row of observables, all particles
 /// as they stand, what a checkpoint keeps.
@@ -24,19 +26,36 @@ pub struct Scaling {
     pub repeats: usize,
     /// How: precision, integrator and the like.
     pub settings: Map<String, Value>,
-    /// Whether the final state has the same bits on all numbers of threads.
+    /// Whether the final state has the same bits on all of them.
     pub same_bits: bool,
-    /// By rising number of threads.
+    /// By rising number of threads in all.
     pub by_threads: Vec<OfThreads>,
     /// Each phase of the step, the dearest first, then what is done beside steps.
     pub phases: Vec<Phase>,
 }
 
-/// The bench on a number of threads.
+/// How many ranks, and threads of each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Crew {
+    /// Ranks.
+    pub ranks: usize,
+    /// Threads of each.
+    pub threads: usize,
+}
+
+impl Crew {
+    /// Threads in all.
+    pub fn all(self) -> usize {
+        self.ranks * self.threads
+    }
+}
+
+/// The bench on some ranks and threads.
 #[derive(Clone, Debug, Serialize)]
 pub struct OfThreads {
-    /// Threads.
-    pub threads: usize,
+    /// How many.
+    #[serde(flatten)]
+    pub crew: Crew,
     /// Work in a second: the best repeat, and the median one.
     pub rate: [f64; 2],
     /// The best rate over that of the fewest threads.
@@ -63,19 +82,20 @@ pub struct Phase {
 /// [`MeasurementError`] if the scene is bad or breaks while running, or there are no threads.
 pub fn scaling(
     measurement: &dyn Fn() -> Result<Measurement, MeasurementError>,
-    threads: &[usize],
+    crews: &[Crew],
     progress: impl Fn(f64) + Sync,
 ) -> Result<Scaling, MeasurementError> {
-    let mut threads = threads.to_vec();
-    threads.sort_unstable();
-    threads.dedup();
+    let mut crews = crews.to_vec();
+    crews.sort_by_key(|crew| (crew.all(), crew.ranks));
+    crews.dedup();
     let mut running = vec![];
-    for &count in &threads {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build();
+    for &crew in &crews {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(crew.threads).build();
         let pool = pool.map_err(MeasurementError::Threads)?;
         let Measurement { bench, prepared, equilibration, steps, repeats } = measurement()?;
         let begun = Instant::now();
-        let run = pool.install(|| TimedRun::begin(bench, prepared, equilibration, steps))?;
+        let begin = || ranks::over(crew.ranks, || TimedRun::begin(bench, prepared, equilibration, steps));
+        let run = pool.install(begin)?;
         running.push((pool, run, repeats, begun.elapsed().as_secs_f64()));
     }
     let repeats = running.first().map_or(0, |(_, _, repeats, _)| *repeats);
@@ -91,12 +111,12 @@ pub fn scaling(
             (run.measured(), beside)
         })
     });
-    Ok(told(measured.collect()))
+    Ok(told(&crews, measured.collect()))
 }
 
-fn told(measured: Vec<(Throughput, [f64; 4])>) -> Scaling {
+fn told(crews: &[Crew], measured: Vec<(Throughput, [f64; 4])>) -> Scaling {
     let (results, beside): (Vec<Throughput>, Vec<[f64; 4]>) = measured.into_iter().unzip();
-    let threads: Vec<usize> = results.iter().map(|it| it.threads).collect();
+    let threads: Vec<usize> = crews.iter().map(|crew| crew.all()).collect();
     let first = &results[0];
     let each = |it: &Throughput, seconds: f64| 1e9 * seconds / (it.particles as f64 * it.steps as f64);
     let phase = |name: &str, is_beside: bool, nanoseconds: Vec<f64>| Phase {
@@ -107,8 +127,12 @@ fn told(measured: Vec<(Throughput, [f64; 4])>) -> Scaling {
     };
     let of =
         |name: &str| results.iter().map(|it| each(it, it.phases.get(name).copied().unwrap_or(0.0))).collect();
-    let mut names: Vec<&str> = first.phases.keys().copied().collect();
-    names.sort_by(|a, b| first.phases[b].total_cmp(&first.phases[a]));
+    // Some have phases that one rank has not.
+    let most =
+        |name: &str| results.iter().filter_map(|it| it.phases.get(name)).fold(0.0_f64, |a, b| a.max(*b));
+    let names: BTreeSet<&str> = results.iter().flat_map(|it| it.phases.keys().copied()).collect();
+    let mut names: Vec<&str> = names.into_iter().collect();
+    names.sort_by(|a, b| most(b).total_cmp(&most(a)));
     let mut phases = vec![phase(WHOLE, false, results.iter().map(|it| each(it, it.seconds)).collect())];
     phases.extend(names.iter().map(|name| phase(name, false, of(name))));
     let rest = |it: &Throughput| each(it, (it.seconds - it.phases.values().sum::<f64>()).max(0.0));
@@ -117,8 +141,8 @@ fn told(measured: Vec<(Throughput, [f64; 4])>) -> Scaling {
         let once = beside.iter().map(|it| 1e9 * it[at] / first.particles as f64);
         phases.push(phase(name, true, once.collect()));
     }
-    let by_threads = results.iter().map(|it| OfThreads {
-        threads: it.threads,
+    let by_threads = crews.iter().zip(&results).map(|(&crew, it)| OfThreads {
+        crew,
         rate: [it.rate, it.median_rate],
         gain: it.rate / first.rate,
     });
@@ -138,7 +162,7 @@ fn told(measured: Vec<(Throughput, [f64; 4])>) -> Scaling {
 fn serial(threads: &[usize], times: &[f64]) -> Option<f64> {
     let ([a, .., b], [first, .., last]) = (threads, times) else { return None };
     let ([a, b], ratio) = ([a, b].map(|&count| 1.0 / count as f64), last / first);
-    ratio.is_finite().then(|| (b - ratio * a) / (ratio * (1.0 - a) - (1.0 - b)))
+    (ratio.is_finite() && a != b).then(|| (b - ratio * a) / (ratio * (1.0 - a) - (1.0 - b)))
 }
 
 impl Scaling {

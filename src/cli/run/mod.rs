@@ -11,9 +11,13 @@ use std::path::{Path, PathBuf};
 use stripmine_physics::method::{Clock, Methods, Prepared, prepare, vocabularies};
 use stripmine_physics::number::significant;
 use stripmine_physics::quoted;
+use stripmine_physics::ranks;
 use stripmine_physics::run::{Ending, Existing, Job, Summary, begins, chosen_otherwise, forecast, run};
 use stripmine_physics::scene::Values;
 use stripmine_physics::signals;
+
+/// More ranks than any machine at hand has cores.
+pub(super) const MOST_RANKS: u16 = 1024;
 
 /// One simulation: observables, trajectory, summary and checkpoints in a folder
 #[derive(Args)]
@@ -38,6 +42,9 @@ pub(super) struct RunVerb {
     /// A number of runs side by side, each with a seed and a folder of its own, and their means in one summary
     #[arg(long, value_name = "N", value_parser = count)]
     seeds: Option<u64>,
+    /// Ranks that share the particles of lattice MD and Langevin dynamics, each with as many threads as --threads says: the bits are those of one
+    #[arg(long, default_value_t = 1, conflicts_with = "seeds", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_RANKS)))]
+    ranks: u16,
     /// What the scene leaves to `auto` becomes what was the fastest here: by what `explain` has kept of this scene, or of one that is alike
     #[arg(long, conflicts_with = "seeds")]
     tuned: bool,
@@ -79,7 +86,8 @@ impl RunVerb {
             }
         };
         let job = Job { prepared: &prepared, quantities: entry.quantities, program: &built() };
-        let ending = run(job, &folder, existing, signals::asked(), progress, notice);
+        let work = || run(job, &folder, existing, signals::asked(), progress, notice);
+        let ending = ranks::over(self.ranks.into(), work);
         clear_progress();
         match ending? {
             Ending::Done(summary) if common.json => print_json(&summary),

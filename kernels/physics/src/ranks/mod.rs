@@ -17,6 +17,7 @@ mod parcel;
 
 pub use parcel::{Parcel, Reader};
 
+use crate::method::{Failure, FailureKind};
 use std::cell::Cell;
 
 /// A rank has ended, and what was asked of it will not come.
@@ -60,6 +61,24 @@ pub trait Ranks: Send {
 
 thread_local! {
     static COUNT: Cell<usize> = const { Cell::new(1) };
+}
+
+/// Why a simulation cannot be carried out by several ranks.
+const ONE_RANK: FailureKind = FailureKind::new("one-rank");
+
+/// Refuses several ranks, for a reason.
+///
+/// # Errors
+/// [`Failure`] if there are several.
+pub fn refuse_several(why: &str) -> Result<(), Failure> {
+    match count() {
+        1 => Ok(()),
+        count => {
+            let what = format!("{count} ranks were asked for, but {why}");
+            let remedy = "take one rank, or several seeds: run --seeds";
+            Err(Failure::new(ONE_RANK, what, remedy))
+        }
+    }
 }
 
 /// How many ranks simulations are to be carried out by that begin now, on this thread.

@@ -5,6 +5,7 @@ use super::model::sides_of;
 use super::scene::{By, ProgramText};
 use super::{Contacts, Discs, Engine, FastSearch, ListOptions, Machine, Model, Watch, start};
 use crate::method::Failure;
+use crate::ranks;
 use stripmine_kernels::law::granular::Disc;
 
 /// What a checked scene models: no more than it needs.
@@ -83,6 +84,11 @@ pub(super) fn model_following_energy(checked: &Checked) -> Model {
 
 fn start_of(checked: &Checked, model: Model) -> Result<Box<dyn Engine>, Failure> {
     let Checked { scene, particles, .. } = checked;
+    if !scene.machine.is_fast() {
+        ranks::refuse_several(
+            "the source's programs are of whole arrays: machine.engine = \"fast\" has bands",
+        )?;
+    }
     let contacts = contacts(checked);
     let machine = Machine { execution: scene.machine.execution, set: scene.machine.instructions() };
     start(scene.machine.precision, model, contacts, machine, scene.walls, particles.clone())

@@ -13,6 +13,7 @@ use crate::method::{
     Beyond, Fact, Failure, Prepared, Purpose, Schedule, Simulation, Startable, StepLimit, VectorProgram,
 };
 use crate::particles::{Particle, Particles};
+use crate::ranks;
 use crate::words::Words;
 use serde_json::{Map, Value, json};
 
@@ -127,6 +128,7 @@ impl Startable for Checked {
     }
 
     fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure> {
+        ranks::refuse_several("every body acts on every other one: they are in one memory")?;
         Ok(Box::new(Running::new(self, purpose)?))
     }
 

@@ -3,8 +3,11 @@
 use std::ops::Range;
 use stripmine_kernels::sweep::fast::{Rows, Share};
 
-/// Discs may be so many rows away from where they were when ranks were given their discs; then that is done again. No bit depends on it.
-const MARGIN: usize = 4;
+/// Discs may be so many rows away from where they were when ranks were given their discs; then that is done again. No bit depends on it. Pairs that are
+/// found beside rows reach as far as partners lie ahead.
+fn margin(rows: Rows) -> usize {
+    rows.ahead.max(2)
+}
 
 /// On which side of a rank a row lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,7 +61,7 @@ impl Layout {
     /// What a rank sees to.
     pub(super) fn share(&self, rank: usize) -> Share {
         let [first, end] = [self.first[rank], self.first[rank + 1]];
-        Share { rows: self.bands[first].start..self.bands[end - 1].end, margin: MARGIN }
+        Share { rows: self.bands[first].start..self.bands[end - 1].end, margin: margin(self.rows) }
     }
 
     /// On which side of a rank's rows a row lies, if it is so near that its discs matter there.
@@ -88,7 +91,7 @@ impl Layout {
     pub(super) fn has_strayed(&self, from: usize, to: usize) -> bool {
         let away = from.abs_diff(to);
         let away = if self.is_periodic { away.min(self.rows.count - away) } else { away };
-        away > MARGIN
+        away > margin(self.rows)
     }
 }
 
@@ -129,9 +132,9 @@ mod tests {
             let layout = Layout::new(rows, is_periodic, &[1; 4], 4);
             let side = |row| layout.side(0, row);
             assert_eq!((side(0), side(15)), (None, None));
-            assert_eq!((side(16), side(25), side(26)), (Some(Side::Above), Some(Side::Above), None));
+            assert_eq!((side(16), side(21), side(22)), (Some(Side::Above), Some(Side::Above), None));
             let below = is_periodic.then_some(Side::Below);
-            assert_eq!((side(63), side(54), side(53)), (below, below, None));
+            assert_eq!((side(63), side(58), side(57)), (below, below, None));
         }
     }
 }
