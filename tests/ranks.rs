@@ -96,7 +96,7 @@ const LOOKS: u64 = 4;
 
 /// A run on some ranks; why it does not begin.
 fn seen(prepared: &Prepared, ranks: usize, steps: u64) -> Result<Seen, String> {
-    ranks::over(ranks, || {
+    ranks::over(ranks::Crew::Threads(ranks), || {
         let mut simulation = prepared.start(Purpose::Run).map_err(|failure| failure.to_string())?;
         let mut seen = Seen::default();
         for part in 0..=LOOKS {
@@ -167,13 +167,13 @@ fn a_run_goes_on_with_on_another_number_of_ranks() {
         let [half, end] = [scene.steps / 2, scene.steps].map(Until::Steps);
         let whole = seen(&prepared, 1, scene.steps).unwrap();
         let Some(last) = whole.snapshots.last() else { continue };
-        let (clock, state) = ranks::over(2, || {
+        let (clock, state) = ranks::over(ranks::Crew::Threads(2), || {
             let mut first = prepared.start(Purpose::Run).unwrap();
             first.advance(&[half], &stop).unwrap();
             (first.clock(), first.snapshot())
         });
         for ranks in [1, 3] {
-            ranks::over(ranks, || {
+            ranks::over(ranks::Crew::Threads(ranks), || {
                 let mut second = prepared.start(Purpose::Run).unwrap();
                 second.restore(clock, state.clone()).unwrap();
                 second.advance(&[end], &stop).unwrap();

@@ -1,18 +1,20 @@
 //! `stripmine bench`: one throughput measurement of moving particles.
 
+use super::processes;
 use super::run::MOST_RANKS;
 use crate::console::{Common, Failure, clear_progress, count, print, print_json, progress};
+use crate::provenance::built;
 use crate::report::{Cell, Rows, Table, terminal};
 use crate::study::history::{self, Record};
-use crate::study::scaling::{Crew, OfThreads, Scaling, scaling};
+use crate::study::scaling::{self, OfThreads, Scaling, scaling};
 use clap::{Arg, ArgAction, ArgMatches, Args, value_parser};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 use stripmine_physics::method::throughput::{Measurement, MeasurementError, Throughput, throughput};
-use stripmine_physics::method::{Bench, BenchOption, Entry, Methods, Takes};
+use stripmine_physics::method::{Bench, BenchOption, Entry, Methods, Purpose, Takes};
 use stripmine_physics::number::{counted, significant};
-use stripmine_physics::ranks;
+use stripmine_physics::ranks::{self, Crew};
 use stripmine_physics::scene::{SceneErrors, Values};
 
 /// One throughput measurement of moving particles
@@ -114,26 +116,37 @@ impl BenchVerb {
         if common.threads.len() > 1 || self.ranks.len() > 1 {
             return self.on_several(entry, bench, &given, common);
         }
+        let Crew::Processes(join) = common.crew else {
+            let ranks = self.ranks.first().copied().map_or(1, usize::from);
+            return self.on_one((entry, bench, &given), Crew::Threads(ranks), common);
+        };
+        if !self.ranks.is_empty() {
+            return Err(processes::ranks_twice());
+        }
+        let measurement = self.measurement(entry, bench, &given).map_err(|error| refused(error, &given))?;
+        let same = format!("{:?}\n{}", built(), measurement.prepared.scene);
+        let first = || self.on_one((entry, bench, &given), common.crew, common);
+        processes::together(join, &same, first, || {
+            processes::serve(common.crew, || measurement.prepared.start(Purpose::Measurement).map(drop));
+        })
+    }
+
+    /// The bench by some ranks.
+    fn on_one(
+        &self,
+        (entry, bench, given): (&'static Entry, &'static Bench, &[Override]),
+        crew: Crew,
+        common: &Common,
+    ) -> Result<(), Failure> {
         let bar = progress(common, "bench");
         let show = |share: f64| bar.set_position((1e3 * share) as u64);
-        let result = self.measured(entry, bench, &given, show);
+        let result = ranks::over(crew, || throughput(self.measurement(entry, bench, given)?, show));
         clear_progress();
-        let result = result.map_err(|error| refused(error, &given))?;
+        let result = result.map_err(|error| refused(error, given))?;
         if let Some(file) = &self.record {
             history::append(file, &Record::of(&result, &common.command))?;
         }
         if common.json { print_json(&result) } else { print(&(terminal::fitted(&text(&result)) + "\n")) }
-    }
-
-    fn measured(
-        &self,
-        entry: &'static Entry,
-        bench: &'static Bench,
-        given: &[Override],
-        show: impl Fn(f64),
-    ) -> Result<Throughput, MeasurementError> {
-        let ranks = self.ranks.first().copied().map_or(1, usize::from);
-        ranks::over(ranks, || throughput(self.measurement(entry, bench, given)?, show))
     }
 
     fn measurement(
@@ -163,8 +176,8 @@ impl BenchVerb {
             if given.len() == 0 { vec![default] } else { given.collect() }
         };
         let threads = or_one(&common.threads, 1);
-        let of_ranks = |ranks: usize| threads.iter().map(move |&threads| Crew { ranks, threads });
-        let crews: Vec<Crew> = or_one(&self.ranks, 1).into_iter().flat_map(of_ranks).collect();
+        let of_ranks = |ranks: usize| threads.iter().map(move |&threads| scaling::Crew { ranks, threads });
+        let crews: Vec<scaling::Crew> = or_one(&self.ranks, 1).into_iter().flat_map(of_ranks).collect();
         let bar = progress(common, "bench");
         let show = |share: f64| bar.set_position((1e3 * share) as u64);
         let found = scaling(&|| self.measurement(entry, bench, given), &crews, show);
@@ -213,7 +226,8 @@ fn by_threads(found: &Scaling) -> Table {
 /// What each phase gains.
 fn by_phases(found: &Scaling) -> Table {
     let mut rows = Rows::of(&found.phases).text("phase", |it| it.name.clone());
-    for (at, OfThreads { crew: Crew { ranks, threads }, .. }) in found.by_threads.iter().enumerate() {
+    for (at, OfThreads { crew: scaling::Crew { ranks, threads }, .. }) in found.by_threads.iter().enumerate()
+    {
         rows = rows.cell(format!("ns, {ranks} × {threads}"), move |it| Cell::Number(it.nanoseconds[at], 2));
     }
     rows.cell("serial part (%)", |it| it.serial.map_or(Cell::Nothing, |part| Cell::Number(100.0 * part, 1)))

@@ -10,6 +10,7 @@ mod man;
 mod manual;
 mod meant;
 mod plot;
+mod processes;
 mod reproduce;
 mod run;
 mod scene;
@@ -22,10 +23,12 @@ use crate::results::Item;
 use crate::study;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
+use processes::Session;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use stripmine_physics::method::{METHODS, Methods};
+use stripmine_physics::ranks::Crew;
 use stripmine_physics::signals;
 
 /// A SIMD vector machine for 2D particle dynamics.
@@ -136,18 +139,24 @@ pub fn run_with(arguments: impl Iterator<Item = OsString>, methods: Methods) -> 
         clear_progress();
         tell(&Failure::Stopped(end), as_data);
     };
+    let session = Session::begin();
+    let is_first = session.as_ref().map_or(true, |session| processes::rank(session.crew()) == 0);
     let outcome = signals::install(last_words)
         .map_err(Failure::writing("the handler of interruptions"))
         .and_then(|()| understood(&arguments, methods))
         .and_then(|matches| {
-            matches.map_or(Ok(()), |matches| carried_out(&matches, &command_line(&arguments), methods))
+            let Some(matches) = matches else { return Ok(()) };
+            // It lasts as long as what is carried out.
+            let session = session?;
+            carried_out(&matches, &command_line(&arguments), session.crew(), methods)
         });
     clear_progress();
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             let code = failure.exit_code();
-            if code != 0 {
+            // What is wrong for all is said once.
+            if code != 0 && is_first {
                 tell(&failure, as_data);
             }
             ExitCode::from(code)
@@ -167,9 +176,15 @@ fn understood(arguments: &[OsString], methods: Methods) -> Result<Option<ArgMatc
     }
 }
 
-fn carried_out(matches: &ArgMatches, command: &str, methods: Methods) -> Result<(), Failure> {
+fn carried_out(matches: &ArgMatches, command: &str, crew: Crew, methods: Methods) -> Result<(), Failure> {
     let common = Common::from_arg_matches(matches).map_err(Failure::Arguments)?;
-    let common = Common { command: command.to_owned(), ..common };
+    let rank = processes::rank(crew);
+    let common = Common { command: command.to_owned(), crew, quiet: common.quiet || rank > 0, ..common };
+    // What no other rank has a part in is the first one's.
+    let has_part = matches.subcommand().is_some_and(|(verb, _)| ["run", "bench"].contains(&verb));
+    if rank > 0 && !has_part {
+        return Ok(());
+    }
     // Without an answer the default pool has a thread for each core.
     let threads = common.threads.iter().copied().max().map_or(0, usize::from);
     if let Some((verb, _)) =

@@ -10,6 +10,7 @@ pub use output::{SHARES, STEPS, bar, clear_progress, print, print_json, progress
 pub use verb::Verb;
 
 use clap::Args;
+use stripmine_physics::ranks::Crew;
 
 /// More threads than any machine at hand has cores; each takes memory of its own.
 const MOST_THREADS: i64 = 1024;
@@ -26,6 +27,9 @@ pub struct Common {
     /// Threads, at most 1024; all cores by default. `bench` takes several numbers, such as 1,2,4
     #[arg(long, global = true, value_delimiter = ',', value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
     pub threads: Vec<u16>,
+    /// By whom simulations are carried out that a verb may give to several ranks.
+    #[arg(skip = Crew::One)]
+    pub crew: Crew,
     /// The whole command line, for the record of where results come from.
     #[arg(skip)]
     pub command: String,

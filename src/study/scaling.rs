@@ -94,7 +94,11 @@ pub fn scaling(
         let pool = pool.map_err(MeasurementError::Threads)?;
         let Measurement { bench, prepared, equilibration, steps, repeats } = measurement()?;
         let begun = Instant::now();
-        let begin = || ranks::over(crew.ranks, || TimedRun::begin(bench, prepared, equilibration, steps));
+        let begin = || {
+            ranks::over(ranks::Crew::Threads(crew.ranks), || {
+                TimedRun::begin(bench, prepared, equilibration, steps)
+            })
+        };
         let run = pool.install(begin)?;
         running.push((pool, run, repeats, begun.elapsed().as_secs_f64()));
     }

@@ -2,16 +2,17 @@
 
 mod seeds;
 
+use super::processes;
 use crate::console::{Common, Failure, STEPS, bar, clear_progress, count, print, print_json, say, warn};
 use crate::provenance::built;
 use crate::study::explain::{Kept, tuned};
 use crate::study::{Case, StudyError};
 use clap::Args;
 use std::path::{Path, PathBuf};
-use stripmine_physics::method::{Clock, Methods, Prepared, prepare, vocabularies};
+use stripmine_physics::method::{Clock, Entry, Methods, Prepared, Purpose, prepare, vocabularies};
 use stripmine_physics::number::significant;
 use stripmine_physics::quoted;
-use stripmine_physics::ranks;
+use stripmine_physics::ranks::{self, Crew};
 use stripmine_physics::run::{Ending, Existing, Job, Summary, begins, chosen_otherwise, forecast, run};
 use stripmine_physics::scene::Values;
 use stripmine_physics::signals;
@@ -57,9 +58,8 @@ impl RunVerb {
         }
         let folder = self.folder("run");
         let vocabularies = vocabularies(methods);
-        let existing = self.existing();
         // A run that goes on has chosen.
-        let is_open = self.tuned && begins(&folder, existing)?;
+        let is_open = self.tuned && begins(&folder, self.existing())?;
         let given = if is_open { self.tuned(common, methods)? } else { self.overrides.clone() };
         let values = Values::load(&self.scene, &given, &vocabularies)?;
         let (mut prepared, entry) = prepare(values.clone(), methods)?;
@@ -71,9 +71,37 @@ impl RunVerb {
             }
         }
         prepared.memory.fits(&self.scene)?;
-        let begins = begins(&folder, existing)?;
+        let crew = self.crew(common)?;
+        let Crew::Processes(join) = crew else {
+            return self.carry_out((&prepared, entry), &folder, crew, common);
+        };
+        let first = || self.carry_out((&prepared, entry), &folder, crew, common);
+        processes::together(join, &format!("{:?}\n{}", built(), prepared.scene), first, || {
+            processes::serve(crew, || prepared.start(Purpose::Run).map(drop));
+        })
+    }
+
+    /// By whom the run is carried out.
+    fn crew(&self, common: &Common) -> Result<Crew, Failure> {
+        match (common.crew, self.ranks) {
+            (Crew::Processes(_), 2..) => Err(processes::ranks_twice()),
+            (crew @ Crew::Processes(_), _) => Ok(crew),
+            (_, ranks) => Ok(Crew::Threads(ranks.into())),
+        }
+    }
+
+    /// The run itself, and what is said of it.
+    fn carry_out(
+        &self,
+        (prepared, entry): (&Prepared, &'static Entry),
+        folder: &Path,
+        crew: Crew,
+        common: &Common,
+    ) -> Result<(), Failure> {
+        let existing = self.existing();
+        let begins = begins(folder, existing)?;
         if !common.quiet {
-            before(&prepared, begins);
+            before(prepared, begins);
         }
         let bar = bar(common, 0, STEPS);
         let progress = |done, all| {
@@ -85,9 +113,9 @@ impl RunVerb {
                 warn(note);
             }
         };
-        let job = Job { prepared: &prepared, quantities: entry.quantities, program: &built() };
-        let work = || run(job, &folder, existing, signals::asked(), progress, notice);
-        let ending = ranks::over(self.ranks.into(), work);
+        let job = Job { prepared, quantities: entry.quantities, program: &built() };
+        let work = || run(job, folder, existing, signals::asked(), progress, notice);
+        let ending = ranks::over(crew, work);
         clear_progress();
         match ending? {
             Ending::Done(summary) if common.json => print_json(&summary),
@@ -95,9 +123,11 @@ impl RunVerb {
                 if !common.quiet {
                     summary.warnings.iter().for_each(warn);
                 }
-                print(&text(&summary, &folder))
+                print(&text(&summary, folder))
             }
-            Ending::Interrupted { clock } => Err(Failure::Interrupted { moment: clock.to_string(), folder }),
+            Ending::Interrupted { clock } => {
+                Err(Failure::Interrupted { moment: clock.to_string(), folder: folder.to_owned() })
+            }
         }
     }
 }

@@ -1,6 +1,7 @@
 //! `run --seeds`: one scene with several seeds, side by side, and what the runs say together.
 
 use super::RunVerb;
+use crate::cli::processes;
 use crate::console::{Common, Failure, SHARES, bar, clear_progress, print, print_json, say, to_json, warn};
 use crate::provenance::built;
 use crate::results::OwnFiles;
@@ -16,7 +17,10 @@ use std::time::Instant;
 use stripmine_physics::averages::{Averages, joined};
 use stripmine_physics::method::{Methods, Prepared, load, vocabularies};
 use stripmine_physics::quoted;
-use stripmine_physics::run::{Ending, Function, Job, Summary, begins, functions_of, run};
+use stripmine_physics::ranks::Crew;
+use stripmine_physics::run::{
+    Ending, Finished, Function, Job, Summary, averages_of, begins, functions_of, run,
+};
 use stripmine_physics::scene::{Fallback, Key, Reason, Value, Values, Vocabulary};
 use stripmine_physics::signals;
 use stripmine_physics::structure::observable;
@@ -92,18 +96,37 @@ impl RunVerb {
         // What is wrong with the scene is said once, before anything is written.
         let (prepared, _) = self.prepared(&members[0].1, methods)?;
         prepared.memory.fits(&self.scene)?;
-        members.iter().try_for_each(|(folder, _)| begins(folder, self.existing()).map(drop))?;
+        if let Crew::Processes(join) = common.crew {
+            processes::apart(join, |rank, ranks| {
+                let own: Vec<_> = members.iter().skip(rank).step_by(ranks).cloned().collect();
+                self.side_by_side(&own, &prepared, common, methods).map(drop)
+            })?;
+            if join().rank() > 0 {
+                return Ok(());
+            }
+        } else {
+            members.iter().try_for_each(|(folder, _)| begins(folder, self.existing()).map(drop))?;
+        }
         let asked = &prepared.output.structure;
         let files = asked.iter().filter_map(|name| observable(name)).map(|it| it.file.to_owned());
         let files: Vec<String> = std::iter::once(SUMMARY.to_owned()).chain(files).collect();
         let own = OwnFiles::claim(&folder, LIST, &files, self.overwrite)?;
         let begun = Instant::now();
-        let found = self.side_by_side(&members, &prepared, common, methods);
-        clear_progress();
-        let mut runs = vec![];
-        for ((folder, seeds), summary) in members.into_iter().zip(found?) {
-            runs.push(Member { folder, seeds, averages: summary.averages });
-        }
+        let averages: Vec<Averages> = match common.crew {
+            // Each process has made some of the runs.
+            Crew::Processes(_) => members
+                .iter()
+                .map(|(folder, _)| averages_of(&[Finished::read(folder, methods)?]))
+                .collect::<Result<_, _>>()?,
+            _ => {
+                let found = self.side_by_side(&members, &prepared, common, methods);
+                clear_progress();
+                found?.into_iter().map(|summary| summary.averages).collect()
+            }
+        };
+        let members = members.into_iter().zip(averages);
+        let runs: Vec<Member> =
+            members.map(|((folder, seeds), averages)| Member { folder, seeds, averages }).collect();
         let all: Vec<Averages> = runs.iter().map(|run| run.averages.clone()).collect();
         let structure = functions_of(runs.iter().map(|run| run.folder.as_path()));
         let structure: Vec<Function> =

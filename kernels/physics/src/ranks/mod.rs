@@ -10,9 +10,12 @@
 //! No sum is left to whatever carries the messages: what is gathered is added in an order that depends on the scene alone. So a run has the same bits
 //! on any number of ranks.
 //!
-//! Ranks are threads of this process ([`local`]): each has its own part of the particles, and nothing but messages in common.
+//! Ranks are threads of this process ([`local`]), or processes that `mpiexec` has started (feature `mpi`): each has its own part of the particles, and
+//! nothing but messages in common.
 
 pub mod local;
+#[cfg(feature = "mpi")]
+pub mod mpi;
 mod parcel;
 
 pub use parcel::{Parcel, Reader};
@@ -25,7 +28,7 @@ use std::cell::Cell;
 #[error("rank {0} has ended")]
 pub struct Gone(pub usize);
 
-/// One of several ranks.
+/// One of several ranks. What one sends to another arrives in the order in which it was sent.
 pub trait Ranks: Send {
     /// Which one this is.
     fn rank(&self) -> usize;
@@ -59,19 +62,43 @@ pub trait Ranks: Send {
     fn tell(&self, said: Option<Parcel>) -> Result<Parcel, Gone>;
 }
 
+/// By whom simulations are carried out that begin now.
+#[derive(Clone, Copy, Debug)]
+pub enum Crew {
+    /// By one rank alone.
+    One,
+    /// By several threads of this process, each a rank with as many threads as the current pool.
+    Threads(usize),
+    /// By processes, of which this is one; what gives its place among them.
+    Processes(fn() -> Box<dyn Ranks>),
+}
+
+impl Crew {
+    /// How many ranks these are.
+    pub fn count(self) -> usize {
+        match self {
+            Crew::One => 1,
+            Crew::Threads(count) => count,
+            Crew::Processes(join) => join().count(),
+        }
+    }
+}
+
 thread_local! {
-    static COUNT: Cell<usize> = const { Cell::new(1) };
+    static CREW: Cell<Crew> = const { Cell::new(Crew::One) };
 }
 
 /// Why a simulation cannot be carried out by several ranks.
 const ONE_RANK: FailureKind = FailureKind::new("one-rank");
+/// What a process ends its part with that is not the first rank: nothing is wrong.
+pub const DISMISSED: FailureKind = FailureKind::new("dismissed");
 
 /// Refuses several ranks, for a reason.
 ///
 /// # Errors
 /// [`Failure`] if there are several.
 pub fn refuse_several(why: &str) -> Result<(), Failure> {
-    match count() {
+    match crew().count() {
         1 => Ok(()),
         count => {
             let what = format!("{count} ranks were asked for, but {why}");
@@ -81,22 +108,54 @@ pub fn refuse_several(why: &str) -> Result<(), Failure> {
     }
 }
 
-/// How many ranks simulations are to be carried out by that begin now, on this thread.
-pub fn count() -> usize {
-    COUNT.get()
+/// By whom simulations are carried out that begin now, on this thread.
+pub fn crew() -> Crew {
+    CREW.get()
 }
 
-/// What `work` gives, where simulations that it begins, on this thread, are carried out by `count` ranks.
-pub fn over<R>(count: usize, work: impl FnOnce() -> R) -> R {
+/// What `work` gives, where simulations that it begins, on this thread, are carried out by others than before.
+pub fn over<R>(crew: Crew, work: impl FnOnce() -> R) -> R {
     /// Puts back what was, even if that is because of a panic.
-    struct Before(usize);
+    struct Before(Crew);
 
     impl Drop for Before {
         fn drop(&mut self) {
-            COUNT.set(self.0);
+            CREW.set(self.0);
         }
     }
 
-    let _before = Before(COUNT.replace(count.max(1)));
+    let _before = Before(CREW.replace(crew));
     work()
+}
+
+/// Whether all ranks say the same; the first that does not.
+///
+/// # Errors
+/// [`Gone`]
+pub fn first_to_differ(ranks: &dyn Ranks, text: &str) -> Result<Option<usize>, Gone> {
+    let mut own = Parcel::new();
+    own.text(text);
+    let all = ranks.gather(own)?;
+    let differs = all.iter().position(|parcel| parcel.read().text() != text);
+    let said = (ranks.rank() == 0).then(|| {
+        let mut said = Parcel::new();
+        said.push(differs.map_or(0, |rank| rank + 1));
+        said
+    });
+    Ok(ranks.tell(said)?.read().count().checked_sub(1))
+}
+
+/// Says that there is no other simulation, to processes that wait for one; for the first rank to say.
+///
+/// # Errors
+/// [`Gone`]
+pub fn dismiss(ranks: &dyn Ranks) -> Result<(), Gone> {
+    let mut none = Parcel::new();
+    none.push(0);
+    ranks.tell(Some(none)).map(drop)
+}
+
+/// Waits until [`dismiss`] is said.
+pub fn wait(ranks: &dyn Ranks) {
+    while ranks.tell(None).is_ok_and(|parcel| parcel.read().count() > 0) {}
 }

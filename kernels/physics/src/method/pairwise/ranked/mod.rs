@@ -24,7 +24,8 @@ use crate::io::checkpoint::Column;
 use crate::method::{Clock, Failure};
 use crate::observe::{Scenery, Sums};
 use crate::particles::{Particles, States, in_space};
-use crate::ranks::{self, Gone, Parcel, Reader, local};
+use crate::ranks::{self, Crew, Gone, Parcel, Ranks, Reader, local};
+use std::collections::HashSet;
 use std::ops::Range;
 use std::sync::Arc;
 use std::thread::{self, JoinHandle};
@@ -50,10 +51,26 @@ where
     Q: Search<S, P> + 'static,
     D: Dynamics + Clone + 'static,
 {
-    match ranks::count() {
-        1 => Ok(Box::new(Engine::<S, P, Q, D>::new(dynamics, system, search, set, particles)?)),
-        count => Ok(Box::new(Ranked::<S, P, Q, D>::new((dynamics, system, set), search, particles, count)?)),
+    let crew = ranks::crew();
+    if crew.count() == 1 {
+        return Ok(Box::new(Engine::<S, P, Q, D>::new(dynamics, system, search, set, particles)?));
     }
+    let scene = Scene { dynamics, system, set, search };
+    scene.refuse_too_many(crew.count())?;
+    let stepping: Box<dyn Stepping> = match crew {
+        Crew::Processes(join) if join().rank() > 0 => return Err(scene.serve(join, particles)),
+        Crew::Processes(join) => {
+            let ranks = join();
+            let mut ids = Parcel::new();
+            ids.push(1);
+            ids.counts(particles.all().iter().map(|particle| particle.id.into()));
+            let told = ranks.tell(Some(ids));
+            told.map_err(|gone| ended(gone, Clock::default()))?;
+            Box::new(Ranked::<S, P, Q, D>::of(ranks, vec![], |ranks| scene.part(ranks, Arc::new(particles)))?)
+        }
+        Crew::One | Crew::Threads(_) => Box::new(scene.on_threads(crew.count(), particles)?),
+    };
+    Ok(stepping)
 }
 
 /// What the first rank tells all to do.
@@ -182,57 +199,67 @@ struct Ranked<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> {
     named: Vec<Record>,
 }
 
-impl<S, P, Q, D> Ranked<S, P, Q, D>
-where
-    S: Precision,
-    P: Precision,
-    Q: Search<S, P> + 'static,
-    D: Dynamics + Clone + 'static,
-{
-    fn new(
-        (dynamics, system, set): (D, System, InstructionSet),
-        search: Q,
-        particles: Particles,
-        count: usize,
-    ) -> Result<Self, Failure> {
-        let bands = search.rows().bands().len();
-        if count > bands {
-            let what = format!("{count} ranks are more than the {bands} bands of rows that the scene has");
-            let remedy = format!("take at most {bands} ranks, or more particles");
-            return Err(Failure::new(worker::TOO_MANY, what, remedy));
+/// What every rank knows of a scene but its particles.
+struct Scene<Q, D> {
+    dynamics: D,
+    system: System,
+    set: InstructionSet,
+    search: Q,
+}
+
+/// The part of a rank, or why it has none and who is to say so.
+type Part<S, P, Q, D> = Result<Worker<S, P, Q, D>, (Box<dyn Ranks>, Failure)>;
+
+impl<Q, D: Dynamics + Clone + 'static> Scene<Q, D> {
+    fn refuse_too_many<S: Precision, P: Precision>(&self, count: usize) -> Result<(), Failure>
+    where
+        Q: Search<S, P>,
+    {
+        let bands = self.search.rows().bands().len();
+        if count <= bands {
+            return Ok(());
         }
+        let what = format!("{count} ranks are more than the {bands} bands of rows that the scene has");
+        let remedy = format!("take at most {bands} ranks, or more particles");
+        Err(Failure::new(worker::TOO_MANY, what, remedy))
+    }
+
+    /// The part of a rank at the start.
+    fn part<S: Precision, P: Precision>(
+        &self,
+        ranks: Box<dyn Ranks>,
+        start: Arc<Particles>,
+    ) -> Part<S, P, Q, D>
+    where
+        Q: Search<S, P>,
+    {
+        let elapsed = Elapsed::new(self.system.dt, Crossings::new(self.system.followed, start.len()));
+        let none = Members { numbers: vec![], moving: 0, grains: 0 };
+        let search = self.search.emptied(0, worker::all_rows(self.search.rows()));
+        let all = (self.dynamics.clone(), self.system.clone(), self.set);
+        Worker::new(ranks, Engine::of(all, search, start, none, elapsed))
+    }
+
+    /// The first rank of several threads; the others begin.
+    fn on_threads<S: Precision, P: Precision>(
+        &self,
+        count: usize,
+        particles: Particles,
+    ) -> Result<Ranked<S, P, Q, D>, Failure>
+    where
+        Q: Search<S, P> + 'static,
+    {
         let start = Arc::new(particles);
-        let crossings = || Crossings::new(system.followed, start.len());
-        let none = || Members { numbers: vec![], moving: 0, grains: 0 };
         let per_rank = rayon::current_num_threads();
-        let mut ranks = local::ranks(count, per_rank);
-        let rest = ranks.split_off(1);
-        let share = worker::all_rows(search.rows());
-        let engine = |search: Q| {
-            let elapsed = Elapsed::new(system.dt, crossings());
-            let all = (dynamics.clone(), system.clone(), set);
-            Engine::<S, P, Q, D>::of(all, search, start.clone(), none(), elapsed)
-        };
+        let mut rest = local::ranks(count, per_rank);
+        let first = Box::new(rest.remove(0));
         let mut threads = vec![];
         for ranks in rest {
-            let engine = engine(search.emptied(0, share.clone()));
-            let work = move || {
-                let mut begun = Parcel::new();
-                // It goes to the first rank, with the channels, whatever becomes of the rest.
-                match Worker::new(Box::new(ranks), engine) {
-                    Ok(worker) => {
-                        wire::put_failure(None, &mut begun);
-                        if worker.ranks.gather(begun).is_ok() {
-                            worker.serve();
-                        }
-                    }
-                    Err((ranks, failure)) => {
-                        wire::put_failure(Some(&failure), &mut begun);
-                        // Where the first rank has ended too there is no one to hear it.
-                        let _ = ranks.gather(begun);
-                    }
-                }
-            };
+            let search = self.search.emptied(0, worker::all_rows(self.search.rows()));
+            let Scene { dynamics, system, set, .. } = self;
+            let scene = Scene { dynamics: dynamics.clone(), system: system.clone(), set: *set, search };
+            let start = start.clone();
+            let work = move || serve_one(scene.part::<S, P>(Box::new(ranks), start));
             let pool = rayon::ThreadPoolBuilder::new().num_threads(per_rank).build();
             let spawned = pool.map_err(|error| error.to_string()).and_then(|pool| {
                 thread::Builder::new().spawn(move || pool.install(work)).map_err(|error| error.to_string())
@@ -242,29 +269,83 @@ where
                 Failure::new(worker::TOO_MANY, what, "take fewer ranks or --threads")
             })?);
         }
-        let first = ranks.remove(0);
-        let engine = engine(search.emptied(0, share));
-        let worker = match Worker::new(Box::new(first), engine) {
+        Ranked::of(first, threads, |ranks| self.part(ranks, start))
+    }
+
+    /// The part of a process that is not the first, for one simulation after the other, until the first says that there is no other.
+    fn serve<S: Precision, P: Precision>(&self, join: fn() -> Box<dyn Ranks>, particles: Particles) -> Failure
+    where
+        Q: Search<S, P>,
+    {
+        while let Ok(parcel) = join().tell(None) {
+            let mut reader = parcel.read();
+            if reader.count() == 0 {
+                break;
+            }
+            let ids: HashSet<u64> = reader.counts().into_iter().collect();
+            let there = particles.all().iter().filter(|particle| ids.contains(&particle.id.into()));
+            let start = Particles::new(there.copied().collect());
+            serve_one(self.part::<S, P>(join(), Arc::new(start)));
+        }
+        Failure::new(ranks::DISMISSED, "this rank is dismissed", "")
+    }
+}
+
+/// Says how a part has begun, and does what the first rank says.
+fn serve_one<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics>(part: Part<S, P, Q, D>) {
+    let mut begun = Parcel::new();
+    match part {
+        Ok(worker) => {
+            wire::put_failure(None, &mut begun);
+            if worker.ranks.gather(begun).is_ok() {
+                worker.serve();
+            }
+        }
+        Err((ranks, failure)) => {
+            wire::put_failure(Some(&failure), &mut begun);
+            // Where the first rank has ended there is no one to hear it; else it says that this is the end.
+            if ranks.gather(begun).is_ok() {
+                let _ = ranks.tell(None);
+            }
+        }
+    }
+}
+
+impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Ranked<S, P, Q, D> {
+    /// The first rank, once all have begun.
+    fn of(
+        ranks: Box<dyn Ranks>,
+        threads: Vec<JoinHandle<()>>,
+        part: impl FnOnce(Box<dyn Ranks>) -> Part<S, P, Q, D>,
+    ) -> Result<Self, Failure> {
+        let clock = Clock::default();
+        let mut begun = Parcel::new();
+        wire::put_failure(None, &mut begun);
+        let end = |ranks: &dyn Ranks| {
+            let mut parcel = Parcel::new();
+            [0, 0].into_iter().for_each(|word| parcel.push(word));
+            Do::End.put(&mut parcel);
+            ranks.tell(Some(parcel)).map(drop)
+        };
+        let worker = match part(ranks) {
             Ok(worker) => worker,
             Err((ranks, failure)) => {
-                // The others have begun, or failed as well.
-                let _ = ranks.gather(Parcel::new());
+                // The others have begun, or failed as well; who has ended needs not be told.
+                let _ = ranks.gather(begun).and_then(|_| end(ranks.as_ref()));
                 drop(ranks);
                 threads.into_iter().for_each(|thread| _ = thread.join());
                 return Err(failure);
             }
         };
-        let mut begun = Parcel::new();
-        wire::put_failure(None, &mut begun);
-        let clock = worker.engine.clock();
-        let said = worker.ranks.gather(begun).map_err(|gone| ended(gone, clock));
-        let failure = said.map(|all| all.iter().find_map(|parcel| take_failure(&mut parcel.read())));
+        let all = worker.ranks.gather(begun).map_err(|gone| ended(gone, clock))?;
+        let mut failures = vec![];
+        for (rank, parcel) in all.iter().enumerate() {
+            failures.extend(take_failure(&mut parcel.read()).map(|failure| (rank, failure)));
+        }
+        // Dropped where one has failed: it tells the others.
         let ranked =
             Ranked { worker, threads, crossed: vec![], is_to_migrate: false, shared_cells: 0, named: vec![] };
-        if let Some(failure) = failure? {
-            return Err(failure);
-        }
-        Ok(ranked)
+        first_of(failures).map(|()| ranked)
     }
 }
 

@@ -1,0 +1,108 @@
+//! Ranks as processes that `mpiexec` has started.
+//!
+//! Messages go from one process to another, with a tag for each kind and direction: of two ranks in a ring each is below and above the other. Sums are left to no
+//! reduction of MPI, whose order depends on the number of ranks.
+
+use super::{Gone, Parcel, Ranks};
+use mpi::environment::Universe;
+use mpi::request::{WaitGuard, scope};
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::{Communicator, Destination, Root, Source};
+
+/// What is sent, by kind and direction.
+const DOWN: i32 = 1;
+const UP: i32 = 2;
+const MIGRATING: i32 = 3;
+const GATHERED: i32 = 4;
+
+/// What MPI needs to be there; nothing is sent once it is dropped.
+pub struct Session(Universe);
+
+impl Session {
+    /// Joins the processes that `mpiexec` has started; none where that was done already.
+    pub fn begin() -> Option<Session> {
+        mpi::initialize().map(Session)
+    }
+
+    /// How many processes there are.
+    pub fn count(&self) -> usize {
+        self.0.world().size() as usize
+    }
+}
+
+/// This process among all.
+#[derive(Clone, Copy, Debug)]
+pub struct World;
+
+/// The same, as a [`Crew`](super::Crew) asks for it.
+pub fn world() -> Box<dyn Ranks> {
+    Box::new(World)
+}
+
+impl World {
+    fn all() -> SimpleCommunicator {
+        SimpleCommunicator::world()
+    }
+
+    fn receive(from: usize, tag: i32) -> Parcel {
+        Parcel(World::all().process_at_rank(from as i32).receive_vec_with_tag(tag).0)
+    }
+}
+
+impl Ranks for World {
+    fn rank(&self) -> usize {
+        World::all().rank() as usize
+    }
+
+    fn count(&self) -> usize {
+        World::all().size() as usize
+    }
+
+    fn halo(&self, [down, up]: [Parcel; 2]) -> Result<[Parcel; 2], Gone> {
+        let (all, rank, count) = (World::all(), self.rank(), self.count());
+        let [below, above] = [(rank + count - 1) % count, (rank + 1) % count];
+        Ok(scope(|scope| {
+            let send = |to: usize, parcel: &'_ Parcel, tag| {
+                all.process_at_rank(to as i32).immediate_send_with_tag(scope, &parcel.0[..], tag)
+            };
+            let _sent = [WaitGuard::from(send(below, &down, DOWN)), WaitGuard::from(send(above, &up, UP))];
+            [World::receive(below, UP), World::receive(above, DOWN)]
+        }))
+    }
+
+    fn migrate(&self, mut to: Vec<Parcel>) -> Result<Vec<Parcel>, Gone> {
+        let (all, rank) = (World::all(), self.rank());
+        let own = to.get_mut(rank).map(std::mem::take).unwrap_or_default();
+        Ok(scope(|scope| {
+            let others = to.iter().enumerate().filter(|(other, _)| *other != rank);
+            let sent = others.map(|(other, parcel)| {
+                let other = all.process_at_rank(other as i32);
+                WaitGuard::from(other.immediate_send_with_tag(scope, &parcel.0[..], MIGRATING))
+            });
+            let _sent: Vec<_> = sent.collect();
+            let from = (0..to.len())
+                .map(|other| if other == rank { own.clone() } else { World::receive(other, MIGRATING) });
+            from.collect()
+        }))
+    }
+
+    fn gather(&self, own: Parcel) -> Result<Vec<Parcel>, Gone> {
+        if self.rank() > 0 {
+            World::all().process_at_rank(0).send_with_tag(&own.0[..], GATHERED);
+            return Ok(vec![]);
+        }
+        let others = (1..self.count()).map(|rank| World::receive(rank, GATHERED));
+        Ok(std::iter::once(own.clone()).chain(others).collect())
+    }
+
+    fn tell(&self, said: Option<Parcel>) -> Result<Parcel, Gone> {
+        let all = World::all();
+        let first = all.process_at_rank(0);
+        let mut parcel = said.unwrap_or_default();
+        let mut length = parcel.0.len() as u64;
+        first.broadcast_into(&mut length);
+        parcel.0.resize(length as usize, 0);
+        first.broadcast_into(&mut parcel.0[..]);
+        Ok(parcel)
+    }
+}
