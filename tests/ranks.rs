@@ -91,8 +91,10 @@ struct Seen {
     failure: Option<(u64, String, Vec<u32>)>,
 }
 
-/// How often it is looked at a run.
-const LOOKS: u64 = 4;
+/// How often it is looked at a run: also where lists have just been made, or discs dealt out anew.
+const LOOKS: u64 = 60;
+/// Every so-many-th look is at all that there is.
+const WHOLE: u64 = 15;
 
 /// A run on some ranks; why it does not begin.
 fn seen(prepared: &Prepared, ranks: usize, steps: u64) -> Result<Seen, String> {
@@ -108,6 +110,9 @@ fn seen(prepared: &Prepared, ranks: usize, steps: u64) -> Result<Seen, String> {
                 break;
             }
             seen.observed.push(simulation.observe().iter().map(|value| value.to_bits()).collect());
+            if part % WHOLE > 0 {
+                continue;
+            }
             seen.snapshots.push(simulation.snapshot());
             seen.checksums.push(simulation.particles().checksum());
             seen.positions.push(simulation.positions().iter().map(|place| place.map(f32::to_bits)).collect());

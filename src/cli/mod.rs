@@ -140,7 +140,6 @@ pub fn run_with(arguments: impl Iterator<Item = OsString>, methods: Methods) -> 
         tell(&Failure::Stopped(end), as_data);
     };
     let session = Session::begin();
-    let is_first = session.as_ref().map_or(true, |session| processes::rank(session.crew()) == 0);
     let outcome = signals::install(last_words)
         .map_err(Failure::writing("the handler of interruptions"))
         .and_then(|()| understood(&arguments, methods))
@@ -156,7 +155,7 @@ pub fn run_with(arguments: impl Iterator<Item = OsString>, methods: Methods) -> 
         Err(failure) => {
             let code = failure.exit_code();
             // What is wrong for all is said once.
-            if code != 0 && is_first {
+            if code != 0 && processes::is_first() {
                 tell(&failure, as_data);
             }
             ExitCode::from(code)

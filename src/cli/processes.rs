@@ -7,8 +7,19 @@ use crate::study::StudyError;
 use stripmine_physics::method::{Failure as Broken, FailureKind};
 use stripmine_physics::ranks::{self, Crew, Gone, Parcel, Ranks, dismiss, first_to_differ};
 
-/// How launchers tell processes how many they are.
+/// How launchers tell processes how many they are, and which one each is.
 const SIZES: [&str; 2] = ["PMI_SIZE", "OMPI_COMM_WORLD_SIZE"];
+const RANKS: [&str; 2] = ["PMI_RANK", "OMPI_COMM_WORLD_RANK"];
+
+/// The first number that some variables of the environment hold.
+fn of_launcher(names: [&str; 2]) -> Option<usize> {
+    names.iter().find_map(|name| std::env::var(name).ok()?.parse().ok())
+}
+
+/// Whether this process speaks to the user: the first one, or the only one.
+pub(super) fn is_first() -> bool {
+    of_launcher(RANKS).is_none_or(|rank| rank == 0) || of_launcher(SIZES).is_none_or(|count| count < 2)
+}
 const PROCESSES: FailureKind = FailureKind::new("processes");
 
 /// What ranks need to speak to each other; the program holds it to its end.
@@ -24,8 +35,7 @@ impl Session {
     /// # Errors
     /// [`Failure`] where there are some, and this program was built without MPI.
     pub(super) fn begin() -> Result<Session, Failure> {
-        let size = |name: &&str| std::env::var(name).ok()?.parse::<usize>().ok();
-        let count = SIZES.iter().find_map(size).unwrap_or(1);
+        let count = of_launcher(SIZES).unwrap_or(1);
         if count < 2 {
             return Ok(Session {
                 #[cfg(feature = "mpi")]

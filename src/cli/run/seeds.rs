@@ -96,6 +96,7 @@ impl RunVerb {
         // What is wrong with the scene is said once, before anything is written.
         let (prepared, _) = self.prepared(&members[0].1, methods)?;
         prepared.memory.fits(&self.scene)?;
+        let begun = Instant::now();
         if let Crew::Processes(join) = common.crew {
             processes::apart(join, |rank, ranks| {
                 let own: Vec<_> = members.iter().skip(rank).step_by(ranks).cloned().collect();
@@ -111,7 +112,6 @@ impl RunVerb {
         let files = asked.iter().filter_map(|name| observable(name)).map(|it| it.file.to_owned());
         let files: Vec<String> = std::iter::once(SUMMARY.to_owned()).chain(files).collect();
         let own = OwnFiles::claim(&folder, LIST, &files, self.overwrite)?;
-        let begun = Instant::now();
         let averages: Vec<Averages> = match common.crew {
             // Each process has made some of the runs.
             Crew::Processes(_) => members

@@ -5,15 +5,19 @@
 
 use super::{Gone, Parcel, Ranks};
 use mpi::environment::Universe;
+use mpi::point_to_point::MatchedReceiveVec;
 use mpi::request::{WaitGuard, scope};
 use mpi::topology::SimpleCommunicator;
-use mpi::traits::{Communicator, Destination, Root, Source};
+use mpi::traits::{Communicator, Destination, Source};
 
 /// What is sent, by kind and direction.
 const DOWN: i32 = 1;
 const UP: i32 = 2;
 const MIGRATING: i32 = 3;
 const GATHERED: i32 = 4;
+const TOLD: i32 = 5;
+/// How often it is looked for a message before other processes may have the core.
+const LOOKS: u32 = 2000;
 
 /// What MPI needs to be there; nothing is sent once it is dropped.
 pub struct Session(Universe);
@@ -45,7 +49,18 @@ impl World {
     }
 
     fn receive(from: usize, tag: i32) -> Parcel {
-        Parcel(World::all().process_at_rank(from as i32).receive_vec_with_tag(tag).0)
+        let (all, mut looks) = (World::all(), 0);
+        let from = all.process_at_rank(from as i32);
+        loop {
+            if let Some(there) = from.immediate_matched_probe_with_tag(tag) {
+                return Parcel(there.matched_receive_vec().0);
+            }
+            looks += 1;
+            // Where there are more ranks than cores, others need this one; MPI's own waiting keeps it.
+            if looks > LOOKS {
+                std::thread::yield_now();
+            }
+        }
     }
 }
 
@@ -61,11 +76,10 @@ impl Ranks for World {
     fn halo(&self, [down, up]: [Parcel; 2]) -> Result<[Parcel; 2], Gone> {
         let (all, rank, count) = (World::all(), self.rank(), self.count());
         let [below, above] = [(rank + count - 1) % count, (rank + 1) % count];
+        let [to_below, to_above] = [below, above].map(|rank| all.process_at_rank(rank as i32));
         Ok(scope(|scope| {
-            let send = |to: usize, parcel: &'_ Parcel, tag| {
-                all.process_at_rank(to as i32).immediate_send_with_tag(scope, &parcel.0[..], tag)
-            };
-            let _sent = [WaitGuard::from(send(below, &down, DOWN)), WaitGuard::from(send(above, &up, UP))];
+            let _down = WaitGuard::from(to_below.immediate_send_with_tag(scope, &down.0[..], DOWN));
+            let _up = WaitGuard::from(to_above.immediate_send_with_tag(scope, &up.0[..], UP));
             [World::receive(below, UP), World::receive(above, DOWN)]
         }))
     }
@@ -96,13 +110,21 @@ impl Ranks for World {
     }
 
     fn tell(&self, said: Option<Parcel>) -> Result<Parcel, Gone> {
-        let all = World::all();
-        let first = all.process_at_rank(0);
-        let mut parcel = said.unwrap_or_default();
-        let mut length = parcel.0.len() as u64;
-        first.broadcast_into(&mut length);
-        parcel.0.resize(length as usize, 0);
-        first.broadcast_into(&mut parcel.0[..]);
-        Ok(parcel)
+        // By halves: each that knows tells those as far from it as there are ranks left between it and the next that knows.
+        let (all, rank, count) = (World::all(), self.rank(), self.count());
+        let mut apart = count.next_power_of_two();
+        let mut known = said;
+        while apart > 1 {
+            let half = apart / 2;
+            match &known {
+                Some(parcel) if rank % apart == 0 && rank + half < count => {
+                    all.process_at_rank((rank + half) as i32).send_with_tag(&parcel.0[..], TOLD);
+                }
+                None if rank % apart == half => known = Some(World::receive(rank - half, TOLD)),
+                _ => {}
+            }
+            apart = half;
+        }
+        Ok(known.unwrap_or_default())
     }
 }

@@ -14,7 +14,6 @@ mod layout;
 mod wire;
 mod worker;
 
-use super::cells::Moved;
 use super::observing::{Standing, contact_sums, sums_of_grains};
 use super::search::Search;
 use super::state::Members;
@@ -173,10 +172,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Worker<S, P, Q, D
             Do::Contacts => self.contacts()?,
             Do::Listed => self.listed(),
             Do::Unfit => self.unfit(),
-            Do::Settle => {
-                let moved: Result<Vec<Moved>, Failure> = self.engine.settle_all();
-                self.report(moved, &[])
-            }
+            Do::Settle => self.settle(),
             Do::Restore => {
                 let steps = reader.count() as u64;
                 let columns = take_columns(reader);

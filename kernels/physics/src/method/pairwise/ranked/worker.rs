@@ -140,9 +140,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Worker<S, P, Q, D
     /// One step on; what the first rank is to know of it.
     pub(super) fn advance(&mut self) -> Result<Parcel, Gone> {
         let passed = self.engine.passed();
-        if self.ordered != self.engine.orders {
-            self.look_up();
-        }
+        self.look_up_again();
         let mut timings = self.engine.elapsed.timings;
         let told = timings.time(Phase::Halo, || self.tell_neighbours());
         self.engine.elapsed.timings = timings;
@@ -157,7 +155,23 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Worker<S, P, Q, D
             // Every rank has these instructions, or none has.
             Err(error) => (Err(error.into()), vec![]),
         };
+        // Lists were made again, perhaps.
+        self.look_up_again();
         Ok(self.report(kept, &far))
+    }
+
+    /// Looks up where discs are in memory, where they were put in order since.
+    fn look_up_again(&mut self) {
+        if self.ordered != self.engine.orders {
+            self.look_up();
+        }
+    }
+
+    /// Brings all cells up to date; what the first rank is to know of it.
+    pub(super) fn settle(&mut self) -> Parcel {
+        let moved = self.engine.settle_all();
+        self.look_up_again();
+        self.report(moved, &[])
     }
 
     /// Cells or lists after a step: lists are made again by all ranks or by none.
