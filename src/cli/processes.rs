@@ -4,7 +4,7 @@
 
 use crate::console::Failure;
 use crate::study::StudyError;
-use stripmine_physics::method::{Failure as Broken, FailureKind};
+use stripmine_physics::method::{DISMISSED, Failure as Broken, FailureKind};
 use stripmine_physics::ranks::{self, Crew, Gone, Parcel, Ranks, dismiss, first_to_differ};
 
 /// How launchers tell processes how many they are, and which one each is.
@@ -84,7 +84,7 @@ pub(super) fn ranks_twice() -> Failure {
 pub(super) fn serve(crew: Crew, start: impl FnOnce() -> Result<(), Broken>) {
     let Crew::Processes(join) = crew else { return };
     // Where its part has not begun, for what is refused on all ranks, it still waits for the end.
-    if !matches!(ranks::over(crew, start), Err(failure) if failure.kind == ranks::DISMISSED) {
+    if !matches!(ranks::over(crew, start), Err(failure) if failure.kind == DISMISSED) {
         ranks::wait(join().as_ref());
     }
 }

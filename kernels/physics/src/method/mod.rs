@@ -12,6 +12,7 @@ pub mod observed;
 mod pairwise;
 mod probe;
 mod restored;
+mod several;
 mod snapshot;
 pub mod throughput;
 mod trials;
@@ -25,6 +26,7 @@ pub use failure::{Culprit, Failure, FailureKind};
 pub use hard_disks::compress;
 pub use list::{METHODS, Methods, load, method, observer, prepare, vocabularies};
 pub use probe::probed;
+pub use several::{DISMISSED, refuse_several_ranks};
 pub use snapshot::Snapshot;
 pub use trials::{
     Axis, Balance, Becomes, Decides, Length, Mapped, Parameter, Rewritten, SMALLEST_RADIUS, Setting, Theory,

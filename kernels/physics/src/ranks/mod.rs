@@ -20,7 +20,6 @@ mod parcel;
 
 pub use parcel::{Parcel, Reader};
 
-use crate::method::{Failure, FailureKind};
 use std::cell::Cell;
 
 /// A rank has ended, and what was asked of it will not come.
@@ -86,26 +85,6 @@ impl Crew {
 
 thread_local! {
     static CREW: Cell<Crew> = const { Cell::new(Crew::One) };
-}
-
-/// Why a simulation cannot be carried out by several ranks.
-const ONE_RANK: FailureKind = FailureKind::new("one-rank");
-/// What a process ends its part with that is not the first rank: nothing is wrong.
-pub const DISMISSED: FailureKind = FailureKind::new("dismissed");
-
-/// Refuses several ranks, for a reason.
-///
-/// # Errors
-/// [`Failure`] if there are several.
-pub fn refuse_several(why: &str) -> Result<(), Failure> {
-    match crew().count() {
-        1 => Ok(()),
-        count => {
-            let what = format!("{count} ranks were asked for, but {why}");
-            let remedy = "take one rank, or several seeds: run --seeds";
-            Err(Failure::new(ONE_RANK, what, remedy))
-        }
-    }
 }
 
 /// By whom simulations are carried out that begin now, on this thread.

@@ -101,12 +101,27 @@ impl Ranks for World {
     }
 
     fn gather(&self, own: Parcel) -> Result<Vec<Parcel>, Gone> {
-        if self.rank() > 0 {
-            World::all().process_at_rank(0).send_with_tag(&own.0[..], GATHERED);
-            return Ok(vec![]);
+        // By doubles: each takes up what the next ranks have taken up, and hands all of it on in the order of ranks.
+        let (all, rank, count) = (World::all(), self.rank(), self.count());
+        let mut parcels = vec![own];
+        let mut apart = 1;
+        while apart < count {
+            if rank % (2 * apart) == apart {
+                let mut packed = Parcel::new();
+                parcels.iter().for_each(|parcel| packed.counts(parcel.0.iter().copied()));
+                all.process_at_rank((rank - apart) as i32).send_with_tag(&packed.0[..], GATHERED);
+                return Ok(vec![]);
+            }
+            if rank + apart < count {
+                let packed = World::receive(rank + apart, GATHERED);
+                let mut reader = packed.read();
+                while !reader.is_empty() {
+                    parcels.push(Parcel(reader.counts()));
+                }
+            }
+            apart *= 2;
         }
-        let others = (1..self.count()).map(|rank| World::receive(rank, GATHERED));
-        Ok(std::iter::once(own.clone()).chain(others).collect())
+        Ok(parcels)
     }
 
     fn tell(&self, said: Option<Parcel>) -> Result<Parcel, Gone> {

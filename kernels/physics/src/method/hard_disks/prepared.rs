@@ -6,9 +6,9 @@ use super::reference::grid::Sizes;
 use super::simulation::Running;
 use crate::memory::{Foreseen, PROGRAM, available};
 use crate::method::entry::left_out;
+use crate::method::refuse_several_ranks;
 use crate::method::{Fact, Failure, Prepared, Purpose, Simulation, Startable};
 use crate::particles::{Kind, Particle, Particles};
-use crate::ranks;
 use crate::words::Words;
 use serde_json::{Map, Value, json};
 use std::f64::consts::PI;
@@ -133,7 +133,7 @@ impl Startable for Checked {
     }
 
     fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure> {
-        ranks::refuse_several("the events of hard discs are done one after the other, wherever they are")?;
+        refuse_several_ranks("the events of hard discs are done one after the other, wherever they are")?;
         Ok(Box::new(Running::new(self, self.scene.collision_log && purpose == Purpose::Run)?))
     }
 

@@ -5,7 +5,7 @@ use super::model::sides_of;
 use super::scene::{By, ProgramText};
 use super::{Contacts, Discs, Engine, FastSearch, ListOptions, Machine, Model, Watch, start};
 use crate::method::Failure;
-use crate::ranks;
+use crate::method::refuse_several_ranks;
 use stripmine_kernels::law::granular::Disc;
 
 /// What a checked scene models: no more than it needs.
@@ -85,7 +85,7 @@ pub(super) fn model_following_energy(checked: &Checked) -> Model {
 fn start_of(checked: &Checked, model: Model) -> Result<Box<dyn Engine>, Failure> {
     let Checked { scene, particles, .. } = checked;
     if !scene.machine.is_fast() {
-        ranks::refuse_several(
+        refuse_several_ranks(
             "the source's programs are of whole arrays: machine.engine = \"fast\" has bands",
         )?;
     }

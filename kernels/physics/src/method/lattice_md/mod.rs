@@ -47,7 +47,7 @@ mod walls;
 mod watch;
 
 pub use crate::method::pairwise::search::OnConflict;
-pub use crate::method::pairwise::{Elapsed, Phase, Timings};
+pub use crate::method::pairwise::{Elapsed, Halo, Phase, Timings, halo_rows};
 pub use arrays::{Arrays, Lengths};
 pub use assemble::{assemble, assemble_following_energy, model};
 pub use balance::Balance;

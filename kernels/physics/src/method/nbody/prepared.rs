@@ -9,11 +9,11 @@ use super::starts::ORBIT;
 use crate::domain::{Domain, Side};
 use crate::memory::{Foreseen, PROGRAM, available};
 use crate::method::entry::left_out;
+use crate::method::refuse_several_ranks;
 use crate::method::{
     Beyond, Fact, Failure, Prepared, Purpose, Schedule, Simulation, Startable, StepLimit, VectorProgram,
 };
 use crate::particles::{Particle, Particles};
-use crate::ranks;
 use crate::words::Words;
 use serde_json::{Map, Value, json};
 
@@ -128,7 +128,7 @@ impl Startable for Checked {
     }
 
     fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure> {
-        ranks::refuse_several("every body acts on every other one: they are in one memory")?;
+        refuse_several_ranks("every body acts on every other one: they are in one memory")?;
         Ok(Box::new(Running::new(self, purpose)?))
     }
 

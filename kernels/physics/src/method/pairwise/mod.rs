@@ -37,9 +37,9 @@ pub use elapsed::Elapsed;
 pub use engine::Engine;
 pub use forces::ToReach;
 pub use named::{Named, conflict, not_finite, outside};
-pub use ranked::begin;
+pub use ranked::{begin, halo_rows};
 pub use stepping::{Stepping, Work};
-pub use timings::{Phase, Timings};
+pub use timings::{Halo, Phase, Timings};
 pub use unwrapped::{unwrapped, wrapped};
 
 use crate::domain::Domain;

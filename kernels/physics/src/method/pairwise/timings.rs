@@ -31,10 +31,20 @@ define_phases! {
     (Correct, "correct", "correction of the state"),
 }
 
-/// Seconds of wall time spent in each phase.
+/// Seconds of wall time spent in each phase, and what was told to other ranks meanwhile.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Timings {
     seconds: [f64; Phase::ALL.len()],
+    halo: Halo,
+}
+
+/// What a rank tells of the discs near others.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Halo {
+    /// Messages.
+    pub messages: u64,
+    /// Bytes of all of them.
+    pub bytes: u64,
 }
 
 impl Timings {
@@ -42,8 +52,24 @@ impl Timings {
     pub fn time<R>(&mut self, phase: Phase, work: impl FnOnce() -> R) -> R {
         let start = std::time::Instant::now();
         let result = work();
-        self.seconds[phase as usize] += start.elapsed().as_secs_f64();
+        self.add(phase, start.elapsed().as_secs_f64());
         result
+    }
+
+    /// Adds seconds that a phase took.
+    pub fn add(&mut self, phase: Phase, seconds: f64) {
+        self.seconds[phase as usize] += seconds;
+    }
+
+    /// What was told to other ranks.
+    pub fn halo(&self) -> Halo {
+        self.halo
+    }
+
+    /// A message was sent to another rank, of some bytes.
+    pub fn sent(&mut self, bytes: u64) {
+        self.halo.messages += 1;
+        self.halo.bytes += bytes;
     }
 
     /// Seconds spent in a phase.

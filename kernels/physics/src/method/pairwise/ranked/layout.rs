@@ -5,8 +5,14 @@ use stripmine_kernels::sweep::fast::{Rows, Share};
 
 /// Discs may be so many rows away from where they were when ranks were given their discs; then that is done again. No bit depends on it. Pairs that are
 /// found beside rows reach as far as partners lie ahead.
-fn margin(rows: Rows) -> usize {
+pub(super) fn margin(rows: Rows) -> usize {
     rows.ahead.max(2)
+}
+
+/// How far from a rank's rows discs may matter to it: discs of the rank may have gone as far as the margin, theirs too, and partners are that far
+/// ahead.
+pub(super) fn reach(rows: Rows) -> usize {
+    2 * margin(rows) + rows.ahead
 }
 
 /// On which side of a rank a row lies.
@@ -66,9 +72,7 @@ impl Layout {
 
     /// On which side of a rank's rows a row lies, if it is so near that its discs matter there.
     pub(super) fn side(&self, rank: usize, row: usize) -> Option<Side> {
-        let Share { rows, margin } = self.share(rank);
-        // Discs of the rank may have gone that far, theirs too, and partners are that far ahead.
-        let reach = 2 * margin + self.rows.ahead;
+        let (rows, reach) = (self.share(rank).rows, reach(self.rows));
         if rows.contains(&row) {
             return None;
         }

@@ -20,7 +20,7 @@ use super::state::Members;
 use super::{Crossings, Dynamics, Elapsed, Engine, Named, Stepping, System, Work, wrapped};
 use crate::domain::Domain;
 use crate::io::checkpoint::Column;
-use crate::method::{Clock, Failure};
+use crate::method::{Clock, DISMISSED, Failure};
 use crate::observe::{Scenery, Sums};
 use crate::particles::{Particles, States, in_space};
 use crate::ranks::{self, Crew, Gone, Parcel, Ranks, Reader, local};
@@ -31,7 +31,7 @@ use std::thread::{self, JoinHandle};
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::law::Asked;
-use stripmine_kernels::sweep::fast::{Met, OfBand};
+use stripmine_kernels::sweep::fast::{Met, OfBand, Rows};
 use wire::{Record, column_like, ended, put_columns, take_band, take_columns, take_failure};
 use worker::{What, Worker};
 
@@ -70,6 +70,13 @@ where
         Crew::One | Crew::Threads(_) => Box::new(scene.on_threads(crew.count(), particles)?),
     };
     Ok(stepping)
+}
+
+/// How many rows on either side of a rank's own matter to it, and in how many of them it meets the pairs again.
+pub fn halo_rows(rows: Rows) -> [usize; 2] {
+    let margin = layout::margin(rows);
+    // Below the own rows pairs are met that add to discs in the margin; above it those of the margin.
+    [layout::reach(rows), rows.ahead + 2 * margin]
 }
 
 /// What the first rank tells all to do.
@@ -283,7 +290,7 @@ impl<Q, D: Dynamics + Clone + 'static> Scene<Q, D> {
             let start = Particles::new(there.copied().collect());
             serve_one(self.part::<S, P>(join(), Arc::new(start)));
         }
-        Failure::new(ranks::DISMISSED, "this rank is dismissed", "")
+        Failure::new(DISMISSED, "this rank is dismissed", "")
     }
 }
 

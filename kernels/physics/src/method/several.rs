@@ -1,0 +1,24 @@
+//! What a method says where several ranks are asked for.
+
+use super::{Failure, FailureKind};
+use crate::ranks;
+
+/// Why a simulation cannot be carried out by several ranks.
+const ONE_RANK: FailureKind = FailureKind::new("one-rank");
+/// What a process ends its part with that is not the first rank: nothing is wrong.
+pub const DISMISSED: FailureKind = FailureKind::new("dismissed");
+
+/// Refuses several ranks, for a reason.
+///
+/// # Errors
+/// [`Failure`] if there are several.
+pub fn refuse_several_ranks(why: &str) -> Result<(), Failure> {
+    match ranks::crew().count() {
+        1 => Ok(()),
+        count => {
+            let what = format!("{count} ranks were asked for, but {why}");
+            let remedy = "take one rank, or several seeds: run --seeds";
+            Err(Failure::new(ONE_RANK, what, remedy))
+        }
+    }
+}

@@ -1,0 +1,103 @@
+#!/usr/bin/env bash
+# Builds the program with MPI and runs scenes on 1 to 4 ranks: the same files to the byte, a rank that dies, a run that goes on on another number of
+# ranks, what is refused.
+#
+#   tests/mpi/check.sh [ENVIRONMENT_FOLDER]
+#
+# Takes the MPI and libclang of the system, or else those of a virtual environment, which needs Python 3 and, for the first time, a network. Where
+# neither can be had it says SKIPPED. Exits with 1 if anything is not as it should be.
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+root=$(cd "$here/../.." && pwd)
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+
+if ! command -v mpicc >/dev/null || ! command -v mpiexec >/dev/null; then
+    python=$("$here/../clients/environment.sh" "${1:-$scratch/environment}" "$here/mpi.packages")
+    environment=$(cd "$(dirname "$python")/.." && pwd)
+    export PATH=$environment/bin:$PATH LD_LIBRARY_PATH=$environment/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
+    LIBCLANG_PATH=$(dirname "$(find "$environment" -name 'libclang*.so*' | head -1)")
+    export LIBCLANG_PATH
+fi
+if ! command -v mpicc >/dev/null || ! command -v mpiexec >/dev/null; then
+    echo "SKIPPED (no mpicc and mpiexec)"
+    exit 0
+fi
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
+
+cargo build --manifest-path "$root/Cargo.toml" --features mpi --locked
+stripmine=${CARGO_TARGET_DIR:-$root/target}/debug/stripmine
+failed=0
+bad() { echo "FAILED: $*"; failed=1; }
+cd "$scratch"
+
+# Lists, a lattice, and a bath, with rows, frames and checkpoints.
+scenes=(
+    "dense-gas --set particles.count=6000 --set run.steps=300 --set run.thermo_every=50 --set run.snapshot_every=100"
+    "bench --set particles.count=6000 --set particles.packing_fraction=0.8 --set run.steps=300 --set run.thermo_every=50 --set run.snapshot_every=100"
+    "langevin-dense --set domain.sides=[20.0,200.0] --set run.time=1.5 --set run.thermo_every=20"
+)
+for number in "${!scenes[@]}"; do
+    read -ra scene <<<"${scenes[$number]}"
+    "$stripmine" run "${scene[@]}" --quiet --threads 1 --out "alone-$number" >/dev/null
+    for ranks in 2 3 4; do
+        out=ranks-$number-$ranks
+        timeout 120 mpiexec -n "$ranks" "$stripmine" run "${scene[@]}" --quiet --threads 1 --out "$out" >/dev/null ||
+            bad "${scene[0]} on $ranks ranks"
+        for file in thermo.csv trajectory.xyz; do
+            cmp "alone-$number/$file" "$out/$file" || bad "${scene[0]} on $ranks ranks: $file"
+        done
+    done
+    echo "${scene[0]}: the same rows and frames on 1 to 4 ranks"
+done
+
+# A rank that dies ends the others within seconds, and the run goes on on another number of ranks to the same bytes.
+long=(bench --set particles.count=20000 --set run.steps=4000 --set run.thermo_every=100 --set run.checkpoint_every=200 --quiet --threads 1)
+"$stripmine" run "${long[@]}" --out whole >/dev/null
+mpiexec -n 3 "$stripmine" run "${long[@]}" --out killed >/dev/null 2>&1 &
+launched=$!
+for _ in $(seq 100); do
+    [[ -e killed/run.checkpoint ]] && break
+    sleep 0.1
+done
+pgrep -f "^$stripmine run bench .*--out killed" | tail -1 | xargs -r kill -9
+for _ in $(seq 100); do
+    kill -0 "$launched" 2>/dev/null || break
+    sleep 0.1
+done
+if kill -0 "$launched" 2>/dev/null; then
+    bad "ranks go on ten seconds after one of them was killed"
+    kill -9 "$launched"
+fi
+wait "$launched" && bad "a run that lost a rank ends well"
+mpiexec -n 2 "$stripmine" run "${long[@]}" --out killed --resume >/dev/null || bad "a resumption"
+cmp whole/thermo.csv killed/thermo.csv || bad "a run that went on on another number of ranks"
+echo "a rank that dies: the others end, and the run goes on on another number of ranks to the same rows"
+
+# Seeds are dealt out, and what they say together is what one process says.
+seeds=(hard-disks --set run.time=5 --seeds 5 --quiet --threads 1)
+"$stripmine" run "${seeds[@]}" --out one >/dev/null
+mpiexec -n 3 "$stripmine" run "${seeds[@]}" --out three >/dev/null || bad "seeds"
+for seed in 1 2 3 4 5; do
+    cmp "one/seed-$seed/thermo.csv" "three/seed-$seed/thermo.csv" || bad "seed $seed"
+done
+echo "seeds: the same runs on 1 and 3 ranks"
+
+refused() {
+    local word=$1 said
+    shift
+    if said=$("$@" 2>&1); then bad "$* is not refused"; fi
+    [[ $said == *"$word"* ]] || bad "$* says: $said"
+}
+refused "bands of rows" mpiexec -n 4 "$stripmine" run dense-gas --quiet --out many
+refused "one after the other" mpiexec -n 2 "$stripmine" run hard-disks --quiet --out events
+refused "--ranks was given" mpiexec -n 2 "$stripmine" run dense-gas --quiet --ranks 2 --out twice
+cat >other.sh <<EOF
+#!/bin/sh
+rank=\${PMI_RANK:-\$OMPI_COMM_WORLD_RANK}
+exec "$stripmine" run dense-gas --quiet --set particles.seed="\$((rank + 1))" --out other
+EOF
+chmod +x other.sh
+refused "rank 1 has another scene" mpiexec -n 2 ./other.sh
+echo "refused: too many ranks, hard discs, ranks twice, another scene"
+exit $failed
