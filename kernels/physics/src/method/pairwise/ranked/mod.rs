@@ -408,6 +408,9 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Ranked<S, P, Q, D
             let count = reader.count();
             for _ in 0..count {
                 let (number, periods) = (reader.count(), reader.numbers());
+                if rank > 0 {
+                    self.worker.engine.elapsed.crossings.add(number, periods);
+                }
                 self.crossed.push((rank, number, periods));
             }
             self.is_to_migrate |= reader.count() > 0;

@@ -469,14 +469,14 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Worker<S, P, Q, D
         parcel
     }
 
-    /// Periods that discs of other ranks have crossed.
+    /// Periods that discs of other ranks have crossed. The first rank knows of them from their reports.
     pub(super) fn hear_of_crossings(&mut self, reader: &mut Reader<'_>) {
         let own = self.ranks.rank();
         let count = reader.count();
         for _ in 0..count {
             let (rank, number) = (reader.count(), reader.count());
             let periods = reader.numbers();
-            if rank != own {
+            if own > 0 && rank != own {
                 self.engine.elapsed.crossings.add(number, periods);
             }
         }
