@@ -188,6 +188,26 @@ fn a_run_goes_on_with_on_another_number_of_ranks() {
     }
 }
 
+/// Bodies are dealt out by rows of all pairs.
+#[test]
+fn bodies_have_the_bits_of_one_rank() {
+    for more in [
+        &["particles.count=700", "run.steps=20"][..],
+        &["particles.count=700", "run.steps=20", "machine.precision=mixed", "integrator.kind=hermite-4"],
+    ] {
+        let more: Vec<String> = more.iter().map(|&text| text.to_owned()).collect();
+        let (prepared, _) = load("plummer", &more, METHODS).unwrap();
+        let alone = seen(&prepared, 1, 20).unwrap();
+        for ranks in RANKS {
+            assert_eq!(difference(&alone, &seen(&prepared, ranks, 20).unwrap()), None, "{ranks} ranks");
+        }
+    }
+    let (few, _) = load("plummer", &["particles.count=100".to_owned()], METHODS).unwrap();
+    assert!(seen(&few, 8, 1).unwrap_err().contains("bands of rows that all pairs have"));
+    let (kepler, _) = load("kepler", &[], METHODS).unwrap();
+    assert!(seen(&kepler, 2, 1).unwrap_err().contains("only machine.engine = \"fast\""));
+}
+
 /// More ranks than bands are refused with the most that the scene takes.
 #[test]
 fn too_many_ranks_are_refused() {

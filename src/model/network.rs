@@ -78,6 +78,11 @@ impl Bands {
         8.0 * self.words * self.halo * self.discs / self.rows
     }
 
+    /// The part of a step in which ranks move discs of their own.
+    pub fn efficiency(&self, ranks: f64, work: f64, network: &Network) -> f64 {
+        work * self.discs / ranks / self.step(ranks, work, network)
+    }
+
     /// Seconds of a step on some ranks, where a disc takes `work` seconds on a rank with as many discs as each has.
     pub fn step(&self, ranks: f64, work: f64, network: &Network) -> f64 {
         let own = work * self.discs / ranks;

@@ -35,7 +35,7 @@ cd "$scratch"
 scenes=(
     "dense-gas --set particles.count=6000 --set run.steps=300 --set run.thermo_every=50 --set run.snapshot_every=100"
     "bench --set particles.count=6000 --set particles.packing_fraction=0.8 --set run.steps=300 --set run.thermo_every=50 --set run.snapshot_every=100"
-    "langevin-dense --set domain.sides=[20.0,200.0] --set run.time=1.5 --set run.thermo_every=20"
+    "langevin-dense --set domain.sides=[20.0,260.0] --set run.time=1.5 --set run.thermo_every=20"
 )
 for number in "${!scenes[@]}"; do
     read -ra scene <<<"${scenes[$number]}"

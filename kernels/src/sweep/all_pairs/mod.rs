@@ -145,6 +145,41 @@ impl<P: Precision, const SUMS: usize> AllPairs<P, SUMS> {
         sums: [&mut [P]; SUMS],
         manner: &Manner<'_>,
     ) -> Result<[f64; 2], ProgramError> {
+        self.meet(law, bodies, 0..self.bands.len(), manner)?;
+        self.finish(sums)
+    }
+
+    /// How many bands there are.
+    #[inline]
+    pub fn bands(&self) -> usize {
+        self.bands.len()
+    }
+
+    /// The sums of a band, each with an entry for every body from the band's first on, and its energy and virial.
+    #[inline]
+    pub fn band(&self, number: usize) -> (&[Vec<P>; SUMS], [f64; 2]) {
+        let Band { sums, energy, .. } = &self.bands[number];
+        (sums, *energy)
+    }
+
+    /// The same, to be put there by who has met its pairs elsewhere.
+    #[inline]
+    pub fn band_mut(&mut self, number: usize) -> (&mut [Vec<P>; SUMS], &mut [f64; 2]) {
+        let Band { sums, energy, .. } = &mut self.bands[number];
+        (sums, energy)
+    }
+
+    /// Meets the pairs of some of the bands.
+    ///
+    /// # Errors
+    /// As [`sweep`](Self::sweep).
+    pub fn meet<L: Law<3> + Sync>(
+        &mut self,
+        law: &L,
+        bodies: &Bodies<'_, P>,
+        bands: Range<usize>,
+        manner: &Manner<'_>,
+    ) -> Result<(), ProgramError> {
         law::check::<3, L>(law)?;
         let served = |field: &&Field| matches!(field, Field::Mass | Field::Velocity(_));
         if let Some(field) = L::FIELDS.iter().find(|field| !served(field)) {
@@ -157,24 +192,20 @@ impl<P: Precision, const SUMS: usize> AllPairs<P, SUMS> {
         let velocity = bodies.velocity.into_iter().filter(|_| asks_for_velocity(L::FIELDS));
         let rest = bodies.rest.into_iter().filter(|_| is_split::<P>());
         let columns = bodies.position.into_iter().chain([bodies.mass]).chain(rest).chain(velocity);
-        for length in columns.map(<[P]>::len).chain(sums.iter().map(|sums| sums.len())) {
-            if length != entries {
-                let last = entries as isize - 1;
-                return Err(ProgramError::TooShort { array: "the bodies", first: 0, last, length });
-            }
-        }
-        alone_if(entries <= ALONE, || self.sweep_checked(law, bodies, sums, manner))
+        columns.map(<[P]>::len).try_for_each(|length| suffices(length, entries))?;
+        alone_if(entries <= ALONE, || self.meet_checked(law, bodies, bands, manner))
     }
 
-    fn sweep_checked<L: Law<3> + Sync>(
+    fn meet_checked<L: Law<3> + Sync>(
         &mut self,
         law: &L,
         bodies: &Bodies<'_, P>,
-        sums: [&mut [P]; SUMS],
+        bands: Range<usize>,
         manner: &Manner<'_>,
-    ) -> Result<[f64; 2], ProgramError> {
+    ) -> Result<(), ProgramError> {
         let &Manner { observed, arithmetic, set, interrupted } = manner;
-        let done = on_threads(&mut self.bands, |band| {
+        let bands = &mut self.bands[bands];
+        let done = on_threads(bands.iter_mut(), |band| {
             band.sums.iter_mut().for_each(|sums| sums.fill(P::default()));
             (band.energy, band.is_stopped) = ([0.0; 2], false);
             let sums = band.sums.each_mut().map(Vec::as_mut_slice);
@@ -201,9 +232,20 @@ impl<P: Precision, const SUMS: usize> AllPairs<P, SUMS> {
             }
         });
         done.into_iter().collect::<Result<(), _>>()?;
-        if self.bands.iter().any(|band| band.is_stopped) {
-            return Err(ProgramError::Interrupted);
-        }
+        if bands.iter().any(|band| band.is_stopped) { Err(ProgramError::Interrupted) } else { Ok(()) }
+    }
+
+    /// Adds up what all bands have met.
+    ///
+    /// # Errors
+    /// [`ProgramError`] if there is a sum that has not as many entries as [`padded`] says.
+    pub fn finish(&self, sums: [&mut [P]; SUMS]) -> Result<[f64; 2], ProgramError> {
+        let entries = self.groups * GROUP;
+        sums.iter().try_for_each(|sums| suffices(sums.len(), entries))?;
+        alone_if(entries <= ALONE, || self.finish_checked(sums))
+    }
+
+    fn finish_checked(&self, sums: [&mut [P]; SUMS]) -> Result<[f64; 2], ProgramError> {
         for (number, to) in sums.into_iter().enumerate() {
             self.add_up(number, to);
         }
@@ -230,6 +272,15 @@ impl<P: Precision, const SUMS: usize> AllPairs<P, SUMS> {
         let ranges = pieces(0..to.len(), PIECE);
         on_threads(ranges.into_iter().zip(to.chunks_mut(PIECE)), share);
     }
+}
+
+/// Refuses a column that has not as many entries as there are.
+fn suffices(length: usize, entries: usize) -> Result<(), ProgramError> {
+    let last = entries as isize - 1;
+    if length == entries {
+        return Ok(());
+    }
+    Err(ProgramError::TooShort { array: "the bodies", first: 0, last, length })
 }
 
 /// Rows of a triangle of groups, cut into bands of about equal area; row I has `groups` − I.

@@ -1,7 +1,7 @@
 //! From how many discs on several ranks pay.
 
 use crate::laboratory::lattice_md::study::bands::{Dealt, PAYS, PER_RANK, Reached, SCENES};
-use crate::report::figure::{Axis, Chart, Figure, Series, Style};
+use crate::report::figure::{Axis, Chart, Figure, Point, Series, Style};
 use crate::report::{Cell, Rows, Section, Verdict};
 use stripmine_physics::number::{range, significant};
 
@@ -11,24 +11,20 @@ pub fn section(data: &Dealt) -> Section {
     let off = off.fold(0.0, f64::max);
     let of =
         |network: &str, discs: f64| data.reached.iter().find(|it| it.network == network && it.discs == discs);
-    let says = |network: &str| {
-        of(network, SCENES[2]).map_or(String::new(), |it| {
-            format!(
-                "{} ranks ({} times as fast as one) on {network}",
-                significant(it.pays, 3),
-                significant(it.gain, 3)
-            )
-        })
+    let says = |network: &str, discs: f64| {
+        of(network, discs)
+            .map_or(String::new(), |it| format!("{} ranks on {network}", significant(it.pays, 3)))
     };
-    let most = of("Slingshot 11", SCENES[2]).map_or(1.0, |it| it.bands);
+    let most = of("InfiniBand HDR", SCENES[2]).map_or(1.0, |it| it.bands);
     Section::new("bands", "Beyond one machine: from how many discs on ranks pay")
         .asks("With how many ranks does a scene still use 80 % of each, on which network?")
         .expects("No source says. Bands have at least 16 rows, so that a scene of N discs has no more ranks than some √N/16.")
         .answers(format!(
-            "By a model, 10⁸ dense discs use 80 % of {}, {}, {}; they have {} bands, and no more ranks. What ranks were seen to send is within {} % of what the model counts.",
-            says("InfiniBand HDR"),
-            says("Slingshot 11"),
-            says("25 Gb/s Ethernet"),
+            "By a model, 10⁶ dense discs use 80 % of {} and of {}, 10⁸ of {} and {}, where their {} bands end; what ranks were seen to send is within {} % of what the model counts.",
+            says("InfiniBand HDR", SCENES[0]),
+            says("25 Gb/s Ethernet", SCENES[0]),
+            says("InfiniBand HDR", SCENES[2]),
+            says("25 Gb/s Ethernet", SCENES[2]),
             significant(most, 3),
             significant(off, 2)
         ))
@@ -47,25 +43,22 @@ pub fn section(data: &Dealt) -> Section {
         .depends_on_host()
 }
 
-/// Two scenes, and those that grow.
+/// Two networks, with two scenes and those that grow.
 fn figure(data: &Dealt) -> Figure {
-    let mut networks: Vec<&str> = data.curves.iter().map(|curve| curve.network.as_str()).collect();
-    networks.dedup();
-    let drawn = [Some(SCENES[2]), None];
-    let series = networks.iter().enumerate().flat_map(|(hue, network)| {
-        drawn.into_iter().filter_map(move |discs| {
-            let curve = data.curves.iter().find(|it| it.network == *network && it.discs == discs)?;
-            let (name, style) = match discs {
-                Some(_) => (format!("{network}, 10⁸ discs"), Style::Line),
-                None => (format!("{network}, 10⁶ a rank"), Style::Dashed),
-            };
-            Some(Series::new(name, style, hue, curve.points.iter().map(|&[ranks, e]| (ranks, e, [e, e]))))
+    let drawn = [(Some(SCENES[0]), "10⁶ discs"), (Some(SCENES[2]), "10⁸ discs"), (None, "10⁶ a rank")];
+    let networks =
+        [("InfiniBand HDR", "InfiniBand", Style::Line), ("25 Gb/s Ethernet", "Ethernet", Style::Dashed)];
+    let series = networks.into_iter().flat_map(|(network, short, style)| {
+        drawn.into_iter().enumerate().filter_map(move |(hue, (discs, scene))| {
+            let curve = data.curves.iter().find(|it| it.network == network && it.discs == discs)?;
+            let points = curve.points.iter().map(|&[ranks, efficiency]| Point::at(ranks, efficiency));
+            Some(Series::new(format!("{short}, {scene}"), style, hue, points))
         })
     });
-    Chart::of(Axis::logarithmic("ranks", None), Axis::linear("efficiency", None).between([0.0, 1.1]))
+    Chart::of(Axis::logarithmic("ranks", None), Axis::linear("efficiency", None).between([0.0, 1.0]))
         .with(series)
         .figure("efficiency", "Efficiency over ranks, by the model")
-        .caption("Lines end where a scene has no more bands. Above 1: smaller parts fit a cache.")
+        .caption("The part of a step in which ranks move discs of their own. Lines end where a scene has no more bands; Slingshot's lie on InfiniBand's.")
 }
 
 fn reached(data: &Dealt) -> crate::report::Table {
@@ -74,7 +67,7 @@ fn reached(data: &Dealt) -> crate::report::Table {
         .short("discs", |it| it.discs)
         .short("bands", |it| it.bands)
         .short("ranks that pay", |it| it.pays)
-        .short("gain", |it| it.gain)
+        .short("ranks that would lose nothing", |it| it.gain)
         .table("reached", format!("How many ranks are used to {} %", 100.0 * PAYS))
         .note(format!(
             "In powers of two. Where scenes grow with the ranks each has {} discs.",

@@ -131,7 +131,7 @@ fn rate(
     for _ in 0..effort.rounds {
         for (rates, threads) in found.iter_mut().zip(THREADS) {
             let (rate, accelerations) = on_threads(threads, || {
-                let mut field = Attraction::new(&scene, &all);
+                let mut field = Attraction::new(&scene, &all)?;
                 let mut into = zeros(all.entries());
                 field.asking(false, &never).acceleration(&all.position, &mut into).map_err(Failure::from)?;
                 let (begun, mut sweeps) = (Instant::now(), 0);

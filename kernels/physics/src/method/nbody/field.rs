@@ -2,12 +2,14 @@
 
 use super::bodies::{Bodies, Columns};
 use super::options::{ArithmeticKind, Engine};
+use super::ranked::summed;
 use super::scene::Scene;
 use super::schemes::{Field, SchemeName};
 use super::shifted::Shifted;
 use super::sums::{Stop, Sums, go_on};
 pub use super::sums::{never, potential};
 use super::swept::Swept;
+use crate::method::{Failure, refuse_several_ranks};
 use crate::scene::Precision;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use stripmine_kernels::isa::ProgramError;
@@ -47,8 +49,14 @@ pub struct Asking<'a> {
 }
 
 impl Attraction {
-    /// Of a scene's bodies.
-    pub fn new(scene: &Scene, bodies: &Bodies) -> Self {
+    /// Of a scene's bodies, by as many ranks as there are.
+    ///
+    /// # Errors
+    /// [`Failure`] if they cannot be dealt out to so many ranks.
+    pub fn new(scene: &Scene, bodies: &Bodies) -> Result<Self, Failure> {
+        if !matches!(scene.engine, Engine::Fast | Engine::Auto) {
+            refuse_several_ranks("only machine.engine = \"fast\" has bands of rows")?;
+        }
         let arithmetic = match scene.arithmetic {
             ArithmeticKind::Exact => Arithmetic::Exact,
             ArithmeticKind::Estimated => Arithmetic::Estimated,
@@ -60,11 +68,9 @@ impl Attraction {
             (Engine::Reference, _) => Pairs::Reference,
             // The check has decided what `auto` is.
             (Engine::Fast | Engine::Auto, Precision::F64) => {
-                Pairs::Summed(Box::new(Swept::<f64>::new(softening, bodies, arithmetic, set)))
+                Pairs::Summed(summed::<f64>(scene, bodies, arithmetic)?)
             }
-            (Engine::Fast | Engine::Auto, _) => {
-                Pairs::Summed(Box::new(Swept::<f32>::new(softening, bodies, arithmetic, set)))
-            }
+            (Engine::Fast | Engine::Auto, _) => Pairs::Summed(summed::<f32>(scene, bodies, arithmetic)?),
             (Engine::Programs, Precision::F64) => {
                 Pairs::Summed(Box::new(Shifted::<f64>::new(softening, bodies, execution)))
             }
@@ -73,14 +79,14 @@ impl Attraction {
             }
         };
         let inverse_mass = bodies.mass.iter().map(|&m| if m > 0.0 { 1.0 / m } else { 0.0 }).collect();
-        Attraction {
+        Ok(Attraction {
             softening: scene.softening,
             mass: bodies.mass.clone(),
             inverse_mass,
             bodies: bodies.len(),
             pairs,
             evaluations: 0,
-        }
+        })
     }
 
     /// Bytes that a scene's takes for a number of bodies.
@@ -274,7 +280,7 @@ mod tests {
         (scene.start.kind, scene.start.count) = (StartKind::Plummer, 12);
         let of = bodies(&scene.start, 0.2);
         let all = Bodies::new(of.iter().map(|&(m, r, v)| (r, v, m)));
-        let mut field = Attraction::new(&scene, &all);
+        let mut field = Attraction::new(&scene, &all).unwrap();
         let mut orders: Vec<Columns> = (0..ORDERS).map(|_| zeros(all.entries())).collect();
         field.asking(false, &never).derivatives(&all.position, &all.velocity, &mut orders).unwrap();
         // Along the path by its series the acceleration has these derivatives.
@@ -302,7 +308,7 @@ mod tests {
         let mut fast = [zeros(all.entries()), zeros(all.entries())];
         field.asking(false, &never).derivatives(&all.position, &all.velocity, &mut fast).unwrap();
         let mut programs = [zeros(all.entries()), zeros(all.entries())];
-        let mut field = Attraction::new(&Scene { engine: Engine::Programs, ..scene.clone() }, &all);
+        let mut field = Attraction::new(&Scene { engine: Engine::Programs, ..scene.clone() }, &all).unwrap();
         field.asking(false, &never).derivatives(&all.position, &all.velocity, &mut programs).unwrap();
         for axis in 0..3 {
             for body in 0..all.len() {
@@ -337,7 +343,7 @@ mod tests {
         let all = Bodies::new(of.iter().map(|&(m, r, v)| (r, v, m)));
         let found = |engine, execution, precision, arithmetic| {
             let scene = Scene { engine, execution, precision, arithmetic, ..scene.clone() };
-            let mut field = Attraction::new(&scene, &all);
+            let mut field = Attraction::new(&scene, &all).unwrap();
             let mut into = zeros(all.entries());
             field.asking(false, &never).acceleration(&all.position, &mut into).unwrap();
             (into, field.potential(&all.position, &never).unwrap())

@@ -13,6 +13,7 @@ pub mod options;
 mod prepared;
 mod presets;
 mod quantities;
+mod ranked;
 mod rounded;
 pub mod scene;
 pub mod schemes;

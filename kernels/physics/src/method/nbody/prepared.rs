@@ -9,7 +9,6 @@ use super::starts::ORBIT;
 use crate::domain::{Domain, Side};
 use crate::memory::{Foreseen, PROGRAM, available};
 use crate::method::entry::left_out;
-use crate::method::refuse_several_ranks;
 use crate::method::{
     Beyond, Fact, Failure, Prepared, Purpose, Schedule, Simulation, Startable, StepLimit, VectorProgram,
 };
@@ -128,7 +127,6 @@ impl Startable for Checked {
     }
 
     fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure> {
-        refuse_several_ranks("every body acts on every other one: they are in one memory")?;
         Ok(Box::new(Running::new(self, purpose)?))
     }
 

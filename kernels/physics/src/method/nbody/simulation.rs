@@ -74,12 +74,12 @@ impl Running {
     /// At the start.
     ///
     /// # Errors
-    /// [`Failure`] if the processor lacks what is asked for.
+    /// [`Failure`] if the processor lacks what is asked for, or bodies cannot be dealt out to so many ranks.
     pub(super) fn new(checked: &Checked, purpose: Purpose) -> Result<Running, Failure> {
         let scene = &checked.scene;
         let all = checked.particles.all();
         let bodies = Bodies::new(all.iter().map(|body| (body.position, body.velocity, body.mass)));
-        let mut field = Attraction::new(scene, &bodies);
+        let mut field = Attraction::new(scene, &bodies)?;
         let potential = field.potential(&bodies.position, &never)?;
         let start = Conserved::of(&bodies, potential);
         let (mut watch, mut encounters) = (Watch::new(&start), Encounters::default());

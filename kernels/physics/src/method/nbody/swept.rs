@@ -3,6 +3,7 @@
 use super::bodies::{Bodies, Columns};
 use super::rounded::Rounded;
 use super::sums::{Stop, Sums, over};
+use std::ops::Range;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend;
 use stripmine_kernels::isa::ProgramError;
@@ -45,6 +46,89 @@ impl<P: backend::Precision> Swept<P> {
     }
 }
 
+impl<P: backend::Precision> Swept<P> {
+    /// How many bands of rows there are.
+    pub(super) fn bands(&self) -> usize {
+        self.forces.bands()
+    }
+
+    /// Meets the pairs of some of the bands.
+    ///
+    /// # Errors
+    /// As [`sum`](Sums::sum).
+    pub(super) fn meet(
+        &mut self,
+        (position, velocity): (&Columns, Option<&Columns>),
+        bands: Range<usize>,
+        observed: bool,
+        stop: Stop<'_>,
+    ) -> Result<(), ProgramError> {
+        self.bodies.take(position, velocity);
+        let Swept { softening, count, set, arithmetic, forces, rates, bodies, .. } = self;
+        let (softening, bodies) = (*softening, bodies.bodies());
+        let manner = Manner { observed, arithmetic: *arithmetic, set: *set, interrupted: stop };
+        match velocity {
+            None => forces.meet(&Gravity::<false> { softening }, &bodies, bands, &manner),
+            Some(_) => {
+                let rates = rates.get_or_insert_with(|| AllPairs::new(*count));
+                rates.meet(&Gravity::<true> { softening }, &bodies, bands, &manner)
+            }
+        }
+    }
+
+    /// Adds up what all bands have met, with or without the rates of the forces; gives the energy.
+    ///
+    /// # Errors
+    /// As [`sum`](Sums::sum).
+    pub(super) fn finish(&mut self, has_rates: bool) -> Result<f64, ProgramError> {
+        let energy = self.bodies.units.energy();
+        let Swept { forces, rates, sums, .. } = self;
+        let sums = sums.each_mut().map(Vec::as_mut_slice);
+        let [potential, _] = match rates.as_ref().filter(|_| has_rates) {
+            None => {
+                let [x, y, z, ..] = sums;
+                forces.finish([x, y, z])?
+            }
+            Some(rates) => rates.finish(sums)?,
+        };
+        Ok(energy * potential)
+    }
+
+    /// What a band has met, as numbers: energy and virial, then every sum.
+    pub(super) fn band(&self, number: usize, has_rates: bool) -> Vec<f64> {
+        fn of<P: backend::Precision>(sums: &[Vec<P>], energy: [f64; 2]) -> Vec<f64> {
+            energy.into_iter().chain(sums.iter().flatten().map(|sum| sum.to_f64())).collect()
+        }
+        match self.rates.as_ref().filter(|_| has_rates) {
+            None => {
+                let (sums, energy) = self.forces.band(number);
+                of(sums, energy)
+            }
+            Some(rates) => {
+                let (sums, energy) = rates.band(number);
+                of(sums, energy)
+            }
+        }
+    }
+
+    /// Puts there what [`band`](Self::band) gave elsewhere.
+    pub(super) fn put_band(&mut self, number: usize, has_rates: bool, mut value: impl FnMut() -> f64) {
+        let Swept { count, forces, rates, .. } = self;
+        let (sums, energy) = match has_rates {
+            false => {
+                let (sums, energy) = forces.band_mut(number);
+                (sums.as_mut_slice(), energy)
+            }
+            true => {
+                let (sums, energy) = rates.get_or_insert_with(|| AllPairs::new(*count)).band_mut(number);
+                (sums.as_mut_slice(), energy)
+            }
+        };
+        energy.iter_mut().for_each(|energy| *energy = value());
+        sums.iter_mut().flatten().for_each(|sum| *sum = P::from_f64(value()));
+    }
+}
+
 impl<P: backend::Precision> Sums for Swept<P> {
     fn sum(
         &mut self,
@@ -53,23 +137,8 @@ impl<P: backend::Precision> Sums for Swept<P> {
         observed: bool,
         stop: Stop<'_>,
     ) -> Result<f64, ProgramError> {
-        self.bodies.take(position, velocity);
-        let Swept { softening, count, set, arithmetic, forces, rates, bodies, sums } = self;
-        let (softening, energy) = (*softening, bodies.units.energy());
-        let bodies = bodies.bodies();
-        let manner = Manner { observed, arithmetic: *arithmetic, set: *set, interrupted: stop };
-        let sums = sums.each_mut().map(Vec::as_mut_slice);
-        let [potential, _] = match velocity {
-            None => {
-                let [x, y, z, ..] = sums;
-                forces.sweep(&Gravity::<false> { softening }, &bodies, [x, y, z], &manner)?
-            }
-            Some(_) => {
-                let rates = rates.get_or_insert_with(|| AllPairs::new(*count));
-                rates.sweep(&Gravity::<true> { softening }, &bodies, sums, &manner)?
-            }
-        };
-        Ok(energy * potential)
+        self.meet((position, velocity), 0..self.bands(), observed, stop)?;
+        self.finish(velocity.is_some())
     }
 
     fn over(&self, inverse_mass: &[f64], [acceleration, jerk]: [Option<&mut Columns>; 2]) {
