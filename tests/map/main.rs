@@ -24,6 +24,7 @@ const DEPENDENCIES: [(&str, &[&str]); 2] = [
             "gethostname",
             "humantime",
             "libm",
+            "mpi",
             "nix",
             "rand",
             "rayon",
@@ -78,11 +79,12 @@ const KNOWN_CIRCLES: [(&[&str], &str); 6] = [
 const METHODS: [&str; 4] = ["hard_disks", "langevin", "lattice_md", "nbody"];
 const FOLDERS_OF_METHODS: [&str; 2] = ["kernels/physics/src/method", "src/laboratory"];
 
-/// The files that may name a method's: the lists, and a study that compares two. And the one file of a method that others use.
-const LISTS: [&str; 3] = [
+/// The files that may name a method's: the lists, and two that hold one method against another. And the one file of a method that others use.
+const LISTS: [&str; 4] = [
     "kernels/physics/src/method/list.rs",
     "src/laboratory/mod.rs",
     "src/laboratory/hard_disks/study/soft_hard.rs",
+    "kernels/physics/src/method/lattice_md/hard.rs",
 ];
 const SHARED: &str = "kernels/physics/src/method/hard_disks/compress.rs";
 

@@ -1,8 +1,8 @@
 //! What was measured of scenes, kept for this host and this version of the program: the second time costs nothing.
 
 use super::Target;
+use super::alike::Alike;
 use super::findings::Findings;
-use super::tuned::Alike;
 use crate::provenance::Provenance;
 use crate::study::Case;
 use serde::{Deserialize, Serialize};

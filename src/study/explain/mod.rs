@@ -4,6 +4,7 @@
 //! mean scatters, and how far a long step takes it off (`bias`). From these follow the step and the run length that reach an error most cheaply
 //! (`optimum`), and with them a plan (`plan`). Nothing here is fitted: what trials could not see is counted as error, with its bar.
 
+mod alike;
 mod bias;
 mod comparison;
 mod decisions;

@@ -1,0 +1,40 @@
+//! Which scenes are so alike that what is the cheapest for one is so for the other.
+
+use crate::study::Case;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
+
+/// Scenes are alike up to this factor of particles, and this difference of packing fractions: crossings lie farther apart.
+const PARTICLES: f64 = 2.0;
+const PACKING: f64 = 0.05;
+
+/// What decides which way to run a scene is the cheapest.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Alike {
+    method: String,
+    particles: usize,
+    /// Area of the particles over that of the box; 0 where there is none.
+    packing_fraction: f64,
+}
+
+impl Alike {
+    /// Of a scene.
+    pub fn of(case: &Case) -> Alike {
+        let particles = case.prepared.particles();
+        let discs: f64 = particles.grains().iter().map(|it| PI * it.radius * it.radius).sum();
+        let packing_fraction = discs / case.prepared.domain.area();
+        Alike {
+            method: case.entry.vocabulary.keys.method.to_owned(),
+            particles: particles.grain_count(),
+            packing_fraction: if packing_fraction.is_finite() { packing_fraction } else { 0.0 },
+        }
+    }
+
+    /// How far two scenes are from each other, 0 for equal ones; none where they are not alike.
+    pub(super) fn apart(&self, other: &Alike) -> Option<f64> {
+        let of_particles = (self.particles.max(1) as f64 / other.particles.max(1) as f64).ln().abs();
+        let apart = (of_particles / PARTICLES.ln())
+            .max((self.packing_fraction - other.packing_fraction).abs() / PACKING);
+        (self.method == other.method && apart <= 1.0).then_some(apart)
+    }
+}
