@@ -135,12 +135,12 @@ fn looks_at_the_structure_take_the_memory_that_was_foreseen() {
     judged(&said);
 }
 
-/// Hard discs by both engines; three times as many, three frames.
+/// Hard discs by both engines; three times as many, so three times a frame, and half as much again: the thread that writes may hold none.
 #[test]
 fn hard_discs_take_the_memory_that_was_foreseen() {
     let ways = ["machine.engine=fast", "machine.engine=reference"];
     let said =
-        ways.map(|way| foreseen_and_taken("hard-disks", &["particles.count=300000", way], 3.0 * FRAME));
+        ways.map(|way| foreseen_and_taken("hard-disks", &["particles.count=300000", way], 4.5 * FRAME));
     judged(&said);
 }
 
@@ -185,7 +185,7 @@ fn limits_of_the_process_are_asked() {
     for (scene, sets) in scenes {
         for (limit, name) in [("-v", "the address space (ulimit -v)"), ("-d", "of a process (ulimit -d)")] {
             let mut codes = vec![];
-            for mebibytes in [250, 350, 500, 4000] {
+            for mebibytes in [250, 500, 4000] {
                 let (code, said) = under(&format!("{limit} {}", mebibytes * 1024), scene, sets);
                 assert!(matches!(code, Some(0 | 3)), "{scene} {limit} {mebibytes}: {code:?} {said}");
                 assert!(code == Some(0) || said.contains(name), "{scene} {limit} {mebibytes}: {said}");

@@ -67,7 +67,8 @@ const SCENES: &[Scene] = &[
     },
 ];
 const SEARCHES: [&str; 3] = ["lattice", "sectors", "neighbor-list"];
-const RANKS: [usize; 5] = [2, 3, 4, 7, 8];
+/// The long test has all numbers up to eight.
+const RANKS: [usize; 3] = [2, 3, 7];
 
 impl Scene {
     fn prepared(&self, more: &[String]) -> Result<Prepared, String> {
@@ -160,7 +161,7 @@ fn bits_are_those_of_one_rank() {
         }
     }
     println!("{compared} runs");
-    assert!(compared >= 40, "{compared}");
+    assert!(compared >= 25, "{compared}");
 }
 
 /// A state goes on with on another number of ranks.
