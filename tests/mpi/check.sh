@@ -26,7 +26,7 @@ fi
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
 
 # As tests are built: what these need beside it is there already.
-cargo test --manifest-path "$root/Cargo.toml" --features mpi --locked --no-run --test ranks
+cargo test --manifest-path "$root/Cargo.toml" --workspace --features stripmine/mpi --locked --no-run --test ranks
 stripmine=${CARGO_TARGET_DIR:-$root/target}/debug/stripmine
 failed=0
 bad() { echo "FAILED: $*"; failed=1; }
