@@ -1,0 +1,160 @@
+//! Discs dealt out to the ranks: at the start, anew when they have gone far, and from a state.
+
+use super::layout::{Layout, Side};
+use super::wire::{column_like, entries};
+use super::worker::{Columns, Worker};
+use crate::method::pairwise::Dynamics;
+use crate::method::pairwise::saved::CELL;
+use crate::method::pairwise::search::{Cells, Search};
+use crate::method::pairwise::state::Members;
+use crate::ranks::{Gone, Parcel};
+use std::collections::HashMap;
+use stripmine_kernels::backend::Precision;
+
+impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Worker<S, P, Q, D> {
+    /// Holds those discs of the scene that are this rank's or near them, by the rows that all of the scene's are in.
+    pub(super) fn take_part(&mut self, rows: &[u32]) {
+        let grains = self.engine.start.grain_count();
+        let mut weights = vec![0; self.layout_bands()];
+        rows[..grains].iter().for_each(|&row| weights[self.layout.band(row as usize)] += 1);
+        self.deal_out(&weights);
+        let rank = self.ranks.rank();
+        let of = |numbers: std::ops::Range<usize>, is_wanted: &dyn Fn(usize) -> bool| -> Vec<u32> {
+            numbers.filter(|&number| is_wanted(rows[number] as usize)).map(|number| number as u32).collect()
+        };
+        let own = of(0..grains, &|row| self.layout.owner(row) == rank);
+        let near = of(0..grains, &|row| self.layout.side(rank, row).is_some());
+        let walls = of(grains..rows.len(), &|_| true);
+        let row_of = |number: u32| rows[number as usize] as usize;
+        self.hold(own, near, walls, row_of);
+    }
+
+    fn layout_bands(&self) -> usize {
+        self.engine.search.rows().bands().len()
+    }
+
+    /// Bands by their weights.
+    fn deal_out(&mut self, weights: &[u64]) {
+        let (rows, periodic) = (self.engine.search.rows(), self.engine.search.cells().grid().periodic[1]);
+        self.layout = Layout::new(rows, periodic, weights, self.ranks.count());
+    }
+
+    /// Holds discs of this rank, those of others that are near, and walls, none of them in its cell yet.
+    fn hold(&mut self, own: Vec<u32>, near: Vec<u32>, walls: Vec<u32>, row: impl Fn(u32) -> usize) {
+        let (rank, count) = (self.ranks.rank(), self.ranks.count());
+        let [below, above] = [(rank + count - 1) % count, (rank + 1) % count];
+        let on_side = |discs: &[u32], rank: usize, side: Side| -> Vec<u32> {
+            discs.iter().copied().filter(|&disc| self.layout.side(rank, row(disc)) == Some(side)).collect()
+        };
+        // What lies below a rank comes from the rank below it, which tells it upwards.
+        self.from = [on_side(&near, rank, Side::Below), on_side(&near, rank, Side::Above)];
+        self.to = [on_side(&own, below, Side::Above), on_side(&own, above, Side::Below)];
+        self.homes.clear();
+        let (moving, grains) = (own.len(), own.len() + near.len());
+        let numbers: Vec<u32> = own.into_iter().chain(near).chain(walls).collect();
+        let search = self.engine.search.emptied(numbers.len(), self.layout.share(rank));
+        self.engine.hold(Members { numbers, moving, grains }, search);
+    }
+
+    /// Deals out the discs anew: each to the rank of the row that it is in now.
+    pub(super) fn migrate(&mut self) -> Result<Result<(), String>, Gone> {
+        let state = &self.engine.state;
+        let row = |disc: usize| self.engine.search.cells().cell(disc).map_or(0, |cell| cell[1]);
+        let mut weights = vec![0; self.layout_bands()];
+        (0..state.moving()).for_each(|disc| weights[self.layout.band(row(disc))] += 1);
+        let mut parcel = Parcel::new();
+        parcel.counts(weights.into_iter());
+        let gathered = self.ranks.gather(parcel)?;
+        let sums = gathered.iter().map(|parcel| parcel.read().counts()).reduce(|mut sums, of_rank| {
+            sums.iter_mut().zip(of_rank).for_each(|(sum, of_rank)| *sum += of_rank);
+            sums
+        });
+        let said = sums.map(|sums| {
+            let mut parcel = Parcel::new();
+            parcel.counts(sums.into_iter());
+            parcel
+        });
+        let weights = self.ranks.tell(said)?.read().counts();
+        self.deal_out(&weights);
+        let state = &self.engine.state;
+        let row = |disc: usize| self.engine.search.cells().cell(disc).map_or(0, |cell| cell[1]);
+        let parcels = (0..self.ranks.count()).map(|rank| {
+            let own = |disc: &usize| self.layout.owner(row(*disc)) == rank;
+            let near = |disc: &usize| self.layout.side(rank, row(*disc)).is_some();
+            let of = |is_sent: &dyn Fn(&usize) -> bool| -> Vec<u32> {
+                (0..state.moving()).filter(is_sent).map(|disc| disc as u32).collect()
+            };
+            let (own, near) = (of(&own), of(&near));
+            let mut parcel = Parcel::new();
+            for discs in [&own, &near] {
+                parcel.counts(discs.iter().map(|&disc| state.number(disc as usize) as u64));
+            }
+            let sent = [own, near].concat();
+            self.engine.columns_of(&sent).iter().for_each(|(_, column)| parcel.numbers(entries(column)));
+            parcel
+        });
+        let came = self.ranks.migrate(parcels.collect())?;
+        Ok(self.take_over(&came))
+    }
+
+    /// Takes over what came from every rank.
+    fn take_over(&mut self, came: &[Parcel]) -> Result<(), String> {
+        let template = self.engine.columns_of(&[]);
+        let mut discs: Vec<(bool, u32, Vec<f64>)> = vec![];
+        for parcel in came {
+            let mut reader = parcel.read();
+            let [own, near] = [(); 2].map(|()| reader.counts());
+            let numbers = own.iter().map(|number| (false, *number)).chain(near.iter().map(|it| (true, *it)));
+            let begin = discs.len();
+            discs.extend(numbers.map(|(is_near, number)| (is_near, number as u32, vec![])));
+            for _ in 0..template.len() {
+                discs[begin..].iter_mut().for_each(|disc| disc.2.push(reader.number()));
+            }
+        }
+        discs.sort_unstable_by_key(|&(is_near, number, _)| (is_near, number));
+        let (grains, all) = (self.engine.state.grains(), self.engine.state.len());
+        let mut walls: Vec<u32> = (grains..all).map(|disc| disc as u32).collect();
+        walls.sort_unstable_by_key(|&disc| self.engine.state.number(disc as usize));
+        let of_walls = self.engine.columns_of(&walls);
+        let walls: Vec<u32> =
+            walls.iter().map(|&disc| self.engine.state.number(disc as usize) as u32).collect();
+        let columns: Columns = (template.iter().zip(&of_walls).enumerate())
+            .map(|(at, ((name, like), (_, of_walls)))| {
+                let values = discs.iter().map(|disc| disc.2[at]).chain(entries(of_walls));
+                (name.clone(), column_like(like, values.collect()))
+            })
+            .collect();
+        let rows: HashMap<u32, usize> = {
+            let at = columns.iter().position(|(name, _)| name == CELL[1]);
+            let at = at.unwrap_or_default();
+            discs.iter().map(|disc| (disc.1, disc.2[at] as usize)).collect()
+        };
+        let of = |near: bool| discs.iter().filter(move |disc| disc.0 == near).map(|disc| disc.1).collect();
+        let (own, near): (Vec<u32>, Vec<u32>) = (of(false), of(true));
+        let made = self.engine.search.lists().map(|lists| lists.made());
+        self.hold(own, near, walls, |number| rows.get(&number).copied().unwrap_or_default());
+        let length = self.engine.state.len();
+        self.engine.take_up_discs(&columns, (0..length as u32).collect(), length)?;
+        made.into_iter().for_each(|made| self.engine.search.set_lists_made(made));
+        // It is done between a step and its forces.
+        self.engine.awaits_forces = true;
+        self.look_up();
+        Ok(())
+    }
+
+    /// Takes up the state of the whole scene.
+    pub(super) fn restore(&mut self, steps: u64, columns: &Columns) -> Result<(), String> {
+        let rows = columns.iter().find(|(name, _)| name == CELL[1]);
+        let count = self.engine.search.rows().count;
+        let rows: Vec<u32> = rows.map_or(vec![], |(_, column)| {
+            entries(column).into_iter().map(|row| (row as u32).min(count as u32 - 1)).collect()
+        });
+        if rows.len() != self.engine.start.len() {
+            return Err("the rows of the discs are missing".to_owned());
+        }
+        self.take_part(&rows);
+        self.engine.take_up(steps, columns)?;
+        self.look_up();
+        Ok(())
+    }
+}
