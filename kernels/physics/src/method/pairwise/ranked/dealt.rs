@@ -2,7 +2,7 @@
 
 use super::first::Ranked;
 use super::wire::put_failure;
-use super::worker::{Worker, all_rows};
+use super::worker::{Part, Worker, all_rows};
 use crate::method::pairwise::search::Search;
 use crate::method::pairwise::state::Members;
 use crate::method::pairwise::{Crossings, Dynamics, Elapsed, Engine, System};
@@ -25,9 +25,6 @@ pub(super) struct Scene<Q, D> {
     pub(super) set: InstructionSet,
     pub(super) search: Q,
 }
-
-/// The part of a rank, or why it has none and who is to say so.
-pub(super) type Part<S, P, Q, D> = Result<Worker<S, P, Q, D>, (Box<dyn Ranks>, Failure)>;
 
 impl<Q, D: Dynamics + Clone + 'static> Scene<Q, D> {
     pub(super) fn refuse_too_many<S: Precision, P: Precision>(&self, count: usize) -> Result<(), Failure>

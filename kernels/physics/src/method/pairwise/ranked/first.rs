@@ -1,9 +1,8 @@
 //! The first rank: the simulation that everyone else sees.
 
-use super::dealt::Part;
 use super::orders::Do;
 use super::wire::{Record, column_like, ended, put_columns, put_failure, take_band, take_failure};
-use super::worker::{What, Worker};
+use super::worker::{Part, What, Worker};
 use crate::domain::Domain;
 use crate::io::checkpoint::Column;
 use crate::method::pairwise::observing::{Standing, contact_sums, sums_of_grains};

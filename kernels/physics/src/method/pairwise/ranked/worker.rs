@@ -26,6 +26,9 @@ use stripmine_kernels::sweep::fast::{Rows, Share};
 /// Columns by their names.
 pub(super) type Columns = Vec<(String, Column)>;
 
+/// The part of a rank, or why it has none and who is to say so.
+pub(super) type Part<S, P, Q, D> = Result<Worker<S, P, Q, D>, (Box<dyn Ranks>, Failure)>;
+
 /// The part of a rank.
 pub(super) struct Worker<S, P, Q, D> {
     pub(super) ranks: Box<dyn Ranks>,
