@@ -146,12 +146,12 @@ fn looks_at_the_structure_take_the_memory_that_was_foreseen() {
     judged(&said);
 }
 
-/// Hard discs by both engines; three times as many, so three times a frame, and half as much again: the thread that writes may hold none.
+/// Hard discs by both engines; three times as many, three frames.
 #[test]
 fn hard_discs_take_the_memory_that_was_foreseen() {
     let ways = ["machine.engine=fast", "machine.engine=reference"];
     let said =
-        ways.map(|way| foreseen_and_taken("hard-disks", &["particles.count=300000", way], 4.5 * FRAME));
+        ways.map(|way| foreseen_and_taken("hard-disks", &["particles.count=300000", way], 3.0 * FRAME));
     judged(&said);
 }
 

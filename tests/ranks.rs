@@ -92,7 +92,7 @@ struct Seen {
     failure: Option<(u64, String, Vec<u32>)>,
 }
 
-/// How often it is looked at a run: also where lists have just been made, or discs dealt out anew.
+/// How often it is looked at a run: also where lists have just been made, or discs dealt out again.
 const LOOKS: u64 = 60;
 /// Every so-many-th look is at all that there is.
 const WHOLE: u64 = 15;

@@ -1,4 +1,4 @@
-//! Discs dealt out to the ranks: at the start, anew when they have gone far, and from a state.
+//! Discs dealt out to the ranks: at the start, again when they have gone far, and from a state.
 
 use super::layout::{Layout, Side};
 use super::wire::{column_like, entries};
@@ -56,7 +56,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Worker<S, P, Q, D
         self.engine.hold(Members { numbers, moving, grains }, search);
     }
 
-    /// Deals out the discs anew: each to the rank of the row that it is in now.
+    /// Deals out the discs again: each to the rank of the row that it is in now.
     pub(super) fn migrate(&mut self) -> Result<Result<(), String>, Gone> {
         let state = &self.engine.state;
         let row = |disc: usize| self.engine.search.cells().cell(disc).map_or(0, |cell| cell[1]);

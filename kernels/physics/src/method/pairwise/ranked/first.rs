@@ -22,7 +22,7 @@ use stripmine_kernels::sweep::fast::{Met, OfBand};
 pub(super) struct Ranked<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> {
     worker: Worker<S, P, Q, D>,
     threads: Vec<JoinHandle<()>>,
-    /// What all are to know before they do something: periods crossed, by rank, and whether discs are dealt out anew.
+    /// What all are to know before they do something: periods crossed, by rank, and whether discs are dealt out again.
     crossed: Vec<(usize, usize, [f64; 2])>,
     is_to_migrate: bool,
     shared_cells: usize,

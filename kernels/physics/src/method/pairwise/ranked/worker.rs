@@ -5,7 +5,7 @@
 //! ```
 //!
 //! Between two *migrations* it is always the same discs. Those that are moved here may meanwhile go some rows beyond the rank's own ones
-//! ([`Layout`]); the sweep is made for that, and when one has gone farther, all ranks deal out their discs anew. Neighbours' discs get their places and velocities
+//! ([`Layout`]); the sweep is made for that, and when one has gone farther, all ranks deal out their discs again. Neighbours' discs get their places and velocities
 //! from their own rank at every step, and then change cells as these do there.
 
 use super::layout::Layout;
