@@ -56,7 +56,7 @@ fn places<C: Scheme>(
             state: columns.iter_mut().map(|row| row.iter_mut().map(Vec::as_mut_slice).collect()).collect(),
             sums: sums.iter_mut().map(Vec::as_mut_slice).collect::<Vec<&mut [f64]>>(),
             inverse: [&[], &[]],
-            discs: n,
+            discs: 0..n,
             step,
             ids,
             corrected: step == 0,

@@ -87,7 +87,7 @@ fn by_passes(state: &State, dt: f64, gravity: [f64; 2], steps: u64) -> [[Vec<f64
             state: columns.iter_mut().map(|row| row.iter_mut().map(Vec::as_mut_slice).collect()).collect(),
             sums: sums.iter_mut().map(Vec::as_mut_slice).collect::<Vec<&mut [f64]>>(),
             inverse: [&[], &[]],
-            discs,
+            discs: 0..discs,
             step,
             ids: &[],
             corrected: step == 0,

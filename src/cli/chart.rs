@@ -1,11 +1,12 @@
 //! `stripmine chart`: studies as data and charts. Methods add studies of their own.
 
+use super::processes;
 use crate::console::{Common, Failure, clear_progress, print, print_json, progress, say, warn};
 use crate::model::machines;
 use crate::provenance::Provenance;
 use crate::results::Made;
 use crate::results::Progress;
-use crate::results::{Folder, Journal};
+use crate::results::{Folder, Journal, Team};
 use crate::study::explain::{Target, precision, precision_page};
 use crate::study::history::{self, section as history_section};
 use crate::study::stability::{self, Over, stability};
@@ -136,7 +137,8 @@ impl ChartVerb {
         match &self.what {
             Study::WorkPrecision(verb) => verb.run(common, methods),
             Study::Stability(verb) => verb.run(common, methods),
-            Study::History(verb) => verb.run(common),
+            Study::History(verb) if processes::rank(common.crew) == 0 => verb.run(common),
+            Study::History(_) => Ok(()),
         }
     }
 }
@@ -164,6 +166,10 @@ impl WorkPrecisionVerb {
 impl WorkPrecisionVerb {
     /// The error of a mean.
     fn of_mean(&self, case: &Case, common: &Common) -> Result<(), Failure> {
+        // What is tried next depends on times: it is the first process's alone.
+        if processes::rank(common.crew) > 0 {
+            return Ok(());
+        }
         let own = |error| StudyError::Own(Box::new(error));
         let target = Target::of(case, self.quantity.as_deref(), None).map_err(own)?;
         let place = Place { name: diagram_section::NAME, scene: &self.scene, out: self.out.as_deref() };
@@ -250,8 +256,12 @@ impl Place<'_> {
 
     /// The folder, before anything takes its time, and the scene's stem.
     fn folder(&self) -> Result<(Folder, String), Failure> {
-        let stem = Path::new(self.scene).file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let stem = self.stem();
         Ok((Folder::open(&self.out(&stem), &[self.name], true)?, stem))
+    }
+
+    fn stem(&self) -> String {
+        Path::new(self.scene).file_stem().unwrap_or_default().to_string_lossy().into_owned()
     }
 
     /// Makes a study of the finished runs in its folder, with progress, the scene's stem and the command that makes it.
@@ -262,9 +272,16 @@ impl Place<'_> {
         options: &str,
         make: impl FnOnce(&Journal, Progress<'_>, String, String) -> Result<Made, Failure>,
     ) -> Result<(), Failure> {
-        let (folder, stem) = self.folder()?;
+        let team = Team::of(common.crew);
+        // The first of several processes writes there, and says what it does.
+        let is_first = team.as_ref().is_none_or(Team::is_first);
+        let (folder, stem) = if is_first {
+            self.folder().map(|(folder, stem)| (Some(folder), stem))?
+        } else {
+            (None, self.stem())
+        };
         let out = self.out(&stem);
-        let journal = Journal::open(&out, &subject.identity(self.name, options))?;
+        let journal = Journal::open(&out, &subject.identity(self.name, options), team)?;
         journal.notes().iter().for_each(warn);
         if !common.quiet && !journal.is_empty() {
             let finished = counted(journal.len(), "finished run", "finished runs");
@@ -276,6 +293,6 @@ impl Place<'_> {
         let show = |share: f64| bar.set_position((1e3 * share) as u64);
         let again = format!("stripmine chart {} {}", self.name, subject.arguments());
         let made = make(&journal, &show, stem, again)?;
-        written(common, &folder, &made, start)
+        folder.map_or(Ok(()), |folder| written(common, &folder, &made, start))
     }
 }

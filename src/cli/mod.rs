@@ -180,8 +180,8 @@ fn carried_out(matches: &ArgMatches, command: &str, crew: Crew, methods: Methods
     let rank = processes::rank(crew);
     let common = Common { command: command.to_owned(), crew, quiet: common.quiet || rank > 0, ..common };
     // What no other rank has a part in is the first one's.
-    let has_part = matches.subcommand().is_some_and(|(verb, _)| ["run", "bench"].contains(&verb));
-    if rank > 0 && !has_part {
+    let verb = matches.subcommand_name().unwrap_or_default();
+    if rank > 0 && !["run", "bench", "chart", "reproduce"].contains(&verb) {
         return Ok(());
     }
     // Without an answer the default pool has a thread for each core.
@@ -200,8 +200,11 @@ fn carried_out(matches: &ArgMatches, command: &str, crew: Crew, methods: Methods
         Some((name, matches)) => verbs_of(methods).find(|verb| named(verb, name)).map(|verb| (verb, matches)),
         None => None,
     };
-    if let Some((verb, matches)) = of_method {
-        return (verb.run)(matches, &common);
+    match of_method {
+        // These are one process's.
+        Some(_) if rank > 0 => return Ok(()),
+        Some((verb, matches)) => return (verb.run)(matches, &common),
+        None => {}
     }
     match CommandLine::from_arg_matches(matches).map_err(Failure::Arguments)?.verb {
         GeneralVerb::Reproduce(verb) => verb.run(&common, methods),
@@ -213,6 +216,8 @@ fn carried_out(matches: &ArgMatches, command: &str, crew: Crew, methods: Methods
             let given = matches.subcommand().map_or(matches, |(_, below)| below);
             verb.run(given, &common, methods)
         }
+        // What goes wrong on another process, goes wrong on the first one too.
+        GeneralVerb::Chart(verb) if rank > 0 => verb.run(&common, methods).or(Ok(())),
         GeneralVerb::Chart(verb) => verb.run(&common, methods),
         GeneralVerb::Compare(verb) => verb.run(&common, methods),
         GeneralVerb::Explain(verb) => verb.run(&common, methods),

@@ -65,8 +65,14 @@ fn broken(what: String, remedy: &str) -> Failure {
     StudyError::Own(Box::new(Broken::new(PROCESSES, what, remedy))).into()
 }
 
-fn gone(gone: Gone) -> Failure {
+/// A rank has ended.
+pub(super) fn gone(gone: Gone) -> Failure {
     broken(gone.to_string(), "see what it said last")
+}
+
+/// What a rank says that went wrong.
+pub(super) fn of_rank(rank: usize, said: &str) -> Failure {
+    broken(format!("rank {rank}: {said}"), "see what it says")
 }
 
 /// Which of several processes this is.
@@ -131,7 +137,7 @@ pub(super) fn apart(
     outcome?;
     let failed = all.iter().map(|parcel| parcel.read().text()).enumerate().find(|(_, said)| !said.is_empty());
     match failed {
-        Some((rank, said)) => Err(broken(format!("rank {rank}: {said}"), "see what it says")),
+        Some((rank, said)) => Err(of_rank(rank, &said)),
         None => Ok(()),
     }
 }

@@ -1,17 +1,20 @@
 //! `stripmine reproduce`: the main job.
 
-use super::items_of;
+use super::{items_of, processes};
 use crate::console::{Common, Failure, SHARES, bar, clear_progress, print_json, say};
-use crate::provenance::Provenance;
+use crate::provenance::{Provenance, built};
 use crate::report::Chapter;
 use crate::results::{Effort, Folder, Item};
 use clap::Args;
-use serde::Serialize;
+use indicatif::ProgressBar;
+use serde::{Deserialize, Serialize};
+use std::cell::Cell;
 use std::path::PathBuf;
 use std::time::Instant;
 use stripmine_physics::method::Methods;
 use stripmine_physics::number::counted;
 use stripmine_physics::quoted;
+use stripmine_physics::ranks::{Crew, Parcel, Ranks};
 use stripmine_physics::signals;
 
 /// Every table, figure and claim of the sources, with data and a page that says what came out. Interrupted, the same command goes on
@@ -33,16 +36,38 @@ pub(super) struct Reproduce {
 }
 
 /// What was done with an item.
-#[derive(Serialize)]
+#[derive(Serialize, Deserialize)]
 struct Outcome {
-    item: &'static str,
-    verdict: &'static str,
+    item: String,
+    verdict: String,
     seconds: f64,
     folder: PathBuf,
 }
 
+/// Where items go, and how.
+struct Job<'j> {
+    effort: Effort,
+    common: &'j Common,
+    folder: &'j Folder,
+    /// The items of the page; none where another process writes it.
+    on_page: Option<Vec<&'j str>>,
+    bar: ProgressBar,
+    /// Seconds that were expected for what is made.
+    before: Cell<f64>,
+}
+
 impl Reproduce {
+    /// Makes the items; of several processes each makes some, and the first alone those that are of this host.
     pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
+        let Crew::Processes(join) = common.crew else { return self.make(None, common, methods) };
+        let ranks = join();
+        let first = || self.make(Some(ranks.as_ref()), common, methods);
+        processes::together(join, &format!("{:?}", built()), first, || {
+            self.help(ranks.as_ref(), common, methods)
+        })
+    }
+
+    fn make(&self, ranks: Option<&dyn Ranks>, common: &Common, methods: Methods) -> Result<(), Failure> {
         let effort = if self.quick { Effort::Quick } else { Effort::Full };
         let mut all: Vec<&'static Item> = items_of(methods).collect();
         all.sort_by_key(|item| item.chapter);
@@ -68,35 +93,49 @@ impl Reproduce {
                 ));
             }
         }
-        let mut outcomes = Vec::new();
-        let mut before = 0.0;
-        for item in items {
-            let share = item.seconds(effort);
-            bar.set_message(format!("{}, about {}", item.name, lasting(share)));
-            let start = Instant::now();
-            let made = item.make(effort, &|part| bar.set_position(ticks(before + part * share)))?;
-            before += share;
-            bar.set_position(ticks(before));
-            let seconds = start.elapsed().as_secs_f64();
-            // Finished items are on the disk, and on the page, before the next one starts, and before a signal ends it all.
-            let provenance = Provenance::here(common.command.clone(), seconds);
-            let path = signals::whole(|| {
-                let path = folder.write(&made, &provenance)?;
-                folder.write_page(&on_page).map(|()| path)
-            })?;
-            if !common.quiet {
-                let word = made.section.verdict.word();
-                say(format_args!("{:<20} {word:<18} {seconds:>6.1} s  {}", item.name, quoted::path(&path)));
+        let job =
+            Job { effort, common, folder: &folder, on_page: Some(on_page), bar, before: Cell::new(0.0) };
+        let outcomes = match ranks {
+            None => job.make(&items)?,
+            Some(ranks) => {
+                let (of_host, everywhere): (Vec<_>, Vec<_>) =
+                    items.into_iter().partition(|item| item.chapter == Chapter::Host);
+                let dealt = dealt_out(everywhere, ranks.count(), |item| item.seconds(effort));
+                let mut outcomes = job.make_together(ranks, &dealt)?;
+                outcomes.extend(job.make(&of_host)?);
+                outcomes
             }
-            outcomes.push(Outcome {
-                item: item.name,
-                verdict: made.section.verdict.word(),
-                seconds,
-                folder: path,
-            });
-        }
+        };
         clear_progress();
         if common.json { print_json(&outcomes) } else { Ok(()) }
+    }
+
+    /// Makes what the first process has dealt out to this one.
+    fn help(&self, ranks: &dyn Ranks, common: &Common, methods: Methods) {
+        let effort = if self.quick { Effort::Quick } else { Effort::Full };
+        let folder = Folder::of_another(&self.out);
+        while let Ok(told) = ranks.tell(None) {
+            let mut reader = told.read();
+            if reader.count() == 0 {
+                return;
+            }
+            let names: Vec<String> = (0..reader.count()).map(|_| reader.text()).collect();
+            let own = names.iter().skip(ranks.rank()).step_by(ranks.count());
+            let own: Vec<&'static Item> =
+                own.filter_map(|name| items_of(methods).find(|item| item.name == name)).collect();
+            let bar = ProgressBar::hidden();
+            let job = Job { effort, common, folder: &folder, on_page: None, bar, before: Cell::new(0.0) };
+            let mut said = Parcel::new();
+            match job.make(&own) {
+                Ok(outcomes) => [serde_json::to_string(&outcomes).unwrap_or_default(), String::new()],
+                Err(failure) => ["[]".to_owned(), failure.to_string()],
+            }
+            .iter()
+            .for_each(|text| said.text(text));
+            if ranks.gather(said).is_err() {
+                return;
+            }
+        }
     }
 
     fn asks(&self, item: &Item) -> bool {
@@ -137,6 +176,83 @@ impl Reproduce {
     }
 }
 
+impl Job<'_> {
+    /// Makes items, one after the other.
+    fn make(&self, items: &[&'static Item]) -> Result<Vec<Outcome>, Failure> {
+        items.iter().map(|item| self.make_one(item)).collect()
+    }
+
+    fn make_one(&self, item: &'static Item) -> Result<Outcome, Failure> {
+        let (share, before) = (item.seconds(self.effort), self.before.get());
+        self.bar.set_message(format!("{}, about {}", item.name, lasting(share)));
+        let (start, bar) = (Instant::now(), &self.bar);
+        let made = item.make(self.effort, &|part| bar.set_position(ticks(before + part * share)))?;
+        self.before.set(before + share);
+        let seconds = start.elapsed().as_secs_f64();
+        // Finished items are on the disk, and on the page, before the next one starts, and before a signal ends it all.
+        let provenance = Provenance::here(self.common.command.clone(), seconds);
+        let folder = signals::whole(|| {
+            let path = self.folder.write(&made, &provenance)?;
+            self.on_page.as_ref().map_or(Ok(()), |items| self.folder.write_page(items)).map(|()| path)
+        })?;
+        let verdict = made.section.verdict.word().to_owned();
+        let outcome = Outcome { item: item.name.to_owned(), verdict, seconds, folder };
+        self.say(&outcome);
+        Ok(outcome)
+    }
+
+    fn say(&self, Outcome { item, verdict, seconds, folder }: &Outcome) {
+        if !self.common.quiet {
+            say(format_args!("{item:<20} {verdict:<18} {seconds:>6.1} s  {}", quoted::path(folder)));
+        }
+    }
+
+    /// Makes items that are dealt out, those of each process beside those of the others.
+    fn make_together(
+        &self,
+        ranks: &dyn Ranks,
+        dealt: &[Vec<&'static Item>],
+    ) -> Result<Vec<Outcome>, Failure> {
+        let longest = dealt.iter().map(Vec::len).max().unwrap_or(0);
+        let mut told = Parcel::new();
+        [1, longest * dealt.len()].into_iter().for_each(|word| told.push(word));
+        // The names of a process are every so-many-th one.
+        for place in 0..longest {
+            dealt.iter().for_each(|own| told.text(own.get(place).map_or("", |item| item.name)));
+        }
+        ranks.tell(Some(told)).map_err(processes::gone)?;
+        let own = self.make(&dealt[0]);
+        let all = ranks.gather(Parcel::new()).map_err(processes::gone)?;
+        let mut outcomes = own?;
+        for (rank, parcel) in all.iter().enumerate().skip(1) {
+            let mut reader = parcel.read();
+            let [made, failed] = [(); 2].map(|()| reader.text());
+            if !failed.is_empty() {
+                return Err(processes::of_rank(rank, &failed));
+            }
+            let made: Vec<Outcome> = serde_json::from_str(&made).unwrap_or_default();
+            made.iter().for_each(|outcome| self.say(outcome));
+            outcomes.extend(made);
+        }
+        self.on_page.as_ref().map_or(Ok(()), |items| self.folder.write_page(items))?;
+        Ok(outcomes)
+    }
+}
+
+/// Things dealt out so that each of `count` gets about as much: the longest first, each to who has least.
+fn dealt_out<T>(mut all: Vec<T>, count: usize, seconds: impl Fn(&T) -> f64) -> Vec<Vec<T>> {
+    all.sort_by(|a, b| seconds(b).total_cmp(&seconds(a)));
+    let mut dealt: Vec<(f64, Vec<T>)> = (0..count).map(|_| (0.0, vec![])).collect();
+    for one in all {
+        let least = dealt.iter_mut().min_by(|a, b| a.0.total_cmp(&b.0));
+        if let Some((sum, own)) = least {
+            *sum += seconds(&one);
+            own.push(one);
+        }
+    }
+    dealt.into_iter().map(|(_, own)| own).collect()
+}
+
 /// What is left of a job that made some of its items; all of one that made none, or that came to its end.
 fn unfinished<T>(items: Vec<T>, made: &[bool]) -> Vec<T> {
     if made.iter().all(|made| *made) {
@@ -169,6 +285,12 @@ mod tests {
         for all in [true, false] {
             assert_eq!(unfinished(vec!["a", "b"], &[all; 2]), ["a", "b"]);
         }
+    }
+
+    #[test]
+    fn items_are_dealt_out_by_their_time() {
+        let dealt = dealt_out(vec![1, 5, 2, 4, 3], 2, |seconds| f64::from(*seconds));
+        assert_eq!(dealt, [vec![5, 2, 1], vec![4, 3]]);
     }
 
     #[test]

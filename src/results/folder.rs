@@ -99,7 +99,8 @@ struct Names {
 /// The folder, while this process writes into it.
 pub struct Folder {
     path: PathBuf,
-    _lock: Lock,
+    /// None where another process holds it for this one.
+    _lock: Option<Lock>,
 }
 
 impl Folder {
@@ -129,7 +130,12 @@ impl Folder {
         // Once more, now that it stays so.
         admits()?;
         remove_leftovers(path)?;
-        Ok(Folder { path: path.to_owned(), _lock: lock })
+        Ok(Folder { path: path.to_owned(), _lock: Some(lock) })
+    }
+
+    /// One that another process has opened, which lets this one write items there.
+    pub fn of_another(path: &Path) -> Folder {
+        Folder { path: path.to_owned(), _lock: None }
     }
 
     /// Writes an item's files: all of them, or, where that fails, none.

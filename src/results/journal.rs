@@ -4,18 +4,20 @@
 //! it has a checksum of the digest, its key and its value. What does not fit is left out, so that it is measured again; a last
 //! line that was cut off too, without a word.
 
+use super::team::{Runs, Team};
 use crc32fast::Hasher;
+use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
 use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError, RwLock};
 use stripmine_physics::io::replace::replace;
 use stripmine_physics::io::{FileError, regular_file};
 use stripmine_physics::quoted;
+use stripmine_physics::ranks::Gone;
 use stripmine_physics::reported::{Class, FilePlace, Reported};
 
 /// The name of the file.
@@ -52,13 +54,21 @@ pub enum JournalError {
     /// The system.
     #[error(transparent)]
     File(#[from] FileError),
+    /// Processes of one study were given other things.
+    #[error(
+        "the processes have not the same scene, options and program: give all of them the same files and the same program"
+    )]
+    Differs,
+    /// Another process of the study has ended.
+    #[error("{0}: a study goes on with the runs that were finished when it is begun again")]
+    Gone(#[from] Gone),
 }
 
 impl Reported for JournalError {
     fn class(&self) -> Class {
         match self {
-            JournalError::Other { .. } | JournalError::Foreign(_) => Class::Usage,
-            JournalError::File(_) => Class::InputOutput,
+            JournalError::Other { .. } | JournalError::Foreign(_) | JournalError::Differs => Class::Usage,
+            JournalError::File(_) | JournalError::Gone(_) => Class::InputOutput,
         }
     }
 
@@ -66,6 +76,7 @@ impl Reported for JournalError {
         match self {
             JournalError::Other { file, .. } | JournalError::Foreign(file) => Some(FilePlace::at(file)),
             JournalError::File(error) => Some(FilePlace::at(&error.file)),
+            JournalError::Differs | JournalError::Gone(_) => None,
         }
     }
 }
@@ -127,14 +138,18 @@ fn checksum(digest: &str, text: &str) -> u32 {
 }
 
 /// The runs that are finished.
-#[derive(Debug)]
 pub struct Journal {
-    known: BTreeMap<String, Value>,
+    known: RwLock<Runs>,
+    /// How many were known from the file.
+    before: usize,
     /// None where nothing is kept.
     file: Option<Mutex<File>>,
     path: PathBuf,
     digest: String,
     changed: Vec<usize>,
+    /// The processes that make the study together, and what this one has made since it told the others.
+    team: Option<Team>,
+    made: Mutex<Runs>,
 }
 
 /// Whether a folder holds a journal of this program.
@@ -148,15 +163,36 @@ pub(super) fn is_journal(folder: &Path) -> bool {
 impl Journal {
     /// One that forgets: for studies that are made in one go.
     pub fn none() -> Journal {
-        let (path, digest) = (PathBuf::new(), String::new());
-        Journal { known: BTreeMap::new(), file: None, path, digest, changed: vec![] }
+        Journal {
+            known: RwLock::default(),
+            before: 0,
+            file: None,
+            path: PathBuf::new(),
+            digest: String::new(),
+            changed: vec![],
+            team: None,
+            made: Mutex::default(),
+        }
     }
 
-    /// Opens the journal of a folder that is there, or begins one.
+    /// Opens the journal of a folder that is there, or begins one: where several processes make the study, for all of them.
     ///
     /// # Errors
     /// [`JournalError`] if it is another's, or the system does not let it be read and written.
-    pub fn open(folder: &Path, identity: &Identity) -> Result<Journal, JournalError> {
+    pub fn open(folder: &Path, identity: &Identity, team: Option<Team>) -> Result<Journal, JournalError> {
+        let Some(team) = team else { return Journal::read(folder, identity) };
+        // The first puts the file in order before others read it, and nothing is added before all have read it.
+        let first = team.is_first().then(|| Journal::read(folder, identity)).transpose()?;
+        let own = Runs::from([(identity.digest.clone(), Value::Null)]);
+        if team.exchanged(&own)? != own {
+            return Err(JournalError::Differs);
+        }
+        let journal = first.map_or_else(|| Journal::read(folder, identity), Ok)?;
+        team.exchanged(&Runs::new())?;
+        Ok(Journal { team: Some(team), ..journal })
+    }
+
+    fn read(folder: &Path, identity: &Identity) -> Result<Journal, JournalError> {
         let path = folder.join(NAME);
         let at = |action| FileError::at(&path, action);
         let text = match regular_file::read(&path, LONGEST) {
@@ -170,7 +206,7 @@ impl Journal {
         if first != heading {
             return Err(refused(path, first, identity));
         }
-        let (mut known, mut kept, mut changed) = (BTreeMap::new(), heading, vec![]);
+        let (mut known, mut kept, mut changed) = (Runs::new(), heading, vec![]);
         for (number, line) in (2..).zip(lines) {
             match Line::read(line, &identity.digest) {
                 Some(Line { key, value }) => {
@@ -186,18 +222,63 @@ impl Journal {
             replace(&path, |out| out.write_all(kept.as_bytes()))?;
         }
         let file = OpenOptions::new().append(true).open(&path).map_err(at("opening"))?;
-        let digest = identity.digest.clone();
-        Ok(Journal { known, file: Some(Mutex::new(file)), path, digest, changed })
+        Ok(Journal {
+            before: known.len(),
+            known: RwLock::new(known),
+            file: Some(Mutex::new(file)),
+            path,
+            digest: identity.digest.clone(),
+            changed,
+            ..Journal::none()
+        })
     }
 
     /// How many runs were finished before.
     pub fn len(&self) -> usize {
-        self.known.len()
+        self.before
     }
 
     /// Whether none was.
     pub fn is_empty(&self) -> bool {
-        self.known.is_empty()
+        self.before == 0
+    }
+
+    /// Whether this process writes what comes of the study, and takes times.
+    pub fn is_first(&self) -> bool {
+        self.team.as_ref().is_none_or(Team::is_first)
+    }
+
+    /// What `run` gives of each of some independent things, made side by side on all threads of all processes. What it gives must be recalled or follow from what
+    /// is: each process finds there what others have made.
+    ///
+    /// # Errors
+    /// The first failure of a run, and [`JournalError`].
+    pub fn over<T, R, E>(&self, all: &[T], run: impl Fn(&T) -> Result<R, E> + Sync) -> Result<Vec<R>, E>
+    where
+        T: Sync,
+        R: Send,
+        E: From<JournalError> + Send,
+    {
+        if let Some(team) = &self.team {
+            // What fails here fails again below.
+            team.part(all).into_par_iter().for_each(|one| _ = run(one));
+            let made = std::mem::take(&mut *self.made.lock().unwrap_or_else(PoisonError::into_inner));
+            let runs = team.exchanged(&made).map_err(JournalError::from)?;
+            self.known.write().unwrap_or_else(PoisonError::into_inner).extend(runs);
+        }
+        all.par_iter().map(&run).collect()
+    }
+
+    /// What one process finds, and the others are told.
+    ///
+    /// # Errors
+    /// As [`over`](Self::over).
+    pub fn once<R: Send, E: From<JournalError> + Send>(
+        &self,
+        run: impl Fn() -> Result<R, E> + Sync,
+    ) -> Result<R, E> {
+        let mut found = self.over(&[()], |()| run())?;
+        Ok(found.swap_remove(0))
     }
 
     /// What was found in lines that are not as they were written: a sentence for each, and for many one for the rest.
@@ -218,7 +299,7 @@ impl Journal {
 
     /// Whether a run was finished before.
     pub fn knows(&self, key: &str) -> bool {
-        self.known.contains_key(key)
+        self.found(key).is_some()
     }
 
     /// What a run gave, if it was finished before, and otherwise what it gives now, which is kept.
@@ -230,8 +311,8 @@ impl Journal {
         T: Serialize + DeserializeOwned,
         E: From<JournalError>,
     {
-        if let Some(value) = self.known.get(key)
-            && let Ok(value) = serde_json::from_value(value.clone())
+        if let Some(value) = self.found(key)
+            && let Ok(value) = serde_json::from_value(value)
         {
             return Ok(value);
         }
@@ -240,9 +321,17 @@ impl Journal {
         Ok(value)
     }
 
+    fn found(&self, key: &str) -> Option<Value> {
+        self.known.read().unwrap_or_else(PoisonError::into_inner).get(key).cloned()
+    }
+
     fn keep(&self, key: &str, value: &impl Serialize) -> Result<(), FileError> {
         let Some(file) = &self.file else { return Ok(()) };
         let line = serde_json::to_value(value).map(|value| Line { key: key.to_owned(), value });
+        if let (Some(_), Ok(Line { key, value })) = (&self.team, &line) {
+            let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
+            made.insert(key.clone(), value.clone());
+        }
         let text = line.and_then(|line| line.text(&self.digest)).map_err(std::io::Error::from);
         let mut file: MutexGuard<'_, File> = file.lock().unwrap_or_else(PoisonError::into_inner);
         text.and_then(|text| file.write_all(text.as_bytes())).map_err(FileError::at(&self.path, "writing"))
@@ -276,28 +365,28 @@ mod tests {
     fn finished_runs_are_not_made_again_and_a_cut_line_is_dropped() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join(NAME);
-        let first = Journal::open(folder.path(), &identity("12345678")).unwrap();
+        let first = Journal::open(folder.path(), &identity("12345678"), None).unwrap();
         assert_eq!((run(&first, "a", 1), run(&first, "b", 2)), (1, 2));
         drop(first);
         let text = fs::read_to_string(&path).unwrap();
         fs::write(&path, text.trim_end().strip_suffix('}').unwrap()).unwrap();
-        let second = Journal::open(folder.path(), &identity("12345678")).unwrap();
+        let second = Journal::open(folder.path(), &identity("12345678"), None).unwrap();
         assert_eq!((run(&second, "a", 10), run(&second, "b", 20), second.len()), (1, 20, 1));
         drop(second);
         assert!(is_journal(folder.path()));
-        let third = Journal::open(folder.path(), &identity("12345678")).unwrap();
+        let third = Journal::open(folder.path(), &identity("12345678"), None).unwrap();
         assert_eq!((run(&third, "b", 3), third.len()), (20, 2));
     }
 
     #[test]
     fn runs_of_another_scene_and_files_of_others_are_refused() {
         let folder = tempfile::tempdir().unwrap();
-        Journal::open(folder.path(), &identity("12345678")).unwrap();
-        let other = Journal::open(folder.path(), &identity("87654321")).unwrap_err();
+        Journal::open(folder.path(), &identity("12345678"), None).unwrap();
+        let other = Journal::open(folder.path(), &identity("87654321"), None).err().unwrap();
         assert!(matches!(other, JournalError::Other { .. }) && other.class() == Class::Usage, "{other}");
         for mine in ["mine\n", "{\"stripmine journal\":1}\n"] {
             fs::write(folder.path().join(NAME), mine).unwrap();
-            let foreign = Journal::open(folder.path(), &identity("12345678")).unwrap_err();
+            let foreign = Journal::open(folder.path(), &identity("12345678"), None).err().unwrap();
             assert!(matches!(foreign, JournalError::Foreign(_)), "{foreign}");
             assert!(!is_journal(folder.path()));
             assert_eq!(fs::read_to_string(folder.path().join(NAME)).unwrap(), mine);
@@ -309,7 +398,7 @@ mod tests {
     fn lines_that_were_changed_are_measured_again() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join(NAME);
-        let first = Journal::open(folder.path(), &identity("12345678")).unwrap();
+        let first = Journal::open(folder.path(), &identity("12345678"), None).unwrap();
         assert_eq!([run(&first, "a", 1), run(&first, "b", 2)], [1, 2]);
         drop(first);
         let text = fs::read_to_string(&path).unwrap();
@@ -318,21 +407,21 @@ mod tests {
             let at = text.find("\"key\"").unwrap();
             assert!(text[at..].contains(old), "{text}");
             fs::write(&path, format!("{}{}", &text[..at], text[at..].replacen(old, new, 1))).unwrap();
-            let second = Journal::open(folder.path(), &identity("12345678")).unwrap();
+            let second = Journal::open(folder.path(), &identity("12345678"), None).unwrap();
             let notes = second.notes();
             assert!(notes.len() == 1 && notes[0].contains("journal.jsonl:2: "), "{notes:?}");
             assert!(notes[0].contains("measured again"), "{notes:?}");
             assert_eq!((run(&second, "a", 5), run(&second, "b", 6), second.len()), (5, 2, 1));
             drop(second);
-            let third = Journal::open(folder.path(), &identity("12345678")).unwrap();
+            let third = Journal::open(folder.path(), &identity("12345678"), None).unwrap();
             assert_eq!((run(&third, "a", 8), third.notes().len()), (5, 0));
         }
         let other = tempfile::tempdir().unwrap();
-        drop(Journal::open(other.path(), &identity("87654321")).unwrap());
+        drop(Journal::open(other.path(), &identity("87654321"), None).unwrap());
         let heading = fs::read_to_string(other.path().join(NAME)).unwrap();
         let line = text.lines().nth(1).unwrap();
         fs::write(other.path().join(NAME), format!("{heading}{line}\n")).unwrap();
-        assert_eq!(run(&Journal::open(other.path(), &identity("87654321")).unwrap(), "a", 5), 5);
+        assert_eq!(run(&Journal::open(other.path(), &identity("87654321"), None).unwrap(), "a", 5), 5);
     }
 
     #[cfg(unix)]
@@ -342,7 +431,7 @@ mod tests {
         let pipe = folder.path().join(NAME);
         assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
         assert!(!is_journal(folder.path()));
-        let refused = Journal::open(folder.path(), &identity("12345678")).unwrap_err();
+        let refused = Journal::open(folder.path(), &identity("12345678"), None).err().unwrap();
         assert!(refused.to_string().contains("it is a pipe"), "{refused}");
     }
 }

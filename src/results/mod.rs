@@ -5,12 +5,14 @@ mod item;
 mod journal;
 mod meter;
 mod own_files;
+mod team;
 
 pub use folder::{Folder, FolderError};
 pub use item::{Item, Progress};
 pub use journal::{Identity, Journal, JournalError};
 pub use meter::Meter;
 pub(crate) use own_files::OwnFiles;
+pub use team::Team;
 
 use crate::console::Failure;
 use crate::report::{Section, Table};

@@ -11,7 +11,6 @@ use super::state::{State, displaced};
 use super::subject::Subject;
 use super::trial::{Course, follow};
 use crate::results::{Journal, JournalError, Meter};
-use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::{Deserialize, Serialize};
 use stripmine_physics::method::{Decides, Purpose};
 
@@ -94,7 +93,7 @@ pub fn collision(
         Choice::all(subject.entry.axes).into_iter().filter(|choice| varies(choice, &first)).collect();
     let cases: Vec<(&Choice, f64)> =
         schemes.iter().flat_map(|choice| steps.iter().map(move |step| (choice, *step))).collect();
-    let found = cases.par_iter().map(|(choice, step)| {
+    let found: Vec<Option<OutcomeError>> = journal.over(&cases, |(choice, step)| {
         let error = |outcomes: Vec<[f64; 2]>| {
             let off: Vec<[f64; 2]> =
                 outcomes.iter().map(|outcome| [0, 1].map(|i| outcome[i] - reference[i])).collect();
@@ -106,9 +105,8 @@ pub fn collision(
                 mean: mean(&off).map(f64::abs),
             }
         };
-        Ok(over_phases(choice, *step)?.map(error))
-    });
-    let found: Vec<Option<OutcomeError>> = found.collect::<Result<_, JournalError>>()?;
+        Ok::<_, JournalError>(over_phases(choice, *step)?.map(error))
+    })?;
     let errors: Vec<OutcomeError> = found.into_iter().flatten().collect();
     let order = |choice: &Choice, i: usize| {
         let of = |error: fn(&OutcomeError) -> [f64; 2]| {

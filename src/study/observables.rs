@@ -6,7 +6,6 @@ use super::subject::Subject;
 use super::trial::{Course, follow};
 use crate::results::{Journal, JournalError, Meter};
 use crate::statistics::{Mean, Spread};
-use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::{Deserialize, Serialize};
 use stripmine_physics::method::{Purpose, Simulation};
 use stripmine_physics::scene::{Overrides, SEED};
@@ -72,13 +71,12 @@ pub fn observables(
     cases.extend(choices.iter().flat_map(|choice| STEPS.map(|step| (choice.clone(), step))));
     let runs: Vec<(&(Choice, f64), u64)> =
         cases.iter().flat_map(|case| SEEDS.map(|seed| (case, seed))).collect();
-    let means = runs.par_iter().map(|&((choice, factor), seed)| {
+    let means: Vec<Result<Means, String>> = journal.over(&runs, |&((choice, factor), seed)| {
         let key = format!("means|{}|{factor}|{seed}", choice.label());
         journal.recall(&key, || {
             Ok::<_, JournalError>(means(subject, choice, *factor, seed, (steps, each), meter))
         })
-    });
-    let means: Vec<Result<Means, String>> = means.collect::<Result<_, JournalError>>()?;
+    })?;
     let mut by_case = cases.iter().zip(means.chunks(SEEDS.len()));
     let mut found = Observables { duration: steps as f64 * subject.step, ..Observables::default() };
     let Some((_, reference)) = by_case.next() else { return Ok(found) };

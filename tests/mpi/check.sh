@@ -84,6 +84,19 @@ for seed in 1 2 3 4 5; do
 done
 echo "seeds: the same runs on 1 and 3 ranks"
 
+# Studies and items are made together, and are what one process makes.
+study=(collision --over stiffness --size 4 --seeds 1 --budget 4 --quiet --threads 1)
+"$stripmine" chart stability "${study[@]}" --out map-one >/dev/null
+mpiexec -n 3 "$stripmine" chart stability "${study[@]}" --out map-three >/dev/null || bad "a map"
+cmp map-one/host/stability/data.json map-three/host/stability/data.json || bad "the map of three processes"
+items=(--only table --only mask --only misprints --quick --quiet --threads 1)
+"$stripmine" reproduce "${items[@]}" --out items-one >/dev/null
+mpiexec -n 3 "$stripmine" reproduce "${items[@]}" --out items-three >/dev/null || bad "items"
+for item in table mask misprints; do
+    diff -r -x provenance.json "items-one/$item" "items-three/$item" || bad "item $item of three processes"
+done
+echo "a map and three items: the same on 1 and 3 processes"
+
 refused() {
     local word=$1 said
     shift

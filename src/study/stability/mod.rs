@@ -21,7 +21,7 @@ use super::choice::Choice;
 use super::{StudyError, Subject};
 use crate::results::{Journal, JournalError, Meter, Progress};
 use crate::statistics::median;
-use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use stripmine_physics::method::{Decides, Parameter, probed};
 use stripmine_physics::number::significant;
 use survey::{Case, Known, Survey};
@@ -111,7 +111,8 @@ pub fn stability(
     let steps = ladder(STEPS.map(|factor| factor * subject.step), effort.size, true);
     let meter = Meter::new(effort.budget, progress);
     let schemes = schemes(subject);
-    let each: f64 = journal.recall("probe", || Ok::<_, JournalError>(rate(subject, parameter, &values)))?;
+    let each: f64 = journal
+        .once(|| journal.recall("probe", || Ok::<_, JournalError>(rate(subject, parameter, &values))))?;
     let units = units(subject, &steps, effort, schemes.len());
     let least = LEAST.min(subject.steps as f64);
     let own_steps = (effort.budget / (each * units)).max(least).min(subject.steps as f64);
@@ -131,7 +132,7 @@ pub fn stability(
         let boundary = survey.boundary(own(value), &known, guesses, &seeds, effort.tolerance)?;
         Ok((cells, boundary, known.err()))
     };
-    let columns: Vec<_> = values.par_iter().map(column).collect::<Result<_, JournalError>>()?;
+    let columns: Vec<_> = journal.over(&values, column)?;
     let (mut map, mut boundaries, mut unjudged) = (vec![], vec![], vec![]);
     for (&value, (cells, boundary, why)) in values.iter().zip(columns) {
         map.push(cells);
@@ -141,9 +142,9 @@ pub fn stability(
     if map.iter().flatten().all(|cell| cell.class != Class::Works) {
         return Err(StudyError::EveryRunFails { tried: tried(&values, &steps, &map, parameter) });
     }
-    let known: Known = survey.known(None)?;
-    let scheme = |i: usize| survey.scheme(&schemes[i], &known, &seeds, effort.tolerance);
-    let schemes = (0..schemes.len()).into_par_iter().map(scheme).collect::<Result<_, JournalError>>()?;
+    let known: Known = journal.once(|| survey.known(None))?;
+    let scheme = |scheme: &Choice| survey.scheme(scheme, &known, &seeds, effort.tolerance);
+    let schemes = journal.over(&schemes, scheme)?;
     Ok(Stability {
         scene: subject.arguments(),
         way: subject.own.label(),

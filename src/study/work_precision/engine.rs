@@ -13,7 +13,6 @@ use crate::study::orders::fit;
 use crate::study::state::State;
 use crate::study::trial::{Course, follow, timed};
 use crate::study::{StudyError, Subject};
-use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
 use stripmine_physics::method::{Decides, Prepared, Purpose, Simulation, probed};
@@ -175,7 +174,7 @@ impl Work<'_> {
         let [first, second] = self.subject.trials.references.map(|settings| self.subject.own.with(settings));
         let power = -(self.plan.finest + BELOW);
         let cases = [(&first, power), (&first, power + 1), (&second, power)];
-        let ends = cases.par_iter().map(|&(choice, power)| {
+        let ends: Vec<Ended> = self.journal.over(&cases, |&(choice, power)| {
             let key = format!("reference|{}|{power}", choice.label());
             self.journal.recall(&key, || {
                 self.ended(choice, power, each).map_err(|why| {
@@ -187,8 +186,7 @@ impl Work<'_> {
                     StudyError::EveryRunFails { tried: vec![(what, why)] }
                 })
             })
-        });
-        let ends: Vec<Ended> = ends.collect::<Result<_, StudyError>>()?;
+        })?;
         let [best, whole, other] = ends.as_slice() else { unreachable!("there are three cases") };
         let [halving, second_off] = [whole, other].map(|end| self.errors(end, &best.state));
         let mut floor = self.errors(best, &best.state);
@@ -212,7 +210,7 @@ impl Work<'_> {
     /// [`JournalError`] if one cannot be kept.
     pub fn runs(&self, reference: &Reference, state: &State) -> Result<Vec<Run>, JournalError> {
         let floor = ABOVE_FLOOR * reference.floor.get(&Measure::Position).copied().unwrap_or(0.0);
-        let runs = self.plan.choices.par_iter().map(|&way| {
+        let runs: Vec<Vec<Run>> = self.journal.over(&self.plan.choices, |&way| {
             let mut runs: Vec<Run> = vec![];
             for power in (-self.plan.finest..=0).rev() {
                 let run = self.run(way, power, state)?;
@@ -232,9 +230,8 @@ impl Work<'_> {
                 runs.push(self.run(way, power, state)?);
             }
             runs.sort_by(|a, b| a.step.total_cmp(&b.step));
-            Ok(runs)
-        });
-        let runs: Vec<Vec<Run>> = runs.collect::<Result<_, JournalError>>()?;
+            Ok::<_, JournalError>(runs)
+        })?;
         Ok(runs.into_iter().flatten().collect())
     }
 
@@ -257,13 +254,14 @@ impl Work<'_> {
         })
     }
 
-    /// Times the runs that came to their end, in alternating repeats: as many as are asked for, and more while there is time,
+    /// Times the runs that came to their end, on the first of several processes, in alternating repeats: as many as are asked for, and more while there is time,
     /// for short runs are easily disturbed.
     ///
     /// # Errors
     /// [`JournalError`] if a time cannot be kept.
     pub fn time(&self, runs: &mut [Run], start: Instant) -> Result<(), JournalError> {
-        for repeat in 0..MORE * self.effort.repeats {
+        let repeats = if self.journal.is_first() { MORE * self.effort.repeats } else { 0 };
+        for repeat in 0..repeats {
             let begun = Instant::now();
             for run in runs.iter_mut().filter(|run| run.outcome.is_ok()) {
                 let choice = &self.choices[run.way];

@@ -68,7 +68,7 @@ pub fn work_precision(
     let start = Instant::now();
     let meter = Meter::new(effort.budget, progress);
     let choices = Choice::all(subject.entry.axes);
-    let probes = probes(subject, &choices, journal)?;
+    let probes = journal.once(|| probes(subject, &choices, journal))?;
     let rates: Vec<Option<f64>> = probes.iter().map(|probe| probe.as_ref().ok().copied()).collect();
     let own_place = choices.iter().position(|choice| *choice == subject.own).unwrap_or(0);
     let all_rates = || rates.iter().flatten().copied();
@@ -80,10 +80,11 @@ pub fn work_precision(
     let own_rate = rates[own_place].unwrap_or_else(|| median(all_rates()));
     let most = (GROWTH_SHARE * effort.budget / (4.0 * own_rate)) as u64;
     let most = subject.steps.min(most.max(1 << COARSEST));
-    let growth = longest_growth(subject, most, own_rate, journal, &meter)?;
+    let growth = journal.once(|| longest_growth(subject, most, own_rate, journal, &meter))?;
     let comparable = (growth.window / subject.step).round() as u64;
+    let seconds = effort.budget;
     let plan: Plan = journal.recall("plan", || {
-        Ok::<_, JournalError>(plan(&choices, &rates, &subject.own, comparable, effort.budget, effort.repeats))
+        Ok::<_, JournalError>(plan(&choices, &rates, &subject.own, comparable, seconds, effort.repeats))
     })?;
     let work =
         Work { subject, effort, journal, meter: &meter, choices: &choices, rates: &rates, plan: &plan };
@@ -100,8 +101,10 @@ pub fn work_precision(
         return Err(StudyError::EveryRunFails { tried: tried.take(TRIED).collect() });
     }
     let counted = (&own_in_full_digits(subject), growth.step);
-    let encounters: Encounters = journal.recall("encounters", || {
-        Ok::<_, JournalError>(encounters(subject, counted, work.duration(), own_rate, &meter))
+    let encounters: Encounters = journal.once(|| {
+        journal.recall("encounters", || {
+            Ok::<_, JournalError>(encounters(subject, counted, work.duration(), own_rate, &meter))
+        })
     })?;
     let observables = work.observables(own_rate)?;
     let collision = work.collision()?;

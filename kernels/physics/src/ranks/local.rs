@@ -58,11 +58,12 @@ impl Ranks for Local {
         self.to.len()
     }
 
-    fn halo(&self, [down, up]: [Parcel; 2]) -> Result<[Parcel; 2], Gone> {
+    fn halo(&self, [down, up]: [Parcel; 2], meanwhile: &mut dyn FnMut()) -> Result<[Parcel; 2], Gone> {
         let count = self.count();
         let [below, above] = [(self.rank + count - 1) % count, (self.rank + 1) % count];
         self.send(below, down)?;
         self.send(above, up)?;
+        meanwhile();
         // Of two ranks both messages come from the same one, in the order in which it sent them: down first.
         let from_above = self.receive(above)?;
         let from_below = self.receive(below)?;
@@ -102,7 +103,7 @@ mod tests {
                 for ranks in ranks(count, 1) {
                     scope.spawn(move || {
                         let own = ranks.rank();
-                        let halo = ranks.halo([parcel(&[own, 0]), parcel(&[own, 1])]).unwrap();
+                        let halo = ranks.halo([parcel(&[own, 0]), parcel(&[own, 1])], &mut || {}).unwrap();
                         let [below, above] = [(own + count - 1) % count, (own + 1) % count];
                         assert_eq!(halo, [parcel(&[below, 1]), parcel(&[above, 0])]);
                         let to = (0..count).map(|to| parcel(&[own, to])).collect();

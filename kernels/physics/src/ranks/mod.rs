@@ -35,12 +35,12 @@ pub trait Ranks: Send {
     /// How many there are.
     fn count(&self) -> usize;
 
-    /// Sends something to the rank below and to that above, and gives what came from below and from above. The first rank is above the last one; of two
-    /// ranks each is below and above the other.
+    /// Sends something to the rank below and to that above, does something else while these messages are under way, and gives what came from below and from above.
+    /// The first rank is above the last one; of two ranks each is below and above the other.
     ///
     /// # Errors
     /// [`Gone`]
-    fn halo(&self, to: [Parcel; 2]) -> Result<[Parcel; 2], Gone>;
+    fn halo(&self, to: [Parcel; 2], meanwhile: &mut dyn FnMut()) -> Result<[Parcel; 2], Gone>;
 
     /// Sends something to each rank, and gives what came from each.
     ///

@@ -9,6 +9,8 @@ use mpi::point_to_point::MatchedReceiveVec;
 use mpi::request::{WaitGuard, scope};
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, Destination, Source};
+use std::thread;
+use std::time::Duration;
 
 /// What is sent, by kind and direction.
 const DOWN: i32 = 1;
@@ -16,8 +18,10 @@ const UP: i32 = 2;
 const MIGRATING: i32 = 3;
 const GATHERED: i32 = 4;
 const TOLD: i32 = 5;
-/// How often it is looked for a message before other processes may have the core.
+/// How often it is looked for a message before other processes may have the core, and before this one sleeps for a moment.
 const LOOKS: u32 = 2000;
+const LOOKS_AWAKE: u32 = 200_000;
+const MOMENT: Duration = Duration::from_millis(1);
 
 /// What MPI needs to be there; nothing is sent once it is dropped.
 pub struct Session(Universe);
@@ -49,16 +53,18 @@ impl World {
     }
 
     fn receive(from: usize, tag: i32) -> Parcel {
-        let (all, mut looks) = (World::all(), 0);
+        let (all, mut looks) = (World::all(), 0_u32);
         let from = all.process_at_rank(from as i32);
         loop {
             if let Some(there) = from.immediate_matched_probe_with_tag(tag) {
                 return Parcel(there.matched_receive_vec().0);
             }
-            looks += 1;
+            looks = looks.saturating_add(1);
             // Where there are more ranks than cores, others need this one; MPI's own waiting keeps it.
-            if looks > LOOKS {
-                std::thread::yield_now();
+            match looks {
+                ..=LOOKS => {}
+                ..=LOOKS_AWAKE => thread::yield_now(),
+                _ => thread::sleep(MOMENT),
             }
         }
     }
@@ -73,13 +79,14 @@ impl Ranks for World {
         World::all().size() as usize
     }
 
-    fn halo(&self, [down, up]: [Parcel; 2]) -> Result<[Parcel; 2], Gone> {
+    fn halo(&self, [down, up]: [Parcel; 2], meanwhile: &mut dyn FnMut()) -> Result<[Parcel; 2], Gone> {
         let (all, rank, count) = (World::all(), self.rank(), self.count());
         let [below, above] = [(rank + count - 1) % count, (rank + 1) % count];
         let [to_below, to_above] = [below, above].map(|rank| all.process_at_rank(rank as i32));
         Ok(scope(|scope| {
             let _down = WaitGuard::from(to_below.immediate_send_with_tag(scope, &down.0[..], DOWN));
             let _up = WaitGuard::from(to_above.immediate_send_with_tag(scope, &up.0[..], UP));
+            meanwhile();
             [World::receive(below, UP), World::receive(above, DOWN)]
         }))
     }

@@ -72,6 +72,17 @@ pub struct Passed {
     pub far: Vec<u32>,
 }
 
+impl Passed {
+    /// These, and those of a pass over discs behind.
+    #[must_use]
+    #[inline]
+    pub fn and(mut self, behind: Passed) -> Passed {
+        self.left.extend(behind.left);
+        self.far.extend(behind.far);
+        self
+    }
+}
+
 /// Copies of the places for a search in single precision: written beside the state, while it is at hand.
 ///
 /// Only the lattice makes them, and every cell is one of `places`, of one disc or of none.
@@ -128,7 +139,7 @@ impl<C: Scheme> Motion<C> {
 
 /// Corrects the state with the forces found and predicts it one step ahead.
 ///
-/// Places are those inside the cells. The sums are set to zero behind the pass.
+/// What of the discs is moved first changes no bit. Places are those inside the cells. The sums are set to zero behind the pass.
 pub struct Advance<'a, S, P, C> {
     /// How discs move.
     pub motion: &'a Motion<C>,
@@ -138,8 +149,8 @@ pub struct Advance<'a, S, P, C> {
     pub sums: Vec<&'a mut [P]>,
     /// Inverse masses and moments of inertia, where discs vary.
     pub inverse: [&'a [S]; 2],
-    /// Discs that move: the first ones.
-    pub discs: usize,
+    /// The discs that are moved.
+    pub discs: Range<usize>,
     /// Number of the step that is corrected; the next one is predicted.
     pub step: u64,
     /// The discs' ids, for a scheme that draws random numbers; an entry a disc that moves, or more.
@@ -165,22 +176,23 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
         set: InstructionSet,
     ) -> Result<Passed, ProgramError> {
         let Advance { motion, discs, corrected, longest_step, inverse, step, ids, .. } = self;
-        assert!(C::DRAWS == Draws::Never || ids.len() >= discs, "an id for every disc that moves");
+        let end = discs.end;
+        assert!(C::DRAWS == Draws::Never || ids.len() >= end, "an id for every disc that moves");
         let freedoms = self.state.len();
         assert!((2..=3).contains(&freedoms) && self.sums.len() == freedoms, "2 or 3 degrees of freedom");
         let vary = motion.inertia == Inertia::Varying;
-        assert!(!vary || inverse[..freedoms - 1].iter().all(|column| column.len() >= discs));
+        assert!(!vary || inverse[..freedoms - 1].iter().all(|column| column.len() >= end));
         if let DisplacementLimit::From { places, .. } = limit {
-            assert!(places.iter().all(|place| place.len() >= discs), "a place for every disc that moves");
+            assert!(places.iter().all(|place| place.len() >= end), "a place for every disc that moves");
         }
         let mut columns = [[std::ptr::null_mut(); DERIVATIVES]; 3];
         for (to, from) in columns.iter_mut().zip(&mut self.state) {
-            assert!(from.len() == C::CARRIED && from.iter().all(|column| column.len() >= discs));
+            assert!(from.len() == C::CARRIED && from.iter().all(|column| column.len() >= end));
             to.iter_mut().zip(from).for_each(|(to, from)| *to = from.as_mut_ptr());
         }
         let mut sums = [std::ptr::null_mut(); 3];
         for (to, from) in sums.iter_mut().zip(&mut self.sums) {
-            assert!(from.len() >= discs);
+            assert!(from.len() >= end);
             *to = from.as_mut_ptr();
         }
         let copies_places = copies.is_some();
@@ -189,7 +201,7 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
             let [x, y] = &mut none;
             Copies { cells: &[], places: [x, y], unit: 1.0 }
         });
-        assert!(!copies_places || cells.len() >= discs, "a cell for every disc that moves");
+        assert!(!copies_places || cells.len() >= end, "a cell for every disc that moves");
         let arrays = Arrays {
             columns,
             sums,
@@ -220,10 +232,8 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
             Ok(passed)
         };
         let mut all = Passed::default();
-        for passed in on_threads(pieces(0..discs, BAND), pass) {
-            let Passed { left, far } = passed?;
-            all.left.extend(left);
-            all.far.extend(far);
+        for passed in on_threads(pieces(discs, BAND), pass) {
+            all = all.and(passed?);
         }
         Ok(all)
     }

@@ -12,6 +12,7 @@ use crate::particles::Particles;
 use std::collections::BTreeSet;
 use std::ops::Range;
 use std::sync::Arc;
+use std::time::Instant;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::Scheme;
@@ -159,7 +160,9 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     }
 
     pub(super) fn moved_on(&mut self) -> Result<Vec<u32>, Failure> {
-        let passed = self.passed()?;
+        self.put_in_order_if_due();
+        let passed = self.pass(0..self.state.moving())?;
+        self.has_passed();
         let mut timings = self.elapsed.timings;
         let kept = timings.time(Phase::Index, || keep_awake(|| self.keep_cells(&passed.left)));
         self.elapsed.timings = timings;
@@ -167,23 +170,29 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         Ok(passed.far)
     }
 
-    /// Moves the discs one step on; their cells are yet to be brought up to date.
-    pub(super) fn passed(&mut self) -> Result<Passed, ProgramError> {
-        let mut timings = self.elapsed.timings;
+    /// Puts the discs in order, where many have changed cells since that was done last.
+    pub(super) fn put_in_order_if_due(&mut self) {
         if self.system.sort == Sort::EveryStep || self.changes > self.state.grains() / 4 {
+            let mut timings = self.elapsed.timings;
             timings.time(Phase::Index, || _ = self.put_in_order());
+            self.elapsed.timings = timings;
         }
-        let passed = timings.time(Phase::CorrectPredict, || self.pass())?;
-        self.elapsed.steps += 1;
-        self.awaits_forces = true;
-        self.elapsed.timings = timings;
-        Ok(passed)
     }
 
-    fn pass(&mut self) -> Result<Passed, ProgramError> {
+    /// Moves some discs one step on; their cells are yet to be brought up to date.
+    pub(super) fn pass(&mut self, discs: Range<usize>) -> Result<Passed, ProgramError> {
+        let begun = Instant::now();
         let Engine { dynamics, system, state, sums, search, set, elapsed, .. } = self;
-        let Elapsed { steps, .. } = *elapsed;
-        dynamics.with_scheme(Passing { system, state, sums, search, steps, set: *set })
+        let steps = elapsed.steps;
+        let passed = dynamics.with_scheme(Passing { discs, system, state, sums, search, steps, set: *set });
+        elapsed.timings.add(Phase::CorrectPredict, begun.elapsed().as_secs_f64());
+        passed
+    }
+
+    /// All discs have been moved one step on.
+    pub(super) fn has_passed(&mut self) {
+        self.elapsed.steps += 1;
+        self.awaits_forces = true;
     }
 
     pub(super) fn add_forces(&mut self, asked: Asked) -> Result<Met, ProgramError> {
@@ -279,8 +288,9 @@ fn motion<C: Scheme>(system: &System, scheme: C) -> Motion<C> {
     Motion { scheme, dt, inertia, gravity, seed }
 }
 
-/// A pass over the discs.
+/// A pass over some discs.
 struct Passing<'a, S, P, Q> {
+    discs: Range<usize>,
     system: &'a System,
     state: &'a mut State<S>,
     sums: &'a mut [Vec<P>; 3],
@@ -293,8 +303,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> WithScheme for Passing<'_, S, 
     type Output = Result<Passed, ProgramError>;
 
     fn with<C: Scheme>(self, scheme: C) -> Self::Output {
-        let Passing { system, state, sums, search, steps, set } = self;
-        let discs = state.moving();
+        let Passing { discs, system, state, sums, search, steps, set } = self;
         let (columns, inverse, ids) = state.for_advance();
         let (limit, copies) = search.displacement_limit();
         let advance = Advance {

@@ -2,6 +2,7 @@
 
 use super::{Carried, System};
 use crate::particles::{Kind, Particle, Particles};
+use std::ops::Range;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::{DERIVATIVES, Inertia};
 use stripmine_kernels::sweep::fast::{self, SENTINELS};
@@ -57,6 +58,9 @@ pub struct State<S> {
 
 /// What a pass moves: columns, inverse masses and moments of inertia, and ids.
 type Moved<'a, S> = (&'a mut [Vec<Vec<S>>], [&'a [S]; 2], &'a [u32]);
+
+/// Which derivatives of each degree of freedom a sweep reads.
+const SWEPT: [Range<usize>; 3] = [0..2, 0..2, 1..2];
 
 impl<S: Precision> State<S> {
     /// Of those of `particles` that are members, in the form in which the scheme carries them from step to step.
@@ -155,20 +159,15 @@ impl<S: Precision> State<S> {
         [&self.columns[0][0], &self.columns[1][0]]
     }
 
-    /// Place and velocity of a disc, as the columns have them, and its spin where discs turn: all that a sweep reads of it and that changes.
-    pub fn swept(&self, disc: usize) -> impl Iterator<Item = f64> + use<'_, S> {
-        let planar = (0..2).flat_map(move |axis| [0, 1].map(|k| self.columns[axis][k][disc].to_f64()));
-        planar.chain(self.columns.get(2).map(|angle| angle[1][disc].to_f64()))
+    /// Places and velocities of the discs, as the columns have them, and their spins where discs turn: all that a sweep reads of them and that changes.
+    pub fn swept(&self) -> impl Iterator<Item = &[S]> {
+        self.columns.iter().zip(SWEPT).flat_map(|(columns, swept)| &columns[swept]).map(Vec::as_slice)
     }
 
-    /// Puts there what [`swept`](Self::swept) gave elsewhere.
-    pub fn put_swept(&mut self, disc: usize, mut values: impl FnMut() -> f64) {
-        for axis in 0..2 {
-            (0..2).for_each(|k| self.columns[axis][k][disc] = S::from_f64(values()));
-        }
-        if let Some(angle) = self.columns.get_mut(2) {
-            angle[1][disc] = S::from_f64(values());
-        }
+    /// The same, to be changed.
+    pub fn swept_mut(&mut self) -> impl Iterator<Item = &mut [S]> {
+        let columns = self.columns.iter_mut().zip(SWEPT);
+        columns.flat_map(|(columns, swept)| &mut columns[swept]).map(Vec::as_mut_slice)
     }
 
     /// Puts a disc at a place.

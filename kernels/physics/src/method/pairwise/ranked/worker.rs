@@ -18,10 +18,12 @@ use crate::method::pairwise::search::{Cells, Search};
 use crate::method::pairwise::{Dynamics, Engine, Named, Phase, Stepping};
 use crate::ranks::{Gone, Parcel, Ranks, Reader};
 use std::collections::HashMap;
+use std::ops::Range;
 use std::time::Instant;
 use stripmine_kernels::backend::Precision;
+use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::Asked;
-use stripmine_kernels::sweep::fast::{Rows, Share};
+use stripmine_kernels::sweep::fast::{Passed, Rows, Share};
 
 /// Columns by their names.
 pub(super) type Columns = Vec<(String, Column)>;
@@ -40,6 +42,8 @@ pub(super) struct Worker<S, P, Q, D> {
     /// The same by their places in memory, of when the discs were put in order that often.
     to_in_memory: [Vec<u32>; 2],
     from_in_memory: [Vec<u32>; 2],
+    /// The discs that lie in memory between those to be told of: most of those that move.
+    inner: Range<usize>,
     ordered: u64,
     /// In which rows discs were at the last migration that have changed cells since.
     pub(super) homes: HashMap<u32, usize>,
@@ -66,6 +70,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Worker<S, P, Q, D
             from: none(),
             to_in_memory: none(),
             from_in_memory: none(),
+            inner: 0..0,
             ordered: 0,
             homes: HashMap::new(),
         };
@@ -93,24 +98,23 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Worker<S, P, Q, D
         let places = |numbers: &Vec<u32>| numbers.iter().map(|number| in_memory[number]).collect();
         self.to_in_memory = self.to.each_ref().map(places);
         self.from_in_memory = self.from.each_ref().map(places);
+        self.inner = inner_of(&self.to_in_memory, self.engine.state.moving());
         self.ordered = self.engine.orders;
     }
 
     /// One step on; what the first rank is to know of it.
     pub(super) fn advance(&mut self) -> Result<Parcel, Gone> {
-        let passed = self.engine.passed();
+        self.engine.put_in_order_if_due();
         self.look_up_again();
-        let begun = Instant::now();
-        self.tell_neighbours()?;
-        self.engine.elapsed.timings.add(Phase::Halo, begun.elapsed().as_secs_f64());
+        let passed = self.pass()?;
         let (kept, far) = match passed {
             Ok(passed) => {
+                self.engine.has_passed();
                 let mut timings = self.engine.elapsed.timings;
                 let kept = timings.time(Phase::Index, || self.keep(&passed.left))?;
                 self.engine.elapsed.timings = timings;
                 (kept, passed.far)
             }
-            // Every rank has these instructions, or none has.
             Err(error) => (Err(error.into()), vec![]),
         };
         // Lists were made again, perhaps.
@@ -209,27 +213,46 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Worker<S, P, Q, D
         discs.filter(|&disc| self.is_own(disc)).map(|disc| disc as u32).collect()
     }
 
-    /// Tells the neighbours of the discs that stand near them, and hears of theirs.
-    fn tell_neighbours(&mut self) -> Result<(), Gone> {
+    /// Moves the discs one step on, those first of which the neighbours are told: while these messages are under way all others move.
+    fn pass(&mut self) -> Result<Result<Passed, ProgramError>, Gone> {
         debug_assert_eq!(self.ordered, self.engine.orders, "places of discs in memory are those of before");
-        let state = &self.engine.state;
+        let Worker { ranks, engine, .. } = self;
+        let moving = engine.state.moving();
+        let inner = self.inner.clone();
+        let outer = [0..inner.start, inner.end..moving].map(|discs| engine.pass(discs));
+        let [first, last] = match outer {
+            [Ok(first), Ok(last)] => [first, last],
+            // Every rank has these instructions, or none has.
+            [Err(error), _] | [_, Err(error)] => return Ok(Err(error)),
+        };
+        let begun = Instant::now();
         let parcels = self.to_in_memory.each_ref().map(|discs| {
             let mut parcel = Parcel::new();
-            discs.iter().for_each(|&disc| parcel.numbers(state.swept(disc as usize)));
+            for column in engine.state.swept() {
+                parcel.numbers(discs.iter().map(|&disc| column[disc as usize].to_f64()));
+            }
             parcel
         });
-        parcels.iter().for_each(|parcel| self.engine.elapsed.timings.sent(8 * parcel.0.len() as u64));
-        let heard = self.ranks.halo(parcels)?;
+        parcels.iter().for_each(|parcel| engine.elapsed.timings.sent(8 * parcel.0.len() as u64));
+        let (mut between, mut hidden) = (Ok(Passed::default()), 0.0);
+        let heard = ranks.halo(parcels, &mut || {
+            let begun = Instant::now();
+            between = engine.pass(inner.clone());
+            hidden = begun.elapsed().as_secs_f64();
+        })?;
         for (parcel, discs) in heard.iter().zip(&self.from_in_memory) {
             let mut reader = parcel.read();
+            for column in self.engine.state.swept_mut() {
+                discs.iter().for_each(|&disc| column[disc as usize] = S::from_f64(reader.number()));
+            }
             for &disc in discs {
                 let disc = disc as usize;
-                self.engine.state.put_swept(disc, || reader.number());
                 let place = self.engine.state.place(disc);
                 self.engine.search.cells_mut().settle(disc, place);
             }
         }
-        Ok(())
+        self.engine.elapsed.timings.add(Phase::Halo, begun.elapsed().as_secs_f64() - hidden);
+        Ok(between.map(|between| first.and(between).and(last)))
     }
 
     /// All forces; what the first rank is to know of them.
@@ -303,7 +326,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Worker<S, P, Q, D
                 .for_each(|&disc| parcel.numbers(of_corrected(&mut corrected, disc).map(|value| *value)));
             parcel
         });
-        let heard = self.ranks.halo(parcels)?;
+        let heard = self.ranks.halo(parcels, &mut || {})?;
         for (parcel, discs) in heard.iter().zip(&self.from_in_memory) {
             let mut reader = parcel.read();
             for &disc in discs {
@@ -337,6 +360,16 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Worker<S, P, Q, D
             }
         }
     }
+}
+
+/// The most that lie in memory beside each other, of some discs that move, and are none of those told of. Discs lie there by their rows, so these are all
+/// but a few.
+fn inner_of(told: &[Vec<u32>; 2], moving: usize) -> Range<usize> {
+    let mut told: Vec<usize> = told.iter().flatten().map(|&disc| disc as usize).collect();
+    told.sort_unstable();
+    let before = [0].into_iter().chain(told.iter().map(|disc| disc + 1));
+    let behind = told.iter().copied().chain([moving]);
+    before.zip(behind).map(|(start, end)| start..end.max(start)).max_by_key(Range::len).unwrap_or(0..0)
 }
 
 /// What a sweep reads of a corrected disc.
