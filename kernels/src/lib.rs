@@ -54,4 +54,6 @@ mod threads;
 
 pub use backend::{GROUP, InstructionSet};
 pub use program::{Execution, Program, Runnable};
-pub use threads::{alone_if, in_parts, in_pieces, keep_awake, over_parts, over_pieces, reordered};
+pub use threads::{
+    alone_if, in_parts, in_pieces, keep_awake, over_parts, over_pieces, put_in_order, reordered,
+};

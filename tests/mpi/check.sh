@@ -85,7 +85,7 @@ done
 echo "seeds: the same runs on 1 and 3 ranks"
 
 # Studies and items are made together, and are what one process makes.
-study=(collision --over stiffness --size 4 --seeds 1 --budget 4 --quiet --threads 1)
+study=(two-discs --over stiffness --size 4 --seeds 1 --budget 30 --quiet --threads 1)
 "$stripmine" chart stability "${study[@]}" --out map-one >/dev/null
 mpiexec -n 3 "$stripmine" chart stability "${study[@]}" --out map-three >/dev/null || bad "a map"
 cmp map-one/host/stability/data.json map-three/host/stability/data.json || bad "the map of three processes"

@@ -6,6 +6,7 @@
 //! one process and not in the next: a copy of the predictor took 2.1 or 5.1 µs. So rows begin at lines of their own, one
 //! behind the other in large pages, as far as the system has some.
 
+use super::Element;
 use memmap2::MmapMut;
 use std::alloc::{Layout, handle_alloc_error};
 use std::cell::RefCell;
@@ -131,7 +132,33 @@ impl<X: Clone> AlignedColumn<X> {
     }
 }
 
+/// Bytes of memory that a row of some bytes takes: a long one has large pages to itself.
+#[inline]
+pub fn taken(bytes: f64) -> f64 {
+    let large = LARGE as f64;
+    if bytes > large / 4.0 { (bytes / large).ceil() * large } else { bytes }
+}
+
+impl<X: Element> AlignedColumn<X> {
+    /// Zeros, of which no memory is touched yet: a page becomes that of the thread that writes there first.
+    #[inline]
+    pub fn zeros(number: usize, length: usize) -> AlignedColumn<X> {
+        if length == 0 {
+            return AlignedColumn::default();
+        }
+        // Pages are zero until something is written, every part of them is given away once, and zero bits are the number 0.
+        let (pages, start) = room(number, length * size_of::<X>());
+        AlignedColumn { number, start: start.cast(), length, _pages: Some(pages) }
+    }
+}
+
 impl<X> AlignedColumn<X> {
+    /// By this its line is chosen.
+    #[inline]
+    pub fn number(&self) -> usize {
+        self.number
+    }
+
     /// Asks for the first two lines of an element, or its one, ahead of its use. Nothing happens where there is no such element, or no such instruction.
     #[inline(always)]
     pub fn prefetch(&self, at: usize) {

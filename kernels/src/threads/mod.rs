@@ -145,11 +145,20 @@ pub fn in_parts<T: Send>([a, b]: [&mut [T]; 2], work: impl Fn(usize, [&mut [T]; 
 #[inline]
 pub fn reordered<T: Copy + Default + Send + Sync>(column: &[T], order: &[u32]) -> Vec<T> {
     let mut now = vec![T::default(); order.len()];
-    in_pieces(&mut now, |first, piece| {
+    put_in_order(&mut now, column, order);
+    now
+}
+
+/// Makes entry `n` of `now` what entry `order[n]` of `column` is.
+///
+/// # Panics
+/// If `order` names an entry that there is not, or is shorter.
+#[inline]
+pub fn put_in_order<T: Copy + Send + Sync>(now: &mut [T], column: &[T], order: &[u32]) {
+    in_pieces(now, |first, piece| {
         let before = &order[first..first + piece.len()];
         piece.iter_mut().zip(before).for_each(|(to, &before)| *to = column[before as usize]);
     });
-    now
 }
 
 /// Whether one thread does all pieces of a column.

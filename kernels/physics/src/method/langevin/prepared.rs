@@ -18,6 +18,7 @@ use serde_json::{Map, Value, json};
 use std::f64::consts::PI;
 use std::path::Path;
 use std::sync::Arc;
+use stripmine_kernels::isa::aligned_column::taken as row;
 use stripmine_kernels::sweep::fast::lattice::SPARSE;
 
 impl Checked {
@@ -82,14 +83,21 @@ impl Checked {
 
     fn memory(&self) -> Foreseen {
         let count = self.particles.len() as f64;
-        // State, sums, ids and numbers; sectors; lists with the places at which they were made.
+        // Rows of the state and the sums, one more of each to put them in order, and of the places at which lists were made.
+        let rows = |count_of_rows: f64| count_of_rows * row(8.0 * count);
+        // Ids and numbers; sectors; lists.
         let engine = match &self.found {
-            Found::Sectors(grid) => 155.0 * count + 8.0 * grid.counts.iter().product::<usize>() as f64,
-            Found::Lists(grid, _) => 200.0 * count + 8.0 * grid.counts.iter().product::<usize>() as f64,
+            Found::Sectors(grid) => {
+                rows(9.0) + 99.0 * count + 8.0 * grid.counts.iter().product::<usize>() as f64
+            }
+            Found::Lists(grid, _) => {
+                rows(11.0) + 128.0 * count + 8.0 * grid.counts.iter().product::<usize>() as f64
+            }
             Found::Lattice(shape, _) => {
                 // A number and a bit a cell; copies of the places where the lattice is not sparse.
-                let copies = if count < SPARSE * shape.cells() as f64 { 0.0 } else { 8.0 };
-                195.0 * count + (4.0 + copies + 0.125) * shape.padded() as f64
+                let copies = if count < SPARSE * shape.cells() as f64 { 0.0 } else { 2.0 };
+                let cells = shape.padded() as f64;
+                rows(9.0) + 139.0 * count + (1.0 + copies) * row(4.0 * cells) + 0.125 * cells
             }
         };
         // The scene's particles in three places, once more while they are observed, and the frame that is being written; what puts them in order.

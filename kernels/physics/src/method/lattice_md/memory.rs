@@ -13,11 +13,10 @@ use crate::near::Near;
 use crate::particles::Particle;
 use crate::scene::Precision;
 use std::collections::BTreeMap;
+use stripmine_kernels::isa::aligned_column::taken as row;
 use stripmine_kernels::sweep::fast::lattice::SPARSE;
 use stripmine_kernels::sweep::lattice::Coordinates;
 
-/// Bytes of a large page, of which long arrays of the programs are made.
-const LARGE: f64 = (1 << 21) as f64;
 /// Bytes of the programs themselves, and of the large page that their short arrays share.
 const SHARED: f64 = 3.5e6;
 /// Bytes of a scene's disc.
@@ -140,7 +139,10 @@ impl Sizes {
             Scheme::VelocityVerlet => 2,
         };
         let derivatives = self.freedoms() * carried as f64;
-        let columns = self.state * (derivatives + 3.0 * self.varying()) + 8.0 + 3.0 * self.force;
+        let [of_state, of_forces] = [self.state, self.force].map(|bytes| row(bytes * self.discs));
+        // One of each kind is room for putting discs in order.
+        let columns =
+            (derivatives + 3.0 * self.varying() + 1.0) * of_state + 8.0 * self.discs + 4.0 * of_forces;
         let sectors = || {
             let [columns, rows] = [0, 1].map(|axis| (self.sides[axis] / self.widest_cell[axis]).ceil());
             4.0 * columns * rows + 8.0 * self.discs
@@ -151,17 +153,17 @@ impl Sizes {
                 let shape = &self.model.shape;
                 let padded = shape.padded() as f64;
                 let sparse = self.discs < SPARSE * shape.cells() as f64;
-                let copies = if sparse { 0.0 } else { 8.0 + if self.vary { 4.0 } else { 0.0 } };
-                4.0 * self.discs + (4.0 + copies + 0.125) * padded
+                let copies = if sparse { 0.0 } else { 2.0 + f64::from(u8::from(self.vary)) };
+                4.0 * self.discs + (1.0 + copies) * row(4.0 * padded) + 0.125 * padded
             }
             FastSearch::Sectors => sectors(),
             FastSearch::Lists { skin } => {
                 written += 2.0 * self.state;
                 let pairs = 0.5 * self.neighbours(self.reach + skin);
-                sectors() + (2.0 * self.state + 8.0 * pairs) * self.discs
+                sectors() + 2.0 * of_state + 8.0 * pairs * self.discs
             }
         };
-        [columns * self.discs + found, written * self.discs]
+        [columns + found, written * self.discs]
     }
 
     /// Bytes of the arrays of the programs, and of the columns of their checkpoints.
@@ -224,9 +226,4 @@ fn registers(checked: &Checked, model: &Model) -> f64 {
         }
     }
     largest.values().flatten().map(|&bytes| row(bytes as f64)).sum()
-}
-
-/// Bytes of a row of the programs: a long one has large pages to itself.
-fn row(bytes: f64) -> f64 {
-    if bytes > LARGE / 4.0 { (bytes / LARGE).ceil() * LARGE } else { bytes }
 }

@@ -16,14 +16,17 @@ use std::time::Instant;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::Scheme;
-use stripmine_kernels::isa::ProgramError;
+use stripmine_kernels::isa::{AlignedColumn, ProgramError};
 use stripmine_kernels::law::{Asked, Law};
 use stripmine_kernels::sweep::fast::{Advance, Met, Motion, Passed};
-use stripmine_kernels::{alone_if, keep_awake, over_parts, reordered};
+use stripmine_kernels::{alone_if, keep_awake, over_parts, put_in_order};
 
 /// Fewer discs are one thread's: a step of them is over before others have begun. Measured on two cores: 2000 discs took twice as
 /// long on two threads, 4000 as long as on one, 8000 were faster by a fifth.
 const FEW: usize = 5000;
+
+/// Columns of the state have smaller numbers than the sums.
+const SUMS_FROM: usize = 24;
 
 /// Discs with state of precision `S`, forces of precision `P`, search `Q` and dynamics `D`.
 pub struct Engine<S, P, Q, D> {
@@ -34,7 +37,9 @@ pub struct Engine<S, P, Q, D> {
     pub(super) start: Arc<Particles>,
     pub(super) state: State<S>,
     /// Force along x, along y, torque.
-    pub(super) sums: [Vec<P>; 3],
+    pub(super) sums: [AlignedColumn<P>; 3],
+    /// Becomes one of the sums when discs are put in order.
+    spare: AlignedColumn<P>,
     pub(super) search: Q,
     /// Changes of cells since the discs were put in order.
     pub(super) changes: usize,
@@ -76,10 +81,11 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         elapsed: Elapsed,
     ) -> Self {
         let carried = dynamics.with_scheme(CarriedBy { dt: system.dt });
-        let sums = [0, 1, 2].map(|_| vec![P::default(); members.numbers.len()]);
+        let [sums @ .., spare] = sums_of(members.numbers.len());
         let mut engine = Engine {
             state: State::new(&system, &carried, &start, members),
             sums,
+            spare,
             elapsed,
             dynamics,
             system,
@@ -98,7 +104,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     /// Has other members from now on, in no cells yet and all of them at the start.
     pub(super) fn hold(&mut self, members: Members, search: Q) {
         let carried = self.dynamics.with_scheme(CarriedBy { dt: self.system.dt });
-        self.sums = [0, 1, 2].map(|_| vec![P::default(); members.numbers.len()]);
+        [self.sums[0], self.sums[1], self.sums[2], self.spare] = sums_of(members.numbers.len());
         self.state = State::new(&self.system, &carried, &self.start, members);
         self.search = search;
         self.changes = 0;
@@ -150,7 +156,8 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         self.search.cells_mut().renumber(&order);
         self.state.renumber(&order);
         for sum in &mut self.sums {
-            *sum = reordered(sum, &order);
+            put_in_order(&mut self.spare, sum, &order);
+            std::mem::swap(sum, &mut self.spare);
         }
         self.search.make_lists(&self.state);
         self.boundary_candidates = self.discs_near_open_sides();
@@ -282,6 +289,11 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Named for Engine<
     }
 }
 
+/// Sums of as many discs, and room for them when they are put in order; behind the columns of the state.
+fn sums_of<P: Precision>(discs: usize) -> [AlignedColumn<P>; 4] {
+    [0, 1, 2, 3].map(|number| AlignedColumn::zeros(SUMS_FROM + number, discs))
+}
+
 /// How discs move by a scheme.
 fn motion<C: Scheme>(system: &System, scheme: C) -> Motion<C> {
     let System { dt, inertia, gravity, seed, .. } = *system;
@@ -293,7 +305,7 @@ struct Passing<'a, S, P, Q> {
     discs: Range<usize>,
     system: &'a System,
     state: &'a mut State<S>,
-    sums: &'a mut [Vec<P>; 3],
+    sums: &'a mut [AlignedColumn<P>; 3],
     search: &'a mut Q,
     steps: u64,
     set: InstructionSet,
@@ -308,8 +320,11 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> WithScheme for Passing<'_, S, 
         let (limit, copies) = search.displacement_limit();
         let advance = Advance {
             motion: &motion(system, scheme),
-            state: columns.iter_mut().map(|row| row.iter_mut().map(Vec::as_mut_slice).collect()).collect(),
-            sums: sums.iter_mut().take(system.freedoms).map(Vec::as_mut_slice).collect(),
+            state: columns
+                .iter_mut()
+                .map(|row| row.iter_mut().map(|column| &mut **column).collect())
+                .collect(),
+            sums: sums.iter_mut().take(system.freedoms).map(|sum| &mut **sum).collect(),
             inverse,
             discs,
             step: steps,
@@ -352,7 +367,7 @@ impl<S: Precision, P: Precision> WithScheme for Correcting<'_, S, P> {
 struct Sweeping<'a, S, P, Q> {
     system: &'a System,
     state: &'a State<S>,
-    sums: &'a mut [Vec<P>; 3],
+    sums: &'a mut [AlignedColumn<P>; 3],
     search: &'a mut Q,
     asked: Asked,
     set: InstructionSet,
@@ -362,7 +377,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> WithLaw for Sweeping<'_, S, P,
     type Output = Result<Met, ProgramError>;
 
     fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> Self::Output {
-        let sums = self.sums.each_mut().map(Vec::as_mut_slice);
+        let sums = self.sums.each_mut().map(|sum| &mut **sum);
         self.search.sweep(&law, &self.state.discs(self.system), sums, self.asked, self.set)
     }
 }

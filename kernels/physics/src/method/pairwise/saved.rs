@@ -104,7 +104,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
             }
         }
         for (name, sum) in SUMS.iter().zip(&mut self.sums) {
-            *sum = in_order.of::<P>(name)?;
+            sum.copy_from_slice(&in_order.of::<P>(name)?);
         }
         let cells = [in_order.of::<f64>(CELL[0])?, in_order.of::<f64>(CELL[1])?];
         let counts = self.search.cells().grid().counts;

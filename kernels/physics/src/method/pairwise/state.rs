@@ -2,11 +2,13 @@
 
 use super::{Carried, System};
 use crate::particles::{Kind, Particle, Particles};
+use std::cell::Cell;
 use std::ops::Range;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::{DERIVATIVES, Inertia};
+use stripmine_kernels::isa::AlignedColumn;
 use stripmine_kernels::sweep::fast::{self, SENTINELS};
-use stripmine_kernels::{in_pieces, reordered};
+use stripmine_kernels::{in_pieces, put_in_order, reordered};
 
 /// A disc with the cell it goes to, its place there, seen from the cell's centre (length), and the periods that it crosses.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,18 +38,21 @@ impl Members {
     }
 }
 
-/// Columns with an entry a disc, grains first, and two discs behind them that never touch.
+/// Columns with an entry a disc, grains first, and two discs behind them that never touch. They begin at lines of their own in large pages: a pass over a
+/// million discs takes a fifth less than over vectors, which all begin at a page's border.
 #[derive(Clone, Debug)]
 pub struct State<S> {
     /// For each degree of freedom the derivatives that are carried from step to step, as the scheme scales them.
-    pub(super) columns: Vec<Vec<Vec<S>>>,
+    pub(super) columns: Vec<Vec<AlignedColumn<S>>>,
     /// What velocities are multiplied by in the columns.
     velocity_scale: f64,
     /// The radius of every disc (length), where they are alike.
     alike: Option<f64>,
     /// Radii, and inverse masses and moments of inertia, where discs vary.
-    radius: Vec<S>,
-    inverse: [Vec<S>; 2],
+    radius: AlignedColumn<S>,
+    /// Becomes one of the columns when these are put in order.
+    spare: AlignedColumn<S>,
+    inverse: [AlignedColumn<S>; 2],
     /// Which of the scene's discs each is.
     numbers: Vec<u32>,
     /// The ids of the discs, by which they draw random numbers.
@@ -57,7 +62,7 @@ pub struct State<S> {
 }
 
 /// What a pass moves: columns, inverse masses and moments of inertia, and ids.
-type Moved<'a, S> = (&'a mut [Vec<Vec<S>>], [&'a [S]; 2], &'a [u32]);
+type Moved<'a, S> = (&'a mut [Vec<AlignedColumn<S>>], [&'a [S]; 2], &'a [u32]);
 
 /// Which derivatives of each degree of freedom a sweep reads.
 const SWEPT: [Range<usize>; 3] = [0..2, 0..2, 1..2];
@@ -68,8 +73,10 @@ impl<S: Precision> State<S> {
         let velocity_scale = carried.scales[1];
         let Members { numbers: discs, moving, grains } = members;
         // The thread that fills a piece is the first to touch its memory.
-        let column = |value: &(dyn Fn(&Particle) -> f64 + Sync), sentinel: f64| -> Vec<S> {
-            let mut values = vec![S::default(); discs.len() + SENTINELS];
+        let numbers = Cell::new(0);
+        let zeros = || AlignedColumn::zeros(numbers.replace(numbers.get() + 1), discs.len() + SENTINELS);
+        let column = |value: &(dyn Fn(&Particle) -> f64 + Sync), sentinel: f64| -> AlignedColumn<S> {
+            let mut values = zeros();
             let (of_discs, of_sentinels) = values.split_at_mut(discs.len());
             of_sentinels.fill(S::from_f64(sentinel));
             in_pieces(of_discs, |first, piece| {
@@ -83,14 +90,15 @@ impl<S: Precision> State<S> {
             (1, 0 | 1) => column(&|disc| disc.velocity[freedom] * velocity_scale, 0.0),
             (0, 2) => column(&|disc| disc.angle, 0.0),
             (1, _) => column(&|disc| disc.omega * velocity_scale, 0.0),
-            _ => vec![S::default(); discs.len() + SENTINELS],
+            _ => zeros(),
         };
-        let mut columns: Vec<Vec<Vec<S>>> = (0..system.freedoms)
+        let mut columns: Vec<Vec<AlignedColumn<S>>> = (0..system.freedoms)
             .map(|freedom| (0..carried.derivatives).map(|k| derivative(freedom, k)).collect())
             .collect();
         // The sentinels stand farther apart than any pair acts.
         columns[0][0][discs.len()] = S::from_f64(4.0 * system.reach);
-        let (mut radius, mut inverse) = (vec![], [vec![], vec![]]);
+        let (mut radius, mut inverse) =
+            (AlignedColumn::default(), [(); 2].map(|()| AlignedColumn::default()));
         if system.inertia == Inertia::Varying {
             let of_grain = |disc: &Particle, value: f64| if disc.kind == Kind::Wall { 0.0 } else { value };
             let largest = particles.radii().map_or(1.0, |[_, largest]| largest);
@@ -104,6 +112,7 @@ impl<S: Precision> State<S> {
             velocity_scale,
             alike: system.radius,
             radius,
+            spare: zeros(),
             inverse,
             ids: discs.iter().map(|&number| particles.all()[number as usize].id).collect(),
             numbers: discs,
@@ -161,13 +170,13 @@ impl<S: Precision> State<S> {
 
     /// Places and velocities of the discs, as the columns have them, and their spins where discs turn: all that a sweep reads of them and that changes.
     pub fn swept(&self) -> impl Iterator<Item = &[S]> {
-        self.columns.iter().zip(SWEPT).flat_map(|(columns, swept)| &columns[swept]).map(Vec::as_slice)
+        self.columns.iter().zip(SWEPT).flat_map(|(columns, swept)| &columns[swept]).map(|column| &**column)
     }
 
     /// The same, to be changed.
     pub fn swept_mut(&mut self) -> impl Iterator<Item = &mut [S]> {
         let columns = self.columns.iter_mut().zip(SWEPT);
-        columns.flat_map(|(columns, swept)| &mut columns[swept]).map(Vec::as_mut_slice)
+        columns.flat_map(|(columns, swept)| &mut columns[swept]).map(|column| &mut **column)
     }
 
     /// Puts a disc at a place.
@@ -210,7 +219,7 @@ impl<S: Precision> State<S> {
 
     /// The discs as a sweep reads them.
     pub fn discs(&self, system: &System) -> fast::Discs<'_, S> {
-        let omega = if system.freedoms == 3 { self.columns[2][1].as_slice() } else { &[] };
+        let omega = if system.freedoms == 3 { &*self.columns[2][1] } else { &[] };
         fast::Discs {
             place: self.places(),
             velocity: [&self.columns[0][1], &self.columns[1][1]],
@@ -228,7 +237,8 @@ impl<S: Precision> State<S> {
         let derivatives = self.columns.iter_mut().flatten();
         for column in derivatives.chain([&mut self.radius]).chain(&mut self.inverse) {
             if !column.is_empty() {
-                *column = reordered(column, &with_sentinels);
+                put_in_order(&mut self.spare, column, &with_sentinels);
+                std::mem::swap(column, &mut self.spare);
             }
         }
         self.numbers = reordered(&self.numbers, order);

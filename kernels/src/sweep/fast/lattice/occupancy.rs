@@ -2,6 +2,7 @@
 
 use super::bits::Bits;
 use crate::GROUP;
+use crate::isa::AlignedColumn;
 use crate::sweep::fast::advance::Copies;
 use crate::sweep::fast::grid::Grid;
 use crate::sweep::fast::pairs::SENTINELS;
@@ -14,6 +15,16 @@ pub struct Taken(pub usize);
 
 /// The x of an empty cell: its square is a number in single precision, and nothing is near it.
 const FAR: f32 = 1e18;
+
+/// Numbers of the rows, by which they begin at lines of their own: those of the discs have smaller ones.
+const INDEX: usize = 32;
+const RADIUS: usize = 33;
+const PLACE: usize = 34;
+
+/// Places in cells that are empty.
+fn far(cells: usize) -> [AlignedColumn<f32>; 2] {
+    [AlignedColumn::filled(PLACE, FAR, cells), AlignedColumn::zeros(PLACE + 1, cells)]
+}
 
 /// Part of the cells that discs must occupy for registers of cells to pay; below it, one cell after the other is asked
 /// for its neighbours. A function of the scene, so that no sum's order depends on anything else.
@@ -33,10 +44,10 @@ pub struct Occupancy {
     edge: [f32; 2],
     discs: usize,
     cell: Vec<u32>,
-    index: Vec<u32>,
+    index: AlignedColumn<u32>,
     sparse: bool,
-    place: [Vec<f32>; 2],
-    radius: Option<Vec<f32>>,
+    place: [AlignedColumn<f32>; 2],
+    radius: Option<AlignedColumn<f32>>,
     occupied: Bits,
     /// Cells of the halo, each with the one it is an image of.
     images: Vec<[u32; 2]>,
@@ -70,10 +81,10 @@ impl Occupancy {
             edge: frame.edge.map(|edge| (edge / reach) as f32),
             discs,
             cell: vec![NOWHERE; discs],
-            index: vec![discs as u32; length],
+            index: AlignedColumn::filled(INDEX, discs as u32, length),
             sparse,
-            place: [vec![FAR; places], vec![0.0; places]],
-            radius: (vary && !sparse).then(|| vec![0.0; length]),
+            place: far(places),
+            radius: (vary && !sparse).then(|| AlignedColumn::zeros(RADIUS, length)),
             occupied: Bits::new(&shape, half_width),
             images: shape
                 .images()
@@ -96,9 +107,9 @@ impl Occupancy {
         Occupancy {
             discs,
             cell: vec![NOWHERE; discs],
-            index: vec![discs as u32; self.index.len()],
-            place: [vec![FAR; self.place[0].len()], vec![0.0; self.place[1].len()]],
-            radius: self.radius.as_ref().map(|radius| vec![0.0; radius.len()]),
+            index: AlignedColumn::filled(INDEX, discs as u32, self.index.len()),
+            place: far(self.place[0].len()),
+            radius: self.radius.as_ref().map(|radius| AlignedColumn::zeros(RADIUS, radius.len())),
             occupied: Bits::new(&self.shape, self.half_width),
             images: self.images.clone(),
             outside: discs,

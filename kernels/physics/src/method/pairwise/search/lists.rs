@@ -5,7 +5,7 @@ use crate::method::pairwise::state::State;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::in_pieces;
-use stripmine_kernels::isa::ProgramError;
+use stripmine_kernels::isa::{AlignedColumn, ProgramError};
 use stripmine_kernels::law::{Asked, Law};
 use stripmine_kernels::sweep::fast::{
     Copies, Discs, DisplacementLimit, Grid, Met, Rows, Sectors, Share, Sweep, Touches, VerletList,
@@ -19,12 +19,15 @@ pub struct ListSearch<S, P> {
     listed: Listed<S>,
 }
 
+/// Columns of the state and sums have smaller numbers.
+const MADE_AT: usize = 28;
+
 /// Lists, and what they were made from.
 pub struct Listed<S> {
     list: Option<VerletList>,
     skin: f64,
     /// Places when the lists were made.
-    made_at: [Vec<S>; 2],
+    made_at: [AlignedColumn<S>; 2],
     made: u64,
 }
 
@@ -34,7 +37,7 @@ impl<S: Precision, P: Precision> ListSearch<S, P> {
     pub fn new(grid: Grid, discs: usize, reach: f64, skin: f64) -> Self {
         let sectors = Sectors::new(grid, discs, reach);
         let sweep = Sweep::new(rows::<S, P, _>(&sectors));
-        let listed = Listed { list: None, skin, made_at: [vec![], vec![]], made: 0 };
+        let listed = Listed { list: None, skin, made_at: Default::default(), made: 0 };
         ListSearch { sectors, sweep, share: None, listed }
     }
 }
@@ -46,7 +49,7 @@ impl<S: Precision, P: Precision> Search<S, P> for ListSearch<S, P> {
         let sectors = self.sectors.emptied(discs);
         let sweep = Sweep::of_share(rows::<S, P, _>(&sectors), Some(&share));
         let Listed { skin, made, .. } = self.listed;
-        let listed = Listed { list: None, skin, made_at: [vec![], vec![]], made };
+        let listed = Listed { list: None, skin, made_at: Default::default(), made };
         ListSearch { sectors, sweep, share: Some(share), listed }
     }
 
@@ -97,8 +100,10 @@ impl<S: Precision, P: Precision> Search<S, P> for ListSearch<S, P> {
     fn make_lists(&mut self, state: &State<S>) {
         let ListSearch { sectors, listed, .. } = self;
         let places = state.places();
-        for (made_at, places) in listed.made_at.iter_mut().zip(places) {
-            made_at.resize(places.len(), S::default());
+        for (axis, (made_at, places)) in listed.made_at.iter_mut().zip(places).enumerate() {
+            if made_at.len() != places.len() {
+                *made_at = AlignedColumn::zeros(MADE_AT + axis, places.len());
+            }
             in_pieces(made_at, |first, piece| piece.copy_from_slice(&places[first..first + piece.len()]));
         }
         // Not beside the new ones: they are as large.
