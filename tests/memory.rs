@@ -3,6 +3,8 @@
 
 use std::path::Path;
 use std::process::{Command, Stdio};
+use stripmine_physics::method::{METHODS, load};
+use stripmine_physics::ranks::Crew;
 
 /// The most memory that a process had at one time (bytes), once it has ended well. Asked of a small process that begins it: one that a
 /// large process begins is said to have had as much as that at least.
@@ -115,6 +117,30 @@ fn needed_and_most(preset: &str, sets: &[&str], ends: [u32; 2]) -> (f64, f64) {
     let taken = [("--overwrite", ends[0]), ("--resume", ends[1])]
         .map(|(how, end)| peak(&with_sets(&["run", preset, how, "--threads", "2", "--out", &out], end)));
     (checked["memory"]["needed"].as_u64().unwrap() as f64, taken[0].max(taken[1]) as f64)
+}
+
+/// Discs on several ranks of one process, to a tenth: what allocators of several threads keep is not foreseen to the byte.
+#[test]
+fn ranks_take_the_memory_that_was_foreseen() {
+    for (search, ranks) in [("lattice", 2), ("lattice", 4), ("neighbor-list", 4)] {
+        let sets =
+            ["particles.count=400000", "run.steps=2", "machine.engine=fast", &format!("search.by={search}")]
+                .map(str::to_owned);
+        let needed = {
+            let (prepared, _) = load("bench", &sets, METHODS).unwrap();
+            prepared.memory.on(Crew::Threads(ranks)).needed as f64
+        };
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().join("run").display().to_string();
+        let sets = sets.into_iter().flat_map(|set| ["--set".to_owned(), set]);
+        let words =
+            ["run", "bench", "--quiet", "--threads", "1", "--ranks", &ranks.to_string(), "--out", &out];
+        let most = peak(&words.map(str::to_owned).into_iter().chain(sets).collect::<Vec<String>>()) as f64;
+        assert!(
+            (0.9 * most..1.25 * most + FRAME).contains(&needed),
+            "{search}, {ranks}: {needed} foreseen, {most} taken"
+        );
+    }
 }
 
 /// Particles in a bath by every search.

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use stripmine_physics::domain::Domain;
 use stripmine_physics::io::checkpoint::Column;
-use stripmine_physics::memory::Foreseen;
+use stripmine_physics::memory::{Foreseen, OfRanks};
 use stripmine_physics::method::{
     Axis, Bench, BenchOption, Clock, Decides, Entry, Fact, Failure, Kind, Prepared, Purpose, Quantity,
     RunWarning, SMALLEST_RADIUS, Schedule, Setting, Simulation, Snapshot, Startable, Takes, Trials, Until,
@@ -154,6 +154,7 @@ impl Flight {
                 available: None,
                 what: "a few discs".to_owned(),
                 remedy: "take fewer",
+                ranks: OfRanks::default(),
             },
             settings: Map::new(),
             event_columns: None,

@@ -1,5 +1,6 @@
 //! How much memory there is left for this program, who sets the limit, and whether a run fits into it.
 
+use crate::ranks::Crew;
 use crate::scene::{Reason, SceneErrors, Spot};
 use serde::{Serialize, Serializer};
 use std::fs;
@@ -20,15 +21,47 @@ pub struct Foreseen {
     /// What takes less.
     #[serde(skip)]
     pub remedy: &'static str,
+    /// What several ranks take beside it.
+    #[serde(skip)]
+    pub ranks: OfRanks,
+}
+
+/// What ranks take beside what one of them would take alone (bytes).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct OfRanks {
+    /// Where discs are gathered, on the first rank.
+    pub gathered: f64,
+    /// What every rank holds of the whole scene, whatever its own part.
+    pub each: f64,
+}
+
+impl OfRanks {
+    /// Of `count` discs in bands, with cells of which every rank has all (bytes).
+    pub fn in_bands(count: f64, cells: f64) -> OfRanks {
+        // Seven words a disc on their way, and six where they have arrived. Its row, the periods that it has crossed; the rest is what allocators of
+        // several threads keep, as measured.
+        OfRanks { gathered: 8.0 * (7.0 + 6.0) * count, each: 50.0 * count + cells }
+    }
 }
 
 impl Foreseen {
+    /// The same where a run is carried out by others than one rank. Of processes, each may be on a machine of its own: what one of them takes at most.
+    #[must_use]
+    pub fn on(self, crew: Crew) -> Foreseen {
+        let more = match crew {
+            Crew::One | Crew::Threads(..=1) => return self,
+            Crew::Threads(ranks) => self.ranks.gathered + (ranks - 1) as f64 * self.ranks.each,
+            Crew::Processes(_) => self.ranks.gathered,
+        };
+        Foreseen { needed: self.needed + more as u64, ..self }
+    }
+
     /// Whether the run fits this machine; `scene` is the name that an error gives it.
     ///
     /// # Errors
     /// [`SceneErrors`] with both numbers, where it does not.
     pub fn fits(&self, scene: &str) -> Result<(), SceneErrors> {
-        let Foreseen { needed, available, what, remedy } = self;
+        let Foreseen { needed, available, what, remedy, .. } = self;
         match *available {
             Some(Available { bytes, by }) if *needed > bytes => {
                 let spot = Spot { file: scene.to_owned(), place: None };

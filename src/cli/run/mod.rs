@@ -70,8 +70,9 @@ impl RunVerb {
                 (prepared, _) = prepare(Values::load(&self.scene, &overrides, &vocabularies)?, methods)?;
             }
         }
-        prepared.memory.fits(&self.scene)?;
         let crew = self.crew(common)?;
+        prepared.memory = prepared.memory.on(crew);
+        prepared.memory.fits(&self.scene)?;
         let Crew::Processes(join) = crew else {
             return self.carry_out((&prepared, entry), &folder, crew, common);
         };

@@ -4,7 +4,7 @@ use super::checked::Checked;
 use super::collision_log::COLUMNS;
 use super::reference::grid::Sizes;
 use super::simulation::Running;
-use crate::memory::{Foreseen, PROGRAM, available};
+use crate::memory::{Foreseen, OfRanks, PROGRAM, available};
 use crate::method::entry::left_out;
 use crate::method::refuse_several_ranks;
 use crate::method::{Fact, Failure, Prepared, Purpose, Simulation, Startable};
@@ -92,6 +92,7 @@ impl Checked {
             available: available(),
             what: format!("{} hard discs", self.particles.len()),
             remedy: "take fewer discs",
+            ranks: OfRanks::default(),
         }
     }
 

@@ -8,7 +8,7 @@ use super::assemble::{contacts, model_following_energy};
 use super::check::Checked;
 use super::options::ProgramText;
 use super::{Contacts, Discs, FastSearch, Lengths, Model, Scheme, programs};
-use crate::memory::{Foreseen, PROGRAM, available};
+use crate::memory::{Foreseen, OfRanks, PROGRAM, available};
 use crate::near::Near;
 use crate::particles::Particle;
 use crate::scene::Precision;
@@ -28,8 +28,13 @@ pub fn foreseen(checked: &Checked) -> Foreseen {
     let from = if of.model.gravity == [0.0; 2] { 0.0 } else { 16.0 * of.grains };
     let kept = PROGRAM + 2.0 * DISC * of.discs + from + of.followed();
     let near = Near::bytes(checked.particles.len()) as f64;
+    let mut cells = 0.0;
     let ([engine, columns], observed) = match contacts(checked) {
-        Contacts::Fast(search) => (of.fast(search), of.observed()),
+        Contacts::Fast(search) => {
+            cells = of.cells(search);
+            let [engine, columns] = of.fast(search);
+            ([engine + cells, columns], of.observed())
+        }
         Contacts::Lattice => {
             let [arrays, columns] = of.programs(false);
             ([arrays + registers(checked, &of.model), columns], (DISC + 16.0) * of.discs + near)
@@ -54,6 +59,7 @@ pub fn foreseen(checked: &Checked) -> Foreseen {
         what: format!("{} discs in {} cells", checked.particles.len(), checked.geometry.shape.cells()),
         remedy: "take fewer discs, a smaller box or machine.precision = \"f32\"; where most cells are empty, search.by = \
                  \"sectors\" has no lattice",
+        ranks: OfRanks::in_bands(of.discs, cells),
     }
 }
 
@@ -132,7 +138,7 @@ impl Sizes {
         8.0 * pairs * self.discs
     }
 
-    /// Bytes that a fast method keeps, and of the columns of its checkpoints.
+    /// Bytes that a fast method keeps beside its cells, and of the columns of its checkpoints.
     fn fast(&self, search: FastSearch) -> [f64; 2] {
         let carried = match self.model.scheme {
             Scheme::Gear(values) => values.count(),
@@ -143,27 +149,30 @@ impl Sizes {
         // One of each kind is room for putting discs in order.
         let columns =
             (derivatives + 3.0 * self.varying() + 1.0) * of_state + 8.0 * self.discs + 4.0 * of_forces;
-        let sectors = || {
-            let [columns, rows] = [0, 1].map(|axis| (self.sides[axis] / self.widest_cell[axis]).ceil());
-            4.0 * columns * rows + 8.0 * self.discs
-        };
         let mut written = self.state * derivatives + 3.0 * self.force + 2.0 * 8.0;
         let found = match search {
-            FastSearch::Lattice(_) => {
-                let shape = &self.model.shape;
-                let padded = shape.padded() as f64;
-                let sparse = self.discs < SPARSE * shape.cells() as f64;
-                let copies = if sparse { 0.0 } else { 2.0 + f64::from(u8::from(self.vary)) };
-                4.0 * self.discs + (1.0 + copies) * row(4.0 * padded) + 0.125 * padded
-            }
-            FastSearch::Sectors => sectors(),
+            FastSearch::Lattice(_) => 4.0 * self.discs,
+            FastSearch::Sectors => 8.0 * self.discs,
             FastSearch::Lists { skin } => {
                 written += 2.0 * self.state;
                 let pairs = 0.5 * self.neighbours(self.reach + skin);
-                sectors() + 2.0 * of_state + 8.0 * pairs * self.discs
+                2.0 * of_state + (8.0 + 8.0 * pairs) * self.discs
             }
         };
         [columns + found, written * self.discs]
+    }
+
+    /// Bytes of what a search of the fast engine keeps of its cells.
+    fn cells(&self, search: FastSearch) -> f64 {
+        if let FastSearch::Lattice(_) = search {
+            let shape = &self.model.shape;
+            let padded = shape.padded() as f64;
+            let sparse = self.discs < SPARSE * shape.cells() as f64;
+            let copies = if sparse { 0.0 } else { 2.0 + f64::from(u8::from(self.vary)) };
+            return (1.0 + copies) * row(4.0 * padded) + 0.125 * padded;
+        }
+        let [columns, rows] = [0, 1].map(|axis| (self.sides[axis] / self.widest_cell[axis]).ceil());
+        4.0 * columns * rows
     }
 
     /// Bytes of the arrays of the programs, and of the columns of their checkpoints.

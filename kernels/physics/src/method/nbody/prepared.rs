@@ -7,7 +7,7 @@ use super::shifted::counted;
 use super::simulation::Running;
 use super::starts::ORBIT;
 use crate::domain::{Domain, Side};
-use crate::memory::{Foreseen, PROGRAM, available};
+use crate::memory::{Foreseen, OfRanks, PROGRAM, available};
 use crate::method::entry::left_out;
 use crate::method::{
     Beyond, Fact, Failure, Prepared, Purpose, Schedule, Simulation, Startable, StepLimit, VectorProgram,
@@ -101,6 +101,8 @@ impl Checked {
             available: available(),
             what: format!("{count} bodies"),
             remedy: "take fewer bodies",
+            // Every rank has all bodies.
+            ranks: OfRanks { gathered: 0.0, each: needed - PROGRAM },
         }
     }
 

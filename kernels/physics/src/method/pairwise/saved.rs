@@ -16,6 +16,30 @@ const MADE_AT: [&str; 2] = ["listed.x", "listed.y"];
 /// How often lists were made: one entry, whatever the discs.
 const LISTS_MADE: &str = "listed.made";
 
+/// Where a column of the discs comes from.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Source {
+    /// A derivative of a degree of freedom.
+    State(usize, usize),
+    /// The force along an axis, or the torque.
+    Sum(usize),
+    /// Column or row of the cell.
+    Cell(usize),
+    /// Where the disc was along an axis when lists were made.
+    MadeAt(usize),
+}
+
+impl Source {
+    fn name(self) -> &'static str {
+        match self {
+            Source::State(freedom, k) => STATE[freedom][k].label(),
+            Source::Sum(freedom) => SUMS[freedom],
+            Source::Cell(axis) => CELL[axis],
+            Source::MadeAt(axis) => MADE_AT[axis],
+        }
+    }
+}
+
 impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D> {
     /// A column with an entry for each of some discs.
     fn column<T: Element>(&self, discs: &[u32], value: impl Fn(usize) -> T + Sync) -> Column {
@@ -43,26 +67,38 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
 
     /// Of the same what is a disc's own, with an entry for each of some discs.
     pub(super) fn columns_of(&self, discs: &[u32]) -> Vec<(String, Column)> {
-        let mut columns = Vec::new();
-        for (names, rows) in STATE.iter().zip(&self.state.columns) {
-            for (name, column) in names.iter().zip(rows) {
-                columns.push((name.label().to_owned(), self.column(discs, |disc| column[disc])));
+        self.sources()
+            .into_iter()
+            .map(|source| (source.name().to_owned(), self.column_of(source, discs)))
+            .collect()
+    }
+
+    /// Where the columns of the discs come from, in their order.
+    pub(super) fn sources(&self) -> Vec<Source> {
+        let state = self.state.columns.iter().enumerate();
+        let state = state.flat_map(|(freedom, rows)| (0..rows.len()).map(move |k| Source::State(freedom, k)));
+        let lists = if self.search.lists().is_some() { &[0, 1][..] } else { &[] };
+        let others = [0, 1, 2].map(Source::Sum).into_iter().chain([0, 1].map(Source::Cell));
+        state.chain(others).chain(lists.iter().map(|&axis| Source::MadeAt(axis))).collect()
+    }
+
+    /// One of the columns.
+    pub(super) fn column_of(&self, source: Source, discs: &[u32]) -> Column {
+        match source {
+            Source::State(freedom, k) => {
+                let column = &self.state.columns[freedom][k];
+                self.column(discs, |disc| column[disc])
+            }
+            Source::Sum(freedom) => self.column(discs, |disc| self.sums[freedom][disc]),
+            Source::Cell(axis) => {
+                let cell = |disc| self.search.cells().cell(disc);
+                self.column(discs, |disc| cell(disc).map_or(f64::NAN, |cell| cell[axis] as f64))
+            }
+            Source::MadeAt(axis) => {
+                let made_at = self.search.lists().map_or(&[][..], |lists| lists.made_at(axis));
+                self.column(discs, |disc| made_at[disc])
             }
         }
-        for (name, sum) in SUMS.iter().zip(&self.sums) {
-            columns.push(((*name).to_owned(), self.column(discs, |disc| sum[disc])));
-        }
-        for (axis, name) in CELL.iter().enumerate() {
-            let cell = |disc| self.search.cells().cell(disc).map_or(f64::NAN, |cell| cell[axis] as f64);
-            columns.push(((*name).to_owned(), self.column(discs, cell)));
-        }
-        if let Some(lists) = self.search.lists() {
-            for (axis, name) in MADE_AT.iter().enumerate() {
-                let made_at = lists.made_at(axis);
-                columns.push(((*name).to_owned(), self.column(discs, |disc| made_at[disc])));
-            }
-        }
-        columns
     }
 
     /// Takes up columns that [`columns`](Self::columns) gave after `steps` steps. Where they are not those of these discs, nothing can

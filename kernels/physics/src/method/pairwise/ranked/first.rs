@@ -344,18 +344,11 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Rank
     }
 
     fn columns(&self) -> Vec<(String, Column)> {
-        let like = self.engine().columns_of(&[]);
-        let discs = self.engine().start.len();
-        let mut values = vec![vec![f64::NAN; discs]; like.len()];
-        for parcel in self.ask(Do::Look(What::Columns)).unwrap_or_default() {
-            let mut reader = parcel.read();
-            let numbers = reader.counts();
-            for column in &mut values {
-                numbers.iter().for_each(|&number| column[number as usize] = reader.number());
-            }
-        }
-        let columns = like.into_iter().zip(values);
-        let columns = columns.map(|((name, like), values)| (name, column_like(&like, values)));
+        let like = self.engine().columns_of(&[]).into_iter().enumerate();
+        let columns = like.map(|(place, (name, like))| {
+            let values = self.each(What::Column(place)).into_iter().map(|[value]| value).collect();
+            (name, column_like(&like, values))
+        });
         columns.chain(self.engine().columns_of_all()).collect()
     }
 

@@ -25,14 +25,14 @@ pub(super) enum Do {
 
 impl Do {
     pub(super) fn put(self, parcel: &mut Parcel) {
-        let what = |what: What| {
-            [What::Standing, What::Columns, What::Forces, What::Velocities].iter().position(|it| *it == what)
-        };
         let words = match self {
             Do::Advance => [0, 0],
             Do::Forces(asked) => [1, usize::from(asked.dissipation) + 2 * usize::from(asked.energy)],
             Do::SkipForces => [2, 0],
-            Do::Look(it) => [3, what(it).unwrap_or_default()],
+            Do::Look(What::Standing) => [3, 0],
+            Do::Look(What::Forces) => [3, 1],
+            Do::Look(What::Velocities) => [3, 2],
+            Do::Look(What::Column(place)) => [3, 3 + place],
             Do::Contacts => [4, 0],
             Do::Listed => [5, 0],
             Do::Unfit => [6, 0],
@@ -59,7 +59,12 @@ impl Do {
                 energy: more & 2 == 2,
             }),
             2 => Do::SkipForces,
-            3 => Do::Look([What::Standing, What::Columns, What::Forces, What::Velocities][more.min(3)]),
+            3 => Do::Look(match more {
+                0 => What::Standing,
+                1 => What::Forces,
+                2 => What::Velocities,
+                place => What::Column(place - 3),
+            }),
             4 => Do::Contacts,
             5 => Do::Listed,
             6 => Do::Unfit,

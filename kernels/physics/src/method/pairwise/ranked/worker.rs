@@ -290,9 +290,8 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Worker<S, P, Q, D
                     parcel.numbers(position.into_iter().chain([values[2]]).chain(rates));
                 }
             }
-            What::Columns => {
-                let columns = engine.columns_of(&discs);
-                columns.iter().for_each(|(_, column)| parcel.numbers(entries(column)));
+            What::Column(place) => {
+                parcel.numbers(entries(&engine.column_of(engine.sources()[place], &discs)));
             }
             What::Forces => {
                 discs.iter().for_each(|&disc| parcel.numbers(engine.force_on(disc as usize)));
@@ -384,8 +383,8 @@ fn of_corrected(corrected: &mut Corrected, disc: u32) -> impl Iterator<Item = &m
 pub(super) enum What {
     /// Position, angle, and the rates of the three, at the end of the step.
     Standing,
-    /// Everything that the next step depends on.
-    Columns,
+    /// One of the columns that the next step depends on, by its place among them: with all of them at once, the first rank would hold them three times.
+    Column(usize),
     /// Force along x and y and torque.
     Forces,
     /// The velocity that the last predictor left.
