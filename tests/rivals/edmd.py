@@ -45,6 +45,8 @@ LARGEST, LARGEST_FRACTION = 2_500_000, 0.5
 SHELLS = [1.2, 1.3, 1.4, 1.5, 1.7, 1.85, 2.0, 2.25, 2.5, 3.0, 4.0, 6.0]
 BLOCKS = [0.3, 1, 3, 10, 30]
 HORIZONS = [1, 4, 16]
+# Shells beyond one that reaches less than this part of the best rate are not tried.
+MUCH_SLOWER = 0.8
 # Lengths of a disc's array of neighbours.
 NEIGHBOURS = [8, 12, 16, 24, 32, 48, 64, 96, 128, 192]
 # By how much of its excess over 1 the rivals' Z may differ.
@@ -117,15 +119,19 @@ class Edmd:
         """The fastest setting: of the shells, then of the blocks, then of the horizons."""
         rates = {}
 
-        def best(settings):
-            for setting in settings:
-                if setting not in rates:
-                    rates[setting] = rate(self.measured(system, setting, 1, collisions))
-            return max(rates, key=rates.get)
+        def tried(setting):
+            if setting not in rates:
+                rates[setting] = rate(self.measured(system, setting, 1, collisions))
+            return rates[setting]
 
-        found = best(Setting(shell, 3, 4) for shell in shells)
-        found = best(found._replace(block=block) for block in BLOCKS)
-        return best(found._replace(horizon=horizon) for horizon in HORIZONS)
+        first = len(shells) // 2
+        for some in shells[first:], shells[first - 1 :: -1]:
+            for shell in some:
+                if tried(Setting(shell, 3, 4)) < MUCH_SLOWER * max(rates.values()):
+                    break
+        found = max(rates, key=rates.get)
+        found = max((found._replace(block=block) for block in BLOCKS), key=tried)
+        return max((found._replace(horizon=horizon) for horizon in HORIZONS), key=tried)
 
 
 def equilibration(collisions):
