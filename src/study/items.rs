@@ -46,7 +46,7 @@ pub const ITEMS: &[Item] = &[
         Chapter::Host,
         [0.1, 0.1],
         beside_others,
-        "LAMMPS and the crate particular on the same systems, as measured last",
+        "LAMMPS, the crate particular and EDMD on the same systems, as measured last",
     ),
 ];
 

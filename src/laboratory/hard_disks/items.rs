@@ -7,6 +7,7 @@ use super::verbs::question;
 use crate::console::Failure;
 use crate::report::Chapter::{Beyond, Host, Sources};
 use crate::results::{Effort, Item, Made, Progress};
+use crate::study::rivals::rivals;
 
 /// Every item, in the order of its chapter.
 pub(super) const ITEMS: &[Item] = &[
@@ -78,7 +79,7 @@ fn speed(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
         }
     };
     let data = rates::rates(&effort, progress)?;
-    Made::new(sections::rates::section(&data), &data)
+    Made::new(sections::rates::section(&data, &rivals()?), &data)
 }
 
 fn comparison(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {

@@ -9,7 +9,7 @@ use crate::console::Failure;
 use serde::{Deserialize, Serialize};
 
 /// What the scripts wrote: a name, the contests, and where they come from.
-const MEASURED: [(&str, &str, &str); 3] = [
+const MEASURED: [(&str, &str, &str); 4] = [
     (
         "lammps.py",
         include_str!("measured/granular/contests.json"),
@@ -25,6 +25,7 @@ const MEASURED: [(&str, &str, &str); 3] = [
         include_str!("measured/particular/contests.json"),
         include_str!("measured/particular/provenance.json"),
     ),
+    ("edmd.py", include_str!("measured/edmd/contests.json"), include_str!("measured/edmd/provenance.json")),
 ];
 
 /// Contests with another program.
@@ -44,6 +45,9 @@ pub struct Rival {
     pub contests: Vec<Contest>,
     /// What both must agree in.
     pub same: Vec<Same>,
+    /// What both take of the machine's memory, where it was measured.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub memory: Vec<Memory>,
     /// Where they come from; beside the contests in a file of its own.
     #[serde(skip_deserializing)]
     pub source: Source,
@@ -77,6 +81,19 @@ pub struct Same {
     pub theirs: f64,
     /// By how much they may differ.
     pub within: f64,
+}
+
+/// The most memory that both programs had at once, in bytes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Memory {
+    /// What is simulated.
+    pub system: String,
+    /// How many particles.
+    pub particles: u64,
+    /// Ours.
+    pub ours: u64,
+    /// Theirs.
+    pub theirs: u64,
 }
 
 /// Where contests come from.

@@ -49,7 +49,7 @@ fn section(data: &[Rival]) -> Section {
     Section::new(NAME, "Beside other programs")
         .asks("How many times as fast as other programs is ours, on the same system and one core?")
         .expects(format!(
-            "Our aims, times as fast: {}. For granular discs none is stated.",
+            "Our aims, times as fast: {}. For granular and hard discs none is stated.",
             aims.collect::<Vec<_>>().join(", ")
         ))
         .answers(answer(data))
