@@ -7,6 +7,8 @@ use crate::scene::Checked;
 use crate::scratch::Scratch;
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
+use std::ffi::CString;
+use std::io;
 use std::panic::resume_unwind;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -34,26 +36,25 @@ pub(crate) fn begin_scratch(py: Python<'_>) -> PyResult<Scratch> {
         .map_err(|cause| exceptions::refused(py, format!("no folder for results can be made: {cause}")))
 }
 
-/// Runs a scene into a folder.
+/// Runs a scene into a folder; gives what the command says where it fails.
 ///
 /// # Errors
-/// What the command says of it; `KeyboardInterrupt` after Ctrl-C, with a checkpoint in the folder.
+/// `KeyboardInterrupt` after Ctrl-C, with a checkpoint in the folder.
 pub(crate) fn carry_out(
     py: Python<'_>,
     checked: &Checked,
     folder: &Path,
     existing: Existing,
-) -> PyResult<()> {
+) -> PyResult<Result<(), RunError>> {
     let mut notes = vec![];
     let (ending, signal) = computed(py, || beside(checked, folder, existing, &mut notes))?
         .map_err(|cause| exceptions::refused(py, format!("the threads cannot be had: {cause}")))?;
     for note in notes {
-        PyErr::warn(py, &py.get_type::<PyUserWarning>(), &std::ffi::CString::new(note)?, 2)?;
+        PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(note)?, 2)?;
     }
-    match (signal, ending) {
-        (Some(signal), _) => Err(signal),
-        (None, Err(error)) => Err(exceptions::of(py, &error)),
-        (None, Ok(_)) => Ok(()),
+    match signal {
+        Some(signal) => Err(signal),
+        None => Ok(ending.map(drop)),
     }
 }
 
@@ -63,7 +64,7 @@ fn beside(
     folder: &Path,
     existing: Existing,
     notes: &mut Vec<String>,
-) -> std::io::Result<(Result<Ending, RunError>, Option<PyErr>)> {
+) -> io::Result<(Result<Ending, RunError>, Option<PyErr>)> {
     let interrupted = AtomicBool::new(false);
     let (done, waiting) = channel::<()>();
     let work = || {

@@ -11,10 +11,10 @@ use crate::simulation::Simulation;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde_json::{Map, Value, json};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stripmine_physics::method::{Entry, METHODS, Prepared, prepare, vocabularies};
-use stripmine_physics::run::{Existing, chosen_otherwise, forecast};
+use stripmine_physics::run::{Existing, RunError, chosen_otherwise, forecast};
 use stripmine_physics::scene::{SceneErrors, Values};
 
 /// What errors call a scene that is given as a text.
@@ -95,7 +95,7 @@ impl Scene {
     }
 
     /// The same scene with what the run in a folder has chosen, where this one leaves it open.
-    fn as_begun(&self, py: Python<'_>, folder: &std::path::Path) -> PyResult<Arc<Checked>> {
+    fn as_begun(&self, py: Python<'_>, folder: &Path) -> PyResult<Arc<Checked>> {
         let Checked { prepared, entry, values, .. } = &*self.checked;
         let chosen = chosen_otherwise(values, entry.vocabulary, &prepared.scene, folder);
         if chosen.is_empty() {
@@ -172,11 +172,16 @@ impl Scene {
         self.fits(py)?;
         let Some(folder) = out else {
             let scratch = begin_scratch(py)?;
-            carry_out(py, &self.checked, scratch.path(), existing)?;
-            return Ok(Run::in_scratch(scratch));
+            let done = carry_out(py, &self.checked, scratch.path(), existing)?;
+            // The state of a failed step goes with its folder.
+            return match done {
+                Ok(()) => Ok(Run::in_scratch(scratch)),
+                Err(RunError::Physics { failure, .. }) => Err(exceptions::of(py, &failure)),
+                Err(error) => Err(exceptions::of(py, &error)),
+            };
         };
         let checked = if resume { self.as_begun(py, &folder)? } else { self.checked.clone() };
-        carry_out(py, &checked, &folder, existing)?;
+        carry_out(py, &checked, &folder, existing)?.map_err(|error| exceptions::of(py, &error))?;
         Ok(Run::in_folder(folder))
     }
 

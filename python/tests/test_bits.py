@@ -89,13 +89,14 @@ class Bits(unittest.TestCase):
             np.testing.assert_array_equal(rows(run.thermo()), rows(whole.thermo()))
 
     def test_arrays_are_the_particles_to_the_bit(self):
-        start = stripmine.scene("dense-gas", {"particles.count": 50}).particles()
         text = stripmine.scene("two-discs").toml()
-        given = {"particles.positions": [[1.0 / 3.0, 1.0], [2.0, 1.0 + 1e-15]], "particles.velocities": np.array([[0.1, 0], [0, -1e-300]])}
+        given = {
+            "particles.positions": [[1.0 / 3.0, 1.0], [2.0, 1.0 + 1e-15]],
+            "particles.velocities": np.array([[0.1, 0.0], [0.0, -1e-300]]),
+        }
         particles = stripmine.scene(text, given).particles()
         np.testing.assert_array_equal(particles.positions, given["particles.positions"])
         np.testing.assert_array_equal(particles.velocities, given["particles.velocities"])
-        self.assertEqual(start.positions.shape, (50, 2))
 
 
 class Forces(unittest.TestCase):
