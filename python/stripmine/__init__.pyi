@@ -18,6 +18,29 @@ from ._errors import RunError as RunError
 from ._errors import SceneError as SceneError
 from ._errors import SimulationError as SimulationError
 
+__all__ = [
+    "BusyError",
+    "Error",
+    "Frame",
+    "Frames",
+    "Mistake",
+    "Particles",
+    "Run",
+    "RunError",
+    "Scene",
+    "SceneError",
+    "Simulation",
+    "SimulationError",
+    "Table",
+    "__version__",
+    "average",
+    "keys",
+    "methods",
+    "presets",
+    "read",
+    "scene",
+]
+
 __version__: str
 
 def scene(source: str | os.PathLike[str], overrides: Mapping[str, Any] | None = None) -> Scene:
@@ -267,7 +290,7 @@ class Table:
     def to_pandas(self) -> Any:
         """A `pandas.DataFrame`; needs pandas."""
 
-    def __getitem__(self, name: str) -> NDArray[Any]: ...
-    def __contains__(self, name: str) -> bool: ...
+    def __getitem__(self, name: str, /) -> NDArray[Any]: ...
+    def __contains__(self, name: str, /) -> bool: ...
     def __len__(self) -> int: ...
     def __arrow_c_stream__(self, requested_schema: object | None = None) -> object: ...
