@@ -14,11 +14,17 @@ use stripmine_physics::reported::Class;
 /// Particles in their box at one time.
 #[pyclass(frozen, get_all, module = "stripmine")]
 pub(crate) struct Frame {
+    /// Time since the start (time).
     time: f64,
+    /// Steps since the start; for hard discs the number of events.
     step: u64,
+    /// The particles.
     particles: Py<Particles>,
+    /// The sides of the box along x and y (length); infinite where there is no box.
     sides: [f64; 2],
+    /// The lower left corner of the box (length).
     origin: [f64; 2],
+    /// Whether the box repeats along x and along y.
     periodic: Option<[bool; 2]>,
 }
 

@@ -4,16 +4,25 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use stripmine_physics::particles::{self, Kind, Particle};
 
-/// Particles at a moment, as arrays of their own: grains first, then discs of walls.
+/// Particles at a moment, as arrays of their own: those that forces move first, then discs of walls. N is their number; D is 2, or 3 for
+/// bodies in space.
 #[pyclass(frozen, get_all, module = "stripmine")]
 pub(crate) struct Particles {
+    /// A number of its own, which stays with it; shape (N,).
     id: Py<PyArray1<u32>>,
+    /// Whether it is a disc of a wall, which no force moves; shape (N,).
     wall: Py<PyArray1<bool>>,
+    /// Centres (length), shape (N, D).
     positions: Py<PyArray2<f64>>,
+    /// Velocities (length/time), shape (N, D).
     velocities: Py<PyArray2<f64>>,
+    /// Angles (radian), counter-clockwise, shape (N,); 0 in frames, which have none.
     angle: Py<PyArray1<f64>>,
+    /// Angular velocities (1/time), counter-clockwise, shape (N,).
     angular_velocity: Py<PyArray1<f64>>,
+    /// Radii (length), shape (N,).
     radius: Py<PyArray1<f64>>,
+    /// Masses (mass), shape (N,).
     mass: Py<PyArray1<f64>>,
 }
 

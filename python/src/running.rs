@@ -79,8 +79,10 @@ fn beside(
         let mut signal = None;
         while waiting.recv_timeout(BEAT) == Err(RecvTimeoutError::Timeout) {
             if signal.is_none() {
-                signal = Python::attach(|py| py.check_signals()).err();
-                interrupted.store(signal.is_some(), Ordering::Relaxed);
+                let answered = Python::try_attach(|py| py.check_signals());
+                // Where Python is about to end, the run is too.
+                interrupted.store(!matches!(answered, Some(Ok(()))), Ordering::Relaxed);
+                signal = answered.and_then(Result::err);
             }
         }
         Ok((worker.join().unwrap_or_else(|panic| resume_unwind(panic)), signal))

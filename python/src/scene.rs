@@ -74,7 +74,11 @@ pub(crate) struct Scene {
     checked: Arc<Checked>,
 }
 
-/// The scene that is a preset's name, a file's path, or a text in TOML of several lines; with overrides.
+/// Reads and checks a scene, and makes its particles.
+///
+/// `source` is a preset's name, a file's path, or the scene itself as a text in TOML of several lines. `overrides` says what is to be
+/// otherwise: `{"particles.count": 400}`, or section by section `{"particles": {"count": 400}}`. All mistakes come at once, as
+/// `SceneError`.
 #[pyfunction]
 #[pyo3(signature = (source, overrides = None))]
 pub(crate) fn scene(source: &Bound<'_, PyAny>, overrides: Option<&Bound<'_, PyDict>>) -> PyResult<Scene> {
@@ -150,7 +154,11 @@ impl Scene {
         Simulation::start(py, self.checked.clone())
     }
 
-    /// Runs the scene as a whole, into a folder or for as long as the run is in use.
+    /// Runs the scene as a whole, as `stripmine run` does, into the folder `out`.
+    ///
+    /// Without `out` the folder is a temporary one, which goes with the last run that is of it. `resume` goes on with the run in the
+    /// folder, or begins where there is none; `other_version` goes on also where another version began it; `overwrite` begins again.
+    /// Ctrl-C ends it with a checkpoint.
     #[pyo3(signature = (out = None, *, resume = false, overwrite = false, other_version = false))]
     fn run(
         &self,

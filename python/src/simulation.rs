@@ -14,7 +14,7 @@ use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 use stripmine_physics::method::{self, Failure, Purpose, Until};
 use stripmine_physics::structure::{Setting, net_forces};
 
-/// A simulation under way. `Scene.start` makes it.
+/// A simulation under way, for one thread at a time. `Scene.start` makes it.
 #[pyclass(frozen, module = "stripmine")]
 pub(crate) struct Simulation {
     checked: Arc<Checked>,
@@ -106,7 +106,11 @@ impl Simulation {
 
 #[pymethods]
 impl Simulation {
-    /// Goes on by steps, by a time or by events.
+    /// Goes on by a number of steps, by a time (time), or by a number of events.
+    ///
+    /// Hard discs take no steps, and are advanced by a time, which is met exactly, or by events; the other methods come to the end of the
+    /// first step at which the time is over. Any pieces give the same bits as one. Other threads go on meanwhile; Ctrl-C ends it, and
+    /// the simulation may go on then. What has failed does not go on: the same error is raised again.
     #[pyo3(signature = (*, steps = None, time = None, events = None))]
     fn advance(
         &self,
@@ -144,7 +148,7 @@ impl Simulation {
         }
     }
 
-    /// A value for each quantity, by name.
+    /// A value for each quantity that the method observes, by name: the columns of `thermo.csv`.
     fn observe<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let seen = self.look(py, |State { running, broken }| {
             // The state of a failed step is seen as it is.
@@ -177,7 +181,9 @@ impl Simulation {
         Particles::of(py, particles.all(), self.checked.dimensions)
     }
 
-    /// The sum of the forces that pairs exert on each particle (force), in the order of `particles`.
+    /// The sum of the forces that pairs exert on each particle, shape (N, 2) (force), in the order of `particles()`.
+    ///
+    /// Gravity, a bath and closed sides are no pairs. Hard discs and bodies have no such forces.
     fn forces(&self, py: Python<'_>) -> PyResult<Py<PyArray2<f64>>> {
         let prepared = &self.checked.prepared;
         let Some(forces) = prepared.model.pair_forces() else {

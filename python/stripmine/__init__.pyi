@@ -4,7 +4,7 @@ Arrays are copies: writing to one changes no simulation. N is the number of part
 """
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, final
 
@@ -43,7 +43,7 @@ __all__ = [
 
 __version__: str
 
-def scene(source: str | os.PathLike[str], overrides: Mapping[str, Any] | None = None) -> Scene:
+def scene(source: str | os.PathLike[str], overrides: dict[str, Any] | None = None) -> Scene:
     """Reads and checks a scene, and makes its particles.
 
     `source` is a preset's name, a file's path, or the scene itself as a text in TOML of several lines. `overrides` says what is to be
@@ -115,7 +115,8 @@ class Scene:
         Without `out` the folder is a temporary one, which goes with the last `Run` that is of it. `resume` goes on with the run in the
         folder, or begins where there is none; `other_version` goes on also where another version began it; `overwrite` begins again.
 
-        Other threads go on meanwhile. Ctrl-C ends it with `KeyboardInterrupt` and a checkpoint, from which `resume` goes on.
+        Other threads go on meanwhile. Ctrl-C ends it with `KeyboardInterrupt` and a checkpoint, from which `resume` goes on where `out` was
+        given.
         Raises `SimulationError` where the physics fails, `RunError` where the folder is not free or cannot be written.
         """
 

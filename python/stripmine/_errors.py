@@ -15,6 +15,16 @@ class Error(Exception):
         self.kind = kind
         self.remedy = remedy
 
+    def __reduce__(self):
+        # From one process to another it goes as it is, whatever it was made of.
+        return _again, (type(self), self.args, self.__dict__)
+
+
+def _again(kind, arguments, state):
+    error = kind.__new__(kind, *arguments)
+    error.__dict__.update(state)
+    return error
+
 
 @dataclass(frozen=True)
 class Mistake:

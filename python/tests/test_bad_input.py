@@ -1,6 +1,7 @@
 """Whatever is given wrongly is an exception with the words of the command line, and never the end of the process."""
 
 import json
+import pickle
 import subprocess
 import tempfile
 import unittest
@@ -162,6 +163,22 @@ class Advancing(unittest.TestCase):
         with self.assertRaisesRegex(stripmine.SimulationError, "stop_penetration = 0.3\n  help: ") as caught:
             scene.run()
         self.assertEqual([it["id"] for it in caught.exception.particles], [1, 2])
+
+
+class Errors(unittest.TestCase):
+    def test_errors_go_from_one_process_to_another(self):
+        simulation = stripmine.scene("two-discs", TOO_FAST).start()
+        for fail in (
+            lambda: stripmine.scene("two-discs", {"a.b": 1}),
+            lambda: simulation.advance(steps=1000),
+            lambda: stripmine.read("/nowhere"),
+            lambda: stripmine.scene("two-discs").run(resume=True, overwrite=True),
+        ):
+            with self.assertRaises(stripmine.Error) as caught:
+                fail()
+            error = caught.exception
+            again = pickle.loads(pickle.dumps(error))
+            self.assertEqual((type(again), str(again), vars(again)), (type(error), str(error), vars(error)))
 
 
 class Folders(unittest.TestCase):
