@@ -5,6 +5,7 @@ use pyo3::call::PyCallArgs;
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 use serde_json::Value;
+use std::io;
 use std::path::Path;
 use stripmine_physics::quoted;
 use stripmine_physics::reported::{Class, Reported};
@@ -34,6 +35,11 @@ pub(crate) fn of_file(py: Python<'_>, class: Class, message: &str, file: &Path) 
 /// Something that is asked for and cannot be.
 pub(crate) fn refused(py: Python<'_>, message: impl Into<String>) -> PyErr {
     made(py, "Error", (message.into(),))
+}
+
+/// Threads that the system does not give.
+pub(crate) fn without_threads(py: Python<'_>, cause: &io::Error) -> PyErr {
+    refused(py, format!("the threads cannot be had: {cause}"))
 }
 
 /// Something that another thread is using.

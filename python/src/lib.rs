@@ -4,6 +4,7 @@
 mod computing;
 mod exceptions;
 mod frames;
+mod interruption;
 mod json;
 mod lists;
 mod overrides;

@@ -2,8 +2,9 @@
 
 use crate::computing::computed;
 use crate::exceptions;
+use crate::interruption::beside;
 use crate::particles::{self, Particles};
-use crate::pulse;
+use crate::pulse::{self, BEAT};
 use crate::scene::Checked;
 use numpy::PyArray2;
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -11,6 +12,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
+use std::time::Instant;
 use stripmine_physics::method::{self, Failure, Purpose, Until};
 use stripmine_physics::structure::{Setting, net_forces};
 
@@ -19,13 +21,15 @@ use stripmine_physics::structure::{Setting, net_forces};
 pub(crate) struct Simulation {
     checked: Arc<Checked>,
     state: Mutex<State>,
-    /// Raised now and then, so that Ctrl-C is answered.
+    /// Raised at every beat, so that Ctrl-C is answered.
     pause: Arc<AtomicBool>,
 }
 
 struct State {
     running: Box<dyn method::Simulation>,
     broken: Option<Broken>,
+    /// Whether a step takes longer than a beat: it would not come to its end between two.
+    is_slow: bool,
 }
 
 /// Why it does not go on.
@@ -45,6 +49,55 @@ impl State {
             Some(Broken::Fault) => Err(exceptions::fault(py, "a step was left half done")),
         }
     }
+
+    /// Goes on until the end has come, or a flag is set.
+    fn advance(&mut self, end: Until, interrupted: &AtomicBool) -> Result<(), Failure> {
+        let advanced = self.running.advance(&[end], interrupted);
+        // Only runs write rows of events; here they would pile up.
+        self.running.take_events();
+        advanced
+    }
+
+    /// Goes on until the end has come, or at most until the next beat.
+    fn advance_for_a_beat(&mut self, py: Python<'_>, end: Until, pause: &AtomicBool) -> PyResult<()> {
+        let from = self.running.clock();
+        pause.store(false, Ordering::Relaxed);
+        let advanced = computed(py, || self.advance(end, pause));
+        self.settle(py, advanced)?;
+        let clock = self.running.clock();
+        self.is_slow = !end.has_come(&clock) && clock == from;
+        Ok(())
+    }
+
+    /// Goes on until the end has come, in a thread of its own, while this one answers signals.
+    fn advance_beside(&mut self, py: Python<'_>, end: Until) -> PyResult<()> {
+        let begun = Instant::now();
+        let done = computed(py, || beside(|interrupted| self.advance(end, interrupted)));
+        let (advanced, signal) = match done {
+            Ok(Ok((advanced, signal))) => (Ok(advanced), signal),
+            Ok(Err(cause)) => return Err(exceptions::without_threads(py, &cause)),
+            Err(fault) => (Err(fault), None),
+        };
+        self.is_slow = begun.elapsed() > BEAT;
+        self.settle(py, advanced)?;
+        signal.map_or(Ok(()), Err)
+    }
+
+    /// Notes what does not go on.
+    fn settle(&mut self, py: Python<'_>, advanced: PyResult<Result<(), Failure>>) -> PyResult<()> {
+        match advanced {
+            Ok(Ok(())) => Ok(()),
+            Ok(Err(failure)) => {
+                let error = exceptions::of(py, &failure);
+                self.broken = Some(Broken::Failure(failure));
+                Err(error)
+            }
+            Err(fault) => {
+                self.broken = Some(Broken::Fault);
+                Err(fault)
+            }
+        }
+    }
 }
 
 impl Simulation {
@@ -55,9 +108,8 @@ impl Simulation {
     pub(crate) fn start(py: Python<'_>, checked: Arc<Checked>) -> PyResult<Simulation> {
         let running = computed(py, || checked.prepared.start(Purpose::Run))?;
         let running = running.map_err(|failure| exceptions::of(py, &failure))?;
-        let pause = pulse::flag()
-            .map_err(|cause| exceptions::refused(py, format!("the threads cannot be had: {cause}")))?;
-        Ok(Simulation { checked, state: Mutex::new(State { running, broken: None }), pause })
+        let pause = pulse::flag().map_err(|cause| exceptions::without_threads(py, &cause))?;
+        Ok(Simulation { checked, state: Mutex::new(State { running, broken: None, is_slow: false }), pause })
     }
 
     /// The state, unless another thread has it.
@@ -122,35 +174,20 @@ impl Simulation {
         let distance = self.distance(steps, time, events)?;
         let mut state = self.state(py)?;
         state.is_sound(py)?;
-        let State { running, broken } = &mut *state;
-        let end = [distance.after(&running.clock())];
-        loop {
-            self.pause.store(false, Ordering::Relaxed);
-            let advanced = computed(py, || {
-                let advanced = running.advance(&end, &self.pause);
-                // Only runs write rows of events; here they would pile up.
-                running.take_events();
-                advanced
-            });
-            match advanced {
-                Ok(Ok(())) if end[0].has_come(&running.clock()) => return Ok(()),
-                Ok(Ok(())) => py.check_signals()?,
-                Ok(Err(failure)) => {
-                    let error = exceptions::of(py, &failure);
-                    *broken = Some(Broken::Failure(failure));
-                    return Err(error);
-                }
-                Err(fault) => {
-                    *broken = Some(Broken::Fault);
-                    return Err(fault);
-                }
-            }
+        let end = distance.after(&state.running.clock());
+        if !state.is_slow {
+            state.advance_for_a_beat(py, end, &self.pause)?;
         }
+        if end.has_come(&state.running.clock()) {
+            return Ok(());
+        }
+        py.check_signals()?;
+        state.advance_beside(py, end)
     }
 
     /// A value for each quantity that the method observes, by name: the columns of `thermo.csv`.
     fn observe<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let seen = self.look(py, |State { running, broken }| {
+        let seen = self.look(py, |State { running, broken, .. }| {
             // The state of a failed step is seen as it is.
             if broken.is_none() {
                 running.check()?;

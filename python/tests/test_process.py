@@ -10,6 +10,8 @@ import time
 import unittest
 from pathlib import Path
 
+import numpy as np
+
 import stripmine
 
 from . import scenes
@@ -87,6 +89,14 @@ class Interruption(unittest.TestCase):
                     simulation.advance(steps=10)
                     other.advance(steps=simulation.step)
                 self.assertEqual(simulation.observe(), other.observe())
+
+    def test_a_step_longer_than_a_beat_comes_to_its_end(self):
+        # Bodies can be interrupted within a step, which then begins again; this start takes a second.
+        scene = stripmine.scene("cold-collapse", {"integrator.kind": "gear-6", "run.steps": 2, "run.thermo_every": 1})
+        simulation = scene.start()
+        simulation.advance(steps=1)
+        simulation.advance(steps=1)
+        np.testing.assert_array_equal(simulation.particles().positions, [*scene.run().frames()][-1].particles.positions)
 
     def test_a_run_is_interrupted_with_a_checkpoint(self):
         with tempfile.TemporaryDirectory() as folder:
