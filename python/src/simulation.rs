@@ -78,7 +78,7 @@ impl State {
             Ok(Err(cause)) => return Err(exceptions::without_threads(py, &cause)),
             Err(fault) => (Err(fault), None),
         };
-        self.is_slow = begun.elapsed() > BEAT;
+        self.is_slow &= begun.elapsed() > BEAT;
         self.settle(py, advanced)?;
         signal.map_or(Ok(()), Err)
     }
