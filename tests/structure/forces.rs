@@ -10,7 +10,7 @@ use stripmine_kernels::sweep::pair::Pair;
 use stripmine_physics::method::observed::find;
 use stripmine_physics::method::{METHODS, Purpose, Until, load};
 use stripmine_physics::particles::{Kind, Particles};
-use stripmine_physics::structure::{Look, PairForces, Seen, Setting, forces_on_each, observable};
+use stripmine_physics::structure::{Look, PairForces, Seen, Setting, forces_on_each, net_forces, observable};
 
 const NAMES: [&str; 3] = ["stress_xx(x,y)", "stress_xy(x,y)", "stress_yy(x,y)"];
 
@@ -71,6 +71,7 @@ fn a_stress_is_that_of_looking_at_all_pairs() {
         };
         let [mut naive, area] = [vec![0.0; 3 * middles.len()], vec![domain.area() / middles.len() as f64]];
         let mut on_each = vec![0.0; discs.len()];
+        let mut net = vec![[0.0; 2]; discs.len()];
         let all = discs.all();
         for (at, one) in all.iter().enumerate() {
             if one.kind == Kind::Grain {
@@ -90,6 +91,11 @@ fn a_stress_is_that_of_looking_at_all_pairs() {
                 let square = x * x + y * y;
                 let force = [x / square - turn * y, y / square + turn * x];
                 [at, other].into_iter().for_each(|disc| on_each[disc] += force[0].hypot(force[1]));
+                // The way leads to the other disc, and the force is odd in it.
+                for axis in [0, 1] {
+                    net[other][axis] += force[axis];
+                    net[at][axis] -= force[axis];
+                }
                 let parts = [x * force[0], 0.5 * (x * force[1] + y * force[0]), y * force[1]];
                 for place in [one.place(), two.place()] {
                     for (sum, part) in parts.into_iter().enumerate() {
@@ -111,6 +117,11 @@ fn a_stress_is_that_of_looking_at_all_pairs() {
         let found = forces_on_each(&setting, all, &forces);
         for (at, (found, naive)) in found.iter().zip(&on_each).enumerate() {
             assert!((found - naive).abs() < 1e-9 * naive, "{at}: {found} {naive}");
+        }
+        let found = net_forces(&setting, all, &forces);
+        for (at, ((found, naive), scale)) in found.iter().zip(&net).zip(&on_each).enumerate() {
+            let apart = [0, 1].map(|axis| found[axis] - naive[axis]);
+            assert!(apart[0].hypot(apart[1]) <= 1e-9 * scale, "{at}: {found:?} {naive:?}");
         }
     }
 }

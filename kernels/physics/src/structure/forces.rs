@@ -108,6 +108,23 @@ pub fn forces_on_each(setting: &Setting, particles: &[Particle], forces: &PairFo
     sums
 }
 
+/// The sum of the forces that pairs exert on each disc (force), in their order: on walls too, but for pairs of walls. A one-sided
+/// `forces.reach` of 0 gives none.
+pub fn net_forces(setting: &Setting, particles: &[Particle], forces: &PairForces) -> Vec<[f64; 2]> {
+    let mut sums = vec![[0.0; 2]; particles.len()];
+    let mut cells = Cells::default();
+    let acting = Acting::new(setting, particles, forces, &mut cells);
+    for rows in &acting.cells.parts {
+        acting.each(rows.clone(), |[first, second], _, force| {
+            for (axis, force) in force.into_iter().enumerate() {
+                sums[first][axis] += force;
+                sums[second][axis] -= force;
+            }
+        });
+    }
+    sums
+}
+
 /// Cells of the grid along each axis: nearly square, each wider than a disc.
 fn counts(setting: &Setting) -> [usize; 2] {
     let [x, y] = setting.domain.lengths();

@@ -16,7 +16,7 @@ mod waves;
 mod work;
 
 pub use blocks::Blocks;
-pub use forces::{PairForce, PairForces, forces_on_each};
+pub use forces::{PairForce, PairForces, forces_on_each, net_forces};
 pub use look::{Look, hexatic_orders, seen};
 pub use motion::{Motion, widening};
 pub use pairs::{pair_counts, pair_counts_of_all};

@@ -1,0 +1,24 @@
+//! Notes which source the package is built from, for the record of each run.
+
+use std::process::Command;
+
+fn git(arguments: &[&str]) -> Option<String> {
+    let output = Command::new("git").args(arguments).current_dir("..").output().ok()?;
+    output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
+}
+
+fn main() {
+    // Outside a checkout (a source package) there is no commit to name.
+    let commit = git(&["rev-parse", "--short=12", "HEAD"]).unwrap_or_else(|| "unknown".to_owned());
+    let sources =
+        ["kernels", "Cargo.toml", "python/src", "python/Cargo.toml", "python/Cargo.lock", "python/build.rs"];
+    let changes = git(&[&["status", "--porcelain", "--"], &sources[..]].concat());
+    let is_dirty = changes.is_some_and(|changes| !changes.is_empty());
+    println!("cargo::rustc-env=STRIPMINE_COMMIT={commit}");
+    println!("cargo::rustc-env=STRIPMINE_DIRTY={is_dirty}");
+    println!("cargo::rustc-env=STRIPMINE_TARGET={}", std::env::var("TARGET").unwrap_or_default());
+    for path in ["../kernels", "../.git/HEAD", "../.git/index", "src", "build.rs", "Cargo.toml", "Cargo.lock"]
+    {
+        println!("cargo::rerun-if-changed={path}");
+    }
+}

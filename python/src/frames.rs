@@ -1,0 +1,89 @@
+//! The frames of a trajectory, one after the other.
+
+use crate::exceptions;
+use crate::particles::{Particles, dimensions};
+use crate::scratch::Scratch;
+use pyo3::prelude::*;
+use std::fs::File;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+use stripmine_physics::io::extxyz;
+use stripmine_physics::reported::Class;
+
+/// Particles in their box at one time.
+#[pyclass(frozen, get_all, module = "stripmine")]
+pub(crate) struct Frame {
+    /// Time since the start (time).
+    time: f64,
+    /// Steps since the start; for hard discs the number of events.
+    step: u64,
+    /// The particles.
+    particles: Py<Particles>,
+    /// The sides of the box along x and y (length); infinite where there is no box.
+    sides: [f64; 2],
+    /// The lower left corner of the box (length).
+    origin: [f64; 2],
+    /// Whether the box repeats along x and along y.
+    periodic: Option<[bool; 2]>,
+}
+
+#[pymethods]
+impl Frame {
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let count = self.particles.bind(py).len()?;
+        Ok(format!("<Frame: step {}, time {:?}, {count} particles>", self.step, self.time))
+    }
+}
+
+/// The frames of a trajectory, each read when it is asked for.
+#[pyclass(frozen, module = "stripmine")]
+pub(crate) struct Frames {
+    reading: Mutex<Reading>,
+    path: PathBuf,
+    /// The folder stays as long as it is read.
+    _scratch: Option<Arc<Scratch>>,
+}
+
+struct Reading {
+    frames: extxyz::Frames<BufReader<File>>,
+    /// In how many dimensions the particles of the first frame move.
+    dimensions: Option<usize>,
+}
+
+impl Frames {
+    /// Opens a trajectory.
+    ///
+    /// # Errors
+    /// If the system does not let it be read.
+    pub(crate) fn open(py: Python<'_>, path: &Path, scratch: Option<Arc<Scratch>>) -> PyResult<Frames> {
+        let frames = extxyz::Frames::open(path).map_err(|error| wrong(py, &error, path))?.in_space();
+        let reading = Mutex::new(Reading { frames, dimensions: None });
+        Ok(Frames { reading, path: path.to_owned(), _scratch: scratch })
+    }
+}
+
+fn wrong(py: Python<'_>, error: &extxyz::ReadError, path: &Path) -> PyErr {
+    exceptions::of_file(py, Class::Input, &error.to_string(), path)
+}
+
+#[pymethods]
+impl Frames {
+    fn __iter__(slf: PyRef<'_, Self>) -> PyRef<'_, Self> {
+        slf
+    }
+
+    fn __next__(&self, py: Python<'_>) -> PyResult<Option<Frame>> {
+        let next = py.detach(|| {
+            let mut reading = self.reading.lock().unwrap_or_else(PoisonError::into_inner);
+            let Reading { frames, dimensions: known } = &mut *reading;
+            let frame = frames.next()?;
+            Some(frame.map(|frame| (*known.get_or_insert_with(|| dimensions(&frame.particles)), frame)))
+        });
+        let Some(frame) = next else { return Ok(None) };
+        let (dimensions, frame) = frame.map_err(|error| wrong(py, &error, &self.path))?;
+        let extxyz::Frame { particles, cell, origin, periodic, time, step, .. } = frame;
+        let particles = Py::new(py, Particles::of(py, particles.all(), dimensions)?)?;
+        Ok(Some(Frame { time, step, particles, sides: cell, origin, periodic }))
+    }
+}

@@ -1,0 +1,47 @@
+//! The package `stripmine` for Python: scenes, simulations and runs of the physics, with arrays of numpy and tables in the format of
+//! Arrow. What Python sees is described in `stripmine/__init__.pyi`.
+
+mod computing;
+mod exceptions;
+mod frames;
+mod interruption;
+mod json;
+mod lists;
+mod overrides;
+mod particles;
+mod pulse;
+mod run;
+mod running;
+mod scene;
+mod scratch;
+mod simulation;
+mod table;
+
+use pyo3::prelude::*;
+
+/// What `stripmine/__init__.py` passes on.
+#[pymodule]
+mod _stripmine {
+    #[pymodule_export]
+    use crate::computing::_forked;
+    #[pymodule_export]
+    use crate::frames::{Frame, Frames};
+    #[pymodule_export]
+    use crate::lists::{keys, methods, presets};
+    #[pymodule_export]
+    use crate::particles::Particles;
+    #[pymodule_export]
+    use crate::run::{Run, average, read};
+    #[pymodule_export]
+    use crate::scene::{Scene, scene};
+    #[pymodule_export]
+    use crate::simulation::Simulation;
+    #[pymodule_export]
+    use crate::table::Table;
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

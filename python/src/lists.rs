@@ -1,0 +1,68 @@
+//! What there is: presets, methods, and the keys of scenes.
+
+use crate::json;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use serde_json::{Value, json};
+use stripmine_physics::method::observed::UnknownName;
+use stripmine_physics::method::{Entry, METHODS, Quantity, method};
+use stripmine_physics::scene::{Fallback, Key};
+
+/// The scenes that come with the package: name, and what it shows.
+#[pyfunction]
+pub(crate) fn presets(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+    let all = PyDict::new(py);
+    for preset in METHODS.iter().flat_map(|method| method.vocabulary.presets) {
+        all.set_item(preset.name, preset.title())?;
+    }
+    Ok(all)
+}
+
+/// The methods: name, source, what each simulates and observes.
+#[pyfunction]
+pub(crate) fn methods(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+    let quantity = |it: &Quantity| json!({ "name": it.name, "unit": it.unit, "doc": it.doc });
+    let one = |entry: &&Entry| {
+        json!({
+            "name": entry.vocabulary.keys.method,
+            "source": entry.source,
+            "doc": entry.doc,
+            "quantities": entry.quantities.iter().map(quantity).collect::<Vec<_>>(),
+        })
+    };
+    json::to_python(py, &METHODS.iter().map(one).collect::<Value>())
+}
+
+/// Every key of the scenes of a method, the first one's by default, as `stripmine scene keys --json`.
+#[pyfunction]
+#[pyo3(signature = (method = None))]
+pub(crate) fn keys<'py>(py: Python<'py>, method: Option<&str>) -> PyResult<Bound<'py, PyAny>> {
+    let entry = match method {
+        Some(name) => self::method(METHODS, name),
+        None => METHODS.first().copied(),
+    };
+    let Some(entry) = entry else {
+        let names = METHODS.iter().map(|entry| entry.vocabulary.keys.method);
+        let error = UnknownName::new("method", method.unwrap_or_default(), names);
+        return Err(PyValueError::new_err(error.to_string()));
+    };
+    json::to_python(py, &entry.vocabulary.keys.keys().map(line).collect::<Value>())
+}
+
+fn line(key: &Key) -> Value {
+    let default = match key.fallback {
+        Fallback::Required => None,
+        Fallback::Is(text) | Fallback::Otherwise(text) => Some(text),
+    };
+    json!({
+        "section": key.section,
+        "key": key.name,
+        "type": key.kind.words(),
+        "unit": key.unit,
+        "default": default,
+        "required": key.fallback == Fallback::Required,
+        "used_with": key.used.map_or(&[][..], |(_, choices)| choices),
+        "meaning": key.doc,
+    })
+}

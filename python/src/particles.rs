@@ -1,0 +1,80 @@
+//! Particles as arrays.
+
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use pyo3::prelude::*;
+use stripmine_physics::particles::{self, Kind, Particle};
+
+/// Particles at a moment, as arrays of their own: those that forces move first, then discs of walls. N is their number; D is 2, or 3 for
+/// bodies in space.
+#[pyclass(frozen, get_all, module = "stripmine")]
+pub(crate) struct Particles {
+    /// A number of its own, which stays with it; shape (N,).
+    id: Py<PyArray1<u32>>,
+    /// Whether it is a disc of a wall, which no force moves; shape (N,).
+    wall: Py<PyArray1<bool>>,
+    /// Centres (length), shape (N, D).
+    positions: Py<PyArray2<f64>>,
+    /// Velocities (length/time), shape (N, D).
+    velocities: Py<PyArray2<f64>>,
+    /// Angles (radian), counter-clockwise, shape (N,); 0 in frames, which have none.
+    angle: Py<PyArray1<f64>>,
+    /// Angular velocities (1/time), counter-clockwise, shape (N,).
+    angular_velocity: Py<PyArray1<f64>>,
+    /// Radii (length), shape (N,).
+    radius: Py<PyArray1<f64>>,
+    /// Masses (mass), shape (N,).
+    mass: Py<PyArray1<f64>>,
+}
+
+impl Particles {
+    /// Arrays of some particles in so many dimensions.
+    ///
+    /// # Errors
+    /// If there is no memory for them.
+    pub(crate) fn of(py: Python<'_>, all: &[Particle], dimensions: usize) -> PyResult<Particles> {
+        let vectors = |of: fn(&Particle) -> [f64; 3]| {
+            rows(py, all.iter().flat_map(|it| of(it).into_iter().take(dimensions)).collect(), dimensions)
+        };
+        let numbers = |of: fn(&Particle) -> f64| column(py, all.iter().map(of).collect());
+        Ok(Particles {
+            id: column(py, all.iter().map(|it| it.id).collect()),
+            wall: column(py, all.iter().map(|it| it.kind == Kind::Wall).collect()),
+            positions: vectors(|it| it.position)?,
+            velocities: vectors(|it| it.velocity)?,
+            angle: numbers(|it| it.angle),
+            angular_velocity: numbers(|it| it.omega),
+            radius: numbers(|it| it.radius),
+            mass: numbers(|it| it.mass),
+        })
+    }
+}
+
+#[pymethods]
+impl Particles {
+    fn __len__(&self, py: Python<'_>) -> PyResult<usize> {
+        self.id.bind(py).len()
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(format!("<Particles: {}>", self.__len__(py)?))
+    }
+}
+
+/// In how many dimensions some particles move: 2 where none has a third coordinate, which then stays so.
+pub(crate) fn dimensions(particles: &particles::Particles) -> usize {
+    let is_planar = |it: &Particle| it.position[2] == 0.0 && it.velocity[2] == 0.0;
+    if particles.all().iter().all(is_planar) { 2 } else { 3 }
+}
+
+/// An array of rows of so many numbers.
+///
+/// # Errors
+/// If there is no memory for it.
+pub(crate) fn rows(py: Python<'_>, numbers: Vec<f64>, width: usize) -> PyResult<Py<PyArray2<f64>>> {
+    let count = numbers.len() / width;
+    Ok(PyArray1::from_vec(py, numbers).reshape([count, width])?.unbind())
+}
+
+fn column<T: numpy::Element>(py: Python<'_>, values: Vec<T>) -> Py<PyArray1<T>> {
+    PyArray1::from_vec(py, values).unbind()
+}

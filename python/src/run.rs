@@ -1,0 +1,199 @@
+//! Runs that have been written: their rows, frames, means and scenes.
+
+use crate::computing::computed;
+use crate::exceptions;
+use crate::frames::Frames;
+use crate::json;
+use crate::scratch::Scratch;
+use crate::table::{Column, Table};
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use stripmine_physics::averages::{Average, Averages, Estimate, Outcome};
+use stripmine_physics::io::{FileError, regular_file};
+use stripmine_physics::method::{METHODS, observer};
+use stripmine_physics::reported::Class;
+use stripmine_physics::run::{Finished, TableError, TableReader, averages_of};
+
+const THERMO: &str = "thermo.csv";
+const TRAJECTORY: &str = "trajectory.xyz";
+const SCENE: &str = "scene.toml";
+const SUMMARY: &str = "summary.json";
+
+/// Longer than any text that a run writes of itself (bytes).
+const LONGEST_TEXT: u64 = 64 << 20;
+
+/// A run in its folder. `Scene.run` and `stripmine.read` make it.
+#[pyclass(frozen, module = "stripmine")]
+pub(crate) struct Run {
+    folder: PathBuf,
+    /// The folder, where it goes with the run.
+    scratch: Option<Arc<Scratch>>,
+}
+
+/// The run in a folder, finished or not.
+#[pyfunction]
+pub(crate) fn read(py: Python<'_>, folder: PathBuf) -> PyResult<Run> {
+    let run = Run::in_folder(folder);
+    run.finished(py)?;
+    Ok(run)
+}
+
+/// The means of several runs of one scene with seeds of their own, joined.
+#[pyfunction]
+#[pyo3(signature = (*runs))]
+pub(crate) fn average(runs: &Bound<'_, PyTuple>) -> PyResult<Table> {
+    let py = runs.py();
+    let runs: Vec<Bound<'_, Run>> = runs.extract()?;
+    let finished = runs.iter().map(|run| run.get().finished(py)).collect::<PyResult<Vec<_>>>()?;
+    joined(py, &finished)
+}
+
+impl Run {
+    /// That of a folder.
+    pub(crate) fn in_folder(folder: PathBuf) -> Run {
+        Run { folder, scratch: None }
+    }
+
+    /// That of a folder that goes with it.
+    pub(crate) fn in_scratch(scratch: Scratch) -> Run {
+        Run { folder: scratch.path().to_owned(), scratch: Some(Arc::new(scratch)) }
+    }
+
+    fn finished(&self, py: Python<'_>) -> PyResult<Finished> {
+        let read = py.detach(|| Finished::read(&self.folder, METHODS));
+        read.map_err(|error| exceptions::of(py, &error))
+    }
+
+    fn text(&self, py: Python<'_>, name: &str) -> PyResult<String> {
+        let path = self.folder.join(name);
+        let bytes = regular_file::read(&path, LONGEST_TEXT).map_err(|cause| {
+            let error = FileError::at(&path, "reading")(cause);
+            exceptions::of_file(py, Class::InputOutput, &error.to_string(), &path)
+        })?;
+        Ok(String::from_utf8_lossy(&bytes).into_owned())
+    }
+}
+
+#[pymethods]
+impl Run {
+    /// Where it is.
+    #[getter]
+    fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// The rows of `thermo.csv`.
+    fn thermo(&self, py: Python<'_>) -> PyResult<Table> {
+        let table = py.detach(|| thermo(&self.folder.join(THERMO)));
+        table.map_err(|error| exceptions::of(py, &error))
+    }
+
+    /// The mean of each quantity with its error, as `stripmine average`.
+    fn averages(&self, py: Python<'_>) -> PyResult<Table> {
+        joined(py, &[self.finished(py)?])
+    }
+
+    /// The frames of its trajectory, one after the other.
+    fn frames(&self, py: Python<'_>) -> PyResult<Frames> {
+        Frames::open(py, &self.folder.join(TRAJECTORY), self.scratch.clone())
+    }
+
+    /// The scene as TOML, every value spelled out and every choice made.
+    fn toml(&self, py: Python<'_>) -> PyResult<String> {
+        self.text(py, SCENE)
+    }
+
+    /// What the run says of itself at its end.
+    fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        json::of_text(py, &self.text(py, SUMMARY)?)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<Run in {}>", self.folder.display())
+    }
+}
+
+/// The table of a run: the step, or the number of events, and then what is observed.
+fn thermo(path: &Path) -> Result<Table, TableError> {
+    let mut table = TableReader::open(path)?;
+    let names = table.columns().to_vec();
+    let units = observer(METHODS, &names).map(|method| method.quantities).unwrap_or_default();
+    let mut values = vec![vec![]; names.len()];
+    while let Some(row) = table.next_row()? {
+        values.iter_mut().zip(row).for_each(|(column, value)| column.push(value));
+    }
+    let unit = |name: &str| units.iter().find(|it| it.name == name).map_or("", |it| it.unit);
+    let columns = names.iter().zip(values).enumerate().map(|(place, (name, values))| match place {
+        0 => Column::counts(name, values.into_iter().map(|value| value as u64).collect()),
+        _ => Column::numbers(name, unit(name), values),
+    });
+    Ok(Table::new(columns.collect()))
+}
+
+fn joined(py: Python<'_>, runs: &[Finished]) -> PyResult<Table> {
+    let averages = computed(py, || averages_of(runs))?;
+    Ok(means(&averages.map_err(|error| exceptions::of(py, &error))?))
+}
+
+/// A row for each quantity; what it does not have is no number.
+fn means(Averages { quantities, .. }: &Averages) -> Table {
+    let words = |name: &str, of: &dyn Fn(&Average) -> String| {
+        Column::words(name, quantities.iter().map(of).collect())
+    };
+    let numbers = |name: &str, unit: &str, of: fn(&Outcome) -> Option<f64>| {
+        let values = quantities.iter().map(|it| of(&it.outcome).unwrap_or(f64::NAN));
+        Column::numbers(name, unit, values.collect())
+    };
+    let estimate = |name: &str, unit: &str, of: fn(&Estimate) -> f64| {
+        let values = quantities.iter().map(|it| match &it.outcome {
+            Outcome::Mean(estimate) => of(estimate),
+            _ => f64::NAN,
+        });
+        Column::numbers(name, unit, values.collect())
+    };
+    Table::new(vec![
+        words("quantity", &|it| it.quantity.to_owned()),
+        words("unit", &|it| it.unit.clone()),
+        words("of", &|it| it.of.to_owned()),
+        words("says", &|it| says(&it.outcome).to_owned()),
+        numbers("mean", "", |outcome| match *outcome {
+            Outcome::Mean(Estimate { mean, .. }) | Outcome::Constant { mean } => Some(mean),
+            _ => None,
+        }),
+        estimate("bar", "", |it| it.bar),
+        estimate("standard_error", "", |it| it.standard_error),
+        estimate("standard_error_by_blocks", "", |it| it.standard_error_by_blocks.unwrap_or(f64::NAN)),
+        estimate("correlation_time", "time", |it| it.correlation_time),
+        estimate("equilibrated_at", "time", |it| it.equilibrated_at),
+        numbers("independent_samples", "", |outcome| match *outcome {
+            Outcome::Mean(Estimate { independent_samples, .. })
+            | Outcome::TooShort { independent_samples, .. } => Some(independent_samples),
+            _ => None,
+        }),
+        numbers("enough_at", "time", |outcome| match *outcome {
+            Outcome::TooShort { enough_at, .. } => Some(enough_at),
+            _ => None,
+        }),
+        numbers("first", "", |outcome| match *outcome {
+            Outcome::Changing { first, .. } | Outcome::Kept { first, .. } => Some(first),
+            _ => None,
+        }),
+        numbers("last", "", |outcome| match *outcome {
+            Outcome::Changing { last, .. } | Outcome::Kept { last, .. } => Some(last),
+            _ => None,
+        }),
+    ])
+}
+
+/// The word of an outcome, as in `summary.json`.
+fn says(outcome: &Outcome) -> &'static str {
+    match outcome {
+        Outcome::Mean(_) => "mean",
+        Outcome::Constant { .. } => "constant",
+        Outcome::TooShort { .. } => "too-short",
+        Outcome::Changing { .. } => "changing",
+        Outcome::Kept { .. } => "kept",
+    }
+}

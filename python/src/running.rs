@@ -1,0 +1,59 @@
+//! A whole run, which Ctrl-C ends at its next step with a checkpoint.
+
+use crate::computing::computed;
+use crate::exceptions;
+use crate::interruption::beside;
+use crate::scene::Checked;
+use crate::scratch::Scratch;
+use pyo3::exceptions::PyUserWarning;
+use pyo3::prelude::*;
+use std::ffi::CString;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+use stripmine_physics::origin::Origin;
+use stripmine_physics::run::{Existing, Job, RunError, run};
+
+/// The package, for the record.
+fn built() -> Origin {
+    Origin {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        commit: env!("STRIPMINE_COMMIT").to_owned(),
+        dirty: env!("STRIPMINE_DIRTY") == "true",
+        target: env!("STRIPMINE_TARGET").to_owned(),
+    }
+}
+
+/// A folder for the results of a run that nobody has asked to keep.
+///
+/// # Errors
+/// If the system does not let it be made.
+pub(crate) fn begin_scratch(py: Python<'_>) -> PyResult<Scratch> {
+    Scratch::new()
+        .map_err(|cause| exceptions::refused(py, format!("no folder for results can be made: {cause}")))
+}
+
+/// Runs a scene into a folder; gives what the command says where it fails.
+///
+/// # Errors
+/// `KeyboardInterrupt` after Ctrl-C, with a checkpoint in the folder.
+pub(crate) fn carry_out(
+    py: Python<'_>,
+    checked: &Checked,
+    folder: &Path,
+    existing: Existing,
+) -> PyResult<Result<(), RunError>> {
+    let Checked { prepared, entry, .. } = checked;
+    let job = Job { prepared, quantities: entry.quantities, program: &built() };
+    let mut notes = vec![];
+    let notice = |note: &str| notes.push(note.to_owned());
+    let work = |interrupted: &AtomicBool| run(job, folder, existing, interrupted, |_, _| {}, notice);
+    let (ending, signal) =
+        computed(py, || beside(work))?.map_err(|cause| exceptions::without_threads(py, &cause))?;
+    for note in notes {
+        PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(note)?, 2)?;
+    }
+    match signal {
+        Some(signal) => Err(signal),
+        None => Ok(ending.map(drop)),
+    }
+}

@@ -1,0 +1,200 @@
+//! Scenes: read, checked, started and run.
+
+use crate::computing::computed;
+use crate::exceptions;
+use crate::json;
+use crate::overrides::overrides;
+use crate::particles::{Particles, dimensions};
+use crate::run::Run;
+use crate::running::{begin_scratch, carry_out};
+use crate::simulation::Simulation;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use serde_json::{Map, Value, json};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use stripmine_physics::method::{Entry, METHODS, Prepared, prepare, vocabularies};
+use stripmine_physics::run::{Existing, RunError, chosen_otherwise, forecast};
+use stripmine_physics::scene::{SceneErrors, Values};
+
+/// What errors call a scene that is given as a text.
+const OF_TEXT: &str = "scene";
+
+/// What a scene is read from.
+#[derive(Clone)]
+enum Source {
+    /// A preset's name, or a file's path.
+    Named(String),
+    /// A text.
+    Text(String),
+}
+
+impl Source {
+    /// What errors call it.
+    fn name(&self) -> &str {
+        match self {
+            Source::Named(name) => name,
+            Source::Text(_) => OF_TEXT,
+        }
+    }
+
+    fn values(&self, given: &[String]) -> Result<Values, SceneErrors> {
+        let known = vocabularies(METHODS);
+        match self {
+            Source::Named(name) => Values::load(name, given, &known),
+            Source::Text(text) => Values::parse(OF_TEXT, text, given, &known),
+        }
+    }
+}
+
+/// A scene that was read and may run.
+pub(crate) struct Checked {
+    /// With its particles.
+    pub(crate) prepared: Prepared,
+    /// Its method.
+    pub(crate) entry: &'static Entry,
+    /// In how many dimensions its particles move.
+    pub(crate) dimensions: usize,
+    values: Values,
+}
+
+impl Checked {
+    fn of(values: Values) -> Result<Checked, SceneErrors> {
+        let (prepared, entry) = prepare(values.clone(), METHODS)?;
+        let dimensions = dimensions(prepared.particles());
+        Ok(Checked { prepared, entry, dimensions, values })
+    }
+}
+
+/// A scene that was read, checked and may run. `stripmine.scene` makes it.
+#[pyclass(frozen, module = "stripmine")]
+pub(crate) struct Scene {
+    source: Source,
+    given: Vec<String>,
+    checked: Arc<Checked>,
+}
+
+/// Reads and checks a scene, and makes its particles.
+///
+/// `source` is a preset's name, a file's path, or the scene itself as a text in TOML of several lines. `overrides` says what is to be
+/// otherwise: `{"particles.count": 400}`, or section by section `{"particles": {"count": 400}}`. All mistakes come at once, as
+/// `SceneError`.
+#[pyfunction]
+#[pyo3(signature = (source, overrides = None))]
+pub(crate) fn scene(source: &Bound<'_, PyAny>, overrides: Option<&Bound<'_, PyDict>>) -> PyResult<Scene> {
+    let py = source.py();
+    let named: String = py.import("os")?.call_method1("fspath", (source,))?.extract()?;
+    let source = if named.contains('\n') { Source::Text(named) } else { Source::Named(named) };
+    let given = overrides.map(self::overrides).transpose()?.unwrap_or_default();
+    let read = computed(py, || source.values(&given).and_then(Checked::of))?;
+    let checked = Arc::new(read.map_err(|mistakes| exceptions::of(py, &mistakes))?);
+    Ok(Scene { source, given, checked })
+}
+
+impl Scene {
+    /// That the machine has the memory for it.
+    fn fits(&self, py: Python<'_>) -> PyResult<()> {
+        let fits = self.checked.prepared.memory.fits(self.source.name());
+        fits.map_err(|mistakes| exceptions::of(py, &mistakes))
+    }
+
+    /// The same scene with what the run in a folder has chosen, where this one leaves it open.
+    fn as_begun(&self, py: Python<'_>, folder: &Path) -> PyResult<Arc<Checked>> {
+        let Checked { prepared, entry, values, .. } = &*self.checked;
+        let chosen = chosen_otherwise(values, entry.vocabulary, &prepared.scene, folder);
+        if chosen.is_empty() {
+            return Ok(self.checked.clone());
+        }
+        let given = [self.given.as_slice(), &chosen].concat();
+        let read = computed(py, || self.source.values(&given).and_then(Checked::of))?;
+        Ok(Arc::new(read.map_err(|mistakes| exceptions::of(py, &mistakes))?))
+    }
+}
+
+#[pymethods]
+impl Scene {
+    /// The scene as TOML, every value spelled out and every choice made.
+    fn toml(&self) -> &str {
+        &self.checked.prepared.scene
+    }
+
+    /// The name of its method.
+    #[getter]
+    fn method(&self) -> &'static str {
+        self.checked.entry.vocabulary.keys.method
+    }
+
+    /// The particles at the start.
+    fn particles(&self, py: Python<'_>) -> PyResult<Particles> {
+        Particles::of(py, self.checked.prepared.particles().all(), self.checked.dimensions)
+    }
+
+    /// What there is to be said of the scene, as `stripmine scene check --json`.
+    fn check<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.fits(py)?;
+        let Checked { prepared, entry, .. } = &*self.checked;
+        let mut facts = prepared.facts.clone();
+        facts.extend(forecast::of_the_step(prepared));
+        facts.extend(forecast::of_the_files(prepared));
+        facts.extend(computed(py, || forecast::of_the_time(prepared))?);
+        facts.push(forecast::of_the_memory(prepared));
+        let mut data = Map::new();
+        data.insert("scene".to_owned(), json!(self.source.name()));
+        data.insert("method".to_owned(), json!(entry.vocabulary.keys.method));
+        data.extend(forecast::as_data(facts));
+        data.insert("choices".to_owned(), json!(prepared.choices));
+        data.insert("left_out".to_owned(), json!(prepared.left_out));
+        data.insert("warnings".to_owned(), json!(prepared.warnings));
+        json::to_python(py, &Value::Object(data))
+    }
+
+    /// Begins a simulation that is advanced step by step.
+    fn start(&self, py: Python<'_>) -> PyResult<Simulation> {
+        self.fits(py)?;
+        Simulation::start(py, self.checked.clone())
+    }
+
+    /// Runs the scene as a whole, as `stripmine run` does, into the folder `out`.
+    ///
+    /// Without `out` the folder is a temporary one, which goes with the last run that is of it. `resume` goes on with the run in the
+    /// folder, or begins where there is none; `other_version` goes on also where another version began it; `overwrite` begins again.
+    /// Ctrl-C ends it with a checkpoint.
+    #[pyo3(signature = (out = None, *, resume = false, overwrite = false, other_version = false))]
+    fn run(
+        &self,
+        py: Python<'_>,
+        out: Option<PathBuf>,
+        resume: bool,
+        overwrite: bool,
+        other_version: bool,
+    ) -> PyResult<Run> {
+        let existing = match (resume, overwrite) {
+            (true, true) => return Err(exceptions::refused(py, "resume and overwrite exclude each other")),
+            (false, _) if other_version => {
+                return Err(exceptions::refused(py, "other_version is for runs that go on: it needs resume"));
+            }
+            (true, _) => Existing::Resume { other_version },
+            (_, true) => Existing::Overwrite,
+            _ => Existing::Refuse,
+        };
+        self.fits(py)?;
+        let Some(folder) = out else {
+            let scratch = begin_scratch(py)?;
+            let done = carry_out(py, &self.checked, scratch.path(), existing)?;
+            // The state of a failed step goes with its folder.
+            return match done {
+                Ok(()) => Ok(Run::in_scratch(scratch)),
+                Err(RunError::Physics { failure, .. }) => Err(exceptions::of(py, &failure)),
+                Err(error) => Err(exceptions::of(py, &error)),
+            };
+        };
+        let checked = if resume { self.as_begun(py, &folder)? } else { self.checked.clone() };
+        carry_out(py, &checked, &folder, existing)?.map_err(|error| exceptions::of(py, &error))?;
+        Ok(Run::in_folder(folder))
+    }
+
+    fn __repr__(&self) -> String {
+        let particles = self.checked.prepared.particles().len();
+        format!("<Scene {}: {}, {particles} particles>", self.source.name(), self.method())
+    }
+}

@@ -1,0 +1,170 @@
+//! Tables: columns as arrays of numpy, and all of them in the format of Arrow.
+
+use arrow_array::ffi_stream::FFI_ArrowArrayStream;
+use arrow_array::{ArrayRef, Float64Array, RecordBatch, RecordBatchIterator, StringArray, UInt64Array};
+use arrow_schema::{ArrowError, DataType, Field, Schema};
+use numpy::PyArray1;
+use pyo3::exceptions::{PyKeyError, PyMemoryError};
+use pyo3::prelude::*;
+use pyo3::types::{PyCapsule, PyDict};
+use std::collections::HashMap;
+use std::sync::Arc;
+use stripmine_physics::method::observed::UnknownName;
+
+/// A column of a table.
+pub(crate) struct Column {
+    name: String,
+    /// Empty for pure numbers and for words.
+    unit: String,
+    values: Values,
+}
+
+/// What a column holds.
+enum Values {
+    Counts(Vec<u64>),
+    /// What is not there is no number.
+    Numbers(Vec<f64>),
+    Words(Vec<String>),
+}
+
+impl Column {
+    /// Of whole numbers.
+    pub(crate) fn counts(name: &str, values: Vec<u64>) -> Column {
+        Column { name: name.to_owned(), unit: String::new(), values: Values::Counts(values) }
+    }
+
+    /// Of numbers in a unit.
+    pub(crate) fn numbers(name: &str, unit: &str, values: Vec<f64>) -> Column {
+        Column { name: name.to_owned(), unit: unit.to_owned(), values: Values::Numbers(values) }
+    }
+
+    /// Of words.
+    pub(crate) fn words(name: &str, values: Vec<String>) -> Column {
+        Column { name: name.to_owned(), unit: String::new(), values: Values::Words(values) }
+    }
+
+    fn field(&self) -> Field {
+        let kind = match self.values {
+            Values::Counts(_) => DataType::UInt64,
+            Values::Numbers(_) => DataType::Float64,
+            Values::Words(_) => DataType::Utf8,
+        };
+        let unit = HashMap::from([("unit".to_owned(), self.unit.clone())]);
+        Field::new(&self.name, kind, matches!(self.values, Values::Numbers(_))).with_metadata(unit)
+    }
+
+    fn array(&self) -> ArrayRef {
+        match &self.values {
+            Values::Counts(values) => Arc::new(UInt64Array::from(values.clone())),
+            Values::Numbers(values) => {
+                let is_there = |value: &f64| (!value.is_nan()).then_some(*value);
+                Arc::new(values.iter().map(is_there).collect::<Float64Array>())
+            }
+            Values::Words(values) => Arc::new(StringArray::from_iter_values(values)),
+        }
+    }
+
+    fn to_numpy<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        Ok(match &self.values {
+            Values::Counts(values) => PyArray1::from_slice(py, values).into_any(),
+            Values::Numbers(values) => PyArray1::from_slice(py, values).into_any(),
+            Values::Words(values) => py.import("numpy")?.call_method1("array", (values, "str"))?,
+        })
+    }
+
+    fn len(&self) -> usize {
+        match &self.values {
+            Values::Counts(values) => values.len(),
+            Values::Numbers(values) => values.len(),
+            Values::Words(values) => values.len(),
+        }
+    }
+}
+
+/// A table: `table["name"]` is a column, and pandas, polars and pyarrow read all of it.
+#[pyclass(frozen, module = "stripmine")]
+pub(crate) struct Table {
+    columns: Vec<Column>,
+}
+
+impl Table {
+    /// Of columns that are as long as each other.
+    pub(crate) fn new(columns: Vec<Column>) -> Table {
+        Table { columns }
+    }
+
+    fn batch(&self) -> Result<RecordBatch, ArrowError> {
+        let fields: Vec<Field> = self.columns.iter().map(Column::field).collect();
+        let arrays = self.columns.iter().map(Column::array).collect();
+        RecordBatch::try_new(Arc::new(Schema::new(fields)), arrays)
+    }
+}
+
+#[pymethods]
+impl Table {
+    /// The names of the columns.
+    #[getter]
+    fn columns(&self) -> Vec<&str> {
+        self.columns.iter().map(|column| column.name.as_str()).collect()
+    }
+
+    /// The unit of each column, by name; empty for pure numbers and for words.
+    #[getter]
+    fn units<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let units = PyDict::new(py);
+        for column in &self.columns {
+            units.set_item(&column.name, &column.unit)?;
+        }
+        Ok(units)
+    }
+
+    /// All columns as arrays, by name.
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let all = PyDict::new(py);
+        for column in &self.columns {
+            all.set_item(&column.name, column.to_numpy(py)?)?;
+        }
+        Ok(all)
+    }
+
+    /// A `pandas.DataFrame`.
+    fn to_pandas<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        py.import("pandas")?.call_method1("DataFrame", (self.to_dict(py)?,))
+    }
+
+    fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        match self.columns.iter().find(|column| column.name == name) {
+            Some(column) => column.to_numpy(py),
+            None => {
+                let error = UnknownName::new("column of this table", name, self.columns());
+                Err(PyKeyError::new_err(error.to_string()))
+            }
+        }
+    }
+
+    fn __contains__(&self, name: &str) -> bool {
+        self.columns.iter().any(|column| column.name == name)
+    }
+
+    fn __len__(&self) -> usize {
+        self.columns.first().map_or(0, Column::len)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<Table: {} rows of {}>", self.__len__(), self.columns().join(", "))
+    }
+
+    /// The stream of the Arrow PyCapsule interface; a schema that is asked for is not heeded, as the interface allows.
+    #[pyo3(signature = (requested_schema = None))]
+    fn __arrow_c_stream__<'py>(
+        &self,
+        py: Python<'py>,
+        requested_schema: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyCapsule>> {
+        let _not_heeded = requested_schema;
+        let batch = self.batch().map_err(|error| PyMemoryError::new_err(error.to_string()))?;
+        let schema = batch.schema();
+        let stream = FFI_ArrowArrayStream::new(Box::new(RecordBatchIterator::new([Ok(batch)], schema)));
+        PyCapsule::new_with_value(py, stream, c"arrow_array_stream")
+    }
+}

@@ -1,0 +1,60 @@
+"""2D particle dynamics: granular discs, hard discs, Langevin dynamics, and bodies that attract each other.
+
+A scene says what is simulated; it is run as a whole, or advanced step by step:
+
+    import stripmine
+    scene = stripmine.scene("hard-disks", {"particles.count": 400})
+    simulation = scene.start()
+    simulation.advance(time=10.0)
+    simulation.observe()["compressibility"]
+
+Quantities are in the units of the scene; "length", "time", "mass", "energy" and so on are named where a quantity has one.
+"""
+
+import os as _os
+
+from ._errors import BusyError, Error, Mistake, RunError, SceneError, SimulationError
+from ._stripmine import (
+    Frame,
+    Frames,
+    Particles,
+    Run,
+    Scene,
+    Simulation,
+    Table,
+    __version__,
+    _forked,
+    average,
+    keys,
+    methods,
+    presets,
+    read,
+    scene,
+)
+
+__all__ = [
+    "BusyError",
+    "Error",
+    "Frame",
+    "Frames",
+    "Mistake",
+    "Particles",
+    "Run",
+    "RunError",
+    "Scene",
+    "SceneError",
+    "Simulation",
+    "SimulationError",
+    "Table",
+    "__version__",
+    "average",
+    "keys",
+    "methods",
+    "presets",
+    "read",
+    "scene",
+]
+
+# Threads do not survive a fork: where some have computed, the child is told so instead of waiting for them.
+if hasattr(_os, "register_at_fork"):
+    _os.register_at_fork(after_in_child=_forked)

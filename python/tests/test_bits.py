@@ -1,0 +1,128 @@
+"""What comes out is the same to the bit, however it is asked for."""
+
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+import stripmine
+
+from . import scenes
+
+
+def stride(scene):
+    """The way from one row to the next, three of which are the run."""
+    return {"time": 2.0} if scene.method == "hard-disks" else {"steps": 20}
+
+
+def state(simulation):
+    """Everything of the particles, as bytes."""
+    particles = simulation.particles()
+    return b"".join(
+        array.tobytes()
+        for array in (particles.id, particles.positions, particles.velocities, particles.angle, particles.angular_velocity)
+    )
+
+
+def rows(table):
+    """The rows of a table, without the first column."""
+    return np.stack([table[name] for name in table.columns[1:]], axis=1)
+
+
+class Bits(unittest.TestCase):
+    def test_pieces_are_the_whole(self):
+        for name, overrides in scenes.SHORT.items():
+            with self.subTest(name):
+                scene = stripmine.scene(name, overrides)
+                whole, pieces = scene.start(), scene.start()
+                whole.advance(**{key: 3 * value for key, value in stride(scene).items()})
+                for part in (0.5, 0, 1.5, 1):
+                    pieces.advance(**{key: type(value)(part * value) for key, value in stride(scene).items()})
+                    pieces.observe()
+                self.assertEqual(state(whole), state(pieces))
+                self.assertEqual(whole.observe(), pieces.observe())
+                self.assertEqual((whole.time, whole.step, whole.events), (pieces.time, pieces.step, pieces.events))
+
+    def test_a_simulation_observes_the_rows_of_a_run(self):
+        for name, overrides in scenes.SHORT.items():
+            with self.subTest(name):
+                scene = stripmine.scene(name, overrides)
+                run, simulation = scene.run(), scene.start()
+                found = [list(simulation.observe().values())]
+                for _ in range(3):
+                    simulation.advance(**stride(scene))
+                    found.append(list(simulation.observe().values()))
+                thermo = run.thermo()
+                self.assertEqual(thermo.columns[1:], list(simulation.observe()))
+                np.testing.assert_array_equal(rows(thermo), np.array(found))
+                self.assertEqual(thermo["step"][-1], simulation.step or simulation.events)
+                *_, last = run.frames()
+                particles = simulation.particles()
+                order, theirs = np.argsort(particles.id), np.argsort(last.particles.id)
+                np.testing.assert_array_equal(particles.positions[order], last.particles.positions[theirs])
+                np.testing.assert_array_equal(particles.velocities[order], last.particles.velocities[theirs])
+                self.assertEqual((last.time, len(last.particles)), (simulation.time, len(particles)))
+
+    @unittest.skipUnless(scenes.command(), "there is no command `stripmine`: set STRIPMINE, or the path")
+    def test_a_run_is_that_of_the_command(self):
+        for name, overrides in scenes.SHORT.items():
+            with self.subTest(name), tempfile.TemporaryDirectory() as folder:
+                theirs, ours = Path(folder) / "theirs", Path(folder) / "ours"
+                arguments = ["run", name, "--quiet", "--out", theirs, *scenes.flat(overrides)]
+                subprocess.run([scenes.command(), *arguments], check=True, capture_output=True)
+                run = stripmine.scene(name, overrides).run(ours)
+                for file in ("thermo.csv", "trajectory.xyz", "scene.toml"):
+                    self.assertEqual((theirs / file).read_bytes(), (ours / file).read_bytes(), file)
+                read = stripmine.read(theirs)
+                np.testing.assert_array_equal(rows(read.thermo()), rows(run.thermo()))
+                self.assertEqual(read.toml(), stripmine.scene(name, overrides).toml())
+
+    def test_a_run_that_goes_on_is_one_that_was_never_stopped(self):
+        with tempfile.TemporaryDirectory() as folder:
+            overrides = scenes.SHORT["dense-gas"]
+            run = stripmine.scene("dense-gas", {**overrides, "run.steps": 40}).run(folder)
+            self.assertEqual(len(run.thermo()), 3)
+            stripmine.scene("dense-gas", overrides).run(folder, resume=True)
+            whole = stripmine.scene("dense-gas", overrides).run()
+            np.testing.assert_array_equal(rows(run.thermo()), rows(whole.thermo()))
+
+    def test_arrays_are_the_particles_to_the_bit(self):
+        text = stripmine.scene("two-discs").toml()
+        given = {
+            "particles.positions": [[1.0 / 3.0, 1.0], [2.0, 1.0 + 1e-15]],
+            "particles.velocities": np.array([[0.1, 0.0], [0.0, -1e-300]]),
+        }
+        particles = stripmine.scene(text, given).particles()
+        np.testing.assert_array_equal(particles.positions, given["particles.positions"])
+        np.testing.assert_array_equal(particles.velocities, given["particles.velocities"])
+
+
+class Forces(unittest.TestCase):
+    def test_forces_of_pairs_move_what_is_free(self):
+        # Mass times the change of velocity in a step that is short; discs in contact, no gravity.
+        scene = stripmine.scene("two-discs")
+        simulation = scene.start()
+        while not np.any(simulation.forces()):
+            simulation.advance(steps=1)
+            self.assertLess(simulation.time, 10.0)
+        simulation.advance(steps=20)
+        before, force = simulation.particles(), simulation.forces()
+        time = simulation.time
+        simulation.advance(steps=1)
+        found = before.mass[:, None] * (simulation.particles().velocities - before.velocities) / (simulation.time - time)
+        np.testing.assert_allclose(force.sum(axis=0), 0, atol=1e-9 * np.abs(force).max())
+        np.testing.assert_allclose(found, force, rtol=0.05, atol=1e-3 * np.abs(force).max())
+
+    def test_what_has_no_such_forces_says_so(self):
+        for name in ("hard-disks", "cold-collapse"):
+            simulation = stripmine.scene(name, scenes.SHORT[name]).start()
+            with self.assertRaisesRegex(stripmine.Error, "no forces between discs"):
+                simulation.forces()
+        free = stripmine.scene("langevin-free", {"particles.count": 10}).start()
+        np.testing.assert_array_equal(free.forces(), np.zeros((10, 2)))
+
+
+if __name__ == "__main__":
+    unittest.main()
