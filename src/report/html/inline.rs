@@ -24,7 +24,7 @@ impl Inline {
         Inline {
             size: between("viewBox=\"", "\"").to_owned(),
             definitions: between("<defs>\n", "</defs>").to_owned(),
-            body: body.trim_end().trim_end_matches("</svg>").to_owned(),
+            body: tight(body.trim_end().trim_end_matches("</svg>")),
         }
     }
 
@@ -41,5 +41,31 @@ impl Inline {
                 (PreEscaped(&self.body))
             }
         }
+    }
+}
+
+/// The same with no blank before a sign in the data of a path, where a sign begins a number as well: thousands of discs are drawn by steps.
+fn tight(body: &str) -> String {
+    const DATA: &str = " d=\"";
+    let mut paths = body.split(DATA);
+    let mut all = paths.next().unwrap_or_default().to_owned();
+    for path in paths {
+        let (data, rest) = path.split_once('"').unwrap_or((path, ""));
+        all.extend([DATA, &data.replace(" -", "-"), "\"", rest]);
+    }
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::tight;
+
+    #[test]
+    fn only_the_data_of_paths_is_tightened() {
+        let body =
+            "<path fill=\"none\" d=\"M1 -2h1m-3 -4h1\"/><text x=\"1\">a - b -c</text><path d=\"M0 0\"/>";
+        let expected =
+            "<path fill=\"none\" d=\"M1-2h1m-3-4h1\"/><text x=\"1\">a - b -c</text><path d=\"M0 0\"/>";
+        assert_eq!(tight(body), expected);
     }
 }

@@ -53,7 +53,7 @@ function nearestOn(a, b, { x, y }) {
 function seriesOf(group) {
   const marks = group.querySelector("[style] > path");
   const [bars, curve] = ["[d*=V]", ":not([d*=V])"].map((which) => group.querySelector(`:scope > path${which}`));
-  const spreads = [...(bars?.getAttribute("d") ?? "").matchAll(/M(\S+) (\S+)h9m-4.5 0V([\d.-]+)m/g)];
+  const spreads = [...(bars?.getAttribute("d") ?? "").matchAll(/M(-?[\d.]+) ?(-?[\d.]+)h9m-4.5 0V([\d.-]+)m/g)];
   return {
     name: group.dataset.name,
     marked: marks !== null,
