@@ -1,6 +1,7 @@
 """Where results come from, whether they may be written over committed ones, and the folder they are written to."""
 
 import datetime
+import functools
 import json
 import pathlib
 import platform
@@ -28,8 +29,9 @@ def is_traceable(out):
     return not (changed and git(out, "ls-files", "--", "."))
 
 
+@functools.cache
 def provenance():
-    """Where results come from: the commit of this checkout, the whole command line, the processor."""
+    """Where results come from: the commit of this checkout, before any result is written there, the whole command line, the processor."""
     commit = git(pathlib.Path(__file__).parent, "describe", "--always", "--dirty", "--abbrev=12") or None
     listed = pathlib.Path("/proc/cpuinfo")
     lines = listed.read_text().splitlines() if listed.exists() else []
@@ -40,8 +42,9 @@ def provenance():
 
 def write(folder, files):
     """Writes files into a folder of their own, beside the list of them and where they come from."""
+    source = provenance()
     folder.mkdir(parents=True, exist_ok=True)
     for name, text in files.items():
         (folder / name).write_text(text, encoding="utf-8")
-    listed = {**provenance(), "files": sorted(["provenance.json", *files])}
+    listed = {**source, "files": sorted(["provenance.json", *files])}
     (folder / "provenance.json").write_text(json.dumps(listed, indent=2) + "\n")
