@@ -119,8 +119,7 @@ fn needed_and_most(preset: &str, sets: &[&str], ends: [u32; 2]) -> (f64, f64) {
     (checked["memory"]["needed"].as_u64().unwrap() as f64, taken[0].max(taken[1]) as f64)
 }
 
-/// Discs on several ranks of one process, to a fifth: what allocators of several threads keep is not foreseen to the byte, nor by how much the rows of each
-/// rank are rounded up to large pages.
+/// Discs on several ranks of one process, to a tenth below: what allocators of several threads keep is not foreseen to the byte.
 #[test]
 fn ranks_take_the_memory_that_was_foreseen() {
     for (search, ranks) in [("lattice", 2), ("lattice", 4), ("neighbor-list", 4)] {
@@ -138,7 +137,7 @@ fn ranks_take_the_memory_that_was_foreseen() {
             ["run", "bench", "--quiet", "--threads", "1", "--ranks", &ranks.to_string(), "--out", &out];
         let most = peak(&words.map(str::to_owned).into_iter().chain(sets).collect::<Vec<String>>()) as f64;
         assert!(
-            (0.8 * most..1.25 * most + FRAME).contains(&needed),
+            (0.9 * most..1.25 * most + FRAME).contains(&needed),
             "{search}, {ranks}: {needed} foreseen, {most} taken"
         );
     }

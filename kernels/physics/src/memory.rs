@@ -4,6 +4,7 @@ use crate::ranks::Crew;
 use crate::scene::{Reason, SceneErrors, Spot};
 use serde::{Serialize, Serializer};
 use std::fs;
+use stripmine_kernels::isa::aligned_column::taken;
 
 /// Bytes of the program itself: its text, its threads, its files.
 pub const PROGRAM: f64 = 17.0e6;
@@ -33,14 +34,22 @@ pub struct OfRanks {
     pub gathered: f64,
     /// What every rank holds of the whole scene, whatever its own part.
     pub each: f64,
+    /// How many rows of all discs there are, and how long one is: each rank has those of its own, rounded up.
+    pub rows: [f64; 2],
 }
 
 impl OfRanks {
-    /// Of `count` discs in bands, with cells of which every rank has all (bytes).
-    pub fn in_bands(count: f64, cells: f64) -> OfRanks {
+    /// Of `count` discs in bands, with cells of which every rank has all (bytes), and rows of the discs.
+    pub fn in_bands(count: f64, cells: f64, rows: [f64; 2]) -> OfRanks {
         // Seven words a disc on their way, and six where they have arrived. Its row, the periods that it has crossed; the rest is what allocators of
         // several threads keep, as measured.
-        OfRanks { gathered: 8.0 * (7.0 + 6.0) * count, each: 50.0 * count + cells }
+        OfRanks { gathered: 8.0 * (7.0 + 6.0) * count, each: 50.0 * count + cells, rows }
+    }
+
+    /// By how much more the rows take in as many parts (bytes).
+    fn rounding(&self, ranks: f64) -> f64 {
+        let [rows, bytes] = self.rows;
+        rows * (ranks * taken(bytes / ranks) - taken(bytes))
     }
 }
 
@@ -50,7 +59,10 @@ impl Foreseen {
     pub fn on(self, crew: Crew) -> Foreseen {
         let more = match crew {
             Crew::One | Crew::Threads(..=1) => return self,
-            Crew::Threads(ranks) => self.ranks.gathered + (ranks - 1) as f64 * self.ranks.each,
+            Crew::Threads(count) => {
+                let ranks = &self.ranks;
+                ranks.gathered + (count - 1) as f64 * ranks.each + ranks.rounding(count as f64)
+            }
             Crew::Processes(_) => self.ranks.gathered,
         };
         Foreseen { needed: self.needed + more as u64, ..self }

@@ -84,30 +84,26 @@ impl Checked {
     fn memory(&self) -> Foreseen {
         let count = self.particles.len() as f64;
         // Rows of the state and the sums, one more of each to put them in order, and of the places at which lists were made.
-        let rows = |count_of_rows: f64| count_of_rows * row(8.0 * count);
+        let rows = if matches!(self.found, Found::Lists(..)) { 11.0 } else { 9.0 };
         // Ids and numbers; lists.
         let (engine, cells) = match &self.found {
-            Found::Sectors(grid) => {
-                (rows(9.0) + 99.0 * count, 8.0 * grid.counts.iter().product::<usize>() as f64)
-            }
-            Found::Lists(grid, _) => {
-                (rows(11.0) + 128.0 * count, 8.0 * grid.counts.iter().product::<usize>() as f64)
-            }
+            Found::Sectors(grid) => (99.0 * count, 8.0 * grid.counts.iter().product::<usize>() as f64),
+            Found::Lists(grid, _) => (128.0 * count, 8.0 * grid.counts.iter().product::<usize>() as f64),
             Found::Lattice(shape, _) => {
                 // A number and a bit a cell; copies of the places where the lattice is not sparse.
                 let copies = if count < SPARSE * shape.cells() as f64 { 0.0 } else { 2.0 };
                 let cells = shape.padded() as f64;
-                (rows(9.0) + 139.0 * count, (1.0 + copies) * row(4.0 * cells) + 0.125 * cells)
+                (139.0 * count, (1.0 + copies) * row(4.0 * cells) + 0.125 * cells)
             }
         };
         // The scene's particles in three places, once more while they are observed, and the frame that is being written; what puts them in order.
         let particles = (6.0 * size_of::<Particle>() as f64 + 2.0 * 16.0 + 4.0) * count;
         Foreseen {
-            needed: (PROGRAM + engine + cells + particles) as u64,
+            needed: (PROGRAM + rows * row(8.0 * count) + engine + cells + particles) as u64,
             available: available(),
             what: format!("{count} particles"),
             remedy: "take fewer particles",
-            ranks: OfRanks::in_bands(count, cells),
+            ranks: OfRanks::in_bands(count, cells, [rows, 8.0 * count]),
         }
     }
 

@@ -28,10 +28,10 @@ pub fn foreseen(checked: &Checked) -> Foreseen {
     let from = if of.model.gravity == [0.0; 2] { 0.0 } else { 16.0 * of.grains };
     let kept = PROGRAM + 2.0 * DISC * of.discs + from + of.followed();
     let near = Near::bytes(checked.particles.len()) as f64;
-    let mut cells = 0.0;
+    let (mut cells, mut rows) = (0.0, 0.0);
     let ([engine, columns], observed) = match contacts(checked) {
         Contacts::Fast(search) => {
-            cells = of.cells(search);
+            (cells, rows) = (of.cells(search), of.rows(search));
             let [engine, columns] = of.fast(search);
             ([engine + cells, columns], of.observed())
         }
@@ -59,7 +59,7 @@ pub fn foreseen(checked: &Checked) -> Foreseen {
         what: format!("{} discs in {} cells", checked.particles.len(), checked.geometry.shape.cells()),
         remedy: "take fewer discs, a smaller box or machine.precision = \"f32\"; where most cells are empty, search.by = \
                  \"sectors\" has no lattice",
-        ranks: OfRanks::in_bands(of.discs, cells),
+        ranks: OfRanks::in_bands(of.discs, cells, [rows, of.state * of.discs]),
     }
 }
 
@@ -140,11 +140,7 @@ impl Sizes {
 
     /// Bytes that a fast method keeps beside its cells, and of the columns of its checkpoints.
     fn fast(&self, search: FastSearch) -> [f64; 2] {
-        let carried = match self.model.scheme {
-            Scheme::Gear(values) => values.count(),
-            Scheme::VelocityVerlet => 2,
-        };
-        let derivatives = self.freedoms() * carried as f64;
+        let derivatives = self.freedoms() * self.carried();
         let [of_state, of_forces] = [self.state, self.force].map(|bytes| row(bytes * self.discs));
         // One of each kind is room for putting discs in order.
         let columns =
@@ -160,6 +156,20 @@ impl Sizes {
             }
         };
         [columns + found, written * self.discs]
+    }
+
+    /// Rows of the discs that a fast method keeps: the state, the sums, one more of each, and places at which lists were made.
+    fn rows(&self, search: FastSearch) -> f64 {
+        let lists = if let FastSearch::Lists { .. } = search { 2.0 } else { 0.0 };
+        self.freedoms() * self.carried() + 3.0 * self.varying() + 1.0 + 4.0 + lists
+    }
+
+    /// Derivatives that are carried from step to step.
+    fn carried(&self) -> f64 {
+        match self.model.scheme {
+            Scheme::Gear(values) => values.count() as f64,
+            Scheme::VelocityVerlet => 2.0,
+        }
     }
 
     /// Bytes of what a search of the fast engine keeps of its cells.
