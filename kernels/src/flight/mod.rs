@@ -7,7 +7,7 @@ mod partners;
 
 use crate::backend::{Registers, Scalar};
 use crate::isa::{Predicate, Vector};
-pub use partners::{Earliest, MOST_PARTNERS, earliest};
+pub use partners::{Earliest, MOST_PARTNERS, ROW_UNIT, earliest};
 
 /// A disc, as it was after its last event. One line of the cache.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,10 +3,12 @@
 use super::{Disc, Flight, Space, meetings};
 use crate::backend::Registers;
 use crate::isa::{Predicate, Vector};
-use std::array::from_fn;
 
-/// Partners of a disc at most.
+/// Entries of a row of partners at most.
 pub const MOST_PARTNERS: usize = 64;
+
+/// A row of partners is a whole number of so many entries, and so of registers of every instruction set.
+pub const ROW_UNIT: usize = 16;
 
 /// What comes first.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,22 +21,25 @@ pub struct Earliest {
     pub surprised: u64,
 }
 
-/// Whom of its `partners` the disc `own` meets first, with the time of every meeting in `times`; infinite ones as in
-/// [`meeting`](super::meeting). `known` is the time of what each disc is known to meet first.
+/// Whom of its partners the disc `own` meets first, with the time of every meeting in `times`; infinite ones as in
+/// [`meeting`](super::meeting). The partners are the first `count` of a `row`; what stands behind them is a number of any disc, for
+/// a branch for each would be mispredicted: how many partners a disc has is a matter of luck. `known` is the time of what each disc
+/// is known to meet first.
 ///
 /// # Panics
-/// If there are more partners than [`MOST_PARTNERS`], or a number lies beyond the discs.
+/// If a row is longer than [`MOST_PARTNERS`] or no multiple of [`ROW_UNIT`], or a number lies beyond the discs.
 #[inline(always)]
 pub fn earliest<R: Registers<Lane = f64>>(
     registers: R,
     space: &Space,
     discs: &[Disc],
     known: &[f64],
-    (own, partners): (u32, &[u32]),
+    (own, row, count): (u32, &[u32], usize),
     now: f64,
     times: &mut [f64; MOST_PARTNERS],
 ) -> Earliest {
-    assert!(partners.len() <= MOST_PARTNERS, "{} partners", partners.len());
+    let is_whole = row.len() <= MOST_PARTNERS && row.len().is_multiple_of(ROW_UNIT);
+    assert!(is_whole && count <= row.len(), "{count} partners in a row of {}", row.len());
     let known = &known[..discs.len()];
     let disc = &discs[own as usize];
     let splat = |value: f64| registers.splat(value);
@@ -46,12 +51,12 @@ pub fn earliest<R: Registers<Lane = f64>>(
     };
     let mut least = splat(f64::INFINITY);
     let mut surprised = 0;
-    for begin in (0..partners.len()).step_by(R::LANES) {
-        // Lanes beyond the last partner stand for the disc itself, without a radius: they meet never.
-        let numbers: [usize; 16] = from_fn(|lane| {
-            let number = if lane < R::LANES { partners.get(begin + lane) } else { None };
-            *number.unwrap_or(&own) as usize
-        });
+    for begin in (0..count).step_by(R::LANES) {
+        let some = &row[begin..begin + R::LANES];
+        let mut numbers = [0; 16];
+        for lane in 0..R::LANES {
+            numbers[lane] = some[lane] as usize;
+        }
         let by_lane = |of: &dyn Fn(usize) -> f64| {
             let mut lanes = Lanes([0.0; 16]);
             for lane in 0..R::LANES {
@@ -61,15 +66,16 @@ pub fn earliest<R: Registers<Lane = f64>>(
             unsafe { registers.load(lanes.0.as_ptr()) }
         };
         let column = |of: &dyn Fn(usize) -> f64| by_lane(&|lane| of(numbers[lane]));
-        let here = partners.len() - begin;
-        let radius = |lane: usize| if lane < here { discs[numbers[lane]].radius } else { f64::NAN };
         let others = Flight {
             position: [column(&|it| discs[it].position[0]), column(&|it| discs[it].position[1])],
             velocity: [column(&|it| discs[it].velocity[0]), column(&|it| discs[it].velocity[1])],
             time: column(&|it| discs[it].time),
-            radius: by_lane(&radius),
+            radius: column(&|it| discs[it].radius),
         };
         let met = meetings(registers, space, &flight, &others, now, f64::INFINITY);
+        let here = (count - begin).min(ROW_UNIT);
+        // SAFETY: behind any of the first seventeen entries there are sixteen.
+        let met = met.max(unsafe { registers.load(ABSENT.0.as_ptr().add(ROW_UNIT - here)) });
         // SAFETY: a whole number of registers fits, for their lanes are a power of two up to sixteen.
         unsafe { registers.store(times.as_mut_ptr().add(begin), met) };
         let finite = met.less_than(splat(f64::INFINITY));
@@ -83,7 +89,7 @@ pub fn earliest<R: Registers<Lane = f64>>(
     let time = smallest(&lanes.0, R::LANES);
     let mut first = 0;
     if time < f64::INFINITY {
-        for begin in (0..partners.len()).step_by(R::LANES) {
+        for begin in (0..count).step_by(R::LANES) {
             // SAFETY: this register was stored above.
             let met = unsafe { registers.load(times.as_ptr().add(begin)) };
             first |= registers.bits(met.equal(splat(time))) << begin;
@@ -107,6 +113,21 @@ fn smallest(numbers: &[f64; 16], count: usize) -> f64 {
     halves[0]
 }
 
+/// The soonest that partners may be met, from any entry on: at once where there is one, and then never.
+static ABSENT: Absent = {
+    let mut soonest = [0.0; 2 * ROW_UNIT];
+    let mut lane = ROW_UNIT;
+    while lane < soonest.len() {
+        soonest[lane] = f64::INFINITY;
+        lane += 1;
+    }
+    Absent(soonest)
+};
+
+/// Two rows' units of numbers, at lines of their own.
+#[repr(align(64))]
+struct Absent([f64; 2 * ROW_UNIT]);
+
 /// Numbers of a register on their way to it; at a line of its own.
 #[repr(align(64))]
 struct Lanes([f64; 16]);
@@ -123,7 +144,7 @@ mod tests {
         space: &'a Space,
         discs: &'a [Disc],
         known: &'a [f64],
-        partners: &'a [u32],
+        partners: (&'a [u32], usize),
         times: &'a mut [f64; MOST_PARTNERS],
         found: &'a mut Option<Earliest>,
     }
@@ -132,7 +153,7 @@ mod tests {
         #[inline(always)]
         fn on<R: Registers<Lane = f64>>(self, registers: R) {
             let Search { space, discs, known, partners, times, found } = self;
-            *found = Some(earliest(registers, space, discs, known, (0, partners), 3.0, times));
+            *found = Some(earliest(registers, space, discs, known, (0, partners.0, partners.1), 3.0, times));
         }
     }
 
@@ -157,10 +178,16 @@ mod tests {
                     })
                     .collect();
                 let known: Vec<f64> = discs.iter().map(|_| draw(3.0, 9.0)).collect();
-                let partners: Vec<u32> = (1..=count as u32).collect();
+                let mut row: Vec<u32> = (1..=count as u32).collect();
+                // Behind them is the disc itself, and one that it may meet.
+                row.resize(count.next_multiple_of(ROW_UNIT), 0);
+                if let Some(behind) = row.get_mut(count) {
+                    *behind = 1;
+                }
+                let partners = (&row[..], count);
                 let times = |set: InstructionSet| {
                     let mut times = [0.0; MOST_PARTNERS];
-                    let (space, discs, known, partners) = (&space, &discs, &known, &partners);
+                    let (space, discs, known, partners) = (&space, &discs, &known, partners);
                     let mut found = None;
                     let search =
                         Search { space, discs, known, partners, times: &mut times, found: &mut found };

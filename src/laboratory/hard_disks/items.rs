@@ -2,7 +2,7 @@
 
 use super::sections;
 use super::study::soft_hard::{Question, soft_hard};
-use super::study::{atmosphere, collapse, cooling, fluid, masks, precision, rates, structure};
+use super::study::{atmosphere, collapse, complexity, cooling, fluid, masks, precision, rates, structure};
 use super::verbs::question;
 use crate::console::Failure;
 use crate::report::Chapter::{Beyond, Host, Sources};
@@ -38,6 +38,13 @@ pub(super) const ITEMS: &[Item] = &[
         [3.0, 20.0],
         comparison,
         "Hard discs: cost over mask and density, and the source's formula",
+    ),
+    Item::quick(
+        "hard-disks-complexity",
+        Sources,
+        [2.0, 200.0],
+        growth,
+        "Hard discs: operations and time of a collision over the number of discs",
     ),
     Item::full("hard-disks-cooling", Beyond, 6.0, haff, "Hard discs: Haff's law, and inelastic collapse"),
     Item::full(
@@ -89,6 +96,25 @@ fn comparison(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     };
     let data = masks::masks(2500, densities, turns, progress)?;
     Made::new(sections::masks::section(&data), &data)
+}
+
+fn growth(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+    let effort = match effort {
+        Effort::Quick => complexity::Effort {
+            discs: vec![1000, 10_000],
+            packing_fractions: vec![0.50],
+            rounds: 1,
+            collisions: 20_000,
+        },
+        Effort::Full => complexity::Effort {
+            discs: vec![1000, 4000, 16_000, 64_000, 256_000, 1_000_000, 10_000_000],
+            packing_fractions: vec![0.30, 0.70],
+            rounds: 3,
+            collisions: 300_000,
+        },
+    };
+    let data = complexity::complexity(&effort, progress)?;
+    Made::new(sections::complexity::section(&data), &data)
 }
 
 fn haff(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {

@@ -2,6 +2,7 @@
 
 pub mod atmosphere;
 pub mod collapse;
+pub mod complexity;
 pub mod cooling;
 pub mod fluid;
 pub mod masks;

@@ -13,6 +13,7 @@ use crate::method::{Prepared, Until};
 use crate::particles::{Particle, Particles};
 use crate::scene::{GENERATE, RADIUS, Read, Reason, SceneError, SceneErrors, Values, WallMotion, Warning};
 use crate::start::{Stated, make, outside, overlaps};
+use std::sync::Arc;
 use stripmine_kernels::flight::Disc;
 use stripmine_kernels::mask::Mask;
 
@@ -24,7 +25,8 @@ const ROUNDING: f64 = 1e-12;
 pub(super) struct Checked {
     pub(super) scene: Scene,
     pub(super) domain: Domain,
-    pub(super) particles: Particles,
+    /// Shared with the simulation: there are many.
+    pub(super) particles: Arc<Particles>,
     /// The mask, where events are found the source's way.
     pub(super) mask: Option<Mask>,
     pub(super) warnings: Vec<Warning>,
@@ -64,6 +66,7 @@ pub(super) fn prepare(values: Values) -> Result<Prepared, SceneErrors> {
     });
     SceneErrors::none_of(errors)?;
     SceneErrors::none_of(without_events(&values, &scene, domain, &particles).into_iter().collect())?;
+    let particles = Arc::new(particles);
     Ok(Checked { scene, domain, particles, mask, warnings: made.warnings, choices }.prepared())
 }
 

@@ -1,6 +1,7 @@
 //! What every way to find events offers, and what it says of them. All give the same events at the same times, to the bit.
 
 use super::event::{Arena, Impact};
+use super::operations::Operations;
 use crate::method::Snapshot;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::flight::Disc;
@@ -22,6 +23,9 @@ pub trait Engine: Send {
 
     /// How often the partners of a disc were found, of all discs together over their number.
     fn rebuilds(&self) -> u64;
+
+    /// What it has done for its events.
+    fn operations(&self) -> Operations;
 
     /// What a checkpoint keeps of it beside the discs, so that it goes on as if there had been none.
     fn snapshot(&self) -> Snapshot;

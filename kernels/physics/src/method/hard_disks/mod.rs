@@ -13,6 +13,7 @@ mod fast;
 mod floor;
 mod idle;
 pub mod keys;
+mod operations;
 pub mod options;
 #[cfg(test)]
 mod oracle;

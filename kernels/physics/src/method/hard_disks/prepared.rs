@@ -13,6 +13,7 @@ use crate::words::Words;
 use serde_json::{Map, Value, json};
 use std::f64::consts::PI;
 use std::path::Path;
+use std::sync::Arc;
 use stripmine_kernels::flight::Disc;
 
 impl Checked {
@@ -140,6 +141,6 @@ impl Startable for Checked {
 
     fn started_from(&self, particles: Particles) -> Prepared {
         debug_assert!(particles.all().iter().all(|disc| disc.kind == Kind::Grain));
-        Checked { particles, ..self.clone() }.prepared()
+        Checked { particles: Arc::new(particles), ..self.clone() }.prepared()
     }
 }

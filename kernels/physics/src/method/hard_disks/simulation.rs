@@ -17,6 +17,7 @@ use crate::number::significant;
 use crate::particles::{Particles, States, in_space};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 use stripmine_kernels::InstructionSet;
@@ -38,8 +39,8 @@ pub(super) struct Running {
     kinetic: f64,
     /// Whether it is not known that nothing will ever happen, though it was asked since the last event.
     may_meet: bool,
-    /// The particles of the start, and the place among them of each disc.
-    particles: Particles,
+    /// The particles of the start, which the scene holds, and the place among them of each disc.
+    particles: Arc<Particles>,
     places: Vec<usize>,
     /// Rows of collisions, where they are asked for.
     log: Option<Log>,
@@ -81,9 +82,12 @@ impl Running {
             Some(mask) => Way::Reference(mask.clone()),
             None => Way::Fast(checked.scene.instructions()),
         };
-        let stopped =
-            |why| failure(why, &|disc| discs[disc as usize], &checked.particles, &places, Clock::default());
-        let engine = way.begin(arena, discs.clone(), 0.0).map_err(stopped)?;
+        // The engine takes the discs: a failure makes them again.
+        let stopped = |why| {
+            let (discs, _) = checked.discs();
+            failure(why, &|disc| discs[disc as usize], &checked.particles, &places, Clock::default())
+        };
+        let engine = way.begin(arena, discs, 0.0).map_err(stopped)?;
         Ok(Running {
             engine,
             arena,
@@ -91,7 +95,7 @@ impl Running {
             totals: Totals::default(),
             watch,
             kinetic,
-            particles: checked.particles.clone(),
+            particles: Arc::clone(&checked.particles),
             places,
             may_meet: false,
             log: logs.then(Log::default),
@@ -326,7 +330,7 @@ impl Simulation for Running {
     }
 
     fn particles(&self) -> Particles {
-        let mut particles = self.particles.clone();
+        let mut particles = Particles::clone(&self.particles);
         let all = particles.all_mut();
         let time = self.clock.time;
         for (disc, &place) in self.discs().zip(&self.places) {
@@ -405,7 +409,13 @@ impl Simulation for Running {
             ("virial", json!(virial)),
         ];
         let figures = self.engine.figures().into_iter().map(|(name, value)| (name, json!(value)));
-        entries.into_iter().chain(figures).map(|(name, value)| (name.to_owned(), value)).collect()
+        let operations = self.engine.operations().named().map(|(name, count)| (name, json!(count)));
+        entries
+            .into_iter()
+            .chain(operations)
+            .chain(figures)
+            .map(|(name, value)| (name.to_owned(), value))
+            .collect()
     }
 
     fn take_events(&mut self) -> String {

@@ -6,7 +6,8 @@ use super::queue::Queue;
 use super::{Expected, Fast, LISTED, WALL};
 use crate::io::checkpoint::Column;
 use crate::method::Snapshot;
-use stripmine_kernels::flight::{Disc, MOST_PARTNERS};
+use crate::method::hard_disks::operations::Operations;
+use stripmine_kernels::flight::{Disc, MOST_PARTNERS, ROW_UNIT};
 use stripmine_kernels::isa::AlignedColumn;
 
 /// Where discs were registered, in a checkpoint.
@@ -34,6 +35,7 @@ impl Fast {
         kept.add_count("engine.stride", self.lists.stride() as u64);
         kept.add_count("engine.renewals", self.renewals);
         kept.add_count("engine.events", self.events);
+        self.operations.keep(&mut kept);
         kept.add_count("engine.sorted_until", self.sorted_until);
         kept
     }
@@ -57,7 +59,8 @@ impl Fast {
             (kept.count("engine.stride")?, kept.sum("engine.displacement_limit")?);
         // Narrower ones would be renewed without end.
         let narrowest = NARROWEST * self.largest;
-        if stride > MOST_PARTNERS as u64 + 1 || !(narrowest..f64::INFINITY).contains(&displacement_limit) {
+        let is_whole = stride <= MOST_PARTNERS as u64 && stride.is_multiple_of(ROW_UNIT as u64);
+        if !is_whole || !(narrowest..f64::INFINITY).contains(&displacement_limit) {
             return Err(format!("lists of {stride} entries within {displacement_limit}"));
         }
         let time = kept.sum("engine.time")?;
@@ -70,6 +73,7 @@ impl Fast {
         self.time = time;
         self.renewals = kept.count("engine.renewals")?;
         self.events = kept.count("engine.events")?;
+        self.operations = Operations::kept(kept)?;
         self.sorted_until = kept.count("engine.sorted_until")?;
         self.discs = AlignedColumn::new(0, discs);
         self.numbers = AlignedColumn::new(1, 0..count as u32);

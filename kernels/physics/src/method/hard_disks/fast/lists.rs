@@ -5,6 +5,7 @@
 //! displacement_limit: those are in its list, and it is in theirs.
 
 use crate::domain::{Domain, Side};
+use stripmine_kernels::flight::ROW_UNIT;
 use stripmine_kernels::isa::AlignedColumn;
 
 /// Stands for no disc.
@@ -19,7 +20,8 @@ pub struct Lists {
     displacement_limit: f64,
     /// Where each disc was registered (length).
     places: AlignedColumn<[f64; 2]>,
-    /// How many discs are in each list, and then which, a row each.
+    /// The discs in each list, a row each: behind the last one the row's own disc, and in the last entry how many they are. So every
+    /// entry is a disc's number, as a list never holds them all.
     rows: AlignedColumn<u32>,
     stride: usize,
     cells: Cells,
@@ -66,7 +68,8 @@ pub fn displacement_limit(
 }
 
 impl Lists {
-    /// Of no disc yet; with room for lists of about `most` discs, and for discs that are `largest` (length).
+    /// Of no disc yet; with room for lists of about `most` discs, and for discs that are `largest` (length). Rows have at least
+    /// `stride` entries, a multiple of [`ROW_UNIT`], one of which is their count.
     pub fn new(
         domain: Domain,
         count: usize,
@@ -76,7 +79,7 @@ impl Lists {
         stride: usize,
     ) -> Lists {
         let sight = 2.0 * (largest + displacement_limit) * (1.0 + 1e-9);
-        let least = (((most / FILLED) as usize + 1).next_multiple_of(16)).max(16);
+        let least = ((most / FILLED) as usize + 1).next_multiple_of(ROW_UNIT);
         Lists {
             domain,
             displacement_limit,
@@ -107,8 +110,15 @@ impl Lists {
     /// The discs that a disc may meet.
     #[inline(always)]
     pub fn of(&self, disc: u32) -> &[u32] {
+        let (row, count) = self.row(disc);
+        &row[..count]
+    }
+
+    /// The row of a disc, as [`earliest`](stripmine_kernels::flight::earliest) takes it: whole, and how many discs are listed in it.
+    #[inline(always)]
+    pub fn row(&self, disc: u32) -> (&[u32], usize) {
         let row = &self.rows[disc as usize * self.stride..][..self.stride];
-        &row[1..=row[0] as usize]
+        (row, row[self.stride - 1] as usize)
     }
 
     /// Asks for the line of the list of a disc and that of its place.
@@ -137,12 +147,11 @@ impl Lists {
     pub fn renew(&mut self, disc: u32, place: [f64; 2], radius: impl Fn(u32) -> f64) -> Result<(), u32> {
         self.cells.remove(disc, self.cells.of(&self.domain, self.places[disc as usize]));
         let begin = disc as usize * self.stride;
-        for entry in 1..=self.rows[begin] as usize {
+        for entry in 0..self.rows[begin + self.stride - 1] as usize {
             let other = self.rows[begin + entry];
             self.remove_partner(other, disc);
         }
-        self.rows[begin..begin + self.stride].fill(NONE);
-        self.rows[begin] = 0;
+        clear(&mut self.rows[begin..begin + self.stride], disc);
         self.enter(disc, place, &radius)
     }
 
@@ -178,29 +187,37 @@ impl Lists {
 
     fn add(&mut self, to: u32, disc: u32) -> Result<(), u32> {
         let row = &mut self.rows[to as usize * self.stride..][..self.stride];
-        let filled = row[0] as usize + 1;
-        *row.get_mut(filled).ok_or(to)? = disc;
-        row[0] = filled as u32;
+        let (count, entries) = row.split_last_mut().ok_or(to)?;
+        *entries.get_mut(*count as usize).ok_or(to)? = disc;
+        *count += 1;
         Ok(())
     }
 
     fn remove_partner(&mut self, from: u32, disc: u32) {
         let row = &mut self.rows[from as usize * self.stride..][..self.stride];
-        let filled = row[0] as usize;
+        let last = row.len() - 1;
         // Without a branch for each entry: where it is, is a matter of luck.
         let at: u32 =
-            row[1..].iter().zip(1..).map(|(&other, entry)| if other == disc { entry } else { 0 }).sum();
+            row[..last].iter().zip(0..).map(|(&other, entry)| if other == disc { entry } else { 0 }).sum();
+        row[last] -= 1;
+        let filled = row[last] as usize;
         row[at as usize] = row[filled];
-        row[filled] = NONE;
-        row[0] = filled as u32 - 1;
+        row[filled] = from;
     }
 }
 
-/// Rows without an entry: their count, and what stands for no disc.
+/// Rows without an entry.
 fn empty_rows(count: usize, stride: usize) -> AlignedColumn<u32> {
-    let mut rows = AlignedColumn::filled(11, NONE, count * stride);
-    rows.iter_mut().step_by(stride).for_each(|entries| *entries = 0);
+    let mut rows = AlignedColumn::filled(11, 0, count * stride);
+    rows.chunks_exact_mut(stride).zip(0..).for_each(|(row, disc)| clear(row, disc));
     rows
+}
+
+/// Nothing is in the row of a disc any more.
+#[inline(always)]
+fn clear(row: &mut [u32], disc: u32) {
+    row.fill(disc);
+    row[row.len() - 1] = 0;
 }
 
 impl Cells {

@@ -15,12 +15,13 @@ use crate::domain::Side;
 use crate::method::Snapshot;
 use crate::method::hard_disks::engine::{Engine, EngineError, Occurred};
 use crate::method::hard_disks::event::Arena;
+use crate::method::hard_disks::operations::Operations;
 use leaving::{free_path, leaving};
 use lists::Lists;
 use queue::Queue;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::{Registers, Task, dispatch_native};
-use stripmine_kernels::flight::{Disc, Earliest, MOST_PARTNERS, earliest};
+use stripmine_kernels::flight::{Disc, Earliest, MOST_PARTNERS, ROW_UNIT, earliest};
 use stripmine_kernels::isa::AlignedColumn;
 
 /// Discs that a list holds on average.
@@ -75,6 +76,7 @@ pub struct Fast {
     /// The time of the last event.
     time: f64,
     renewals: u64,
+    operations: Operations,
     events: u64,
     /// Events after which discs are sorted.
     sorted_until: u64,
@@ -108,6 +110,7 @@ impl Fast {
             met: Box::new([f64::INFINITY; MOST_PARTNERS]),
             time,
             renewals: 0,
+            operations: Operations::default(),
             events: 0,
             sorted_until: 0,
         };
@@ -125,10 +128,10 @@ impl Fast {
             let (domain, discs) = (self.arena.domain, &self.discs);
             self.lists = Lists::new(domain, count, self.displacement_limit, self.largest, LISTED, stride);
             let Err(full) = self.lists.begin(&places, |disc| discs[disc as usize].radius) else { break };
-            stride = self.lists.stride() + 16;
-            if stride > MOST_PARTNERS + 1 {
+            stride = self.lists.stride() + ROW_UNIT;
+            if stride > MOST_PARTNERS {
                 if self.displacement_limit < 0.02 * self.largest {
-                    return Err(EngineError::Crowded(self.numbers[full as usize], MOST_PARTNERS));
+                    return Err(EngineError::Crowded(self.numbers[full as usize], MOST_PARTNERS - 1));
                 }
                 (self.displacement_limit, stride) = (0.7 * self.displacement_limit, 0);
             }
@@ -136,6 +139,7 @@ impl Fast {
         self.queue = Queue::new(count);
         self.partners.fill(Expected::RENEWAL);
         self.renewals += count as u64;
+        self.operations.cell_updates += count as u64;
         self.sorted_until = self.events + SORTED_AFTER * count as u64;
         let found = dispatch_native(self.set, All { engine: self, time });
         found.map_err(|_| EngineError::NoInstructions(self.set))
@@ -150,15 +154,13 @@ impl Fast {
                 [0, 1].map(|axis| spread(((at[axis] - self.arena.domain.origin[axis]) / edge) as u32));
             x | y << 1
         };
-        let mut order: Vec<(u64, u32)> =
-            self.discs.iter().zip(self.numbers.iter()).map(|(disc, &number)| (key(disc), number)).collect();
+        let discs = self.numbers.iter().zip(self.discs.iter());
+        let mut order: Vec<(u64, u32, u32)> =
+            discs.zip(0..).map(|((&number, disc), place)| (key(disc), number, place)).collect();
         order.sort_unstable();
-        let mut by_number = self.discs.to_vec();
-        for (disc, &number) in self.discs.iter().zip(self.numbers.iter()) {
-            by_number[number as usize] = *disc;
-        }
-        for (place, (_, number)) in order.into_iter().enumerate() {
-            self.discs[place] = by_number[number as usize];
+        let sorted = order.iter().map(|&(.., place)| self.discs[place as usize]);
+        self.discs = AlignedColumn::new(0, sorted);
+        for (place, (_, number, _)) in order.into_iter().enumerate() {
             self.numbers[place] = number;
             self.places[number as usize] = place as u32;
         }
@@ -167,10 +169,13 @@ impl Fast {
     /// Finds the next event of a disc at a time, and tells those who meet it sooner than what they expected.
     #[inline(always)]
     fn predict<R: Registers<Lane = f64>>(&mut self, registers: R, disc: u32, now: f64) {
-        let Fast { arena, discs, numbers, lists, queue, partners, met, .. } = self;
-        let row = lists.of(disc);
-        let found = earliest(registers, &arena.space, discs, queue.times(), (disc, row), now, met);
+        let Fast { arena, discs, numbers, lists, queue, partners, met, operations, .. } = self;
+        let (row, count) = lists.row(disc);
+        let found = earliest(registers, &arena.space, discs, queue.times(), (disc, row, count), now, met);
         let Earliest { time, partners: first, mut surprised } = found;
+        operations.predictions += count as u64;
+        operations.searches += 1;
+        operations.queue_moves += 1;
         let own = &discs[disc as usize];
         let (mut next, mut with) = (time, RENEWAL);
         if time < f64::INFINITY {
@@ -203,6 +208,7 @@ impl Fast {
             if is_before {
                 partners[other as usize] = Expected { with: disc, events: own.events as u32 };
                 queue.set(other as usize, numbers[other as usize], time);
+                operations.queue_moves += 1;
             }
             surprised &= surprised - 1;
         }
@@ -215,6 +221,7 @@ impl Fast {
     fn renew(&mut self, disc: u32, time: f64) -> Result<bool, EngineError> {
         let place = self.registered(&self.discs[disc as usize], time);
         self.renewals += 1;
+        self.operations.cell_updates += 1;
         let Fast { lists, discs, alike, largest, .. } = self;
         // Discs that are all alike need not be looked at.
         let radius = |disc: u32| if *alike { *largest } else { discs[disc as usize].radius };
@@ -319,6 +326,7 @@ impl Fast {
                         ([first, other], Some(happened))
                     } else {
                         // The other one has changed its motion since.
+                        self.operations.repairs += 1;
                         ([first; 2], None)
                     }
                 }
@@ -358,6 +366,10 @@ impl Engine for Fast {
 
     fn rebuilds(&self) -> u64 {
         self.renewals / self.discs.len().max(1) as u64
+    }
+
+    fn operations(&self) -> Operations {
+        self.operations
     }
 
     fn snapshot(&self) -> Snapshot {

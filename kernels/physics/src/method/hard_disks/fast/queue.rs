@@ -3,14 +3,15 @@
 //! The next few events are kept sorted; all others only by groups, of which a time is known that none of them comes before. So
 //! the next event is known long before the one at hand is dealt with, and the processor works at both.
 
+use std::hint::select_unpredictable;
 use stripmine_kernels::backend::Registers;
 use stripmine_kernels::isa::{AlignedColumn, Vector};
 
 /// Members of a group: two lines of the cache.
 const GROUP: usize = 16;
 
-/// Levels at most: for 16⁸ discs.
-const DEEPEST: usize = 8;
+/// Events that are sorted at a time, at most: as many as are asked for ahead, a few times over.
+const MOST_WANTED: usize = 256;
 
 /// Numbers of a group.
 #[derive(Clone, Copy, Debug)]
@@ -52,8 +53,25 @@ impl Group {
     }
 }
 
-/// An event among the next ones: the bits of its time, which order as the times do, the number of the disc and its place.
-type Entry = (u64, u32, u32);
+/// An event among the next ones.
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    /// When (time).
+    time: f64,
+    /// The number of the disc, and its place.
+    number: u32,
+    place: u32,
+}
+
+impl Entry {
+    /// No event: comes after all.
+    const NONE: Entry = Entry { time: f64::INFINITY, number: u32::MAX, place: 0 };
+
+    #[inline(always)]
+    fn is_before(&self, other: &Entry) -> bool {
+        self.time < other.time || self.time == other.time && self.number < other.number
+    }
+}
 
 /// The queue.
 #[derive(Clone, Debug)]
@@ -68,6 +86,10 @@ pub struct Queue {
     /// How much time they span, and how many there should be.
     span: f64,
     wanted: usize,
+    /// While they are looked for: which groups of each level hold any, the places of their discs, and their times.
+    visited: Vec<Vec<u32>>,
+    found: Vec<u32>,
+    times: Vec<f64>,
 }
 
 impl Queue {
@@ -80,9 +102,19 @@ impl Queue {
             let above = groups(last.len(), 3 + levels.len());
             levels.push(above);
         }
-        let wanted = ((count as f64).sqrt() as usize / 2).clamp(8, 256);
-        // As many as are wanted come out soon, whatever the unit of time.
-        Queue { levels, next: vec![], over: 0, end: 0.0, span: f64::MIN_POSITIVE, wanted }
+        let wanted = ((count as f64).sqrt() as usize).clamp(8, MOST_WANTED);
+        Queue {
+            visited: vec![vec![]; levels.len()],
+            levels,
+            next: vec![],
+            over: 0,
+            end: 0.0,
+            // As many as are wanted come out soon, whatever the unit of time.
+            span: f64::MIN_POSITIVE,
+            wanted,
+            found: vec![],
+            times: vec![],
+        }
     }
 
     /// When each disc has its next event (time); infinite ones behind them.
@@ -98,7 +130,7 @@ impl Queue {
     pub fn set(&mut self, place: usize, number: u32, time: f64) {
         self.levels[0][place / GROUP].0[place % GROUP] = time;
         if time < self.end {
-            return self.insert((time.to_bits(), number, place as u32));
+            return self.insert(Entry { time, number, place: place as u32 });
         }
         let mut place = place;
         for level in &mut self.levels[1..] {
@@ -114,7 +146,7 @@ impl Queue {
     #[cold]
     #[inline(never)]
     fn insert(&mut self, entry: Entry) {
-        let at = self.over + self.next[self.over..].partition_point(|other| *other < entry);
+        let at = self.over + self.next[self.over..].partition_point(|other| other.is_before(&entry));
         self.next.insert(at, entry);
     }
 
@@ -122,8 +154,7 @@ impl Queue {
     #[inline(always)]
     pub fn first<R: Registers<Lane = f64>>(&mut self, registers: R, numbers: &[u32]) -> Option<(f64, u32)> {
         loop {
-            while let Some(&(bits, _, place)) = self.next.get(self.over) {
-                let time = f64::from_bits(bits);
+            while let Some(&Entry { time, place, .. }) = self.next.get(self.over) {
                 if self.times()[place as usize] == time {
                     return Some((time, place));
                 }
@@ -144,7 +175,7 @@ impl Queue {
     /// The place of the disc whose event comes a number of events after the next one, as far as that is known.
     #[inline(always)]
     pub fn coming(&self, ahead: usize) -> Option<u32> {
-        self.next.get(self.over + ahead).map(|&(_, _, place)| place)
+        self.next.get(self.over + ahead).map(|entry| entry.place)
     }
 
     /// Sorts the next events; whether there are any left.
@@ -156,10 +187,9 @@ impl Queue {
             return false;
         }
         self.end = (begin + self.span).max(begin.next_up());
-        self.next.clear();
         self.over = 0;
-        self.take(registers, numbers);
-        self.next.sort_unstable();
+        self.find(registers);
+        self.sort(registers, numbers);
         match self.next.len() {
             few if few < self.wanted / 2 => self.span *= 1.5,
             many if many > 2 * self.wanted => self.span *= 0.7,
@@ -168,45 +198,85 @@ impl Queue {
         true
     }
 
-    /// Puts all that comes before the end among the next events, and makes known what the others do not come before.
+    /// Finds the places of all that comes before the end, from the top down, and makes known from the bottom up what the others
+    /// do not come before.
     #[inline(always)]
-    fn take<R: Registers<Lane = f64>>(&mut self, registers: R, numbers: &[u32]) {
-        let Queue { levels, next, end, .. } = self;
+    fn find<R: Registers<Lane = f64>>(&mut self, registers: R) {
+        let Queue { levels, visited, found, end, .. } = self;
         let top = levels.len() - 1;
-        // The way down: the group of each level, and its members that are still to be visited.
-        let mut path = [(0, 0); DEEPEST];
-        let mut level = top;
-        path[top] = (0, levels[top][0].below(registers, *end));
-        loop {
-            let (group, members) = path[level];
-            if level > 0 && members != 0 {
-                path[level].1 = members & (members - 1);
-                let child = GROUP * group + members.trailing_zeros() as usize;
-                level -= 1;
-                let members = levels[level][child].below(registers, *end);
-                path[level] = (child, members);
-                if let Some(below) = level.checked_sub(1) {
-                    let mut left = members;
-                    while left != 0 {
-                        levels[below].prefetch(GROUP * child + left.trailing_zeros() as usize);
-                        left &= left - 1;
+        visited[top].clear();
+        visited[top].push(0);
+        for level in (0..=top).rev() {
+            let (below, here) = visited.split_at_mut(level);
+            let into = below.last_mut().unwrap_or(found);
+            into.clear();
+            for &group in &here[0] {
+                let mut members = levels[level][group as usize].below(registers, *end);
+                while members != 0 {
+                    let member = GROUP as u32 * group + members.trailing_zeros();
+                    if let Some(below) = level.checked_sub(1) {
+                        levels[below].prefetch(member as usize);
                     }
+                    into.push(member);
+                    members &= members - 1;
                 }
-                continue;
             }
-            let mut left = members;
-            while left != 0 {
-                let member = left.trailing_zeros() as usize;
-                let place = GROUP * group + member;
-                next.push((levels[0][group].0[member].to_bits(), numbers[place], place as u32));
-                left &= left - 1;
+        }
+        for level in 0..top {
+            let (here, above) = levels.split_at_mut(level + 1);
+            for &group in &visited[level] {
+                let group = group as usize;
+                let least = here[level][group].smallest_from(registers, *end);
+                above[0][group / GROUP].0[group % GROUP] = least;
             }
-            let least = levels[level][group].smallest_from(registers, *end);
-            if level == top {
-                return;
+        }
+    }
+
+    /// Puts what was found in order. The place of each is the number of those that come before it, counted a register at a time:
+    /// no branch of that is a matter of luck.
+    #[inline(always)]
+    fn sort<R: Registers<Lane = f64>>(&mut self, registers: R, numbers: &[u32]) {
+        let mut times = std::mem::take(&mut self.times);
+        times.clear();
+        times.extend(self.found.iter().map(|&place| self.times()[place as usize]));
+        times.resize(self.found.len().next_multiple_of(R::LANES), f64::INFINITY);
+        self.next.clear();
+        self.next.resize(self.found.len(), Entry::NONE);
+        let mut are_pairs = true;
+        for (&time, &place) in times.iter().zip(&self.found) {
+            let own = registers.splat(time);
+            let mut before = 0;
+            for begin in (0..times.len()).step_by(R::LANES) {
+                // SAFETY: the times are a whole number of registers.
+                let some = unsafe { registers.load(times.as_ptr().add(begin)) };
+                before += registers.bits(some.less_than(own)).count_ones() as usize;
             }
-            level += 1;
-            levels[level][group / GROUP].0[group % GROUP] = least;
+            // Both discs of a collision have it at one time: the one found first takes the place. More at one time are rare.
+            before += usize::from(self.next[before].time == time);
+            while self.next[before].time == time {
+                are_pairs = false;
+                before += 1;
+            }
+            self.next[before] = Entry { time, number: numbers[place as usize], place };
+        }
+        self.times = times;
+        if are_pairs {
+            self.order_pairs();
+        } else {
+            self.next.sort_unstable_by(|a, b| a.time.total_cmp(&b.time).then(a.number.cmp(&b.number)));
+        }
+    }
+
+    /// Puts the two of one time in the order of their numbers.
+    #[inline(always)]
+    fn order_pairs(&mut self) {
+        for at in 1..self.next.len() {
+            let [a, b] = [self.next[at - 1], self.next[at]];
+            let (number, other) = ((a.number, a.place), (b.number, b.place));
+            let is_wrong = b.is_before(&a);
+            (self.next[at - 1].number, self.next[at - 1].place) =
+                select_unpredictable(is_wrong, other, number);
+            (self.next[at].number, self.next[at].place) = select_unpredictable(is_wrong, number, other);
         }
     }
 }

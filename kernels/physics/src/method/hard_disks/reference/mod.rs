@@ -8,6 +8,7 @@ mod tournament;
 
 use super::engine::{Engine, EngineError, Occurred, Partner};
 use super::event::Arena;
+use super::operations::Operations;
 use crate::domain::Side;
 use crate::io::checkpoint::Column;
 use crate::method::Snapshot;
@@ -56,6 +57,7 @@ pub struct Reference<C> {
     whole_slack: f64,
     /// How often the grid was filled.
     remaps: u64,
+    operations: Operations,
     /// Discs that have lost their partner, while an event is dealt with.
     lost: Vec<u32>,
     /// When the grid was filled. Speeds are those in a frame that falls from then on: gravity changes none of them.
@@ -111,6 +113,7 @@ impl<C: Cells> Reference<C> {
             fastest: 0.0,
             whole_slack: reach - 2.0 * largest,
             remaps: 0,
+            operations: Operations::default(),
             lost: vec![],
             filled: time,
             speeds: vec![],
@@ -170,8 +173,10 @@ impl<C: Cells> Reference<C> {
         let (now, horizon) = (self.time, self.horizon());
         for &disc in if a == b { &changed[..1] } else { &changed[..] } {
             let mut own = self.at_wall(disc);
-            let Reference { grid, discs, events, tree, arena, .. } = self;
+            self.operations.searches += 1;
+            let Reference { grid, discs, events, tree, arena, operations, .. } = self;
             for other in grid.around(disc) {
+                operations.predictions += 1;
                 let time = pair(&arena.space, discs, [disc, other], now, horizon);
                 let theirs = Event { time, with: Partner::Disc(other) };
                 if theirs.is_before(&own) {
@@ -187,11 +192,15 @@ impl<C: Cells> Reference<C> {
                 } else if ours.is_before(&known) {
                     events[other as usize] = ours;
                     tree.update(other, events.len(), |disc| events[disc as usize].time);
+                    operations.queue_moves += 1;
                 }
             }
             self.renew(disc, own);
         }
         for disc in lost.drain(..) {
+            self.operations.searches += 1;
+            self.operations.repairs += 1;
+            self.operations.predictions += self.grid.around(disc).count() as u64;
             self.renew(disc, self.predicted(disc));
         }
         self.lost = lost;
@@ -202,6 +211,7 @@ impl<C: Cells> Reference<C> {
         let Reference { events, tree, .. } = self;
         events[disc as usize] = event;
         tree.update(disc, events.len(), |disc| events[disc as usize].time);
+        self.operations.queue_moves += 1;
     }
 
     fn at_wall(&self, disc: u32) -> Event {
@@ -240,11 +250,14 @@ impl<C: Cells> Reference<C> {
         self.fastest = speeds.iter().copied().fold(0.0, f64::max);
         self.speeds = speeds;
         self.remaps += 1;
+        self.operations.cell_updates += self.discs.len() as u64;
+        self.operations.searches += self.discs.len() as u64;
+        self.operations.queue_moves += self.discs.len() as u64;
         for disc in 0..self.discs.len() as u32 {
             self.events[disc as usize] = self.at_wall(disc);
         }
         let (now, horizon, ahead) = (time, self.horizon(), self.slack / (2.0 * self.fastest));
-        let Reference { grid, discs, events, arena, speeds, .. } = self;
+        let Reference { grid, discs, events, arena, speeds, operations, .. } = self;
         // Each pair once, if it may meet so soon at all.
         for disc in 0..discs.len() as u32 {
             let (own, speed, here) = (&discs[disc as usize], speeds[disc as usize], grid.place(disc));
@@ -255,6 +268,7 @@ impl<C: Cells> Reference<C> {
                 if dx * dx + dy * dy > near * near {
                     continue;
                 }
+                operations.predictions += 1;
                 let time = pair(&arena.space, discs, [disc, other], now, horizon);
                 for (one, with) in [(disc, other), (other, disc)] {
                     let event = Event { time, with: Partner::Disc(with) };
@@ -305,6 +319,10 @@ impl<C: Cells> Engine for Reference<C> {
         self.remaps
     }
 
+    fn operations(&self) -> Operations {
+        self.operations
+    }
+
     fn snapshot(&self) -> Snapshot {
         let mut kept = Snapshot::default();
         for (axis, name) in FILLED_AT.into_iter().enumerate() {
@@ -316,6 +334,7 @@ impl<C: Cells> Engine for Reference<C> {
             kept.add_sum(name, value);
         }
         kept.add_count("engine.remaps", remaps);
+        self.operations.keep(&mut kept);
         kept
     }
 
@@ -327,6 +346,7 @@ impl<C: Cells> Engine for Reference<C> {
         let [time, slack, since, fastest, filled] = SUMS.map(|name| kept.sum(name));
         (self.time, self.slack, self.since, self.fastest) = (time?, slack?, since?, fastest?);
         (self.filled, self.remaps) = (filled?, kept.count("engine.remaps")?);
+        self.operations = Operations::kept(kept)?;
         self.discs = discs;
         self.events = (0..count as u32).map(|disc| self.predicted(disc)).collect();
         let events = &self.events;
