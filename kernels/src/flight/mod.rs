@@ -167,14 +167,20 @@ fn meetings<R: Registers<Lane = f64>>(
     let ([bx, by], [bu, bv]) = b.at(registers, space, from);
     let [u, v] = [bu - au, bv - av];
     let ahead = uniform(now) - from;
-    let nearest = |axis: usize, way: R::V, speed: R::V| {
-        let periods = (way + ahead * speed) * uniform(space.inverse_sides[axis]);
-        // To the nearest whole number.
-        let whole = (periods + periods).truncate() - periods.truncate();
-        way - whole * uniform(space.sides[axis])
-    };
-    let dx = nearest(0, bx - ax, u);
-    let dy = nearest(1, by - ay, v);
+    let (mut dx, mut dy) = (bx - ax, by - ay);
+    let x = (dx + ahead * u) * uniform(space.inverse_sides[0]);
+    let y = (dy + ahead * v) * uniform(space.inverse_sides[1]);
+    let half = uniform(0.5);
+    // Few are nearer across a side: nothing waits for what would be taken off the others, for that is nothing.
+    if !registers.none(x.abs().less_than(half).and(y.abs().less_than(half)).not()) {
+        let nearest = |side: f64, way: R::V, periods: R::V| {
+            // To the nearest whole number.
+            let whole = (periods + periods).truncate() - periods.truncate();
+            way - whole * uniform(side)
+        };
+        dx = nearest(space.sides[0], dx, x);
+        dy = nearest(space.sides[1], dy, y);
+    }
     let (mut reach, mut approach, mut speed) = (a.radius + b.radius, dx * u + dy * v, u * u + v * v);
     let mut approaches = approach.less_than(zero);
     if let Some(growth) = space.growth {

@@ -85,9 +85,9 @@ impl Checked {
             // List, time, partner, place, numbers and cells; discs and keys once more while they are sorted.
             None => (64.0 + 9.2 + 4.0 + 16.0 + 8.0 + 8.0 + 80.0) * discs,
         };
-        // A disc; the scene's particles, three times, once more where a run goes on, and the frame that is being written; what is written
-        // of them.
-        let disc = size_of::<Disc>() as f64 + 5.0 * size_of::<Particle>() as f64 + 100.0;
+        // A disc; the scene's particles, which the simulation shares, once more as they are where a run goes on, and the two frames that
+        // are made and written; what is written of them.
+        let disc = size_of::<Disc>() as f64 + 4.0 * size_of::<Particle>() as f64 + 100.0;
         Foreseen {
             needed: (PROGRAM + disc * discs + of_engine) as u64,
             available: available(),

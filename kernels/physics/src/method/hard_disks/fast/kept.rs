@@ -97,8 +97,13 @@ impl Fast {
                 Some([gx, gy]) => (2.0 * self.displacement_limit / gx.hypot(gy)).sqrt(),
                 None => {
                     let listed_at = self.lists.place(place as u32);
-                    leaving(&self.arena, &self.discs[place], listed_at, self.lists.displacement_limit(), now)
-                        - now
+                    leaving(
+                        &self.arena,
+                        &self.discs[place],
+                        listed_at,
+                        self.lists.displacement_limit(),
+                        (now, f64::INFINITY),
+                    ) - now
                 }
             };
             if times[number as usize] - now > within * (1.0 + 1e-6) + 1e-9 * now.abs() {

@@ -12,21 +12,26 @@ pub(super) fn free_path(count: f64, radius: f64, area: f64) -> f64 {
     1.0 / (8.0_f64.sqrt() * density * 2.0 * radius * contact_value)
 }
 
-/// When a disc that is where it should be at `now` may be farther than `displacement_limit` from where it was registered (time).
+/// When a disc that is where it should be at `now` may be farther than `displacement_limit` from where it was registered (time); not
+/// told apart, and infinite, where that is not before its `next` event.
 #[inline]
 pub(super) fn leaving(
     arena: &Arena,
     disc: &Disc,
     registered: [f64; 2],
     displacement_limit: f64,
-    now: f64,
+    (now, next): (f64, f64),
 ) -> f64 {
     let [dx, dy] = arena.domain.displacement(registered, disc.at(&arena.space, now));
     let [u, v] = disc.velocity_at(&arena.space, now);
     let square = u * u + v * v;
     let left = displacement_limit * displacement_limit - (dx * dx + dy * dy);
+    let ahead = next - now;
+    let [x, y] = [dx + ahead * u, dy + ahead * v];
     match arena.space.gravity() {
         None if square == 0.0 => f64::INFINITY,
+        // Near enough at both ends of a straight way is near enough all along, and mostly so: no root is needed.
+        None if x * x + y * y < displacement_limit * displacement_limit => f64::INFINITY,
         None => {
             let outwards = dx * u + dy * v;
             let root = (outwards * outwards + square * left.max(0.0)).sqrt();
