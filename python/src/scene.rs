@@ -8,12 +8,13 @@ use crate::particles::{Particles, dimensions};
 use crate::run::Run;
 use crate::running::{begin_scratch, carry_out};
 use crate::simulation::Simulation;
+use crate::table::{Column, Table};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use stripmine_physics::method::{Entry, METHODS, Prepared, prepare, vocabularies};
+use stripmine_physics::method::{Counted, Entry, METHODS, Prepared, prepare, vocabularies};
 use stripmine_physics::run::{Existing, RunError, chosen_otherwise, forecast};
 use stripmine_physics::scene::{SceneErrors, Values};
 
@@ -146,6 +147,23 @@ impl Scene {
         data.insert("left_out".to_owned(), json!(prepared.left_out));
         data.insert("warnings".to_owned(), json!(prepared.warnings));
         json::to_python(py, &Value::Object(data))
+    }
+
+    /// The whole-array operations of a step, as `stripmine scene programs --json` counts them.
+    fn counts(&self, py: Python<'_>) -> PyResult<Table> {
+        let model = &self.checked.prepared.model;
+        let counted = computed(py, || Counted::of(&model.programs()))?;
+        let words = |of: fn(&Counted) -> &'static str| counted.iter().map(|it| of(it).to_owned()).collect();
+        let counts = |of: fn(&Counted) -> u64| counted.iter().map(of).collect();
+        Ok(Table::new(vec![
+            Column::words("part", words(|it| it.part)),
+            Column::words("section", words(|it| it.section)),
+            Column::words("length", words(|it| it.length)),
+            Column::counts("n", counts(|it| it.n as u64)),
+            Column::counts("operations", counts(|it| it.operations)),
+            Column::counts("computing", counts(|it| it.computing)),
+            Column::counts("divisions_and_roots", counts(|it| it.divisions_and_roots)),
+        ]))
     }
 
     /// Begins a simulation that is advanced step by step.

@@ -96,6 +96,14 @@ class Scene:
         `left_out` and `warnings`. Takes up to half a second: the beginning of a run is timed.
         """
 
+    def counts(self) -> Table:
+        """The whole-array operations of a step, as `stripmine scene programs --json` counts them.
+
+        A row for each `section` of each `part` of the step: what its vectors are as long as (`length`) and how long that is (`n`, elements),
+        the `operations` of a step (the NOP of BP93), those of them that are `computing` and move no data, and `divisions_and_roots`. No
+        rows where a scene has no such programs, as hard discs have none.
+        """
+
     def start(self) -> Simulation:
         """Begins a simulation that is advanced step by step; any number of them may be begun.
 

@@ -40,6 +40,18 @@ class Tables(unittest.TestCase):
             for name in ("mean", "bar", "standard_error", "correlation_time", "independent_samples"):
                 self.assertEqual(np.nan_to_num(averages[name][at]), theirs.get(name, 0.0), (theirs["quantity"], name))
 
+    def test_counts_are_those_of_the_printed_text(self):
+        overrides = {"integrator.values": 5, "law.friction": 0.5, "law.normal_damping": 0.1, "law.shear_damping": 0.1}
+        counts = stripmine.scene("dense-gas-printed", overrides).counts()
+        self.assertEqual(counts.columns[:4], ["part", "section", "length", "n"])
+        operations = {part: int(counts["operations"][counts["part"] == part].sum()) for part in set(counts["part"])}
+        # As `stripmine table` counts them, with what a scene's programs check beside: 30 operations of the forces, 8 of the corrector.
+        self.assertEqual(
+            [operations[part] for part in ("predictor", "index", "forces", "corrector")], [87, 20, 1596 + 30, 74 + 8]
+        )
+        self.assertTrue((counts["computing"] <= counts["operations"]).all())
+        self.assertEqual(len(stripmine.scene("hard-disks").counts()), 0)
+
     @unittest.skipUnless(there("pandas"), "there is no pandas")
     def test_pandas_reads_a_table(self):
         import pandas

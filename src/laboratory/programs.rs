@@ -7,28 +7,7 @@ use crate::model::machines;
 use crate::report::{Cell, Rows, Section, Table, Verdict};
 use crate::results::Made;
 use serde::Serialize;
-use stripmine_kernels::isa::{OpClass, OpCounts};
-use stripmine_physics::method::Prepared;
-use stripmine_physics::method::VectorProgram;
-
-/// What a section of a program executes.
-#[derive(Clone, Debug, Serialize)]
-pub struct Counted {
-    /// The part of the step.
-    pub part: &'static str,
-    /// The section of the program.
-    pub section: &'static str,
-    /// What vectors are as long as.
-    pub length: &'static str,
-    /// How long that is.
-    pub n: usize,
-    /// Operations of a step: NOP.
-    pub operations: u64,
-    /// Of them those that compute.
-    pub computing: u64,
-    /// Of them divisions and square roots.
-    pub divisions_and_roots: u64,
-}
+use stripmine_physics::method::{Counted, Prepared, VectorProgram};
 
 /// Clock periods of a step.
 #[derive(Clone, Debug, Serialize)]
@@ -57,23 +36,6 @@ pub struct Programs {
 impl Programs {
     /// Counts the programs of a scene, and charges them by every clock of some machines.
     pub fn of(scene: &str, programs: &[VectorProgram], machines: &[MachineModel]) -> Programs {
-        let mut counted: Vec<Counted> = vec![];
-        for it in programs {
-            for (section, counts) in it.program.tally() {
-                let entry = of_section(it, section, &counts);
-                let is_same = |known: &&mut Counted| {
-                    (known.part, known.section, known.length, known.n) == (it.part, section, it.length, it.n)
-                };
-                match counted.iter_mut().find(is_same) {
-                    Some(known) => {
-                        known.operations += entry.operations;
-                        known.computing += entry.computing;
-                        known.divisions_and_roots += entry.divisions_and_roots;
-                    }
-                    None => counted.push(entry),
-                }
-            }
-        }
         let works: Vec<(Work, &VectorProgram)> =
             programs.iter().map(|it| (Work::of(it.program.as_ref()), it)).collect();
         let charged = |machine: &MachineModel, clock: Clock| {
@@ -91,7 +53,7 @@ impl Programs {
         let clocks =
             machines.iter().flat_map(|machine| Clock::ALL.iter().map(|&clock| charged(machine, clock)));
         let clocks = clocks.collect();
-        Programs { scene: scene.to_owned(), counted, clocks }
+        Programs { scene: scene.to_owned(), counted: Counted::of(programs), clocks }
     }
 
     /// Operations of a step.
@@ -187,17 +149,4 @@ pub fn made(
         .seeds([1]);
     let data: Vec<&Programs> = all.iter().map(|(counted, _)| counted).collect();
     Made::new(section, &data)
-}
-
-fn of_section(it: &VectorProgram, section: &'static str, counts: &OpCounts) -> Counted {
-    let class = |class: OpClass| counts.of_class(class);
-    Counted {
-        part: it.part,
-        section,
-        length: it.length,
-        n: it.n,
-        operations: it.times * counts.total(),
-        computing: it.times * counts.filtered(|op| !op.class().moves_data()).total(),
-        divisions_and_roots: it.times * (class(OpClass::Divide) + class(OpClass::SquareRoot)),
-    }
 }

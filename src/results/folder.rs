@@ -178,6 +178,7 @@ impl Folder {
     }
 
     fn temporary_folder(&self) -> Result<TempDir, FolderError> {
+        #[cfg_attr(not(unix), expect(unused_mut, reason = "only there they have permissions"))]
         let mut names = temporary();
         #[cfg(unix)]
         {

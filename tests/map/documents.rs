@@ -17,6 +17,7 @@ pub fn text(path: impl AsRef<Path>) -> String {
 pub fn documents() -> Vec<PathBuf> {
     let docs = fs::read_dir(root().join("docs")).unwrap();
     let docs = docs.map(|entry| Path::new("docs").join(entry.unwrap().file_name()));
+    let docs = docs.filter(|path| path.extension().is_some_and(|kind| kind == "md"));
     ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md"].iter().map(PathBuf::from).chain(docs).collect()
 }
 

@@ -45,6 +45,7 @@ pub trait Estimates: PulpElement {
 }
 
 /// The terms of the correction behind the 1.
+#[cfg(target_arch = "x86_64")]
 const TERMS: [f64; 3] = [3.0 / 2.0, 15.0 / 8.0, 35.0 / 16.0];
 
 /// `work` on the register as the processor's own type, if the instruction set `S` is `Set`.
@@ -74,6 +75,7 @@ impl Estimates for f32 {
     fn fused_from<S: Simd>(simd: S, a: S::f32s, b: S::f32s, c: S::f32s) -> S::f32s {
         simd.mul_add_f32s(simd.neg_f32s(a), b, c)
     }
+    #[cfg_attr(not(target_arch = "x86_64"), expect(unused_variables, reason = "only x86-64 has estimates"))]
     #[inline(always)]
     fn inverse_root<S: Simd>(simd: S, a: S::f32s) -> Option<(S::f32s, &'static [f64])> {
         #[cfg(target_arch = "x86_64")]
@@ -98,6 +100,7 @@ impl Estimates for f64 {
     fn fused_from<S: Simd>(simd: S, a: S::f64s, b: S::f64s, c: S::f64s) -> S::f64s {
         simd.mul_add_f64s(simd.neg_f64s(a), b, c)
     }
+    #[cfg_attr(not(target_arch = "x86_64"), expect(unused_variables, reason = "only x86-64 has estimates"))]
     #[inline(always)]
     fn inverse_root<S: Simd>(simd: S, a: S::f64s) -> Option<(S::f64s, &'static [f64])> {
         #[cfg(target_arch = "x86_64")]

@@ -215,15 +215,21 @@ macro_rules! pulp_element {
             fn none<S: Simd>(simd: S, a: S::$truth) -> bool {
                 simd.$first_true(a) == S::$lanes
             }
+            #[cfg_attr(
+                not(target_arch = "x86_64"),
+                expect(unused_variables, reason = "x86-64 has more ways")
+            )]
             #[inline(always)]
             fn bits<S: Simd>(simd: S, a: S::$truth) -> u64 {
                 #[cfg(target_arch = "x86_64")]
-                if let (Some(v3), Some(truth)) = (same_value::<S, pulp::x86::V3>(simd), same_value(a)) {
-                    return u64::from(v3.avx.$movemask(truth) as u32);
-                }
-                // From a mask register: by way of memory it would be a store and a load.
-                if let Some(truth) = same_value::<_, pulp::$bits>(a) {
-                    return u64::from(truth.0);
+                {
+                    if let (Some(v3), Some(truth)) = (same_value::<S, pulp::x86::V3>(simd), same_value(a)) {
+                        return u64::from(v3.avx.$movemask(truth) as u32);
+                    }
+                    // From a mask register: by way of memory it would be a store and a load.
+                    if let Some(truth) = same_value::<_, pulp::$bits>(a) {
+                        return u64::from(truth.0);
+                    }
                 }
                 bits_by_lane(pulp::bytemuck::bytes_of(&a), S::$lanes)
             }

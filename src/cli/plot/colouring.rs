@@ -242,6 +242,14 @@ pub(super) fn units(scene: Option<&toml::Table>) -> Units {
 }
 
 impl Units {
+    /// Those of lengths and times at axes.
+    pub(super) fn at_axes(self) -> [String; 2] {
+        match self {
+            Units::Si => ["m", "s"].map(str::to_owned),
+            Units::Other(name) => [name.clone(), name],
+        }
+    }
+
     /// Those of lengths and times.
     pub(super) fn of_length_and_time(self) -> [String; 2] {
         match self {

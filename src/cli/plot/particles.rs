@@ -1,6 +1,6 @@
 //! Pictures of the particles of a run: its last state, and, where the box is long, the density along it over time.
 
-use super::colouring::{ColouringError, Colours};
+use super::colouring::{ColouringError, Colours, Units, units};
 use super::window;
 use crate::report::figure::{Axis, Drawing, Figure, Guide, Map, Picture, Shape, Tint};
 use std::path::Path;
@@ -65,7 +65,7 @@ pub(super) fn pictures(run: &Path, colours: &Colours) -> Result<Vec<Figure>, Pic
     let ends = colours.ends(values.clone())?;
     let shades = Shades { values, ends, label: colours.label(scene.as_ref()) };
     let states = views.iter().map(|&view| state(&last, scene.as_ref(), &traces, &shades, view));
-    Ok(states.chain(density(&last, &slices)).collect())
+    Ok(states.chain(density(&last, scene.as_ref(), &slices)).collect())
 }
 
 /// What the shades of particles say.
@@ -159,7 +159,11 @@ fn state(
             .map_or(Tint::Still, |value| Tint::Shade(((value - low) / (high - low)).clamp(0.0, 1.0))),
     });
     let outside = all.iter().filter(|particle| !is_inside(particle.position)).count();
-    let mut title = format!("The particles at time {}", significant(frame.time, 6));
+    let [of_length, of_time] = match units(scene) {
+        Units::Si => ["m", " s"],
+        Units::Other(_) => ["", ""],
+    };
+    let mut title = format!("The particles at time {}{of_time}", significant(frame.time, 6));
     match view {
         View::Plane => {}
         View::AlongZ => title.push_str(", seen along z: x to the right, y upwards"),
@@ -190,7 +194,7 @@ fn state(
         shapes: walls.chain(earlier).chain(shapes).collect(),
         shades: Some((*low, *high, label.clone())),
         guide: Some(Guide {
-            unit: String::new(),
+            unit: of_length.to_owned(),
             gravity: scene
                 .and_then(gravity)
                 .filter(|_| view == View::Plane)
@@ -220,7 +224,7 @@ fn slice(frame: &Frame) -> Option<Vec<f64>> {
 }
 
 /// The density along a long box over time.
-fn density(last: &Frame, slices: &[(f64, Vec<f64>)]) -> Option<Figure> {
+fn density(last: &Frame, scene: Option<&toml::Table>, slices: &[(f64, Vec<f64>)]) -> Option<Figure> {
     let ((begun, first), (ended, _)) = (slices.first()?, slices.last()?);
     let bins = first.len();
     let stride = slices.len().div_ceil(ROWS);
@@ -232,11 +236,12 @@ fn density(last: &Frame, slices: &[(f64, Vec<f64>)]) -> Option<Figure> {
     let rows = slices.iter().step_by(stride).map(|(_, counts)| counts.iter().map(|it| it / mean).collect());
     let [width, height] = last.cell;
     let (side, way) = if width > height { (0, "x") } else { (1, "y") };
-    let axis = |label: &str, ends| Axis::linear(label, Some("the scene's unit")).between(ends);
+    let [of_length, of_time] = units(scene).at_axes();
+    let axis = |label: &str, unit: &str, ends| Axis::linear(label, Some(unit)).between(ends);
     Some(
         Picture::Map(Map {
-            x: axis(way, [last.origin[side], last.origin[side] + last.cell[side]]),
-            y: axis("time", [*begun, *ended]),
+            x: axis(way, &of_length, [last.origin[side], last.origin[side] + last.cell[side]]),
+            y: axis("time", &of_time, [*begun, *ended]),
             value: Axis::linear("density, relative to the mean", None),
             rows: rows.collect(),
         })

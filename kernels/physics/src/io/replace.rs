@@ -48,6 +48,7 @@ pub fn written_beside(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>,
 ) -> io::Result<NamedTempFile> {
+    #[cfg_attr(not(unix), expect(unused_mut, reason = "only there they have permissions"))]
     let mut names = temporary();
     #[cfg(unix)]
     {

@@ -1,6 +1,7 @@
 //! The methods: one folder a source, and one line in the [list](METHODS).
 
 mod clock;
+mod counted;
 mod entry;
 pub mod failure;
 pub mod hard_disks;
@@ -18,6 +19,7 @@ pub mod throughput;
 mod trials;
 
 pub use clock::{Clock, Every, Schedule, Until};
+pub use counted::Counted;
 pub use entry::{
     Bench, BenchOption, Beyond, Entry, Fact, Kind, Observable, Prepared, Purpose, Quantity, RunWarning,
     Simulation, Startable, StepLimit, Takes, VectorProgram, quantities,

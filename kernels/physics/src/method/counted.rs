@@ -1,0 +1,61 @@
+//! What the vector programs of a scene execute in a step, section by section.
+
+use super::entry::VectorProgram;
+use serde::Serialize;
+use stripmine_kernels::isa::{OpClass, OpCounts};
+
+/// What a section of a program executes in a step.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Counted {
+    /// The part of the step.
+    pub part: &'static str,
+    /// The section of the program.
+    pub section: &'static str,
+    /// What vectors are as long as.
+    pub length: &'static str,
+    /// How long that is.
+    pub n: usize,
+    /// Operations of a step: NOP.
+    pub operations: u64,
+    /// Of them those that compute.
+    pub computing: u64,
+    /// Of them divisions and square roots.
+    pub divisions_and_roots: u64,
+}
+
+impl Counted {
+    /// The sections of some programs in their order; those of one name and length are one.
+    pub fn of(programs: &[VectorProgram]) -> Vec<Counted> {
+        let mut counted: Vec<Counted> = vec![];
+        for it in programs {
+            for (section, counts) in it.program.tally() {
+                let entry = Counted::section(it, section, &counts);
+                let is_same = |known: &&mut Counted| {
+                    (known.part, known.section, known.length, known.n) == (it.part, section, it.length, it.n)
+                };
+                match counted.iter_mut().find(is_same) {
+                    Some(known) => {
+                        known.operations += entry.operations;
+                        known.computing += entry.computing;
+                        known.divisions_and_roots += entry.divisions_and_roots;
+                    }
+                    None => counted.push(entry),
+                }
+            }
+        }
+        counted
+    }
+
+    fn section(it: &VectorProgram, section: &'static str, counts: &OpCounts) -> Counted {
+        let class = |class: OpClass| counts.of_class(class);
+        Counted {
+            part: it.part,
+            section,
+            length: it.length,
+            n: it.n,
+            operations: it.times * counts.total(),
+            computing: it.times * counts.filtered(|op| !op.class().moves_data()).total(),
+            divisions_and_roots: it.times * (class(OpClass::Divide) + class(OpClass::SquareRoot)),
+        }
+    }
+}
