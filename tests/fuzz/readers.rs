@@ -72,7 +72,8 @@ fn trajectories_are_read_or_refused() {
     let mut file = gsd::Writer::create(&path, &["energy"]).unwrap();
     for step in 0..3 {
         let frame = extxyz::Frame { step, ..start.clone() };
-        gsd::write(&gsd::LoggedFrame { frame, images: vec![], values: vec![0.5] }, &mut file).unwrap();
+        gsd::write(&gsd::LoggedFrame { frame: frame.into(), images: vec![], values: vec![0.5] }, &mut file)
+            .unwrap();
     }
     let seed = std::fs::read(&path).unwrap();
     let damaged = folder.path().join("fuzz.gsd");

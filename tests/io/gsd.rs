@@ -50,7 +50,7 @@ fn plane(step: u64) -> LoggedFrame {
         step,
         seed: Some(u64::MAX),
     };
-    LoggedFrame { frame, images: vec![], values: vec![step as f64, f64::NAN] }
+    LoggedFrame { frame: frame.into(), images: vec![], values: vec![step as f64, f64::NAN] }
 }
 
 /// Two bodies in space that fly apart.
@@ -60,8 +60,15 @@ fn space(step: u64) -> LoggedFrame {
     let LoggedFrame { frame, values, .. } = plane(step);
     let particles = Particles::new(vec![body(1, far), body(2, -0.25)]);
     let open = ([f64::INFINITY; 2], [0.0; 2], Some([false; 2]));
-    let frame = Frame { particles, cell: open.0, origin: open.1, periodic: open.2, seed: None, ..frame };
-    LoggedFrame { frame, images: vec![[1, -2], [0, step as i32]], values }
+    let frame = Frame {
+        particles,
+        cell: open.0,
+        origin: open.1,
+        periodic: open.2,
+        seed: None,
+        ..Frame::clone(&frame)
+    };
+    LoggedFrame { frame: frame.into(), images: vec![[1, -2], [0, step as i32]], values }
 }
 
 /// A file that grows up to a number of frames: its bytes and its mark without frames, after the first, and so on.
@@ -87,7 +94,7 @@ fn frames_come_back_by_their_numbers() {
         let mut random = Random(1);
         for _ in 0..500 {
             let number = random.below(MANY as usize) as u64;
-            assert_eq!(frames.frame(number).unwrap().unwrap(), of(number).frame);
+            assert_eq!(frames.frame(number).unwrap().unwrap(), *of(number).frame);
         }
         assert!(frames.frame(MANY).unwrap().is_none());
         assert!(frames.map(|frame| frame.unwrap().step).eq(0..MANY));

@@ -12,13 +12,14 @@ use crate::io::table_file::TableFile;
 use crate::io::{FileError, lammps};
 use crate::method::{Clock, Kind, Prepared, Quantity};
 use std::collections::BTreeMap;
-use std::io::Write;
+use std::io::{self, Write};
+use std::sync::Arc;
 
 /// The growing files of a run; none where the scene does not ask for one.
 pub(super) struct Growing {
     pub(super) thermo: TableFile,
-    pub(super) trajectory: Frames<Frame>,
-    pub(super) dump: Option<Frames<Frame>>,
+    pub(super) trajectory: Frames<Arc<Frame>>,
+    pub(super) dump: Option<Frames<Arc<Frame>>>,
     pub(super) dcd: Option<Frames<Positions>>,
     pub(super) gsd: Option<Frames<LoggedFrame, gsd::Writer>>,
     pub(super) events: Option<GrowingFile>,
@@ -63,7 +64,7 @@ impl Growing {
         quantities: &'static [Quantity],
     ) -> Result<Growing, RunError> {
         let thermo = TableFile::create(folder.file(THERMO), &columns(quantities))?;
-        let trajectory = Frames::of(GrowingFile::create(folder.file(TRAJECTORY))?, extxyz::write, None);
+        let trajectory = Frames::of(GrowingFile::create(folder.file(TRAJECTORY))?, write_text, None);
         let mut growing = Growing { thermo, trajectory, dump: None, dcd: None, gsd: None, events: None };
         growing.begin_missing(folder, prepared, quantities)?;
         Ok(growing)
@@ -79,7 +80,7 @@ impl Growing {
         let output = &prepared.output;
         if output.lammps_dump && self.dump.is_none() {
             let file = GrowingFile::create(folder.file(DUMP))?;
-            self.dump = Some(Frames::of(file, lammps::write_dump, None));
+            self.dump = Some(Frames::of(file, write_dump, None));
         }
         if output.dcd && self.dcd.is_none() {
             self.dcd = Some(Frames::of(GrowingFile::create(folder.file(DCD))?, dcd::write, None));
@@ -108,7 +109,7 @@ impl Growing {
         let trajectory = GrowingFile::resume(folder.file(TRAJECTORY), mark(TRAJECTORY)?)?;
         let mut growing = Growing {
             thermo,
-            trajectory: Frames::of(trajectory, extxyz::write, kept.last_frame(TRAJECTORY)),
+            trajectory: Frames::of(trajectory, write_text, kept.last_frame(TRAJECTORY)),
             dump: None,
             dcd: None,
             gsd: None,
@@ -116,7 +117,7 @@ impl Growing {
         };
         if let Some((mark, last)) = known(DUMP) {
             let file = GrowingFile::resume(folder.file(DUMP), mark)?;
-            growing.dump = Some(Frames::of(file, lammps::write_dump, last));
+            growing.dump = Some(Frames::of(file, write_dump, last));
         }
         if let Some((mark, last)) = known(DCD) {
             let file = GrowingFile::resume(folder.file(DCD), mark)?;
@@ -201,6 +202,15 @@ fn last_names(file: &str) -> [String; 3] {
 /// The names of the columns of `thermo.csv` after the step.
 fn columns(quantities: &'static [Quantity]) -> Vec<&'static str> {
     quantities.iter().map(|quantity| quantity.name).collect()
+}
+
+/// Frames are shared by the files that have them.
+fn write_text(frame: &Arc<Frame>, file: &mut GrowingFile) -> io::Result<()> {
+    extxyz::write(frame, file)
+}
+
+fn write_dump(frame: &Arc<Frame>, file: &mut GrowingFile) -> io::Result<()> {
+    lammps::write_dump(frame, file)
 }
 
 /// What a trajectory logs of a row: the frame has the time.

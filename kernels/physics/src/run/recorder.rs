@@ -23,6 +23,7 @@ use crate::scene::Output;
 use crate::structure::OBSERVABLES;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Instant;
 
 /// The counter of events in a checkpoint.
@@ -285,9 +286,9 @@ impl Recorder {
         Ok(None)
     }
 
-    fn frame(&self, simulation: &dyn Simulation) -> Frame {
+    fn frame(&self, simulation: &dyn Simulation) -> Arc<Frame> {
         let (domain, clock) = (self.domain, simulation.clock());
-        Frame {
+        Arc::new(Frame {
             particles: simulation.particles(),
             cell: domain.lengths(),
             origin: domain.corner(),
@@ -295,7 +296,7 @@ impl Recorder {
             time: clock.time,
             step: clock.number(),
             seed: self.seed,
-        }
+        })
     }
 
     /// A frame in each of the files that are asked for and do not have it yet.
@@ -407,7 +408,7 @@ fn logged(
     quantities: &'static [Quantity],
     rows: &Rows,
     simulation: &dyn Simulation,
-    frame: Frame,
+    frame: Arc<Frame>,
 ) -> LoggedFrame {
     let values = logged_of(quantities, rows.row_at(frame.time));
     LoggedFrame { frame, images: simulation.images(), values }

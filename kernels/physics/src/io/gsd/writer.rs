@@ -15,12 +15,13 @@ use crate::io::growing_file::{GrowingFileError, Mark};
 use crate::particles::{Kind, Particle};
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// A frame, and what is logged with it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoggedFrame {
-    /// The particles in their box.
-    pub frame: Frame,
+    /// The particles in their box, which other files may have, too.
+    pub frame: Arc<Frame>,
     /// How many periods each has moved along x and y since the start; empty where that is not known.
     pub images: Vec<[i32; 2]>,
     /// A value for each quantity that is logged; not a number where it is not known.
