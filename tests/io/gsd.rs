@@ -48,7 +48,7 @@ fn plane(step: u64) -> LoggedFrame {
         periodic: Some([true, false]),
         time: 0.1 * step as f64,
         step,
-        seed: Some(u64::MAX),
+        seed: None,
     };
     LoggedFrame { frame: frame.into(), images: vec![], values: vec![step as f64, f64::NAN] }
 }
@@ -60,14 +60,7 @@ fn space(step: u64) -> LoggedFrame {
     let LoggedFrame { frame, values, .. } = plane(step);
     let particles = Particles::new(vec![body(1, far), body(2, -0.25)]);
     let open = ([f64::INFINITY; 2], [0.0; 2], Some([false; 2]));
-    let frame = Frame {
-        particles,
-        cell: open.0,
-        origin: open.1,
-        periodic: open.2,
-        seed: None,
-        ..Frame::clone(&frame)
-    };
+    let frame = Frame { particles, cell: open.0, origin: open.1, periodic: open.2, ..Frame::clone(&frame) };
     LoggedFrame { frame: frame.into(), images: vec![[1, -2], [0, step as i32]], values }
 }
 

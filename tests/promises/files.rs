@@ -119,8 +119,11 @@ pub fn gsd(path: &Path) -> Vec<GsdFrame> {
     let frame = |frame: usize| {
         let bytes = |name| find(frame, name).expect(name).2;
         let (columns, double) = doubles(*find(frame, "log/particles/position").expect("positions"));
-        let exact = |name| find(frame, name).map_or(vec![0.0; 2], |&chunk| doubles(chunk).1);
+        let exact = |name| doubles(*find(frame, name).expect(name)).1;
         let (corner, sides) = (exact("log/box/corner"), exact("log/box/sides"));
+        // Where there is no box it is about the origin.
+        let centre =
+            |axis: usize| if sides[axis].is_finite() { corner[axis] + 0.5 * sides[axis] } else { 0.0 };
         let own = chunks.range((frame, "log/")..(frame, "log0")).filter(|(_, (code, ..))| *code == 10);
         let value = |(&(_, name), &chunk): (&(usize, &str), &(u8, usize, &[u8]))| {
             let values = doubles(chunk).1;
@@ -138,7 +141,7 @@ pub fn gsd(path: &Path) -> Vec<GsdFrame> {
                     bytes.chunks(4).map(|it| i32::from_le_bytes(it.try_into().expect("four bytes")));
                 numbers.collect::<Vec<i32>>().chunks(3).map(|it| [it[0], it[1], it[2]]).collect()
             }),
-            centre: [corner[0] + 0.5 * sides[0], corner[1] + 0.5 * sides[1], 0.0],
+            centre: [centre(0), centre(1), 0.0],
             ids: bytes("log/particles/id")
                 .chunks(4)
                 .map(|it| u32::from_le_bytes(it.try_into().expect("four")))

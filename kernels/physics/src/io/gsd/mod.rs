@@ -23,8 +23,8 @@ pub use error::{Place, ReadError, Reason};
 pub use reader::Frames;
 pub use writer::{LoggedFrame, Writer, write};
 
-/// The chunks of a frame; behind them comes a `log/` for each quantity that is logged.
-const CHUNKS: [&str; 23] = [
+/// The chunks of a frame; behind them comes a `log/` for each quantity that is logged. Readers expect every `log/` in the first frame.
+const CHUNKS: [&str; 22] = [
     STEP,
     DIMENSIONS,
     BOX,
@@ -37,7 +37,6 @@ const CHUNKS: [&str; 23] = [
     VELOCITY,
     IMAGE,
     TIME,
-    SEED,
     SIDES,
     CORNER,
     PERIODIC,
@@ -63,8 +62,7 @@ const VELOCITY: &str = "particles/velocity";
 /// Periods moved since the start, where they are followed.
 const IMAGE: &str = "particles/image";
 const TIME: &str = "log/time";
-const SEED: &str = "log/seed";
-/// Sides and lower left corner of the box in double precision; none where there is no box.
+/// Sides and lower left corner of the box in double precision; sides without end where there is no box.
 const SIDES: &str = "log/box/sides";
 const CORNER: &str = "log/box/corner";
 /// 1 where the box repeats.

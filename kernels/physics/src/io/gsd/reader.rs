@@ -3,8 +3,8 @@
 use super::error::{Place, ReadError, Reason};
 use super::layout::{ENTRY, Element, Entry, HEADING, Heading, names_of};
 use super::{
-    ANGLE, CORNER, COUNT, EXACT_MASS, EXACT_POSITION, EXACT_VELOCITY, ID, OMEGA, PERIODIC, RADIUS, SEED,
-    SIDES, STEP, TIME, TYPE,
+    ANGLE, CORNER, COUNT, EXACT_MASS, EXACT_POSITION, EXACT_VELOCITY, ID, OMEGA, PERIODIC, RADIUS, SIDES,
+    STEP, TIME, TYPE,
 };
 use crate::io::extxyz::Frame;
 use crate::io::regular_file;
@@ -197,23 +197,6 @@ impl Chunks<'_> {
         is_positive: bool,
     ) -> Result<Vec<f64>, Wrong> {
         let numbers = self.needed::<f64>(chunk, rows, columns)?;
-        self.checked(chunk, numbers, columns, is_positive)
-    }
-
-    /// Two numbers of the box, where there is one.
-    fn pair(&mut self, chunk: &'static str, is_positive: bool) -> Result<Option<[f64; 2]>, Wrong> {
-        let Some(pair) = self.rows(chunk, 2, 1)? else { return Ok(None) };
-        let pair = self.checked(chunk, pair, 1, is_positive)?;
-        Ok(Some([pair[0], pair[1]]))
-    }
-
-    fn checked(
-        &self,
-        chunk: &'static str,
-        numbers: Vec<f64>,
-        columns: usize,
-        is_positive: bool,
-    ) -> Result<Vec<f64>, Wrong> {
         let fits = |number: f64| number.is_finite() && (number > 0.0 || !is_positive);
         let Some(at) = numbers.iter().position(|&number| !fits(number)) else { return Ok(numbers) };
         let expected = if is_positive { "a finite number greater than 0" } else { "a finite number" };
@@ -221,10 +204,21 @@ impl Chunks<'_> {
         Err(self.wrong(chunk, reason))
     }
 
+    /// The sides of the box; without end where there is none.
+    fn sides(&mut self) -> Result<[f64; 2], Wrong> {
+        let sides = self.needed::<f64>(SIDES, 2, 1)?;
+        let Some(row) = sides.iter().position(|side| side.is_nan() || *side <= 0.0) else {
+            return Ok([sides[0], sides[1]]);
+        };
+        let (found, expected) = (sides[row].to_string(), "a number greater than 0");
+        Err(self.wrong(SIDES, Reason::Number { row, found, expected }))
+    }
+
     fn frame(mut self) -> Result<Frame, Wrong> {
         let count = self.one::<u32>(COUNT)? as usize;
-        let sides = self.pair(SIDES, true)?;
-        let axes = if sides.is_some() { 2 } else { 3 };
+        let (sides, corner) = (self.sides()?, self.numbers(CORNER, (2, 1), false)?);
+        let periodic = self.needed::<u8>(PERIODIC, 2, 1)?;
+        let axes = if sides.iter().all(|side| side.is_finite()) { 2 } else { 3 };
         let kinds = self.needed::<u32>(TYPE, count, 1)?;
         let ids = self.needed::<u32>(ID, count, 1)?;
         let [radius, mass] =
@@ -256,12 +250,12 @@ impl Chunks<'_> {
         };
         Ok(Frame {
             particles: Particles::new((0..count).map(particle).collect()),
-            cell: sides.unwrap_or([f64::INFINITY; 2]),
-            origin: self.pair(CORNER, false)?.unwrap_or_default(),
-            periodic: self.rows::<u8>(PERIODIC, 2, 1)?.map(|repeats| [repeats[0] != 0, repeats[1] != 0]),
+            cell: sides,
+            origin: [corner[0], corner[1]],
+            periodic: Some([periodic[0] != 0, periodic[1] != 0]),
             time: self.numbers(TIME, (1, 1), false)?[0],
             step: self.one(STEP)?,
-            seed: self.rows(SEED, 1, 1)?.map(|seed| seed[0]),
+            seed: None,
         })
     }
 }

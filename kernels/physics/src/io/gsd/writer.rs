@@ -6,8 +6,8 @@
 use super::file::GsdFile;
 use super::{
     ANGLE, BOX, CHUNKS, CORNER, COUNT, DIAMETER, DIMENSIONS, EXACT_MASS, EXACT_POSITION, EXACT_VELOCITY,
-    Frames, ID, IMAGE, MASS, OMEGA, PERIODIC, POSITION, RADIUS, SEED, SIDES, STEP, TIME, TYPE, TYPE_NAMES,
-    TYPES, VELOCITY,
+    Frames, ID, IMAGE, MASS, OMEGA, PERIODIC, POSITION, RADIUS, SIDES, STEP, TIME, TYPE, TYPE_NAMES, TYPES,
+    VELOCITY,
 };
 use crate::io::FileError;
 use crate::io::extxyz::Frame;
@@ -140,16 +140,9 @@ pub fn write(LoggedFrame { frame, images, values }: &LoggedFrame, to: &mut Write
     }
     file.add(TIME, [[frame.time]])?;
     if is_first {
-        if let Some(seed) = frame.seed {
-            file.add(SEED, [[seed]])?;
-        }
-        if is_plane {
-            file.add(SIDES, frame.cell.map(|side| [side]))?;
-            file.add(CORNER, frame.origin.map(|at| [at]))?;
-        }
-        if let Some(periodic) = frame.periodic {
-            file.add(PERIODIC, periodic.map(|repeats| [u8::from(repeats)]))?;
-        }
+        file.add(SIDES, frame.cell.map(|side| [side]))?;
+        file.add(CORNER, frame.origin.map(|at| [at]))?;
+        file.add(PERIODIC, frame.periodic.unwrap_or([true; 2]).map(|repeats| [u8::from(repeats)]))?;
     }
     if !is_same {
         file.add(ID, particles.iter().map(|it| [it.id]))?;
