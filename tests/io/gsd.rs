@@ -94,6 +94,26 @@ fn frames_come_back_by_their_numbers() {
     }
 }
 
+/// Other programs want all particles inside: a box without a ceiling is doubled until it holds them, in that frame alone.
+#[test]
+fn every_disc_is_in_the_box() {
+    let (_folder, path) = folder_and_path();
+    let high = |step: u64| {
+        let mut frame = Frame::clone(&plane(step).frame);
+        frame.particles.all_mut()[0].position[1] = if step == 1 { 19.0 } else { 1.0 };
+        LoggedFrame { frame: frame.into(), ..plane(step) }
+    };
+    let (grown, marks) = written(&path, high, 3);
+    let heights = |frame: usize| {
+        // Behind the step comes the box, where it differs from the first one.
+        let at = marks[frame].bytes as usize + 8;
+        f32::from_le_bytes(grown[3][at + 4..at + 8].try_into().unwrap())
+    };
+    // The box of 8 has its centre at 4.1.
+    assert!(heights(1) == 32.0 && heights(2) != 8.0, "{} {}", heights(1), heights(2));
+    assert_eq!(Frames::open(&path).unwrap().frame(1).unwrap().unwrap().cell, [10.0 / 3.0, 8.0]);
+}
+
 /// What readers of the schema do with a chunk that is left out: they take that of the first frame if it has as many rows. What is
 /// left out is what has not changed.
 #[test]

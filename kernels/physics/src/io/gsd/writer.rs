@@ -196,13 +196,21 @@ struct Cell {
 }
 
 impl Cell {
-    /// The box of a plane has no depth. Space without end has none: a cube about the origin stands for it that holds all, with a power
+    /// The box of a plane has no depth, and sides twice, four times, … as long where discs fly above one without a ceiling. Space without end has none: a cube about the origin stands for it that holds all, with a power
     /// of two as its side, so that it seldom changes.
     fn of(frame: &Frame) -> Cell {
         let Frame { cell: [lx, ly], origin: [x, y], particles, .. } = frame;
         if lx.is_finite() && ly.is_finite() {
-            let sides = [*lx as f32, *ly as f32, 0.0, 0.0, 0.0, 0.0];
-            return Cell { sides, centre: [x + 0.5 * lx, y + 0.5 * ly, 0.0], is_plane: true };
+            let centre = [x + 0.5 * lx, y + 0.5 * ly, 0.0];
+            let side = |axis: usize, mut side: f64| {
+                let ways = particles.all().iter().map(|it| (it.position[axis] - centre[axis]).abs());
+                let reach = ways.fold(0.0, f64::max);
+                while reach > 0.5 * side {
+                    side *= 2.0;
+                }
+                side as f32
+            };
+            return Cell { sides: [side(0, *lx), side(1, *ly), 0.0, 0.0, 0.0, 0.0], centre, is_plane: true };
         }
         let coordinates = particles.all().iter().flat_map(|it| it.position);
         let side = above(2.0 * coordinates.fold(0.5, |most: f64, x| most.max(x.abs()))) as f32;
