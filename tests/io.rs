@@ -10,6 +10,8 @@ mod corrupt_checkpoint;
 mod frames;
 #[path = "io/growing_files.rs"]
 mod growing_files;
+#[path = "io/gsd.rs"]
+mod gsd;
 #[path = "io/lammps.rs"]
 mod lammps;
 

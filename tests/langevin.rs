@@ -4,6 +4,7 @@ use serde_json::Value;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
+use stripmine_physics::io::{extxyz, gsd};
 
 fn stripmine(arguments: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_stripmine"));
@@ -276,6 +277,7 @@ fn losses_are_counted_listed_and_survived() {
         "integrator.dt=0.005",
         "run.checkpoint_every=0",
         "output.dcd=true",
+        "output.gsd=true",
     ];
     let stopped = begin("langevin-report", &folder.path().join("stopped"), &thin, &[]);
     assert_eq!(stopped.status.code(), Some(4), "{}", said(&stopped));
@@ -328,7 +330,15 @@ fn losses_are_counted_listed_and_survived() {
         let last = &dcd[dcd.len() - 3 * (8 + 4 * 4000) + 4..][..4 * 4000];
         let absent = last.chunks(4).filter(|x| f32::from_le_bytes((*x).try_into().unwrap()).is_nan());
         assert_eq!(absent.count() as u64, lost);
-        (rows, last_frame(&out), dcd, counted)
+        // A frame with an index has those that are left, as the text has them; it says nothing of the seed.
+        let text: Vec<_> = extxyz::Frames::open(out.join("trajectory.xyz"))
+            .unwrap()
+            .map(|frame| extxyz::Frame { seed: None, ..frame.unwrap() })
+            .collect();
+        let indexed: Vec<_> =
+            gsd::Frames::open(out.join("trajectory.gsd")).unwrap().map(Result::unwrap).collect();
+        assert!(text == indexed && text[text.len() - 1].particles.len() as u64 == 4000 - lost);
+        (rows, last_frame(&out), dcd, fs::read(out.join("trajectory.gsd")).unwrap(), counted)
     };
     assert_eq!(events("parts", &["33", "71", "100"]), events("whole", &["100"]));
     // Without rows the summary alone lists them, and is what the words point to.

@@ -12,7 +12,7 @@ fn stripmine(scene: &str, folder: &Path, more: &[&str]) -> Command {
     command.args(["run", scene, "--out", folder.to_str().unwrap()]);
     command.args(["--set", "run.thermo_every=5", "--set", "run.snapshot_every=30"]);
     command.args(["--set", "run.checkpoint_every=40", "--set", "output.lammps_dump=true"]);
-    command.args(["--set", "output.dcd=true"]).args(more);
+    command.args(["--set", "output.dcd=true", "--set", "output.gsd=true"]).args(more);
     command
 }
 
@@ -44,14 +44,15 @@ fn notes(folder: &Path) -> Vec<String> {
 }
 
 /// The files that the physics alone decides.
-const BITS: [&str; 4] = ["thermo.csv", "trajectory.xyz", "trajectory.dcd", "dump.lammpstrj"];
+const BITS: [&str; 5] =
+    ["thermo.csv", "trajectory.xyz", "trajectory.dcd", "trajectory.gsd", "dump.lammpstrj"];
 
-fn bits(folder: &Path) -> [Vec<u8>; 4] {
+fn bits(folder: &Path) -> [Vec<u8>; 5] {
     BITS.map(|name| fs::read(folder.join(name)).unwrap())
 }
 
 /// A folder, and the bits of a run of 100 steps, uninterrupted.
-fn folder_and_bits() -> (tempfile::TempDir, PathBuf, [Vec<u8>; 4]) {
+fn folder_and_bits() -> (tempfile::TempDir, PathBuf, [Vec<u8>; 5]) {
     let folder = tempfile::tempdir().unwrap();
     let whole = folder.path().join("whole");
     succeed(&run(&whole, 100, &[]));

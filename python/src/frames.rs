@@ -4,11 +4,10 @@ use crate::exceptions;
 use crate::particles::{Particles, dimensions};
 use crate::scratch::Scratch;
 use pyo3::prelude::*;
-use std::fs::File;
-use std::io::BufReader;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 use stripmine_physics::io::extxyz;
+use stripmine_physics::io::trajectory::{Trajectory, TrajectoryError};
 use stripmine_physics::reported::Class;
 
 /// Particles in their box at one time.
@@ -40,31 +39,30 @@ impl Frame {
 #[pyclass(frozen, module = "stripmine")]
 pub(crate) struct Frames {
     reading: Mutex<Reading>,
-    path: PathBuf,
     /// The folder stays as long as it is read.
     _scratch: Option<Arc<Scratch>>,
 }
 
 struct Reading {
-    frames: extxyz::Frames<BufReader<File>>,
+    frames: Trajectory,
     /// In how many dimensions the particles of the first frame move.
     dimensions: Option<usize>,
 }
 
 impl Frames {
-    /// Opens a trajectory.
+    /// Opens the trajectory of the run in a folder.
     ///
     /// # Errors
     /// If the system does not let it be read.
-    pub(crate) fn open(py: Python<'_>, path: &Path, scratch: Option<Arc<Scratch>>) -> PyResult<Frames> {
-        let frames = extxyz::Frames::open(path).map_err(|error| wrong(py, &error, path))?.in_space();
+    pub(crate) fn open(py: Python<'_>, folder: &Path, scratch: Option<Arc<Scratch>>) -> PyResult<Frames> {
+        let frames = Trajectory::open(folder).map_err(|error| wrong(py, &error))?;
         let reading = Mutex::new(Reading { frames, dimensions: None });
-        Ok(Frames { reading, path: path.to_owned(), _scratch: scratch })
+        Ok(Frames { reading, _scratch: scratch })
     }
 }
 
-fn wrong(py: Python<'_>, error: &extxyz::ReadError, path: &Path) -> PyErr {
-    exceptions::of_file(py, Class::Input, &error.to_string(), path)
+fn wrong(py: Python<'_>, error: &TrajectoryError) -> PyErr {
+    exceptions::of_file(py, Class::Input, &error.to_string(), error.file())
 }
 
 #[pymethods]
@@ -81,7 +79,7 @@ impl Frames {
             Some(frame.map(|frame| (*known.get_or_insert_with(|| dimensions(&frame.particles)), frame)))
         });
         let Some(frame) = next else { return Ok(None) };
-        let (dimensions, frame) = frame.map_err(|error| wrong(py, &error, &self.path))?;
+        let (dimensions, frame) = frame.map_err(|error| wrong(py, &error))?;
         let extxyz::Frame { particles, cell, origin, periodic, time, step, .. } = frame;
         let particles = Py::new(py, Particles::of(py, particles.all(), dimensions)?)?;
         Ok(Some(Frame { time, step, particles, sides: cell, origin, periodic }))

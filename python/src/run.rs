@@ -17,7 +17,6 @@ use stripmine_physics::reported::Class;
 use stripmine_physics::run::{Finished, TableError, TableReader, averages_of};
 
 const THERMO: &str = "thermo.csv";
-const TRAJECTORY: &str = "trajectory.xyz";
 const SCENE: &str = "scene.toml";
 const SUMMARY: &str = "summary.json";
 
@@ -95,9 +94,9 @@ impl Run {
         joined(py, &[self.finished(py)?])
     }
 
-    /// The frames of its trajectory, one after the other.
+    /// The frames of its trajectory, one after the other: of `trajectory.gsd` where `trajectory.xyz` has none.
     fn frames(&self, py: Python<'_>) -> PyResult<Frames> {
-        Frames::open(py, &self.folder.join(TRAJECTORY), self.scratch.clone())
+        Frames::open(py, &self.folder, self.scratch.clone())
     }
 
     /// The scene as TOML, every value spelled out and every choice made.

@@ -234,7 +234,7 @@ class Run:
         """
 
     def frames(self) -> Frames:
-        """The frames of `trajectory.xyz`, one after the other, each read when it is asked for."""
+        """The frames of `trajectory.xyz`, or of `trajectory.gsd` where that has none, one after the other, each read when it is asked for."""
 
     def toml(self) -> str:
         """The scene as TOML, every value spelled out and every choice made."""

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Opens the files of a run with the programs its users have: numpy, pandas, ASE, MDAnalysis, OVITO, LAMMPS.
+# Opens the files of a run with the programs its users have: numpy, pandas, ASE, MDAnalysis, gsd, freud, HOOMD, OVITO, LAMMPS.
 #
 #   tests/clients/check.sh RUN_FOLDER [ENVIRONMENT_FOLDER [REPORT_FOLDER]]
 #

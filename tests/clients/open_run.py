@@ -303,8 +303,130 @@ def with_mdanalysis(run):
             same("box", now.dimensions[:3], frame.sides, SINGLE)
         return positions(path)
 
-    found = [("trajectory.xyz", trajectory), ("trajectory.dcd", with_box)]
+    def indexed(path):
+        # Its reader of GSD knows no velocities; positions are from the centre of the box.
+        universe = MDAnalysis.Universe(str(path))
+        columns = run.frames[0].columns
+        same("species", universe.atoms.names, in_file_order(run, columns["species"]))
+        same("mass", universe.atoms.masses, in_file_order(run, columns["mass"]), SINGLE)
+        same("radius", universe.atoms.radii, in_file_order(run, columns["radius"]), SINGLE)
+        for now, frame in zip(universe.trajectory, run.frames):
+            same("position", now.positions, in_file_order(run, from_centre(frame)), SINGLE)
+            same("box", now.dimensions[:2], frame.sides[:2], SINGLE)
+            same("step", [now.data["step"]], [frame.step])
+        return frames_are(run, len(universe.trajectory))
+
+    found = [("trajectory.xyz", trajectory), ("trajectory.dcd", with_box), ("trajectory.gsd", indexed)]
     return [(run.path(name), check) for name, check in found] + [(run.dump(), dump), (run.data(), data)]
+
+
+def from_centre(frame):
+    """Positions as GSD has them."""
+    centre = [low + side / 2 for low, side in zip(frame.origin, frame.sides)]
+    return [[x - centre[0], y - centre[1], z] for x, y, z in frame.columns["position"]]
+
+
+def in_file_order(run, column):
+    """A column, which is in the order of the ids, in that of the start."""
+    places = {number: place for place, number in enumerate(run.frames[0].columns["id"])}
+    return [column[places[number]] for number in next(iter(file_order(run.path("trajectory.xyz"))))]
+
+
+def with_gsd(run):
+    import gsd.hoomd
+    import gsd.pygsd
+
+    def compare(trajectory):
+        # Backwards: each frame by its number.
+        for number in reversed(range(len(trajectory))):
+            now, frame = trajectory[number], run.frames[number]
+            now.validate()
+            columns, particles, log = frame.columns, now.particles, now.log
+            same("step", [int(now.configuration.step)], [frame.step])
+            same("time", log["time"], [frame.time])
+            same("dimensions", [int(now.configuration.dimensions)], [2])
+            same("box", now.configuration.box, [*frame.sides[:2], 0, 0, 0, 0], SINGLE)
+            same("box/sides", log["box/sides"], frame.sides[:2])
+            same("box/corner", log["box/corner"], frame.origin[:2])
+            same("box/periodic", log["box/periodic"], [int(axis) for axis in frame.periodic[:2]])
+            types = [particles.types[number] for number in particles.typeid]
+            same("types", types, in_file_order(run, columns["species"]))
+            expected = {
+                "position": from_centre(frame),
+                "velocity": columns["velocity"],
+                "mass": columns["mass"],
+                "diameter": [2 * radius for radius in columns["radius"]],
+            }
+            for name, column in expected.items():
+                same(name, getattr(particles, name), in_file_order(run, column), SINGLE)
+            expected = {name: columns[name] for name in ("id", "radius", "mass")}
+            expected["position"] = [row[:2] for row in columns["position"]]
+            expected["velocity"] = [row[:2] for row in columns["velocity"]]
+            expected["omega"] = [omega for *_, omega in columns["omega"]]
+            for name, column in expected.items():
+                same(f"particles/{name}", log[f"particles/{name}"], in_file_order(run, column))
+            rows = [row for row in run.table if row[0] == frame.step]
+            for name, value in zip(run.header, rows[0] if rows else []):
+                if name not in ("step", "time"):
+                    same(name, log[name], [value])
+        return frames_are(run, len(trajectory))
+
+    def trajectory(path):
+        with gsd.hoomd.open(path) as frames:
+            compare(frames)
+            version = ".".join(str(number) for number in frames.file.schema_version)
+        # A reader of its own, in Python.
+        with open(path, "rb") as file:
+            said = compare(gsd.hoomd.HOOMDTrajectory(gsd.pygsd.GSDFile(file)))
+        return f"{said}, schema {version}"
+
+    return [(run.path("trajectory.gsd"), trajectory)]
+
+
+def with_freud(run):
+    import freud
+    import gsd.hoomd
+
+    def trajectory(path):
+        with gsd.hoomd.open(path) as frames:
+            radius = 0.2 * min(run.frames[0].sides[:2])
+            counts = []
+            for now, frame in zip(frames, run.frames):
+                found = freud.locality.AABBQuery.from_system(now)
+                same("box", [found.box.Lx, found.box.Ly, float(found.box.is2D)], [*frame.sides[:2], 1.0], SINGLE)
+                query = found.query(now.particles.position, {"r_max": radius, "exclude_ii": True})
+                counts.append(len(query.toNeighborList()))
+                freud.density.RDF(bins=20, r_max=radius).compute(now)
+        # It takes every box as periodic.
+        points, sides = from_centre(run.frames[-1]), run.frames[-1].sides
+        pairs = 0
+        for i, one in enumerate(points):
+            for other in points[:i]:
+                apart = [a - b for a, b in zip(one[:2], other[:2])]
+                apart = [way - side * round(way / side) for way, side in zip(apart, sides)]
+                pairs += 2 * (math.hypot(*apart) < radius)
+        if abs(counts[-1] - pairs) > 2:
+            raise Wrong(f"{counts[-1]} pairs nearer than {radius}, expected {pairs}")
+        return frames_are(run, len(counts))
+
+    return [(run.path("trajectory.gsd"), trajectory)]
+
+
+def with_hoomd(run):
+    import hoomd
+
+    def trajectory(path):
+        for number, frame in enumerate(run.frames):
+            simulation = hoomd.Simulation(device=hoomd.device.CPU(), seed=1)
+            simulation.create_state_from_gsd(filename=str(path), frame=number)
+            snapshot = simulation.state.get_snapshot()
+            same("step", [simulation.timestep], [frame.step])
+            same("position", snapshot.particles.position, in_file_order(run, from_centre(frame)), SINGLE)
+            same("velocity", snapshot.particles.velocity, in_file_order(run, frame.columns["velocity"]), SINGLE)
+            same("box", snapshot.configuration.box[:2], frame.sides[:2], SINGLE)
+        return f"{len(run.frames)} frames"
+
+    return [(run.path("trajectory.gsd"), trajectory)]
 
 
 def file_order(path):
@@ -348,7 +470,28 @@ def with_ovito(run):
         compare(found, frame, whole)
         return f"{found.particles.count} atoms"
 
-    return [(run.path("trajectory.xyz"), frames), (run.dump(), frames), (run.data(), data)]
+    def indexed(path):
+        pipeline = import_file(str(path))
+        for number, frame in enumerate(run.frames[: pipeline.source.num_frames]):
+            found = pipeline.compute(number)
+            particles, columns = found.particles, frame.columns
+            same("position", particles["Position"][...], in_file_order(run, from_centre(frame)), SINGLE)
+            names = {"Velocity": "velocity", "Mass": "mass", "Radius": "radius"}
+            for theirs, ours in names.items():
+                same(ours, particles[theirs][...], in_file_order(run, columns[ours]), SINGLE)
+            same("id", particles["id"][...], in_file_order(run, columns["id"]))
+            same("omega", particles["omega"][...], in_file_order(run, [omega for *_, omega in columns["omega"]]))
+            same("exact position", particles["position"][...], in_file_order(run, [row[:2] for row in columns["position"]]))
+            types = [particles.particle_types.type_by_id(number).name for number in particles.particle_types[...]]
+            same("species", types, in_file_order(run, columns["species"]))
+            same("box", [found.cell[i, i] for i in range(2)], frame.sides[:2], SINGLE)
+            same("plane", [found.cell.is2D], [True])
+            same("step", [found.attributes["Timestep"]], [frame.step])
+            same("time", [found.attributes["time"]], [frame.time])
+        return frames_are(run, pipeline.source.num_frames)
+
+    found = [("trajectory.xyz", frames), ("trajectory.gsd", indexed)]
+    return [(run.path(name), check) for name, check in found] + [(run.dump(), frames), (run.data(), data)]
 
 
 def with_lammps(run):
@@ -405,6 +548,9 @@ PROGRAMS = [
     ("pandas", with_pandas),
     ("ase", with_ase),
     ("MDAnalysis", with_mdanalysis),
+    ("gsd", with_gsd),
+    ("freud", with_freud),
+    ("hoomd", with_hoomd),
     ("ovito", with_ovito),
     ("lammps", with_lammps),
 ]
@@ -434,7 +580,8 @@ def verdict(name, opener, run):
     try:
         name += " " + importlib.metadata.version(name)
     except importlib.metadata.PackageNotFoundError:
-        pass  # of Python's own library
+        # Of Python's own library, or a package of another name.
+        name += " " + getattr(importlib.import_module(name), "__version__", "")
     return f"{name}: {'FAILED' if failed else 'OK'}: {', '.join(words) or 'no file for it'}", failed
 
 

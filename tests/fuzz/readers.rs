@@ -8,6 +8,7 @@ use stripmine::model::machine::MachineModel;
 use stripmine::model::machines::names;
 use stripmine_physics::io::checkpoint::{Checkpoint, Column, Counter};
 use stripmine_physics::io::extxyz::{self, Frames};
+use stripmine_physics::io::gsd;
 use stripmine_physics::method::lattice_md::{Document, ENTRY};
 
 const MEGABYTE: u64 = 1 << 20;
@@ -58,6 +59,29 @@ fn frames_are_read_or_refused() {
             extxyz::write(&frame, &mut written).unwrap();
             let again = Frames::new(Cursor::new(written), "again.xyz").next().unwrap().unwrap();
             assert_eq!(again, frame);
+        }
+    });
+}
+
+/// A trajectory with an index: damage to its heading and index, and to its chunks.
+#[test]
+fn trajectories_are_read_or_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("seed.gsd");
+    let start = Frames::new(Cursor::new(frames().swap_remove(0)), "two.xyz").next().unwrap().unwrap();
+    let mut file = gsd::Writer::create(&path, &["energy"]).unwrap();
+    for step in 0..3 {
+        let frame = extxyz::Frame { step, ..start.clone() };
+        gsd::write(&gsd::LoggedFrame { frame: frame.into(), images: vec![], values: vec![0.5] }, &mut file)
+            .unwrap();
+    }
+    let seed = std::fs::read(&path).unwrap();
+    let damaged = folder.path().join("fuzz.gsd");
+    fuzz(&[seed], cases(2000), 4 * MEGABYTE, |bytes| {
+        std::fs::write(&damaged, bytes).unwrap();
+        match gsd::Frames::open(&damaged) {
+            Ok(frames) => assert!(frames.flatten().all(|frame| frame.time.is_finite())),
+            Err(error) => assert!(error.to_string().contains("fuzz.gsd: ")),
         }
     });
 }

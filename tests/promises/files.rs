@@ -14,6 +14,149 @@ pub struct TextFrame {
     pub places: Places,
 }
 
+impl TextFrame {
+    /// Its number, the bits of its time, and its places.
+    pub fn text(&self) -> (u64, u64, Places) {
+        (self.number, self.time.expect("it has one").to_bits(), self.places.clone())
+    }
+}
+
+/// A frame of GSD.
+pub struct GsdFrame {
+    number: u64,
+    time: f64,
+    dimensions: u8,
+    sides: [f32; 3],
+    exact_sides: [f64; 2],
+    /// The centre of the box.
+    centre: [f64; 3],
+    ids: Vec<u32>,
+    /// As the schema has them, from the centre of the box, and as they are.
+    single: Vec<[f32; 3]>,
+    double: Vec<[f64; 3]>,
+    /// Periods moved, where that is followed.
+    images: Option<Vec<[i32; 3]>>,
+    /// What is logged of the frame itself.
+    pub logged: BTreeMap<String, f64>,
+}
+
+impl GsdFrame {
+    /// As of a [`TextFrame`].
+    pub fn text(&self) -> (u64, u64, Places) {
+        (
+            self.number,
+            self.time.to_bits(),
+            self.ids.iter().copied().zip(self.double.iter().copied()).collect(),
+        )
+    }
+
+    /// The mean square displacement since another frame, as other programs have it by images.
+    pub fn displacement_since(&self, start: &GsdFrame) -> Option<f64> {
+        let images = self.images.as_ref().filter(|_| self.ids == start.ids)?;
+        let way = |(number, image): (usize, &[i32; 3])| -> f64 {
+            let along = |axis: usize| {
+                let moved = self.double[number][axis] - start.double[number][axis];
+                moved + f64::from(image[axis]) * self.exact_sides[axis]
+            };
+            along(0).powi(2) + along(1).powi(2)
+        };
+        Some(images.iter().enumerate().map(way).sum::<f64>() / images.len() as f64)
+    }
+
+    /// What other programs read is what is there, and in the box.
+    pub fn single_is_as_double(&self, label: &str) {
+        assert!(
+            self.sides[2] == 0.0 && self.dimensions == 2 || self.sides[2] > 0.0 && self.dimensions == 3,
+            "{label}"
+        );
+        assert_eq!(self.single.len(), self.double.len(), "{label}");
+        for (single, double) in self.single.iter().zip(&self.double) {
+            for axis in 0..3 {
+                let from_centre = (double[axis] - self.centre[axis]) as f32;
+                assert_eq!(single[axis].to_bits(), from_centre.to_bits(), "{label}");
+                assert!(
+                    single[axis].abs() <= 0.5 * self.sides[axis],
+                    "{label}: {single:?} is out of the box"
+                );
+            }
+        }
+    }
+}
+
+/// The frames of a GSD file, by what the format's own description says.
+pub fn gsd(path: &Path) -> Vec<GsdFrame> {
+    let bytes = fs::read(path).expect("it is there");
+    let wide = |at: usize| u64::from_le_bytes(bytes[at..at + 8].try_into().expect("eight bytes")) as usize;
+    assert_eq!(bytes[..8], [0xdf, 0x65].repeat(4), "it is GSD");
+    let (index, capacity, names, blocks) = (wide(8), wide(16), wide(24), wide(32));
+    let names = std::str::from_utf8(&bytes[names..names + 64 * blocks]).expect("text");
+    let names: Vec<&str> = names.split('\0').take_while(|name| !name.is_empty()).collect();
+    // By frame and name: the type, the columns and the bytes.
+    let mut chunks: BTreeMap<(usize, &str), (u8, usize, &[u8])> = BTreeMap::new();
+    let mut count = 0;
+    for entry in (0..capacity).map(|entry| index + 32 * entry).take_while(|entry| wide(entry + 16) != 0) {
+        let (frame, rows, at) = (wide(entry), wide(entry + 8), wide(entry + 16));
+        let columns =
+            u32::from_le_bytes(bytes[entry + 24..entry + 28].try_into().expect("four bytes")) as usize;
+        let name = names[usize::from(u16::from_le_bytes([bytes[entry + 28], bytes[entry + 29]]))];
+        let (code, flags) = (bytes[entry + 30], bytes[entry + 31]);
+        let size = [0, 1, 2, 4, 8, 1, 2, 4, 8, 4, 8][usize::from(code)];
+        assert!(flags == 0 && (frame == count || frame + 1 == count), "entries are in order");
+        chunks.insert((frame, name), (code, columns, &bytes[at..at + rows * columns * size]));
+        count = frame + 1;
+    }
+    let find =
+        |frame: usize, name: &'static str| chunks.get(&(frame, name)).or_else(|| chunks.get(&(0, name)));
+    let singles = |frame: usize, name: &'static str| -> Vec<f32> {
+        let (code, _, bytes) = *find(frame, name).expect(name);
+        assert_eq!(code, 9, "{name} is in single precision");
+        bytes.chunks(4).map(|it| f32::from_le_bytes(it.try_into().expect("four bytes"))).collect()
+    };
+    let doubles = |(code, columns, bytes): (u8, usize, &[u8])| -> (usize, Vec<f64>) {
+        assert_eq!(code, 10, "in double precision");
+        (columns, bytes.chunks(8).map(|it| f64::from_le_bytes(it.try_into().expect("eight bytes"))).collect())
+    };
+    let frame = |frame: usize| {
+        let bytes = |name| find(frame, name).expect(name).2;
+        let (columns, double) = doubles(*find(frame, "log/particles/position").expect("positions"));
+        let exact = |name| doubles(*find(frame, name).expect(name)).1;
+        let (corner, sides) = (exact("log/box/corner"), exact("log/box/sides"));
+        // Where there is no box it is about the origin.
+        let centre =
+            |axis: usize| if sides[axis].is_finite() { corner[axis] + 0.5 * sides[axis] } else { 0.0 };
+        let own = chunks.range((frame, "log/")..(frame, "log0")).filter(|(_, (code, ..))| *code == 10);
+        let value = |(&(_, name), &chunk): (&(usize, &str), &(u8, usize, &[u8]))| {
+            let values = doubles(chunk).1;
+            (values.len() == 1).then(|| (name["log/".len()..].to_owned(), values[0]))
+        };
+        GsdFrame {
+            number: u64::from_le_bytes(bytes("configuration/step").try_into().expect("eight bytes")),
+            time: doubles(*find(frame, "log/time").expect("a time")).1[0],
+            dimensions: bytes("configuration/dimensions")[0],
+            sides: singles(frame, "configuration/box")[..3].try_into().expect("three"),
+            exact_sides: [sides[0], sides[1]],
+            images: chunks.get(&(frame, "particles/image")).map(|&(code, columns, bytes)| {
+                assert_eq!((code, columns), (7, 3));
+                let numbers =
+                    bytes.chunks(4).map(|it| i32::from_le_bytes(it.try_into().expect("four bytes")));
+                numbers.collect::<Vec<i32>>().chunks(3).map(|it| [it[0], it[1], it[2]]).collect()
+            }),
+            centre: [centre(0), centre(1), 0.0],
+            ids: bytes("log/particles/id")
+                .chunks(4)
+                .map(|it| u32::from_le_bytes(it.try_into().expect("four")))
+                .collect(),
+            single: singles(frame, "particles/position").chunks(3).map(|it| [it[0], it[1], it[2]]).collect(),
+            double: double
+                .chunks(columns)
+                .map(|it| [it[0], it[1], it.get(2).copied().unwrap_or(0.0)])
+                .collect(),
+            logged: own.filter_map(value).collect(),
+        }
+    };
+    (0..count).map(frame).collect()
+}
+
 fn number<T: std::str::FromStr>(text: &str) -> T
 where
     T::Err: std::fmt::Debug,

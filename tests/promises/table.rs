@@ -3,7 +3,7 @@
 //! A scene, made short, is run whole; interrupted at random moments and gone on with; killed and gone on with. Every file has
 //! as many frames and rows as the scene says, ends with the final state, and is the same bytes each time; so is the summary, but for times.
 
-use super::files::{Places, TextFrame, dcd, extended_xyz, lammps_dump, table};
+use super::files::{GsdFrame, Places, TextFrame, dcd, extended_xyz, gsd, lammps_dump, table};
 use rand::RngExt;
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -36,10 +36,11 @@ const FEWER: usize = 200;
 const AT_A_TIME: usize = 6;
 
 /// What the files of a run are, where it has all.
-const FILES: [&str; 7] = [
+const FILES: [&str; 8] = [
     "thermo.csv",
     "trajectory.xyz",
     "trajectory.dcd",
+    "trajectory.gsd",
     "dump.lammpstrj",
     "final.data",
     "events.csv",
@@ -349,6 +350,7 @@ impl Case {
         let output = &prepared.output;
         let dump =
             output.lammps_dump.then(|| ("dump.lammpstrj", lammps_dump(&folder.join("dump.lammpstrj"))));
+        let texts: Vec<(u64, u64, Places)> = xyz.iter().map(TextFrame::text).collect();
         for (name, frames) in [("trajectory.xyz", xyz)].into_iter().chain(dump) {
             assert_eq!(frames.len(), expected.len(), "{label}: {name}");
             assert!(
@@ -370,7 +372,26 @@ impl Case {
             bits(&frames[frames.len() - 1]) == bits(&positions),
             "{label}: trajectory.dcd: the last frame"
         );
-        held.frames += (2 + usize::from(output.lammps_dump)) * expected.len();
+        let frames = gsd(&folder.join("trajectory.gsd"));
+        assert_eq!(frames.iter().map(GsdFrame::text).collect::<Vec<_>>(), texts, "{label}: trajectory.gsd");
+        for frame in &frames {
+            frame.single_is_as_double(&label);
+            let logged = frame.logged.get("msd").filter(|msd| !msd.is_nan());
+            if let (Some(&msd), Some(found)) = (logged, frame.displacement_since(&frames[0])) {
+                assert!((found - msd).abs() <= 1e-12 * msd, "{label}: {found} and {msd}");
+            }
+        }
+        // Where a row is of the moment of a frame, the frame has it.
+        let rows: Vec<(&str, f64)> =
+            (columns.iter().map(String::as_str).zip(table[0].iter().copied())).collect();
+        for (name, value) in rows.into_iter().filter(|(name, _)| !["step", "time"].contains(name)) {
+            assert_eq!(
+                frames[0].logged.get(name).map(|it| it.to_bits()),
+                Some(value.to_bits()),
+                "{label}: {name}"
+            );
+        }
+        held.frames += (3 + usize::from(output.lammps_dump)) * expected.len();
 
         let data = fs::read_to_string(folder.join("final.data")).unwrap_or_default();
         for [x, y, z] in ends[1].values().filter(|_| output.lammps_data) {

@@ -106,6 +106,15 @@ impl Domain {
         })
     }
 
+    /// How many periods of each periodic side a position is away from its image that lies inside.
+    pub fn periods<const D: usize>(&self, position: [f64; D]) -> [f64; D] {
+        let inside = self.wrapped(position);
+        std::array::from_fn(|axis| match self.sides[axis] {
+            Side::Periodic(side) => ((position[axis] - inside[axis]) / side).round(),
+            _ => 0.0,
+        })
+    }
+
     /// Whether a position lies inside, or on the rim.
     pub fn contains<const D: usize>(&self, position: [f64; D]) -> bool {
         (0..D).all(|axis| {
@@ -129,6 +138,8 @@ mod tests {
         for x in [-1.0, -0.7, -0.7 - 1e-17, 12.0, -9.123, f64::from_bits((-1f64).to_bits() + 1)] {
             let image = domain.wrapped([x, 3.0]);
             assert!(image[0] - domain.origin[0] < 0.3 && domain.contains(image), "{x} becomes {image:?}");
+            let [periods, none] = domain.periods([x, 3.0]);
+            assert!((image[0] + 0.3 * periods - x).abs() < 1e-12 && none == 0.0, "{x}: {periods}");
             assert!(domain.distance([x, 3.0], image) < 1e-12);
         }
         assert_eq!(domain.wrapped([-1.0, 99.0]), [-1.0, 99.0]);

@@ -94,6 +94,11 @@ impl Particles {
         self.0.is_empty()
     }
 
+    /// Positions in single precision (length).
+    pub fn positions(&self) -> Vec<[f32; 3]> {
+        self.0.iter().map(|particle| particle.position.map(|x| x as f32)).collect()
+    }
+
     /// CRC-32 of the bits of positions, velocities and spins, by id: equal states have equal checksums.
     pub fn checksum(&self) -> String {
         let mut discs: Vec<_> = self.0.iter().collect();

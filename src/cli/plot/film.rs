@@ -6,7 +6,8 @@ use super::window;
 use crate::report::section::{Film, Frame as Moment, Side};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
-use stripmine_physics::io::extxyz::{Frame, Frames, ReadError};
+use stripmine_physics::io::extxyz::Frame;
+use stripmine_physics::io::trajectory::{Trajectory, TrajectoryError};
 use stripmine_physics::number::counted;
 use stripmine_physics::particles::{Kind, Particle};
 use stripmine_physics::quoted;
@@ -21,16 +22,13 @@ const STILL: f64 = 1e-6;
 /// Places that decide what is shown.
 const LOOKED_AT: usize = 100_000;
 
-/// The trajectory of a run.
-const TRAJECTORY: &str = "trajectory.xyz";
-
 /// Why there is no film.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum FilmError {
     /// The trajectory has no frame.
     #[error(
-        "{} has no frame, of which a film is made\n  help: a run with --set output.trajectory=true writes one every \
-         run.snapshot_every{}",
+        "{} has no frame, of which a film is made\n  help: a run with --set output.trajectory=true or output.gsd=true \
+         writes one every run.snapshot_every{}",
         quoted::path(file),
         if *has_dcd { "; trajectory.dcd has neither times nor sizes" } else { "" }
     )]
@@ -42,7 +40,7 @@ pub(super) enum FilmError {
     },
     /// The trajectory cannot be read.
     #[error(transparent)]
-    Trajectory(#[from] ReadError),
+    Trajectory(#[from] TrajectoryError),
     /// Its particles have no such colours.
     #[error(transparent)]
     Colouring(#[from] ColouringError),
@@ -60,10 +58,9 @@ impl Reported for FilmError {
     fn place(&self) -> Option<FilePlace> {
         match self {
             FilmError::NoFrame { file, .. } => Some(FilePlace::at(file)),
-            FilmError::Trajectory(error) => Some(FilePlace {
-                line: error.mistakes.first().and_then(|mistake| mistake.line),
-                ..FilePlace::at(error.file.as_ref())
-            }),
+            FilmError::Trajectory(error) => {
+                Some(FilePlace { line: error.line(), ..FilePlace::at(error.file()) })
+            }
             FilmError::Colouring(_) => None,
         }
     }
@@ -74,10 +71,10 @@ impl Reported for FilmError {
 /// # Errors
 /// If there is no trajectory, it cannot be read, or its particles cannot be coloured so.
 pub(super) fn film(run: &Path, colours: &Colours) -> Result<(Film, Vec<String>), FilmError> {
-    let file = run.join(TRAJECTORY);
-    let has_dcd = run.join("trajectory.dcd").exists();
+    let trajectory = Trajectory::open(run)?;
+    let (file, has_dcd) = (trajectory.path().to_owned(), run.join("trajectory.dcd").exists());
     let mut reel = Reel::default();
-    for frame in Frames::open(&file)?.in_space() {
+    for frame in trajectory {
         reel.add(frame?, colours)?;
     }
     let Some((last, cast)) = reel.last.take() else { return Err(FilmError::NoFrame { file, has_dcd }) };

@@ -4,8 +4,9 @@ use super::colouring::{ColouringError, Colours, Units, units};
 use super::window;
 use crate::report::figure::{Axis, Drawing, Figure, Guide, Map, Picture, Shape, Tint};
 use std::path::Path;
-use stripmine_physics::io::extxyz::{Frame, Frames, ReadError};
+use stripmine_physics::io::extxyz::Frame;
 use stripmine_physics::io::regular_file;
+use stripmine_physics::io::trajectory::{Trajectory, TrajectoryError};
 use stripmine_physics::number::significant;
 
 /// Particles of a picture: more cannot be seen, and files would be large.
@@ -35,7 +36,7 @@ const TRACE: f64 = 2.0;
 pub(super) enum PictureError {
     /// The trajectory cannot be read.
     #[error(transparent)]
-    Trajectory(#[from] ReadError),
+    Trajectory(#[from] TrajectoryError),
     /// Its particles have no such colours.
     #[error(transparent)]
     Colouring(#[from] ColouringError),
@@ -47,7 +48,7 @@ pub(super) enum PictureError {
 /// If the trajectory cannot be read, or its particles cannot be coloured so.
 pub(super) fn pictures(run: &Path, colours: &Colours) -> Result<Vec<Figure>, PictureError> {
     let (mut last, mut slices, mut traces) = (None, vec![], vec![]);
-    for frame in Frames::open(run.join("trajectory.xyz"))?.in_space() {
+    for frame in Trajectory::open(run)? {
         let frame: Frame = frame?;
         slices.extend(slice(&frame).map(|counts| (frame.time, counts)));
         if frame.particles.len() <= TRACED && window::is_endless(&frame) {

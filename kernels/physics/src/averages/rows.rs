@@ -61,6 +61,11 @@ impl Rows {
         self.last.get(self.time).copied().unwrap_or(0.0)
     }
 
+    /// The newest row, if it is of that time.
+    pub fn row_at(&self, time: f64) -> Option<&[f64]> {
+        (self.count > 0 && self.now() == time).then_some(&self.last[..])
+    }
+
     /// When the rows that count begin (time).
     pub(super) fn from(&self) -> f64 {
         self.base.get(self.time).copied().unwrap_or(0.0)

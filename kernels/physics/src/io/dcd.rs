@@ -31,11 +31,15 @@ pub fn write(frame: &Positions, file: &mut GrowingFile) -> io::Result<()> {
         let [a, b] = frame.cell;
         record(&mut bytes, &[a, 90.0, b, 90.0, 90.0, 1.0].map(f64::to_le_bytes).concat());
     }
-    let mut coordinate = Vec::with_capacity(4 * frame.places.len());
+    let length = (4 * frame.places.len() as u32).to_le_bytes();
     for axis in 0..3 {
-        coordinate.clear();
-        frame.places.iter().for_each(|place| coordinate.extend(place[axis].to_le_bytes()));
-        record(&mut bytes, &coordinate);
+        bytes.extend(length);
+        let from = bytes.len();
+        bytes.resize(from + 4 * frame.places.len(), 0);
+        for (number, place) in bytes[from..].chunks_exact_mut(4).zip(&frame.places) {
+            number.copy_from_slice(&place[axis].to_le_bytes());
+        }
+        bytes.extend(length);
     }
     file.write_all(&bytes)
 }

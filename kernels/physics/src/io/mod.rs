@@ -1,15 +1,17 @@
-//! Files in and out: extended XYZ, LAMMPS data and dump, checkpoints, tables that grow with a run; how they are put in
+//! Files in and out: extended XYZ, DCD, GSD, LAMMPS data and dump, checkpoints, tables that grow with a run; how they are put in
 //! their place, and one writer a folder.
 
 pub mod checkpoint;
 pub mod dcd;
 pub mod extxyz;
 pub mod growing_file;
+pub mod gsd;
 pub mod lammps;
 pub mod lock;
 pub mod regular_file;
 pub mod replace;
 pub mod table_file;
+pub mod trajectory;
 
 use std::path::{Path, PathBuf};
 

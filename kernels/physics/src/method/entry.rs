@@ -379,7 +379,13 @@ pub trait Simulation: Send {
 
     /// Positions alone, in single precision, one for each particle of the start in its order; no numbers where one is lost.
     fn positions(&self) -> Vec<[f32; 3]> {
-        self.particles().all().iter().map(|particle| particle.position.map(|x| x as f32)).collect()
+        self.particles().positions()
+    }
+
+    /// How many periods each particle has moved along x and y since the start, in the order of [`particles`](Self::particles); empty
+    /// where that is not followed along every periodic side.
+    fn images(&self) -> Vec<[i32; 2]> {
+        vec![]
     }
 
     /// Holds the state against what only sums over all particles show; asked before every row, and at the end.

@@ -5,10 +5,10 @@
 //! killed leaves nothing that is not known as its own. Temporary files (`.stripmine-….part`) are on no list: their names
 //! are random.
 
-use crate::io::FileError;
 use crate::io::checkpoint::NAME as CHECKPOINT;
 use crate::io::lock::{Lock, LockError, is_lock};
 use crate::io::replace::{is_temporary, listing, remove_if_there, replace};
+use crate::io::{FileError, trajectory};
 use crate::quoted;
 use crate::reported::Class;
 use crate::structure::OBSERVABLES;
@@ -27,9 +27,11 @@ const LONGEST: u64 = 10_000;
 /// The table of observables.
 pub(super) const THERMO: &str = "thermo.csv";
 /// The frames.
-pub(super) const TRAJECTORY: &str = "trajectory.xyz";
+pub(super) const TRAJECTORY: &str = trajectory::TEXT;
 /// The frames' positions, as DCD.
 pub(super) const DCD: &str = "trajectory.dcd";
+/// The frames as GSD.
+pub(super) const GSD: &str = trajectory::INDEXED;
 /// The frames for LAMMPS.
 pub(super) const DUMP: &str = "dump.lammpstrj";
 /// The last state for LAMMPS.
@@ -45,8 +47,8 @@ pub(super) const SUMMARY: &str = "summary.json";
 const PREVIOUS: &str = "run.checkpoint.previous";
 
 /// Everything that a run may have written, but for the structure.
-const FILES: [&str; 11] =
-    [LIST, SCENE, THERMO, TRAJECTORY, DCD, EVENTS, DUMP, DATA, SUMMARY, CHECKPOINT, PREVIOUS];
+const FILES: [&str; 12] =
+    [LIST, SCENE, THERMO, TRAJECTORY, DCD, GSD, EVENTS, DUMP, DATA, SUMMARY, CHECKPOINT, PREVIOUS];
 
 /// What a run writes whatever its scene.
 const ALWAYS: [&str; 7] = [LIST, SCENE, THERMO, TRAJECTORY, SUMMARY, CHECKPOINT, PREVIOUS];

@@ -1,7 +1,8 @@
 //! A file of frames that grows with a run, no frame twice, written by a thread of its own: a run goes on while a frame is written.
 
 use crate::io::FileError;
-use crate::io::growing_file::{GrowingFile, GrowingFileError, Mark};
+use crate::io::growing_file::{GrowingFile, Mark};
+use crate::io::gsd;
 use crate::method::Clock;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -9,15 +10,53 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 
+/// A file that grows, which a run begins, or goes on with at a mark.
+pub(super) trait Grows: Send + 'static {
+    /// The file.
+    fn path(&self) -> &Path;
+
+    /// Cuts off what a resumed file has after its mark.
+    ///
+    /// # Errors
+    /// If the system does not let it be cut.
+    fn cut(&mut self) -> Result<(), FileError>;
+
+    /// Returns when all that was written is on the disk, and says how far that is.
+    ///
+    /// # Errors
+    /// If the system does not let it be written, or the file has been removed, replaced or changed meanwhile.
+    fn sync(&mut self) -> Result<Mark, FileError>;
+}
+
+macro_rules! grow {
+    ($($file:ty)*) => {
+        $(impl Grows for $file {
+            fn path(&self) -> &Path {
+                self.path()
+            }
+
+            fn cut(&mut self) -> Result<(), FileError> {
+                self.cut()
+            }
+
+            fn sync(&mut self) -> Result<Mark, FileError> {
+                self.sync()
+            }
+        })*
+    };
+}
+
+grow!(GrowingFile gsd::Writer);
+
 /// How a frame is written into a file.
-pub(super) type Format<F> = fn(&F, &mut GrowingFile) -> io::Result<()>;
+pub(super) type Format<F, G> = fn(&F, &mut G) -> io::Result<()>;
 
 /// The file, and the thread that writes it.
 #[derive(Debug)]
-pub(super) struct Frames<F> {
+pub(super) struct Frames<F, G = GrowingFile> {
     path: PathBuf,
-    writing: Arc<Mutex<Writing>>,
-    format: Format<F>,
+    writing: Arc<Mutex<Writing<G>>>,
+    format: Format<F, G>,
     /// The moment of the last frame.
     last: Option<Clock>,
     /// Where frames go, from the first one on.
@@ -26,8 +65,8 @@ pub(super) struct Frames<F> {
 
 /// What the thread and the run share.
 #[derive(Debug)]
-struct Writing {
-    file: GrowingFile,
+struct Writing<G> {
+    file: G,
     /// What went wrong with a frame; nothing is written after it.
     failed: Option<io::Error>,
 }
@@ -48,7 +87,7 @@ enum Order<F> {
 }
 
 impl<F: Send + 'static> Writer<F> {
-    fn begin(writing: &Arc<Mutex<Writing>>, format: Format<F>) -> io::Result<Writer<F>> {
+    fn begin<G: Grows>(writing: &Arc<Mutex<Writing<G>>>, format: Format<F, G>) -> io::Result<Writer<F>> {
         // Without room: of frames there is one that is written and one that is made.
         let (orders, received) = sync_channel(0);
         let writing = writing.clone();
@@ -58,7 +97,7 @@ impl<F: Send + 'static> Writer<F> {
     }
 }
 
-fn write<F>(orders: &Receiver<Order<F>>, writing: &Mutex<Writing>, format: Format<F>) {
+fn write<F, G>(orders: &Receiver<Order<F>>, writing: &Mutex<Writing<G>>, format: Format<F, G>) {
     for order in orders {
         match order {
             Order::Write(frame) => {
@@ -74,33 +113,13 @@ fn write<F>(orders: &Receiver<Order<F>>, writing: &Mutex<Writing>, format: Forma
 }
 
 /// A panic of the other side leaves a file that is as long as it says.
-fn locked(writing: &Mutex<Writing>) -> MutexGuard<'_, Writing> {
+fn locked<G>(writing: &Mutex<Writing<G>>) -> MutexGuard<'_, Writing<G>> {
     writing.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-impl<F: Send + 'static> Frames<F> {
-    /// Begins an empty file where nothing is.
-    ///
-    /// # Errors
-    /// If something is there, or the system does not let it be written.
-    pub(super) fn create(path: PathBuf, format: Format<F>) -> Result<Frames<F>, FileError> {
-        Ok(Frames::of(GrowingFile::create(path)?, format, None))
-    }
-
-    /// Goes on at a mark, where the last frame was that of the moment `last`.
-    ///
-    /// # Errors
-    /// If what was there at the mark is not there any more.
-    pub(super) fn resume(
-        path: PathBuf,
-        format: Format<F>,
-        mark: Mark,
-        last: Option<Clock>,
-    ) -> Result<Frames<F>, GrowingFileError> {
-        Ok(Frames::of(GrowingFile::resume(path, mark)?, format, last))
-    }
-
-    fn of(file: GrowingFile, format: Format<F>, last: Option<Clock>) -> Frames<F> {
+impl<F: Send + 'static, G: Grows> Frames<F, G> {
+    /// The frames of a file, of which the last one, if there is one, was of the moment `last`.
+    pub(super) fn of(file: G, format: Format<F, G>, last: Option<Clock>) -> Frames<F, G> {
         let path = file.path().to_owned();
         Frames {
             path,
@@ -111,7 +130,7 @@ impl<F: Send + 'static> Frames<F> {
         }
     }
 
-    /// As [`GrowingFile::cut`].
+    /// As [`Grows::cut`].
     ///
     /// # Errors
     /// If the system does not let it be cut.
@@ -140,7 +159,7 @@ impl<F: Send + 'static> Frames<F> {
         sent.map_err(|_| failed(&self.path, io::Error::other("the thread that writes has ended")))
     }
 
-    /// Returns when every frame is on the disk; as [`GrowingFile::sync`], with the moment of the last frame.
+    /// Returns when every frame is on the disk; as [`Grows::sync`], with the moment of the last frame.
     ///
     /// # Errors
     /// If the system does not let it be written, or the file has been removed, replaced or changed meanwhile.
@@ -159,7 +178,7 @@ impl<F: Send + 'static> Frames<F> {
     }
 }
 
-impl<F> Drop for Frames<F> {
+impl<F, G> Drop for Frames<F, G> {
     /// What was handed over is written before anything else is done with the folder.
     fn drop(&mut self) {
         if let Some(Writer { orders, thread }) = self.writer.take() {
@@ -182,12 +201,12 @@ mod tests {
     #[test]
     fn frames_are_written_in_order_and_failures_come_out() {
         let folder = tempfile::tempdir().unwrap();
-        let format: Format<u64> = |frame, file| match frame {
+        let format: Format<u64, GrowingFile> = |frame, file| match frame {
             7 => Err(io::Error::other("no seven")),
             step => writeln!(file, "{step}"),
         };
         let path = folder.path().join("frames");
-        let mut frames = Frames::create(path.clone(), format).unwrap();
+        let mut frames = Frames::of(GrowingFile::create(&path).unwrap(), format, None);
         let at = |steps| Clock { steps, ..Clock::default() };
         for step in [0, 1, 1, 2, 5] {
             frames.add(at(step), || step).unwrap();

@@ -1,24 +1,27 @@
 //! The files of a run that grow: begun, taken up again, cut and brought to the disk together.
 
 use super::RunError;
-use super::folder::{DCD, DUMP, EVENTS, RunFolder, THERMO, TRAJECTORY};
+use super::folder::{DCD, DUMP, EVENTS, GSD, RunFolder, THERMO, TRAJECTORY};
 use super::frames::Frames;
 use crate::io::checkpoint::Counter;
 use crate::io::dcd::{self, Positions};
 use crate::io::extxyz::{self, Frame};
 use crate::io::growing_file::{GrowingFile, Mark};
+use crate::io::gsd::{self, LoggedFrame};
 use crate::io::table_file::TableFile;
 use crate::io::{FileError, lammps};
-use crate::method::{Clock, Prepared, Quantity};
+use crate::method::{Clock, Kind, Prepared, Quantity};
 use std::collections::BTreeMap;
-use std::io::Write;
+use std::io::{self, Write};
+use std::sync::Arc;
 
 /// The growing files of a run; none where the scene does not ask for one.
 pub(super) struct Growing {
     pub(super) thermo: TableFile,
-    pub(super) trajectory: Frames<Frame>,
-    pub(super) dump: Option<Frames<Frame>>,
+    pub(super) trajectory: Frames<Arc<Frame>>,
+    pub(super) dump: Option<Frames<Arc<Frame>>>,
     pub(super) dcd: Option<Frames<Positions>>,
+    pub(super) gsd: Option<Frames<LoggedFrame, gsd::Writer>>,
     pub(super) events: Option<GrowingFile>,
 }
 
@@ -60,13 +63,36 @@ impl Growing {
         prepared: &Prepared,
         quantities: &'static [Quantity],
     ) -> Result<Growing, RunError> {
-        let output = &prepared.output;
         let thermo = TableFile::create(folder.file(THERMO), &columns(quantities))?;
-        let trajectory = Frames::create(folder.file(TRAJECTORY), extxyz::write)?;
-        let dump = output.lammps_dump.then(|| Frames::create(folder.file(DUMP), lammps::write_dump));
-        let dcd = output.dcd.then(|| Frames::create(folder.file(DCD), dcd::write));
-        let (dump, dcd) = (dump.transpose()?, dcd.transpose()?);
-        Ok(Growing { thermo, trajectory, dump, dcd, events: begin_events(folder, prepared)? })
+        let trajectory = Frames::of(GrowingFile::create(folder.file(TRAJECTORY))?, write_text, None);
+        let mut growing = Growing { thermo, trajectory, dump: None, dcd: None, gsd: None, events: None };
+        growing.begin_missing(folder, prepared, quantities)?;
+        Ok(growing)
+    }
+
+    /// Begins the files on request that are not there.
+    fn begin_missing(
+        &mut self,
+        folder: &RunFolder,
+        prepared: &Prepared,
+        quantities: &'static [Quantity],
+    ) -> Result<(), RunError> {
+        let output = &prepared.output;
+        if output.lammps_dump && self.dump.is_none() {
+            let file = GrowingFile::create(folder.file(DUMP))?;
+            self.dump = Some(Frames::of(file, write_dump, None));
+        }
+        if output.dcd && self.dcd.is_none() {
+            self.dcd = Some(Frames::of(GrowingFile::create(folder.file(DCD))?, dcd::write, None));
+        }
+        if output.gsd && self.gsd.is_none() {
+            let file = gsd::Writer::create(folder.file(GSD), &logged(quantities))?;
+            self.gsd = Some(Frames::of(file, gsd::write, None));
+        }
+        if self.events.is_none() {
+            self.events = begin_events(folder, prepared)?;
+        }
+        Ok(())
     }
 
     /// Opens and verifies the files of a checkpoint; nothing is cut yet. `foreign` says whose counters are wrong.
@@ -78,32 +104,43 @@ impl Growing {
     ) -> Result<Growing, RunError> {
         let mark = |file: &str| kept.mark(file).map_err(&foreign);
         let thermo = TableFile::resume(folder.file(THERMO), &columns(quantities), mark(THERMO)?)?;
-        let (trajectory, last) = (folder.file(TRAJECTORY), kept.last_frame(TRAJECTORY));
-        Ok(Growing {
+        // A file that the checkpoint does not know was not asked for, or begun after it.
+        let known = |file: &str| Some((kept.mark(file).ok()?, kept.last_frame(file)));
+        let trajectory = GrowingFile::resume(folder.file(TRAJECTORY), mark(TRAJECTORY)?)?;
+        let mut growing = Growing {
             thermo,
-            trajectory: Frames::resume(trajectory, extxyz::write, mark(TRAJECTORY)?, last)?,
-            dump: match kept.mark(DUMP) {
-                Ok(mark) => {
-                    let last = kept.last_frame(DUMP);
-                    Some(Frames::resume(folder.file(DUMP), lammps::write_dump, mark, last)?)
-                }
-                Err(_) => None,
-            },
-            dcd: match kept.mark(DCD) {
-                Ok(mark) => Some(Frames::resume(folder.file(DCD), dcd::write, mark, kept.last_frame(DCD))?),
-                Err(_) => None,
-            },
-            events: match kept.mark(EVENTS) {
-                Ok(mark) => Some(GrowingFile::resume(folder.file(EVENTS), mark)?),
-                Err(_) => None,
-            },
-        })
+            trajectory: Frames::of(trajectory, write_text, kept.last_frame(TRAJECTORY)),
+            dump: None,
+            dcd: None,
+            gsd: None,
+            events: None,
+        };
+        if let Some((mark, last)) = known(DUMP) {
+            let file = GrowingFile::resume(folder.file(DUMP), mark)?;
+            growing.dump = Some(Frames::of(file, write_dump, last));
+        }
+        if let Some((mark, last)) = known(DCD) {
+            let file = GrowingFile::resume(folder.file(DCD), mark)?;
+            growing.dcd = Some(Frames::of(file, dcd::write, last));
+        }
+        if let Some((mark, last)) = known(GSD) {
+            let file = gsd::Writer::resume(folder.file(GSD), &logged(quantities), mark)?;
+            growing.gsd = Some(Frames::of(file, gsd::write, last));
+        }
+        if let Some((mark, _)) = known(EVENTS) {
+            growing.events = Some(GrowingFile::resume(folder.file(EVENTS), mark)?);
+        }
+        Ok(growing)
     }
 
     /// Cuts the files where the checkpoint was written. Those that it does not know were begun after it, if they are there at
     /// all: they are begun again if the scene asks for them.
-    pub(super) fn cut(&mut self, folder: &mut RunFolder, prepared: &Prepared) -> Result<(), RunError> {
-        let output = &prepared.output;
+    pub(super) fn cut(
+        &mut self,
+        folder: &mut RunFolder,
+        prepared: &Prepared,
+        quantities: &'static [Quantity],
+    ) -> Result<(), RunError> {
         self.thermo.cut()?;
         self.trajectory.cut()?;
         match &mut self.dump {
@@ -114,20 +151,15 @@ impl Growing {
             Some(dcd) => dcd.cut()?,
             None => folder.remove_own(DCD)?,
         }
-        if self.dump.is_none() && output.lammps_dump {
-            self.dump = Some(Frames::create(folder.file(DUMP), lammps::write_dump)?);
-        }
-        if self.dcd.is_none() && output.dcd {
-            self.dcd = Some(Frames::create(folder.file(DCD), dcd::write)?);
+        match &mut self.gsd {
+            Some(gsd) => gsd.cut()?,
+            None => folder.remove_own(GSD)?,
         }
         match &mut self.events {
             Some(events) => events.cut()?,
-            None => {
-                folder.remove_own(EVENTS)?;
-                self.events = begin_events(folder, prepared)?;
-            }
+            None => folder.remove_own(EVENTS)?,
         }
-        Ok(())
+        self.begin_missing(folder, prepared, quantities)
     }
 
     /// Returns when everything is on the disk; gives what a checkpoint keeps of it.
@@ -151,6 +183,10 @@ impl Growing {
             let (mark, last) = dcd.sync()?;
             keep(DCD, mark, last);
         }
+        if let Some(gsd) = &mut self.gsd {
+            let (mark, last) = gsd.sync()?;
+            keep(GSD, mark, last);
+        }
         if let Some(events) = &mut self.events {
             keep(EVENTS, events.sync()?, None);
         }
@@ -166,6 +202,31 @@ fn last_names(file: &str) -> [String; 3] {
 /// The names of the columns of `thermo.csv` after the step.
 fn columns(quantities: &'static [Quantity]) -> Vec<&'static str> {
     quantities.iter().map(|quantity| quantity.name).collect()
+}
+
+/// Frames are shared by the files that have them.
+fn write_text(frame: &Arc<Frame>, file: &mut GrowingFile) -> io::Result<()> {
+    extxyz::write(frame, file)
+}
+
+fn write_dump(frame: &Arc<Frame>, file: &mut GrowingFile) -> io::Result<()> {
+    lammps::write_dump(frame, file)
+}
+
+/// What a trajectory logs of a row: the frame has the time.
+fn is_logged(quantity: &Quantity) -> bool {
+    quantity.kind != Kind::Time
+}
+
+/// The names of what a trajectory logs.
+fn logged(quantities: &'static [Quantity]) -> Vec<&'static str> {
+    quantities.iter().filter(|it| is_logged(it)).map(|it| it.name).collect()
+}
+
+/// What a trajectory logs of a row; not a number where there is no row.
+pub(super) fn logged_of(quantities: &'static [Quantity], row: Option<&[f64]>) -> Vec<f64> {
+    let value = |(place, quantity)| is_logged(quantity).then(|| row.map_or(f64::NAN, |row| row[place]));
+    quantities.iter().enumerate().filter_map(value).collect()
 }
 
 /// The file of events with its heading, where the scene asks for them.

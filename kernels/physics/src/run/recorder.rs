@@ -1,9 +1,9 @@
 //! The folder of a run: what is written when.
 
 use super::finished::{LONGEST_SCENE, rows_of};
-use super::folder::{DATA, DCD, DUMP, EVENTS, RunFolder, SCENE, SUMMARY, THERMO, TRAJECTORY};
+use super::folder::{DATA, DCD, DUMP, EVENTS, GSD, RunFolder, SCENE, SUMMARY, THERMO, TRAJECTORY};
 use super::goal::{Goal, Known};
-use super::growing::{Growing, Kept};
+use super::growing::{Growing, Kept, logged_of};
 use super::identity::{BITS, Identity, same_scene};
 use super::structured::{Structured, chosen};
 use super::table::TableReader;
@@ -13,6 +13,7 @@ use crate::domain::Domain;
 use crate::io::checkpoint::{Checkpoint, Counter, Latest, NAME, read_latest};
 use crate::io::dcd::Positions;
 use crate::io::extxyz::Frame;
+use crate::io::gsd::LoggedFrame;
 use crate::io::{FileError, lammps, regular_file};
 use crate::method::{
     Clock, Every, Failure, FailureKind, Prepared, Quantity, Schedule, Simulation, Snapshot, Until,
@@ -22,6 +23,7 @@ use crate::scene::Output;
 use crate::structure::OBSERVABLES;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Instant;
 
 /// The counter of events in a checkpoint.
@@ -184,7 +186,7 @@ impl Recorder {
         simulation.restore(clock, snapshot).map_err(foreign)?;
 
         folder.claim(&on_request(job.prepared))?;
-        growing.cut(&mut folder, prepared)?;
+        growing.cut(&mut folder, prepared, quantities)?;
         // They speak of an end that is not reached yet.
         folder.remove_own(SUMMARY)?;
         folder.remove_own(DATA)?;
@@ -284,9 +286,9 @@ impl Recorder {
         Ok(None)
     }
 
-    fn frame(&self, simulation: &dyn Simulation) -> Frame {
+    fn frame(&self, simulation: &dyn Simulation) -> Arc<Frame> {
         let (domain, clock) = (self.domain, simulation.clock());
-        Frame {
+        Arc::new(Frame {
             particles: simulation.particles(),
             cell: domain.lengths(),
             origin: domain.corner(),
@@ -294,7 +296,7 @@ impl Recorder {
             time: clock.time,
             step: clock.number(),
             seed: self.seed,
-        }
+        })
     }
 
     /// A frame in each of the files that are asked for and do not have it yet.
@@ -304,10 +306,14 @@ impl Recorder {
             let cell = self.domain.lengths();
             dcd.add(moment, || Positions { step: moment.number(), cell, places: simulation.positions() })?;
         }
-        if !(self.output.trajectory || self.output.lammps_dump) {
+        let Output { trajectory, lammps_dump, gsd, .. } = self.output;
+        if !(trajectory || lammps_dump || gsd) {
             return Ok(());
         }
         let frame = self.frame(simulation);
+        if let Some(gsd) = self.growing.gsd.as_mut().filter(|_| gsd) {
+            gsd.add(moment, || logged(self.quantities, &self.rows, simulation, frame.clone()))?;
+        }
         if let Some(dump) = self.growing.dump.as_mut().filter(|_| self.output.lammps_dump) {
             dump.add(moment, || frame.clone())?;
         }
@@ -319,15 +325,24 @@ impl Recorder {
 
     /// The state of a failed step, whether snapshots are due or not, and what there is to say of it.
     pub(super) fn fail(&mut self, simulation: &dyn Simulation, summary: Summary) -> Result<(), RunError> {
-        let frame = self.frame(simulation);
-        self.growing.trajectory.add(simulation.clock(), || frame)?;
+        let (moment, frame) = (simulation.clock(), self.frame(simulation));
+        let is_gsd_alone = self.is_gsd_alone();
+        match self.growing.gsd.as_mut().filter(|_| is_gsd_alone) {
+            Some(gsd) => gsd.add(moment, || logged(self.quantities, &self.rows, simulation, frame))?,
+            None => self.growing.trajectory.add(moment, || frame)?,
+        }
         self.growing.sync()?;
         self.summary(summary).map(drop)
     }
 
     /// Where the frames are.
     pub(super) fn trajectory_path(&self) -> PathBuf {
-        self.folder.file(TRAJECTORY)
+        self.folder.file(if self.is_gsd_alone() { GSD } else { TRAJECTORY })
+    }
+
+    /// Whether frames are in the file with an index and not in the text.
+    fn is_gsd_alone(&self) -> bool {
+        self.output.gsd && !self.output.trajectory
     }
 
     /// The complete state, after everything before it is on the disk.
@@ -388,6 +403,17 @@ impl Recorder {
     }
 }
 
+/// A frame with what is logged of its moment.
+fn logged(
+    quantities: &'static [Quantity],
+    rows: &Rows,
+    simulation: &dyn Simulation,
+    frame: Arc<Frame>,
+) -> LoggedFrame {
+    let values = logged_of(quantities, rows.row_at(frame.time));
+    LoggedFrame { frame, images: simulation.images(), values }
+}
+
 /// The failure of a sum over all particles that no number holds.
 fn overflow(at: Clock, quantity: &'static str, value: f64) -> Failure {
     let what = format!("{quantity} is {value}, which is no finite number");
@@ -402,6 +428,7 @@ fn on_request(prepared: &Prepared) -> Vec<&'static str> {
     let asked = [
         (output.lammps_dump, DUMP),
         (output.dcd, DCD),
+        (output.gsd, GSD),
         (output.lammps_data, DATA),
         (prepared.event_columns.is_some(), EVENTS),
     ];

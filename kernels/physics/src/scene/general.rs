@@ -59,6 +59,8 @@ define_keys! {
         "Snapshots as trajectory.xyz, extended XYZ.";
     DCD = "output" "dcd", Switch, "", Is("false"), ALWAYS,
         "Snapshots as trajectory.dcd: positions in single precision, small and fast to write.";
+    GSD = "output" "gsd", Switch, "", Is("false"), ALWAYS,
+        "Snapshots as trajectory.gsd, with an index: positions and velocities in single and in double precision, and the row of thermo.csv.";
     LAMMPS_DUMP = "output" "lammps_dump", Switch, "", Is("false"), ALWAYS,
         "Snapshots as a LAMMPS dump.";
     LAMMPS_DATA = "output" "lammps_data", Switch, "", Is("false"), ALWAYS,
@@ -131,6 +133,8 @@ pub struct Output {
     pub trajectory: bool,
     /// Snapshots of positions as DCD.
     pub dcd: bool,
+    /// Snapshots as GSD.
+    pub gsd: bool,
     /// LAMMPS dump snapshots.
     pub lammps_dump: bool,
     /// The final state as a LAMMPS data file.
@@ -146,6 +150,7 @@ impl Output {
     pub fn bind(&mut self, binding: &mut dyn Binding) {
         binding.switch(&TRAJECTORY, &mut self.trajectory);
         binding.switch(&DCD, &mut self.dcd);
+        binding.switch(&GSD, &mut self.gsd);
         binding.switch(&LAMMPS_DUMP, &mut self.lammps_dump);
         binding.switch(&LAMMPS_DATA, &mut self.lammps_data);
         binding.words(&STRUCTURE, &mut self.structure);

@@ -247,6 +247,10 @@ impl Simulation for Running {
         all.iter().map(place).collect()
     }
 
+    fn images(&self) -> Vec<[i32; 2]> {
+        self.stepper.images()
+    }
+
     fn observe(&self) -> Vec<f64> {
         values(&OBSERVABLES, &self.seen())
     }

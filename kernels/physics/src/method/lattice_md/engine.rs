@@ -30,6 +30,14 @@ pub trait Engine: Send {
         states.take_up(&self.particles());
     }
 
+    /// Positions alone, inside the box and in single precision.
+    fn positions(&self) -> Vec<[f32; 3]> {
+        self.particles().positions()
+    }
+
+    /// How many periods each has moved along x and y since the start; empty where a periodic side is not followed.
+    fn images(&self) -> Vec<[i32; 2]>;
+
     /// The same as the state has them: the last correction may have taken a position beyond a periodic side, and no
     /// [crossing](Self::crossings) is counted before the next step.
     fn unwrapped(&self) -> Particles;

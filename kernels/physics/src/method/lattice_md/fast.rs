@@ -188,6 +188,14 @@ impl Engine for FastMd {
         self.stepping.states(states);
     }
 
+    fn positions(&self) -> Vec<[f32; 3]> {
+        self.stepping.positions()
+    }
+
+    fn images(&self) -> Vec<[i32; 2]> {
+        self.stepping.images()
+    }
+
     fn unwrapped(&self) -> Particles {
         self.stepping.unwrapped()
     }

@@ -285,6 +285,14 @@ impl Simulation for Running {
         self.engine.states(states);
     }
 
+    fn positions(&self) -> Vec<[f32; 3]> {
+        self.engine.positions()
+    }
+
+    fn images(&self) -> Vec<[i32; 2]> {
+        self.engine.images()
+    }
+
     fn observe(&self) -> Vec<f64> {
         values(&OBSERVABLES, self.seen())
     }

@@ -1,6 +1,7 @@
 //! Periods that discs have crossed: what is lost when a position is wrapped into the box.
 
 use super::real_column;
+use crate::domain::Domain;
 use crate::io::checkpoint::Column;
 use crate::method::restored::find_column;
 
@@ -32,6 +33,18 @@ impl Crossings {
         for axis in (0..2).filter(|&axis| self.followed[axis]) {
             self.counts[number][axis] += periods[axis];
         }
+    }
+
+    /// Whether every periodic side of a box is followed, and there is one.
+    pub fn follows(&self, domain: &Domain) -> bool {
+        let periodic = domain.periodic();
+        periodic.contains(&true) && (0..2).all(|axis| self.followed[axis] || !periodic[axis])
+    }
+
+    /// How many periods a disc has moved along x and y, as of its image inside the box; `place` is as of the counts (length).
+    pub fn image(&self, domain: &Domain, number: usize, place: [f64; 2]) -> [i32; 2] {
+        let (crossed, beyond) = (self.counts[number], domain.periods(place));
+        [0, 1].map(|axis| (crossed[axis] + beyond[axis]) as i32)
     }
 
     /// The counts, empty where nothing is followed.

@@ -14,6 +14,7 @@ use super::{Dynamics, Engine, WithLaw, Work};
 use crate::observe::{ContactSums, GrainSums, Scenery};
 use crate::particles::{Kind, Particle, Particles, in_space};
 use std::marker::PhantomData;
+use std::ops::Range;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::Inertia;
 use stripmine_kernels::isa::ProgramError;
@@ -103,21 +104,54 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         particles
     }
 
-    /// Positions alone, inside the box and in single precision, in the scene's order.
+    /// Positions alone, inside the box and in single precision, in the scene's order: computed in the order in memory on all threads,
+    /// and then put in order.
     pub(super) fn standing_places(&self) -> Vec<[f32; 3]> {
-        let discs = self.disc_of_each();
+        let mut standing = vec![[0.0; 2]; self.state.len()];
         alone_if(self.is_small(), || {
-            let [[x, _], [y, _]] = [0, 1].map(|freedom| self.corrected_column(freedom));
-            let mut places = vec![[0.0; 3]; self.start.len()];
-            in_pieces(&mut places, |first, piece| {
-                for (place, &disc) in piece.iter_mut().zip(&discs[first..]) {
-                    let disc = disc as usize;
-                    let at = in_space(self.seen_from_origin(disc, [x[disc], y[disc]]));
-                    *place = self.system.domain.wrapped(at).map(|x| x as f32);
-                }
+            in_pieces(&mut standing, |first, piece| {
+                let discs = first..first + piece.len();
+                self.each_standing(discs, |disc, place, _| {
+                    piece[disc - first] = self.system.domain.wrapped(place).map(|x| x as f32);
+                });
             });
-            places
-        })
+        });
+        let mut places = vec![[0.0; 3]; self.start.len()];
+        for (&number, [x, y]) in self.state.numbers().iter().zip(standing) {
+            places[number as usize] = [x, y, 0.0];
+        }
+        places
+    }
+
+    /// How many periods each disc has moved along x and y since the start, as of its image inside the box, in the scene's order; empty
+    /// where a periodic side is not followed.
+    pub(super) fn standing_images(&self) -> Vec<[i32; 2]> {
+        let (domain, crossings) = (&self.system.domain, &self.elapsed.crossings);
+        if !crossings.follows(domain) {
+            return vec![];
+        }
+        let mut images = vec![[0; 2]; self.start.len()];
+        self.each_standing(0..self.state.len(), |disc, place, _| {
+            let number = self.state.number(disc);
+            images[number] = crossings.image(domain, number, place);
+        });
+        images
+    }
+
+    /// Each disc of a range in memory, where it is (length), and its velocity (length/time), without columns of them.
+    pub(super) fn each_standing(&self, discs: Range<usize>, mut to: impl FnMut(usize, [f64; 2], [f64; 2])) {
+        const AT_A_TIME: usize = 128;
+        for first in discs.clone().step_by(AT_A_TIME) {
+            let count = AT_A_TIME.min(discs.end - first);
+            let mut columns = [[0.0; AT_A_TIME]; 4];
+            let [x, y, vx, vy] = &mut columns;
+            self.correct(0, first, [&mut x[..count], &mut vx[..count]]);
+            self.correct(1, first, [&mut y[..count], &mut vy[..count]]);
+            for at in 0..count {
+                let place = self.seen_from_origin(first + at, [x[at], y[at]]);
+                to(first + at, place, [vx[at], vy[at]]);
+            }
+        }
     }
 
     /// Sums over the grains.

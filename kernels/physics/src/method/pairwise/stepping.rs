@@ -56,6 +56,10 @@ pub trait Stepping: Named + Send {
     /// Positions alone, inside the box and in single precision, in the scene's order.
     fn positions(&self) -> Vec<[f32; 3]>;
 
+    /// How many periods each has moved along x and y since the start, as of [`particles`](Self::particles); empty where a periodic side
+    /// is not followed.
+    fn images(&self) -> Vec<[i32; 2]>;
+
     /// The particles as they stand; positions are consistent with the periods that are counted as crossed.
     fn unwrapped(&self) -> Particles;
 
@@ -135,23 +139,17 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Engi
     }
 
     fn states(&self, states: &mut States) {
-        const AT_A_TIME: usize = 128;
-        for first in (0..self.start.len()).step_by(AT_A_TIME) {
-            let count = AT_A_TIME.min(self.start.len() - first);
-            let mut columns = [[0.0; AT_A_TIME]; 4];
-            let [x, y, vx, vy] = &mut columns;
-            self.correct(0, first, [&mut x[..count], &mut vx[..count]]);
-            self.correct(1, first, [&mut y[..count], &mut vy[..count]]);
-            for at in 0..count {
-                let place = self.seen_from_origin(first + at, [x[at], y[at]]);
-                let place = self.system.domain.wrapped(place);
-                states.put(self.state.number(first + at), place, [vx[at], vy[at]]);
-            }
-        }
+        self.each_standing(0..self.start.len(), |disc, place, velocity| {
+            states.put(self.state.number(disc), self.system.domain.wrapped(place), velocity);
+        });
     }
 
     fn positions(&self) -> Vec<[f32; 3]> {
         self.standing_places()
+    }
+
+    fn images(&self) -> Vec<[i32; 2]> {
+        self.standing_images()
     }
 
     fn unwrapped(&self) -> Particles {

@@ -17,7 +17,7 @@ use crate::io::checkpoint::Column;
 use crate::method::Failure;
 use crate::method::pairwise::{Crossings, Named, Prescribed, unwrapped, wrapped};
 use crate::observe::{Scenery, Sums};
-use crate::particles::Particles;
+use crate::particles::{Particle, Particles};
 use crate::scene::{Precision, WallMotion};
 use stripmine_kernels::backend;
 use stripmine_kernels::integrator::NOT_FINITE;
@@ -307,6 +307,15 @@ impl<S: backend::Precision, P: backend::Precision> Engine for LatticeMd<S, P> {
 
     fn particles(&self) -> Particles {
         wrapped(self.unwrapped(), &self.model.domain())
+    }
+
+    fn images(&self) -> Vec<[i32; 2]> {
+        let (domain, crossings) = (self.model.domain(), &self.elapsed().crossings);
+        if !crossings.follows(&domain) {
+            return vec![];
+        }
+        let image = |(number, disc): (usize, &Particle)| crossings.image(&domain, number, disc.place());
+        self.unwrapped().all().iter().enumerate().map(image).collect()
     }
 
     fn unwrapped(&self) -> Particles {

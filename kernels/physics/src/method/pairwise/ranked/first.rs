@@ -298,6 +298,15 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Rank
         self.standing().into_iter().map(place).collect()
     }
 
+    fn images(&self) -> Vec<[i32; 2]> {
+        let (domain, crossings) = (&self.engine().system.domain, &self.engine().elapsed.crossings);
+        if !crossings.follows(domain) {
+            return vec![];
+        }
+        let image = |(number, [x, y, ..]): (usize, [f64; 6])| crossings.image(domain, number, [x, y]);
+        self.standing().into_iter().enumerate().map(image).collect()
+    }
+
     fn unwrapped(&self) -> Particles {
         let mut particles = Particles::clone(&self.engine().start);
         let grains = particles.grain_count();

@@ -1,0 +1,326 @@
+//! The file layer: chunks by frame and name, at the end of a file that grows, and the index that finds them.
+//!
+//! Where everything lies is decided by the frames alone, so that a run that is gone on with writes the bytes of one that was never
+//! stopped. Whenever the process is killed, heading and index are of whole frames: an index that has moved is written before the
+//! heading that names it, a frame before its entries.
+
+use super::layout::{ENTRY, Element, Entry, HEADING, Heading, Index, aligned, list_of};
+use crate::io::FileError;
+use crate::io::growing_file::{GrowingFileError, Mark};
+use crate::io::replace::is_name_of;
+use crc32fast::Hasher;
+use std::fs::{File, OpenOptions};
+use std::io::{self, BufWriter, ErrorKind, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+/// Entries of the first index.
+const FIRST_CAPACITY: u64 = 1024;
+/// Bytes that are handed to the system at a time.
+const BUFFER: usize = 1 << 18;
+
+/// A file being written at its end, by this process alone.
+#[derive(Debug)]
+pub struct GsdFile {
+    path: PathBuf,
+    out: BufWriter<File>,
+    names: Vec<String>,
+    frames: u64,
+    index: Index,
+    /// Entries in the index.
+    used: u64,
+    /// Bytes of the file.
+    end: u64,
+    /// Of all chunks and then their entries, frame by frame.
+    checksum: Hasher,
+    /// Entries of the frame under way, as bytes, and a chunk of it.
+    entries: Vec<u8>,
+    chunk: Vec<u8>,
+}
+
+impl GsdFile {
+    /// Begins a file without frames where nothing is; chunks will have these names.
+    ///
+    /// # Errors
+    /// If something is there already, or the system does not let it be written.
+    pub fn create(path: impl Into<PathBuf>, names: Vec<String>) -> Result<Self, FileError> {
+        let path = path.into();
+        let created = OpenOptions::new().read(true).write(true).create_new(true).open(&path);
+        let created = created.map_err(FileError::at(&path, "creating"))?;
+        let mut file = GsdFile::empty(path, created, names);
+        let begun = file.begin();
+        begun.map_err(FileError::at(&file.path, "writing"))?;
+        Ok(file)
+    }
+
+    /// Goes on at a mark; what was written after it is cut off by [`cut`](Self::cut).
+    ///
+    /// # Errors
+    /// If what was there at the mark is not there any more, the file is a link, or the system does not let it be read
+    /// and written.
+    pub fn resume(
+        path: impl Into<PathBuf>,
+        names: Vec<String>,
+        mark: Mark,
+    ) -> Result<Self, GrowingFileError> {
+        let path = path.into();
+        let opened = match OpenOptions::new().read(true).write(true).open(&path) {
+            Err(cause) if cause.kind() == ErrorKind::NotFound => {
+                return Err(GrowingFileError::Missing { file: path, expected: mark.bytes });
+            }
+            opened => opened.map_err(FileError::at(&path, "opening"))?,
+        };
+        let at = || FileError::at(&path, "reading");
+        if !is_name_of(&path, &opened).map_err(at())? {
+            return Err(GrowingFileError::NoFile(path));
+        }
+        let found = opened.metadata().map_err(at())?.len();
+        if found < mark.bytes {
+            return Err(GrowingFileError::Short { file: path, found, expected: mark.bytes });
+        }
+        let mut file = GsdFile::empty(path, opened, names);
+        let is_whole = file.read_up_to(mark.bytes).map_err(FileError::at(&file.path, "reading"))?;
+        let found = file.checksum.clone().finalize();
+        if !is_whole || found != mark.checksum {
+            let Mark { bytes, checksum: expected } = mark;
+            return Err(GrowingFileError::Changed { file: file.path, bytes, found, expected });
+        }
+        Ok(file)
+    }
+
+    /// A file as it is before the first frame.
+    fn empty(path: PathBuf, file: File, names: Vec<String>) -> GsdFile {
+        let index = Index { at: HEADING + list_of(&names).len() as u64, capacity: FIRST_CAPACITY };
+        GsdFile {
+            path,
+            out: BufWriter::with_capacity(BUFFER, file),
+            names,
+            frames: 0,
+            end: index.at + ENTRY * index.capacity,
+            index,
+            used: 0,
+            checksum: Hasher::new(),
+            entries: vec![],
+            chunk: vec![],
+        }
+    }
+
+    /// The heading as it is now.
+    fn heading(&self) -> [u8; HEADING as usize] {
+        let names = [HEADING, list_of(&self.names).len() as u64];
+        Heading { index: self.index, names }.bytes()
+    }
+
+    fn begin(&mut self) -> io::Result<()> {
+        let (heading, names) = (self.heading(), list_of(&self.names));
+        self.overwrite(0, &[&heading[..], &names].concat())?;
+        self.out.get_ref().set_len(self.end)?;
+        self.out.seek(SeekFrom::Start(self.end)).map(drop)
+    }
+
+    /// Reads the frames up to a length, each where it must be; whether they are there.
+    fn read_up_to(&mut self, length: u64) -> io::Result<bool> {
+        let (first, list) = (self.heading(), list_of(&self.names));
+        let mut heading = [0; HEADING as usize];
+        let mut names = vec![0; list.len()];
+        let file = self.out.get_mut();
+        file.rewind()?;
+        file.read_exact(&mut heading)?;
+        file.read_exact(&mut names)?;
+        // The index may have moved since the mark.
+        const MOVES: std::ops::Range<usize> = 8..24;
+        heading[MOVES].copy_from_slice(&first[MOVES]);
+        if heading != first || names != list {
+            return Ok(false);
+        }
+        while self.end < length {
+            if self.is_index_full() && !self.read_next_index(length) {
+                return Ok(false);
+            }
+            if !self.read_frame(length)? {
+                return Ok(false);
+            }
+        }
+        Ok(self.end == length)
+    }
+
+    /// The next index lies behind the frames before it; its entries are compared as those of the frames.
+    fn read_next_index(&mut self, length: u64) -> bool {
+        self.index = self.next_index();
+        self.end = self.index.at + ENTRY * self.index.capacity;
+        self.end <= length
+    }
+
+    /// Takes a frame up into the checksum; whether it is there.
+    fn read_frame(&mut self, length: u64) -> io::Result<bool> {
+        let (frame, first) = (self.frames, self.index.at + ENTRY * self.used);
+        let mut entries = vec![0; ENTRY as usize * self.names.len()];
+        let file = self.out.get_mut();
+        file.seek(SeekFrom::Start(first))?;
+        file.read_exact(&mut entries)?;
+        let of_the_frame = |bytes: &&[u8]| {
+            let entry = Entry::of(bytes);
+            entry.at != 0 && entry.frame == frame
+        };
+        let count = entries.chunks_exact(ENTRY as usize).take_while(of_the_frame).count();
+        entries.truncate(count * ENTRY as usize);
+        let last = entries.chunks_exact(ENTRY as usize).next_back().map(Entry::of);
+        let end = last.and_then(Entry::end).map_or(0, aligned);
+        if end <= self.end || end > length {
+            return Ok(false);
+        }
+        file.seek(SeekFrom::Start(self.end))?;
+        let mut block = vec![0; BUFFER];
+        while self.end < end {
+            let wanted = block.len().min(usize::try_from(end - self.end).unwrap_or(usize::MAX));
+            file.read_exact(&mut block[..wanted])?;
+            self.checksum.update(&block[..wanted]);
+            self.end += wanted as u64;
+        }
+        self.checksum.update(&entries);
+        self.used += count as u64;
+        self.frames += 1;
+        Ok(true)
+    }
+
+    /// Cuts off what a resumed file has after its mark; to be called once it is certain that the run goes on.
+    ///
+    /// # Errors
+    /// If the system does not let it be cut.
+    pub fn cut(&mut self) -> Result<(), FileError> {
+        self.cut_here().map_err(FileError::at(&self.path, "cutting"))
+    }
+
+    /// First the heading, for the index of the mark is still there; the file is whole after each of these.
+    fn cut_here(&mut self) -> io::Result<()> {
+        let (heading, Index { at, capacity }) = (self.heading(), self.index);
+        self.overwrite(0, &heading)?;
+        let unused = vec![0; (ENTRY * (capacity - self.used)) as usize];
+        self.overwrite(at + ENTRY * self.used, &unused)?;
+        self.out.get_ref().set_len(self.end)?;
+        self.out.seek(SeekFrom::Start(self.end)).map(drop)
+    }
+
+    /// Writes over what is there, or at the end.
+    fn overwrite(&mut self, at: u64, bytes: &[u8]) -> io::Result<()> {
+        let file = self.out.get_mut();
+        file.seek(SeekFrom::Start(at))?;
+        file.write_all(bytes)
+    }
+
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Whether a frame might find no room in the index.
+    fn is_index_full(&self) -> bool {
+        self.index.capacity - self.used < self.names.len() as u64
+    }
+
+    fn next_index(&self) -> Index {
+        Index { at: self.end, capacity: 2 * self.index.capacity }
+    }
+
+    /// An index twice as large, at the end.
+    fn grow_index(&mut self) -> io::Result<()> {
+        let (from, to) = (self.index, self.next_index());
+        let mut entries = vec![0; (ENTRY * self.used) as usize];
+        let file = self.out.get_mut();
+        file.seek(SeekFrom::Start(from.at))?;
+        file.read_exact(&mut entries)?;
+        self.end = to.at + ENTRY * to.capacity;
+        self.overwrite(to.at, &entries)?;
+        self.out.get_ref().set_len(self.end)?;
+        self.index = to;
+        let heading = self.heading();
+        self.overwrite(0, &heading)
+    }
+
+    /// Begins the next frame.
+    ///
+    /// # Errors
+    /// Those of the file; also if something else has cut or lengthened it.
+    pub(super) fn begin_frame(&mut self) -> io::Result<()> {
+        self.is_as_long_as_written()?;
+        if self.is_index_full() {
+            self.grow_index()?;
+        }
+        self.entries.clear();
+        self.out.seek(SeekFrom::Start(self.end)).map(drop)
+    }
+
+    /// Adds a chunk to the frame: rows of so many numbers. Chunks come in the order of the names.
+    ///
+    /// # Errors
+    /// Those of the file.
+    pub(super) fn add<E: Element, const COLUMNS: usize>(
+        &mut self,
+        name: &str,
+        rows: impl IntoIterator<Item = [E; COLUMNS], IntoIter: ExactSizeIterator>,
+    ) -> io::Result<()> {
+        let name = self.names.iter().position(|it| it == name);
+        let name = name.ok_or_else(|| io::Error::other("a chunk without a name"))?;
+        let (rows, of_a_row) = (rows.into_iter(), COLUMNS * size_of::<E>());
+        let entry = Entry {
+            frame: self.frames,
+            rows: rows.len() as u64,
+            at: self.end,
+            columns: COLUMNS as u32,
+            name: name as u16,
+            code: E::CODE,
+        };
+        self.chunk.clear();
+        self.chunk.resize(aligned((rows.len() * of_a_row) as u64) as usize, 0);
+        for (bytes, row) in self.chunk.chunks_exact_mut(of_a_row).zip(rows) {
+            for (bytes, number) in bytes.chunks_exact_mut(size_of::<E>()).zip(row) {
+                number.put(bytes);
+            }
+        }
+        self.entries.extend(entry.bytes());
+        self.checksum.update(&self.chunk);
+        self.end += self.chunk.len() as u64;
+        self.out.write_all(&self.chunk)
+    }
+
+    /// Ends the frame: from now on the index has it.
+    ///
+    /// # Errors
+    /// Those of the file.
+    pub(super) fn end_frame(&mut self) -> io::Result<()> {
+        self.out.flush()?;
+        let entries = std::mem::take(&mut self.entries);
+        self.checksum.update(&entries);
+        self.overwrite(self.index.at + ENTRY * self.used, &entries)?;
+        self.used += entries.len() as u64 / ENTRY;
+        self.frames += 1;
+        self.entries = entries;
+        Ok(())
+    }
+
+    /// Returns when all that was written is on the disk, and says how far that is; to be called before a checkpoint.
+    ///
+    /// # Errors
+    /// If the system does not let it be written, or the file has been removed, replaced or changed meanwhile.
+    pub fn sync(&mut self) -> Result<Mark, FileError> {
+        let at = || FileError::at(&self.path, "writing");
+        let file = self.out.get_ref();
+        file.sync_data().map_err(at())?;
+        if !is_name_of(&self.path, file).map_err(at())? {
+            let cause =
+                io::Error::new(ErrorKind::NotFound, "it was removed or replaced while the run wrote it");
+            return Err(at()(cause));
+        }
+        self.is_as_long_as_written().map_err(at())?;
+        Ok(Mark { bytes: self.end, checksum: self.checksum.clone().finalize() })
+    }
+
+    /// That nothing else has cut or lengthened the file.
+    fn is_as_long_as_written(&self) -> io::Result<()> {
+        let (found, written) = (self.out.get_ref().metadata()?.len(), self.end);
+        if found == written {
+            return Ok(());
+        }
+        let cause = format!("it has {found} bytes, but {written} were written: something else changed it");
+        Err(io::Error::other(cause))
+    }
+}

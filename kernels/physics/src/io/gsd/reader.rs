@@ -1,0 +1,261 @@
+//! Reading the frames that this program writes.
+
+use super::error::{Place, ReadError, Reason};
+use super::layout::{ENTRY, Element, Entry, HEADING, Heading, names_of};
+use super::{
+    ANGLE, CORNER, COUNT, EXACT_MASS, EXACT_POSITION, EXACT_VELOCITY, ID, OMEGA, PERIODIC, RADIUS, SIDES,
+    STEP, TIME, TYPE,
+};
+use crate::io::extxyz::Frame;
+use crate::io::regular_file;
+use crate::particles::{Kind, Particle, Particles};
+use std::collections::HashSet;
+use std::fs::File;
+use std::io::{self, BufReader, Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+
+/// The frames of a file: by their numbers, or one after the other; ends after the first that is wrong.
+#[derive(Debug)]
+pub struct Frames {
+    path: PathBuf,
+    file: File,
+    names: Vec<String>,
+    index: Vec<Entry>,
+    next: u64,
+    failed: bool,
+}
+
+impl Frames {
+    /// Opens a file and reads its index.
+    ///
+    /// # Errors
+    /// If the system does not let it be read, it is no such file, or it is cut off.
+    pub fn open(path: impl AsRef<Path>) -> Result<Frames, ReadError> {
+        let path = path.as_ref().to_owned();
+        let opened = regular_file::open(&path).map_err(Reason::Io);
+        let read = opened.map_err(|reason| (Place::File, reason)).and_then(|file| {
+            let (names, index) = index(&file)?;
+            Ok((file, names, index))
+        });
+        match read {
+            Ok((file, names, index)) => Ok(Frames { path, file, names, index, next: 0, failed: false }),
+            Err((place, reason)) => Err(ReadError { file: path, place, reason }),
+        }
+    }
+
+    /// How many frames there are.
+    pub fn frame_count(&self) -> u64 {
+        self.index.last().map_or(0, |entry| entry.frame + 1)
+    }
+
+    /// A frame by its number, from 0; none behind the last.
+    ///
+    /// # Errors
+    /// If the system does not let it be read, or its chunks are not those that this program writes.
+    pub fn frame(&mut self, number: u64) -> Result<Option<Frame>, ReadError> {
+        if number >= self.frame_count() {
+            return Ok(None);
+        }
+        let frame = Chunks { frames: self, number }.frame();
+        frame.map(Some).map_err(|(place, reason)| ReadError { file: self.path.clone(), place, reason })
+    }
+
+    fn entry(&self, frame: u64, name: usize) -> Option<Entry> {
+        let key = (frame, name as u16);
+        let at = self.index.binary_search_by_key(&key, |entry| (entry.frame, entry.name)).ok()?;
+        Some(self.index[at])
+    }
+}
+
+impl Iterator for Frames {
+    type Item = Result<Frame, ReadError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.failed {
+            return None;
+        }
+        let frame = self.frame(self.next).transpose();
+        self.next += 1;
+        self.failed = matches!(frame, Some(Err(_)));
+        frame
+    }
+}
+
+type Wrong = (Place, Reason);
+
+/// The names and the entries of a file.
+fn index(file: &File) -> Result<(Vec<String>, Vec<Entry>), Wrong> {
+    let system = |cause: io::Error| (Place::File, Reason::Io(cause));
+    let length = file.metadata().map_err(system)?.len();
+    let mut file = BufReader::new(file);
+    let inside = |what, end: Option<u64>| match end {
+        Some(end) if end <= length => Ok(()),
+        end => Err((Place::File, Reason::Truncated { what, end: end.unwrap_or(u64::MAX), length })),
+    };
+    let mut bytes = [0; HEADING as usize];
+    inside("the heading", Some(HEADING))?;
+    file.read_exact(&mut bytes).map_err(system)?;
+    let wrong = |byte, expected| (Place::Byte(byte), Reason::Expected(expected));
+    let Heading { index, names } = Heading::read(&bytes).map_err(|(byte, expected)| wrong(byte, expected))?;
+    let [first, length_of_names] = names;
+    inside("the list of names", first.checked_add(length_of_names))?;
+    inside("the index", index.end())?;
+
+    let mut list = vec![0; length_of_names as usize];
+    file.seek(SeekFrom::Start(first)).and_then(|_| file.read_exact(&mut list)).map_err(system)?;
+    let names = names_of(&list).ok_or(wrong(first, "names with a 0 behind each, and behind the last two"))?;
+
+    file.seek(SeekFrom::Start(index.at)).map_err(system)?;
+    let mut entries: Vec<Entry> = vec![];
+    for number in 0..index.capacity {
+        let mut bytes = [0; ENTRY as usize];
+        file.read_exact(&mut bytes).map_err(system)?;
+        let (entry, at) = (Entry::of(&bytes), index.at + ENTRY * number);
+        if entry.at == 0 {
+            break;
+        }
+        if bytes[ENTRY as usize - 1] != 0 || usize::from(entry.name) >= names.len() {
+            return Err(wrong(at, "an entry of the index, of a chunk with a name"));
+        }
+        let follows = match entries.last() {
+            None => entry.frame == 0,
+            Some(last) => {
+                entry.frame == last.frame && entry.name > last.name || entry.frame == last.frame + 1
+            }
+        };
+        if !follows {
+            return Err(wrong(at, "entries of the index in the order of frames and names"));
+        }
+        let Some(end) = entry.end() else { return Err(wrong(at, "a chunk of numbers of a known type")) };
+        if end > length {
+            return Err((
+                Place::Byte(at),
+                Reason::Truncated { what: "the chunk of this entry", end, length },
+            ));
+        }
+        entries.push(entry);
+    }
+    Ok((names, entries))
+}
+
+/// The chunks of a frame.
+struct Chunks<'f> {
+    frames: &'f mut Frames,
+    number: u64,
+}
+
+impl Chunks<'_> {
+    fn wrong(&self, chunk: &'static str, reason: Reason) -> Wrong {
+        (Place::Chunk { frame: self.number, chunk }, reason)
+    }
+
+    /// Rows of so many numbers, of the frame or, where it has none, of the first one; none where that has none either.
+    fn rows<E: Element>(
+        &mut self,
+        chunk: &'static str,
+        rows: usize,
+        columns: usize,
+    ) -> Result<Option<Vec<E>>, Wrong> {
+        let Some(name) = self.frames.names.iter().position(|name| name == chunk) else { return Ok(None) };
+        let found = self.frames.entry(self.number, name);
+        // What the first frame has is of its own particles.
+        let of_first = || self.frames.entry(0, name).filter(|first| first.rows == rows as u64);
+        let Some(entry) = found.or_else(of_first) else { return Ok(None) };
+        if (entry.rows, entry.columns, entry.code) != (rows as u64, columns as u32, E::CODE) {
+            let said = |rows, columns, code| format!("{rows} × {columns} numbers of type {code}");
+            let reason = Reason::Shape {
+                found: said(entry.rows, u64::from(entry.columns), entry.code),
+                expected: said(rows as u64, columns as u64, E::CODE),
+            };
+            return Err(self.wrong(chunk, reason));
+        }
+        let mut bytes = vec![0; rows * columns * size_of::<E>()];
+        let file = &mut self.frames.file;
+        let read = file.seek(SeekFrom::Start(entry.at)).and_then(|_| file.read_exact(&mut bytes));
+        read.map_err(|cause| self.wrong(chunk, Reason::Io(cause)))?;
+        Ok(Some(bytes.chunks_exact(size_of::<E>()).map(E::of).collect()))
+    }
+
+    fn needed<E: Element>(
+        &mut self,
+        chunk: &'static str,
+        rows: usize,
+        columns: usize,
+    ) -> Result<Vec<E>, Wrong> {
+        self.rows(chunk, rows, columns)?.ok_or_else(|| self.wrong(chunk, Reason::Missing))
+    }
+
+    fn one<E: Element>(&mut self, chunk: &'static str) -> Result<E, Wrong> {
+        Ok(self.needed(chunk, 1, 1)?[0])
+    }
+
+    /// Finite numbers, and greater than 0 where they must be.
+    fn numbers(
+        &mut self,
+        chunk: &'static str,
+        (rows, columns): (usize, usize),
+        is_positive: bool,
+    ) -> Result<Vec<f64>, Wrong> {
+        let numbers = self.needed::<f64>(chunk, rows, columns)?;
+        let fits = |number: f64| number.is_finite() && (number > 0.0 || !is_positive);
+        let Some(at) = numbers.iter().position(|&number| !fits(number)) else { return Ok(numbers) };
+        let expected = if is_positive { "a finite number greater than 0" } else { "a finite number" };
+        let reason = Reason::Number { row: at / columns, found: numbers[at].to_string(), expected };
+        Err(self.wrong(chunk, reason))
+    }
+
+    /// The sides of the box; without end where there is none.
+    fn sides(&mut self) -> Result<[f64; 2], Wrong> {
+        let sides = self.needed::<f64>(SIDES, 2, 1)?;
+        let Some(row) = sides.iter().position(|side| side.is_nan() || *side <= 0.0) else {
+            return Ok([sides[0], sides[1]]);
+        };
+        let (found, expected) = (sides[row].to_string(), "a number greater than 0");
+        Err(self.wrong(SIDES, Reason::Number { row, found, expected }))
+    }
+
+    fn frame(mut self) -> Result<Frame, Wrong> {
+        let count = self.one::<u32>(COUNT)? as usize;
+        let (sides, corner) = (self.sides()?, self.numbers(CORNER, (2, 1), false)?);
+        let periodic = self.needed::<u8>(PERIODIC, 2, 1)?;
+        let axes = if sides.iter().all(|side| side.is_finite()) { 2 } else { 3 };
+        let kinds = self.needed::<u32>(TYPE, count, 1)?;
+        let ids = self.needed::<u32>(ID, count, 1)?;
+        let [radius, mass] =
+            [self.numbers(RADIUS, (count, 1), true)?, self.numbers(EXACT_MASS, (count, 1), true)?];
+        let position = self.numbers(EXACT_POSITION, (count, axes), false)?;
+        let velocity = self.numbers(EXACT_VELOCITY, (count, axes), false)?;
+        let [angle, omega] =
+            [self.numbers(ANGLE, (count, 1), false)?, self.numbers(OMEGA, (count, 1), false)?];
+        if let Some(row) = kinds.iter().position(|&kind| kind > 1) {
+            let (found, expected) = (kinds[row].to_string(), "0 (a grain) or 1 (a wall disc)");
+            return Err(self.wrong(TYPE, Reason::Number { row, found, expected }));
+        }
+        let mut seen = HashSet::with_capacity(count);
+        if let Some(row) = ids.iter().position(|id| !seen.insert(*id)) {
+            return Err(self.wrong(ID, Reason::RepeatedId { row, id: ids[row] }));
+        }
+        let vector = |of: &[f64], number: usize| {
+            std::array::from_fn(|axis| if axis < axes { of[axes * number + axis] } else { 0.0 })
+        };
+        let particle = |number: usize| Particle {
+            id: ids[number],
+            kind: if kinds[number] == 0 { Kind::Grain } else { Kind::Wall },
+            position: vector(&position, number),
+            velocity: vector(&velocity, number),
+            angle: angle[number],
+            omega: omega[number],
+            radius: radius[number],
+            mass: mass[number],
+        };
+        Ok(Frame {
+            particles: Particles::new((0..count).map(particle).collect()),
+            cell: sides,
+            origin: [corner[0], corner[1]],
+            periodic: Some([periodic[0] != 0, periodic[1] != 0]),
+            time: self.numbers(TIME, (1, 1), false)?[0],
+            step: self.one(STEP)?,
+            seed: None,
+        })
+    }
+}

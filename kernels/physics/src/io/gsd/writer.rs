@@ -1,0 +1,225 @@
+//! The schema layer: what of a frame is written as which chunk.
+//!
+//! What is as in the first frame is left out, for readers take it from there: masses, sizes, ids and types where the particles are
+//! the same, the box of a plane, angles and spins where nothing turns.
+
+use super::file::GsdFile;
+use super::{
+    ANGLE, BOX, CHUNKS, CORNER, COUNT, DIAMETER, DIMENSIONS, EXACT_MASS, EXACT_POSITION, EXACT_VELOCITY,
+    Frames, ID, IMAGE, MASS, OMEGA, PERIODIC, POSITION, RADIUS, SIDES, STEP, TIME, TYPE, TYPE_NAMES, TYPES,
+    VELOCITY,
+};
+use crate::io::FileError;
+use crate::io::extxyz::Frame;
+use crate::io::growing_file::{GrowingFileError, Mark};
+use crate::particles::{Kind, Particle};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// A frame, and what is logged with it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoggedFrame {
+    /// The particles in their box, which other files may have, too.
+    pub frame: Arc<Frame>,
+    /// How many periods each has moved along x and y since the start; empty where that is not known.
+    pub images: Vec<[i32; 2]>,
+    /// A value for each quantity that is logged; not a number where it is not known.
+    pub values: Vec<f64>,
+}
+
+/// A trajectory being written.
+#[derive(Debug)]
+pub struct Writer {
+    file: GsdFile,
+    /// The chunks of what is logged.
+    logged: Vec<String>,
+    first: Option<First>,
+}
+
+/// What of the first frame later ones need not say again.
+#[derive(Debug)]
+struct First {
+    ids: Vec<u32>,
+    /// Whether anything is turned or turns.
+    turns: bool,
+    sides: [f32; 6],
+}
+
+impl First {
+    fn of(frame: &Frame) -> First {
+        let particles = frame.particles.all();
+        First { ids: ids(particles).collect(), turns: turns(particles), sides: Cell::of(frame).sides }
+    }
+}
+
+impl Writer {
+    /// Begins a trajectory where nothing is, to log quantities of these names.
+    ///
+    /// # Errors
+    /// If something is there already, or the system does not let it be written.
+    pub fn create(path: impl Into<PathBuf>, logged: &[&str]) -> Result<Writer, FileError> {
+        let logged = chunks_of(logged);
+        Ok(Writer { file: GsdFile::create(path, names(&logged))?, logged, first: None })
+    }
+
+    /// Goes on at a mark, logging what was logged before.
+    ///
+    /// # Errors
+    /// As [`GsdFile::resume`].
+    pub fn resume(path: impl Into<PathBuf>, logged: &[&str], mark: Mark) -> Result<Writer, GrowingFileError> {
+        let logged = chunks_of(logged);
+        Ok(Writer { file: GsdFile::resume(path, names(&logged), mark)?, logged, first: None })
+    }
+
+    /// Cuts off what a resumed file has after its mark; to be called once it is certain that the run goes on.
+    ///
+    /// # Errors
+    /// If the system does not let it be cut.
+    pub fn cut(&mut self) -> Result<(), FileError> {
+        self.file.cut()?;
+        let first = Frames::open(self.path()).and_then(|mut frames| frames.next().transpose());
+        let first = first.map_err(|error| FileError::at(self.path(), "reading")(io::Error::other(error)))?;
+        self.first = first.map(|frame| First::of(&frame));
+        Ok(())
+    }
+
+    /// The file.
+    pub fn path(&self) -> &Path {
+        self.file.path()
+    }
+
+    /// As [`GsdFile::sync`].
+    ///
+    /// # Errors
+    /// If the system does not let it be written, or the file has been removed, replaced or changed meanwhile.
+    pub fn sync(&mut self) -> Result<Mark, FileError> {
+        self.file.sync()
+    }
+}
+
+/// Adds a frame.
+///
+/// # Errors
+/// Those of the file.
+pub fn write(LoggedFrame { frame, images, values }: &LoggedFrame, to: &mut Writer) -> io::Result<()> {
+    let (particles, Cell { sides, centre, is_plane }) = (frame.particles.all(), Cell::of(frame));
+    let first = to.first.as_ref();
+    let is_first = first.is_none();
+    let is_same = first.is_some_and(|first| first.ids.iter().copied().eq(ids(particles)));
+    let is_still = is_same && first.is_some_and(|first| !first.turns) && !turns(particles);
+    let has_sides = first.is_some_and(|first| first.sides == sides);
+    let number = |of: fn(&Particle) -> f64| particles.iter().map(move |it| [of(it)]);
+    let single = |of: fn(&Particle) -> f64| particles.iter().map(move |it| [of(it) as f32]);
+
+    let file = &mut to.file;
+    file.begin_frame()?;
+    file.add(STEP, [[frame.step]])?;
+    if is_first {
+        file.add(DIMENSIONS, [[if is_plane { 2_u8 } else { 3 }]])?;
+    }
+    if !has_sides {
+        file.add(BOX, sides.map(|side| [side]))?;
+    }
+    if !is_same {
+        file.add(COUNT, [[particles.len() as u32]])?;
+    }
+    if is_first {
+        file.add(TYPES, TYPE_NAMES.map(|name| name.map(|byte| byte as i8)))?;
+    }
+    if !is_same {
+        file.add(TYPE, particles.iter().map(|it| [u32::from(it.kind == Kind::Wall)]))?;
+        file.add(MASS, single(|it| it.mass))?;
+        file.add(DIAMETER, single(|it| 2.0 * it.radius))?;
+    }
+    let from_centre = |it: &Particle| std::array::from_fn(|axis| (it.position[axis] - centre[axis]) as f32);
+    file.add::<f32, 3>(POSITION, particles.iter().map(from_centre))?;
+    file.add(VELOCITY, particles.iter().map(|it| it.velocity.map(|v| v as f32)))?;
+    if !images.is_empty() {
+        file.add(IMAGE, images.iter().map(|&[x, y]| [x, y, 0]))?;
+    }
+    file.add(TIME, [[frame.time]])?;
+    if is_first {
+        file.add(SIDES, frame.cell.map(|side| [side]))?;
+        file.add(CORNER, frame.origin.map(|at| [at]))?;
+        file.add(PERIODIC, frame.periodic.unwrap_or([true; 2]).map(|repeats| [u8::from(repeats)]))?;
+    }
+    if !is_same {
+        file.add(ID, particles.iter().map(|it| [it.id]))?;
+        file.add(RADIUS, number(|it| it.radius))?;
+        file.add(EXACT_MASS, number(|it| it.mass))?;
+    }
+    if is_plane {
+        file.add(EXACT_POSITION, particles.iter().map(Particle::place))?;
+        file.add(EXACT_VELOCITY, particles.iter().map(Particle::planar_velocity))?;
+    } else {
+        file.add(EXACT_POSITION, particles.iter().map(|it| it.position))?;
+        file.add(EXACT_VELOCITY, particles.iter().map(|it| it.velocity))?;
+    }
+    if !is_still {
+        file.add(ANGLE, number(|it| it.angle))?;
+        file.add(OMEGA, number(|it| it.omega))?;
+    }
+    for (name, &value) in to.logged.iter().zip(values) {
+        file.add(name, [[value]])?;
+    }
+    file.end_frame()?;
+    if is_first {
+        to.first = Some(First::of(frame));
+    }
+    Ok(())
+}
+
+fn ids(particles: &[Particle]) -> impl Iterator<Item = u32> {
+    particles.iter().map(|it| it.id)
+}
+
+fn turns(particles: &[Particle]) -> bool {
+    particles.iter().any(|it| it.angle != 0.0 || it.omega != 0.0)
+}
+
+fn chunks_of(logged: &[&str]) -> Vec<String> {
+    logged.iter().map(|name| format!("log/{name}")).collect()
+}
+
+fn names(logged: &[String]) -> Vec<String> {
+    CHUNKS.into_iter().map(str::to_owned).chain(logged.iter().cloned()).collect()
+}
+
+/// The box as the schema has it.
+struct Cell {
+    /// Along x, y and z, and how they are tilted.
+    sides: [f32; 6],
+    /// Where the schema has its origin.
+    centre: [f64; 3],
+    is_plane: bool,
+}
+
+impl Cell {
+    /// The box of a plane has no depth, and sides twice, four times, … as long where discs fly above one without a ceiling. Space without end has none: a cube about the origin stands for it that holds all, with a power
+    /// of two as its side, so that it seldom changes.
+    fn of(frame: &Frame) -> Cell {
+        let Frame { cell: [lx, ly], origin: [x, y], particles, .. } = frame;
+        if lx.is_finite() && ly.is_finite() {
+            let centre = [x + 0.5 * lx, y + 0.5 * ly, 0.0];
+            let side = |axis: usize, mut side: f64| {
+                let ways = particles.all().iter().map(|it| (it.position[axis] - centre[axis]).abs());
+                let reach = ways.fold(0.0, f64::max);
+                while reach > 0.5 * side {
+                    side *= 2.0;
+                }
+                side as f32
+            };
+            return Cell { sides: [side(0, *lx), side(1, *ly), 0.0, 0.0, 0.0, 0.0], centre, is_plane: true };
+        }
+        let coordinates = particles.all().iter().flat_map(|it| it.position);
+        let side = above(2.0 * coordinates.fold(0.5, |most: f64, x| most.max(x.abs()))) as f32;
+        Cell { sides: [side, side, side, 0.0, 0.0, 0.0], centre: [0.0; 3], is_plane: false }
+    }
+}
+
+/// The next larger power of two of a number from 1 on.
+fn above(number: f64) -> f64 {
+    const FRACTION: u64 = (1 << 52) - 1;
+    2.0 * f64::from_bits(number.to_bits() & !FRACTION)
+}

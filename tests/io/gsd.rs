@@ -1,0 +1,297 @@
+//! Trajectories with an index.
+
+use crate::Random;
+use std::fs;
+use std::path::{Path, PathBuf};
+use stripmine_physics::io::extxyz::Frame;
+use stripmine_physics::io::growing_file::Mark;
+use stripmine_physics::io::gsd::{Frames, LoggedFrame, Writer, write};
+use stripmine_physics::particles::{Kind, Particle, Particles};
+use tempfile::TempDir;
+
+const LOGGED: [&str; 2] = ["energy", "lost"];
+/// Frames of which the index has no room where it first is, nor where it next is.
+const MANY: u64 = 200;
+
+fn folder_and_path() -> (TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("trajectory.gsd");
+    (folder, path)
+}
+
+fn disc(id: u32, step: u64) -> Particle {
+    let along = 0.1 * f64::from(id) + 0.01 * step as f64;
+    Particle {
+        id,
+        kind: if id > 3 { Kind::Wall } else { Kind::Grain },
+        position: [along, 1.0 / (1.0 + along), 0.0],
+        velocity: [-along, 1e-300, 0.0],
+        angle: 0.0,
+        omega: 0.0,
+        radius: 0.05,
+        mass: 0.1 * f64::from(id),
+    }
+}
+
+/// Five discs; from step 30 on one is lost, from step 50 on one turns.
+fn plane(step: u64) -> LoggedFrame {
+    let ids = (1..=5).filter(|id| *id != 2 || step < 30);
+    let mut particles = Particles::new(ids.map(|id| disc(id, step)).collect());
+    if step >= 50 {
+        let turned = &mut particles.all_mut()[0];
+        (turned.angle, turned.omega) = (-1.0 / 3.0, 0.25);
+    }
+    let frame = Frame {
+        particles,
+        cell: [10.0 / 3.0, 8.0],
+        origin: [-0.5, 0.1],
+        periodic: Some([true, false]),
+        time: 0.1 * step as f64,
+        step,
+        seed: None,
+    };
+    LoggedFrame { frame: frame.into(), images: vec![], values: vec![step as f64, f64::NAN] }
+}
+
+/// Two bodies in space that fly apart.
+fn space(step: u64) -> LoggedFrame {
+    let far = 1.5 + step as f64;
+    let body = |id, z| Particle { kind: Kind::Grain, position: [far, -far, z], ..disc(id, step) };
+    let LoggedFrame { frame, values, .. } = plane(step);
+    let particles = Particles::new(vec![body(1, far), body(2, -0.25)]);
+    let open = ([f64::INFINITY; 2], [0.0; 2], Some([false; 2]));
+    let frame = Frame { particles, cell: open.0, origin: open.1, periodic: open.2, ..Frame::clone(&frame) };
+    LoggedFrame { frame: frame.into(), images: vec![[1, -2], [0, step as i32]], values }
+}
+
+/// A file that grows up to a number of frames: its bytes and its mark without frames, after the first, and so on.
+fn written(path: &Path, of: fn(u64) -> LoggedFrame, count: u64) -> (Vec<Vec<u8>>, Vec<Mark>) {
+    let _ = fs::remove_file(path);
+    let mut file = Writer::create(path, &LOGGED).unwrap();
+    let mut grown = (vec![fs::read(path).unwrap()], vec![file.sync().unwrap()]);
+    for step in 0..count {
+        write(&of(step), &mut file).unwrap();
+        grown.1.push(file.sync().unwrap());
+        grown.0.push(fs::read(path).unwrap());
+    }
+    grown
+}
+
+#[test]
+fn frames_come_back_by_their_numbers() {
+    let (_folder, path) = folder_and_path();
+    for of in [plane, space] {
+        written(&path, of, MANY);
+        let mut frames = Frames::open(&path).unwrap();
+        assert_eq!(frames.frame_count(), MANY);
+        let mut random = Random(1);
+        for _ in 0..500 {
+            let number = random.below(MANY as usize) as u64;
+            assert_eq!(frames.frame(number).unwrap().unwrap(), *of(number).frame);
+        }
+        assert!(frames.frame(MANY).unwrap().is_none());
+        assert!(frames.map(|frame| frame.unwrap().step).eq(0..MANY));
+    }
+}
+
+/// Other programs want all particles inside: a box without a ceiling is doubled until it holds them, in that frame alone.
+#[test]
+fn every_disc_is_in_the_box() {
+    let (_folder, path) = folder_and_path();
+    let high = |step: u64| {
+        let mut frame = Frame::clone(&plane(step).frame);
+        frame.particles.all_mut()[0].position[1] = if step == 1 { 19.0 } else { 1.0 };
+        LoggedFrame { frame: frame.into(), ..plane(step) }
+    };
+    let (grown, marks) = written(&path, high, 3);
+    let heights = |frame: usize| {
+        // Behind the step comes the box, where it differs from the first one.
+        let at = marks[frame].bytes as usize + 8;
+        f32::from_le_bytes(grown[3][at + 4..at + 8].try_into().unwrap())
+    };
+    // The box of 8 has its centre at 4.1.
+    assert!(heights(1) == 32.0 && heights(2) != 8.0, "{} {}", heights(1), heights(2));
+    assert_eq!(Frames::open(&path).unwrap().frame(1).unwrap().unwrap().cell, [10.0 / 3.0, 8.0]);
+}
+
+/// What readers of the schema do with a chunk that is left out: they take that of the first frame if it has as many rows. What is
+/// left out is what has not changed.
+#[test]
+fn what_stays_as_it_was_is_written_once() {
+    let (_folder, path) = folder_and_path();
+    let (_, marks) = written(&path, plane, 60);
+    let lengths: Vec<u64> = marks.windows(2).map(|two| two[1].bytes - two[0].bytes).collect();
+    // Step, time and two quantities; in single precision six numbers a disc, in double four.
+    let moving = |discs: u64| 4 * 8 + (12 * discs).next_multiple_of(8) * 2 + 32 * discs;
+    assert!(lengths[1..30].iter().all(|&it| it == moving(5)), "{lengths:?}");
+    assert!(lengths[30] > moving(4) && lengths[50] == lengths[30], "{lengths:?}");
+}
+
+/// From every mark, whatever was written after it and wherever the process was killed: the bytes of a run that was never stopped.
+#[test]
+fn a_resumed_trajectory_is_that_of_one_run() {
+    let (_folder, path) = folder_and_path();
+    let (grown, marks) = written(&path, plane, MANY);
+    let whole = &grown[MANY as usize];
+    let mut random = Random(2);
+    for number in (1..MANY as usize).step_by(7) {
+        let mark = marks[number];
+        let more = number + random.below(MANY as usize - number);
+        let next = &whole[marks[more].bytes as usize..];
+        let torn = [&grown[more][..], &next[..random.below(next.len().min(2000) + 1)]].concat();
+        for bytes in [whole, &grown[number], &grown[more], &torn] {
+            fs::write(&path, bytes).unwrap();
+            let mut file = Writer::resume(&path, &LOGGED, mark).unwrap();
+            assert!(&fs::read(&path).unwrap() == bytes, "nothing is changed before it is cut");
+            file.cut().unwrap();
+            assert_eq!(Frames::open(&path).unwrap().frame_count(), number as u64);
+            for step in number as u64..MANY {
+                write(&plane(step), &mut file).unwrap();
+            }
+            assert_eq!(file.sync().unwrap(), marks[MANY as usize]);
+            assert!(&fs::read(&path).unwrap() == whole, "from frame {number}");
+        }
+    }
+}
+
+/// Killed at any byte: what is there is whole frames, all of them or all but the last.
+#[test]
+fn a_killed_trajectory_is_of_whole_frames() {
+    let (_folder, path) = folder_and_path();
+    // The frame that makes the first index move is among them.
+    let (grown, _) = written(&path, plane, MANY);
+    let moved = grown.iter().position(|bytes| bytes[8..16] != grown[0][8..16]).unwrap();
+    for count in [3, moved] {
+        let (before, after) = (&grown[count - 1], &grown[count]);
+        let index = |bytes: &[u8]| u64::from_le_bytes(bytes[8..16].try_into().unwrap()) as usize;
+        // In the order in which it is written: the end with the new index, the heading, the end, the entries.
+        let moves = index(before) != index(after);
+        let capacity = u64::from_le_bytes(after[16..24].try_into().unwrap()) as usize;
+        let data = if moves { index(after) + 32 * capacity } else { before.len() };
+        let heading = before.len()..data;
+        let mut states: Vec<Vec<u8>> = heading.step_by(1009).map(|end| after[..end].to_vec()).collect();
+        for state in &mut states {
+            state[..24].copy_from_slice(&before[..24]);
+        }
+        let ends = (data..=after.len()).step_by(5).map(|end| after[..end].to_vec());
+        states.extend(ends.map(|mut bytes| {
+            // The entries of the last frame are not there yet.
+            let used = (0..).find(|entry| {
+                let at = index(after) + 32 * entry;
+                after[at..at + 8] == (count as u64 - 1).to_le_bytes() && after[at + 16..at + 24] != [0; 8]
+            });
+            let at = index(after) + 32 * used.unwrap();
+            bytes[at..index(after) + 32 * capacity].fill(0);
+            bytes
+        }));
+        for state in states {
+            fs::write(&path, &state).unwrap();
+            let mut frames = Frames::open(&path).unwrap();
+            let whole = count as u64 - 1;
+            assert_eq!(frames.frame_count(), whole, "{} bytes", state.len());
+            assert_eq!(frames.frame(whole - 1).unwrap().unwrap().step, whole - 1);
+        }
+    }
+}
+
+/// What was there at the mark must be there still: any other byte of heading, names, entries or chunks is refused, and nothing is changed.
+#[test]
+fn what_is_missing_or_changed_before_the_mark_is_refused() {
+    let (_folder, path) = folder_and_path();
+    let (mut grown, marks) = written(&path, plane, 4);
+    let (whole, mark) = (grown.swap_remove(4), marks[4]);
+    let refused = |bytes: &[u8], words: &str| {
+        fs::write(&path, bytes).unwrap();
+        let error = Writer::resume(&path, &LOGGED, mark).unwrap_err();
+        assert!(error.is_damage() && error.to_string().contains(words), "{error}");
+        assert_eq!(fs::read(&path).unwrap(), bytes);
+    };
+    for cut in (0..whole.len()).step_by(211) {
+        refused(&whole[..cut], "bytes, but");
+    }
+    let index = u64::from_le_bytes(whole[8..16].try_into().unwrap()) as usize;
+    let unused = index + 32 * (0..).find(|entry| whole[index + 32 * entry..][..32] == [0; 32]).unwrap();
+    let end = index + 32 * 1024;
+    // Where the index is may have been written after the mark.
+    for place in (0..8).chain(24..unused).chain(end..whole.len()) {
+        let mut bytes = whole.clone();
+        bytes[place] ^= 1;
+        refused(&bytes, "trajectory.gsd has changed");
+    }
+    fs::write(&path, &whole).unwrap();
+    assert!(Writer::resume(&path, &["heat"], mark).unwrap_err().is_damage());
+    fs::remove_file(&path).unwrap();
+    assert!(Writer::resume(&path, &LOGGED, mark).unwrap_err().to_string().contains("is missing"));
+}
+
+/// Damaged and foreign files are refused with their place.
+#[test]
+fn other_files_are_refused_with_their_place() {
+    let (_folder, path) = folder_and_path();
+    let whole = written(&path, plane, 4).0.swap_remove(4);
+    let index = u64::from_le_bytes(whole[8..16].try_into().unwrap()) as usize;
+    let data = index + 32 * 1024;
+    let entry = |name: &str| {
+        let names = std::str::from_utf8(&whole[256..index]).unwrap();
+        let name = names.split('\0').position(|it| it == name).unwrap() as u16;
+        let is_it = |entry: &usize| whole[index + 32 * entry + 28..][..2] == name.to_le_bytes();
+        index + 32 * (0..1024).find(is_it).unwrap()
+    };
+    let chunk = |name: &str| u64::from_le_bytes(whole[entry(name) + 16..][..8].try_into().unwrap()) as usize;
+    let cases: [(usize, &[u8], &str); 12] = [
+        (0, b"CORD", "byte 0: expected the eight bytes"),
+        (40, &[0, 0, 2, 0], "byte 40: expected version 1.4 of the schema"),
+        (44, &[0, 0, 1, 0], "byte 44: expected version 2.0 of the file layer"),
+        (48, b"gsd.hoomd", "byte 48: expected `stripmine` as the application"),
+        (112, b"other", "byte 112: expected `hoomd` as the schema"),
+        (8, &[255; 8], "the index ends at byte"),
+        (index + 32 + 28, &[255, 255], &format!("byte {}: expected an entry of the index", index + 32)),
+        (
+            index + 32 + 30,
+            &[99],
+            &format!("byte {}: expected a chunk of numbers of a known type", index + 32),
+        ),
+        (index + 64, &[9], &format!("byte {}: expected entries of the index in the order", index + 64)),
+        (index + 32 + 16, &[0, 0, 0, 0, 1], &format!("byte {}: the chunk of this entry ends at", index + 32)),
+        (
+            chunk("log/particles/mass") + 8,
+            &[0; 8],
+            "frame 0, log/particles/mass: row 1 is `0`; expected a finite number greater",
+        ),
+        (
+            chunk("log/particles/id"),
+            &[3],
+            "frame 0, log/particles/id: row 2 is 3, which is the id of another particle",
+        ),
+    ];
+    let first = |bytes: &[u8]| {
+        fs::write(&path, bytes).unwrap();
+        let error = Frames::open(&path).and_then(|mut frames| frames.frame(0)).unwrap_err();
+        assert!(error.to_string().contains("trajectory.gsd: "), "{error}");
+        error.to_string()
+    };
+    for (at, bytes, words) in cases {
+        let mut damaged = whole.clone();
+        damaged[at..at + bytes.len()].copy_from_slice(bytes);
+        assert!(first(&damaged).contains(words), "{words}: {}", first(&damaged));
+    }
+    // A chunk of another name in the place of one that is needed, and one with fewer rows.
+    for (name, at, byte, words) in [
+        ("log/time", 28, 10, "frame 0, log/time: there is no such chunk"),
+        (
+            "particles/typeid",
+            8,
+            4,
+            "frame 0, particles/typeid: found 4 × 1 numbers of type 3; expected 5 × 1",
+        ),
+    ] {
+        let mut damaged = whole.clone();
+        damaged[entry(name) + at] = byte;
+        assert!(first(&damaged).contains(words), "{words}: {}", first(&damaged));
+    }
+    for cut in [0, 100, 300, index + 40, data - 1, data + 1, whole.len() - 1] {
+        fs::write(&path, &whole[..cut]).unwrap();
+        let error = Frames::open(&path).unwrap_err().to_string();
+        assert!(error.contains(&format!("the file at byte {cut}")), "{error}");
+    }
+}
