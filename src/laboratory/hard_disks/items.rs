@@ -42,7 +42,7 @@ pub(super) const ITEMS: &[Item] = &[
     Item::quick(
         "hard-disks-complexity",
         Sources,
-        [2.0, 200.0],
+        [2.0, 400.0],
         growth,
         "Hard discs: operations and time of a collision over the number of discs",
     ),
@@ -105,12 +105,14 @@ fn growth(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
             packing_fractions: vec![0.50],
             rounds: 1,
             collisions: 20_000,
+            most_by_reference: 10_000,
         },
         Effort::Full => complexity::Effort {
-            discs: vec![1000, 4000, 16_000, 64_000, 256_000, 1_000_000, 10_000_000],
+            discs: vec![1000, 10_000, 100_000, 1_000_000, 10_000_000],
             packing_fractions: vec![0.30, 0.70],
             rounds: 3,
-            collisions: 300_000,
+            collisions: 1_000_000,
+            most_by_reference: 1_000_000,
         },
     };
     let data = complexity::complexity(&effort, progress)?;

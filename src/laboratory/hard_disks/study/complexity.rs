@@ -30,6 +30,8 @@ pub struct Effort {
     pub rounds: usize,
     /// Collisions of a round.
     pub collisions: u64,
+    /// The source's way has no more discs than this: it takes minutes.
+    pub most_by_reference: u64,
 }
 
 /// An engine with a number of discs.
@@ -82,12 +84,12 @@ pub struct Complexity {
 /// [`StudyError`] if a scene breaks.
 pub fn complexity(effort: &Effort, progress: Progress<'_>) -> Result<Complexity, StudyError> {
     let mut costs = vec![];
-    let work: u64 = effort.discs.iter().map(|discs| discs + effort.collisions).sum();
+    let work: u64 = effort.discs.iter().map(|discs| 5 * discs + effort.collisions).sum();
     let mut done = 0;
     for &discs in &effort.discs {
         for &packing_fraction in &effort.packing_fractions {
             costs.extend(engines(discs, packing_fraction, effort)?);
-            done += discs + effort.collisions;
+            done += 5 * discs + effort.collisions;
             progress(done as f64 / (work * effort.packing_fractions.len() as u64) as f64);
         }
     }
@@ -100,11 +102,11 @@ pub fn complexity(effort: &Effort, progress: Progress<'_>) -> Result<Complexity,
 
 fn engines(discs: u64, packing_fraction: f64, effort: &Effort) -> Result<Vec<Cost>, StudyError> {
     let mut running: Vec<(Running, Vec<f64>, [f64; COUNTED.len()])> = vec![];
-    for engine in ENGINES {
+    for engine in of_size(discs, effort) {
         let scene = Overrides::new().set(&COUNT, discs).set(&PACKING_FRACTION, packing_fraction);
         let mut system = Running::timed("hard-disks", &scene.set(&ENGINE, engine))?;
-        // From the lattice of the start to moving discs: two collisions of each at least, twenty where they are few.
-        system.events(discs.max((10 * discs).min(effort.collisions)))?;
+        // From the lattice of the start, and lists that are all as old, to discs in motion: ten collisions of each.
+        system.events(5 * discs)?;
         let before = counted(&system)?;
         running.push((system, vec![], before));
     }
@@ -127,7 +129,13 @@ fn engines(discs: u64, packing_fraction: f64, effort: &Effort) -> Result<Vec<Cos
                 seconds: median(times.into_iter()),
             })
         };
-    ENGINES.into_iter().zip(running).map(cost).collect()
+    of_size(discs, effort).into_iter().zip(running).map(cost).collect()
+}
+
+/// The engines that are measured with a number of discs.
+fn of_size(discs: u64, effort: &Effort) -> Vec<&'static str> {
+    let is_measured = |engine: &&str| *engine != ENGINES[1] || discs <= effort.most_by_reference;
+    ENGINES.into_iter().filter(is_measured).collect()
 }
 
 fn counted(system: &Running) -> Result<[f64; COUNTED.len()], StudyError> {
