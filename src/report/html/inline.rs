@@ -45,7 +45,7 @@ impl Inline {
 }
 
 /// The same with no blank before a sign in the data of a path, where a sign begins a number as well: thousands of discs are drawn by
-/// steps; and with paths, and ends of elements, in one line.
+/// steps; and all in one line.
 fn tight(body: &str) -> String {
     const DATA: &str = " d=\"";
     let mut paths = body.split(DATA);
@@ -54,7 +54,7 @@ fn tight(body: &str) -> String {
         let (data, rest) = path.split_once('"').unwrap_or((path, ""));
         all.extend([DATA, &data.replace(" -", "-"), "\"", rest]);
     }
-    all.replace(">\n</", "></").replace("/>\n<path", "/><path")
+    all.replace(">\n<", "><")
 }
 
 #[cfg(test)]
