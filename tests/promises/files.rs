@@ -27,7 +27,8 @@ pub struct GsdFrame {
     time: f64,
     dimensions: u8,
     sides: [f32; 3],
-    exact_sides: [f64; 2],
+    /// Lengths of the box, in double precision.
+    pub exact_sides: [f64; 2],
     /// The centre of the box.
     centre: [f64; 3],
     ids: Vec<u32>,

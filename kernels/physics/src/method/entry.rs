@@ -425,6 +425,12 @@ pub trait Simulation: Send {
     /// What there is to be said at the end: the method's own entries of `summary.json`.
     fn summary(&self) -> Map<String, Value>;
 
+    /// Where it goes from event to event: what it has done for them since it was started or taken up, kind by kind. It is for studies,
+    /// and no part of what a run writes.
+    fn event_operations(&self) -> Vec<(&'static str, u64)> {
+        vec![]
+    }
+
     /// The rows of `events.csv` since this was last asked, each with its end of line.
     fn take_events(&mut self) -> String {
         String::new()

@@ -7,10 +7,9 @@ use crate::statistics::{median, non_negative};
 use crate::study::StudyError;
 use serde::Serialize;
 use stripmine_physics::method::hard_disks::keys::ENGINE;
-use stripmine_physics::method::observed::summed_up;
 use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
 
-/// What is counted, by its name in a summary, and how tables call it.
+/// What is counted, by its name, and how tables call it.
 pub const COUNTED: [(&str, &str); 5] = [
     ("predictions", "predictions of a pair"),
     ("searches", "searches for the next event of a disc"),
@@ -107,7 +106,7 @@ fn engines(discs: u64, packing_fraction: f64, effort: &Effort) -> Result<Vec<Cos
         let mut system = Running::timed("hard-disks", &scene.set(&ENGINE, engine))?;
         // From the lattice of the start, and lists that are all as old, to discs in motion: ten collisions of each.
         system.events(5 * discs)?;
-        let before = counted(&system)?;
+        let before = counted(&system);
         running.push((system, vec![], before));
     }
     for _ in 0..effort.rounds {
@@ -120,7 +119,7 @@ fn engines(discs: u64, packing_fraction: f64, effort: &Effort) -> Result<Vec<Cos
     let collisions = (effort.rounds as u64 * effort.collisions) as f64;
     let cost =
         |(engine, (system, times, before)): (&'static str, (Running, Vec<f64>, [f64; COUNTED.len()]))| {
-            let after = counted(&system)?;
+            let after = counted(&system);
             Ok(Cost {
                 discs: system.simulation.particles().grain_count(),
                 packing_fraction,
@@ -138,13 +137,9 @@ fn of_size(discs: u64, effort: &Effort) -> Vec<&'static str> {
     ENGINES.into_iter().filter(is_measured).collect()
 }
 
-fn counted(system: &Running) -> Result<[f64; COUNTED.len()], StudyError> {
-    let summary = system.simulation.summary();
-    let mut counts = [0.0; COUNTED.len()];
-    for (count, (name, _)) in counts.iter_mut().zip(COUNTED) {
-        *count = summed_up(&summary, name)?;
-    }
-    Ok(counts)
+fn counted(system: &Running) -> [f64; COUNTED.len()] {
+    let counts = system.simulation.event_operations();
+    COUNTED.map(|(name, _)| counts.iter().find(|it| it.0 == name).map_or(0.0, |it| it.1 as f64))
 }
 
 /// Least squares of the relative errors; neither constant is below nothing.

@@ -409,13 +409,11 @@ impl Simulation for Running {
             ("virial", json!(virial)),
         ];
         let figures = self.engine.figures().into_iter().map(|(name, value)| (name, json!(value)));
-        let operations = self.engine.operations().named().map(|(name, count)| (name, json!(count)));
-        entries
-            .into_iter()
-            .chain(operations)
-            .chain(figures)
-            .map(|(name, value)| (name.to_owned(), value))
-            .collect()
+        entries.into_iter().chain(figures).map(|(name, value)| (name.to_owned(), value)).collect()
+    }
+
+    fn event_operations(&self) -> Vec<(&'static str, u64)> {
+        self.engine.operations().named()
     }
 
     fn take_events(&mut self) -> String {

@@ -6,7 +6,6 @@ use super::queue::Queue;
 use super::{Expected, Fast, LISTED, WALL};
 use crate::io::checkpoint::Column;
 use crate::method::Snapshot;
-use crate::method::hard_disks::operations::Operations;
 use stripmine_kernels::flight::{Disc, MOST_PARTNERS, ROW_UNIT};
 use stripmine_kernels::isa::AlignedColumn;
 
@@ -35,7 +34,6 @@ impl Fast {
         kept.add_count("engine.stride", self.lists.stride() as u64);
         kept.add_count("engine.renewals", self.renewals);
         kept.add_count("engine.events", self.events);
-        self.operations.keep(&mut kept);
         kept.add_count("engine.sorted_until", self.sorted_until);
         kept
     }
@@ -73,7 +71,6 @@ impl Fast {
         self.time = time;
         self.renewals = kept.count("engine.renewals")?;
         self.events = kept.count("engine.events")?;
-        self.operations = Operations::kept(kept)?;
         self.sorted_until = kept.count("engine.sorted_until")?;
         self.discs = AlignedColumn::new(0, discs);
         self.numbers = AlignedColumn::new(1, 0..count as u32);

@@ -334,7 +334,6 @@ impl<C: Cells> Engine for Reference<C> {
             kept.add_sum(name, value);
         }
         kept.add_count("engine.remaps", remaps);
-        self.operations.keep(&mut kept);
         kept
     }
 
@@ -346,7 +345,6 @@ impl<C: Cells> Engine for Reference<C> {
         let [time, slack, since, fastest, filled] = SUMS.map(|name| kept.sum(name));
         (self.time, self.slack, self.since, self.fastest) = (time?, slack?, since?, fastest?);
         (self.filled, self.remaps) = (filled?, kept.count("engine.remaps")?);
-        self.operations = Operations::kept(kept)?;
         self.discs = discs;
         self.events = (0..count as u32).map(|disc| self.predicted(disc)).collect();
         let events = &self.events;
