@@ -181,7 +181,8 @@ fn damaged_files_are_refused() {
         let file = path.join(name);
         let kept = fs::read(&file).unwrap();
         let mut flipped = kept.clone();
-        flipped[kept.len() / 2] ^= 1;
+        // Of the last frame or row: the middle of a short GSD file is index that nothing uses yet, and is cleared when it goes on.
+        flipped[kept.len() - 20] ^= 1;
         let first_line = kept.iter().position(|&byte| byte == b'\n').unwrap() + 1;
         for (damaged, words) in
             [(&flipped[..], "has changed"), (&kept[..first_line], "bytes, but"), (&[], "has 0 bytes, but")]
