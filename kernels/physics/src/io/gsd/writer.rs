@@ -66,7 +66,7 @@ impl Writer {
     /// Goes on at a mark, logging what was logged before.
     ///
     /// # Errors
-    /// As [`GsdFile::resume`].
+    /// If what was there at the mark is not there any more, the file is a link, or the system does not let it be read and written.
     pub fn resume(path: impl Into<PathBuf>, logged: &[&str], mark: Mark) -> Result<Writer, GrowingFileError> {
         let logged = chunks_of(logged);
         Ok(Writer { file: GsdFile::resume(path, names(&logged), mark)?, logged, first: None })
@@ -89,7 +89,7 @@ impl Writer {
         self.file.path()
     }
 
-    /// As [`GsdFile::sync`].
+    /// If the system does not let it be written.
     ///
     /// # Errors
     /// If the system does not let it be written, or the file has been removed, replaced or changed meanwhile.
