@@ -21,6 +21,7 @@
 //! | events sorted as numbers of 128 bits | 1.00 | |
 //! | lists of 6, 7, 10 or 13 discs on average in the place of 8 | 0.84 to 1.03 | |
 
+mod ahead;
 mod kept;
 mod leaving;
 mod lists;
@@ -43,11 +44,6 @@ use stripmine_kernels::isa::AlignedColumn;
 const LISTED: f64 = 8.0;
 /// Discs are sorted by their places after this many events of each.
 const SORTED_AFTER: u64 = 200;
-
-/// Of more discs than these not all are in the caches next to a core: then what is needed is asked for in time.
-const OUT_OF_REACH: usize = 6_000;
-/// How many events ahead: for a disc and its list, for the discs of the list, and for those of the disc that it meets.
-const AHEAD: [usize; 3] = [40, 24, 12];
 
 /// What a disc expects beside other discs, which are known by their places in memory.
 const WALL: [u32; 2] = [u32::MAX - 2, u32::MAX - 1];
@@ -246,38 +242,6 @@ impl Fast {
         }
     }
 
-    /// Asks for what the next events will need: first the lines of their discs, then those of the discs around them.
-    #[inline(always)]
-    fn look_ahead(&self) {
-        let Fast { discs, lists, queue, partners, .. } = self;
-        if let Some(disc) = queue.coming(AHEAD[0]) {
-            let disc = disc as usize;
-            discs.prefetch(disc);
-            partners.prefetch(disc);
-            lists.prefetch(disc);
-        }
-        if let Some(disc) = queue.coming(AHEAD[1]) {
-            let with = partners[disc as usize].with as usize;
-            lists.prefetch(with);
-            for &other in lists.of(disc) {
-                discs.prefetch(other as usize);
-                queue.prefetch(other as usize);
-            }
-        }
-        if let Some(disc) = queue.coming(AHEAD[2]) {
-            match partners[disc as usize].with {
-                RENEWAL => lists.of(disc).iter().for_each(|&other| lists.prefetch(other as usize)),
-                with if (with as usize) < discs.len() => {
-                    for &other in lists.of(with) {
-                        discs.prefetch(other as usize);
-                        queue.prefetch(other as usize);
-                    }
-                }
-                _ => {}
-            }
-        }
-    }
-
     /// Where a disc is registered: ahead of where it is, by what it will fly before it leaves its list or collides.
     #[inline(always)]
     fn registered(&self, disc: &Disc, time: f64) -> [f64; 2] {
@@ -306,7 +270,7 @@ impl Fast {
             if time > until {
                 return Ok(None);
             }
-            if self.discs.len() > OUT_OF_REACH {
+            if self.discs.len() > ahead::OUT_OF_REACH {
                 self.look_ahead();
             }
             if time < self.time {

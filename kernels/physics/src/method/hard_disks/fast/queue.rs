@@ -272,11 +272,10 @@ impl Queue {
     fn order_pairs(&mut self) {
         for at in 1..self.next.len() {
             let [a, b] = [self.next[at - 1], self.next[at]];
-            let (number, other) = ((a.number, a.place), (b.number, b.place));
+            let [one, other] = [(a.number, a.place), (b.number, b.place)];
             let is_wrong = b.is_before(&a);
-            (self.next[at - 1].number, self.next[at - 1].place) =
-                select_unpredictable(is_wrong, other, number);
-            (self.next[at].number, self.next[at].place) = select_unpredictable(is_wrong, number, other);
+            (self.next[at - 1].number, self.next[at - 1].place) = select_unpredictable(is_wrong, other, one);
+            (self.next[at].number, self.next[at].place) = select_unpredictable(is_wrong, one, other);
         }
     }
 }

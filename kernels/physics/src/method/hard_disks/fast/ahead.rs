@@ -1,0 +1,42 @@
+//! What the next events will need, asked for in time: where there are many discs, most of it is not in the caches near a core.
+
+use super::{Fast, RENEWAL};
+
+/// Of more discs than these not all are in the caches next to a core: then what is needed is asked for in time.
+pub(super) const OUT_OF_REACH: usize = 6_000;
+/// How many events ahead: for a disc and its list, for the discs of the list, and for those of the disc that it meets.
+const AHEAD: [usize; 3] = [40, 24, 12];
+
+impl Fast {
+    /// Asks for what the next events will need: first the lines of their discs, then those of the discs around them.
+    #[inline(always)]
+    pub(super) fn look_ahead(&self) {
+        let Fast { discs, lists, queue, partners, .. } = self;
+        if let Some(disc) = queue.coming(AHEAD[0]) {
+            let disc = disc as usize;
+            discs.prefetch(disc);
+            partners.prefetch(disc);
+            lists.prefetch(disc);
+        }
+        if let Some(disc) = queue.coming(AHEAD[1]) {
+            let with = partners[disc as usize].with as usize;
+            lists.prefetch(with);
+            for &other in lists.of(disc) {
+                discs.prefetch(other as usize);
+                queue.prefetch(other as usize);
+            }
+        }
+        if let Some(disc) = queue.coming(AHEAD[2]) {
+            match partners[disc as usize].with {
+                RENEWAL => lists.of(disc).iter().for_each(|&other| lists.prefetch(other as usize)),
+                with if (with as usize) < discs.len() => {
+                    for &other in lists.of(with) {
+                        discs.prefetch(other as usize);
+                        queue.prefetch(other as usize);
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+}
