@@ -2,10 +2,12 @@
 
 mod contacts;
 mod grains;
+mod thermal;
 pub mod waves;
 
 pub use contacts::{ContactSums, contacts};
 pub use grains::GrainSums;
+pub use thermal::{AxisMotion, conserved_axes, relative_energy_error, temperature};
 
 use crate::domain::Domain;
 use crate::particles::{Particle, Particles};

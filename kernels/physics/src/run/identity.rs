@@ -13,7 +13,7 @@ use std::path::Path;
 
 /// Which bits this program promises: raised whenever the same scene gives other bits, or a column of the state or a file of
 /// a run means something else. Programs of one number may go on with each other's runs.
-pub(super) const BITS: u64 = 3;
+pub(super) const BITS: u64 = 4;
 
 /// What a run was begun with.
 #[derive(Clone, Debug, PartialEq, Eq)]
