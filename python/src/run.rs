@@ -163,7 +163,6 @@ fn means(Averages { quantities, .. }: &Averages) -> Table {
         }),
         estimate("bar", "", |it| it.bar),
         estimate("standard_error", "", |it| it.standard_error),
-        estimate("standard_error_by_blocks", "", |it| it.standard_error_by_blocks.unwrap_or(f64::NAN)),
         estimate("correlation_time", "time", |it| it.correlation_time),
         estimate("equilibrated_at", "time", |it| it.equilibrated_at),
         numbers("independent_samples", "", |outcome| match *outcome {
@@ -194,5 +193,6 @@ fn says(outcome: &Outcome) -> &'static str {
         Outcome::TooShort { .. } => "too-short",
         Outcome::Changing { .. } => "changing",
         Outcome::Kept { .. } => "kept",
+        Outcome::Undefined => "undefined",
     }
 }

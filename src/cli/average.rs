@@ -128,7 +128,6 @@ fn table(averages: &Averages) -> Table {
         })
         .text("unit", |it| it.unit.clone())
         .cell("standard error", number(|it| it.standard_error))
-        .cell("by blocks", number(|it| it.standard_error_by_blocks.unwrap_or(f64::NAN)))
         .cell("correlation time", number(|it| it.correlation_time))
         .cell("from time", number(|it| it.equilibrated_at))
         .cell("independent samples", |it| match &it.outcome {
@@ -138,7 +137,7 @@ fn table(averages: &Averages) -> Table {
         })
         .text("remark", |it| remark(it))
         .table("averages", format!("Averages of {runs}, {} rows", averages.rows))
-        .note(format!("± 95 %: the {}, of the larger of both standard errors.", averages.bar))
+        .note(format!("± 95 %: the {}.", averages.bar))
 }
 
 /// Decimals that show a number of digits.
@@ -155,6 +154,7 @@ fn remark(average: &Average) -> String {
             _ => "of the intervals between rows".to_owned(),
         },
         Outcome::Constant { .. } => "does not vary".to_owned(),
+        Outcome::Undefined => "not defined in some rows".to_owned(),
         Outcome::TooShort { enough_at, .. } => {
             format!("too short: until about time {}", significant(*enough_at, 2))
         }

@@ -73,6 +73,7 @@ impl Means {
                 format!("too short for a mean, until about time {}", significant(*enough_at, 2))
             }
             Outcome::Changing { .. } => "still changing, no mean".to_owned(),
+            Outcome::Undefined => "not defined in some rows, no mean".to_owned(),
             Outcome::Kept { .. } => return None,
         })
     }

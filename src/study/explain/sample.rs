@@ -85,9 +85,10 @@ impl Sample {
                 apart: 0.0,
                 freedoms: f64::INFINITY,
             }),
-            Outcome::TooShort { estimate: None, .. } | Outcome::Changing { .. } | Outcome::Kept { .. } => {
-                None
-            }
+            Outcome::TooShort { estimate: None, .. }
+            | Outcome::Undefined
+            | Outcome::Changing { .. }
+            | Outcome::Kept { .. } => None,
         }
     }
 }

@@ -1,35 +1,92 @@
 //! Where the transient at the beginning of a series ends.
 
-use super::autocorrelation::inefficiency;
+use super::waves::{WaveError, mean};
 
-/// Each start that is tried lies so much further than the one before.
-const RATIO: f64 = 1.15;
-/// Part of the series up to which starts are tried, and that may be cut off.
+/// Batches that the search sees.
+const BATCHES: usize = 64;
+/// Part of the series that may be cut off.
 const LATEST: f64 = 0.75;
+/// Part of the batches that is left by every cut that is tried: the scatter of a few is small by chance.
+const LEAST_LEFT: f64 = 0.375;
+/// A shorter series for a shorter transient has this part of the values.
+const FINER: usize = 8;
+/// The part that is cut off differs from the rest by more than this many standard errors of the difference.
+const DIFFERENT: f64 = 2.0;
 
-/// How many values at the beginning of a series do not count; none where the transient lasts almost as long as the series.
+/// The number of values at the beginning of a series that do not count; none where the transient lasts almost as long as the series.
 ///
-/// The start that leaves the most independent samples is sought: an earlier one keeps the transient, which looks like a long
-/// correlation, a later one loses values (Chodera, J. Chem. Theory Comput. 12, 1799 (2016)). Starts lie on a geometric
-/// ladder, 15 % apart. There the transient has sunk below the noise of a value, but not below that of the mean: as much
-/// again is cut off, which squares what is left of an exponential. Where that is more than three quarters, nothing is left that could
-/// be called stationary.
-pub fn equilibrated(series: &[f64]) -> Option<usize> {
-    let n = series.len();
-    let latest = (LATEST * n as f64) as usize;
-    let (mut best, mut most_samples) = (0, 0.0);
-    let mut start = 0;
-    while start <= latest && start < n {
-        let left = (n - start) as f64;
-        // A larger one leaves fewer samples than the best start.
-        let most = if most_samples > 0.0 { left / most_samples } else { f64::INFINITY };
-        let samples = left / inefficiency(&series[start..], most).inefficiency;
-        if samples > most_samples {
-            (best, most_samples) = (start, samples);
-        }
-        start = (start + 1).max((start as f64 * RATIO) as usize);
+/// The cut is where the error that the rest would have as independent batches, s²/m of its m batch means, is the smallest
+/// (marginal standard error rule: White, Simulation 69, 323 (1997)). In contrast to the number of independent samples, it sees a transient of a single row. A
+/// part that agrees with the rest is kept. There the transient has sunk below the noise of a batch, but not below that of
+/// the mean: as much again is cut off, which squares what is left of an exponential.
+pub(super) fn equilibrated(series: &[f64]) -> Option<usize> {
+    let cut = least_error(series);
+    if cut == 0 || !differ(&series[..cut], &series[cut..]) {
+        return Some(0);
     }
-    (2 * best <= latest).then_some(2 * best)
+    // A transient of a few rows is within one batch: a shorter series has shorter ones.
+    let mut start = 2 * cut;
+    let mut beginning = series;
+    while beginning.len() > BATCHES {
+        beginning = &beginning[..beginning.len() / FINER];
+        let shorter = 2 * least_error(beginning);
+        if shorter == 0 || shorter >= cut || differ(&series[shorter..cut], &series[cut..]) {
+            break;
+        }
+        start = shorter;
+    }
+    (start as f64 <= LATEST * series.len() as f64).then_some(start)
+}
+
+/// The number of values before the batches whose mean has the least error.
+fn least_error(series: &[f64]) -> usize {
+    let (length, means) = batches(series);
+    let mut best = (f64::INFINITY, 0);
+    let mut squares = Squares::default();
+    for (at, value) in means.iter().enumerate().rev() {
+        squares.add(*value);
+        let error = squares.variance() / squares.count;
+        // Nothing is known of a rest that does not vary.
+        if squares.count >= LEAST_LEFT * means.len() as f64 && error > 0.0 && error <= best.0 {
+            best = (error, at);
+        }
+    }
+    best.1 * length
+}
+
+/// Sums of squares about the mean, value by value (Welford, Technometrics 4, 419 (1962)).
+#[derive(Default)]
+struct Squares {
+    count: f64,
+    mean: f64,
+    sum: f64,
+}
+
+impl Squares {
+    fn add(&mut self, value: f64) {
+        self.count += 1.0;
+        let off = value - self.mean;
+        self.mean += off / self.count;
+        self.sum += off * (value - self.mean);
+    }
+
+    fn variance(&self) -> f64 {
+        self.sum / self.count
+    }
+}
+
+/// Whether the mean of a first part is not that of the rest. Where the part is shorter than the rest remembers, it varies as one value does.
+fn differ(first: &[f64], rest: &[f64]) -> bool {
+    let WaveError { mean: expected, standard_error, samples, .. } = WaveError::of(rest);
+    let square = standard_error * standard_error;
+    let of_first = (square * rest.len() as f64 / first.len() as f64).min(square * samples);
+    (mean(first) - expected).abs() > DIFFERENT * (of_first + square).sqrt()
+}
+
+/// The number of values of a batch, and the means of all whole batches.
+pub(super) fn batches(series: &[f64]) -> (usize, Vec<f64>) {
+    let length = series.len().div_ceil(BATCHES).max(1);
+    (length, series.chunks_exact(length).map(mean).collect())
 }
 
 #[cfg(test)]
@@ -37,36 +94,43 @@ mod tests {
     use super::*;
     use crate::averages::noise::Noise;
 
-    /// Every start on the ladder, each by its whole sum.
+    /// A step of ten values, far above noise of known size: these are cut off, and as many again.
     #[test]
-    fn the_start_is_that_of_the_most_samples() {
-        for seed in 0..20 {
-            let series = Noise::new(seed).relaxing(300, 0.6, 8.0, 12.0);
-            let mut starts = vec![0_usize];
-            while let Some(&last) = starts.last().filter(|&&last| last <= 225) {
-                starts.push((last + 1).max((last as f64 * RATIO) as usize));
-            }
-            starts.pop();
-            let samples = |&start: &usize| {
-                (300 - start) as f64 / inefficiency(&series[start..], f64::INFINITY).inefficiency
-            };
-            let best = starts.iter().max_by(|a, b| samples(a).total_cmp(&samples(b))).unwrap();
-            assert_eq!(equilibrated(&series), (*best <= 112).then_some(2 * best), "{seed}");
+    fn a_step_is_cut_off_twice() {
+        for (height, first) in [(50.0, 10), (-4.0, 10), (5e4, 1)] {
+            let mut series = Noise::new(1).series(64, 0.0);
+            series[..first].iter_mut().for_each(|value| *value += height);
+            assert_eq!(equilibrated(&series), Some(2 * first), "{height}");
         }
     }
 
     #[test]
     fn a_transient_is_cut_off_and_a_stationary_series_is_kept() {
         let cut = |height| {
-            let cuts = (0..50).filter_map(|seed| {
+            let cuts = (0..100).filter_map(|seed| {
                 equilibrated(&Noise::new(seed).relaxing(1000, 0.5, height, 20.0)).map(|cut| cut as f64)
             });
             let cuts: Vec<f64> = cuts.collect();
-            assert!(cuts.len() > 45, "{height}: {}", cuts.len());
+            assert!(cuts.len() > 95, "{height}: {}", cuts.len());
             cuts.iter().sum::<f64>() / cuts.len() as f64
         };
         let (with, without) = (cut(10.0), cut(0.0));
         // By then e⁻³ of the transient is left, and no more than a quarter is lost.
-        assert!((60.0..250.0).contains(&with) && without < 80.0, "{with} {without}");
+        assert!((60.0..250.0).contains(&with) && without < 30.0, "{with} {without}");
+    }
+
+    /// A first row that is far off, of two thousand: some rows are lost, not a batch of them.
+    #[test]
+    fn a_transient_of_a_row_costs_a_few() {
+        let cut = |seed| equilibrated(&Noise::new(seed).relaxing(2000, 0.3, 5e4, 0.2)).unwrap();
+        let mut cuts: Vec<usize> = (0..50).map(cut).collect();
+        cuts.sort_unstable();
+        assert!(cuts[0] >= 4 && cuts[40] <= 64, "{cuts:?}");
+    }
+
+    #[test]
+    fn a_transient_as_long_as_the_series_has_no_end() {
+        let decay: Vec<f64> = (0..200).map(|at| libm::exp(-f64::from(at) / 150.0)).collect();
+        assert_eq!(equilibrated(&decay), None);
     }
 }

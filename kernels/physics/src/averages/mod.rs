@@ -1,12 +1,9 @@
 //! Averages over a run: the mean of each quantity with its error, from the rows of `thermo.csv`.
 //!
-//! The transient at the beginning is cut off (`equilibration`), the error of the mean is that of correlated values
-//! (`autocorrelation`, checked by `blocking`), and a bar is the half width of the interval that holds the true mean with a probability
-//! of 95 %. What is counted since the start is averaged by its increments from row to row (`rows`). Nothing but the rows enters,
-//! so that averages are the same in however many sessions a run was made.
+//! The transient at the beginning is cut off (`equilibration`), the error of the mean is that of correlated values (`waves`), and a bar is
+//! the half width of the interval that holds the true mean with a probability of 95 %. What is counted since the start is averaged by its
+//! increments from row to row (`rows`). Nothing but the rows enters, so that averages are the same in however many sessions a run was made.
 
-mod autocorrelation;
-mod blocking;
 mod equilibration;
 mod estimate;
 mod joined;
@@ -14,11 +11,9 @@ mod joined;
 mod noise;
 mod rows;
 mod student;
+mod waves;
 mod words;
 
-pub use autocorrelation::{Correlation, inefficiency};
-pub use blocking::blocked_error;
-pub use equilibration::equilibrated;
 pub use estimate::{Estimate, FEWEST_SAMPLES, Outcome, estimated, of_correlated, of_independent};
 pub use joined::joined;
 pub use rows::Rows;
@@ -37,6 +32,8 @@ pub struct Averages {
     pub bar: &'static str,
     /// Rows of `thermo.csv` that they are from, those of the transient among them.
     pub rows: u64,
+    /// The time that they are over, of all runs (time).
+    pub span: f64,
     /// Runs that are joined.
     pub runs: usize,
     /// One for each quantity but the time.
@@ -63,7 +60,7 @@ impl Averages {
         let places =
             (0..rows.quantities().len()).filter(|&place| rows.quantities()[place].kind != Kind::Time);
         let quantities = places.map(|place| Average::of(rows, place)).collect();
-        Averages { bar: BAR, rows: rows.count(), runs: 1, quantities }
+        Averages { bar: BAR, rows: rows.count(), span: rows.now() - rows.from(), runs: 1, quantities }
     }
 }
 
@@ -74,7 +71,8 @@ impl Average {
         let outcome = match quantity.kind {
             Kind::Kept => {
                 let [first, last, farthest] = rows.kept(place);
-                Outcome::Kept { first, last, farthest }
+                let is_number = first.is_finite() && farthest.is_finite();
+                if is_number { Outcome::Kept { first, last, farthest } } else { Outcome::Undefined }
             }
             _ => estimated(&rows.series(place), rows.from(), rows.block_spacing()),
         };

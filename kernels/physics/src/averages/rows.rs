@@ -93,7 +93,9 @@ impl Rows {
             self.blocks.clear();
         }
         for ((farthest, first), value) in self.farthest.iter_mut().zip(&self.base).zip(row) {
-            *farthest = farthest.max((value - first).abs());
+            // A difference that is not a number stays one.
+            let far = (value - first).abs();
+            *farthest = if far <= *farthest { *farthest } else { far + 0.0 * *farthest };
         }
         self.last = row.to_vec();
         self.enter(row);

@@ -5,13 +5,14 @@ use crate::number::{counted, significant, with_bar};
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// A line for each mean, then why the others have none; rates that are 0, and what should stay as it is, are left out.
+/// A line for each mean, then why the others have none. Rates that are 0, and quantities that should stay as they are, are left out.
 impl fmt::Display for Averages {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let of_runs = if self.runs > 1 { format!(" over {} runs", self.runs) } else { String::new() };
         let mut is_first = true;
         let mut constants = vec![];
         let mut changing = vec![];
+        let mut undefined = vec![];
         let mut short: BTreeMap<String, Vec<&str>> = BTreeMap::new();
         for average in &self.quantities {
             let name = average.quantity;
@@ -26,6 +27,7 @@ impl fmt::Display for Averages {
                     constants.push(format!("{name} {}", significant(*mean, 6)));
                 }
                 Outcome::Changing { .. } => changing.push(name),
+                Outcome::Undefined => undefined.push(name),
                 Outcome::TooShort { enough_at, .. } => {
                     short.entry(significant(*enough_at, 2)).or_default().push(name);
                 }
@@ -37,6 +39,9 @@ impl fmt::Display for Averages {
         }
         if !changing.is_empty() {
             writeln!(f, "still changing, without a mean: {}", changing.join(", "))?;
+        }
+        if !undefined.is_empty() {
+            writeln!(f, "not defined in some rows, without a mean: {}", undefined.join(", "))?;
         }
         for (enough_at, names) in short {
             writeln!(f, "too short for a mean, until about time {enough_at}: {}", names.join(", "))?;

@@ -56,6 +56,21 @@ pub enum FinishedError {
         /// The same again.
         other: PathBuf,
     },
+    /// Runs with the same noise.
+    #[error(
+        "{} and {} have the same noise, that of seed {seed}: once their starts are forgotten they are one run\n  help: give each \
+         run a law.noise_seed of its own, or leave it out, so that it follows particles.seed",
+        quoted::path(first),
+        quoted::path(other)
+    )]
+    OneNoise {
+        /// The first.
+        first: PathBuf,
+        /// The one with the same noise.
+        other: PathBuf,
+        /// The seed of the noise.
+        seed: String,
+    },
     /// A function that a run has not written.
     #[error(
         "{}: the run has written no {name}, or has not ended\n  help: run it with --set 'output.structure=[\"{name}\"]'",
@@ -77,6 +92,7 @@ impl Reported for FinishedError {
             FinishedError::NoMethod(_) => Class::Input,
             FinishedError::OtherScene { .. }
             | FinishedError::Twice { .. }
+            | FinishedError::OneNoise { .. }
             | FinishedError::NoStructure { .. } => Class::Usage,
         }
     }
@@ -92,6 +108,7 @@ impl Reported for FinishedError {
             FinishedError::NoMethod(file)
             | FinishedError::OtherScene { other: file, .. }
             | FinishedError::Twice { other: file, .. }
+            | FinishedError::OneNoise { other: file, .. }
             | FinishedError::NoStructure { folder: file, .. } => Some(FilePlace::at(file)),
         }
     }
@@ -138,12 +155,24 @@ impl Finished {
         };
         let [ours, theirs] = [self, other].map(without_seeds);
         let [ours, theirs] = [&ours, &theirs].map(|it| it.iter().map(String::as_str).collect::<Vec<_>>());
-        match first_difference(&theirs, &ours) {
-            None => Ok(()),
-            Some([theirs, ours]) => {
-                Err(FinishedError::OtherScene { first, other: other_folder, ours, theirs })
-            }
+        if let Some([theirs, ours]) = first_difference(&theirs, &ours) {
+            return Err(FinishedError::OtherScene { first, other: other_folder, ours, theirs });
         }
+        match [self, other].map(Finished::noise) {
+            [Some((ours, is_stated)), Some((theirs, other_states))]
+                if ours == theirs && (is_stated || other_states) =>
+            {
+                Err(FinishedError::OneNoise { first, other: other_folder, seed: ours.to_owned() })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The seed of the noise, and whether the scene states it: otherwise it is that of the start.
+    fn noise(&self) -> Option<(&str, bool)> {
+        let physics = self.physics();
+        let value = |key| physics.iter().find_map(|line| line.strip_prefix(key));
+        value("noise_seed = ").map(|seed| (seed, true)).or_else(|| Some((value("seed = ")?, false)))
     }
 }
 

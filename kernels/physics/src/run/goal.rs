@@ -1,6 +1,6 @@
 //! The end of a run by what is known of a mean.
 
-use crate::averages::{Average, Outcome, Rows};
+use crate::averages::{Average, Estimate, Outcome, Rows};
 use crate::method::{Prepared, Quantity};
 use crate::scene::{Target, Width};
 
@@ -8,6 +8,8 @@ use crate::scene::{Target, Width};
 const FIRST: u64 = 32;
 /// Then whenever there is this part more of them: looking is little beside the run, and chance has few tries.
 const PART: u64 = 8;
+/// Independent samples that end a run, more than a mean needs: of many looks the one with the shortest bar ends it.
+const FEWEST_SAMPLES: f64 = 30.0;
 
 /// The mean that a run is to find.
 #[derive(Clone, Debug)]
@@ -54,27 +56,32 @@ impl Goal {
     /// What is known now.
     pub(super) fn known(&self, rows: &Rows) -> Known {
         match Average::of(rows, self.place).outcome {
-            Outcome::Mean(found) => {
-                let error = self.target.error.same_of(found.mean, found.bar);
-                let wanted = match (self.target.error, error) {
-                    (Width::Percent(wanted), Width::Percent(found)) => found / wanted,
-                    (Width::Absolute(wanted), Width::Absolute(found)) => found / wanted,
-                    _ => f64::INFINITY,
-                };
-                // The square of the error goes with the time that is averaged over.
-                let enough_at = found.equilibrated_at + found.span * wanted.powi(2).max(1.0);
-                let is_enough = self.target.error.holds(found.mean, found.bar);
-                Known { error: Some(error), enough_at: Some(enough_at), is_enough }
-            }
-            Outcome::Constant { .. } => {
-                Known { error: Some(self.target.error.same_of(1.0, 0.0)), enough_at: None, is_enough: true }
-            }
+            Outcome::Mean(found) => self.of_mean(&found),
             Outcome::TooShort { enough_at, .. } => {
                 Known { error: None, enough_at: Some(enough_at), is_enough: false }
             }
-            Outcome::Changing { .. } | Outcome::Kept { .. } => {
-                Known { error: None, enough_at: None, is_enough: false }
-            }
+            // What has not varied may do so later.
+            Outcome::Constant { .. }
+            | Outcome::Undefined
+            | Outcome::Changing { .. }
+            | Outcome::Kept { .. } => Known { error: None, enough_at: None, is_enough: false },
+        }
+    }
+
+    fn of_mean(&self, found: &Estimate) -> Known {
+        let error = self.target.error.same_of(found.mean, found.bar);
+        let wanted = match (self.target.error, error) {
+            (Width::Percent(wanted), Width::Percent(found)) => found / wanted,
+            (Width::Absolute(wanted), Width::Absolute(found)) => found / wanted,
+            _ => f64::INFINITY,
+        };
+        // The square of the error goes with the time that is averaged over.
+        let longer = wanted.powi(2).max(FEWEST_SAMPLES / found.independent_samples).max(1.0);
+        Known {
+            error: Some(error),
+            enough_at: Some(found.equilibrated_at + found.span * longer),
+            is_enough: found.independent_samples >= FEWEST_SAMPLES
+                && self.target.error.holds(found.mean, found.bar),
         }
     }
 }
