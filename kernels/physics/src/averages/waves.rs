@@ -136,21 +136,16 @@ mod tests {
     /// a little above that on average, and so are the samples below.
     #[test]
     fn samples_of_known_series_are_found() {
-        let known: [(&dyn Fn(u64) -> Vec<f64>, f64); 5] = [
-            (&|seed| Noise::new(seed).series(2000, 0.0), 1.0),
-            (&|seed| Noise::new(seed).series(2000, 0.5), 3.0),
-            (&|seed| Noise::new(seed).series(2000, 0.8), 9.0),
-            (&|seed| Noise::new(seed).series(2000, 0.9), 19.0),
-            (
-                &|seed| {
-                    Noise::new(seed)
-                        .series(2001, 0.0)
-                        .windows(2)
-                        .map(|pair| pair[1] - 0.5 * pair[0])
-                        .collect()
-                },
-                0.2,
-            ),
+        type Series = fn(u64) -> Vec<f64>;
+        let alternating = |seed| -> Vec<f64> {
+            Noise::new(seed).series(2001, 0.0).windows(2).map(|pair| pair[1] - 0.5 * pair[0]).collect()
+        };
+        let known: [(Series, f64); 5] = [
+            (|seed| Noise::new(seed).series(2000, 0.0), 1.0),
+            (|seed| Noise::new(seed).series(2000, 0.5), 3.0),
+            (|seed| Noise::new(seed).series(2000, 0.8), 9.0),
+            (|seed| Noise::new(seed).series(2000, 0.9), 19.0),
+            (alternating, 0.2),
         ];
         for (series, expected) in known {
             let found =

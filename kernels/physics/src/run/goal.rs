@@ -77,11 +77,11 @@ impl Goal {
         };
         // The square of the error goes with the time that is averaged over.
         let longer = wanted.powi(2).max(FEWEST_SAMPLES / found.independent_samples).max(1.0);
+        let has_samples = found.independent_samples >= FEWEST_SAMPLES;
         Known {
-            error: Some(error),
+            error: has_samples.then_some(error),
             enough_at: Some(found.equilibrated_at + found.span * longer),
-            is_enough: found.independent_samples >= FEWEST_SAMPLES
-                && self.target.error.holds(found.mean, found.bar),
+            is_enough: has_samples && self.target.error.holds(found.mean, found.bar),
         }
     }
 }
