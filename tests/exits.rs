@@ -262,3 +262,50 @@ fn forged_checkpoints_end_with_6() {
         }
     }
 }
+
+/// What launchers set does not keep verbs from working that start nothing; a run among several processes is refused where they could
+/// not speak to each other.
+#[test]
+fn launchers_are_asked_for_what_starts_something() {
+    const LAUNCHERS: [[(&str, &str); 2]; 3] = [
+        [("PMI_SIZE", "8"), ("PMI_RANK", "0")],
+        [("OMPI_COMM_WORLD_SIZE", "8"), ("OMPI_COMM_WORLD_RANK", "0")],
+        // What srun sets with PMIx.
+        [("SLURM_NTASKS", "8"), ("PMIX_RANK", "0")],
+    ];
+    let folder = tempfile::tempdir().unwrap();
+    let run = ["run", "two-discs", "--quiet", "--set", "run.steps=20"];
+    assert!(stripmine(folder.path(), &run).status.success());
+    for variables in LAUNCHERS {
+        let launched = |arguments: &[&str]| {
+            let mut command = Command::cargo_bin("stripmine").unwrap();
+            command.current_dir(folder.path()).args(arguments).envs(variables).output().unwrap()
+        };
+        for verb in [
+            &["scene", "list"][..],
+            &["scene", "check", "two-discs"],
+            &["average", "two-discs.run"],
+            &["plot", "two-discs.run"],
+            &["completions", "bash"],
+            &["--version"],
+        ] {
+            let output = launched(verb);
+            assert!(
+                output.status.success() && !output.stdout.is_empty(),
+                "{verb:?} {variables:?}: {output:?}"
+            );
+        }
+        if !cfg!(feature = "mpi") {
+            let output = launched(&run);
+            let said = String::from_utf8_lossy(&output.stderr).into_owned();
+            assert_eq!(output.status.code(), Some(4), "{said}");
+            for words in ["this is one of 8 processes", "built without MPI", "unset", variables[1].0] {
+                assert!(said.contains(words), "{words}: {said}");
+            }
+        }
+    }
+    // A batch script of Slurm, where srun has started nothing.
+    let mut command = Command::cargo_bin("stripmine").unwrap();
+    command.current_dir(folder.path()).args(run).args(["--out", "alone"]).env("SLURM_NTASKS", "8");
+    assert!(command.env("SLURM_PROCID", "0").output().unwrap().status.success());
+}

@@ -14,6 +14,8 @@ mod growing_files;
 mod gsd;
 #[path = "io/lammps.rs"]
 mod lammps;
+#[path = "io/others.rs"]
+mod others;
 
 use stripmine_physics::io::extxyz::{Frame, write};
 use stripmine_physics::particles::{Kind, Particle, Particles};

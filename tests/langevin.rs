@@ -276,6 +276,7 @@ fn losses_are_counted_listed_and_survived() {
         "domain.sides=[31.6, 31.6]",
         "integrator.dt=0.005",
         "run.checkpoint_every=0",
+        "run.snapshot_every=50",
         "output.dcd=true",
         "output.gsd=true",
     ];

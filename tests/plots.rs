@@ -171,3 +171,69 @@ fn a_chart_has_the_mean_of_the_summary_and_its_transient() {
     let svg = fs::read_to_string(plots.join("msd.svg")).unwrap();
     assert!(!svg.contains("fill-opacity") && svg.contains("still changing"), "{svg}");
 }
+
+/// Bodies in any unit of length: as many dots, at the places of the same picture, and radii in the trajectory that other programs can draw.
+#[test]
+fn bodies_in_any_unit_of_length_are_drawn_alike() {
+    let folder = tempfile::tempdir().unwrap();
+    let drawn = |name: &str, unit: f64| {
+        // Four that turn on a cross: speeds and masses that keep their periods the same in every unit.
+        let [x, y, v] = [1.0, 1.5, 0.3].map(|number| number * unit);
+        let mass = unit.powi(3);
+        let bodies = format!(
+            "[[{mass:e}, {x:e}, 0.0, 0.0, 0.0, {v:e}, 0.0], [{mass:e}, {0:e}, 0.0, 0.0, 0.0, {2:e}, 0.0], \
+             [{mass:e}, 0.0, {y:e}, 0.0, {2:e}, 0.0, 0.0], [{mass:e}, 0.0, {1:e}, 0.0, {v:e}, 0.0, 0.0]]",
+            -x, -y, -v
+        );
+        let scene = format!(
+            "format = 2\nunits = \"reduced\"\n[method]\nkind = \"nbody\"\n[particles]\ngenerate = \"list\"\nbodies = {bodies}\n\
+             [integrator]\ndt = 0.01\n[run]\nsteps = 20\nsnapshot_every = 20\n"
+        );
+        let path = folder.path().join(format!("{name}.toml"));
+        fs::write(&path, scene).unwrap();
+        let [path, run, plots] =
+            [path, folder.path().join(name), folder.path().join(format!("{name}.plots"))]
+                .map(|path| path.to_str().unwrap().to_owned());
+        for arguments in [&["run", &path, "--quiet", "--out", &run][..], &["plot", &run, "--out", &plots]] {
+            let output = stripmine(arguments);
+            assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        }
+        let frames = fs::read_to_string(folder.path().join(name).join("trajectory.xyz")).unwrap();
+        let radius: f64 = frames.lines().nth(2).unwrap().split(' ').nth(8).unwrap().parse().unwrap();
+        (
+            fs::read_to_string(folder.path().join(format!("{name}.plots/last-state.svg"))).unwrap(),
+            radius / unit,
+        )
+    };
+    // Dots are paths: a width, and behind each move a line of length 1.
+    let dots = |svg: &str| -> Vec<[f64; 3]> {
+        let paths = svg.split("<path stroke=").skip(1).map(|path| path.split("/>").next().unwrap());
+        let mut dots = vec![];
+        for path in paths.filter(|path| path.contains("h1")) {
+            let numbers = numbers(path.split_once("stroke-width=").unwrap().1);
+            let mut at = [0.0, 0.0];
+            for moved in numbers[1..].chunks(3) {
+                at = [at[0] + moved[0], at[1] + moved[1]];
+                dots.push([numbers[0], at[0], at[1]]);
+                at[0] += moved[2];
+            }
+        }
+        dots.sort_by(|a, b| a.partial_cmp(b).unwrap());
+        dots
+    };
+    let (one, radius) = drawn("one", 1.0);
+    let expected = dots(&one);
+    // Four bodies, each with an outline, and where they were: at the start, and where they are.
+    assert_eq!(expected.len(), 2 * 4 + 2 * 4, "{expected:?}");
+    for (name, unit) in [("nanometres", 1e-9), ("au", 1.496e11)] {
+        let (svg, of_a_body) = drawn(name, unit);
+        assert!((of_a_body / radius - 1.0).abs() < 1e-9, "{of_a_body} {radius}");
+        let found = dots(&svg);
+        assert_eq!(found.len(), expected.len(), "{name}");
+        // Pixels, to the decimals of a picture.
+        assert!(
+            found.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 0.2),
+            "{name}: {found:?} {expected:?}"
+        );
+    }
+}

@@ -277,3 +277,84 @@ fn a_choice_stays() {
     let scene = std::fs::read_to_string(path.join("scene.toml")).unwrap();
     assert!(scene.contains("by = \"sectors\"") && scene.contains("engine = \"fast\""), "{scene}");
 }
+
+/// A start file of nine particles on a grid, and a scene of a bath beside it.
+fn write_start(folder: &Path) {
+    let row =
+        |id: usize| format!("Si {} {} 0 {id} 0.5 0.25 0 0.5 1 0 0 0\n", 3 * (id % 3) + 1, 3 * (id / 3) + 1);
+    let rows: String = (0..9).map(row).collect();
+    let columns = "species:S:1:pos:R:3:id:I:1:velo:R:3:radius:R:1:mass:R:1:omega:R:3";
+    let start = format!("9\nLattice=\"9 0 0 0 9 0 0 0 1\" pbc=\"T T F\" Properties={columns}\n{rows}");
+    let scene = "format = 2\nunits = \"reduced\"\n[method]\nkind = \"langevin\"\n[domain]\nsides = [9.0, 9.0]\n\
+                 [particles]\nfile = \"start.xyz\"\n[law]\nkind = \"none\"\ndrag = 1.0\nbath_temperature = 1.0\n\
+                 [integrator]\ndt = 0.01\n[run]\nsteps = 40\nthermo_every = 5\n";
+    fs::create_dir_all(folder).unwrap();
+    fs::write(folder.join("start.xyz"), start).unwrap();
+    fs::write(folder.join("scene.toml"), scene).unwrap();
+}
+
+/// A folder that is moved with its start file goes on: the file is known by what it holds, wherever it is.
+#[test]
+fn a_run_is_moved_with_its_start_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let [scratch, home, copy] = ["scratch", "home", "copy"].map(|name| folder.path().join(name));
+    let stripmine = |at: &Path, arguments: &[&str]| {
+        Command::cargo_bin("stripmine")
+            .unwrap()
+            .current_dir(at)
+            .args(arguments)
+            .arg("--quiet")
+            .output()
+            .unwrap()
+    };
+    let goes_on = ["run", "scene.toml", "--resume", "--set", "run.steps=80"];
+    for at in [&scratch, &copy] {
+        write_start(at);
+    }
+    succeed(&stripmine(&scratch, &["run", "scene.toml"]));
+    // At one place: the run that was never moved.
+    succeed(&stripmine(&scratch, &["run", "scene.toml", "--set", "run.steps=80", "--out", "whole.run"]));
+    fs::rename(&scratch, &home).unwrap();
+    succeed(&stripmine(&home, &goes_on));
+    let table = |folder: &Path| fs::read(folder.join("thermo.csv")).unwrap();
+    assert!(table(&home.join("scene.run")) == table(&home.join("whole.run")));
+    let written = fs::read_to_string(home.join("scene.run/scene.toml")).unwrap();
+    assert!(written.contains("file = \"../start.xyz\"\n# discs of this file: SHA-256 "), "{written}");
+    // The scene that the run has written is one to start from, too.
+    fs::remove_dir_all(home.join("whole.run")).unwrap();
+    succeed(&stripmine(&home, &["run", "scene.run/scene.toml", "--out", "again.run"]));
+    assert!(table(&home.join("again.run")) == table(&home.join("scene.run")));
+    succeed(&stripmine(
+        &home,
+        &["run", "scene.run/scene.toml", "--out", "again.run", "--resume", "--set", "run.steps=90"],
+    ));
+    // Runs from copies of one file are joined; of another file they are not.
+    succeed(&stripmine(&copy, &["run", "scene.toml", "--set", "law.noise_seed=2", "--set", "run.steps=80"]));
+    succeed(&stripmine(folder.path(), &["average", "home/scene.run", "copy/scene.run"]));
+    let start = fs::read_to_string(copy.join("start.xyz")).unwrap().replace("0.25", "0.125");
+    fs::write(copy.join("start.xyz"), &start).unwrap();
+    refused(
+        &stripmine(&copy, &goes_on),
+        2,
+        &["other discs", "copy/start.xyz", "give the start back its contents"],
+    );
+    succeed(&stripmine(&copy, &["run", "scene.toml", "--set", "law.noise_seed=2", "--overwrite"]));
+    refused(
+        &stripmine(folder.path(), &["average", "home/scene.run", "copy/scene.run"]),
+        2,
+        &["not of one scene", "# discs of this file"],
+    );
+    // Far from its run a start file keeps its place.
+    let far = folder.path().join("far/away/from/it");
+    fs::create_dir_all(&far).unwrap();
+    let out = far.join("scene.run");
+    succeed(&stripmine(&home, &["run", "scene.toml", "--out", out.to_str().unwrap()]));
+    let written = fs::read_to_string(out.join("scene.toml")).unwrap();
+    assert!(written.contains("/home/start.xyz\"\n# discs"), "{written}");
+    // A beginning without a checkpoint is held against the contents, too.
+    fs::remove_file(copy.join("scene.run/run.checkpoint")).unwrap();
+    drop(fs::remove_file(copy.join("scene.run/run.checkpoint.previous")));
+    fs::write(copy.join("start.xyz"), start.replace("0.125", "0.25")).unwrap();
+    let seeded = ["--set", "law.noise_seed=2"];
+    refused(&stripmine(&copy, &[&goes_on[..], &seeded].concat()), 2, &["# discs of this file"]);
+}

@@ -27,6 +27,19 @@ pub(crate) struct Frame {
     periodic: Option<[bool; 2]>,
 }
 
+/// A frame of these values, as pickle hands it over.
+#[pyfunction]
+pub(crate) fn _frame(
+    time: f64,
+    step: u64,
+    particles: Py<Particles>,
+    sides: [f64; 2],
+    origin: [f64; 2],
+    periodic: Option<[bool; 2]>,
+) -> Frame {
+    Frame { time, step, particles, sides, origin, periodic }
+}
+
 #[pymethods]
 impl Frame {
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {

@@ -25,11 +25,11 @@ mod _stripmine {
     #[pymodule_export]
     use crate::computing::_forked;
     #[pymodule_export]
-    use crate::frames::{Frame, Frames};
+    use crate::frames::{Frame, Frames, _frame};
     #[pymodule_export]
     use crate::lists::{keys, methods, presets};
     #[pymodule_export]
-    use crate::particles::Particles;
+    use crate::particles::{Particles, _particles};
     #[pymodule_export]
     use crate::run::{Run, average, read};
     #[pymodule_export]

@@ -49,6 +49,23 @@ impl Particles {
     }
 }
 
+/// Particles of these arrays, as pickle hands them over.
+#[pyfunction]
+#[pyo3(signature = (id, wall, positions, velocities, angle, angular_velocity, radius, mass))]
+#[expect(clippy::too_many_arguments, reason = "one for each array")]
+pub(crate) fn _particles(
+    id: Py<PyArray1<u32>>,
+    wall: Py<PyArray1<bool>>,
+    positions: Py<PyArray2<f64>>,
+    velocities: Py<PyArray2<f64>>,
+    angle: Py<PyArray1<f64>>,
+    angular_velocity: Py<PyArray1<f64>>,
+    radius: Py<PyArray1<f64>>,
+    mass: Py<PyArray1<f64>>,
+) -> Particles {
+    Particles { id, wall, positions, velocities, angle, angular_velocity, radius, mass }
+}
+
 #[pymethods]
 impl Particles {
     fn __len__(&self, py: Python<'_>) -> PyResult<usize> {

@@ -50,9 +50,9 @@ pub(crate) fn average(runs: &Bound<'_, PyTuple>) -> PyResult<Table> {
 }
 
 impl Run {
-    /// That of a folder.
+    /// That of a folder, wherever this process goes later.
     pub(crate) fn in_folder(folder: PathBuf) -> Run {
-        Run { folder, scratch: None }
+        Run { folder: std::path::absolute(&folder).unwrap_or(folder), scratch: None }
     }
 
     /// That of a folder that goes with it.
@@ -77,10 +77,16 @@ impl Run {
 
 #[pymethods]
 impl Run {
-    /// Where it is.
+    /// Where it is: an absolute path.
     #[getter]
     fn folder(&self) -> &Path {
         &self.folder
+    }
+
+    /// Whether the folder goes with the last run that is of it.
+    #[getter]
+    fn _is_temporary(&self) -> bool {
+        self.scratch.is_some()
     }
 
     /// The rows of `thermo.csv`.

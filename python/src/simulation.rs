@@ -13,7 +13,7 @@ use pyo3::types::PyDict;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 use std::time::Instant;
-use stripmine_physics::method::{self, Failure, Purpose, Until};
+use stripmine_physics::method::{self, Failure, Purpose, Until, steps_over};
 use stripmine_physics::structure::{Setting, net_forces};
 
 /// A simulation under way, for one thread at a time. `Scene.start` makes it.
@@ -30,6 +30,34 @@ struct State {
     broken: Option<Broken>,
     /// Whether a step takes longer than a beat: it would not come to its end between two.
     is_slow: bool,
+    /// The time that the advances by a time so far add up to; none where the last one was by something else, or did not come to its end.
+    asked: Option<TimeSum>,
+}
+
+/// A sum of times, and the rounding that it lacks: a time in pieces ends where it does at once.
+#[derive(Clone, Copy)]
+struct TimeSum {
+    sum: f64,
+    rest: f64,
+}
+
+impl TimeSum {
+    fn of(time: f64) -> TimeSum {
+        TimeSum { sum: time, rest: 0.0 }
+    }
+
+    fn plus(self, time: f64) -> TimeSum {
+        let [sum, lost] = two_sum(self.sum, time);
+        let [sum, rest] = two_sum(sum, lost + self.rest);
+        TimeSum { sum, rest }
+    }
+}
+
+/// The sum of two numbers, and what rounding took from it.
+fn two_sum(a: f64, b: f64) -> [f64; 2] {
+    let sum = a + b;
+    let of_b = sum - a;
+    [sum, (a - (sum - of_b)) + (b - of_b)]
 }
 
 /// Why it does not go on.
@@ -48,6 +76,18 @@ impl State {
             Some(Broken::Failure(failure)) => Err(exceptions::of(py, failure)),
             Some(Broken::Fault) => Err(exceptions::fault(py, "a step was left half done")),
         }
+    }
+
+    /// Where an advance ends, and the sum of times that it then has come to.
+    fn end_of(&self, distance: Until) -> (Until, Option<TimeSum>) {
+        let clock = self.running.clock();
+        let Until::Time(time) = distance else { return (distance.after(&clock), None) };
+        let asked = self.asked.unwrap_or(TimeSum::of(clock.time)).plus(time);
+        let end = match self.running.time_step() {
+            Some(dt) => Until::Steps(steps_over(asked.sum, dt)),
+            None => Until::Time(asked.sum),
+        };
+        (end, Some(asked))
     }
 
     /// Goes on until the end has come, or a flag is set.
@@ -109,7 +149,7 @@ impl Simulation {
         let running = computed(py, || checked.prepared.start(Purpose::Run))?;
         let running = running.map_err(|failure| exceptions::of(py, &failure))?;
         let pause = pulse::flag().map_err(|cause| exceptions::without_threads(py, &cause))?;
-        Ok(Simulation { checked, state: Mutex::new(State { running, broken: None, is_slow: false }), pause })
+        Ok(Simulation { checked, state: Mutex::new(State { running, broken: None, is_slow: false, asked: None }), pause })
     }
 
     /// The state, unless another thread has it.
@@ -161,8 +201,8 @@ impl Simulation {
     /// Goes on by a number of steps, by a time (time), or by a number of events.
     ///
     /// Hard discs take no steps, and are advanced by a time, which is met exactly, or by events; the other methods come to the end of the
-    /// first step at which the time is over. Any pieces give the same bits as one. Other threads go on meanwhile; Ctrl-C ends it, and
-    /// the simulation may go on then. What has failed does not go on: the same error is raised again.
+    /// first step at which the time is over. Times add up: any pieces give the bits, and the number of steps, of one. Other threads go on
+    /// meanwhile; Ctrl-C ends it, and the simulation may go on then. What has failed does not go on: the same error is raised again.
     #[pyo3(signature = (*, steps = None, time = None, events = None))]
     fn advance(
         &self,
@@ -174,15 +214,18 @@ impl Simulation {
         let distance = self.distance(steps, time, events)?;
         let mut state = self.state(py)?;
         state.is_sound(py)?;
-        let end = distance.after(&state.running.clock());
+        let (end, asked) = state.end_of(distance);
+        // What is cut off is not asked for any more.
+        state.asked = None;
         if !state.is_slow {
             state.advance_for_a_beat(py, end, &self.pause)?;
         }
-        if end.has_come(&state.running.clock()) {
-            return Ok(());
+        if !end.has_come(&state.running.clock()) {
+            py.check_signals()?;
+            state.advance_beside(py, end)?;
         }
-        py.check_signals()?;
-        state.advance_beside(py, end)
+        state.asked = asked;
+        Ok(())
     }
 
     /// A value for each quantity that the method observes, by name: the columns of `thermo.csv`.

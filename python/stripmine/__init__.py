@@ -13,6 +13,7 @@ Quantities are in the units of the scene; "length", "time", "mass", "energy" and
 
 import os as _os
 
+from . import _pickling
 from ._errors import BusyError, Error, Mistake, RunError, SceneError, SimulationError
 from ._stripmine import (
     Frame,
@@ -54,6 +55,8 @@ __all__ = [
     "read",
     "scene",
 ]
+
+_pickling.register()
 
 # Threads do not survive a fork: where some have computed, the child is told so instead of waiting for them.
 if hasattr(_os, "register_at_fork"):

@@ -138,7 +138,7 @@ class Simulation:
         """Goes on by a number of steps, by a time (time), or by a number of events.
 
         Hard discs take no steps, and are advanced by a time, which is met exactly, or by events; the other methods come to the end of
-        the first step at which the time is over. Any pieces give the same bits as one.
+        the first step at which the time is over. Any pieces give the same bits, and as many steps, as one: times add up without rounding.
 
         Other threads go on meanwhile. Ctrl-C ends it with `KeyboardInterrupt`; the simulation stands where it was interrupted, and
         may go on. Raises `SimulationError` where the physics fails; the state is then that of the failing step, can be looked at, and does
@@ -220,7 +220,7 @@ class Run:
 
     @property
     def folder(self) -> Path:
-        """Where it is."""
+        """Where it is, an absolute path."""
 
     def thermo(self) -> Table:
         """The rows of `thermo.csv`: `step` (for hard discs the number of events), `time`, and what the method observes."""

@@ -155,10 +155,10 @@ fn text(scene: &str, comparison: &Comparison) -> String {
         Some(at) => {
             let (before, seen) = (&looks[at - 1], &looks[at]);
             format!(
-                "{scene}: the same bits up to time {:.6}, then different: at most {} at time {:.6}",
-                before.time,
+                "{scene}: the same bits up to time {}, then different: at most {} at time {}",
+                significant(before.time, 6),
                 significant(seen.position, 2),
-                seen.time
+                significant(seen.time, 6)
             )
         }
     };

@@ -139,23 +139,23 @@ pub fn run_with(arguments: impl Iterator<Item = OsString>, methods: Methods) -> 
         clear_progress();
         tell(&Failure::Stopped(end), as_data);
     };
-    let session = Session::begin();
-    let outcome = signals::install(last_words)
-        .map_err(Failure::writing("the handler of interruptions"))
-        .and_then(|()| understood(&arguments, methods))
-        .and_then(|matches| {
-            let Some(matches) = matches else { return Ok(()) };
-            // It lasts as long as what is carried out.
-            let session = session?;
-            carried_out(&matches, &command_line(&arguments), session.crew(), methods)
-        });
+    let matches = understood(&arguments, methods);
+    let verb = matches.as_ref().ok().and_then(Option::as_ref).and_then(ArgMatches::subcommand_name);
+    let verb = verb.unwrap_or_default().to_owned();
+    let outcome = matches.and_then(|matches| {
+        let Some(matches) = matches else { return Ok(()) };
+        // It lasts as long as what is carried out.
+        let session = Session::begin(&verb)?;
+        signals::install(last_words).map_err(Failure::writing("the handler of interruptions"))?;
+        carried_out(&matches, &command_line(&arguments), session.crew(), methods)
+    });
     clear_progress();
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             let code = failure.exit_code();
             // What is wrong for all is said once.
-            if code != 0 && processes::is_first() {
+            if code != 0 && processes::is_first(&verb) {
                 tell(&failure, as_data);
             }
             ExitCode::from(code)

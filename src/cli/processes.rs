@@ -7,19 +7,49 @@ use crate::study::StudyError;
 use stripmine_physics::method::{DISMISSED, Failure as Broken, FailureKind};
 use stripmine_physics::ranks::{self, Crew, Gone, Parcel, Ranks, dismiss, first_to_differ};
 
-/// How launchers tell processes how many they are, and which one each is.
-const SIZES: [&str; 2] = ["PMI_SIZE", "OMPI_COMM_WORLD_SIZE"];
-const RANKS: [&str; 2] = ["PMI_RANK", "OMPI_COMM_WORLD_RANK"];
-
-/// The first number that some variables of the environment hold.
-fn of_launcher(names: [&str; 2]) -> Option<usize> {
-    names.iter().find_map(|name| std::env::var(name).ok()?.parse().ok())
+/// How a launcher tells processes how many they are, and which one each is.
+struct Launcher {
+    size: &'static str,
+    rank: &'static str,
 }
 
-/// Whether this process speaks to the user: the first one, or the only one.
-pub(super) fn is_first() -> bool {
-    of_launcher(RANKS).is_none_or(|rank| rank == 0) || of_launcher(SIZES).is_none_or(|count| count < 2)
+/// Slurm sets the number of tasks in batch scripts and interactive shells too: the rank of PMIx shows that `srun` started this process.
+const LAUNCHERS: [Launcher; 3] = [
+    Launcher { size: "PMI_SIZE", rank: "PMI_RANK" },
+    Launcher { size: "OMPI_COMM_WORLD_SIZE", rank: "OMPI_COMM_WORLD_RANK" },
+    Launcher { size: "SLURM_NTASKS", rank: "PMIX_RANK" },
+];
+
+/// Verbs that start no simulation. Each process carries them out on its own, whatever launcher has set its variables.
+const ALONE: [&str; 5] = ["scene", "average", "plot", "completions", "man"];
+
+/// A process among those that a launcher has started.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Launched {
+    rank: usize,
+    count: usize,
+    /// The variable that tells the rank.
+    variable: &'static str,
 }
+
+/// The place of this process among several, by the variables of the environment; none where it is the only one.
+fn launched(variable: impl Fn(&str) -> Option<String>) -> Option<Launched> {
+    let number = |name: &str| variable(name)?.trim().parse::<usize>().ok();
+    LAUNCHERS.iter().find_map(|launcher| {
+        let (count, rank) = (number(launcher.size)?, number(launcher.rank)?);
+        (count > 1).then_some(Launched { rank, count, variable: launcher.rank })
+    })
+}
+
+fn own_place() -> Option<Launched> {
+    launched(|name| std::env::var(name).ok())
+}
+
+/// Whether this process reports what fails: the first one, the only one, or any where each works on its own.
+pub(super) fn is_first(verb: &str) -> bool {
+    ALONE.contains(&verb) || own_place().is_none_or(|place| place.rank == 0)
+}
+
 const PROCESSES: FailureKind = FailureKind::new("processes");
 
 /// What ranks need to speak to each other; the program holds it to its end.
@@ -30,35 +60,43 @@ pub(super) struct Session {
 }
 
 impl Session {
-    /// Joins the other processes, where there are some.
+    /// Joins the other processes, where there are some and the verb has work for them.
     ///
     /// # Errors
     /// [`Failure`] where there are some, and this program was built without MPI.
-    pub(super) fn begin() -> Result<Session, Failure> {
-        let count = of_launcher(SIZES).unwrap_or(1);
-        if count < 2 {
+    pub(super) fn begin(verb: &str) -> Result<Session, Failure> {
+        let Some(place) = own_place().filter(|_| !ALONE.contains(&verb)) else {
             return Ok(Session {
                 #[cfg(feature = "mpi")]
                 _session: None,
                 crew: Crew::One,
             });
-        }
+        };
         #[cfg(feature = "mpi")]
         return Ok(Session {
             _session: stripmine_physics::ranks::mpi::Session::begin(),
             crew: Crew::Processes(stripmine_physics::ranks::mpi::world),
         });
         #[cfg(not(feature = "mpi"))]
-        Err(broken(
-            format!("this is one of {count} processes, but the program was built without MPI"),
-            "build it with: cargo build --release --features mpi; or take ranks that are threads: run --ranks",
-        ))
+        Err(without_mpi(place))
     }
 
     /// By whom simulations are carried out.
     pub(super) fn crew(&self) -> Crew {
         self.crew
     }
+}
+
+#[cfg(not(feature = "mpi"))]
+fn without_mpi(Launched { count, variable, .. }: Launched) -> Failure {
+    let what = format!(
+        "this is one of {count} processes ({variable} is set), but the program was built without MPI"
+    );
+    let remedy = format!(
+        "build it with: cargo build --release --features mpi; or take ranks that are threads: run --ranks; or unset {variable} \
+         where each process is to work on its own"
+    );
+    broken(what, &remedy)
 }
 
 fn broken(what: String, remedy: &str) -> Failure {
@@ -139,5 +177,44 @@ pub(super) fn apart(
     match failed {
         Some((rank, said)) => Err(of_rank(rank, &said)),
         None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn launchers_are_recognised_by_size_and_rank() {
+        let cases: [(&[(&str, &str)], Option<(usize, usize)>); 10] = [
+            (&[], None),
+            (&[("PMI_SIZE", "8"), ("PMI_RANK", "3")], Some((3, 8))),
+            (&[("OMPI_COMM_WORLD_SIZE", "2"), ("OMPI_COMM_WORLD_RANK", "1")], Some((1, 2))),
+            // srun with PMIx.
+            (&[("SLURM_NTASKS", "2"), ("PMIX_RANK", "0")], Some((0, 2))),
+            // A batch script or shell of Slurm, which has started nothing.
+            (&[("SLURM_NTASKS", "64"), ("SLURM_PROCID", "0")], None),
+            // mpirun of Open MPI inside a job of Slurm: its own count.
+            (
+                &[
+                    ("SLURM_NTASKS", "64"),
+                    ("PMIX_RANK", "1"),
+                    ("OMPI_COMM_WORLD_SIZE", "4"),
+                    ("OMPI_COMM_WORLD_RANK", "1"),
+                ],
+                Some((1, 4)),
+            ),
+            (&[("PMI_SIZE", "1"), ("PMI_RANK", "0")], None),
+            (&[("SLURM_NTASKS", "1"), ("PMIX_RANK", "0")], None),
+            (&[("PMIX_RANK", "0")], None),
+            (&[("PMI_SIZE", "many"), ("PMI_RANK", "0")], None),
+        ];
+        for (variables, expected) in cases {
+            let value = |name: &str| {
+                variables.iter().find(|(known, _)| *known == name).map(|(_, value)| (*value).to_owned())
+            };
+            let found = launched(value).map(|place| (place.rank, place.count));
+            assert_eq!(found, expected, "{variables:?}");
+        }
     }
 }

@@ -79,6 +79,7 @@ static VOCABULARY: Vocabulary = Vocabulary {
         method: "free-flight",
         groups: &[HEADING, PLANAR_DOMAIN, DISCS, STEP, STEPPED_RUN, TARGETED, OUTPUT],
         rivals: &[DISC_RIVALS, DURATION],
+        advice: &[],
     },
     rules: &[disagreements, too_many_steps],
     presets: &[Preset {

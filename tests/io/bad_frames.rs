@@ -46,7 +46,7 @@ const CASES: &[(&str, &str)] = &[
     ),
     (
         "1\nPROPERTIES Lattice=\"4 1 0 0 5 0 0 0 1\"\nROW\n",
-        "bad.xyz:2:78: Lattice is `4 1 0 0 5 0 0 0 1`; expected \"Lx 0 0 0 Ly 0 0 0 Lz\" with positive sides",
+        "bad.xyz:2:78: number 2 of Lattice is 1; boxes are rectangles, so expected 0",
     ),
     (
         "1\nLattice=\"4 0 0 0 -5 0 0 0 1\" PROPERTIES\nROW\n",
@@ -66,22 +66,21 @@ const CASES: &[(&str, &str)] = &[
          bad.xyz:2:125: seed is `-1`; expected a whole number from 0",
     ),
     (
-        "1\npbc=\"T F\" LATTICE Origin=\"0 0\" PROPERTIES\nROW\n",
-        "bad.xyz:2:39: Origin is `0 0`; expected \"x y z\"\n\
-         bad.xyz:2:1: pbc is `T F`; expected \"T F F\", T where the box repeats along x, y, z",
+        "1\npbc=\"T\" LATTICE Origin=\"0 0\" PROPERTIES\nROW\n",
+        "bad.xyz:2:37: Origin is `0 0`; expected \"x y z\"\n\
+         bad.xyz:2:1: pbc is `T`; expected \"T F F\" (or \"T F\"), T where the box repeats along x, y, z",
     ),
     (
         "1\nLATTICE Properties=species:S:1:pos:R:3:id:I:1:velo:R:3:mass:R:1:omega:R:3\nROW\n",
-        "bad.xyz:2:29: Properties has no column `radius:R:1`",
+        "bad.xyz:2:29: Properties has no column `radius:R:1`ADD",
     ),
     (
-        "1\nLATTICE Properties=species:S:1:pos:R:2:id:R:1\nROW\n",
-        "bad.xyz:2:29: Properties has `pos:R:2`; expected `pos:R:3`\n\
+        "1\nLATTICE Properties=species:S:1:pos:R:4:id:R:1\nROW\n",
+        "bad.xyz:2:29: Properties has `pos:R:4`; expected `pos:R:3`\n\
          bad.xyz:2:29: Properties has `id:R:1`; expected `id:I:1`\n\
-         bad.xyz:2:29: Properties has no column `velo:R:3`\n\
-         bad.xyz:2:29: Properties has no column `radius:R:1`\n\
-         bad.xyz:2:29: Properties has no column `mass:R:1`\n\
-         bad.xyz:2:29: Properties has no column `omega:R:3`",
+         bad.xyz:2:29: Properties has no column `velo:R:3` (or `velo:R:2`, or `momenta:R:3`, which are divided by the masses)ADD\n\
+         bad.xyz:2:29: Properties has no column `radius:R:1`ADD\n\
+         bad.xyz:2:29: Properties has no column `mass:R:1` (or `masses:R:1`)ADD",
     ),
     ("1\nLATTICE PROPERTIES:id:I:1\nROW 1\n", "bad.xyz:2:29: Properties names the column `id` twice"),
     (
@@ -128,29 +127,52 @@ const CASES: &[(&str, &str)] = &[
         "1\nLATTICE PROPERTIES\nSi 1 2 0 1 0 0 0 0.5 1 3 0 0\n",
         "bad.xyz:3:24: component x of omega is 3; discs lie in the plane, so expected 0",
     ),
+    // Ids from 0 are raised by one.
     (
-        "1\nLATTICE PROPERTIES\nSi 1 2 0 0 0 0 0 0.5 1 0 0 0\n",
-        "bad.xyz:3:10: id is `0`; expected a whole number from 1 to 4294967295",
+        "3\nLATTICE PROPERTIES\nROW\nSi 1 2 0 4294967295 0 0 0 0.5 1 0 0 0\nSi 1 2 0 0 0 0 0 0.5 1 0 0 0\n",
+        "bad.xyz:4: id is 4294967295, and another is 0; ids that begin at 0 end at 4294967294",
     ),
     (
         "1\nLATTICE PROPERTIES\nSi 1 2 0 -4 0 0 0 0.5 1 0 0 0\n",
-        "bad.xyz:3:10: id is `-4`; expected a whole number from 1 to 4294967295",
+        "bad.xyz:3:10: id is `-4`; expected a whole number from 0 to 4294967295",
     ),
     (
         "1\nLATTICE PROPERTIES\nSi 1 2 0 4294967296 0 0 0 0.5 1 0 0 0\n",
-        "bad.xyz:3:10: id is `4294967296`; expected a whole number from 1 to 4294967295",
+        "bad.xyz:3:10: id is `4294967296`; expected a whole number from 0 to 4294967295",
     ),
     ("2\nLATTICE PROPERTIES\nROW\nROW\n", "bad.xyz:4: id 1 is taken by the disc in line 3"),
     (
-        "1\nLATTICE PROPERTIES\nHe 1 2 0 1 0 0 0 0.5 1 0 0 0\n",
-        "bad.xyz:3:1: unknown species `He`; expected `Si` (a grain) or `W` (a wall disc)",
+        "2\nLATTICE PROPERTIES\nHé 1 2 0 1 0 0 0 0.5 1 0 0 0\nSi é 2 0 1 0 0 0 0.5 1 0 0 0\n",
+        "bad.xyz:4:4: pos is `é`; expected a number",
+    ),
+    // Columns of other programs.
+    (
+        "1\nLATTICE Properties=pos:R:2:momenta:R:2:radius:R:1:masses:R:1\n1 2 1e300 0 1 1e-300\n",
+        "bad.xyz:3:5: momenta is `1e300 over the mass 1e-300`; expected a finite number",
     ),
     (
-        "2\nLATTICE PROPERTIES\nHé 1 2 0 1 0 0 0 0.5 1 0 0 0\nSi é 2 0 1 0 0 0 0.5 1 0 0 0\n",
-        "bad.xyz:3:1: unknown species `Hé`; expected `Si` (a grain) or `W` (a wall disc)\n\
-         bad.xyz:4:4: pos is `é`; expected a number",
+        "1\nLATTICE Properties=pos:R:2:velo:R:2:radius:R:1:masses:R:1\n1 2 3 4 0.5 0\n",
+        "bad.xyz:3:13: masses is 0; expected a number greater than 0",
     ),
+    (
+        "1\nLATTICE Properties=pos:R:3:momenta:R:3:radius:R:1:mass:R:1\n1 2 0 0 0 1.5D+00 0.5 1\n",
+        "bad.xyz:3:11: component z of momenta is 1.5; discs lie in the plane, so expected 0",
+    ),
+    ("1\nLATTICE PROPERTIES\nSi D 2 0 1 0 0 0 0.5 1 0 0 0\n", "bad.xyz:3:4: pos is `D`; expected a number"),
+    // Other formats.
+    (
+        "2\nAtoms. Timestep: 1000\n1 1 2 0\n1 3 4 0\n",
+        "bad.xyz:2: this is plain XYZ, without `key=value` in its second line; FMT",
+    ),
+    ("2\n20.0 20.0 1.0\na 1 2 0 0.5\na 3 4 0 0.5\n", "bad.xyz:2: this is .sph, a file of spheres; FMT"),
+    ("ITEM: TIMESTEP\n0\n", "bad.xyz: this is a LAMMPS dump; FMT"),
+    ("LAMMPS data file\n\n16 atoms\n1 atom types\n", "bad.xyz: this is a LAMMPS data file; FMT"),
 ];
+
+/// `ADD` and `FMT` stand for the ends of two messages.
+const ADD: &str = "; add it to the file, for example in OVITO (Compute property, Export File, XYZ) or in ASE (atoms.set_array)";
+const FMT: &str = "extended XYZ is what is read, with columns for positions, velocities, radii and masses: convert it, for example \
+                   with OVITO (Export File, XYZ)";
 
 fn write_out(text: &str) -> String {
     text.replace("LATTICE", LATTICE).replace("PROPERTIES", PROPERTIES).replace("ROW", ROW)
@@ -169,7 +191,8 @@ fn error_of(bytes: &[u8], which: Which) -> ReadError {
 #[test]
 fn every_mistake_is_named_with_its_place() {
     for (bad, expected) in CASES {
-        let (bad, expected) = (write_out(bad), expected.replace("ROW", ROW));
+        let expected = expected.replace("ROW", ROW).replace("ADD", ADD).replace("FMT", FMT);
+        let bad = write_out(bad);
         let error = error_of(bad.as_bytes(), Which::Last);
         assert_eq!(error.to_string(), expected, "\n{bad}");
         assert!(error.system().is_none());
@@ -208,10 +231,10 @@ fn all_mistakes_are_found_but_only_the_first_are_listed() {
 
 #[test]
 fn a_wrong_frame_ends_the_sequence() {
-    let text = [text(&frame(0)), text(&frame(1)).replace("Si", "Xx"), text(&frame(2))].concat();
+    let text = [text(&frame(0)), text(&frame(1)).replace(" 0.5 ", " -0.5 "), text(&frame(2))].concat();
     let frames: Vec<_> = Frames::new(text.as_bytes(), "text").collect();
     assert!(frames.len() == 2 && frames[0].is_ok());
-    assert!(frames[1].as_ref().unwrap_err().to_string().starts_with("text:7:1: unknown species `Xx`"));
+    assert!(frames[1].as_ref().unwrap_err().to_string().starts_with("text:7:"));
 }
 
 #[test]
@@ -219,4 +242,19 @@ fn a_missing_file_is_a_matter_of_the_system() {
     let error = read("/no/such/file.xyz", Which::Last).unwrap_err();
     assert_eq!(error.system().unwrap().kind(), std::io::ErrorKind::NotFound);
     assert!(error.to_string().starts_with("/no/such/file.xyz: cannot be read: "));
+}
+
+/// Formats that are no text are known by their first bytes.
+#[test]
+fn binary_formats_are_named() {
+    for (bytes, name) in [
+        (&b"\xdf\x65\xdf\x65\xdf\x65\xdf\x65\0\x01"[..], "a GSD file"),
+        (b"\x54\0\0\0CORD\0\0", "a DCD file"),
+        (b"\x1f\x8b\x08\0", "compressed (gzip)"),
+        (b"\x89HDF\r\n\x1a\n\0", "an HDF5 file"),
+        (b"CDF\x01\0\0", "a NetCDF file"),
+        (b"\xff\xfe1\x000\0", "text in UTF-16"),
+    ] {
+        assert_eq!(error_of(bytes, Which::Last).to_string(), format!("bad.xyz: this is {name}; {FMT}"));
+    }
 }

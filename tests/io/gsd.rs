@@ -2,6 +2,7 @@
 
 use crate::Random;
 use std::fs;
+use std::io::{Seek, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
 use stripmine_physics::io::extxyz::Frame;
 use stripmine_physics::io::growing_file::Mark;
@@ -294,4 +295,89 @@ fn other_files_are_refused_with_their_place() {
         let error = Frames::open(&path).unwrap_err().to_string();
         assert!(error.contains(&format!("the file at byte {cut}")), "{error}");
     }
+}
+
+/// A file whose index has moved, with any byte before the end of its last entry changed: resumption is refused. The empty rest of the
+/// index is written anew.
+#[test]
+fn damage_of_a_grown_index_never_passes() {
+    let (_folder, path) = folder_and_path();
+    // With so many quantities the index moves in the third frame.
+    let names: Vec<String> = (0..400).map(|number| format!("q{number}")).collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let mut file = Writer::create(&path, &names).unwrap();
+    let frame = |step| LoggedFrame { values: vec![0.5; names.len()], ..plane(step) };
+    (0..3).for_each(|step| write(&frame(step), &mut file).unwrap());
+    let (mark, bytes) = (file.sync().unwrap(), fs::read(&path).unwrap());
+    write(&frame(3), &mut file).unwrap();
+    file.sync().unwrap();
+    drop(file);
+    let whole = fs::read(&path).unwrap();
+    let number = |at: usize| u64::from_le_bytes(bytes[at..at + 8].try_into().unwrap()) as usize;
+    let (next, room, first) = (number(8), number(16), 256 + number(32) * 64);
+    assert!(room == 2048 && next > first + 32 * 1024);
+    let used = (0..room).find(|entry| bytes[next + 32 * entry..][..32] == [0; 32]).unwrap();
+    fs::write(&path, &bytes).unwrap();
+    let open = || fs::OpenOptions::new().write(true).open(&path).unwrap();
+    for place in (0..first + 32 * 1024).chain(next..next + 32 * room) {
+        let is_unused = place >= next + 32 * used;
+        // One byte of an unused entry stands for the others.
+        if is_unused && place % 97 > 0 {
+            continue;
+        }
+        let put = |byte: u8| {
+            let mut file = open();
+            file.seek(SeekFrom::Start(place as u64)).unwrap();
+            file.write_all(&[byte]).unwrap();
+        };
+        put(bytes[place] ^ 1 << (place % 8));
+        match Writer::resume(&path, &names, mark) {
+            Err(error) => {
+                assert!(
+                    error.is_damage() && error.to_string().contains("has changed"),
+                    "byte {place}: {error}"
+                );
+                put(bytes[place]);
+            }
+            Ok(mut file) => {
+                assert!(is_unused, "byte {place} is not refused");
+                file.cut().unwrap();
+                write(&frame(3), &mut file).unwrap();
+                file.sync().unwrap();
+                assert!(fs::read(&path).unwrap() == whole, "byte {place} passes");
+                fs::write(&path, &bytes).unwrap();
+            }
+        }
+    }
+}
+
+/// A file that is long by holes alone is refused before memory is taken for them.
+#[test]
+fn holes_take_no_memory() {
+    let (_folder, path) = folder_and_path();
+    let whole = written(&path, plane, 1).0.swap_remove(1);
+    let index = u64::from_le_bytes(whole[8..16].try_into().unwrap()) as usize;
+    let sparse = |changes: &[(usize, &[u8])]| {
+        let mut bytes = whole.clone();
+        changes.iter().for_each(|&(at, new)| bytes[at..at + new.len()].copy_from_slice(new));
+        fs::write(&path, bytes).unwrap();
+        fs::OpenOptions::new().write(true).open(&path).unwrap().set_len(1 << 42).unwrap();
+        Frames::open(&path).and_then(|mut frames| frames.frame(0)).unwrap_err().to_string()
+    };
+    let names = (1_u64 << 34).to_le_bytes();
+    assert!(sparse(&[(32, &names)]).contains("byte 32: expected a list of names of at most 4 MiB"));
+    // As many particles as there can be, and their types in the hole.
+    let entry = |name: &str| {
+        let names = std::str::from_utf8(&whole[256..index]).unwrap();
+        let name = names.split('\0').position(|it| it == name).unwrap() as u16;
+        index
+            + 32 * (0..1024)
+                .find(|entry| whole[index + 32 * entry + 28..][..2] == name.to_le_bytes())
+                .unwrap()
+    };
+    let count = u64::from_le_bytes(whole[entry("particles/N") + 16..][..8].try_into().unwrap()) as usize;
+    let many = u32::MAX.to_le_bytes();
+    let rows = u64::from(u32::MAX).to_le_bytes();
+    let said = sparse(&[(count, &many), (entry("particles/typeid") + 8, &rows)]);
+    assert!(said.contains("frame 0, particles/typeid: it takes 17179869180 bytes"), "{said}");
 }

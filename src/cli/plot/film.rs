@@ -30,7 +30,7 @@ pub(super) enum FilmError {
         "{} has no frame, of which a film is made\n  help: a run with --set output.trajectory=true or output.gsd=true \
          writes one every run.snapshot_every{}",
         quoted::path(file),
-        if *has_dcd { "; trajectory.dcd has neither times nor sizes" } else { "" }
+        if *has_dcd { "; trajectory.dcd has no sizes" } else { "" }
     )]
     NoFrame {
         /// The trajectory.

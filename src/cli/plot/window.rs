@@ -71,7 +71,9 @@ pub(super) fn shown(
     let all = frame.particles.all();
     let grains = frame.particles.grains();
     let seen = if grains.is_empty() { all } else { grains };
-    let largest = seen.iter().map(|particle| particle.radius).fold(0.0, f64::max);
+    // The radius of a body is for viewers: it has none.
+    let sizes = seen.iter().map(|particle| if is_of_points(frame, bounds) { 0.0 } else { particle.radius });
+    let largest = sizes.fold(0.0, f64::max);
     let occupied = [0, 1].map(|which| {
         let [low, high] = bounds[which];
         let is_boxed = low.is_finite() && high.is_finite();
@@ -98,7 +100,8 @@ pub(super) fn shown(
             *shown = [(middle - 0.5 * least).max(bounds[0]), (middle + 0.5 * least).min(bounds[1])];
         }
         if length(*shown) <= 0.0 {
-            *shown = [shown[0] - 0.5, shown[0] + 0.5];
+            let half = (1e-6 * shown[0].abs()).max(0.5);
+            *shown = [shown[0] - half, shown[0] + half];
         }
     }
     shown
@@ -159,6 +162,25 @@ mod tests {
         for places in [&[][..], &[[3.0; 3]]] {
             let shown = seen(places, [f64::INFINITY; 2], [0, 1]);
             assert!(shown.iter().all(|[from, to]| to - from > 0.0 && to - from < 5.0), "{shown:?}");
+        }
+    }
+
+    /// A picture of bodies is the same in any unit of length, whatever radius they are written with.
+    #[test]
+    fn bodies_are_shown_at_their_own_scale() {
+        let cross = [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.5, 0.0], [0.0, -1.5, 0.0]];
+        let of_unit = seen(&cross, [f64::INFINITY; 2], [0, 1]);
+        // Along y 3, a tenth around; along x 2, likewise.
+        for ([from, to], expected) in of_unit.into_iter().zip([1.2, 1.8]) {
+            assert!((to - expected).abs() < 1e-12 && from == -to, "{of_unit:?}");
+        }
+        for unit in [1e-9, 1e-30, 1.496e11] {
+            let scaled = cross.map(|place| place.map(|x| unit * x));
+            for ([from, to], [one_from, one_to]) in
+                seen(&scaled, [f64::INFINITY; 2], [0, 1]).into_iter().zip(of_unit)
+            {
+                assert!((from / unit - one_from).abs() < 1e-12 && (to / unit - one_to).abs() < 1e-12);
+            }
         }
     }
 

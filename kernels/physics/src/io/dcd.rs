@@ -1,15 +1,20 @@
-//! Trajectories as DCD: positions in single precision, four bytes a coordinate, as CHARMM and NAMD write and most tools read.
+//! Trajectories as DCD: positions in single precision, four bytes a coordinate, as CHARMM, NAMD and LAMMPS write and most tools read.
+//!
+//! The heading says the first step, the steps between frames and the time step, from which readers have the time of every frame. So
+//! frames are evenly apart: one that is not a whole number of spacings after the first is left out.
 //!
 //! The number of frames in the heading is 0, for the file grows; readers take it from the length of the file. Records have
 //! their length before and behind them, as Fortran's have.
 
-use super::growing_file::GrowingFile;
+use super::FileError;
+use super::growing_file::{GrowingFile, GrowingFileError, Mark};
 use std::io::{self, Write};
+use std::path::{Path, PathBuf};
 
 /// Where every particle is at a step, in the order of the start.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Positions {
-    /// The step.
+    /// The step, or, where a method takes none, the number of the frame.
     pub step: u64,
     /// Sides of the box (length); infinite where there is none.
     pub cell: [f64; 2],
@@ -17,15 +22,121 @@ pub struct Positions {
     pub places: Vec<[f32; 3]>,
 }
 
-/// Adds a frame, and before the first one the heading.
+/// How far frames are apart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spacing {
+    /// Steps between frames.
+    pub steps: u64,
+    /// The time step (time).
+    pub dt: f64,
+}
+
+impl Spacing {
+    /// As the heading says it.
+    fn numbers(self) -> [i32; 2] {
+        [whole(self.steps), (self.dt as f32).to_bits().cast_signed()]
+    }
+}
+
+/// A number of steps in four bytes.
+fn whole(steps: u64) -> i32 {
+    i32::try_from(steps).unwrap_or(i32::MAX)
+}
+
+/// A file of evenly spaced frames being written.
+#[derive(Debug)]
+pub struct Writer {
+    file: GrowingFile,
+    spacing: Spacing,
+    /// The step of the next frame; none before the first one.
+    next: Option<u64>,
+    /// Whether the heading says this spacing: nothing is added to frames that are otherwise apart.
+    is_even: bool,
+}
+
+impl Writer {
+    /// Begins a file where nothing is.
+    ///
+    /// # Errors
+    /// If something is there already, or the system does not let it be written.
+    pub fn create(path: impl Into<PathBuf>, spacing: Spacing) -> Result<Writer, FileError> {
+        Ok(Writer { file: GrowingFile::create(path)?, spacing, next: None, is_even: true })
+    }
+
+    /// Goes on at a mark.
+    ///
+    /// # Errors
+    /// If what was there at the mark is not there any more, the file is a link, or the system does not let it be read
+    /// and written.
+    pub fn resume(
+        path: impl Into<PathBuf>,
+        mark: Mark,
+        spacing: Spacing,
+    ) -> Result<Writer, GrowingFileError> {
+        let mut file = GrowingFile::resume(path, mark)?;
+        let heading = file.first_bytes(HEADING)?;
+        let number = |at: usize| {
+            let bytes = heading.get(at..at + 4).unwrap_or_default();
+            i32::from_le_bytes(bytes.try_into().unwrap_or_default())
+        };
+        let [first, steps, dt, has_box, count] = [FIRST, STEPS, DT, BOX, COUNT].map(number);
+        let positive = |number: i32| u64::try_from(number).unwrap_or(0);
+        let of_a_frame = u64::from(has_box != 0) * (48 + 8) + 3 * (4 * positive(count) + 8);
+        let frames = mark.bytes.saturating_sub(HEADING as u64) / of_a_frame;
+        let has_begun = mark.bytes > 0;
+        Ok(Writer {
+            file,
+            spacing,
+            next: has_begun.then(|| positive(first) + frames * positive(steps)),
+            is_even: !has_begun || [steps, dt] == spacing.numbers(),
+        })
+    }
+
+    /// Whether frames go on as far apart as those that are there.
+    pub fn is_even(&self) -> bool {
+        self.is_even
+    }
+
+    /// Cuts off what a resumed file has after its mark; to be called once it is certain that the run goes on.
+    ///
+    /// # Errors
+    /// If the system does not let it be cut.
+    pub fn cut(&mut self) -> Result<(), FileError> {
+        self.file.cut()
+    }
+
+    /// The file.
+    pub fn path(&self) -> &Path {
+        self.file.path()
+    }
+
+    /// Returns when all that was written is on the disk, and says how far that is.
+    ///
+    /// # Errors
+    /// If the system does not let it be written, or the file has been removed, replaced or changed meanwhile.
+    pub fn sync(&mut self) -> Result<Mark, FileError> {
+        self.file.sync()
+    }
+
+    /// Whether a frame is a whole number of spacings after those that are there.
+    fn takes(&self, step: u64) -> bool {
+        self.is_even && step.is_multiple_of(self.spacing.steps) && self.next.is_none_or(|next| next == step)
+    }
+}
+
+/// Adds a frame, and before the first one the heading; leaves out one that is not evenly apart from those before.
 ///
 /// # Errors
 /// Those of the file.
-pub fn write(frame: &Positions, file: &mut GrowingFile) -> io::Result<()> {
-    let mut bytes = Vec::with_capacity(HEADING + 64 + 3 * (8 + 4 * frame.places.len()));
-    if file.is_empty() {
-        heading(&mut bytes, frame);
+pub fn write(frame: &Positions, to: &mut Writer) -> io::Result<()> {
+    if !to.takes(frame.step) {
+        return Ok(());
     }
+    let mut bytes = Vec::with_capacity(HEADING + 64 + 3 * (8 + 4 * frame.places.len()));
+    if to.next.is_none() {
+        heading(&mut bytes, frame, to.spacing);
+    }
+    to.next = Some(frame.step + to.spacing.steps);
     if has_box(frame) {
         // Sides and angles by turns, as CHARMM orders them: A, γ, B, β, α, C.
         let [a, b] = frame.cell;
@@ -41,21 +152,26 @@ pub fn write(frame: &Positions, file: &mut GrowingFile) -> io::Result<()> {
         }
         bytes.extend(length);
     }
-    file.write_all(&bytes)
+    to.file.write_all(&bytes)
 }
 
 /// Bytes of the heading.
 const HEADING: usize = (84 + 8) + (84 + 8) + (4 + 8);
+/// Where its numbers are: the first step, the steps between frames, the time step, whether frames have a box, and how many particles.
+const FIRST: usize = 12;
+const STEPS: usize = 16;
+const DT: usize = 44;
+const BOX: usize = 48;
+const COUNT: usize = 188;
 
 fn has_box(frame: &Positions) -> bool {
     frame.cell.iter().all(|side| side.is_finite())
 }
 
-fn heading(bytes: &mut Vec<u8>, frame: &Positions) {
+fn heading(bytes: &mut Vec<u8>, frame: &Positions, spacing: Spacing) {
     let mut numbers = [0i32; 20];
-    // The first step and the distance of frames are for readers that count time; this file leaves both at one.
-    [numbers[1], numbers[2]] = [1, 1];
-    numbers[9] = 1f32.to_bits().cast_signed();
+    numbers[1] = whole(frame.step);
+    [numbers[2], numbers[9]] = spacing.numbers();
     numbers[10] = i32::from(has_box(frame));
     // Written as CHARMM 24 does.
     numbers[19] = 24;
@@ -100,7 +216,7 @@ mod tests {
             places: vec![[1.5, -2.25, 0.0], [step as f32, f32::NAN, 4.0]],
         };
         for (cell, of_a_frame) in [([3.0, 4.0], 4), ([f64::INFINITY; 2], 3)] {
-            let mut file = GrowingFile::create(&path).unwrap();
+            let mut file = Writer::create(&path, Spacing { steps: 10, dt: 0.5 }).unwrap();
             for step in [0, 10] {
                 write(&frame(step, cell), &mut file).unwrap();
             }
@@ -117,6 +233,44 @@ mod tests {
                 assert_eq!(records[3].len(), 48);
             }
             std::fs::remove_file(&path).unwrap();
+        }
+    }
+
+    /// The heading as CHARMM, NAMD and LAMMPS have it (ISTART, NSAVC, DELTA), and frames evenly apart, in one session and in two.
+    #[test]
+    fn frames_are_evenly_apart_as_the_heading_says() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("t.dcd");
+        let even = Spacing { steps: 1000, dt: 0.005 };
+        let frame = |step| Positions { step, cell: [3.0, 4.0], places: vec![[step as f32, 0.0, 0.0]] };
+        let steps = || -> Vec<f32> {
+            let bytes = std::fs::read(&path).unwrap();
+            let frames = records(&bytes)[3..].chunks(4).map(|frame| frame[1].try_into().unwrap());
+            frames.map(f32::from_le_bytes).collect()
+        };
+        let mut file = Writer::create(&path, even).unwrap();
+        for step in [0, 1000, 2000, 2050] {
+            write(&frame(step), &mut file).unwrap();
+        }
+        let mark = file.sync().unwrap();
+        assert_eq!(steps(), [0.0, 1000.0, 2000.0]);
+        let bytes = std::fs::read(&path).unwrap();
+        let number =
+            |place: usize| i32::from_le_bytes(records(&bytes)[0][4 + 4 * place..][..4].try_into().unwrap());
+        assert_eq!((number(1), number(2), f32::from_bits(number(9) as u32)), (0, 1000, 0.005));
+        // Later sessions: with the same spacing it goes on; with another nothing is added.
+        for (spacing, next, expected) in [
+            (even, [2050, 3000, 4000], &[0.0, 1000.0, 2000.0, 3000.0, 4000.0][..]),
+            (Spacing { steps: 500, ..even }, [2500, 3000, 3500], &[0.0, 1000.0, 2000.0]),
+            (Spacing { dt: 0.01, ..even }, [3000, 4000, 5000], &[0.0, 1000.0, 2000.0]),
+        ] {
+            std::fs::write(&path, &bytes).unwrap();
+            let mut file = Writer::resume(&path, mark, spacing).unwrap();
+            assert_eq!(file.is_even(), spacing == even);
+            file.cut().unwrap();
+            next.iter().for_each(|&step| write(&frame(step), &mut file).unwrap());
+            file.sync().unwrap();
+            assert_eq!(steps(), expected);
         }
     }
 }

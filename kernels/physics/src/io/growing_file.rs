@@ -149,9 +149,19 @@ impl GrowingFile {
         &self.path
     }
 
-    /// Whether nothing was written into it yet.
-    pub fn is_empty(&self) -> bool {
-        self.out.get_ref().bytes == 0 && self.out.buffer().is_empty()
+    /// The first bytes, at most so many.
+    ///
+    /// # Errors
+    /// If the system does not let it be read.
+    pub fn first_bytes(&mut self, most: usize) -> Result<Vec<u8>, FileError> {
+        let summed = self.out.get_mut();
+        let (end, file) = (summed.bytes, &mut summed.file);
+        let mut bytes = Vec::new();
+        file.rewind()
+            .and_then(|()| file.take(most as u64).read_to_end(&mut bytes))
+            .and_then(|_| file.seek(SeekFrom::Start(end)))
+            .map_err(FileError::at(&self.path, "reading"))?;
+        Ok(bytes)
     }
 
     /// The first line, without its end, as far as it is text.
@@ -159,14 +169,8 @@ impl GrowingFile {
     /// # Errors
     /// If the system does not let it be read.
     pub fn first_line(&mut self) -> Result<String, FileError> {
-        const LONGEST: u64 = 10_000;
-        let summed = self.out.get_mut();
-        let (end, file) = (summed.bytes, &mut summed.file);
-        let mut bytes = Vec::new();
-        file.rewind()
-            .and_then(|()| file.take(LONGEST).read_to_end(&mut bytes))
-            .and_then(|_| file.seek(SeekFrom::Start(end)))
-            .map_err(FileError::at(&self.path, "reading"))?;
+        const LONGEST: usize = 10_000;
+        let bytes = self.first_bytes(LONGEST)?;
         let line = bytes.split(|&byte| byte == b'\n').next().unwrap_or_default();
         Ok(String::from_utf8_lossy(line).into_owned())
     }

@@ -113,6 +113,16 @@ impl fmt::Display for Until {
     }
 }
 
+/// The first step, of length `dt`, at whose end a time is over. A time that is a number of steps but for rounding takes no step more.
+pub fn steps_over(time: f64, dt: f64) -> u64 {
+    /// Rounding of times that were summed or divided (relative).
+    const ROUNDING: f64 = 1e-12;
+    let steps = time / dt;
+    let whole = steps.round();
+    let is_whole = (steps - whole).abs() <= ROUNDING * whole.max(1.0);
+    (if is_whole { whole } else { steps.ceil() }) as u64
+}
+
 /// What comes again and again.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Every {
@@ -232,6 +242,21 @@ mod tests {
         }
         assert!(Until::Steps(5).has_come(&at(5, 0.0)) && !Until::Steps(5).has_passed(&at(5, 0.0)));
         assert_eq!(Until::Time(2.0).progress(&at(0, 0.5)), (250_000, 1_000_000));
+    }
+
+    #[test]
+    fn a_time_takes_no_step_more_by_rounding() {
+        for (time, dt, steps) in [
+            (0.0, 0.1, 0),
+            (0.30000000000000004, 0.1, 3),
+            (0.7999999999999999, 0.1, 8),
+            (0.3, 0.005, 60),
+            (0.004, 0.005, 1),
+            (0.0075, 0.005, 2),
+            (1e6 + 0.0025, 0.005, 200_000_001),
+        ] {
+            assert_eq!(steps_over(time, dt), steps, "{time} in steps of {dt}");
+        }
     }
 
     #[test]

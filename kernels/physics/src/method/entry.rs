@@ -369,6 +369,11 @@ pub trait Simulation: Send {
     /// How far it has come.
     fn clock(&self) -> Clock;
 
+    /// The time step (time); none where a method takes no steps.
+    fn time_step(&self) -> Option<f64> {
+        None
+    }
+
     /// The particles as they stand, positions inside the box.
     fn particles(&self) -> Particles;
 

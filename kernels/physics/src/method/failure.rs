@@ -69,7 +69,7 @@ impl fmt::Display for Culprit {
         let Culprit { called, id, position, velocity } = self;
         let axes = if position[2] == 0.0 && velocity[2] == 0.0 { 2 } else { 3 };
         let list = |numbers: Vec<String>| numbers.join(", ");
-        let position = list(position.iter().take(axes).map(|x| format!("{x:.9}")).collect());
+        let position = list(position.iter().take(axes).map(|x| significant(*x, 10)).collect());
         let velocity = list(velocity.iter().take(axes).map(|v| significant(*v, 5)).collect());
         write!(f, "{called} {id} at ({position}) with velocity ({velocity})")
     }

@@ -18,7 +18,7 @@ mod snapshot;
 pub mod throughput;
 mod trials;
 
-pub use clock::{Clock, Every, Schedule, Until};
+pub use clock::{Clock, Every, Schedule, Until, steps_over};
 pub use counted::Counted;
 pub use entry::{
     Bench, BenchOption, Beyond, Entry, Fact, Kind, Observable, Prepared, Purpose, Quantity, RunWarning,

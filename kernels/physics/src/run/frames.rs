@@ -2,7 +2,7 @@
 
 use crate::io::FileError;
 use crate::io::growing_file::{GrowingFile, Mark};
-use crate::io::gsd;
+use crate::io::{dcd, gsd};
 use crate::method::Clock;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -46,7 +46,7 @@ macro_rules! grow {
     };
 }
 
-grow!(GrowingFile gsd::Writer);
+grow!(GrowingFile dcd::Writer gsd::Writer);
 
 /// How a frame is written into a file.
 pub(super) type Format<F, G> = fn(&F, &mut G) -> io::Result<()>;

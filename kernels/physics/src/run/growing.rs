@@ -3,6 +3,7 @@
 use super::RunError;
 use super::folder::{DCD, DUMP, EVENTS, GSD, RunFolder, THERMO, TRAJECTORY};
 use super::frames::Frames;
+use super::pace::Pace;
 use crate::io::checkpoint::Counter;
 use crate::io::dcd::{self, Positions};
 use crate::io::extxyz::{self, Frame};
@@ -20,9 +21,11 @@ pub(super) struct Growing {
     pub(super) thermo: TableFile,
     pub(super) trajectory: Frames<Arc<Frame>>,
     pub(super) dump: Option<Frames<Arc<Frame>>>,
-    pub(super) dcd: Option<Frames<Positions>>,
+    pub(super) dcd: Option<Frames<Positions, dcd::Writer>>,
     pub(super) gsd: Option<Frames<LoggedFrame, gsd::Writer>>,
     pub(super) events: Option<GrowingFile>,
+    /// How far the frames of DCD are apart.
+    pub(super) pace: Pace,
 }
 
 /// What a checkpoint keeps of a file: how far it was written, and the moment of its last frame.
@@ -62,10 +65,12 @@ impl Growing {
         folder: &RunFolder,
         prepared: &Prepared,
         quantities: &'static [Quantity],
+        pace: Pace,
     ) -> Result<Growing, RunError> {
         let thermo = TableFile::create(folder.file(THERMO), &columns(quantities))?;
         let trajectory = Frames::of(GrowingFile::create(folder.file(TRAJECTORY))?, write_text, None);
-        let mut growing = Growing { thermo, trajectory, dump: None, dcd: None, gsd: None, events: None };
+        let mut growing =
+            Growing { thermo, trajectory, dump: None, dcd: None, gsd: None, events: None, pace };
         growing.begin_missing(folder, prepared, quantities)?;
         Ok(growing)
     }
@@ -83,7 +88,8 @@ impl Growing {
             self.dump = Some(Frames::of(file, write_dump, None));
         }
         if output.dcd && self.dcd.is_none() {
-            self.dcd = Some(Frames::of(GrowingFile::create(folder.file(DCD))?, dcd::write, None));
+            let file = dcd::Writer::create(folder.file(DCD), self.pace.spacing())?;
+            self.dcd = Some(Frames::of(file, dcd::write, None));
         }
         if output.gsd && self.gsd.is_none() {
             let file = gsd::Writer::create(folder.file(GSD), &logged(quantities))?;
@@ -95,11 +101,13 @@ impl Growing {
         Ok(())
     }
 
-    /// Opens and verifies the files of a checkpoint; nothing is cut yet. `foreign` says whose counters are wrong.
+    /// Opens and verifies the files of a checkpoint; nothing is cut yet. `foreign` says whose counters are wrong; `notes` take up
+    /// what is out of the ordinary.
     pub(super) fn resume(
         folder: &RunFolder,
         quantities: &'static [Quantity],
         kept: &Kept<'_>,
+        (pace, notes): (Pace, &mut Vec<String>),
         foreign: impl Fn(String) -> RunError,
     ) -> Result<Growing, RunError> {
         let mark = |file: &str| kept.mark(file).map_err(&foreign);
@@ -114,13 +122,17 @@ impl Growing {
             dcd: None,
             gsd: None,
             events: None,
+            pace,
         };
         if let Some((mark, last)) = known(DUMP) {
             let file = GrowingFile::resume(folder.file(DUMP), mark)?;
             growing.dump = Some(Frames::of(file, write_dump, last));
         }
         if let Some((mark, last)) = known(DCD) {
-            let file = GrowingFile::resume(folder.file(DCD), mark)?;
+            let file = dcd::Writer::resume(folder.file(DCD), mark, pace.spacing())?;
+            if !file.is_even() {
+                notes.push(format!("{DCD} gets no more frames: those it has are otherwise apart than run.snapshot_every now says"));
+            }
             growing.dcd = Some(Frames::of(file, dcd::write, last));
         }
         if let Some((mark, last)) = known(GSD) {

@@ -9,7 +9,8 @@ use crate::particles::{Kind, Particle, Particles};
 use crate::scene::{Values, Vocabulary};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::fs;
+use std::path::{Path, PathBuf};
 
 /// Which bits this program promises: raised whenever the same scene gives other bits, or a column of the state or a file of
 /// a run means something else. Programs of one number may go on with each other's runs.
@@ -29,14 +30,16 @@ pub(super) struct Identity {
 }
 
 impl Identity {
-    pub(super) fn of(Job { prepared, program, .. }: Job<'_>) -> Identity {
-        let file = prepared.start_file.as_ref().map(|file| file.display().to_string());
-        Identity {
-            scene: prepared.scene.clone(),
-            discs: digest(prepared.particles()),
-            file,
-            program: program.clone(),
-        }
+    /// That of a job whose run is in `folder`.
+    pub(super) fn of(Job { prepared, program, .. }: Job<'_>, folder: &Path) -> Identity {
+        let discs = digest(prepared.particles());
+        let file = prepared.start_file.as_deref();
+        let scene = match file {
+            None => prepared.scene.clone(),
+            Some(file) => with_start_file(&prepared.scene, &seen_from(folder, file), &discs),
+        };
+        let file = file.map(|file| file.display().to_string());
+        Identity { scene, discs, file, program: program.clone() }
     }
 
     /// What a checkpoint keeps of it.
@@ -64,7 +67,9 @@ impl Identity {
         moment: Clock,
         other_version: bool,
     ) -> Result<Vec<String>, RunError> {
-        same_scene(folder, &checkpoint.scene, &self.scene)?;
+        // Discs are compared by their digest, wherever their file is now.
+        let [theirs, ours] = [&checkpoint.scene, &self.scene].map(|scene| without_start_file(scene));
+        same_scene(folder, &theirs, &ours)?;
         let said = |name: &str| checkpoint.origin.get(name).cloned().unwrap_or_default();
         if said("discs") != self.discs {
             return Err(RunError::OtherDiscs {
@@ -150,7 +155,45 @@ pub fn chosen_otherwise(
     otherwise.filter_map(|key| theirs.choice(key).map(|word| format!("{}={word}", key.path()))).collect()
 }
 
-/// Refuses a scene that differs from the run's in more than how long and what is written.
+/// The line of a run's scene that says which discs its start file held.
+const DISCS: &str = "# discs of this file: SHA-256 ";
+
+/// The scene of a run that starts from a file: where that is, seen from the run's folder, and what it held.
+fn with_start_file(scene: &str, file: &Path, discs: &str) -> String {
+    let place = toml::Value::from(file.to_string_lossy().into_owned());
+    let line = |line: &str| match line.starts_with("file = ") {
+        true => format!("file = {place}\n{DISCS}{discs}\n"),
+        false => format!("{line}\n"),
+    };
+    scene.lines().map(line).collect()
+}
+
+/// The path of a file from a folder where both lie in a common one, at most two levels up, and so may be moved together; else as it is.
+fn seen_from(folder: &Path, file: &Path) -> PathBuf {
+    const LEVELS: usize = 2;
+    let place = |folder: &Path| fs::canonicalize(folder).ok();
+    let (Some(from), Some(beside), Some(name)) =
+        (place(folder), file.parent().and_then(place), file.file_name())
+    else {
+        return file.to_owned();
+    };
+    let common =
+        (1..).zip(from.ancestors().skip(1)).take(LEVELS).filter(|(_, above)| above.parent().is_some());
+    let below =
+        common.into_iter().find_map(|(levels, above)| Some((levels, beside.strip_prefix(above).ok()?)));
+    match below {
+        Some((levels, below)) => PathBuf::from("../".repeat(levels)).join(below).join(name),
+        None => file.to_owned(),
+    }
+}
+
+/// A scene without where its start file is and what that held.
+fn without_start_file(scene: &str) -> String {
+    let is_other = |line: &&str| !(line.starts_with("file = ") || line.starts_with(DISCS));
+    scene.lines().filter(is_other).flat_map(|line| [line, "\n"]).collect()
+}
+
+/// Refuses a scene that differs from the run's in more than how long, what is written, and where the start file is.
 ///
 /// # Errors
 /// [`RunError::OtherScene`] with the first difference.
@@ -161,15 +204,18 @@ pub(super) fn same_scene(folder: &Path, theirs: &str, ours: &str) -> Result<(), 
     }
 }
 
-/// The lines of a resolved scene that decide what happens in it: without how long it runs and what is written.
+/// The lines of a resolved scene that decide what happens in it: without how long it runs and what is written, and with what the start
+/// file held in place of where it is.
 pub(super) fn physics(scene: &str) -> Vec<&str> {
+    let knows_discs = scene.lines().any(|line| line.starts_with(DISCS));
     let mut lines = Vec::new();
     let mut of_run = false;
     for line in scene.lines().filter(|line| !line.trim().is_empty()) {
         if line.starts_with('[') {
             of_run = matches!(line.trim(), "[run]" | "[output]");
         }
-        if !of_run {
+        let is_place = knows_discs && line.starts_with("file = ");
+        if !(of_run || is_place) {
             lines.push(line);
         }
     }

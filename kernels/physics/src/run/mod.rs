@@ -10,6 +10,7 @@ mod functions;
 mod goal;
 mod growing;
 mod identity;
+mod pace;
 mod recorder;
 mod structured;
 mod summary;

@@ -5,6 +5,7 @@ use super::folder::{DATA, DCD, DUMP, EVENTS, GSD, RunFolder, SCENE, SUMMARY, THE
 use super::goal::{Goal, Known};
 use super::growing::{Growing, Kept, logged_of};
 use super::identity::{BITS, Identity, same_scene};
+use super::pace::Pace;
 use super::structured::{Structured, chosen};
 use super::table::TableReader;
 use super::{Existing, Job, RunError, Summary};
@@ -81,7 +82,7 @@ impl Recorder {
             Existing::Resume { other_version } if folder.is_run() => match read_latest(path)? {
                 Some(latest) => Recorder::resume(folder, latest, job, simulation, other_version, notes),
                 None => {
-                    begun_with(&folder, &job.prepared.scene)?;
+                    begun_with(&folder, &Identity::of(job, path).scene)?;
                     notes.push("begun again: there was no checkpoint yet".to_owned());
                     Recorder::begin(folder, job, simulation, notes)
                 }
@@ -99,7 +100,8 @@ impl Recorder {
     ) -> Result<Recorder, RunError> {
         folder.clear()?;
         folder.claim(&on_request(job.prepared))?;
-        let growing = Growing::begin(&folder, job.prepared, job.quantities)?;
+        let pace = Pace::of(job.prepared.schedule.snapshots, simulation);
+        let growing = Growing::begin(&folder, job.prepared, job.quantities, pace)?;
         let mut recorder = Recorder::with(folder, job, growing, &simulation.clock(), notes);
         recorder.new_notes = recorder.notes.len();
         recorder.write_scene()?;
@@ -118,11 +120,12 @@ impl Recorder {
         notes: Vec<String>,
     ) -> Recorder {
         let Job { prepared, quantities, .. } = job;
+        let identity = Identity::of(job, folder.path());
         let schedule = prepared.schedule;
         let due = [schedule.rows, schedule.snapshots, schedule.checkpoints].map(|every| every.next(clock));
         Recorder {
             folder,
-            identity: Identity::of(job),
+            identity,
             schedule,
             output: prepared.output.clone(),
             seed: prepared.seed,
@@ -159,7 +162,8 @@ impl Recorder {
         };
         let clock = Clock { steps: checkpoint.step, time: checkpoint.time, events };
         let said = checkpoint.origin.get("notes").map_or(0, |notes| notes.lines().count());
-        let mut notes = Identity::of(job).check(folder.path(), &checkpoint, clock, other_version)?;
+        let mut notes =
+            Identity::of(job, folder.path()).check(folder.path(), &checkpoint, clock, other_version)?;
         notes.extend(session);
         if latest.file != newest {
             notes.push(format!(
@@ -177,7 +181,8 @@ impl Recorder {
             return Err(RunError::FewerSteps { folder: folder.path().to_owned(), done, asked });
         }
         let kept = Kept::new(&checkpoint.counters);
-        let mut growing = Growing::resume(&folder, quantities, &kept, foreign)?;
+        let pace = Pace::of(prepared.schedule.snapshots, simulation);
+        let mut growing = Growing::resume(&folder, quantities, &kept, (pace, &mut notes), foreign)?;
         let structured = Structured::resumed(prepared, &checkpoint, &mut notes).map_err(foreign)?;
         let snapshot = Snapshot {
             counters: std::mem::take(&mut checkpoint.counters),
@@ -302,9 +307,10 @@ impl Recorder {
     /// A frame in each of the files that are asked for and do not have it yet.
     fn snapshot(&mut self, simulation: &dyn Simulation) -> Result<(), RunError> {
         let moment = simulation.clock();
-        if let Some(dcd) = self.growing.dcd.as_mut().filter(|_| self.output.dcd) {
+        let dcd = self.growing.dcd.as_mut().filter(|_| self.output.dcd);
+        if let Some((dcd, step)) = dcd.zip(self.growing.pace.number(moment)) {
             let cell = self.domain.lengths();
-            dcd.add(moment, || Positions { step: moment.number(), cell, places: simulation.positions() })?;
+            dcd.add(moment, || Positions { step, cell, places: simulation.positions() })?;
         }
         let Output { trajectory, lammps_dump, gsd, .. } = self.output;
         if !(trajectory || lammps_dump || gsd) {

@@ -58,7 +58,7 @@ define_keys! {
     TRAJECTORY = "output" "trajectory", Switch, "", Is("true"), ALWAYS,
         "Snapshots as trajectory.xyz, extended XYZ.";
     DCD = "output" "dcd", Switch, "", Is("false"), ALWAYS,
-        "Snapshots as trajectory.dcd: positions in single precision, small and fast to write.";
+        "Snapshots as trajectory.dcd: positions in single precision, small and fast to write. Its frames are evenly apart: the end of a run between two snapshots is left out.";
     GSD = "output" "gsd", Switch, "", Is("false"), ALWAYS,
         "Snapshots as trajectory.gsd, with an index: positions and velocities in single and in double precision, and the row of thermo.csv.";
     LAMMPS_DUMP = "output" "lammps_dump", Switch, "", Is("false"), ALWAYS,

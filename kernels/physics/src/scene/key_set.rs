@@ -35,6 +35,8 @@ pub struct KeySet {
     pub groups: &'static [&'static [&'static Key]],
     /// Keys that exclude each other.
     pub rivals: &'static [&'static [Rivals]],
+    /// Keys that the method does not have though one may look for them, as `section.key`, each with what to do.
+    pub advice: &'static [(&'static str, &'static str)],
 }
 
 impl KeySet {

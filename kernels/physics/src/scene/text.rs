@@ -283,7 +283,10 @@ impl Source<'_> {
         let others: Vec<String> =
             self.methods.iter().filter(has_it).map(|method| format!("\"{}\"", method.keys.method)).collect();
         let by_name = self.full_names(name.get_ref());
-        if self.lines.is_none() && !by_name.is_empty() {
+        let path = format!("{section}.{}", name.get_ref());
+        if let Some((_, advice)) = self.keys.advice.iter().find(|(key, _)| *key == path) {
+            error = error.advising(*advice);
+        } else if self.lines.is_none() && !by_name.is_empty() {
             let paths: Vec<String> = by_name.iter().map(|key| format!("`{}`", key.path())).collect();
             error = error.advising(format!("did you mean {}?", paths.join(" or ")));
             values.faulty.extend(by_name.iter().map(|key| key.id()));

@@ -1,5 +1,6 @@
 //! What can be wrong with an extended XYZ file, and where.
 
+use super::format::Format;
 use crate::number::counted;
 use crate::quoted::{self, quoted};
 use std::fmt;
@@ -94,8 +95,25 @@ pub enum Reason {
         /// What should stand there.
         expected: &'static str,
     },
-    /// A column that `Properties` does not name.
-    #[error("Properties has no column `{0}`")]
+    /// A box that is not rectangular.
+    #[error("number {at} of Lattice is {value}; boxes are rectangles, so expected 0")]
+    Tilt {
+        /// Which of the nine numbers, from 1.
+        at: usize,
+        /// The number.
+        value: f64,
+    },
+    /// A file of another format.
+    #[error(
+        "this is {0}; extended XYZ is what is read, with columns for positions, velocities, radii and masses: convert it, for \
+         example with OVITO (Export File, XYZ)"
+    )]
+    Format(Format),
+    /// A quantity for which `Properties` names no column.
+    #[error(
+        "Properties has no column {0}; add it to the file, for example in OVITO (Compute property, Export File, XYZ) or in ASE \
+         (atoms.set_array)"
+    )]
     MissingColumn(&'static str),
     /// A column named twice.
     #[error("Properties names the column `{}` twice", quoted(.0))]
@@ -150,9 +168,12 @@ pub enum Reason {
         /// The number.
         value: f64,
     },
-    /// An id that is no positive whole number of 32 bits.
-    #[error("id is `{}`; expected a whole number from 1 to 4294967295", quoted(.0))]
+    /// An id that is no whole number of 32 bits.
+    #[error("id is `{}`; expected a whole number from 0 to 4294967295", quoted(.0))]
     Id(String),
+    /// Ids that begin at 0 and so are raised by one, which the last has no number for.
+    #[error("id is 4294967295, and another is 0; ids that begin at 0 end at 4294967294")]
+    LastId,
     /// An id that another disc has.
     #[error("id {id} is taken by the disc in line {line}")]
     RepeatedId {
@@ -161,9 +182,6 @@ pub enum Reason {
         /// The line that has it first.
         line: usize,
     },
-    /// Neither a grain nor a wall disc.
-    #[error("unknown species `{}`; expected `Si` (a grain) or `W` (a wall disc)", quoted(.0))]
-    Species(String),
 }
 
 fn after(previous: Option<usize>) -> String {

@@ -2,6 +2,7 @@
 
 use super::Room;
 use super::error::{Mistake, Mistakes, Reason};
+use super::format::Format;
 use super::rows::Layout;
 
 /// What a comment line says.
@@ -30,7 +31,7 @@ impl Entry {
     /// Numbers in any of the brackets in use.
     fn numbers(&self, key: &'static str, expected: &'static str) -> Result<Vec<f64>, Reason> {
         let parsed: Option<Vec<f64>> =
-            self.words().map(|word| word.parse().ok().filter(|number: &f64| number.is_finite())).collect();
+            self.words().map(|word| number(word).filter(|number| number.is_finite())).collect();
         parsed.ok_or_else(|| self.wrong(key, expected))
     }
 
@@ -43,6 +44,9 @@ impl Entry {
 pub(super) fn parse(text: &str, line: usize, room: Room) -> Result<Header, Mistakes> {
     let mut mistakes = Mistakes::default();
     let entries = entries(text).map_err(|(byte, reason)| Mistake::at(line, text, byte, reason))?;
+    if let Some(format) = Format::of_comment(text) {
+        return Err(Mistake::in_line(line, Reason::Format(format)).into());
+    }
     // Finding a column takes as long as the line: only for what is said.
     let mut keep = |entry: &Entry, reason| match mistakes.has_room() {
         true => mistakes.add(Mistake::at(line, text, entry.byte, reason)),
@@ -120,14 +124,32 @@ const KEYS: [&str; 7] = ["lattice", "properties", "origin", "pbc", "time", "step
 const LATTICE: &str = "\"Lx 0 0 0 Ly 0 0 0 Lz\" with positive sides";
 const PROPERTIES: &str = super::PROPERTIES;
 const ORIGIN: &str = "\"x y z\"";
-const BOUNDARIES: &str = "\"T F F\", T where the box repeats along x, y, z";
+const BOUNDARIES: &str = "\"T F F\" (or \"T F\"), T where the box repeats along x, y, z";
+
+/// Tilt of a box that is rounding (relative to its shorter side): programs make rectangles from angles of 90°.
+const ROUNDING: f64 = 1e-12;
 
 /// Sides of a rectangular box.
 fn lattice(entry: &Entry) -> Result<[f64; 2], Reason> {
-    match entry.numbers("Lattice", LATTICE)?[..] {
-        [x, 0.0, 0.0, 0.0, y, 0.0, 0.0, 0.0, _] if x > 0.0 && y > 0.0 => Ok([x, y]),
-        _ => Err(entry.wrong("Lattice", LATTICE)),
+    let numbers = entry.numbers("Lattice", LATTICE)?;
+    let [x, _, _, _, y, _, _, _, depth] = numbers[..] else { return Err(entry.wrong("Lattice", LATTICE)) };
+    if !(x > 0.0 && y > 0.0) {
+        return Err(entry.wrong("Lattice", LATTICE));
     }
+    let off_diagonal = [1, 2, 3, 5, 6, 7];
+    let rounding = ROUNDING * x.min(y).min(if depth > 0.0 { depth } else { f64::INFINITY });
+    match off_diagonal.into_iter().find(|&at| numbers[at].abs() > rounding) {
+        None => Ok([x, y]),
+        Some(at) => Err(Reason::Tilt { at: at + 1, value: numbers[at] }),
+    }
+}
+
+/// A number as programs write it, Fortran's too, whose exponent may be a `D`.
+pub(super) fn number(text: &str) -> Option<f64> {
+    text.parse().ok().or_else(|| {
+        let at = text.find(['D', 'd']).filter(|&at| at > 0)?;
+        format!("{}E{}", &text[..at], &text[at + 1..]).parse().ok()
+    })
 }
 
 fn boundaries(entry: &Entry) -> Option<[bool; 2]> {
@@ -140,7 +162,7 @@ fn boundaries(entry: &Entry) -> Option<[bool; 2]> {
         })
         .collect();
     match axes?[..] {
-        [x, y, _] => Some([x, y]),
+        [x, y] | [x, y, _] => Some([x, y]),
         _ => None,
     }
 }

@@ -8,16 +8,21 @@
 //! Si 0.5 0.5 0.0 1 0.0 -0.1 0.0 0.5 2.0 0.0 0.0 0.25 2.0 0.0 -0.2 0.0
 //! ```
 //!
-//! Species `Si` is a grain, `W` a wall disc. z is 0; the angular velocity stands in the z component of `omega`.
+//! Species `W` is a wall disc, `Si` or any other name a grain. z is 0; the angular velocity stands in the z component of `omega`.
 //! The angle of a disc is not in the format.
+//!
+//! Frames of other programs may leave out species, ids (rows are then numbered from 1) and `omega` (0), have vectors of the plane
+//! (`pos:R:2`, `velo:R:2`, `omega:R:1`), and momenta with masses for velocities. Ids that begin at 0 are each raised by one.
 
 mod error;
+mod format;
 mod header;
 mod reader;
 mod rows;
 mod writer;
 
 pub use error::{Mistake, ReadError, Reason};
+pub use format::Format;
 pub use reader::{Frames, Which, read};
 pub use writer::write;
 

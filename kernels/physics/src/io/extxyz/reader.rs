@@ -1,6 +1,7 @@
 //! Reading frames, one after the other.
 
 use super::error::{Mistake, Mistakes, ReadError, Reason};
+use super::format::Format;
 use super::{Frame, Room, header};
 use crate::io::regular_file;
 use crate::particles::Particles;
@@ -159,7 +160,23 @@ impl<R: BufRead> RawFrames<R> {
         Ok(())
     }
 
+    /// Passes over the mark that some editors put before a text, and refuses what is known to be of another format.
+    fn begin(&mut self) -> Result<(), Mistake> {
+        const MARK: &[u8] = b"\xef\xbb\xbf";
+        let first = self.reader.fill_buf().map_err(Mistake::reading)?;
+        if let Some(format) = Format::of(first) {
+            return Err(Mistake { line: None, column: None, reason: Reason::Format(format) });
+        }
+        if first.starts_with(MARK) {
+            self.reader.consume(MARK.len());
+        }
+        Ok(())
+    }
+
     fn count(&mut self) -> Result<Option<usize>, Mistake> {
+        if self.line == 0 {
+            self.begin()?;
+        }
         let mut line = self.ahead.take().unwrap_or_default();
         if line.is_empty() {
             self.count_line(&mut line)?;
@@ -217,7 +234,10 @@ fn parse(raw: &RawFrame, room: Room) -> Result<Frame, Mistakes> {
     for (line, row) in (raw.line + 2..).zip(rows) {
         match utf8(row, line).and_then(|row| header.layout.disc(row, (line, room), &mut fields)) {
             Err(mistake) => mistakes.add(mistake),
-            Ok(disc) => {
+            Ok(mut disc) => {
+                if !header.layout.has_ids() {
+                    disc.id = (line - raw.line - 1) as u32;
+                }
                 let first = *lines_of_ids.entry(disc.id).or_insert(line);
                 if first != line {
                     mistakes.add(Mistake::in_line(line, Reason::RepeatedId { id: disc.id, line: first }));
@@ -225,6 +245,13 @@ fn parse(raw: &RawFrame, room: Room) -> Result<Frame, Mistakes> {
                 discs.push(disc);
             }
         }
+    }
+    // Other programs begin at 0.
+    if lines_of_ids.contains_key(&0) {
+        if let Some(&line) = lines_of_ids.get(&u32::MAX) {
+            mistakes.add(Mistake::in_line(line, Reason::LastId));
+        }
+        discs.iter_mut().for_each(|disc| disc.id = disc.id.saturating_add(1));
     }
     if !mistakes.is_empty() {
         return Err(mistakes);

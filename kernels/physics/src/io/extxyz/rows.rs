@@ -2,34 +2,55 @@
 
 use super::Room;
 use super::error::{Mistake, Reason};
+use super::header::number;
 use crate::particles::{Kind, Particle};
 
 /// A column that a frame may have.
 struct Column {
     name: &'static str,
-    shape: &'static str,
-    width: usize,
-    required: bool,
+    /// The shapes that are read, the one that this program writes first.
+    shapes: &'static [&'static str],
 }
 
-const fn column(name: &'static str, shape: &'static str, width: usize, required: bool) -> Column {
-    Column { name, shape, width, required }
+const fn column(name: &'static str, shapes: &'static [&'static str]) -> Column {
+    Column { name, shapes }
 }
 
-/// Without `species` every disc is a grain.
-const COLUMNS: [Column; 7] = [
-    column("species", "species:S:1", 1, false),
-    column("pos", "pos:R:3", 3, true),
-    column("id", "id:I:1", 1, true),
-    column("velo", "velo:R:3", 3, true),
-    column("radius", "radius:R:1", 1, true),
-    column("mass", "mass:R:1", 1, true),
-    column("omega", "omega:R:3", 3, true),
+/// Planar programs write two columns of a vector, and one of the angular velocity. ASE knows velocities as momenta over masses.
+const COLUMNS: [Column; 9] = [
+    column("species", &["species:S:1"]),
+    column("pos", &["pos:R:3", "pos:R:2"]),
+    column("id", &["id:I:1"]),
+    column("velo", &["velo:R:3", "velo:R:2"]),
+    column("radius", &["radius:R:1"]),
+    column("mass", &["mass:R:1"]),
+    column("omega", &["omega:R:3", "omega:R:1"]),
+    column("masses", &["masses:R:1"]),
+    column("momenta", &["momenta:R:3", "momenta:R:2"]),
 ];
 
-/// The first field of each of the columns, and how many fields a row has.
+/// Places in [`COLUMNS`].
+const SPECIES: usize = 0;
+const POS: usize = 1;
+const ID: usize = 2;
+const VELO: usize = 3;
+const RADIUS: usize = 4;
+const MASS: usize = 5;
+const OMEGA: usize = 6;
+const MASSES: usize = 7;
+const MOMENTA: usize = 8;
+
+/// Quantities that a start cannot do without: the columns of which one has them, and how a message calls these.
+const REQUIRED: [(&[usize], &str); 4] = [
+    (&[POS], "`pos:R:3` (or `pos:R:2`)"),
+    (&[VELO, MOMENTA], "`velo:R:3` (or `velo:R:2`, or `momenta:R:3`, which are divided by the masses)"),
+    (&[RADIUS], "`radius:R:1`"),
+    (&[MASS, MASSES], "`mass:R:1` (or `masses:R:1`)"),
+];
+
+/// The first field of each of the columns and how many there are, and how many fields a row has.
 pub(super) struct Layout {
-    first: [Option<usize>; COLUMNS.len()],
+    columns: [Option<(usize, usize)>; COLUMNS.len()],
     fields: usize,
 }
 
@@ -37,40 +58,51 @@ impl Layout {
     /// From `name:type:width:…`; columns that we do not know are passed over.
     pub(super) fn parse(text: &str) -> Result<Layout, Vec<Reason>> {
         let parts: Vec<&str> = text.trim().split(':').collect();
-        let mut layout = Layout { first: [None; COLUMNS.len()], fields: 0 };
+        let mut layout = Layout { columns: [None; COLUMNS.len()], fields: 0 };
         let mut reasons = Vec::new();
         for part in parts.chunks(3) {
             let found = part.join(":");
             let known = COLUMNS.iter().position(|column| column.name == part[0]);
-            let expected = known.map_or("name:S, I, R or L:width", |i| COLUMNS[i].shape);
+            let expected = known.map_or("name:S, I, R or L:width", |i| COLUMNS[i].shapes[0]);
             let width = match part {
                 [name, "S" | "I" | "R" | "L", width] if !name.is_empty() => width.parse::<usize>().ok(),
                 _ => None,
             };
             let end = width.filter(|&width| width > 0).and_then(|width| layout.fields.checked_add(width));
-            let (Some(end), true) = (end, known.is_none_or(|i| COLUMNS[i].shape == found)) else {
+            let fits = known.is_none_or(|i| COLUMNS[i].shapes.contains(&found.as_str()));
+            let (Some(end), true) = (end, fits) else {
                 reasons.push(Reason::ColumnShape { found, expected });
                 continue;
             };
             if let Some(i) = known {
-                if layout.first[i].is_some() {
+                if layout.columns[i].is_some() {
                     reasons.push(Reason::RepeatedColumn(part[0].to_owned()));
                 }
-                layout.first[i] = Some(layout.fields);
+                layout.columns[i] = Some((layout.fields, end - layout.fields));
             }
             layout.fields = end;
         }
-        for (column, first) in COLUMNS.iter().zip(&layout.first) {
+        for (columns, expected) in REQUIRED {
             // A column of the wrong shape is there.
-            let named = parts.chunks(3).any(|part| part[0] == column.name);
-            if column.required && first.is_none() && !named {
-                reasons.push(Reason::MissingColumn(column.shape));
+            let is_named = |&column: &usize| parts.chunks(3).any(|part| part[0] == COLUMNS[column].name);
+            if !columns.iter().any(is_named) {
+                reasons.push(Reason::MissingColumn(expected));
             }
         }
         if reasons.is_empty() { Ok(layout) } else { Err(reasons) }
     }
 
-    /// A disc from a row; `fields` is there to be used again.
+    /// Whether rows say the ids of their discs; where they do not, discs are numbered from 1.
+    pub(super) fn has_ids(&self) -> bool {
+        self.columns[ID].is_some()
+    }
+
+    /// The column of a quantity that two columns may have.
+    fn either(&self, first: usize, second: usize) -> usize {
+        if self.columns[first].is_some() { first } else { second }
+    }
+
+    /// A disc from a row, with the id 0 where the rows have none; `fields` is there to be used again.
     pub(super) fn disc<'a>(
         &self,
         text: &'a str,
@@ -84,34 +116,24 @@ impl Layout {
             return Err(Mistake::in_line(line, reason));
         }
         let row = Row { layout: self, text, line, fields };
-        let kind = match row.fields(SPECIES) {
-            [] | ["Si"] => Kind::Grain,
-            ["W"] => Kind::Wall,
-            [other, ..] => return Err(row.wrong(other, Reason::Species((*other).to_owned()))),
-        };
-        let [x, y, z] = row.vector(POS)?;
+        let kind = if row.fields(SPECIES) == ["W"] { Kind::Wall } else { Kind::Grain };
+        let position = row.vector(POS)?;
         let id = row.id()?;
-        let [u, v, w] = row.vector(VELO)?;
+        let moving = self.either(VELO, MOMENTA);
+        let mut velocity = row.vector(moving)?;
         if room == Room::Plane {
-            row.zeros(POS, &[(2, z)])?;
-            row.zeros(VELO, &[(2, w)])?;
+            row.zeros(POS, &[(2, position[2])])?;
+            row.zeros(moving, &[(2, velocity[2])])?;
         }
         let radius = row.positive(RADIUS)?;
-        let mass = row.positive(MASS)?;
-        let [about_x, about_y, omega] = row.vector(OMEGA)?;
-        row.zeros(OMEGA, &[(0, about_x), (1, about_y)])?;
-        Ok(Particle { id, kind, position: [x, y, z], velocity: [u, v, w], angle: 0.0, omega, radius, mass })
+        let mass = row.positive(self.either(MASS, MASSES))?;
+        if moving == MOMENTA {
+            velocity = row.over(velocity, mass)?;
+        }
+        let omega = row.spin()?;
+        Ok(Particle { id, kind, position, velocity, angle: 0.0, omega, radius, mass })
     }
 }
-
-/// Places in [`COLUMNS`].
-const SPECIES: usize = 0;
-const POS: usize = 1;
-const ID: usize = 2;
-const VELO: usize = 3;
-const RADIUS: usize = 4;
-const MASS: usize = 5;
-const OMEGA: usize = 6;
 
 /// A row cut into its fields, as many as the layout asks for.
 struct Row<'a> {
@@ -124,8 +146,8 @@ struct Row<'a> {
 impl Row<'_> {
     /// The fields of a column; none if the frame does not have it.
     fn fields(&self, column: usize) -> &[&str] {
-        let Some(first) = self.layout.first[column] else { return &[] };
-        self.fields.get(first..first + COLUMNS[column].width).unwrap_or(&[])
+        let Some((first, width)) = self.layout.columns[column] else { return &[] };
+        self.fields.get(first..first + width).unwrap_or(&[])
     }
 
     fn wrong(&self, field: &str, reason: Reason) -> Mistake {
@@ -133,18 +155,18 @@ impl Row<'_> {
         Mistake::at(self.line, self.text, byte, reason)
     }
 
+    /// The numbers of a column, and 0 for those that it does not have.
     fn vector<const WIDTH: usize>(&self, column: usize) -> Result<[f64; WIDTH], Mistake> {
         let name = COLUMNS[column].name;
         let mut numbers = [0.0; WIDTH];
-        for (number, field) in numbers.iter_mut().zip(self.fields(column)) {
+        for (value, field) in numbers.iter_mut().zip(self.fields(column)) {
             let found = || (*field).to_owned();
-            let parsed: f64 = field
-                .parse()
-                .map_err(|_| self.wrong(field, Reason::Number { column: name, found: found() }))?;
+            let parsed = number(field)
+                .ok_or_else(|| self.wrong(field, Reason::Number { column: name, found: found() }))?;
             if !parsed.is_finite() {
                 return Err(self.wrong(field, Reason::NotFinite { column: name, found: found() }));
             }
-            *number = parsed;
+            *value = parsed;
         }
         Ok(numbers)
     }
@@ -156,6 +178,29 @@ impl Row<'_> {
         }
         let reason = Reason::NotPositive { column: COLUMNS[column].name, value };
         Err(self.wrong(self.fields(column)[0], reason))
+    }
+
+    /// The velocity of a momentum.
+    fn over(&self, momentum: [f64; 3], mass: f64) -> Result<[f64; 3], Mistake> {
+        let velocity = momentum.map(|p| p / mass);
+        match velocity.iter().zip(self.fields(MOMENTA)).find(|(speed, _)| !speed.is_finite()) {
+            None => Ok(velocity),
+            Some((_, field)) => {
+                let found = format!("{field} over the mass {mass:?}");
+                Err(self.wrong(field, Reason::NotFinite { column: COLUMNS[MOMENTA].name, found }))
+            }
+        }
+    }
+
+    /// The angular velocity; 0 where the frame has none.
+    fn spin(&self) -> Result<f64, Mistake> {
+        if let [_] = self.fields(OMEGA) {
+            let [omega] = self.vector(OMEGA)?;
+            return Ok(omega);
+        }
+        let [about_x, about_y, omega] = self.vector(OMEGA)?;
+        self.zeros(OMEGA, &[(0, about_x), (1, about_y)])?;
+        Ok(omega)
     }
 
     /// Components that only a body in space has.
@@ -171,10 +216,7 @@ impl Row<'_> {
     }
 
     fn id(&self) -> Result<u32, Mistake> {
-        let field = self.fields(ID).first().copied().unwrap_or_default();
-        match field.parse() {
-            Ok(id) if id > 0 => Ok(id),
-            _ => Err(self.wrong(field, Reason::Id(field.to_owned()))),
-        }
+        let Some(field) = self.fields(ID).first() else { return Ok(0) };
+        field.parse().map_err(|_| self.wrong(field, Reason::Id((*field).to_owned())))
     }
 }

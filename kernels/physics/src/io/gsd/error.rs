@@ -63,6 +63,22 @@ pub enum Reason {
         /// Where the file ends.
         length: u64,
     },
+    /// A chunk for which there is no memory.
+    #[error("it takes {length} bytes, and the system has no memory for them")]
+    Memory {
+        /// Its length (bytes).
+        length: u64,
+    },
+    /// A chunk without content.
+    #[error(
+        "it takes {length} bytes, but the whole file only {on_disk} on the disk: the file has holes; copy it again from its source"
+    )]
+    Hole {
+        /// Its length (bytes).
+        length: u64,
+        /// What the file takes on the disk (bytes).
+        on_disk: u64,
+    },
     /// A chunk that is not there.
     #[error(
         "there is no such chunk, nor one in frame 0 for as many particles; expected what stripmine writes"

@@ -117,8 +117,10 @@ impl GsdFile {
         self.out.seek(SeekFrom::Start(self.end)).map(drop)
     }
 
-    /// Reads the frames up to a length, each where it must be; whether they are there.
+    /// Reads the frames up to a length, each where it must be; whether they are there, and all of the index.
     fn read_up_to(&mut self, length: u64) -> io::Result<bool> {
+        /// Where the heading says where the index is.
+        const MOVES: std::ops::Range<usize> = 8..24;
         let (first, list) = (self.heading(), list_of(&self.names));
         let mut heading = [0; HEADING as usize];
         let mut names = vec![0; list.len()];
@@ -126,37 +128,52 @@ impl GsdFile {
         file.rewind()?;
         file.read_exact(&mut heading)?;
         file.read_exact(&mut names)?;
-        // The index may have moved since the mark.
-        const MOVES: std::ops::Range<usize> = 8..24;
+        let said = Heading::read(&heading).ok();
         heading[MOVES].copy_from_slice(&first[MOVES]);
         if heading != first || names != list {
             return Ok(false);
         }
         while self.end < length {
-            if self.is_index_full() && !self.read_next_index(length) {
+            if self.is_index_full() && !self.read_next_index(length)? {
                 return Ok(false);
             }
             if !self.read_frame(length)? {
                 return Ok(false);
             }
         }
-        Ok(self.end == length)
+        // The index may have moved since the mark.
+        let has_moved = |to: Index| to.at >= length && to.capacity > self.index.capacity;
+        let is_found = said.is_some_and(|said| said.index == self.index || has_moved(said.index));
+        Ok(is_found && self.end == length)
     }
 
-    /// The next index lies behind the frames before it; its entries are compared as those of the frames.
-    fn read_next_index(&mut self, length: u64) -> bool {
-        self.index = self.next_index();
-        self.end = self.index.at + ENTRY * self.index.capacity;
-        self.end <= length
+    /// The next index lies behind the frames before it, and begins with the entries of the one before: these are compared, so that
+    /// together with those of the frames the whole index is. Nothing follows them in the one before.
+    fn read_next_index(&mut self, length: u64) -> io::Result<bool> {
+        let (before, next) = (self.index, self.next_index());
+        self.end = next.at + ENTRY * next.capacity;
+        if self.end > length {
+            return Ok(false);
+        }
+        let used = (ENTRY * self.used) as usize;
+        let entries = self.read_at(before.at, (ENTRY * before.capacity) as usize)?;
+        let copied = self.read_at(next.at, used)?;
+        self.index = next;
+        Ok(entries[..used] == copied && entries[used..].iter().all(|&byte| byte == 0))
+    }
+
+    fn read_at(&mut self, at: u64, length: usize) -> io::Result<Vec<u8>> {
+        let mut bytes = vec![0; length];
+        let file = self.out.get_mut();
+        file.seek(SeekFrom::Start(at))?;
+        file.read_exact(&mut bytes)?;
+        Ok(bytes)
     }
 
     /// Takes a frame up into the checksum; whether it is there.
     fn read_frame(&mut self, length: u64) -> io::Result<bool> {
         let (frame, first) = (self.frames, self.index.at + ENTRY * self.used);
-        let mut entries = vec![0; ENTRY as usize * self.names.len()];
-        let file = self.out.get_mut();
-        file.seek(SeekFrom::Start(first))?;
-        file.read_exact(&mut entries)?;
+        let mut entries = self.read_at(first, ENTRY as usize * self.names.len())?;
         let of_the_frame = |bytes: &&[u8]| {
             let entry = Entry::of(bytes);
             entry.at != 0 && entry.frame == frame
@@ -168,6 +185,7 @@ impl GsdFile {
         if end <= self.end || end > length {
             return Ok(false);
         }
+        let file = self.out.get_mut();
         file.seek(SeekFrom::Start(self.end))?;
         let mut block = vec![0; BUFFER];
         while self.end < end {
@@ -224,10 +242,7 @@ impl GsdFile {
     /// An index twice as large, at the end.
     fn grow_index(&mut self) -> io::Result<()> {
         let (from, to) = (self.index, self.next_index());
-        let mut entries = vec![0; (ENTRY * self.used) as usize];
-        let file = self.out.get_mut();
-        file.seek(SeekFrom::Start(from.at))?;
-        file.read_exact(&mut entries)?;
+        let entries = self.read_at(from.at, (ENTRY * self.used) as usize)?;
         self.end = to.at + ENTRY * to.capacity;
         self.overwrite(to.at, &entries)?;
         self.out.get_ref().set_len(self.end)?;

@@ -10,7 +10,7 @@ use crate::io::extxyz::Frame;
 use crate::io::regular_file;
 use crate::particles::{Kind, Particle, Particles};
 use std::collections::HashSet;
-use std::fs::File;
+use std::fs::{File, Metadata};
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
@@ -19,6 +19,8 @@ use std::path::{Path, PathBuf};
 pub struct Frames {
     path: PathBuf,
     file: File,
+    /// Bytes that the file takes on the disk: fewer than it is long where it has holes.
+    on_disk: u64,
     names: Vec<String>,
     index: Vec<Entry>,
     next: u64,
@@ -35,10 +37,11 @@ impl Frames {
         let opened = regular_file::open(&path).map_err(Reason::Io);
         let read = opened.map_err(|reason| (Place::File, reason)).and_then(|file| {
             let (names, index) = index(&file)?;
-            Ok((file, names, index))
+            let on_disk = on_disk(&file.metadata().map_err(|cause| (Place::File, Reason::Io(cause)))?);
+            Ok(Frames { path: path.clone(), file, on_disk, names, index, next: 0, failed: false })
         });
         match read {
-            Ok((file, names, index)) => Ok(Frames { path, file, names, index, next: 0, failed: false }),
+            Ok(frames) => Ok(frames),
             Err((place, reason)) => Err(ReadError { file: path, place, reason }),
         }
     }
@@ -83,6 +86,21 @@ impl Iterator for Frames {
 
 type Wrong = (Place, Reason);
 
+/// The longest list of names that entries of 16 bits can number, of which each has at most 63 letters (bytes).
+const LONGEST_NAMES: u64 = 64 << 16;
+/// Chunks up to this length may be holes of the file (bytes); of longer ones a hundredth must be on the disk.
+const MOST_HOLES: u64 = 1 << 24;
+
+#[cfg(unix)]
+fn on_disk(file: &Metadata) -> u64 {
+    std::os::unix::fs::MetadataExt::blocks(file) * 512
+}
+
+#[cfg(not(unix))]
+fn on_disk(file: &Metadata) -> u64 {
+    file.len()
+}
+
 /// The names and the entries of a file.
 fn index(file: &File) -> Result<(Vec<String>, Vec<Entry>), Wrong> {
     let system = |cause: io::Error| (Place::File, Reason::Io(cause));
@@ -99,6 +117,9 @@ fn index(file: &File) -> Result<(Vec<String>, Vec<Entry>), Wrong> {
     let Heading { index, names } = Heading::read(&bytes).map_err(|(byte, expected)| wrong(byte, expected))?;
     let [first, length_of_names] = names;
     inside("the list of names", first.checked_add(length_of_names))?;
+    if length_of_names > LONGEST_NAMES {
+        return Err(wrong(32, "a list of names of at most 4 MiB"));
+    }
     inside("the index", index.end())?;
 
     let mut list = vec![0; length_of_names as usize];
@@ -169,7 +190,17 @@ impl Chunks<'_> {
             };
             return Err(self.wrong(chunk, reason));
         }
-        let mut bytes = vec![0; rows * columns * size_of::<E>()];
+        let length = rows * columns * size_of::<E>();
+        let mut bytes = Vec::new();
+        if length as u64 > MOST_HOLES.max(self.frames.on_disk.saturating_mul(100)) {
+            return Err(
+                self.wrong(chunk, Reason::Hole { length: length as u64, on_disk: self.frames.on_disk })
+            );
+        }
+        bytes
+            .try_reserve_exact(length)
+            .map_err(|_| self.wrong(chunk, Reason::Memory { length: length as u64 }))?;
+        bytes.resize(length, 0);
         let file = &mut self.frames.file;
         let read = file.seek(SeekFrom::Start(entry.at)).and_then(|_| file.read_exact(&mut bytes));
         read.map_err(|cause| self.wrong(chunk, Reason::Io(cause)))?;

@@ -73,6 +73,7 @@ pub(super) static VOCABULARY: Vocabulary = Vocabulary {
         method: "hard-disks",
         groups: &[HEADING, PLANAR_DOMAIN, DISCS, OWN, INSTRUCTIONS, TARGETED, OUTPUT, SUMMED],
         rivals: &[DISC_RIVALS, DURATION],
+        advice: &[],
     },
     rules: &[disagreements, own_rules],
     presets: super::presets::PRESETS,

@@ -112,8 +112,9 @@ fn grid(values: &Values, domain: &Domain, per_side: u64, reach: f64) -> Result<G
         let most =
             domain.lengths().map(|side| (side / reach).floor()).into_iter().fold(f64::INFINITY, f64::min);
         let message = format!(
-            "search.sectors = {per_side} makes sectors {:.6} wide, narrower than the cut-off {reach:.6}: pairs would be missed",
-            edge[0].min(edge[1])
+            "search.sectors = {per_side} makes sectors {} wide, narrower than the cut-off {}: pairs would be missed",
+            significant(edge[0].min(edge[1]), 7),
+            significant(reach, 7)
         );
         let error = values.spot(&PER_SIDE).error(Reason::Geometry, message);
         return Err(match most >= FEWEST {

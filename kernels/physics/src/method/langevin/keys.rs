@@ -67,6 +67,7 @@ pub(super) static VOCABULARY: Vocabulary = Vocabulary {
             SUMMED,
         ],
         rivals: &[DISC_RIVALS, DURATION],
+        advice: &[],
     },
     rules: &[disagreements, too_many_steps, own_rules],
     presets: super::presets::PRESETS,

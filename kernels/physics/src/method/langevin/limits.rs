@@ -3,6 +3,7 @@
 use super::options::{PairLaw, SchemeKind};
 use super::scene::Scene;
 use crate::method::{Beyond, StepLimit};
+use crate::number::significant;
 
 /// The energy, in kT, of the hardest collisions that are looked at: of a million pairs about fifty meet harder.
 const HARDEST: f64 = 10.0;
@@ -16,7 +17,10 @@ pub(super) fn step_limits(scene: &Scene, diameter: f64, mass: f64) -> Vec<StepLi
     if scene.law != PairLaw::None {
         let (step, force) = bound(scene, diameter, mass);
         limits.push(limit("source-bound", step, Beyond::Unstable, {
-            format!("√(2 m r_c/F) with F = 24 ε/σ = {force:.4}: necessary, by far not sufficient")
+            format!(
+                "√(2 m r_c/F) with F = 24 ε/σ = {}: necessary, by far not sufficient",
+                significant(force, 5)
+            )
         }));
         let (step, nearest) = stiffest(scene, diameter, mass);
         limits.push(limit("hardest-collision", step, Beyond::Unstable, {

@@ -11,6 +11,7 @@ use crate::memory::{Foreseen, OfRanks, PROGRAM, available};
 use crate::method::entry::left_out;
 use crate::method::pairwise::{Dynamics, ToReach};
 use crate::method::{Fact, Failure, Prepared, Purpose, Schedule, Simulation, Startable, VectorProgram};
+use crate::number::significant;
 use crate::particles::{Particle, Particles};
 use crate::structure::PairForces;
 use crate::words::Words;
@@ -62,22 +63,29 @@ impl Checked {
         let by = match &self.found {
             Found::Lattice(shape, _) => format!("lattice of {} × {} cells", shape.columns(), shape.rows()),
             Found::Sectors(grid) => format!("{} × {} sectors", grid.counts[0], grid.counts[1]),
-            Found::Lists(_, skin) => format!("neighbour lists to {:.4} beyond the cut-off", skin),
+            Found::Lists(_, skin) => {
+                format!("neighbour lists to {} beyond the cut-off", significant(*skin, 5))
+            }
         };
         let mut facts = vec![
             Fact::new("units", scene.units.as_str(), "units", scene.units.as_str()),
             Fact::new("grains", count, "particles", count.to_string()),
-            Fact::new("sides", json!([x, y]), "box", format!("{x:.6} × {y:.6}")),
+            Fact::new(
+                "sides",
+                json!([x, y]),
+                "box",
+                format!("{} × {}", significant(x, 7), significant(y, 7)),
+            ),
             Fact::data("periodic", json!(domain.periodic())),
-            Fact::new("density", density, "density N σ²/A", format!("{density:.4}")),
+            Fact::new("density", density, "density N σ²/A", significant(density, 5)),
             Fact::new("law", scene.law.word(), "pairs", scene.law.word()),
         ];
         if scene.law != PairLaw::None {
-            facts.push(Fact::new("cutoff", *reach, "cut-off", format!("{reach:.6}")));
+            facts.push(Fact::new("cutoff", *reach, "cut-off", significant(*reach, 7)));
         }
         facts.push(Fact::new("search", scene.by.word(), "search", by));
         facts.push(Fact::new("noise_seed", self.seed, "seed of the noise", self.seed.to_string()));
-        facts.push(Fact::words("steps", format!("{} of dt = {}", scene.run.steps, scene.dt)));
+        facts.push(Fact::words("steps", format!("{} of dt = {:?}", scene.run.steps, scene.dt)));
         facts
     }
 

@@ -223,6 +223,10 @@ impl Simulation for Running {
         self.stepper.elapsed().clock()
     }
 
+    fn time_step(&self) -> Option<f64> {
+        Some(self.stepper.elapsed().dt)
+    }
+
     fn particles(&self) -> Particles {
         self.stepper.particles()
     }
@@ -326,11 +330,11 @@ impl Simulation for Running {
     fn in_words(&self) -> String {
         let Seen { temperature, pressure, msd, .. } = self.seen();
         format!(
-            "{} particles, {} lost{}; temperature {:.4}, pressure {}, mean square displacement {}",
+            "{} particles, {} lost{}; temperature {}, pressure {}, mean square displacement {}",
             self.left(),
             self.losses.count(),
             self.losses.first_in_words().map(|first| format!(", {first}")).unwrap_or_default(),
-            temperature,
+            significant(temperature, 4),
             significant(pressure, 5),
             significant(msd, 5)
         )

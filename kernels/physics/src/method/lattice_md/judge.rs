@@ -65,8 +65,9 @@ pub(super) fn judge_depth(
 /// The failure of discs that moved farther than `limit` (length) in a step; the first would not in a step of `dt` (time).
 fn long_step(at: Clock, count: u64, first: Culprit, limit: f64, dt: f64) -> Failure {
     let what = format!(
-        "{count} discs moved farther than {limit:.6} in the step, first {first}; contacts deeper than law.max_penetration \
-         could pass unseen between two steps"
+        "{count} discs moved farther than {} in the step, first {first}; contacts deeper than law.max_penetration \
+         could pass unseen between two steps",
+        significant(limit, 7)
     );
     let remedy = format!(
         "lower dt to {dt}, slow the discs, or set integrator.on_long_step = \"count\"",

@@ -277,6 +277,10 @@ impl Simulation for Running {
         self.engine.elapsed().clock()
     }
 
+    fn time_step(&self) -> Option<f64> {
+        Some(self.model.dt)
+    }
+
     fn particles(&self) -> Particles {
         self.engine.particles()
     }

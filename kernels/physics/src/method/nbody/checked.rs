@@ -4,7 +4,7 @@ use super::choice;
 use super::keys::{BODIES, ENGINE, GENERATE, SOFTENING};
 use super::options::{Engine, StartKind};
 use super::scene::Scene;
-use super::starts::bodies;
+use super::starts::{Body, bodies};
 use crate::method::Prepared;
 use crate::particles::{Kind, Particle, Particles};
 use crate::scene::{PRECISION, Precision, Read, Reason, SceneError, SceneErrors, Values};
@@ -55,6 +55,7 @@ pub(super) fn checked(values: Values) -> Result<Checked, SceneErrors> {
         SceneErrors::none_of(std::mem::take(&mut errors))?;
     }
     let of = bodies(&scene.start, scene.softening);
+    let radius = radius_shown(&scene, &of);
     let all = of.iter().zip(1..).map(|(&(mass, position, velocity), id)| Particle {
         id,
         kind: Kind::Grain,
@@ -62,8 +63,7 @@ pub(super) fn checked(values: Values) -> Result<Checked, SceneErrors> {
         velocity,
         angle: 0.0,
         omega: 0.0,
-        // Points have none; it is what a viewer draws.
-        radius: scene.softening.max(0.01),
+        radius,
         mass,
     });
     let particles = Particles::new(all.collect());
@@ -76,6 +76,23 @@ pub(super) fn checked(values: Values) -> Result<Checked, SceneErrors> {
     SceneErrors::none_of(errors)?;
     let choices = choice::choose(&mut scene, particles.len());
     Ok(Checked { scene, particles, choices })
+}
+
+/// The radius that viewers draw, for points have none: the softening, or a hundredth of how far bodies are from their middle.
+fn radius_shown(scene: &Scene, bodies: &[Body]) -> f64 {
+    /// A hundredth of the scale of starts that are made.
+    const SMALL: f64 = 0.01;
+    let mut scale = 1.0;
+    if scene.start.kind == StartKind::List {
+        let count = bodies.len() as f64;
+        let middle = [0, 1, 2].map(|axis| bodies.iter().map(|(_, at, _)| at[axis] / count).sum::<f64>());
+        let way = |at: &[f64; 3], axis: usize| at[axis] - middle[axis];
+        let far = |at: &[f64; 3]| libm::hypot(libm::hypot(way(at, 0), way(at, 1)), way(at, 2));
+        let mut ways: Vec<f64> = bodies.iter().map(|(_, at, _)| far(at)).collect();
+        ways.sort_by(f64::total_cmp);
+        scale = ways.get(ways.len() / 2).copied().unwrap_or(scale);
+    }
+    scene.softening.max((SMALL * scale).clamp(f64::MIN_POSITIVE, f64::MAX))
 }
 
 /// Fewer than two bodies, or masses that are not positive.

@@ -69,6 +69,11 @@ pub(super) static VOCABULARY: Vocabulary = Vocabulary {
         method: "nbody",
         groups: &[HEADING, OWN, STEP, ARITHMETIC, INSTRUCTIONS, STEPPED_RUN, TARGETED, OUTPUT],
         rivals: &[DURATION],
+        advice: &[(
+            "particles.file",
+            "bodies have no start file: list them in particles.bodies, a row [mass, x, y, z, vx, vy, vz] each, with \
+             particles.generate = \"list\"",
+        )],
     },
     rules: &[too_many_steps, own_rules],
     presets: super::presets::PRESETS,

@@ -49,7 +49,7 @@ impl Checked {
             Fact::new("start", scene.start.kind.word(), "start", scene.start.kind.word()),
             Fact::new("softening", scene.softening, "softening", scene.softening.to_string()),
             Fact::new("integrator", scene.scheme.word(), "integrator", scene.scheme.word()),
-            Fact::words("steps", format!("{} of dt = {}", scene.run.steps, scene.dt)),
+            Fact::words("steps", format!("{} of dt = {:?}", scene.run.steps, scene.dt)),
         ]
     }
 

@@ -308,6 +308,10 @@ impl Simulation for Running {
         Clock { steps: self.steps, time: self.steps as f64 * self.dt, events: 0 }
     }
 
+    fn time_step(&self) -> Option<f64> {
+        Some(self.dt)
+    }
+
     fn particles(&self) -> Particles {
         let mut particles = self.particles.clone();
         for (number, body) in particles.all_mut().iter_mut().enumerate() {

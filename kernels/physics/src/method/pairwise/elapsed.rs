@@ -7,7 +7,7 @@ use crate::method::Clock;
 #[derive(Clone, Debug)]
 pub struct Elapsed {
     /// Time step (time).
-    dt: f64,
+    pub dt: f64,
     /// Steps since the start of the scene.
     pub steps: u64,
     /// Periods that discs have crossed.

@@ -1,0 +1,89 @@
+//! Formats of other programs, as far as their first bytes show them.
+
+use std::fmt;
+
+/// A format that is not read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Trajectory of HOOMD-blue, or of this program.
+    Gsd,
+    /// Positions of CHARMM, NAMD or LAMMPS.
+    Dcd,
+    /// A file for `read_data`.
+    LammpsData,
+    /// A dump.
+    LammpsDump,
+    /// XYZ without `key=value` in its second line.
+    PlainXyz,
+    /// Spheres of programs for hard particles.
+    Sph,
+    /// Compressed.
+    Gzip,
+    /// A container of arrays.
+    Hdf5,
+    /// A container of arrays.
+    NetCdf,
+    /// Text of two bytes a character.
+    Utf16,
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Format::Gsd => "a GSD file",
+            Format::Dcd => "a DCD file",
+            Format::LammpsData => "a LAMMPS data file",
+            Format::LammpsDump => "a LAMMPS dump",
+            Format::PlainXyz => "plain XYZ, without `key=value` in its second line",
+            Format::Sph => ".sph, a file of spheres",
+            Format::Gzip => "compressed (gzip)",
+            Format::Hdf5 => "an HDF5 file",
+            Format::NetCdf => "a NetCDF file",
+            Format::Utf16 => "text in UTF-16",
+        })
+    }
+}
+
+/// First bytes, and where they are.
+const SIGNATURES: [(usize, &[u8], Format); 8] = [
+    (0, b"\xdf\x65\xdf\x65\xdf\x65\xdf\x65", Format::Gsd),
+    (4, b"CORD", Format::Dcd),
+    (0, b"\x1f\x8b", Format::Gzip),
+    (0, b"\x89HDF\r\n\x1a\n", Format::Hdf5),
+    (0, b"CDF", Format::NetCdf),
+    (0, b"\xff\xfe", Format::Utf16),
+    (0, b"\xfe\xff", Format::Utf16),
+    (0, b"ITEM:", Format::LammpsDump),
+];
+
+impl Format {
+    /// The format of a file that begins with these bytes; none where it may be XYZ.
+    pub(super) fn of(first: &[u8]) -> Option<Format> {
+        let begins = |&&(at, bytes, _): &&(usize, &[u8], Format)| {
+            first.get(at..).is_some_and(|rest| rest.starts_with(bytes))
+        };
+        if let Some(&(_, _, format)) = SIGNATURES.iter().find(begins) {
+            return Some(format);
+        }
+        // LAMMPS passes over the first line; below it, in any order, are the numbers of things and the box.
+        let mut lines = first.split(|&byte| byte == b'\n').skip(1).take(40);
+        let words = |line: &[u8]| {
+            String::from_utf8_lossy(line).split_ascii_whitespace().map(str::to_owned).collect::<Vec<_>>()
+        };
+        let is_data = |line: &[u8]| match words(line).as_slice() {
+            [count, what] => what == "atoms" && count.parse::<u64>().is_ok(),
+            _ => false,
+        };
+        lines.any(is_data).then_some(Format::LammpsData)
+    }
+
+    /// The format of a file whose second line, behind a number of discs, is this one; none where it is extended XYZ.
+    pub(super) fn of_comment(comment: &str) -> Option<Format> {
+        if comment.contains('=') {
+            return None;
+        }
+        let sides: Option<Vec<f64>> =
+            comment.split_ascii_whitespace().map(|word| word.parse().ok()).collect();
+        Some(if sides.is_some_and(|sides| sides.len() == 3) { Format::Sph } else { Format::PlainXyz })
+    }
+}
