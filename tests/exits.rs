@@ -263,14 +263,14 @@ fn forged_checkpoints_end_with_6() {
     }
 }
 
-/// What launchers set does not keep verbs from working that start nothing; a run among several processes is refused where they could
+/// Variables of launchers do not keep verbs from working that start nothing; a run among several processes is refused where they could
 /// not speak to each other.
 #[test]
 fn launchers_are_asked_for_what_starts_something() {
     const LAUNCHERS: [[(&str, &str); 2]; 3] = [
         [("PMI_SIZE", "8"), ("PMI_RANK", "0")],
         [("OMPI_COMM_WORLD_SIZE", "8"), ("OMPI_COMM_WORLD_RANK", "0")],
-        // What srun sets with PMIx.
+        // srun with PMIx.
         [("SLURM_NTASKS", "8"), ("PMIX_RANK", "0")],
     ];
     let folder = tempfile::tempdir().unwrap();

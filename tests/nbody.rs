@@ -171,7 +171,8 @@ fn what_cannot_be_is_refused_and_what_breaks_is_said() {
     let short = list("[1.0, 0, 0]");
     let endless = list("[1.0, 0, 0, 0, 0, 0, 0], [1.0, nan, 0, 0, 0, 0, 0]");
     let light = list("[1.0, 0, 0, 0, 0, 0, 0], [1e-19, 1, 0, 0, 0, 0, 0]");
-    let cases: [(&[&str], &[&str]); 12] = [
+    let cases: [(&[&str], &[&str]); 13] = [
+        (&["particles.file=start.xyz"], &["bodies have no start file", "list them in particles.bodies"]),
         (&["particles.generate=list", &one], &["one body alone"]),
         (&["particles.generate=list", &heavy], &["body 2 has the mass -1.0"]),
         (&["particles.generate=list", &twice], &["bodies 1 and 2 are both at (0, 1, 0)", "law.softening"]),

@@ -50,7 +50,7 @@ pub(crate) fn average(runs: &Bound<'_, PyTuple>) -> PyResult<Table> {
 }
 
 impl Run {
-    /// That of a folder, wherever this process goes later.
+    /// Run in a folder, wherever this process goes later.
     pub(crate) fn in_folder(folder: PathBuf) -> Run {
         Run { folder: std::path::absolute(&folder).unwrap_or(folder), scratch: None }
     }
@@ -77,13 +77,13 @@ impl Run {
 
 #[pymethods]
 impl Run {
-    /// Where it is: an absolute path.
+    /// The folder, as an absolute path.
     #[getter]
     fn folder(&self) -> &Path {
         &self.folder
     }
 
-    /// Whether the folder goes with the last run that is of it.
+    /// True where the folder goes with the last run that is of it.
     #[getter]
     fn _is_temporary(&self) -> bool {
         self.scratch.is_some()

@@ -78,7 +78,7 @@ impl State {
         }
     }
 
-    /// Where an advance ends, and the sum of times that it then has come to.
+    /// End of an advance by a distance, and the sum of times that is then reached.
     fn end_of(&self, distance: Until) -> (Until, Option<TimeSum>) {
         let clock = self.running.clock();
         let Until::Time(time) = distance else { return (distance.after(&clock), None) };

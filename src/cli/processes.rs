@@ -7,7 +7,7 @@ use crate::study::StudyError;
 use stripmine_physics::method::{DISMISSED, Failure as Broken, FailureKind};
 use stripmine_physics::ranks::{self, Crew, Gone, Parcel, Ranks, dismiss, first_to_differ};
 
-/// How a launcher tells processes how many they are, and which one each is.
+/// Variables by which a launcher tells processes how many they are, and which one each is.
 struct Launcher {
     size: &'static str,
     rank: &'static str,
@@ -45,7 +45,7 @@ fn own_place() -> Option<Launched> {
     launched(|name| std::env::var(name).ok())
 }
 
-/// Whether this process reports what fails: the first one, the only one, or any where each works on its own.
+/// Reports whether this process says what fails: the first one, the only one, or any where each works on its own.
 pub(super) fn is_first(verb: &str) -> bool {
     ALONE.contains(&verb) || own_place().is_none_or(|place| place.rank == 0)
 }

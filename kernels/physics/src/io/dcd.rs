@@ -22,7 +22,7 @@ pub struct Positions {
     pub places: Vec<[f32; 3]>,
 }
 
-/// How far frames are apart.
+/// Distance of frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spacing {
     /// Steps between frames.
@@ -32,7 +32,7 @@ pub struct Spacing {
 }
 
 impl Spacing {
-    /// As the heading says it.
+    /// Numbers of the heading.
     fn numbers(self) -> [i32; 2] {
         [whole(self.steps), (self.dt as f32).to_bits().cast_signed()]
     }
@@ -50,7 +50,7 @@ pub struct Writer {
     spacing: Spacing,
     /// The step of the next frame; none before the first one.
     next: Option<u64>,
-    /// Whether the heading says this spacing: nothing is added to frames that are otherwise apart.
+    /// True where the heading says this spacing: nothing is added to frames that are otherwise apart.
     is_even: bool,
 }
 
@@ -92,7 +92,7 @@ impl Writer {
         })
     }
 
-    /// Whether frames go on as far apart as those that are there.
+    /// Reports whether the frames that follow are as far apart as those that are there.
     pub fn is_even(&self) -> bool {
         self.is_even
     }
@@ -118,7 +118,7 @@ impl Writer {
         self.file.sync()
     }
 
-    /// Whether a frame is a whole number of spacings after those that are there.
+    /// Reports whether a frame is the next one of an evenly spaced row.
     fn takes(&self, step: u64) -> bool {
         self.is_even && step.is_multiple_of(self.spacing.steps) && self.next.is_none_or(|next| next == step)
     }
@@ -157,7 +157,7 @@ pub fn write(frame: &Positions, to: &mut Writer) -> io::Result<()> {
 
 /// Bytes of the heading.
 const HEADING: usize = (84 + 8) + (84 + 8) + (4 + 8);
-/// Where its numbers are: the first step, the steps between frames, the time step, whether frames have a box, and how many particles.
+/// Places of its numbers: the first step, the steps between frames, the time step, whether frames have a box, and how many particles.
 const FIRST: usize = 12;
 const STEPS: usize = 16;
 const DT: usize = 44;

@@ -24,7 +24,7 @@ pub(super) struct Growing {
     pub(super) dcd: Option<Frames<Positions, dcd::Writer>>,
     pub(super) gsd: Option<Frames<LoggedFrame, gsd::Writer>>,
     pub(super) events: Option<GrowingFile>,
-    /// How far the frames of DCD are apart.
+    /// Distance of the frames of DCD.
     pub(super) pace: Pace,
 }
 

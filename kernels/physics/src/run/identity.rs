@@ -30,7 +30,7 @@ pub(super) struct Identity {
 }
 
 impl Identity {
-    /// That of a job whose run is in `folder`.
+    /// Identity of a job whose run is in `folder`.
     pub(super) fn of(Job { prepared, program, .. }: Job<'_>, folder: &Path) -> Identity {
         let discs = digest(prepared.particles());
         let file = prepared.start_file.as_deref();

@@ -1,4 +1,4 @@
-//! How far the snapshots of a run are apart, as a file of evenly spaced frames says it.
+//! Distance of the snapshots of a run, for a file of evenly spaced frames.
 
 use crate::io::dcd::Spacing;
 use crate::method::{Clock, Every, Simulation};
@@ -12,11 +12,11 @@ pub(super) enum Pace {
     Time(f64),
 }
 
-/// Where there is a snapshot at the start alone, or the steps have no length: any number stands for it.
+/// Length of steps that have none, and distance of a snapshot at the start alone: any number serves.
 const NO_MATTER: f64 = 1.0;
 
 impl Pace {
-    /// That of the snapshots of a simulation.
+    /// Distance of the snapshots of a simulation.
     pub(super) fn of(snapshots: Every, simulation: &dyn Simulation) -> Pace {
         match (snapshots, simulation.time_step()) {
             (Every::Time(time), None) => Pace::Time(time),
@@ -27,7 +27,7 @@ impl Pace {
         }
     }
 
-    /// As the heading of a file says it.
+    /// Spacing for the heading of a file.
     pub(super) fn spacing(self) -> Spacing {
         match self {
             Pace::Steps(spacing) => spacing,

@@ -92,7 +92,7 @@ impl Layout {
         if reasons.is_empty() { Ok(layout) } else { Err(reasons) }
     }
 
-    /// Whether rows say the ids of their discs; where they do not, discs are numbered from 1.
+    /// Reports whether rows have ids; discs without are numbered from 1.
     pub(super) fn has_ids(&self) -> bool {
         self.columns[ID].is_some()
     }

@@ -76,7 +76,7 @@ pub enum Reason {
     Hole {
         /// Its length (bytes).
         length: u64,
-        /// What the file takes on the disk (bytes).
+        /// Bytes that the file takes on the disk.
         on_disk: u64,
     },
     /// A chunk that is not there.

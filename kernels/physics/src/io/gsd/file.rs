@@ -119,7 +119,7 @@ impl GsdFile {
 
     /// Reads the frames up to a length, each where it must be; whether they are there, and all of the index.
     fn read_up_to(&mut self, length: u64) -> io::Result<bool> {
-        /// Where the heading says where the index is.
+        /// Bytes of the heading that say where the index is.
         const MOVES: std::ops::Range<usize> = 8..24;
         let (first, list) = (self.heading(), list_of(&self.names));
         let mut heading = [0; HEADING as usize];
