@@ -186,7 +186,9 @@ mod tests {
 
     #[test]
     fn launchers_are_recognised_by_size_and_rank() {
-        let cases: [(&[(&str, &str)], Option<(usize, usize)>); 10] = [
+        /// Variables, and the rank and count that they tell.
+        type Case<'a> = (&'a [(&'a str, &'a str)], Option<(usize, usize)>);
+        let cases: [Case<'_>; 10] = [
             (&[], None),
             (&[("PMI_SIZE", "8"), ("PMI_RANK", "3")], Some((3, 8))),
             (&[("OMPI_COMM_WORLD_SIZE", "2"), ("OMPI_COMM_WORLD_RANK", "1")], Some((1, 2))),

@@ -245,8 +245,8 @@ mod tests {
         let frame = |step| Positions { step, cell: [3.0, 4.0], places: vec![[step as f32, 0.0, 0.0]] };
         let steps = || -> Vec<f32> {
             let bytes = std::fs::read(&path).unwrap();
-            let frames = records(&bytes)[3..].chunks(4).map(|frame| frame[1].try_into().unwrap());
-            frames.map(f32::from_le_bytes).collect()
+            let records = records(&bytes);
+            records[3..].chunks(4).map(|frame| f32::from_le_bytes(frame[1].try_into().unwrap())).collect()
         };
         let mut file = Writer::create(&path, even).unwrap();
         for step in [0, 1000, 2000, 2050] {
