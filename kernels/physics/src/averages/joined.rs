@@ -8,11 +8,14 @@ const SAME: f64 = 1e-9;
 /// A number is conserved where runs take it no farther from its first value than this part of what lies between the runs.
 const CONSERVED: f64 = 0.1;
 
+/// Standard deviations of χ²/(R − 1) above 1 that are chance: one of a hundred joins of runs of one ensemble is beyond.
+const CHANCE: f64 = 3.0;
+
 /// Joins the averages of runs that observe the same quantities.
 ///
 /// Runs of a closed system differ for good, as by the energy of their starts: each is one independent sample, and Student's t of R runs has
 /// R − 1 degrees of freedom. Runs that differ in no conserved number are of one ensemble: their mean has the error of theirs,
-/// and where they differ by more than that explains, the error grows by √(χ²/(R − 1)) (Birge, Phys. Rev. 40, 207 (1932)).
+/// and where they differ by more than chance explains, the error grows by √(χ²/(R − 1)) (Birge, Phys. Rev. 40, 207 (1932)).
 pub fn joined(runs: &[Averages]) -> Averages {
     let Some(first) = runs.first() else {
         return Averages { bar: BAR, rows: 0, span: 0.0, runs: 0, quantities: vec![] };
@@ -123,8 +126,10 @@ impl Error {
         let all = total(&|it| it.span);
         let squares = total(&|it| (it.span / all * it.standard_error).powi(2));
         let spread = total(&|it| ((it.mean - mean) / it.standard_error).powi(2));
+        let excess = spread / (runs - 1.0);
+        let is_chance = excess < 1.0 + CHANCE * (2.0 / (runs - 1.0)).sqrt();
         Error {
-            standard_error: squares.sqrt() * (spread / (runs - 1.0)).sqrt().max(1.0),
+            standard_error: squares.sqrt() * if is_chance { 1.0 } else { excess.sqrt() },
             freedoms: total(&|it| it.freedoms),
             samples: total(&|it| it.independent_samples),
         }
