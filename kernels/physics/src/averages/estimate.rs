@@ -105,9 +105,8 @@ pub fn of_independent(values: &[f64]) -> Option<[f64; 2]> {
 /// The mean of values one after the other in time, with the half width of its interval of 95 %: they may be correlated, and are taken to have
 /// left their start behind; none of fewer than two.
 pub fn of_correlated(values: &[f64]) -> Option<[f64; 2]> {
-    (values.len() > 1)
-        .then(|| WaveError::of(values))
-        .map(|it| [it.mean, bar(it.standard_error, it.waves as f64)])
+    let error = (values.len() > 1).then(|| WaveError::of(values))?;
+    Some([error.mean, bar(error.without_doubt(), error.waves as f64)])
 }
 
 /// The outcome of a series of values `spacing` apart, the first at `from` + `spacing` (time).
@@ -286,6 +285,18 @@ mod tests {
                 independent_samples < FEWEST_SAMPLES && enough_at > 500.0,
                 "{independent_samples} {enough_at}"
             );
+        }
+    }
+
+    /// Of ten and of a hundred values that are known to be stationary, the bar holds the truth as often as it says.
+    #[test]
+    fn bars_of_stationary_values_hold_the_truth() {
+        for (length, memory) in [(10, 0.0), (100, 0.0), (100, 0.5), (400, 0.9)] {
+            let found =
+                (0..1000).map(|seed| of_correlated(&Noise::new(seed).series(length, memory)).unwrap());
+            let held = share(found.filter(|[mean, bar]| mean.abs() <= *bar).count(), 1000);
+            println!("{length} values, {memory}: {held}");
+            assert!((0.92..=0.98).contains(&held), "{length} values, {memory}: {held}");
         }
     }
 

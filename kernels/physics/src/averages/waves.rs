@@ -70,6 +70,11 @@ impl WaveError {
         }
     }
 
+    /// Standard error where no number of samples decides whether there is a mean.
+    pub(super) fn without_doubt(&self) -> f64 {
+        self.standard_error * (self.samples / self.seeming).sqrt()
+    }
+
     /// Whether the slowest wave is larger than the others by more than chance makes it, with a probability: the series drifts.
     pub(super) fn drifts(&self, probability: f64) -> bool {
         self.waves > 1 && self.slowest > student(probability, self.waves - 1).powi(2)
