@@ -1,5 +1,8 @@
 //! Event-driven hard discs, as a user meets them: physics against outside values, resumption, and what is refused.
 
+#[path = "hard_disks/sums.rs"]
+mod sums;
+
 use serde_json::Value;
 use std::fs;
 use std::path::Path;

@@ -255,10 +255,10 @@ fn in_options(SceneErrors(mut mistakes): SceneErrors, given: &[Override]) -> Sce
     SceneErrors(mistakes)
 }
 
-/// A setting as a person reads it: numbers to four digits.
+/// A setting as a person reads it: numbers to five digits.
 fn brief(value: &Value) -> String {
     match value {
-        Value::Number(number) if number.is_f64() => format!("{:.4}", number.as_f64().unwrap_or(f64::NAN)),
+        Value::Number(number) if number.is_f64() => significant(number.as_f64().unwrap_or(f64::NAN), 5),
         Value::String(word) => word.clone(),
         Value::Bool(yes) => if *yes { "yes" } else { "no" }.to_owned(),
         Value::Null => "none".to_owned(),
@@ -277,8 +277,11 @@ fn text(result: &Throughput) -> String {
         .collect();
     let settings: Vec<String> =
         settings.iter().map(|(name, value)| format!("{} {}", name.replace('_', " "), brief(value))).collect();
-    let compared = result.compared.iter().map(|(name, [from, to])| format!("{name} {from:.5} to {to:.5}"));
-    let at_end = result.at_end.iter().map(|(name, value)| format!("{name} {value}"));
+    let compared = result
+        .compared
+        .iter()
+        .map(|(name, [from, to])| format!("{name} {} to {}", significant(*from, 6), significant(*to, 6)));
+    let at_end = result.at_end.iter().map(|(name, value)| format!("{name} {}", significant(*value, 6)));
     let observed: Vec<String> = compared.chain(at_end).collect();
     format!(
         "{what}: {}, {}, {}\n{:.2} million {} a second (median {:.2}) over {} of {}\n\

@@ -127,13 +127,13 @@ impl System {
         let (prepared, method) = load(self.preset, &overrides, METHODS).unwrap();
         let mut simulation = prepared.start(Purpose::Run).unwrap();
         let mut rows = Rows::new(method.quantities);
-        rows.add(&simulation.observe());
+        rows.add(&simulation.row());
         let schedule = prepared.schedule;
         while !schedule.until.has_come(&simulation.clock()) {
             let next = schedule.rows.next(&simulation.clock()).unwrap();
             simulation.advance(&[schedule.until, next], &AtomicBool::new(false)).unwrap();
             if next.has_come(&simulation.clock()) {
-                rows.add(&simulation.observe());
+                rows.add(&simulation.row());
             }
         }
         Averages::of(&rows)

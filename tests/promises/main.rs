@@ -1,5 +1,6 @@
 //! What every method promises, with every engine, for every file, however often a run is stopped.
 
+mod few;
 mod files;
 mod table;
 
@@ -24,4 +25,17 @@ fn every_method_keeps_its_promises() {
 #[ignore = "long: cargo test --release --test promises -- --ignored --nocapture"]
 fn every_engine_keeps_every_promise() {
     println!("{:?}", hold(METHODS, command, Extent::Full));
+}
+
+#[test]
+fn runs_of_few_particles_resume() {
+    let [runs, resumed] = few::hold(1);
+    assert!(runs > 200 && resumed > 3 * runs, "{runs} runs, resumed {resumed} times");
+}
+
+/// The same for many more scenes.
+#[test]
+#[ignore = "long: cargo test --release --test promises -- --ignored --nocapture"]
+fn many_runs_of_few_particles_resume() {
+    println!("{:?}", few::hold(40));
 }

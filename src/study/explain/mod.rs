@@ -162,8 +162,8 @@ impl Target {
         let known: Vec<&'static str> = quantities.iter().filter(is_judged).map(|it| it.name).collect();
         let first = || {
             let of_trials = case.entry.trials.and_then(|trials| trials.observables.first().copied());
-            let since_start = quantities.iter().find(|it| matches!(it.kind, Kind::SinceStart { .. }));
-            of_trials.or(since_start.map(|it| it.name)).unwrap_or_default()
+            let of_intervals = quantities.iter().find(|it| it.kind == Kind::Interval);
+            of_trials.or(of_intervals.map(|it| it.name)).unwrap_or_default()
         };
         let name = name.unwrap_or_else(first);
         let place = quantities.iter().position(|it| it.name == name && is_judged(&it));

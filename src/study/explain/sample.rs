@@ -128,7 +128,7 @@ pub fn sample(
     let mut simulation = prepared.start(Purpose::Run)?;
     let start = begun.elapsed().as_secs_f64();
     let mut rows = Rows::new(quantities);
-    rows.add(&simulation.observe());
+    rows.add(&simulation.row());
     let (seconds, most) = match span {
         Span::Seconds(seconds) => (Some(seconds), f64::INFINITY),
         Span::Time(time, seconds) => (seconds, time),
@@ -146,7 +146,7 @@ pub fn sample(
         }
     };
     // Rows are evenly spaced from here on.
-    rows.add(&simulation.observe());
+    rows.add(&simulation.row());
     let running = Instant::now();
     // Of the stretches once it is warm, and of all.
     let (mut warm, mut all) = ((0.0, 0.0), (0.0, 0.0));
@@ -159,7 +159,7 @@ pub fn sample(
         if share.max(simulation.clock().time / most) > COLD {
             warm = (warm.0 + gone, warm.1 + spent);
         }
-        rows.add(&simulation.observe());
+        rows.add(&simulation.row());
     }
     let (gone, spent) = if warm.0 > 0.0 { warm } else { all };
     let row = timed_row(simulation.as_ref());

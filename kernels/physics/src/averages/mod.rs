@@ -84,7 +84,7 @@ fn what(quantity: Quantity) -> &'static str {
     match quantity.kind {
         Kind::Time | Kind::Instant => "values",
         Kind::Counter => "rate",
-        Kind::SinceStart { .. } => "intervals",
+        Kind::Interval => "intervals",
         Kind::Kept => "nothing",
     }
 }

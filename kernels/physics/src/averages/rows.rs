@@ -10,8 +10,8 @@ const EVEN: f64 = 1e-3;
 /// The rows of a run since they have been evenly spaced.
 ///
 /// The first row is the start of all increments and is no value itself. The others are kept as `MOST_BLOCKS` at most: of a
-/// longer run, twice as many rows are a block whenever these are full. Of a moment's value a block has the mean over its rows,
-/// of what is counted since the start the value at its end. The same rows make the same blocks in however many sessions.
+/// longer run, twice as many rows are a block whenever these are full. Of a moment's or an interval's value a block has the mean over its
+/// rows, of what is counted since the start the value at its end. The same rows make the same blocks in however many sessions.
 #[derive(Clone, Debug)]
 pub struct Rows {
     quantities: &'static [Quantity],
@@ -102,11 +102,10 @@ impl Rows {
     }
 
     fn enter(&mut self, row: &[f64]) {
-        let values = self.values(row);
         if self.open.0 == 0 {
-            self.open.1 = values;
+            self.open.1 = row.to_vec();
         } else {
-            for ((sum, value), quantity) in self.open.1.iter_mut().zip(values).zip(self.quantities) {
+            for ((sum, &value), quantity) in self.open.1.iter_mut().zip(row).zip(self.quantities) {
                 *sum = if quantity.kind.grows() { value } else { *sum + value };
             }
         }
@@ -137,49 +136,24 @@ impl Rows {
         self.length *= 2;
     }
 
-    /// A row as it enters blocks: of means since the start, the sums that they are of.
-    fn values(&self, row: &[f64]) -> Vec<f64> {
-        let all = row.iter().zip(self.quantities);
-        all.map(|(&value, quantity)| self.value(row, value, quantity.kind)).collect()
-    }
-
-    fn value(&self, row: &[f64], value: f64, kind: Kind) -> f64 {
-        match kind {
-            Kind::SinceStart { ideal, over } => {
-                (value - ideal) * row[self.time] * over.map_or(1.0, |over| row[self.place(over)])
-            }
-            _ => value,
-        }
-    }
-
-    fn place(&self, name: &str) -> usize {
-        self.quantities.iter().position(|it| it.name == name).unwrap_or_default()
-    }
-
     /// The series of which the average of a quantity is one: values, or increments in a unit of time. The first is of the stretch that
     /// ends [`block_spacing`](Self::block_spacing) after [`from`](Self::from).
     pub(super) fn series(&self, place: usize) -> Vec<f64> {
-        let kind = self.quantities[place].kind;
-        if !kind.grows() {
+        if !self.quantities[place].kind.grows() {
             return self.blocks.iter().map(|block| block[place]).collect();
         }
         let Some(base) = self.base.get(place) else { return vec![] };
         let duration = self.block_spacing();
-        let mut before = self.value(&self.base, *base, kind);
+        let mut before = *base;
         let rates = self.blocks.iter().map(|block| {
             let rate = (block[place] - before) / duration;
             before = block[place];
-            match kind {
-                Kind::SinceStart { ideal, over } => {
-                    ideal + rate / over.map_or(1.0, |over| block[self.place(over)])
-                }
-                _ => rate,
-            }
+            rate
         });
         rates.collect()
     }
 
-    /// The series of a quantity with the times at which its stretches end: (time, value). What is observed since the start is that of each stretch.
+    /// The series of a quantity with the times at which its stretches end: (time, value).
     pub fn course(&self, place: usize) -> Vec<[f64; 2]> {
         let (from, spacing) = (self.from(), self.block_spacing());
         let values = self.series(place).into_iter().zip(1_u32..);
@@ -205,17 +179,17 @@ mod tests {
         quantity("time", Kind::Time),
         quantity("x", Kind::Instant),
         quantity("count", Kind::Counter),
-        quantity("z", Kind::SinceStart { ideal: 1.0, over: Some("x") }),
+        quantity("z", Kind::Interval),
         quantity("energy", Kind::Kept),
     ];
 
-    /// A row of a run in which the sum of z is that of `sum`.
+    /// A row of a run with a sum, and a mean over the interval before it of `sum` as well.
     fn row(time: f64, x: f64, sum: f64) -> [f64; 5] {
-        [time, x, 3.0 * sum, if time > 0.0 { 1.0 + sum / (time * x) } else { 1.0 }, -time]
+        [time, x, 3.0 * sum, sum, -time]
     }
 
     #[test]
-    fn means_since_the_start_become_those_of_intervals() {
+    fn the_first_row_is_no_value_and_the_start_of_increments() {
         let mut rows = Rows::new(QUANTITIES);
         // By hand: increments 1, 3 and 2 within half a unit of time each, at x = 2.
         for (time, sum) in [(0.0, 0.0), (0.5, 1.0), (1.0, 4.0), (1.5, 6.0)] {
@@ -223,7 +197,7 @@ mod tests {
         }
         assert_eq!(rows.series(1), [2.0; 3]);
         assert_eq!(rows.series(2), [6.0, 18.0, 12.0]);
-        assert_eq!(rows.series(3), [2.0, 4.0, 3.0]);
+        assert_eq!(rows.series(3), [1.0, 4.0, 6.0]);
         assert_eq!((rows.kept(4), rows.from(), rows.now()), ([0.0, -1.5, 1.5], 0.0, 1.5));
     }
 

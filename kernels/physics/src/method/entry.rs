@@ -53,6 +53,12 @@ pub struct Quantity {
     pub doc: &'static str,
 }
 
+/// Whether a value of a quantity is one of a run that has not broken: a finite number, or none of a temperature, which does not exist
+/// without a degree of freedom.
+pub fn is_sound(quantity: &str, value: f64) -> bool {
+    value.is_finite() || value.is_nan() && quantity == "temperature"
+}
+
 /// What kind of number a quantity is, which decides what of it is averaged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
@@ -62,14 +68,8 @@ pub enum Kind {
     Instant,
     /// A count or a sum since the start: it has a rate.
     Counter,
-    /// `ideal` + S/(t x), with a sum S since the start, the time t, and the quantity x `over` of the moment, 1 if there is none: S
-    /// is averaged by its increments.
-    SinceStart {
-        /// The value where the sum is 0.
-        ideal: f64,
-        /// The name of x.
-        over: Option<&'static str>,
-    },
+    /// A mean over the time since the row before, of sums that every event adds to: values are averaged, but for the first, of no time.
+    Interval,
     /// What the equations keep or balance, but for what acts from outside: it shows errors, and is not averaged.
     Kept,
 }
@@ -77,7 +77,7 @@ pub enum Kind {
 impl Kind {
     /// Whether it sums up since the start.
     pub fn grows(self) -> bool {
-        matches!(self, Kind::Counter | Kind::SinceStart { .. })
+        self == Kind::Counter
     }
 }
 
@@ -401,8 +401,14 @@ pub trait Simulation: Send {
         Ok(())
     }
 
-    /// A value for each of the method's quantities.
+    /// A value for each of the method's quantities; means over an interval are of the time since the last [`row`](Self::row), or since the
+    /// start.
     fn observe(&self) -> Vec<f64>;
+
+    /// What [`observe`](Self::observe) gives, as a row: the next interval begins here.
+    fn row(&mut self) -> Vec<f64> {
+        self.observe()
+    }
 
     /// Everything that the future depends on, and what has been counted: a summary is the same in however many sessions.
     fn snapshot(&self) -> Snapshot;

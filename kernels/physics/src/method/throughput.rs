@@ -168,7 +168,7 @@ impl TimedRun {
         let mut running =
             TimedRun { bench, prepared, simulation, start, steps, before, compared, at_end, repeats };
         running.advance(equilibration)?;
-        running.before = running.simulation.observe();
+        running.before = running.simulation.row();
         Ok(running)
     }
 

@@ -333,7 +333,7 @@ pub fn run(
         recorder.log(&simulation.take_events())?;
         let is_over = until.has_come(&simulation.clock());
         let failed = match advanced.and_then(|()| if is_over { simulation.check() } else { Ok(()) }) {
-            Ok(()) => recorder.write_what_is_due(simulation.as_ref())?,
+            Ok(()) => recorder.write_what_is_due(simulation.as_mut())?,
             Err(failure) => Some(failure),
         };
         if let Some(failure) = failed {

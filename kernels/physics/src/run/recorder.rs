@@ -17,7 +17,7 @@ use crate::io::extxyz::Frame;
 use crate::io::gsd::LoggedFrame;
 use crate::io::{FileError, lammps, regular_file};
 use crate::method::{
-    Clock, Every, Failure, FailureKind, Prepared, Quantity, Schedule, Simulation, Snapshot, Until,
+    Clock, Every, Failure, FailureKind, Prepared, Quantity, Schedule, Simulation, Snapshot, Until, is_sound,
 };
 use crate::quoted;
 use crate::scene::Output;
@@ -95,7 +95,7 @@ impl Recorder {
     fn begin(
         mut folder: RunFolder,
         job: Job<'_>,
-        simulation: &dyn Simulation,
+        simulation: &mut dyn Simulation,
         notes: Vec<String>,
     ) -> Result<Recorder, RunError> {
         folder.clear()?;
@@ -239,7 +239,7 @@ impl Recorder {
     /// Writes what is due; gives the failure that only sums over all particles show.
     pub(super) fn write_what_is_due(
         &mut self,
-        simulation: &dyn Simulation,
+        simulation: &mut dyn Simulation,
     ) -> Result<Option<Failure>, RunError> {
         let clock = simulation.clock();
         let [rows, snapshots, mut checkpoints] =
@@ -276,14 +276,14 @@ impl Recorder {
         Ok(())
     }
 
-    /// A row of observables, unless one of them is no finite number.
-    fn thermo(&mut self, simulation: &dyn Simulation) -> Result<Option<Failure>, RunError> {
+    /// A row of observables, unless one of them is no finite number where there is one.
+    fn thermo(&mut self, simulation: &mut dyn Simulation) -> Result<Option<Failure>, RunError> {
         if let Err(failure) = simulation.check() {
             return Ok(Some(failure));
         }
-        let (clock, row) = (simulation.clock(), simulation.observe());
+        let (clock, row) = (simulation.clock(), simulation.row());
         let named = self.quantities.iter().zip(&row);
-        if let Some((quantity, &value)) = named.into_iter().find(|(_, value)| !value.is_finite()) {
+        if let Some((quantity, &value)) = named.into_iter().find(|(it, value)| !is_sound(it.name, **value)) {
             return Ok(Some(overflow(clock, quantity.name, value)));
         }
         self.growing.thermo.append(clock.number(), &row)?;

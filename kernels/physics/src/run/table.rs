@@ -1,6 +1,7 @@
 //! The table that a run has written, row by row.
 
 use crate::io::{FileError, regular_file};
+use crate::method::is_sound;
 use crate::quoted;
 use crate::reported::{Class, FilePlace, Reported};
 use std::fs::File;
@@ -85,7 +86,9 @@ impl TableReader {
         let Some(line) = self.next_line()? else { return Ok(None) };
         let row: Result<Vec<f64>, _> = line.split(',').map(str::parse).collect();
         let row = row.ok().filter(|row: &Vec<f64>| row.len() == self.columns.len());
-        let row = row.filter(|row| row.iter().all(|value| value.is_finite()));
+        let is_whole =
+            |row: &Vec<f64>| row.iter().zip(&self.columns).all(|(&value, column)| is_sound(column, value));
+        let row = row.filter(is_whole);
         row.map(Some).ok_or_else(|| self.wrong("expected a finite number for each column"))
     }
 

@@ -3,6 +3,7 @@
 use super::Stated;
 use crate::domain::Domain;
 use crate::near::Near;
+use crate::number::significant;
 use crate::particles::{Kind, Particles};
 use crate::scene::{
     FILE, GENERATE, POSITIONS, Reason, SceneError, Spot, Start, WALL_AMPLITUDE, WALL_POSITIONS, WallMotion,
@@ -96,6 +97,41 @@ impl Deep {
     }
 }
 
+/// Visits the pairs that overlap deeper than `limit`, a fraction of the sum of their radii, as (first, second, penetration), for as long as
+/// `visit` says so.
+fn visit_overlaps(
+    domain: &Domain,
+    particles: &Particles,
+    limit: f64,
+    mut visit: impl FnMut(usize, usize, f64) -> bool,
+) {
+    let Some([_, largest]) = particles.radii() else { return };
+    let mut near = Near::new(*domain, 2.0 * largest);
+    let discs = particles.all();
+    for (number, disc) in discs.iter().enumerate() {
+        let position = domain.wrapped(disc.place());
+        for (other, there) in near.of(position) {
+            let reach = disc.radius + discs[other as usize].radius;
+            let penetration = 1.0 - domain.distance(position, there) / reach;
+            if penetration > limit && !visit(other as usize, number, penetration) {
+                return;
+            }
+        }
+        near.add(number as u32, position);
+    }
+}
+
+/// How many pairs overlap deeper than `limit`, and how deep the deepest of them is, both as fractions of the sum of their radii. Counting ends
+/// at the first pair that overlaps deeper than `enough`.
+pub fn deepest_overlap(domain: &Domain, particles: &Particles, limit: f64, enough: f64) -> (usize, f64) {
+    let (mut count, mut deepest) = (0, 0.0);
+    visit_overlaps(domain, particles, limit, |_, _, penetration| {
+        (count, deepest) = (count + 1, f64::max(deepest, penetration));
+        penetration <= enough
+    });
+    (count, deepest)
+}
+
 /// Pairs that overlap deeper than `limit`, a fraction of the sum of the radii; `reason` says why they must not.
 pub fn overlaps(
     stated: &Stated<'_>,
@@ -104,24 +140,11 @@ pub fn overlaps(
     limit: f64,
     reason: &str,
 ) -> Vec<SceneError> {
-    let Some([_, largest]) = particles.radii() else { return Vec::new() };
-    let mut near = Near::new(*domain, 2.0 * largest);
-    let discs = particles.all();
-    let mut deep = Deep::default();
-    'all: for (number, disc) in discs.iter().enumerate() {
-        let position = domain.wrapped(disc.place());
-        for (other, there) in near.of(position) {
-            let reach = disc.radius + discs[other as usize].radius;
-            let penetration = 1.0 - domain.distance(position, there) / reach;
-            if penetration > limit {
-                deep.add((other as usize, number, penetration));
-            }
-            if deep.count == COUNTED {
-                break 'all;
-            }
-        }
-        near.add(number as u32, position);
-    }
+    let (discs, mut deep) = (particles.all(), Deep::default());
+    visit_overlaps(domain, particles, limit, |first, second, penetration| {
+        deep.add((first, second, penetration));
+        deep.count < COUNTED
+    });
     let Deep { worst, count } = deep;
     let mut errors: Vec<SceneError> = Vec::new();
     for (first, second, penetration) in worst {
@@ -132,10 +155,11 @@ pub fn overlaps(
         });
         let reach = discs[first].radius + discs[second].radius;
         let message = format!(
-            "{a} and {b} overlap at the start by {penetration:.4} of the sum of their radii, {:.4}; {reason}",
-            penetration * reach
+            "{a} and {b} overlap at the start by {} of the sum of their radii, {}; {reason}",
+            significant(penetration, 4),
+            significant(penetration * reach, 4)
         );
-        let least = format!("centres at least {:.6e} apart", (1.0 - limit) * reach);
+        let least = format!("centres at least {} apart", significant((1.0 - limit) * reach, 9));
         errors.push(spot_of(stated, particles, second).error(Reason::Overlap, message).expecting(least));
     }
     if let (Some(last), true) = (errors.last_mut(), count > NAMED) {

@@ -3,6 +3,7 @@
 use super::filling::{COMPRESSED, fill, grain_count};
 use super::{Stated, Uncompressed};
 use crate::domain::Domain;
+use crate::number::significant;
 use crate::particles::Particles;
 use crate::placement::Second;
 use crate::scene::{Amount, GENERATE, Grains, Reason, SceneError};
@@ -31,7 +32,9 @@ pub(super) fn compressed(
         match why {
             Uncompressed::Jammed { reached } => {
                 let message = format!(
-                    "{count} discs grew to a packing fraction of {reached:.4} of {packing:.4}, and jam"
+                    "{count} discs grew to a packing fraction of {} of {}, and jam",
+                    significant(reached, 4),
+                    significant(packing, 4)
                 );
                 spot.error(Reason::Placement, message)
                     .advising("lower count or packing_fraction, or take another seed")

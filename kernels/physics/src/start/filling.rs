@@ -75,7 +75,10 @@ pub(super) fn grain_count(
         )));
     }
     if count < 1.0 {
-        return Err(refuse(format!("no disc: one alone fills {share:.4} of the area open to grains")));
+        return Err(refuse(format!(
+            "no disc: one alone fills {} of the area open to grains",
+            significant(share, 4)
+        )));
     }
     // Few discs in a small box may do better than many in a large one.
     let compresses = most == COMPRESSED;
@@ -86,8 +89,10 @@ pub(super) fn grain_count(
         } else {
             "random placement jams at about"
         };
-        let error =
-            refuse(format!("{count} discs fill {fraction:.4} of the area open to grains; {how} {most}"));
+        let error = refuse(format!(
+            "{count} discs fill {} of the area open to grains; {how} {most}",
+            significant(fraction, 4)
+        ));
         return Err(error.advising(match compresses {
             true => "place fewer discs, or start from generate = \"hexagonal\"",
             false => "place fewer discs, or start from generate = \"compressed\" or \"hexagonal\"",

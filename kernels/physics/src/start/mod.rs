@@ -6,7 +6,7 @@ mod filling;
 mod making;
 mod meshing;
 
-pub use checks::{noun, outside, overlaps, readable};
+pub use checks::{deepest_overlap, noun, outside, overlaps, readable};
 pub use making::{Made, make, radii};
 
 use crate::particles::Particle;

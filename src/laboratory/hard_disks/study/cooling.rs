@@ -81,7 +81,7 @@ fn gas(discs: u64, restitution: f64, each: f64) -> Result<Gas, StudyError> {
     let scene = Overrides::new().set(&COUNT, discs);
     let begin =
         |restitution: f64| Running::begin("cooling-gas", &scene.clone().set(&RESTITUTION, restitution));
-    let names = ["time", "collisions", "temperature", "collision_rate"];
+    let names = ["time", "collisions", "temperature"];
     // An elastic gas forgets the lattice of the start, and shows its rate.
     let mut elastic = begin(1.0)?;
     let count = elastic.simulation.particles().grain_count() as f64;

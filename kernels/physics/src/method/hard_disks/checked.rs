@@ -8,17 +8,16 @@ use super::options::EngineChoice;
 use super::reference::choice::{candidates, mask};
 use super::reference::grid::Sizes;
 use super::scene::Scene;
+use super::squeezed::{ROUNDING, Squeeze};
 use crate::domain::{Domain, Side};
 use crate::method::{Prepared, Until};
+use crate::number::significant;
 use crate::particles::{Particle, Particles};
 use crate::scene::{GENERATE, RADIUS, Read, Reason, SceneError, SceneErrors, Values, WallMotion, Warning};
 use crate::start::{Stated, make, outside, overlaps};
 use std::sync::Arc;
 use stripmine_kernels::flight::Disc;
 use stripmine_kernels::mask::Mask;
-
-/// Discs may overlap by this part of the sum of their radii at the start: rounding.
-const ROUNDING: f64 = 1e-12;
 
 /// A checked scene.
 #[derive(Clone)]
@@ -49,9 +48,19 @@ pub(super) fn prepare(values: Values) -> Result<Prepared, SceneErrors> {
         compress,
     };
     let made = make(&stated)?;
-    let (domain, particles) = (made.domain, made.particles);
+    let (domain, mut particles, mut warnings) = (made.domain, made.particles, made.warnings);
+    let squeeze = Squeeze::of(&domain, &particles);
+    warnings.extend(squeeze.undone(&values, &scene, &mut particles));
     let mut errors = outside(&stated, &domain, &particles);
-    errors.extend(overlaps(&stated, &domain, &particles, ROUNDING, "hard discs do not overlap"));
+    if squeeze.is_deep() {
+        let found = overlaps(&stated, &domain, &particles, ROUNDING, "hard discs do not overlap");
+        errors.extend(found.into_iter().map(|error| match error.suggestion {
+            Some(_) => error,
+            None => {
+                error.advising("move the discs apart, lower their radii, or write positions with more digits")
+            }
+        }));
+    }
     errors.extend(beyond_sides(&values, &domain, &particles));
     errors.extend(squeezed(&values, &scene, &domain, &particles));
     errors.extend(fixed(&values, &particles));
@@ -67,7 +76,7 @@ pub(super) fn prepare(values: Values) -> Result<Prepared, SceneErrors> {
     SceneErrors::none_of(errors)?;
     SceneErrors::none_of(without_events(&values, &scene, domain, &particles).into_iter().collect())?;
     let particles = Arc::new(particles);
-    Ok(Checked { scene, domain, particles, mask, warnings: made.warnings, choices }.prepared())
+    Ok(Checked { scene, domain, particles, mask, warnings, choices }.prepared())
 }
 
 /// Discs that reach beyond closed sides.
@@ -98,7 +107,8 @@ fn squeezed(values: &Values, scene: &Scene, domain: &Domain, particles: &Particl
     let room = domain.length(1) - swing;
     (!scene.open_top && room < 2.0 * largest).then(|| {
         let message = format!(
-            "the floor rises by {swing} and leaves {room:.6} below the ceiling to a disc of radius {largest}"
+            "the floor rises by {swing} and leaves {} below the ceiling to a disc of radius {largest}",
+            significant(room, 7)
         );
         let error = values.spot(&FLOOR_AMPLITUDE).error(Reason::Geometry, message);
         error.advising(
@@ -202,7 +212,8 @@ fn serving(
         }
     };
     let Sizes { cells: [columns, rows], .. } = Sizes::new(domain, radii[0]);
-    let in_words = format!("{columns} × {rows} cells, discs of radii {:.4} to {:.4}", radii[0], radii[1]);
+    let [low, high] = radii.map(|radius| significant(radius, 5));
+    let in_words = format!("{columns} × {rows} cells, discs of radii {low} to {high}");
     match all.iter().find(|it| it.name == scene.mask) {
         Some(own) if own.predictions.is_finite() => {}
         Some(own) => {

@@ -133,7 +133,7 @@ mod tests {
     use super::*;
 
     fn at(time: f64, disc: u32, with: Partner) -> Occurred {
-        Occurred { time, disc, with, impact: None, thrust: 0.0, free: [0.0; 2] }
+        Occurred { time, disc, with, impact: None, thrust: 0.0, work: 0.0, action: 0.0, free: [0.0; 2] }
     }
 
     /// Events that are at most so far apart, of a group of discs in turn: after how many events that is found to be endless.

@@ -25,7 +25,7 @@ impl Log {
         disc: &dyn Fn(u32) -> &'d Disc,
         id: &dyn Fn(u32) -> u32,
     ) {
-        let Occurred { time, disc: number, with, impact, thrust, free } = *happened;
+        let Occurred { time, disc: number, with, impact, thrust, free, .. } = *happened;
         let own = disc(number);
         let (partner, towards, impulse) = match with {
             Partner::Disc(other) => {

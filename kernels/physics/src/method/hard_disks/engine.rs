@@ -1,6 +1,6 @@
 //! What every way to find events offers, and what it says of them. All give the same events at the same times, to the bit.
 
-use super::event::{Arena, Impact};
+use super::event::{Arena, Bounce, Impact};
 use super::operations::Operations;
 use crate::method::Snapshot;
 use stripmine_kernels::InstructionSet;
@@ -62,6 +62,10 @@ pub struct Occurred {
     pub impact: Option<Impact>,
     /// What a wall has done to the disc (mass · length/time); 0 between discs.
     pub thrust: f64,
+    /// Energy given to the discs; below 0 where it is taken.
+    pub work: f64,
+    /// Action of the flights that end here (energy · time); 0 where the kinetic energy never changes.
+    pub action: f64,
     /// Time since the event before, of the disc and of the one that it met.
     pub free: [f64; 2],
 }
@@ -87,15 +91,28 @@ impl Occurred {
     pub fn collision(arena: &Arena, a: (u32, &mut Disc), b: (u32, &mut Disc), time: f64) -> Occurred {
         let ((a, one), (b, other)) = if a.0 < b.0 { (a, b) } else { (b, a) };
         let free = [time - one.time, time - other.time];
+        let action =
+            if arena.keeps_kinetic { 0.0 } else { arena.action(one, time) + arena.action(other, time) };
         let impact = arena.collide(one, other, time);
-        Occurred { time, disc: a, with: Partner::Disc(b), impact: Some(impact), thrust: 0.0, free }
+        let work = -impact.loss;
+        Occurred {
+            time,
+            disc: a,
+            with: Partner::Disc(b),
+            impact: Some(impact),
+            thrust: 0.0,
+            work,
+            action,
+            free,
+        }
     }
 
     /// A disc meets a closed side across an axis.
     #[inline]
     pub fn at_wall(arena: &Arena, (number, disc): (u32, &mut Disc), axis: u8, time: f64) -> Occurred {
         let free = [time - disc.time, 0.0];
-        let thrust = arena.rebound(disc, number, axis.into(), time);
-        Occurred { time, disc: number, with: Partner::Wall(axis), impact: None, thrust, free }
+        let action = if arena.keeps_kinetic { 0.0 } else { arena.action(disc, time) };
+        let Bounce { thrust, work } = arena.rebound(disc, number, axis.into(), time);
+        Occurred { time, disc: number, with: Partner::Wall(axis), impact: None, thrust, work, action, free }
     }
 }

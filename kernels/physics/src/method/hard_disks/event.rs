@@ -3,6 +3,7 @@
 use super::fall::fall;
 use super::floor::Floor;
 use crate::domain::{Domain, Side};
+use crate::observe::conserved_axes;
 use stripmine_kernels::flight::{Disc, Growth, Space};
 use stripmine_kernels::noise::{Purpose, normals};
 
@@ -45,8 +46,19 @@ pub struct Impact {
     pub impulse: [f64; 2],
     /// Impulse times the distance of the centres (mass · length²/time): what it adds to the virial.
     pub virial: f64,
+    /// Kinetic energy that it takes (energy): (1 − e²) of that of the approach.
+    pub loss: f64,
     /// Whether it was made elastic because another one was so short a time ago.
     pub was_made_elastic: bool,
+}
+
+/// Effect of a side on a disc.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounce {
+    /// Size of the momentum it gives (mass · length/time).
+    pub thrust: f64,
+    /// Energy it gives; below 0 where it takes some.
+    pub work: f64,
 }
 
 /// The box of the discs, and what happens in it.
@@ -58,6 +70,8 @@ pub struct Arena {
     pub space: Space,
     /// What collisions do.
     pub law: Law,
+    /// Whether the kinetic energy never changes: nothing falls, and no collision and no side gives or takes energy.
+    pub keeps_kinetic: bool,
 }
 
 impl Arena {
@@ -67,7 +81,12 @@ impl Arena {
             Side::Periodic(period) => Some(period),
             _ => None,
         };
-        Arena { domain, space: Space::new([0, 1].map(period), gravity), law }
+        let keeps_kinetic = gravity == [0.0; 2]
+            && law.restitution == 1.0
+            && law.wall_restitution == 1.0
+            && law.thermal.is_none()
+            && law.floor.is_none();
+        Arena { domain, space: Space::new([0, 1].map(period), gravity), law, keeps_kinetic }
     }
 
     /// The same, of discs that grow.
@@ -87,6 +106,34 @@ impl Arena {
     /// Where a disc is at a time, inside the box along periodic sides (length).
     pub fn place(&self, disc: &Disc, time: f64) -> [f64; 2] {
         self.domain.wrapped(disc.at(&self.space, time))
+    }
+
+    /// Action of a disc's flight from its last event to a time: ∫ m v² dt (energy · time), twice the time integral of its kinetic energy.
+    #[inline]
+    pub fn action(&self, disc: &Disc, time: f64) -> f64 {
+        let flown = time - disc.time;
+        let [u, v] = disc.velocity;
+        let mean_square = match self.space.gravity() {
+            None => u * u + v * v,
+            Some([gx, gy]) => u * u + v * v + flown * (u * gx + v * gy + flown * (gx * gx + gy * gy) / 3.0),
+        };
+        disc.mass * mean_square * flown
+    }
+
+    /// Potential energy of a disc in gravity at a time (energy), from the box's lower corner.
+    pub fn potential(&self, disc: &Disc, time: f64) -> f64 {
+        let Some(gravity) = self.space.gravity() else { return 0.0 };
+        let place = self.place(disc, time);
+        let [along_x, along_y] = [0, 1].map(|axis| gravity[axis] * (place[axis] - self.domain.origin[axis]));
+        -disc.mass * (along_x + along_y)
+    }
+
+    /// Axes along which the discs keep their momentum: the periodic ones, unless a thermal side draws velocities anew.
+    pub fn conserved_axes(&self) -> [bool; 2] {
+        match self.law.thermal {
+            None => conserved_axes(&self.domain),
+            Some(_) => [false; 2],
+        }
     }
 
     /// Brings a disc to a time.
@@ -157,15 +204,16 @@ impl Arena {
         let [of_a, of_b] = [impulse / a.mass, impulse / b.mass];
         a.velocity = [a.velocity[0] - of_a * dx, a.velocity[1] - of_a * dy];
         b.velocity = [b.velocity[0] + of_b * dx, b.velocity[1] + of_b * dy];
-        Impact { impulse: [-impulse * dx, -impulse * dy], virial, was_made_elastic }
+        let loss = -0.5 * (1.0 - restitution) * closing * impulse;
+        Impact { impulse: [-impulse * dx, -impulse * dy], virial, loss, was_made_elastic }
     }
 
-    /// A disc is thrown back by a closed side across an axis, or given back by a thermal one; `number` is the disc's. What the
-    /// side has done to it (mass · length/time).
-    pub fn rebound(&self, disc: &mut Disc, number: u32, axis: usize, time: f64) -> f64 {
+    /// A disc is thrown back by a closed side across an axis, or given back by a thermal one; `number` is the disc's.
+    pub fn rebound(&self, disc: &mut Disc, number: u32, axis: usize, time: f64) -> Bounce {
         let too_soon = self.is_too_soon(disc, time);
         self.advance(disc, time);
-        let v = disc.velocity[axis];
+        let before = disc.velocity;
+        let v = before[axis];
         // At both ends of a side a disc flies outwards; one at rest under gravity lies on the side it is drawn to. One that grows
         // may fly inwards, and so may one that a floor catches up with, but both are near one of the ends.
         let [_, swelling] = self.radius(disc, time);
@@ -193,7 +241,12 @@ impl Arena {
                 disc.velocity[axis] = inwards - restitution * (v - inwards);
             }
         }
-        disc.mass * (disc.velocity[axis] - v).abs()
+        // Twice the gain of kinetic energy over the mass, as a product: nothing where a velocity is only turned round.
+        let gain = |axis: usize| (disc.velocity[axis] - before[axis]) * (disc.velocity[axis] + before[axis]);
+        Bounce {
+            thrust: disc.mass * (disc.velocity[axis] - v).abs(),
+            work: 0.5 * disc.mass * (gain(0) + gain(1)),
+        }
     }
 }
 
@@ -250,9 +303,23 @@ mod tests {
                 / distance;
             let taken = 0.5 * 0.75 * approach * approach * (1.0 - restitution * restitution);
             assert!((energy(&start) - energy(&after) - taken).abs() < 1e-14);
+            assert!((impact.loss - taken).abs() < 1e-14);
             assert!((impact.virial - (1.0 + restitution) * 0.75 * -approach * 1.2).abs() < 1e-14);
             assert_eq!(when(&after), f64::INFINITY);
         }
+    }
+
+    /// By hand: mass 2, thrown with (1, 2) under g = 1, after 3: 2 ∫ 1 + (2 − s)² ds = 2 (3 + (8 + 1)/3); its height is then 5 + 6 − 4.5.
+    #[test]
+    fn a_flight_has_its_action_and_its_height() {
+        let domain = Domain::planar([0.0, 1.0], [20.0; 2], [true, false]);
+        let arena = Arena::new(domain, [0.0, -1.0], Law::ELASTIC);
+        let thrown = Disc { mass: 2.0, ..disc([5.0, 5.0], [1.0, 2.0]) };
+        assert!((arena.action(&thrown, 3.0) - 12.0).abs() < 1e-14);
+        assert_eq!(arena.potential(&thrown, 3.0), 2.0 * (6.5 - 1.0));
+        let straight = periodic(Law { restitution: 0.5, ..Law::ELASTIC });
+        assert_eq!(straight.action(&thrown, 3.0), 2.0 * 5.0 * 3.0);
+        assert!(!arena.keeps_kinetic && !straight.keeps_kinetic && periodic(Law::ELASTIC).keeps_kinetic);
     }
 
     #[test]

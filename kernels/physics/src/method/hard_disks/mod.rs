@@ -8,6 +8,7 @@ mod compress;
 mod engine;
 mod entry;
 mod event;
+mod failures;
 mod fall;
 mod fast;
 mod floor;
@@ -24,6 +25,8 @@ pub mod reference;
 mod restored;
 mod scene;
 mod simulation;
+mod squeezed;
+mod sums;
 
 pub use compress::compress;
 pub use entry::ENTRY;

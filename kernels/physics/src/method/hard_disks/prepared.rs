@@ -8,6 +8,7 @@ use crate::memory::{Foreseen, OfRanks, PROGRAM, available};
 use crate::method::entry::left_out;
 use crate::method::refuse_several_ranks;
 use crate::method::{Fact, Failure, Prepared, Purpose, Simulation, Startable};
+use crate::number::significant;
 use crate::particles::{Kind, Particle, Particles};
 use crate::words::Words;
 use serde_json::{Map, Value, json};
@@ -53,11 +54,21 @@ impl Checked {
         let mut facts = vec![
             Fact::new("units", self.scene.units.as_str(), "units", self.scene.units.as_str()),
             Fact::new("grains", discs, "discs", discs.to_string()),
-            Fact::new("radii", json!([low, high]), "radii", format!("{low:.6} to {high:.6}")),
-            Fact::new("sides", json!([x, y]), "box", format!("{x:.6} × {y:.6}")),
+            Fact::new(
+                "radii",
+                json!([low, high]),
+                "radii",
+                format!("{} to {}", significant(low, 7), significant(high, 7)),
+            ),
+            Fact::new(
+                "sides",
+                json!([x, y]),
+                "box",
+                format!("{} × {}", significant(x, 7), significant(y, 7)),
+            ),
             Fact::data("periodic", json!(self.domain.periodic())),
             Fact::new("packing_fraction", self.packing_fraction(), "packing fraction", {
-                format!("{:.4}", self.packing_fraction())
+                significant(self.packing_fraction(), 4)
             }),
             Fact::new("engine", self.scene.engine.word(), "engine", self.scene.engine.word()),
             Fact::words("end", self.scene.run.until.to_string()),

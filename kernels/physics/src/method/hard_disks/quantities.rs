@@ -1,6 +1,6 @@
 //! What is observed of hard discs: one list of quantities, each with how it is read off what was seen.
 
-use crate::method::Kind::{Counter, Instant, Kept, SinceStart, Time};
+use crate::method::Kind::{Counter, Instant, Interval, Kept, Time};
 use crate::method::observed::observables;
 use crate::method::{Clock, Observable, Quantity, quantities};
 
@@ -12,6 +12,8 @@ pub(super) struct Seen {
     /// Collisions of pairs.
     pub(super) collisions: u64,
     pub(super) kinetic: f64,
+    pub(super) gravitational: f64,
+    pub(super) work: f64,
     pub(super) energy_error: f64,
     pub(super) temperature: f64,
     pub(super) momentum: [f64; 2],
@@ -21,18 +23,20 @@ pub(super) struct Seen {
 }
 
 /// What is observed, in the order of the columns.
-pub(super) const OBSERVABLES: [Observable<Seen>; 11] = observables! {
+pub(super) const OBSERVABLES: [Observable<Seen>; 13] = observables! {
     "time", "time", Time, |seen| seen.clock.time, "The time.";
     "events", "", Counter, |seen| seen.clock.events as f64, "Collisions since the start, of pairs and at walls.";
     "collisions", "", Counter, |seen| seen.collisions as f64, "Collisions of pairs since the start.";
     "kinetic", "energy", Instant, |seen| seen.kinetic, "Kinetic energy.";
-    "energy_error", "", Kept, |seen| seen.energy_error, "The kinetic energy less that of the start, over that of the start: rounding where all collisions are elastic.";
-    "temperature", "energy", Instant, |seen| seen.temperature, "Kinetic energy a disc and dimension, about the mean motion: over N, also where momentum is conserved and 2 N − 2 degrees of freedom move; the temperature of these is N/(N − 1) times it.";
+    "gravitational", "energy", Instant, |seen| seen.gravitational, "Potential energy in gravity, from the box's lower corner.";
+    "work", "energy", Counter, |seen| seen.work, "Energy that thermal and moving sides have put in since the start, less what collisions have turned into heat.";
+    "energy_error", "", Kept, |seen| seen.energy_error, "Error of the energy by rounding: kinetic and gravitational energy less those of the start and less the work, over the larger of energy and kinetic energy at the start.";
+    "temperature", "energy", Instant, |seen| seen.temperature, "Temperature kT: Σ m v² over the degrees of freedom. Along a periodic axis the mean motion is left out and N − 1 of N count; along a closed or open one, and above a thermal side, all N do. A single disc in a periodic box has none: NaN.";
     "momentum_x", "mass·length/time", Kept, |seen| seen.momentum[0], "Momentum along x.";
     "momentum_y", "mass·length/time", Kept, |seen| seen.momentum[1], "Momentum along y.";
     "virial", "mass·length²/time", Counter, |seen| seen.virial, "Impulse times distance of the centres, summed over the collisions since the start.";
-    "compressibility", "", SinceStart { ideal: 1.0, over: Some("temperature") }, |seen| seen.compressibility, "Z = p A/(N kT): 1 + virial/(2 N kT t) since the start, with the temperature as it is.";
-    "collision_rate", "1/time", SinceStart { ideal: 0.0, over: None }, |seen| seen.collision_rate, "Collisions of a disc in a unit of time since the start: twice the collisions of pairs over the discs.";
+    "compressibility", "", Interval, |seen| seen.compressibility, "Z = p A/(N kT) over the time since the row before: 1 + Δvirial/(2 N ∫ kT dt), with kT at every moment of it; 1 where no pair has collided, as in the first row. Under gravity a mean over rows that are shorter than a flight is not that over longer ones.";
+    "collision_rate", "1/time", Interval, |seen| seen.collision_rate, "Collisions of a disc in a unit of time since the row before: twice the collisions of pairs over the discs; 0 in the first row.";
 };
 
 /// Their names, units and meanings.

@@ -5,15 +5,18 @@ use super::collapse::{Endless, Watch};
 use super::collision_log::Log;
 use super::engine::{Engine, EngineError, Occurred, Partner};
 use super::event::Arena;
+use super::failures::{culprit, failure};
 use super::fast::Fast;
 use super::idle::never;
 use super::quantities::{OBSERVABLES, Seen};
 use super::reference;
 use super::restored::sound;
+use super::sums::{Mark, Means, Motion, Totals};
 use crate::io::checkpoint::Column;
 use crate::method::observed::values;
-use crate::method::{Clock, Culprit, Failure, FailureKind, RunWarning, Simulation, Snapshot, Until};
-use crate::number::significant;
+use crate::method::{Clock, Culprit, Failure, RunWarning, Simulation, Snapshot, Until};
+use crate::number::{counted, significant};
+use crate::observe::relative_energy_error;
 use crate::particles::{Particles, States, in_space};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
@@ -22,7 +25,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::flight::Disc;
-use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::mask::Mask;
 
 /// Events, or rebuilds of the grid, between looks at whether a run is to be interrupted.
@@ -35,8 +37,10 @@ pub(super) struct Running {
     clock: Clock,
     totals: Totals,
     watch: Watch,
-    /// Kinetic energy at the start.
-    kinetic: f64,
+    /// The sums at the row before.
+    row: Mark,
+    /// Kinetic and potential energy at the start.
+    start: [f64; 2],
     /// Whether it is not known that nothing will ever happen, though it was asked since the last event.
     may_meet: bool,
     /// The particles of the start, which the scene holds, and the place among them of each disc.
@@ -63,20 +67,13 @@ impl Way {
     }
 }
 
-/// What is counted and summed up.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Totals {
-    collisions: u64,
-    made_elastic: u64,
-    virial: f64,
-}
-
 impl Running {
     /// Discs at their start; `logs` whether every collision is kept until it is taken.
     pub(super) fn new(checked: &Checked, logs: bool) -> Result<Running, Failure> {
         let (discs, places) = checked.discs();
         let arena = checked.scene.arena(checked.domain);
-        let kinetic = kinetic(discs.iter(), &arena, 0.0);
+        let kinetic = Motion::of(discs.iter(), &arena, 0.0).kinetic();
+        let start = [kinetic, potential(discs.iter(), &arena, 0.0)];
         let watch = Watch::new(crossing(discs.iter()), falling(&discs, &arena), discs.len());
         let way = match &checked.mask {
             Some(mask) => Way::Reference(mask.clone()),
@@ -94,7 +91,8 @@ impl Running {
             clock: Clock::default(),
             totals: Totals::default(),
             watch,
-            kinetic,
+            row: Mark::default(),
+            start,
             particles: Arc::clone(&checked.particles),
             places,
             may_meet: false,
@@ -112,11 +110,7 @@ impl Running {
         self.clock.events += 1;
         self.clock.time = happened.time;
         self.may_meet = false;
-        if let Some(impact) = happened.impact {
-            self.totals.collisions += 1;
-            self.totals.made_elastic += u64::from(impact.was_made_elastic);
-            self.totals.virial += impact.virial;
-        }
+        self.totals.add(happened);
         if let Some(log) = &mut self.log {
             let all = self.particles.all();
             let id = |disc: u32| all[self.places[disc as usize]].id;
@@ -182,13 +176,9 @@ impl Running {
     }
 }
 
-/// Kinetic energy at a time.
-fn kinetic<'d>(discs: impl Iterator<Item = &'d Disc>, arena: &Arena, time: f64) -> f64 {
-    let energy = |disc: &Disc| {
-        let [u, v] = disc.velocity_at(&arena.space, time);
-        0.5 * disc.mass * (u * u + v * v)
-    };
-    discs.map(energy).sum()
+/// Potential energy at a time.
+fn potential<'d>(discs: impl Iterator<Item = &'d Disc>, arena: &Arena, time: f64) -> f64 {
+    discs.map(|disc| arena.potential(disc, time)).sum()
 }
 
 /// The time in which a typical disc flies through the radius of the smallest.
@@ -209,78 +199,36 @@ fn falling<'d>(discs: impl IntoIterator<Item = &'d Disc>, arena: &Arena) -> f64 
     (2.0 * smallest / gx.hypot(gy)).sqrt()
 }
 
-fn culprit(number: u32, disc: &Disc, particles: &Particles, places: &[usize]) -> Culprit {
-    let Disc { position, velocity, .. } = *disc;
-    Culprit::in_plane("disc", particles.all()[places[number as usize]].id, position, velocity)
-}
-
-fn failure(
-    why: EngineError,
-    disc: &dyn Fn(u32) -> Disc,
-    particles: &Particles,
-    places: &[usize],
-    clock: Clock,
-) -> Failure {
-    let named = |number: u32| culprit(number, &disc(number), particles, places);
-    match why {
-        EngineError::SharedCell(pair) => {
-            let [a, b] = pair.map(named);
-            let message =
-                format!("{a} and {b} have their centres in one cell of the exclusive grid: they overlap");
-            let remedy = "this must not happen between hard discs: report it with the scene";
-            Failure::new(FailureKind::CONFLICT, message, remedy).at(clock).of(2, [a, b])
-        }
-        EngineError::Crowded(disc, most) => {
-            let who = named(disc);
-            let message = format!("{who} has more than {most} others around it, and a list holds no more");
-            let remedy = "set machine.engine = \"reference\", or take radii that differ less";
-            Failure::new(FailureKind::CONFLICT, message, remedy).at(clock).of(1, [who])
-        }
-        EngineError::TooHigh(disc, entries) => {
-            let who = named(disc);
-            let message = format!(
-                "{who} is so high that the source's look-up of cells takes {entries} entries: they grow with the height"
-            );
-            let remedy = "set machine.engine = \"fast\", whose memory grows with the discs only";
-            Failure::new(FailureKind::CONFLICT, message, remedy).at(clock).of(1, [who])
-        }
-        EngineError::NoInstructions(set) => ProgramError::NoSuchInstructionSet(set.name()).into(),
-        EngineError::BackInTime(disc, time, now) => {
-            let who = named(disc);
-            let message = format!("the next event of {who} is at {time:?}, before the last one at {now:?}");
-            let remedy = "this must not happen: a mask missed a partner; report it with the scene";
-            let failure = Failure::new(super::BACK_IN_TIME, message, remedy).at(clock).of(1, [who]);
-            failure.with([("time", time), ("now", now)])
-        }
-    }
-}
-
 impl Running {
-    /// All that there is to be seen now.
-    fn seen(&self) -> Seen {
-        let (count, time, space) = (self.engine.count() as f64, self.clock.time, &self.arena.space);
-        let sum = |of: &dyn Fn(&Disc) -> f64| self.discs().map(of).sum::<f64>();
-        let mass = sum(&|disc| disc.mass);
-        let momentum = [0, 1].map(|axis| sum(&|disc| disc.mass * disc.velocity_at(space, time)[axis]));
-        let kinetic = kinetic(self.discs(), &self.arena, time);
-        let drift = momentum.iter().map(|p| p * p).sum::<f64>() / (2.0 * mass);
-        let temperature = (kinetic - drift) / count;
-        let Totals { collisions, virial, .. } = self.totals;
-        Seen {
+    /// The motion of all discs now.
+    fn motion(&self) -> Motion {
+        Motion::of(self.discs(), &self.arena, self.clock.time)
+    }
+
+    /// All that is to be seen now, and the sums of which its means are.
+    fn seen(&self) -> (Seen, Mark) {
+        let (time, motion) = (self.clock.time, self.motion());
+        let mark = self.totals.mark(&self.arena, self.discs(), &motion, time);
+        let Means { compressibility, collision_rate } = mark.since(&self.row, &motion);
+        let (kinetic, gravitational) = (motion.kinetic(), potential(self.discs(), &self.arena, time));
+        let [kinetic_at_start, potential_at_start] = self.start;
+        let Totals { collisions, virial, work, .. } = self.totals;
+        let change = (kinetic - kinetic_at_start) + (gravitational - potential_at_start) - work;
+        let start = kinetic_at_start + potential_at_start;
+        let seen = Seen {
             clock: self.clock,
             collisions,
             kinetic,
-            energy_error: if self.kinetic > 0.0 { kinetic / self.kinetic - 1.0 } else { 0.0 },
-            temperature,
-            momentum,
+            gravitational,
+            work,
+            energy_error: relative_energy_error(change, start, kinetic_at_start, kinetic),
+            temperature: motion.temperature(),
+            momentum: motion.axes.map(|axis| axis.momentum),
             virial,
-            // Without collisions an ideal gas, even one at rest.
-            compressibility: match collisions {
-                0 => 1.0,
-                _ => 1.0 + virial / (2.0 * count * temperature * time),
-            },
-            collision_rate: if time > 0.0 { 2.0 * collisions as f64 / (count * time) } else { 0.0 },
-        }
+            compressibility,
+            collision_rate,
+        };
+        (seen, mark)
     }
 }
 
@@ -348,7 +296,13 @@ impl Simulation for Running {
     }
 
     fn observe(&self) -> Vec<f64> {
-        values(&OBSERVABLES, &self.seen())
+        values(&OBSERVABLES, &self.seen().0)
+    }
+
+    fn row(&mut self) -> Vec<f64> {
+        let (seen, mark) = self.seen();
+        self.row = mark;
+        values(&OBSERVABLES, &seen)
     }
 
     fn snapshot(&self) -> Snapshot {
@@ -358,10 +312,8 @@ impl Simulation for Running {
         let mut kept = self.engine.snapshot();
         kept.columns.extend(FIELDS.map(column));
         kept.add_column("events", Column::U64(self.discs().map(|disc| disc.events).collect()));
-        let Totals { collisions, made_elastic, virial } = self.totals;
-        kept.add_count("collisions", collisions);
-        kept.add_count("made_elastic", made_elastic);
-        kept.add_sum("virial", virial);
+        self.totals.keep(&mut kept);
+        self.row.keep(&mut kept);
         self.watch.keep(&mut kept);
         kept
     }
@@ -376,12 +328,8 @@ impl Simulation for Running {
         let events = snapshot.counts_at_most("events", discs.len(), clock.events)?;
         discs.iter_mut().zip(events).for_each(|(disc, &count)| disc.events = count);
         sound(&self.arena, &self.particles, &discs, &clock)?;
-        let collisions = snapshot.count_at_most("collisions", clock.events)?;
-        self.totals = Totals {
-            collisions,
-            made_elastic: snapshot.count_at_most("made_elastic", collisions)?,
-            virial: snapshot.sum("virial")?,
-        };
+        self.totals = Totals::kept(&snapshot, clock.events)?;
+        self.row = Mark::kept(&snapshot, &self.totals)?;
         self.watch.restore(&snapshot)?;
         self.engine.restore(discs, &snapshot)?;
         (self.clock, self.may_meet) = (clock, false);
@@ -401,7 +349,7 @@ impl Simulation for Running {
     }
 
     fn summary(&self) -> Map<String, Value> {
-        let Totals { collisions, made_elastic, virial } = self.totals;
+        let Totals { collisions, made_elastic, virial, .. } = self.totals;
         let entries = [
             ("discs", json!(self.places.len())),
             ("collisions", json!(collisions)),
@@ -432,12 +380,17 @@ impl Simulation for Running {
     }
 
     fn in_words(&self) -> String {
-        let Seen { temperature, compressibility, collision_rate, .. } = self.seen();
+        let (Seen { temperature, .. }, mark) = self.seen();
+        let Means { compressibility, collision_rate } = mark.since(&Mark::default(), &self.motion());
+        let temperature = match temperature.is_nan() {
+            true => "none (no degree of freedom)".to_owned(),
+            false => significant(temperature, 5),
+        };
         format!(
-            "{} discs, {} collisions of pairs; temperature {}, compressibility {}, {} collisions of a disc in a unit of time",
-            self.places.len(),
+            "{}, {} collisions of pairs; temperature {temperature}; since the start: compressibility {}, {} collisions of a disc in \
+             a unit of time",
+            counted(self.places.len(), "disc", "discs"),
             self.totals.collisions,
-            significant(temperature, 5),
             significant(compressibility, 5),
             significant(collision_rate, 5)
         )

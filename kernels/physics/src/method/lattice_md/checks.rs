@@ -16,9 +16,11 @@ pub(super) fn counted(totals: &Totals, max_penetration: f64) -> Vec<RunWarning> 
     };
     if totals.deep_disc_steps > 0 {
         let message = format!(
-            "contacts were deeper than law.max_penetration = {max_penetration}: {} disc-steps, the deepest {:.4} at step {}; the \
+            "contacts were deeper than law.max_penetration = {max_penetration}: {} disc-steps, the deepest {} at step {}; the \
              contact law and the lattice are exact only for shallow contacts: stiffen them or slow the discs",
-            totals.deep_disc_steps, totals.deepest, totals.deepest_step
+            totals.deep_disc_steps,
+            significant(totals.deepest, 4),
+            totals.deepest_step
         );
         warn("deep-contacts", totals.deepest, max_penetration, message);
     }

@@ -80,7 +80,8 @@ fn long_step(at: Clock, count: u64, first: Culprit, limit: f64, dt: f64) -> Fail
 /// The failure of a contact of penetration ξ/(R_i + R_j) beyond the limit.
 fn too_deep(at: Clock, [first, second]: [Culprit; 2], penetration: f64, limit: f64) -> Failure {
     let what = format!(
-        "{first} and {second} overlap by {penetration:.4} of the sum of their radii, more than law.stop_penetration = {limit}"
+        "{first} and {second} overlap by {} of the sum of their radii, more than law.stop_penetration = {limit}",
+        significant(penetration, 4)
     );
     let remedy = "the contacts are too soft for these weights and speeds: raise law.stiffness (and lower dt), or slow the discs";
     let failure = Failure::new(FailureKind::TOO_DEEP, what, remedy).at(at).of(2, [first, second]);

@@ -2,6 +2,7 @@
 
 use crate::domain::Domain;
 use crate::method::{Clock, Culprit, Failure, FailureKind};
+use crate::number::significant;
 use crate::particles::in_plane;
 use std::ops::Range;
 
@@ -81,7 +82,8 @@ pub fn conflict(at: Clock, domain: Domain, [first, second]: [Culprit; 2]) -> Fai
     let [dx, dy] = domain.displacement(first_place, second_place);
     let distance = dx.hypot(dy);
     let what = format!(
-        "{first} and {second} are in one cell, {distance:.6} apart; the exclusive lattice holds one disc a cell"
+        "{first} and {second} are in one cell, {} apart; the exclusive lattice holds one disc a cell",
+        significant(distance, 7)
     );
     let remedy = "the discs overlap too deeply (stiffen the contacts), or the cells are too large (set search.cell_edge \
                   towards the largest radius)";

@@ -86,33 +86,40 @@ impl Fast {
         let full = lists.begin(&places, |disc| discs[disc as usize].radius);
         full.map_err(|disc| format!("the list of disc number {} is full", self.numbers[disc as usize]))?;
         self.lists = lists;
-        let now = self.time;
-        for (place, &number) in self.numbers.iter().enumerate() {
-            // Its list is renewed at the latest when it leaves the surroundings for which it was made; where discs fall, when one
-            // from rest would have left them.
-            let within = match self.arena.space.gravity() {
-                Some([gx, gy]) => (2.0 * self.displacement_limit / gx.hypot(gy)).sqrt(),
-                None => {
-                    let listed_at = self.lists.place(place as u32);
-                    leaving(
-                        &self.arena,
-                        &self.discs[place],
-                        listed_at,
-                        self.lists.displacement_limit(),
-                        (now, f64::INFINITY),
-                    ) - now
-                }
-            };
-            if times[number as usize] - now > within * (1.0 + 1e-6) + 1e-9 * now.abs() {
-                return Err(format!("disc number {number} expects nothing before it leaves its list"));
-            }
-        }
+        self.check_expectations(times)?;
         self.queue = Queue::new(count);
         for (place, &number) in self.numbers.iter().enumerate() {
             let expects = with[number as usize];
             let with = if expects >= WALL[0] { expects } else { self.places[expects as usize] };
             self.partners[place] = Expected { with, events: events[number as usize] };
             self.queue.set(place, number, times[number as usize]);
+        }
+        Ok(())
+    }
+
+    /// Checks that each disc expects something (time, by numbers) before it may leave its list.
+    ///
+    /// Lists are renewed after the last event too, up to the first thing that is expected: at that moment every disc is still within its
+    /// own. Where discs fall, a list is renewed at the latest when a disc from rest would have left it.
+    ///
+    /// # Errors
+    /// A sentence that names the first disc that does not.
+    fn check_expectations(&self, times: &[f64]) -> Result<(), String> {
+        let first = times.iter().copied().fold(f64::INFINITY, f64::min);
+        // Nothing is expected where all are at rest.
+        let now = if first.is_finite() { first } else { self.time };
+        let limit = self.displacement_limit * (1.0 + 1e-6);
+        for (place, &number) in self.numbers.iter().enumerate() {
+            let within = match self.arena.space.gravity() {
+                Some([gx, gy]) => (2.0 * limit / gx.hypot(gy)).sqrt(),
+                None => {
+                    let listed_at = self.lists.place(place as u32);
+                    leaving(&self.arena, &self.discs[place], listed_at, limit, (now, f64::INFINITY)) - now
+                }
+            };
+            if times[number as usize] - now > within + 1e-9 * now.abs() {
+                return Err(format!("disc number {number} expects nothing before it leaves its list"));
+            }
         }
         Ok(())
     }

@@ -114,9 +114,9 @@ pub(super) fn instability(document: &Document) -> Option<SceneError> {
     let name = scheme_in_words(scheme);
     (gamma * dt > limit).then(|| {
         let message = format!(
-            "unstable: normal_damping·dt = {gamma}·{dt} = {:.4} for a single contact, but {name} is stable below \
+            "unstable: normal_damping·dt = {gamma}·{dt} = {} for a single contact, but {name} is stable below \
              about {limit:.2}",
-            gamma * dt
+            significant(gamma * dt, 4)
         );
         let error = document.values.spot(&DT).error(Reason::Stability, message);
         error
@@ -258,8 +258,8 @@ pub(super) fn warnings(
         warn(
             &DT,
             format!(
-                "3·normal_damping·dt = {:.4} in a dense packing, but {} is stable below about {limit:.2}",
-                estimates.network_damping,
+                "3·normal_damping·dt = {} in a dense packing, but {} is stable below about {limit:.2}",
+                significant(estimates.network_damping, 4),
                 scheme_in_words(scheme)
             ),
             format!(
@@ -276,8 +276,8 @@ pub(super) fn warnings(
             warn(
                 &SHEAR_DAMPING,
                 format!(
-                    "{words}·shear_damping·dt = {:.4} for a contact that rolls, stable below about {limit:.2}",
-                    rate * dt
+                    "{words}·shear_damping·dt = {} for a contact that rolls, stable below about {limit:.2}",
+                    significant(rate * dt, 4)
                 ),
                 format!("dt below {}, or a smaller shear_damping", significant(limit / rate, 5)),
             );
@@ -338,9 +338,10 @@ fn depth_warnings(scene: &Scene, estimates: &Estimates, warn: &mut impl FnMut(&K
         warn(
             &STIFFNESS,
             format!(
-                "approaches {FASTEST} times as fast as {} reach a penetration of {deepest:.3}, above \
+                "approaches {FASTEST} times as fast as {} reach a penetration of {}, above \
                  law.max_penetration = {most}",
-                significant(estimates.approach_speed, 5)
+                significant(estimates.approach_speed, 5),
+                significant(deepest, 3)
             ),
             format!(
                 "a stiffness above {}, with a smaller dt, or slower discs",
@@ -353,9 +354,10 @@ fn depth_warnings(scene: &Scene, estimates: &Estimates, warn: &mut impl FnMut(&K
         warn(
             &STIFFNESS,
             format!(
-                "a grain sinks {:.4} of its radius into another by its own weight; above {rest:.4} columns of grains \
+                "a grain sinks {} of its radius into another by its own weight; above {} columns of grains \
                  press each other deeper than law.max_penetration = {most}",
-                estimates.resting_depth
+                significant(estimates.resting_depth, 4),
+                significant(rest, 4)
             ),
             format!(
                 "a stiffness above {}, or lighter grains",

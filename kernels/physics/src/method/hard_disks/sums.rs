@@ -1,0 +1,172 @@
+//! Sums that every event adds to, and means over an interval that follow from them.
+
+use super::engine::Occurred;
+use super::event::Arena;
+use crate::method::Snapshot;
+use crate::observe::{AxisMotion, temperature};
+use stripmine_kernels::flight::Disc;
+
+/// Counts and sums since the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Totals {
+    /// Collisions of pairs.
+    pub(super) collisions: u64,
+    /// Collisions that were made elastic.
+    pub(super) made_elastic: u64,
+    /// Σ impulse · distance (mass · length²/time).
+    pub(super) virial: f64,
+    /// Energy given by sides, less what collisions have taken.
+    pub(super) work: f64,
+    /// Action of all flights that are over (energy · time).
+    action: f64,
+}
+
+/// The sums at a moment: where an interval begins or ends.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Mark {
+    /// When (time).
+    time: f64,
+    collisions: u64,
+    virial: f64,
+    /// Action of all flights up to now (energy · time).
+    action: f64,
+}
+
+/// Motion of all discs at a moment.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Motion {
+    pub(super) count: f64,
+    pub(super) mass: f64,
+    pub(super) axes: [AxisMotion; 2],
+    /// Axes along which the momentum stays.
+    pub(super) conserved: [bool; 2],
+}
+
+/// Means over an interval.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Means {
+    pub(super) compressibility: f64,
+    pub(super) collision_rate: f64,
+}
+
+impl Motion {
+    /// Motion of discs at a time.
+    pub(super) fn of<'d>(discs: impl Iterator<Item = &'d Disc>, arena: &Arena, time: f64) -> Motion {
+        let conserved = arena.conserved_axes();
+        let mut motion = Motion { count: 0.0, mass: 0.0, axes: [AxisMotion::default(); 2], conserved };
+        for disc in discs {
+            motion.count += 1.0;
+            motion.mass += disc.mass;
+            for (axis, v) in motion.axes.iter_mut().zip(disc.velocity_at(&arena.space, time)) {
+                axis.twice_kinetic += disc.mass * v * v;
+                axis.momentum += disc.mass * v;
+            }
+        }
+        motion
+    }
+
+    /// Temperature kT (energy).
+    pub(super) fn temperature(&self) -> f64 {
+        temperature(self.axes, self.conserved, self.mass, self.count)
+    }
+
+    /// Kinetic energy.
+    pub(super) fn kinetic(&self) -> f64 {
+        0.5 * self.axes.iter().map(|axis| axis.twice_kinetic).sum::<f64>()
+    }
+}
+
+impl Totals {
+    /// Adds an event.
+    #[inline]
+    pub(super) fn add(&mut self, happened: &Occurred) {
+        if let Some(impact) = happened.impact {
+            self.collisions += 1;
+            self.made_elastic += u64::from(impact.was_made_elastic);
+            self.virial += impact.virial;
+        }
+        self.work += happened.work;
+        self.action += happened.action;
+    }
+
+    /// The sums at a time, with the flights that are not over.
+    pub(super) fn mark<'d>(
+        &self,
+        arena: &Arena,
+        discs: impl Iterator<Item = &'d Disc>,
+        motion: &Motion,
+        time: f64,
+    ) -> Mark {
+        let action = match arena.keeps_kinetic {
+            true => 2.0 * motion.kinetic() * time,
+            false => self.action + discs.map(|disc| arena.action(disc, time)).sum::<f64>(),
+        };
+        Mark { time, collisions: self.collisions, virial: self.virial, action }
+    }
+
+    /// Adds them to a checkpoint.
+    pub(super) fn keep(&self, kept: &mut Snapshot) {
+        kept.add_count("collisions", self.collisions);
+        kept.add_count("made_elastic", self.made_elastic);
+        kept.add_sum("virial", self.virial);
+        kept.add_sum("work", self.work);
+        kept.add_sum("action", self.action);
+    }
+
+    /// Those of a checkpoint of `events` events.
+    ///
+    /// # Errors
+    /// A sentence, if one is missing.
+    pub(super) fn kept(kept: &Snapshot, events: u64) -> Result<Totals, String> {
+        let collisions = kept.count_at_most("collisions", events)?;
+        Ok(Totals {
+            collisions,
+            made_elastic: kept.count_at_most("made_elastic", collisions)?,
+            virial: kept.sum("virial")?,
+            work: kept.sum("work")?,
+            action: kept.sum("action")?,
+        })
+    }
+}
+
+impl Mark {
+    /// Means from an earlier mark up to this one. Without a collision, and over no time, they are those of an ideal gas.
+    pub(super) fn since(&self, before: &Mark, motion: &Motion) -> Means {
+        let (duration, collisions) = (self.time - before.time, self.collisions - before.collisions);
+        if collisions == 0 || duration <= 0.0 {
+            return Means { compressibility: 1.0, collision_rate: 0.0 };
+        }
+        // Both axes are added up: all of ⟨Σ m v²⟩ may stand for the first.
+        let [x, y] = motion.axes.map(|axis| axis.momentum);
+        let twice_kinetic = (self.action - before.action) / duration;
+        let axes =
+            [AxisMotion { twice_kinetic, momentum: x }, AxisMotion { twice_kinetic: 0.0, momentum: y }];
+        let mean_temperature = Motion { axes, ..*motion }.temperature();
+        Means {
+            compressibility: 1.0
+                + (self.virial - before.virial) / (2.0 * motion.count * mean_temperature * duration),
+            collision_rate: 2.0 * collisions as f64 / (motion.count * duration),
+        }
+    }
+
+    /// Adds it to a checkpoint.
+    pub(super) fn keep(&self, kept: &mut Snapshot) {
+        kept.add_sum("row.time", self.time);
+        kept.add_count("row.collisions", self.collisions);
+        kept.add_sum("row.virial", self.virial);
+        kept.add_sum("row.action", self.action);
+    }
+
+    /// That of a checkpoint.
+    ///
+    /// # Errors
+    /// A sentence, if it is missing or later than the sums.
+    pub(super) fn kept(kept: &Snapshot, totals: &Totals) -> Result<Mark, String> {
+        Ok(Mark {
+            time: kept.sum("row.time")?,
+            collisions: kept.count_at_most("row.collisions", totals.collisions)?,
+            virial: kept.sum("row.virial")?,
+            action: kept.sum("row.action")?,
+        })
+    }
+}

@@ -1,0 +1,252 @@
+//! Sums that every event adds to: temperature, compressibility and energy against values worked out elsewhere.
+
+use super::{column, listed, run, said, stripmine};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+
+fn average<'s>(summary: &'s Value, name: &str) -> &'s Value {
+    let all = summary["averages"]["quantities"].as_array().unwrap();
+    all.iter().find(|it| it["quantity"] == name).unwrap()
+}
+
+/// The closing words of a run.
+fn words(scene: &str, out: &Path, more: &[&str]) -> String {
+    let output = stripmine(&[&["run", scene, "--quiet", "--out", out.to_str().unwrap()], more].concat());
+    assert!(output.status.success(), "{}", said(&output));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// Z of a gas that cools from 1 to a fifth within a row, against sums over rows eighty times as close, with the temperature between two of them
+/// as their mean; between the times 1 and 5 it is 1.77 (theory: 1 + (1 + e)/2 (Z of elastic discs − 1) = 1.75).
+#[test]
+fn rows_of_a_cooling_gas_are_means_over_their_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows = |every: &str| {
+        let out = folder.path().join(every);
+        let every = format!("run.thermo_every={every}");
+        let summary = run("cooling-gas", &out, &["--set", "run.time=8", "--set", &every]);
+        let names = ["time", "virial", "collisions", "temperature", "compressibility", "collision_rate"];
+        (summary["discs"].as_f64().unwrap(), names.map(|name| column(&out, name)))
+    };
+    let (count, [time, virial, collisions, temperature, ..]) = rows("0.05");
+    let integral = |from: usize, to: usize| -> f64 {
+        (from..to).map(|at| 0.5 * (temperature[at] + temperature[at + 1]) * (time[at + 1] - time[at])).sum()
+    };
+    let of = |from: usize, to: usize| {
+        let rate = 2.0 * (collisions[to] - collisions[from]) / (count * (time[to] - time[from]));
+        [1.0 + (virial[to] - virial[from]) / (2.0 * count * integral(from, to)), rate]
+    };
+    let (_, [_, _, _, of_moment, z, rate]) = rows("4");
+    assert_eq!((z.len(), z[0], rate[0]), (3, 1.0, 0.0));
+    assert!(of_moment[1] < 0.3, "{of_moment:?}");
+    for (row, from, to) in [(1, 0, 80), (2, 80, 160)] {
+        let [expected, expected_rate] = of(from, to);
+        assert!((z[row] - expected).abs() < 2e-3, "{} and {expected}", z[row]);
+        assert!((rate[row] / expected_rate - 1.0).abs() < 1e-12, "{} and {expected_rate}", rate[row]);
+    }
+    let [early, _] = of(20, 100);
+    assert!((early - 1.77).abs() < 0.05, "{early}");
+    // The closing words are of all the time.
+    let said = words("cooling-gas", &folder.path().join("words"), &["--set", "run.time=8"]);
+    let z = said.split("since the start: compressibility ").nth(1).unwrap().split(',').next().unwrap();
+    assert!((z.parse::<f64>().unwrap() - of(0, 160)[0]).abs() < 2e-3, "{said}");
+}
+
+/// Between walls nothing of the momentum stays: the kinetic energy is N kT. The values are sums by hand over the velocities.
+#[test]
+fn between_walls_all_degrees_of_freedom_count() {
+    let folder = tempfile::tempdir().unwrap();
+    let (positions, velocities) = (
+        "[[2.0, 2.0], [7.0, 3.0], [3.0, 7.5], [7.5, 7.0]]",
+        "[[1.0, 0.3], [-0.7, 0.9], [0.2, -1.3], [-0.4, 0.6]]",
+    );
+    // Σ v² along x 1.69, along y 2.95; momentum 0.1 and 0.5.
+    let [x, y] = [1.0 + 0.49 + 0.04 + 0.16, 0.09 + 0.81 + 1.69 + 0.36];
+    for (periodic, expected) in [
+        ("[false, false]", (x + y) / 8.0),
+        ("[true, false]", (x - 0.01 / 4.0 + y) / 7.0),
+        ("[true, true]", (x - 0.01 / 4.0 + y - 0.25 / 4.0) / 6.0),
+    ] {
+        let domain = format!("sides = [10.0, 10.0]\nperiodic = {periodic}");
+        let scene = listed(folder.path(), &domain, positions, velocities, "[run]\ntime = 50.0");
+        let out = folder.path().join(periodic);
+        run(&scene, &out, &[]);
+        let temperature = column(&out, "temperature");
+        assert!(
+            temperature.iter().all(|found| (found / expected - 1.0).abs() < 1e-12),
+            "{temperature:?}, {expected}"
+        );
+        let ([virial, z], last) =
+            (["virial", "compressibility"].map(|name| column(&out, name)), temperature.len() - 1);
+        for row in 1..=last {
+            let by_hand = 1.0 + (virial[row] - virial[row - 1]) / (2.0 * 4.0 * expected);
+            assert!((z[row] - by_hand).abs() < 1e-9, "{} and {by_hand}", z[row]);
+        }
+    }
+}
+
+/// One disc over a wall of kT = 2 has that temperature, along both axes: to four standard errors. In a periodic box it has none.
+#[test]
+fn a_single_disc_has_a_temperature_where_something_is_thermal() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = listed(
+        folder.path(),
+        "sides = [10.0, 10.0]\nperiodic = [true, false]",
+        "[[2.0, 2.0]]",
+        "[[1.0, 0.3]]",
+        "[law]\nthermal_side = \"bottom\"\nwall_temperature = 2.0\n[run]\ntime = 20000.0\nthermo_every = 10.0",
+    );
+    let summary = run(&scene, &folder.path().join("hot"), &[]);
+    let found = average(&summary, "temperature");
+    let [mean, bar] = ["mean", "error_95"].map(|name| found[name].as_f64().unwrap_or(f64::NAN));
+    assert!((mean - 2.0).abs() < 2.0 * bar && bar < 0.4, "{found}");
+    assert!(column(&folder.path().join("hot"), "compressibility").iter().all(|&z| z == 1.0));
+    let scene =
+        listed(folder.path(), "sides = [10.0, 10.0]", "[[2.0, 2.0]]", "[[1.0, 0.3]]", "[run]\ntime = 20.0");
+    let out = folder.path().join("alone");
+    let words = words(&scene, &out, &[]);
+    assert!(words.contains("temperature none (no degree of freedom)"), "{words}");
+    assert!(column(&out, "temperature").iter().all(|found| found.is_nan()));
+    assert!(column(&out, "compressibility").iter().all(|&z| z == 1.0));
+}
+
+/// Error of the energy where it is kept, lost in collisions, given by a hot and by a moving floor, and under gravity: rounding.
+#[test]
+fn the_error_of_the_energy_is_rounding_in_every_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let falling = "sides = [10.0, 10.0]\nperiodic = [true, false]\ngravity = [0.0, -1.0]";
+    let slanted =
+        "sides = [10.0, 10.0]\nperiodic = [false, false]\ngravity = [0.3, -1.0]\norigin = [-3.0, 40.0]";
+    let two = ("[[2.0, 3.5], [7.0, 6.3]]", "[[0.3, 0.0], [-0.2, 0.5]]");
+    let lossy = "[law]\nrestitution = 0.9\nwall_restitution = 0.99\ncontact_duration = 1e-4\n";
+    for (name, domain, (positions, velocities), law) in [
+        ("elastic", falling, two, ""),
+        ("at-rest", falling, (two.0, "[[0.0, 0.0], [0.0, 0.0]]"), ""),
+        ("slanted", slanted, ("[[-1.0, 43.5], [4.0, 46.3]]", two.1), ""),
+        ("lossy", falling, two, lossy),
+        ("shaken", falling, two, "[law]\nrestitution = 0.9\nfloor_amplitude = 0.3\nfloor_frequency = 0.8\n"),
+        (
+            "hot",
+            falling,
+            two,
+            "[law]\nrestitution = 0.9\nthermal_side = \"bottom\"\nwall_temperature = 2.0\n",
+        ),
+    ] {
+        let scene =
+            listed(folder.path(), domain, positions, velocities, &format!("{law}[run]\nevents = 2000"));
+        let out = folder.path().join(name);
+        let summary = run(&scene, &out, &[]);
+        let error = column(&out, "energy_error");
+        // Rounding of 2000 events; the larger energies of a hot floor are tens of times those at the start.
+        assert!(error.iter().all(|error| error.abs() < 1e-10), "{name}: {error:?}");
+        let kept = average(&summary, "energy_error");
+        assert!(kept["farthest"].as_f64().unwrap() < 1e-10, "{name}: {kept}");
+        if name == "elastic" {
+            // By hand: m g y of both, and half of v².
+            assert!((column(&out, "gravitational")[0] - 9.8).abs() < 1e-14);
+            assert!((column(&out, "kinetic")[0] - 0.19).abs() < 1e-14);
+            assert!(column(&out, "work").iter().all(|&work| work == 0.0));
+        }
+    }
+    for preset in ["hot-floor", "vibrating-floor", "cooling-gas", "row-of-discs"] {
+        let out = folder.path().join(preset);
+        run(preset, &out, &["--set", "run.events=20000", "--set", "run.thermo_every=1"]);
+        let error = column(&out, "energy_error");
+        assert!(error.iter().all(|error| error.abs() < 1e-10), "{preset}: {error:?}");
+    }
+}
+
+/// Two discs of mass 1 head on at speed 1 with e = 1/2: 1 − e² of the energy of 1 is lost.
+#[test]
+fn work_is_what_collisions_take() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = listed(
+        folder.path(),
+        "sides = [20.0, 20.0]",
+        "[[5.0, 5.0], [9.0, 5.0]]",
+        "[[1.0, 0.0], [-1.0, 0.0]]",
+        "[law]\nrestitution = 0.5\n[run]\ntime = 3.0",
+    );
+    let out = folder.path().join("run");
+    run(&scene, &out, &[]);
+    assert_eq!(column(&out, "work"), [0.0, 0.0, -0.75, -0.75]);
+    assert_eq!(column(&out, "kinetic"), [1.0, 1.0, 0.25, 0.25]);
+    assert_eq!(column(&out, "energy_error"), [0.0; 4]);
+    // Up to the collision at 1.5 kT is 1 (one of two discs moves along x about the centre), then 1/4; the virial is 1.5 μ v d = 1.5.
+    let z = column(&out, "compressibility");
+    assert!((z[2] - (1.0 + 1.5 / (2.0 * 2.0 * (0.5 * 1.0 + 0.5 * 0.25)))).abs() < 1e-14, "{z:?}");
+}
+
+/// Discs of a crystal that overlap by the digits of their positions are made smaller by as much, with a word; what overlaps deeper is refused with
+/// the number.
+#[test]
+fn overlaps_of_the_last_digit_are_taken() {
+    let folder = tempfile::tempdir().unwrap();
+    let begin = |by: f64| {
+        let positions = format!("[[2.0, 2.0], [{:?}, 2.0], [9.5, 9.5]]", 3.0 - by);
+        let domain = "sides = [10.0, 10.0]\nperiodic = [true, false]";
+        listed(
+            folder.path(),
+            domain,
+            &positions,
+            "[[1.0, 0.0], [0.0, 0.0], [0.0, 0.1]]",
+            "[run]\nevents = 50",
+        )
+    };
+    let check = |scene: &str| stripmine(&["scene", "check", scene]);
+    let scene = begin(8e-9);
+    let checked = check(&scene);
+    let text = said(&checked) + &String::from_utf8_lossy(&checked.stdout);
+    assert!(
+        checked.status.success() && text.contains("8e-9") && text.contains("radii are made smaller"),
+        "{text}"
+    );
+    let out = folder.path().join("run");
+    run(&scene, &out, &[]);
+    let frame = fs::read_to_string(out.join("trajectory.xyz")).unwrap();
+    let first = frame.lines().nth(2).unwrap();
+    assert!(first.contains("0.499999996"), "{first}");
+    for (by, number) in [(2e-5, "2e-5"), (0.1, "0.1")] {
+        let refused = check(&begin(by));
+        let text = said(&refused);
+        assert!(
+            !refused.status.success()
+                && text.contains(&format!("by {number} of the sum of their radii, {number};")),
+            "{text}"
+        );
+        assert!(text.contains("centres at least 1 apart"), "{text}");
+    }
+}
+
+/// Discs over a hot wall, whose temperature comes and goes: a mean over rows of 1/2, of 5 or of 30 is that of all impulses over the integral of the
+/// temperature, here by rows a tenth apart. The mean of 3000 independent times is known to 0.3 %, the four differ by far less.
+#[test]
+fn the_mean_compressibility_does_not_depend_on_the_rows() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("hot.toml");
+    fs::write(
+        &scene,
+        "format = 2\nunits = \"reduced\"\n[method]\nkind = \"hard-disks\"\n[domain]\nsides = [10.0, 10.0]\nperiodic = [true, false]\n\
+         [particles]\ngenerate = \"random\"\ncount = 24\nradius = 0.5\nmass = 1.0\ntemperature = 1.0\nseed = 1\n[law]\n\
+         thermal_side = \"bottom\"\nwall_temperature = 1.0\n[run]\ntime = 3000.0\nsnapshot_every = 0\n",
+    )
+    .unwrap();
+    let rows = |every: &str| {
+        let out = folder.path().join(every);
+        run(scene.to_str().unwrap(), &out, &["--set", &format!("run.thermo_every={every}")]);
+        ["virial", "temperature", "compressibility"].map(|name| column(&out, name))
+    };
+    let [virial, temperature, _] = rows("0.1");
+    let integral: f64 = temperature.windows(2).map(|pair| 0.05 * (pair[0] + pair[1])).sum();
+    let expected = 1.0 + virial[virial.len() - 1] / (2.0 * 24.0 * integral);
+    let varies =
+        temperature.iter().map(|kt| (kt / (integral / 3000.0) - 1.0).powi(2)).sum::<f64>() / 30_001.0;
+    // kT of 48 degrees of freedom of a gas at one temperature varies by 2/48.
+    assert!((0.03..0.06).contains(&varies), "{varies}");
+    for every in ["0.5", "5", "30"] {
+        let z = &rows(every)[2][1..];
+        let mean = z.iter().sum::<f64>() / z.len() as f64;
+        assert!((mean / expected - 1.0).abs() < 1.5e-3, "{every}: {mean} and {expected}");
+    }
+}

@@ -1,0 +1,228 @@
+//! Few particles in every kind of box, resumed at random moments: the state and all that is observed of it are those of one piece.
+
+use rand::RngExt;
+use std::fmt::Write;
+use std::fs;
+use std::sync::atomic::AtomicBool;
+use stripmine_kernels::noise::{Purpose as Of, Stream};
+use stripmine_physics::domain::Domain;
+use stripmine_physics::method::{Clock, METHODS, Prepared, Purpose, Simulation, Snapshot, Until, load};
+use stripmine_physics::scene::Kind;
+
+/// Most particles of a scene.
+const MOST: usize = 12;
+/// Moments at which a run is resumed.
+const CUTS: u32 = 5;
+
+/// Scenes of a method, of which each draws another.
+type Scenes = fn(&mut Stream) -> String;
+
+const METHOD_SCENES: [(&str, Scenes, usize); 4] = [
+    ("hard-disks", hard_discs, 60),
+    ("lattice-md", granular, 4),
+    ("langevin", langevin, 4),
+    ("nbody", bodies, 4),
+];
+
+/// What is compared.
+#[derive(Debug, PartialEq)]
+struct Seen {
+    clock: Clock,
+    row: Vec<u64>,
+    particles: String,
+    summary: String,
+    snapshot: Snapshot,
+}
+
+fn seen(simulation: &dyn Simulation) -> Seen {
+    Seen {
+        clock: simulation.clock(),
+        row: simulation.observe().iter().map(|value| value.to_bits()).collect(),
+        particles: format!("{:?} {:?}", simulation.particles(), simulation.images()),
+        summary: format!("{:?} {} {:?}", simulation.summary(), simulation.in_words(), simulation.warnings()),
+        snapshot: simulation.snapshot(),
+    }
+}
+
+/// Holds `times` as many scenes of each method as the quick share has; how many runs were resumed how often.
+pub fn hold(times: usize) -> [usize; 2] {
+    let folder = tempfile::tempdir().expect("there is room");
+    let path = folder.path().join("scene.toml");
+    let mut stream = Stream::new(53, Of::Test, 0);
+    let mut held = [0; 2];
+    for (method, scene, count) in METHOD_SCENES {
+        let ways = ways(method);
+        for _ in 0..count * times {
+            let text = scene(&mut stream);
+            fs::write(&path, &text).expect("there is room");
+            for way in &ways {
+                let Ok((prepared, _)) = load(path.to_str().expect("a plain path"), way, METHODS) else {
+                    continue;
+                };
+                held[0] += 1;
+                held[1] += resumed(&prepared, &mut stream, &format!("{way:?}\n{text}"));
+            }
+        }
+    }
+    held
+}
+
+/// Every engine, search, integrator, and precision of a method.
+fn ways(method: &str) -> Vec<Vec<String>> {
+    let entry = METHODS.iter().find(|entry| entry.vocabulary.keys.method == method).expect("a method");
+    let words = |section: &'static str, name: &'static str| {
+        let words = match entry.vocabulary.keys.key(section, name).map(|key| key.kind) {
+            Some(Kind::Choice(words)) => words,
+            _ => &[],
+        };
+        let given = words.iter().filter(|word| **word != "auto");
+        std::iter::once(vec![]).chain(given.map(move |word| vec![format!("{section}.{name}={word}")]))
+    };
+    let engines = words("machine", "engine")
+        .flat_map(|engine| words("search", "by").map(move |by| [engine.clone(), by].concat()));
+    let others = [
+        ("machine", "precision"),
+        ("integrator", "kind"),
+        ("machine", "coordinates"),
+        ("machine", "execution"),
+    ];
+    engines.chain(others.into_iter().flat_map(|(section, name)| words(section, name).skip(1))).collect()
+}
+
+/// Runs a scene in one piece and in several, and compares both at each cut; how often it was resumed.
+fn resumed(prepared: &Prepared, stream: &mut Stream, what: &str) -> usize {
+    let start = || prepared.start(Purpose::Run).unwrap_or_else(|error| panic!("{error:?}: {what}"));
+    let (mut whole, mut parts) = (start(), start());
+    for cut in 1..=CUTS {
+        let moment = match prepared.schedule.until {
+            Until::Time(end) => {
+                let [from, to] = [cut - 1, cut].map(|part| f64::from(part) / f64::from(CUTS) * end);
+                match stream.random_range(0..3) {
+                    0 => Until::Events(whole.clock().events + stream.random_range(1..20)),
+                    _ => Until::Time(stream.random_range(from..to).max(whole.clock().time)),
+                }
+            }
+            _ => Until::Steps(whole.clock().steps + stream.random_range(1..30)),
+        };
+        // What comes to no end of its own, such as events where there are none, ends at a time.
+        let until = match moment {
+            Until::Events(_) => vec![moment, Until::Time(whole.clock().time + 1.0)],
+            _ => vec![moment],
+        };
+        let ended =
+            [whole.as_mut(), parts.as_mut()].map(|it| it.advance(&until, &AtomicBool::new(false)).err());
+        let [of_whole, of_parts] = &ended;
+        assert_eq!(format!("{of_parts:?}"), format!("{of_whole:?}"), "{moment:?} {what}");
+        if of_whole.is_some() {
+            return cut as usize - 1;
+        }
+        let (clock, snapshot) = (parts.clock(), parts.snapshot());
+        parts = start();
+        parts.restore(clock, snapshot).unwrap_or_else(|why| panic!("{why}: {clock} {what}"));
+        assert_eq!(seen(parts.as_ref()), seen(whole.as_ref()), "{moment:?} {what}");
+    }
+    CUTS as usize
+}
+
+fn one_of<T: Clone>(stream: &mut Stream, all: &[T]) -> T {
+    all[stream.random_range(0..all.len())].clone()
+}
+
+/// Discs in a box: places that do not overlap, velocities of which some are none, as a list.
+struct Discs {
+    sides: [f64; 2],
+    periodic: [bool; 2],
+    positions: Vec<[f64; 2]>,
+    velocities: Vec<[f64; 2]>,
+    radii: Vec<f64>,
+}
+
+fn discs(stream: &mut Stream, periodic: [bool; 2], least: f64) -> Discs {
+    let sides = [0, 1].map(|_| {
+        let most = one_of(stream, &[1.5, 4.0, 15.0]) * least;
+        stream.random_range(least..most)
+    });
+    let domain = Domain::planar([0.0; 2], sides, periodic);
+    let (count, is_mixed) = (stream.random_range(1..=MOST), stream.random_range(0..3) == 0);
+    let speed = one_of(stream, &[0.0, 1.0, 1.0, 3.0]);
+    let mut made = Discs { sides, periodic, positions: vec![], velocities: vec![], radii: vec![] };
+    for _ in 0..40 * count {
+        let radius = if is_mixed { stream.random_range(0.25..0.5) } else { 0.5 };
+        let place = [0, 1].map(|axis| {
+            let rim = if periodic[axis] { 0.0 } else { radius };
+            stream.random_range(rim..sides[axis] - rim)
+        });
+        let is_free = made
+            .positions
+            .iter()
+            .zip(&made.radii)
+            .all(|(&there, other)| domain.distance(place, there) > radius + other);
+        if is_free && made.positions.len() < count {
+            made.positions.push(place);
+            made.velocities.push([0, 1].map(|_| speed * stream.random_range(-1.0..1.0)));
+            made.radii.push(radius);
+        }
+    }
+    made
+}
+
+impl Discs {
+    /// The sections of a scene, without what follows.
+    fn text(&self, method: &str, domain: &str) -> String {
+        let Discs { sides, periodic, positions, velocities, radii } = self;
+        format!(
+            "format = 2\nunits = \"reduced\"\n[method]\nkind = \"{method}\"\n[domain]\nsides = {sides:?}\nperiodic = {periodic:?}\n{domain}\
+             [particles]\ngenerate = \"list\"\nradius = 0.5\nmass = 1.0\npositions = {positions:?}\nvelocities = {velocities:?}\nradii = {radii:?}\n"
+        )
+    }
+}
+
+fn any_sides(stream: &mut Stream) -> [bool; 2] {
+    one_of(stream, &[[true, true], [true, false], [false, true], [false, false]])
+}
+
+fn hard_discs(stream: &mut Stream) -> String {
+    let periodic = any_sides(stream);
+    let falls = !periodic[1] && stream.random_range(0..2) == 0;
+    let is_open = falls && stream.random_range(0..3) == 0;
+    let domain = if falls { "gravity = [0.0, -1.0]\n" } else { "" }.to_owned()
+        + if is_open { "open_top = true\n" } else { "" };
+    let mut text = discs(stream, periodic, 3.0).text("hard-disks", &domain);
+    text.push_str("[law]\n");
+    if stream.random_range(0..2) == 0 {
+        let (pairs, walls) = (stream.random_range(0.5..1.0), stream.random_range(0.5..1.0));
+        let _ =
+            writeln!(text, "restitution = {pairs:?}\nwall_restitution = {walls:?}\ncontact_duration = 1e-3");
+    }
+    let moved = if periodic[1] { 2 } else { stream.random_range(0..3) };
+    match moved {
+        0 => text.push_str("thermal_side = \"bottom\"\nwall_temperature = 2.0\n"),
+        1 => text.push_str("floor_amplitude = 0.1\nfloor_frequency = 0.7\n"),
+        _ => {}
+    }
+    text + "[run]\ntime = 12.0\n"
+}
+
+fn granular(stream: &mut Stream) -> String {
+    let periodic = any_sides(stream);
+    let gravity = one_of(stream, &["", "gravity = [0.0, -0.1]\n", "gravity = [0.05, 0.0]\n"]);
+    discs(stream, periodic, 6.0).text("lattice-md", gravity)
+        + "[law]\nstiffness = 187.0\nnormal_damping = 1.0\n[integrator]\ndt = 0.005\n[run]\nsteps = 300\n"
+}
+
+fn langevin(stream: &mut Stream) -> String {
+    let law = one_of(stream, &["none", "wca", "lennard-jones"]);
+    let start = discs(stream, [true; 2], 8.0).text("langevin", "");
+    start
+        + &format!(
+            "[law]\nkind = \"{law}\"\ndrag = 1.0\nbath_temperature = 1.0\n[integrator]\ndt = 0.002\n[run]\nsteps = 300\n"
+        )
+}
+
+fn bodies(stream: &mut Stream) -> String {
+    let (count, seed) = (stream.random_range(1..=MOST), stream.random_range(1..1000));
+    format!(
+        "format = 2\nunits = \"G = 1\"\n[method]\nkind = \"nbody\"\n[particles]\ngenerate = \"sphere\"\ncount = {count}\nseed = {seed}\nvirial = 0.5\n\
+         [law]\nsoftening = 0.05\n[integrator]\ndt = 0.005\n[run]\nsteps = 300\n"
+    )
+}
