@@ -266,7 +266,7 @@ fn no_limit_of_memory_aborts_a_verb() {
         "scene check plummer",
         "bench lattice --particles 20000 --steps 5 --repeats 1",
         "bench lattice --particles 20000 --steps 5 --repeats 1 --ranks 4",
-        "bench nbody --steps 5 --repeats 1",
+        "bench nbody --particles 512 --steps 5 --repeats 1",
         "compare dense-gas --set particles.count=100000 --set run.steps=5 --against machine.engine=programs",
         "chart stability two-discs --over stiffness --size 3 --seeds 1 --budget 1 --out out",
         "table",

@@ -134,7 +134,7 @@ one_differs 4 "other arguments" "$program table --quiet" "run dense-gas --out o4
 one_differs 3 "ulimit -v" "$limit" "run $gas --out o5"
 one_differs 3 "none.toml" "$program run none.toml --seeds 3 --quiet --out o6" "run hard-disks --seeds 3 --set run.time=1 --out o6"
 one_differs 4 "other arguments" "$program run hard-disks --seeds 4 --quiet --out o7" "run hard-disks --seeds 3 --set run.time=1 --out o7"
-one_differs 2 "bench lattice takes no" "$program bench lattice --softening 4 --quiet" "bench lattice --steps 100 --repeats 1 --particles 6000"
+one_differs 2 "0.907" "$program bench lattice --packing-fraction 2 --quiet" "bench lattice --steps 100 --repeats 1 --particles 6000"
 one_differs 3 "ulimit -v" "$limit" "bench lattice --steps 10 --repeats 1 --particles 200000"
 one_differs 3 "none.toml" "$program chart stability none.toml --out o8" "chart stability two-discs --size 3 --seeds 1 --budget 5 --out o8"
 one_differs 4 "other arguments" "$program reproduce --only mask --out o9" "reproduce --only table --out o9"
