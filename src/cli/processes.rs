@@ -79,6 +79,8 @@ impl Session {
             });
         };
         #[cfg(feature = "mpi")]
+        let _ = place;
+        #[cfg(feature = "mpi")]
         return Ok(Session {
             _session: stripmine_physics::ranks::mpi::Session::begin(),
             crew: Crew::Processes(stripmine_physics::ranks::mpi::world),
