@@ -1,7 +1,130 @@
-//! The command `stripmine`.
+//! The command `stripmine`, and what it does where the system has no more memory: it ends in words, with an exit code.
 
+use std::alloc::{GlobalAlloc, Layout, System};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
+    limits::prepare();
     stripmine::cli::run(std::env::args_os())
+}
+
+/// The allocator of the system. Where it has no memory left, the program ends in words; without this it would be aborted.
+struct InWords;
+
+#[global_allocator]
+static ALLOCATOR: InWords = InWords;
+
+// SAFETY: every block is the system allocator's; where it has none, no call returns.
+unsafe impl GlobalAlloc for InWords {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        // SAFETY: as the caller promises.
+        limits::given(unsafe { System.alloc(layout) }, layout.size())
+    }
+
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        // SAFETY: as the caller promises.
+        limits::given(unsafe { System.alloc_zeroed(layout) }, layout.size())
+    }
+
+    unsafe fn realloc(&self, block: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        // SAFETY: as the caller promises.
+        limits::given(unsafe { System.realloc(block, layout, size) }, size)
+    }
+
+    unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
+        // SAFETY: as the caller promises.
+        unsafe { System.dealloc(block, layout) }
+    }
+}
+
+#[cfg(unix)]
+mod limits {
+    use std::fmt::{self, Write};
+    use std::sync::atomic::{AtomicBool, Ordering};
+    use stripmine::console::is_untouched;
+    use stripmine_physics::reported::Class;
+
+    /// Whether the command was asked for data.
+    static AS_DATA: AtomicBool = AtomicBool::new(false);
+    static IS_ENDING: AtomicBool = AtomicBool::new(false);
+
+    const REMEDY: &str = "raise the limit of memory (ulimit -v, ulimit -d, the control group), or ask for fewer particles, --ranks or --threads";
+
+    /// Makes what a limited address space holds depend on what is used: an allocator of many threads reserves 64 MiB for each.
+    pub(super) fn prepare() {
+        AS_DATA.store(std::env::args_os().any(|argument| argument == "--json"), Ordering::Relaxed);
+        #[cfg(all(target_os = "linux", target_env = "gnu"))]
+        {
+            let mut limit = libc::rlimit { rlim_cur: 0, rlim_max: 0 };
+            // SAFETY: both calls take what they are declared to take, and there is one thread.
+            unsafe {
+                if libc::getrlimit(libc::RLIMIT_AS, &raw mut limit) == 0
+                    && limit.rlim_cur != libc::RLIM_INFINITY
+                {
+                    libc::mallopt(libc::M_ARENA_MAX, 1);
+                }
+            }
+        }
+    }
+
+    /// The block, if it is one.
+    #[inline]
+    pub(super) fn given(block: *mut u8, bytes: usize) -> *mut u8 {
+        if block.is_null() {
+            end(bytes);
+        }
+        block
+    }
+
+    /// Words on the stack: there is no other memory.
+    struct Words {
+        bytes: [u8; 512],
+        length: usize,
+    }
+
+    impl Write for Words {
+        fn write_str(&mut self, text: &str) -> fmt::Result {
+            let end = self.length + text.len();
+            self.bytes.get_mut(self.length..end).ok_or(fmt::Error)?.copy_from_slice(text.as_bytes());
+            self.length = end;
+            Ok(())
+        }
+    }
+
+    fn say(to: i32, words: fmt::Arguments<'_>) {
+        let mut said = Words { bytes: [0; 512], length: 0 };
+        let _ = said.write_fmt(words);
+        // SAFETY: so many bytes were written there. Where the file takes no more there is nowhere to say so.
+        let _ = unsafe { libc::write(to, said.bytes.as_ptr().cast(), said.length) };
+    }
+
+    #[cold]
+    fn end(bytes: usize) -> ! {
+        // One thread says it.
+        while IS_ENDING.swap(true, Ordering::SeqCst) {
+            std::thread::yield_now();
+        }
+        say(2, format_args!("error: {bytes} bytes of memory cannot be had\n  help: {REMEDY}\n"));
+        if AS_DATA.load(Ordering::Relaxed) && is_untouched() {
+            let kind = Class::InputOutput.name();
+            say(
+                1,
+                format_args!(
+                    "{{\"error\": {{\"kind\": \"{kind}\", \"message\": \"{bytes} bytes of memory cannot be had\", \"place\": null, \"remedy\": \"{REMEDY}\"}}}}\n"
+                ),
+            );
+        }
+        // SAFETY: ends the process, without handlers that would ask for memory.
+        unsafe { libc::_exit(Class::InputOutput.exit_code().into()) }
+    }
+}
+
+#[cfg(not(unix))]
+mod limits {
+    pub(super) fn prepare() {}
+
+    #[inline]
+    pub(super) fn given(block: *mut u8, _: usize) -> *mut u8 {
+        block
+    }
 }

@@ -235,6 +235,53 @@ fn limits_of_the_process_are_asked() {
     }
 }
 
+/// Verbs under limits of the address space: at each they come to their end, or end in words with a documented exit code; no signal ends them.
+#[test]
+fn no_limit_of_memory_aborts_a_verb() {
+    let folder = tempfile::tempdir().unwrap();
+    let under = |mebibytes: Option<u32>, words: &str| {
+        let limit =
+            mebibytes.map_or(String::new(), |mebibytes| format!("ulimit -v {} && ", mebibytes * 1024));
+        let script = format!("rm -rf out; {limit}exec \"$0\" {words} --threads 2");
+        let mut command = Command::new("sh");
+        command.args(["-c", &script, env!("CARGO_BIN_EXE_stripmine")]).current_dir(folder.path());
+        let output = command.stdin(Stdio::null()).output().unwrap();
+        (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+    };
+    let (code, said) =
+        under(None, "run dense-gas --set run.steps=40 --set run.snapshot_every=10 --quiet --out a.run");
+    assert_eq!(code, Some(0), "{said}");
+    let mut wrong = vec![];
+    for words in [
+        "run plummer --set run.steps=5 --out out",
+        "run hard-disks --set run.events=100 --out out",
+        "run dense-gas --set run.steps=5 --out out",
+        "run pipe-small --set run.steps=5 --out out",
+        "run langevin-report --set run.steps=5 --out out",
+        "run dense-gas --ranks 4 --set particles.count=20000 --set run.steps=5 --out out",
+        "run plummer --ranks 4 --set run.steps=5 --out out",
+        "run hard-disks --seeds 3 --set run.events=100 --out out",
+        "plot a.run --color psi6 --film --out out",
+        "average a.run",
+        "scene check plummer",
+        "bench lattice --particles 20000 --steps 5 --repeats 1",
+        "bench lattice --particles 20000 --steps 5 --repeats 1 --ranks 4",
+        "bench nbody --particles 512 --steps 5 --repeats 1",
+        "compare dense-gas --set particles.count=100000 --set run.steps=5 --against machine.engine=programs",
+        "chart stability two-discs --over stiffness --size 3 --seeds 1 --budget 1 --out out",
+        "table",
+    ] {
+        for mebibytes in [45, 80, 120, 200, 400, 4000] {
+            let (code, said) = under(Some(mebibytes), words);
+            let is_told = matches!(code, Some(3 | 5)) && said.contains("memory") && mebibytes < 4000;
+            if !(code == Some(0) || is_told) || said.contains("panicked") {
+                wrong.push(format!("{words} in {mebibytes} MiB: {code:?} {said}"));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
 /// Bytes of the process while it refuses: a tenth of a gigabyte is far below what it was asked for.
 #[test]
 fn what_does_not_fit_is_refused_before_it_is_made() {

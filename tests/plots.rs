@@ -92,6 +92,62 @@ fn a_run_that_was_changed_is_drawn_or_refused() {
     );
 }
 
+/// The frames of a trajectory with another value of a property, for its first particle or for all.
+fn frames_with(frames: &str, property: &str, value: &str, all: bool) -> String {
+    let (mut place, mut is_done) = (0..0, false);
+    let mut with_it = |line: &str| {
+        let mut words: Vec<&str> = line.split_whitespace().collect();
+        if let Some((_, properties)) = line.split_once("Properties=") {
+            let properties: Vec<&str> = properties.split_whitespace().next().unwrap().split(':').collect();
+            let mut first = 0;
+            for of in properties.chunks(3) {
+                let count: usize = of[2].trim_matches('"').parse().unwrap();
+                if of[0].trim_matches('"') == property {
+                    place = first..first + count;
+                }
+                first += count;
+            }
+            is_done = false;
+        } else if words.len() > 1 && (all || !is_done) {
+            words[place.clone()].fill(value);
+            is_done = true;
+            return words.join(" ") + "\n";
+        }
+        line.to_owned() + "\n"
+    };
+    frames.lines().map(&mut with_it).collect()
+}
+
+/// Extreme but finite numbers of particles, in every colour: pictures, or an exit code, never a panic.
+#[test]
+fn extreme_particles_are_drawn_or_refused_in_every_colour() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = folder.path().join("gas");
+    let short = ["particles.count=100", "run.steps=20", "run.thermo_every=10", "run.snapshot_every=10"]
+        .map(|it| ["--set", it]);
+    let begun =
+        [&["run", "dense-gas", "--quiet", "--out", run.to_str().unwrap()][..], &short.concat()].concat();
+    assert!(stripmine(&begun).status.success());
+    let frames = fs::read_to_string(run.join("trajectory.xyz")).unwrap();
+    let out = folder.path().join("pictures");
+    for property in ["pos", "velo", "radius", "mass", "omega"] {
+        for (value, all) in [("1e300", false), ("1e300", true), ("1.7e308", true), ("5e-324", true)] {
+            fs::write(run.join("trajectory.xyz"), frames_with(&frames, property, value, all)).unwrap();
+            for (color, more) in
+                [("psi6", "--film"), ("force", "--quiet"), ("speed", "--film"), ("spin", "--quiet")]
+            {
+                let what = format!("{property} {value} (all: {all}) by {color}");
+                let arguments =
+                    ["plot", run.to_str().unwrap(), "--color", color, more, "--out", out.to_str().unwrap()];
+                let drawn = stripmine(&arguments);
+                let said = String::from_utf8_lossy(&drawn.stderr).into_owned();
+                assert!(matches!(drawn.status.code(), Some(0 | 2 | 3)), "{what}: {:?} {said}", drawn.status);
+                assert!(!said.contains("panicked"), "{what}: {said}");
+            }
+        }
+    }
+}
+
 /// The folder of a run by the name of its scene.
 #[test]
 fn a_run_is_found_by_the_name_of_its_scene() {

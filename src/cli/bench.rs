@@ -1,7 +1,7 @@
 //! `stripmine bench`: one throughput measurement of moving particles.
 
 use super::processes;
-use super::run::MOST_RANKS;
+use super::run::{MOST_RANKS, threads_of_ranks};
 use crate::console::{Common, Failure, clear_progress, count, print, print_json, progress};
 use crate::provenance::built;
 use crate::report::{Cell, Rows, Table, terminal};
@@ -15,7 +15,7 @@ use stripmine_physics::method::throughput::{Measurement, MeasurementError, Throu
 use stripmine_physics::method::{Bench, BenchOption, Entry, Methods, Purpose, Takes};
 use stripmine_physics::number::{counted, significant};
 use stripmine_physics::ranks::{self, Crew};
-use stripmine_physics::scene::{SceneErrors, Values};
+use stripmine_physics::scene::{Reason, SceneErrors, Values};
 
 /// One throughput measurement of moving particles
 #[derive(Args)]
@@ -113,7 +113,14 @@ impl BenchVerb {
         let given = self.overrides(bench, matches, methods)?;
         // Before anything takes its time.
         self.record.as_deref().map_or(Ok(()), history::admits)?;
-        if common.threads.len() > 1 || self.ranks.len() > 1 {
+        let is_of_several = common.threads.len() > 1 || self.ranks.len() > 1;
+        if is_of_several && self.record.is_some() {
+            return Err(Failure::RecordOfSeveral);
+        }
+        let threads =
+            common.threads.iter().copied().max().map_or_else(rayon::current_num_threads, usize::from);
+        threads_of_ranks(self.ranks.iter().copied().max().unwrap_or(1), threads)?;
+        if is_of_several {
             return self.on_several(entry, bench, &given, common);
         }
         let Crew::Processes(join) = common.crew else {
@@ -124,7 +131,8 @@ impl BenchVerb {
             return Err(processes::ranks_twice());
         }
         let measurement = self.measurement(entry, bench, &given).map_err(|error| refused(error, &given))?;
-        let same = format!("{:?}\n{}", built(), measurement.prepared.scene);
+        measurement.prepared.memory.clone().on(common.crew).fits(bench.name)?;
+        let same = format!("bench\n{:?}\n{}", built(), measurement.prepared.scene);
         let first = || self.on_one((entry, bench, &given), common.crew, common);
         processes::together(join, &same, first, || {
             processes::serve(common.crew, || measurement.prepared.start(Purpose::Measurement).map(drop));
@@ -239,7 +247,9 @@ fn by_phases(found: &Scaling) -> Table {
 /// An error with the options that it is about.
 fn refused(error: MeasurementError, given: &[Override]) -> Failure {
     match error {
-        MeasurementError::Scene(mistakes) => Failure::Options(in_options(mistakes, given)),
+        MeasurementError::Scene(mistakes) if mistakes.0.iter().all(|it| it.reason != Reason::Memory) => {
+            Failure::Options(in_options(mistakes, given))
+        }
         error => error.into(),
     }
 }

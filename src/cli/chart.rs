@@ -3,7 +3,7 @@
 use super::processes;
 use crate::console::{Common, Failure, clear_progress, print, print_json, progress, say, warn};
 use crate::model::machines;
-use crate::provenance::Provenance;
+use crate::provenance::{Provenance, built};
 use crate::results::Made;
 use crate::results::Progress;
 use crate::results::{Folder, Journal, Team};
@@ -16,10 +16,11 @@ use crate::study::{
 };
 use clap::{Args, Subcommand};
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 use stripmine_physics::method::Methods;
 use stripmine_physics::number::counted;
 use stripmine_physics::quoted;
+use stripmine_physics::ranks::Crew;
 use stripmine_physics::signals;
 
 /// Seconds that a study may take.
@@ -32,8 +33,6 @@ const SIZE: std::ops::RangeInclusive<i64> = 3..=200;
 const SEEDS: std::ops::RangeInclusive<i64> = 1..=100;
 /// Starts a step of a collision.
 const PHASES: u32 = 16;
-/// Progress moves at least this often.
-const TICK: Duration = Duration::from_millis(500);
 
 /// Studies as data and charts
 #[derive(Args)]
@@ -175,7 +174,6 @@ impl WorkPrecisionVerb {
         let place = Place { name: diagram_section::NAME, scene: &self.scene, out: self.out.as_deref() };
         let (folder, stem) = place.folder()?;
         let (bar, start) = (progress(common, place.name), Instant::now());
-        bar.enable_steady_tick(TICK);
         let show = |share: f64| bar.set_position((1e3 * share) as u64);
         let threads = rayon::current_num_threads() as f64;
         let seconds = f64::from(self.budget) / threads;
@@ -272,6 +270,11 @@ impl Place<'_> {
         options: &str,
         make: impl FnOnce(&Journal, Progress<'_>, String, String) -> Result<Made, Failure>,
     ) -> Result<(), Failure> {
+        if let Crew::Processes(join) = common.crew {
+            let same =
+                format!("{}\n{:?}\n{:?}", common.command, built(), subject.identity(self.name, options));
+            processes::begin(join().as_ref(), &same)?;
+        }
         let team = Team::of(common.crew);
         // The first of several processes writes there, and says what it does.
         let is_first = team.as_ref().is_none_or(Team::is_first);
@@ -288,7 +291,6 @@ impl Place<'_> {
             say(format_args!("going on with {finished} in {}", quoted::path(&out)));
         }
         let bar = progress(common, self.name);
-        bar.enable_steady_tick(TICK);
         let start = Instant::now();
         let show = |share: f64| bar.set_position((1e3 * share) as u64);
         let again = format!("stripmine chart {} {}", self.name, subject.arguments());

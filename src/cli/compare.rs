@@ -29,9 +29,6 @@ pub(super) struct CompareVerb {
 /// Looks at both ways: at the start and after 1, 2, 4, … of this many parts.
 const PARTS: u32 = 16;
 
-/// A way to run the scene, and the scene under way.
-type Begun = (Prepared, Box<dyn Simulation>);
-
 /// How far both are from each other at a moment.
 #[derive(Serialize)]
 struct Look {
@@ -62,15 +59,15 @@ struct Comparison {
 
 impl CompareVerb {
     pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
-        let begin = |more: &[String]| -> Result<Begun, Failure> {
+        let read = |more: &[String]| -> Result<Prepared, Failure> {
             let overrides: Vec<String> = self.overrides.iter().chain(more).cloned().collect();
-            let (prepared, _) =
-                load(&self.scene, &overrides, methods).map_err(|mistakes| of_against(mistakes, more))?;
-            let simulation = prepared.start(Purpose::Run)?;
-            Ok((prepared, simulation))
+            let read = load(&self.scene, &overrides, methods);
+            let (prepared, _) = read.map_err(|mistakes| of_against(mistakes, more))?;
+            Ok(prepared)
         };
-        let (prepared, mut first) = begin(&[])?;
-        let (_, mut second) = begin(&self.against)?;
+        let (prepared, against) = (read(&[])?, read(&self.against)?);
+        prepared.memory.clone().beside(&against.memory).fits(&self.scene)?;
+        let (mut first, mut second) = (prepared.start(Purpose::Run)?, against.start(Purpose::Run)?);
         let (until, domain) = (prepared.schedule.until, prepared.domain);
         let mut looks = vec![look(&*first, &*second, &domain)];
         for part in (0..=PARTS).rev() {

@@ -119,13 +119,16 @@ const EXIT_CODES: &[(&str, &str)] = &[
         "4",
         "the physics failed, an accuracy cannot be reached, or a prediction lies outside what was calibrated",
     ),
-    ("5", "reading or writing failed"),
+    ("5", "reading or writing failed, or the system gives no more memory or threads"),
     ("6", "a damaged checkpoint"),
     ("130", "interrupted; a run has written its checkpoint"),
 ];
 
 /// Variables of the environment that are read.
-const ENVIRONMENT: &[(&str, &str)] = &[("COLUMNS", "width of tables and notes, where it is set")];
+const ENVIRONMENT: &[(&str, &str)] = &[
+    ("COLUMNS", "width of tables and notes, where it is set"),
+    ("RAYON_NUM_THREADS", "threads where --threads is not given, at most 1024"),
+];
 
 /// Where to read on.
 const SEE_ALSO: &str = "stripmine VERB --help, stripmine man VERB, stripmine scene keys, and the README";

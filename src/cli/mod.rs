@@ -16,7 +16,7 @@ mod run;
 mod scene;
 
 use crate::console::Verb;
-use crate::console::{Common, Failure, clear_progress, print_answer, tell};
+use crate::console::{Common, Failure, MOST_THREADS, clear_progress, print_answer, tell};
 use crate::laboratory::laboratories;
 use crate::provenance::command_line;
 use crate::results::Item;
@@ -28,6 +28,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use stripmine_physics::method::{METHODS, Methods};
+use stripmine_physics::quoted::quoted;
 use stripmine_physics::ranks::Crew;
 use stripmine_physics::signals;
 
@@ -142,13 +143,20 @@ pub fn run_with(arguments: impl Iterator<Item = OsString>, methods: Methods) -> 
     let matches = understood(&arguments, methods);
     let verb = matches.as_ref().ok().and_then(Option::as_ref).and_then(ArgMatches::subcommand_name);
     let verb = verb.unwrap_or_default().to_owned();
-    let outcome = matches.and_then(|matches| {
-        let Some(matches) = matches else { return Ok(()) };
-        // It lasts as long as what is carried out.
-        let session = Session::begin(&verb)?;
-        signals::install(last_words).map_err(Failure::writing("the handler of interruptions"))?;
-        carried_out(&matches, &command_line(&arguments), session.crew(), methods)
-    });
+    // It lasts as long as what is carried out. A process that has nothing to carry out joins the others to end them.
+    let outcome = match (Session::begin(&verb), matches) {
+        (Ok(session), matches) => {
+            let outcome = matches.and_then(|matches| {
+                let Some(matches) = matches else { return Ok(()) };
+                signals::install(last_words).map_err(Failure::writing("the handler of interruptions"))?;
+                carried_out(&matches, &command_line(&arguments), session.crew(), methods)
+            });
+            clear_progress();
+            session.ended(outcome)
+        }
+        (Err(failure), Ok(Some(_))) => Err(failure),
+        (Err(_), matches) => matches.map(drop),
+    };
     clear_progress();
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
@@ -160,6 +168,19 @@ pub fn run_with(arguments: impl Iterator<Item = OsString>, methods: Methods) -> 
             }
             ExitCode::from(code)
         }
+    }
+}
+
+/// Refuses a number of threads in the environment that is none.
+fn threads_of_environment() -> Result<(), Failure> {
+    let Some(given) = std::env::var_os("RAYON_NUM_THREADS").filter(|given| !given.is_empty()) else {
+        return Ok(());
+    };
+    let given = given.to_string_lossy();
+    // 0 leaves the number to the machine.
+    match given.parse::<u16>() {
+        Ok(0..=MOST_THREADS) => Ok(()),
+        _ => Err(Failure::ThreadsOfEnvironment(quoted(&given))),
     }
 }
 
@@ -184,8 +205,11 @@ fn carried_out(matches: &ArgMatches, command: &str, crew: Crew, methods: Methods
     if rank > 0 && !["run", "bench", "chart", "reproduce"].contains(&verb) {
         return Ok(());
     }
-    // Without an answer the default pool has a thread for each core.
+    // Without an answer the default pool has a thread for each core, or as many as the environment says.
     let threads = common.threads.iter().copied().max().map_or(0, usize::from);
+    if threads == 0 {
+        threads_of_environment()?;
+    }
     if let Some((verb, _)) =
         matches.subcommand().filter(|(verb, _)| *verb != "bench" && common.threads.len() > 1)
     {
@@ -216,8 +240,11 @@ fn carried_out(matches: &ArgMatches, command: &str, crew: Crew, methods: Methods
             let given = matches.subcommand().map_or(matches, |(_, below)| below);
             verb.run(given, &common, methods)
         }
-        // What goes wrong on another process, goes wrong on the first one too.
-        GeneralVerb::Chart(verb) if rank > 0 => verb.run(&common, methods).or(Ok(())),
+        // Once all have begun, an error of another process is one of the first process too.
+        GeneralVerb::Chart(verb) if rank > 0 => match verb.run(&common, methods) {
+            Err(_) if processes::have_met() => Ok(()),
+            outcome => outcome,
+        },
         GeneralVerb::Chart(verb) => verb.run(&common, methods),
         GeneralVerb::Compare(verb) => verb.run(&common, methods),
         GeneralVerb::Explain(verb) => verb.run(&common, methods),

@@ -2,10 +2,16 @@
 //!
 //! The first rank is the program that the user sees. The others read the same scene and do as it says, or runs of their own; they print nothing.
 
-use crate::console::Failure;
+mod agreement;
+
+use crate::console::{Failure, tell};
 use crate::study::StudyError;
+use agreement::{Part, Verdict, agreed};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
 use stripmine_physics::method::{DISMISSED, Failure as Broken, FailureKind};
-use stripmine_physics::ranks::{self, Crew, Gone, Parcel, Ranks, dismiss, first_to_differ};
+use stripmine_physics::ranks::{self, Crew, Gone, Parcel, Ranks, dismiss, is_dismissed};
+use stripmine_physics::reported::Class;
 
 /// Variables by which a launcher tells processes how many they are, and which one each is.
 struct Launcher {
@@ -73,6 +79,8 @@ impl Session {
             });
         };
         #[cfg(feature = "mpi")]
+        let _ = place;
+        #[cfg(feature = "mpi")]
         return Ok(Session {
             _session: stripmine_physics::ranks::mpi::Session::begin(),
             crew: Crew::Processes(stripmine_physics::ranks::mpi::world),
@@ -84,6 +92,67 @@ impl Session {
     /// By whom simulations are carried out.
     pub(super) fn crew(&self) -> Crew {
         self.crew
+    }
+
+    /// The outcome of this process, once every other one knows of it: a process that could not begin ends all of them, in place of leaving them to
+    /// wait for it.
+    pub(super) fn ended(&self, outcome: Result<(), Failure>) -> Result<(), Failure> {
+        let Crew::Processes(join) = self.crew else { return outcome };
+        let part = match &outcome {
+            Err(failure) if failure.exit_code() != 0 => Part::Refused(failure),
+            _ => Part::Finished,
+        };
+        match first_exchange(join().as_ref(), part)? {
+            Verdict::Own => outcome,
+            Verdict::Failed(failure) => Err(failure),
+        }
+    }
+}
+
+impl Drop for Session {
+    fn drop(&mut self) {
+        // MPI would wait for the others, which wait for this process.
+        if thread::panicking() && matches!(self.crew, Crew::Processes(_)) {
+            abort(PANICKED);
+        }
+    }
+}
+
+/// The exit code of a program that panicked.
+const PANICKED: u8 = 101;
+
+/// Ends all processes at once.
+fn abort(code: u8) -> ! {
+    #[cfg(feature = "mpi")]
+    stripmine_physics::ranks::mpi::abort(code);
+    #[cfg(not(feature = "mpi"))]
+    std::process::exit(code.into());
+}
+
+/// Records that the processes have heard of each other. They do so once, before any other message.
+static HAVE_MET: AtomicBool = AtomicBool::new(false);
+
+/// Whether all processes have begun, or ended, together.
+pub(super) fn have_met() -> bool {
+    HAVE_MET.load(Ordering::SeqCst)
+}
+
+/// The verdict on all processes, of the first exchange; later ones find nothing more.
+fn first_exchange(ranks: &dyn Ranks, part: Part<'_>) -> Result<Verdict, Failure> {
+    if HAVE_MET.swap(true, Ordering::SeqCst) {
+        return Ok(Verdict::Own);
+    }
+    agreed(ranks, part).map_err(gone)
+}
+
+/// Begins what all processes do together, if every one of them can begin and does `same`; for each of several processes to call before its first message.
+///
+/// # Errors
+/// [`Failure`] on all of them, naming the rank that cannot begin, or that does something else.
+pub(super) fn begin(ranks: &dyn Ranks, same: &str) -> Result<(), Failure> {
+    match first_exchange(ranks, Part::Begins(same))? {
+        Verdict::Own => Ok(()),
+        Verdict::Failed(failure) => Err(failure),
     }
 }
 
@@ -108,9 +177,9 @@ pub(super) fn gone(gone: Gone) -> Failure {
     broken(gone.to_string(), "see what it said last")
 }
 
-/// What a rank says that went wrong.
-pub(super) fn of_rank(rank: usize, said: &str) -> Failure {
-    broken(format!("rank {rank}: {said}"), "see what it says")
+/// The failure of another rank, with its exit code and words.
+pub(super) fn of_rank(rank: usize, code: u8, said: &str) -> Failure {
+    Failure::OfRank { rank, class: Class::of_exit_code(code), said: said.to_owned() }
 }
 
 /// Which of several processes this is.
@@ -127,17 +196,21 @@ pub(super) fn ranks_twice() -> Failure {
 /// The part that a rank which is not the first takes in simulations that `start` begins, until the first dismisses it.
 pub(super) fn serve(crew: Crew, start: impl FnOnce() -> Result<(), Broken>) {
     let Crew::Processes(join) = crew else { return };
-    // Where its part has not begun, for what is refused on all ranks, it still waits for the end.
-    if !matches!(ranks::over(crew, start), Err(failure) if failure.kind == DISMISSED) {
-        ranks::wait(join().as_ref());
+    let Err(failure) = ranks::over(crew, start) else { return };
+    // Where the first rank has begun nothing, it was refused the same, and says so. Elsewhere it waits for this rank.
+    if failure.kind != DISMISSED && !is_dismissed(join().as_ref()) {
+        let failure = Failure::from(StudyError::Own(Box::new(failure)));
+        let code = failure.exit_code();
+        tell(&of_rank(join().rank(), code, &failure.words()), false);
+        abort(code);
     }
 }
 
-/// What all processes do: the same on each, or nothing where they do not say the same of it (scene and program). The first rank does `first`, which may begin
-/// simulations on all of them, the others `serve`, which takes their part in these.
+/// Does the same on all processes. The first rank does `first`, which may begin simulations on all of them, the others `serve`, which takes their part
+/// in these.
 ///
 /// # Errors
-/// [`Failure`] of the rank itself, or that says which rank differs.
+/// [`Failure`] of the rank itself, or of [`begin`] where they do not say the same of it (scene and program).
 pub(super) fn together(
     join: fn() -> Box<dyn Ranks>,
     same: &str,
@@ -145,11 +218,7 @@ pub(super) fn together(
     serve: impl FnOnce(),
 ) -> Result<(), Failure> {
     let ranks = join();
-    if let Some(rank) = first_to_differ(ranks.as_ref(), same).map_err(gone)? {
-        let what =
-            format!("rank {rank} has another scene, or is another version of the program, than rank 0");
-        return Err(broken(what, "give all ranks the same files and the same program"));
-    }
+    begin(ranks.as_ref(), same)?;
     if ranks.rank() == 0 {
         let outcome = first();
         dismiss(ranks.as_ref()).map_err(gone)?;
@@ -162,22 +231,28 @@ pub(super) fn together(
 /// Work that ranks do on their own, each every so-many-th piece of it; the first failure, on the first rank once all have ended.
 ///
 /// # Errors
-/// The rank's own failure; on the first rank that of another one.
+/// The rank's own failure; on the first rank that of another one; or that of [`begin`].
 pub(super) fn apart(
     join: fn() -> Box<dyn Ranks>,
+    same: &str,
     mut work: impl FnMut(usize, usize) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     let ranks = join();
+    begin(ranks.as_ref(), same)?;
     let outcome = work(ranks.rank(), ranks.count());
     let mut said = Parcel::new();
-    said.text(&outcome.as_ref().err().map_or(String::new(), ToString::to_string));
+    said.push(outcome.as_ref().err().map_or(0, |failure| failure.exit_code().into()));
+    said.text(&outcome.as_ref().err().map_or(String::new(), Failure::words));
     let all = ranks.gather(said).map_err(gone)?;
     outcome?;
-    let failed = all.iter().map(|parcel| parcel.read().text()).enumerate().find(|(_, said)| !said.is_empty());
-    match failed {
-        Some((rank, said)) => Err(of_rank(rank, &said)),
-        None => Ok(()),
+    for (rank, parcel) in all.iter().enumerate() {
+        let mut reader = parcel.read();
+        let (code, said) = (reader.count(), reader.text());
+        if !said.is_empty() {
+            return Err(of_rank(rank, code as u8, &said));
+        }
     }
+    Ok(())
 }
 
 #[cfg(test)]

@@ -62,7 +62,7 @@ impl Reproduce {
         let Crew::Processes(join) = common.crew else { return self.make(None, common, methods) };
         let ranks = join();
         let first = || self.make(Some(ranks.as_ref()), common, methods);
-        processes::together(join, &format!("{:?}", built()), first, || {
+        processes::together(join, &format!("{}\n{:?}", common.command, built()), first, || {
             self.help(ranks.as_ref(), common, methods)
         })
     }
@@ -126,9 +126,11 @@ impl Reproduce {
             let bar = ProgressBar::hidden();
             let job = Job { effort, common, folder: &folder, on_page: None, bar, before: Cell::new(0.0) };
             let mut said = Parcel::new();
-            match job.make(&own) {
+            let made = job.make(&own);
+            said.push(made.as_ref().err().map_or(0, |failure| failure.exit_code().into()));
+            match made {
                 Ok(outcomes) => [serde_json::to_string(&outcomes).unwrap_or_default(), String::new()],
-                Err(failure) => ["[]".to_owned(), failure.to_string()],
+                Err(failure) => ["[]".to_owned(), failure.words()],
             }
             .iter()
             .for_each(|text| said.text(text));
@@ -226,9 +228,10 @@ impl Job<'_> {
         let mut outcomes = own?;
         for (rank, parcel) in all.iter().enumerate().skip(1) {
             let mut reader = parcel.read();
+            let code = reader.count();
             let [made, failed] = [(); 2].map(|()| reader.text());
             if !failed.is_empty() {
-                return Err(processes::of_rank(rank, &failed));
+                return Err(processes::of_rank(rank, code as u8, &failed));
             }
             let made: Vec<Outcome> = serde_json::from_str(&made).unwrap_or_default();
             made.iter().for_each(|outcome| self.say(outcome));

@@ -1,5 +1,6 @@
 //! Why a verb did not come to its end, in words and as data: what `--json` prints in the place of a result.
 
+use super::MOST_THREADS;
 use super::output::{is_untouched, print_json, say};
 use serde::Serialize;
 use std::io::ErrorKind;
@@ -37,6 +38,26 @@ pub enum Failure {
         /// Those there are.
         values: &'static [&'static str],
     },
+    /// Ranks with more threads together than a run may have: exit code 2.
+    #[error(
+        "{ranks} ranks of {threads} threads are more than {MOST_THREADS} threads; take fewer --ranks or --threads"
+    )]
+    ManyThreads {
+        /// Ranks.
+        ranks: u16,
+        /// Threads of each.
+        threads: usize,
+    },
+    /// A number of threads in the environment that cannot be: exit code 2.
+    #[error(
+        "RAYON_NUM_THREADS is {0}; expected a whole number from 1 to {MOST_THREADS}: correct it, or give --threads"
+    )]
+    ThreadsOfEnvironment(String),
+    /// A record of several measurements: exit code 2.
+    #[error(
+        "--record takes one measurement, and several numbers of --threads or --ranks are several; record them one after the other"
+    )]
+    RecordOfSeveral,
     /// Several numbers of threads for a verb that takes one: exit code 2.
     #[error("several numbers of threads are for bench; {0} takes one")]
     SeveralThreads(String),
@@ -47,6 +68,16 @@ pub enum Failure {
         verb: String,
         /// Those there are.
         verbs: Vec<String>,
+    },
+    /// Another of several processes failed: the exit code is that of its class.
+    #[error("rank {rank}: {said}")]
+    OfRank {
+        /// The process.
+        rank: usize,
+        /// The class of its failure; none where a signal ended it.
+        class: Option<Class>,
+        /// Its words.
+        said: String,
     },
     /// Threads that the system does not give: exit code 5.
     #[error("the threads cannot be had: {0}; ask for fewer with --threads")]
@@ -153,8 +184,12 @@ impl Failure {
             | Failure::NoSuchOption { .. }
             | Failure::NoSuchValue { .. }
             | Failure::SeveralThreads(_)
+            | Failure::ManyThreads { .. }
+            | Failure::ThreadsOfEnvironment(_)
+            | Failure::RecordOfSeveral
             | Failure::UnknownVerb { .. } => Class::Usage,
             Failure::Reported(error) => error.class(),
+            Failure::OfRank { class, .. } => return *class,
             Failure::Threads(_) | Failure::StandardOutput(_) | Failure::InputOutput { .. } => {
                 Class::InputOutput
             }
@@ -179,6 +214,15 @@ impl Failure {
         }
     }
 
+    /// The failure in words, as [`tell`] says it behind "error:".
+    pub fn words(&self) -> String {
+        let text = match self {
+            Failure::Arguments(mistake) => mistake.render().to_string(),
+            _ => self.to_string(),
+        };
+        text.strip_prefix("error: ").unwrap_or(&text).to_owned()
+    }
+
     fn report(&self) -> Report {
         let kind = self.class().map_or("interrupted", Class::name);
         if let Some(first) = self.mistakes().and_then(|mistakes| mistakes.0.first()) {
@@ -195,15 +239,11 @@ impl Failure {
                 details: None,
             };
         }
-        let text = match self {
-            Failure::Arguments(mistake) => mistake.render().to_string(),
-            _ => self.to_string(),
-        };
-        let text = text.strip_prefix("error: ").unwrap_or(&text);
+        let text = self.words();
         // What to do stands in a paragraph of its own, or after "help".
         let (message, remedy) = match text.split_once("\n\n").or_else(|| text.split_once("\n  help: ")) {
             Some((message, remedy)) => (message, Some(remedy.trim().to_owned())),
-            None => (text, None),
+            None => (text.as_str(), None),
         };
         let message = message.trim().to_owned();
         let (place, details) = (self.place(), self.details());

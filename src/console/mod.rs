@@ -6,14 +6,16 @@ mod verb;
 
 pub use failure::{Failure, tell};
 pub(crate) use output::print_answer;
-pub use output::{SHARES, STEPS, bar, clear_progress, print, print_json, progress, say, to_json, warn};
+pub use output::{
+    SHARES, STEPS, bar, clear_progress, is_untouched, print, print_json, progress, say, to_json, warn,
+};
 pub use verb::Verb;
 
 use clap::Args;
 use stripmine_physics::ranks::Crew;
 
 /// More threads than any machine at hand has cores; each takes memory of its own.
-const MOST_THREADS: i64 = 1024;
+pub const MOST_THREADS: u16 = 1024;
 
 /// What every verb takes.
 #[derive(Args, Clone, Debug)]
@@ -25,7 +27,7 @@ pub struct Common {
     #[arg(long, global = true)]
     pub quiet: bool,
     /// Threads, at most 1024; all cores by default. `bench` takes several numbers, such as 1,2,4
-    #[arg(long, global = true, value_delimiter = ',', value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
+    #[arg(long, global = true, value_delimiter = ',', value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_THREADS)))]
     pub threads: Vec<u16>,
     /// By whom simulations are carried out that a verb may give to several ranks.
     #[arg(skip = Crew::One)]
@@ -35,29 +37,44 @@ pub struct Common {
     pub command: String,
 }
 
-/// A count on the command line: a whole number from 1 on, also as 1e6.
+/// The largest count on the command line: above it not every whole number is a double.
+const MOST: u64 = 1 << 53;
+
+/// A count on the command line: a whole number from 1 to 2⁵³, also as 1e6.
 ///
 /// # Errors
 /// A sentence, if it is none.
 pub fn count(text: &str) -> Result<u64, String> {
-    /// Above it not every whole number is a double.
-    const MOST: f64 = 9_007_199_254_740_992.0;
+    count_up_to(MOST, text)
+}
+
+/// The same up to a smaller number.
+///
+/// # Errors
+/// A sentence, if it is none.
+pub fn count_up_to(most: u64, text: &str) -> Result<u64, String> {
     let whole = text.parse::<u64>().ok().or_else(|| {
         let number: f64 = text.parse().ok()?;
-        (number.fract() == 0.0 && (1.0..=MOST).contains(&number)).then_some(number as u64)
+        (number.fract() == 0.0 && (1.0..=MOST as f64).contains(&number)).then_some(number as u64)
     });
-    whole
-        .filter(|&count| count > 0)
-        .ok_or_else(|| "a whole number, 1 or more, such as 1000 or 1e6".to_owned())
+    whole.filter(|count| (1..=most).contains(count)).ok_or_else(|| match most {
+        MOST => "a whole number, 1 or more, such as 1000 or 1e6".to_owned(),
+        most => format!("a whole number from 1 to {most}"),
+    })
 }
 
 #[cfg(test)]
 mod tests {
-    use super::count;
+    use super::{count, count_up_to};
 
     #[test]
     fn counts_are_whole_and_positive() {
         assert_eq!(["7", "1e3", "2.5e1"].map(|text| count(text).ok()), [Some(7), Some(1000), Some(25)]);
-        assert!(["0", "-1", "1.5", "1e99", "many", "nan"].iter().all(|text| count(text).is_err()));
+        let none = ["0", "-1", "1.5", "1e99", "many", "nan", "", "inf", "18446744073709551615"];
+        assert!(none.iter().all(|text| count(text).is_err()));
+        assert_eq!(
+            ["7", "1e1", "11", "1e2"].map(|text| count_up_to(10, text).ok()),
+            [Some(7), Some(10), None, None]
+        );
     }
 }

@@ -48,8 +48,10 @@ pub fn bar(common: &Common, length: u64, template: &str) -> ProgressBar {
     bar.set_style(style.with_key("left", |state: &ProgressState, out: &mut dyn std::fmt::Write| {
         let _ = out.write_str(&remaining(state.fraction(), state.elapsed(), state.eta()));
     }));
-    // Time goes on where nothing else does.
-    bar.enable_steady_tick(TICK);
+    // Time goes on where nothing else does. Where nothing is drawn no thread is needed for it.
+    if !bar.is_hidden() {
+        bar.enable_steady_tick(TICK);
+    }
     *shown() = Some(bar.clone());
     bar
 }

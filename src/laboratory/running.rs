@@ -57,8 +57,9 @@ impl Running {
     /// A scene of a method, at its start.
     ///
     /// # Errors
-    /// [`StudyError`] if the processor lacks what it asks for.
+    /// [`StudyError`] if the processor or the memory lacks what it asks for.
     pub fn of(method: &'static Entry, prepared: &Prepared, purpose: Purpose) -> Result<Running, StudyError> {
+        prepared.memory.fits("scene")?;
         let (simulation, domain) = (prepared.start(purpose)?, prepared.domain);
         Ok(Running { simulation, domain, quantities: method.quantities })
     }

@@ -16,11 +16,16 @@ pub fn render(table: &Table) -> String {
     render_within(table, width())
 }
 
-/// Characters of a line: what `COLUMNS` says, or the terminal where there is one.
+/// Characters of a line: as `COLUMNS` says, or the terminal where there is one.
 fn width() -> Option<usize> {
     let said = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
-    let width: Option<usize> = said.or_else(|| comfy_table::Table::new().width().map(usize::from));
-    width.map(|width| width.max(NARROWEST))
+    let of_terminal = || comfy_table::Table::new().width().map(usize::from);
+    said.filter(|&columns| columns > 0).or_else(of_terminal).map(columns)
+}
+
+/// Characters of a line of a terminal that reports a number of columns. A launcher's terminal reports none.
+fn columns(reported: usize) -> usize {
+    if reported == 0 { PAGE } else { reported.max(NARROWEST) }
 }
 
 /// A message whose lines are broken at blanks where they are longer than a line of the terminal.
@@ -160,6 +165,11 @@ mod tests {
         }
         let unbound = render_within(&table(), None);
         assert!(unbound.lines().any(|line| line.contains("largest error of the energy")), "{unbound}");
+    }
+
+    #[test]
+    fn a_terminal_without_columns_is_a_page_wide() {
+        assert_eq!([0, 1, 20, 79, 300].map(columns), [PAGE, NARROWEST, 20, 79, 300]);
     }
 
     #[test]

@@ -92,6 +92,20 @@ impl OwnFiles {
         Ok(OwnFiles { path: path.to_owned(), _lock: lock })
     }
 
+    /// Removes a file that was claimed, where it is there.
+    ///
+    /// # Errors
+    /// If the system does not let it be removed.
+    pub(crate) fn remove(&self, name: &str) -> Result<(), OwnFilesError> {
+        let file = self.path.join(name);
+        match fs::remove_file(&file) {
+            Err(cause) if cause.kind() != ErrorKind::NotFound => {
+                Err(FileError::at(&file, "removing")(cause).into())
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Puts a whole file in its place; it is one that was claimed.
     ///
     /// # Errors

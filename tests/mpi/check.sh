@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds the program with MPI and runs scenes on 1 to 4 ranks: the same files to the byte, a rank that dies, a run that goes on on another number of
-# ranks, what is refused.
+# ranks, a rank that cannot begin, what is refused.
 #
 #   tests/mpi/check.sh [ENVIRONMENT_FOLDER]
 #
@@ -31,6 +31,8 @@ stripmine=${CARGO_TARGET_DIR:-$root/target}/debug/stripmine
 failed=0
 bad() { echo "FAILED: $*"; failed=1; }
 cd "$scratch"
+# No process may wait for ever.
+mpi() { timeout 300 mpiexec "$@"; }
 
 # Lists, a lattice, and a bath, with rows, frames and checkpoints.
 scenes=(
@@ -43,7 +45,7 @@ for number in "${!scenes[@]}"; do
     "$stripmine" run "${scene[@]}" --quiet --threads 1 --out "alone-$number" >/dev/null
     for ranks in 2 3 4; do
         out=ranks-$number-$ranks
-        timeout 120 mpiexec -n "$ranks" "$stripmine" run "${scene[@]}" --quiet --threads 1 --out "$out" >/dev/null ||
+        mpi -n "$ranks" "$stripmine" run "${scene[@]}" --quiet --threads 1 --out "$out" >/dev/null ||
             bad "${scene[0]} on $ranks ranks"
         for file in thermo.csv trajectory.xyz; do
             cmp "alone-$number/$file" "$out/$file" || bad "${scene[0]} on $ranks ranks: $file"
@@ -55,7 +57,7 @@ done
 # A rank that dies ends the others within seconds, and the run goes on on another number of ranks to the same bytes.
 long=(bench --set particles.count=20000 --set run.steps=4000 --set run.thermo_every=100 --set run.checkpoint_every=200 --quiet --threads 1)
 "$stripmine" run "${long[@]}" --out whole >/dev/null
-mpiexec -n 3 "$stripmine" run "${long[@]}" --out killed >/dev/null 2>&1 &
+timeout 300 mpiexec -n 3 "$stripmine" run "${long[@]}" --out killed >/dev/null 2>&1 &
 launched=$!
 for _ in $(seq 100); do
     [[ -e killed/run.checkpoint ]] && break
@@ -71,14 +73,14 @@ if kill -0 "$launched" 2>/dev/null; then
     kill -9 "$launched"
 fi
 wait "$launched" && bad "a run that lost a rank ends well"
-mpiexec -n 2 "$stripmine" run "${long[@]}" --out killed --resume >/dev/null || bad "a resumption"
+mpi -n 2 "$stripmine" run "${long[@]}" --out killed --resume >/dev/null || bad "a resumption"
 cmp whole/thermo.csv killed/thermo.csv || bad "a run that went on on another number of ranks"
 echo "a rank that dies: the others end, and the run goes on on another number of ranks to the same rows"
 
 # Seeds are dealt out, and what they say together is what one process says.
 seeds=(hard-disks --set run.time=5 --seeds 5 --quiet --threads 1)
 "$stripmine" run "${seeds[@]}" --out one >/dev/null
-mpiexec -n 3 "$stripmine" run "${seeds[@]}" --out three >/dev/null || bad "seeds"
+mpi -n 3 "$stripmine" run "${seeds[@]}" --out three >/dev/null || bad "seeds"
 for seed in 1 2 3 4 5; do
     cmp "one/seed-$seed/thermo.csv" "three/seed-$seed/thermo.csv" || bad "seed $seed"
 done
@@ -87,11 +89,11 @@ echo "seeds: the same runs on 1 and 3 ranks"
 # Studies and items are made together, and are what one process makes.
 study=(two-discs --over stiffness --size 4 --seeds 1 --budget 30 --quiet --threads 1)
 "$stripmine" chart stability "${study[@]}" --out map-one >/dev/null
-mpiexec -n 3 "$stripmine" chart stability "${study[@]}" --out map-three >/dev/null || bad "a map"
+mpi -n 3 "$stripmine" chart stability "${study[@]}" --out map-three >/dev/null || bad "a map"
 cmp map-one/host/stability/data.json map-three/host/stability/data.json || bad "the map of three processes"
 items=(--only table --only mask --only misprints --quick --quiet --threads 1)
 "$stripmine" reproduce "${items[@]}" --out items-one >/dev/null
-mpiexec -n 3 "$stripmine" reproduce "${items[@]}" --out items-three >/dev/null || bad "items"
+mpi -n 3 "$stripmine" reproduce "${items[@]}" --out items-three >/dev/null || bad "items"
 for item in table mask misprints; do
     diff -r -x provenance.json "items-one/$item" "items-three/$item" || bad "item $item of three processes"
 done
@@ -103,15 +105,41 @@ refused() {
     if said=$("$@" 2>&1); then bad "$* is not refused"; fi
     [[ $said == *"$word"* ]] || bad "$* says: $said"
 }
-refused "bands of rows" mpiexec -n 4 "$stripmine" run dense-gas --quiet --out many
-refused "one after the other" mpiexec -n 2 "$stripmine" run hard-disks --quiet --out events
-refused "--ranks was given" mpiexec -n 2 "$stripmine" run dense-gas --quiet --ranks 2 --out twice
-cat >other.sh <<EOF
+refused "bands of rows" mpi -n 4 "$stripmine" run dense-gas --quiet --out many
+refused "one after the other" mpi -n 2 "$stripmine" run hard-disks --quiet --out events
+refused "--ranks was given" mpi -n 2 "$stripmine" run dense-gas --quiet --ranks 2 --out twice
+echo "refused: too many ranks, hard discs, ranks twice"
+
+# Rank 1 of three does something else than the others: all end with one exit code, and one message names the rank.
+one_differs() {
+    local code=$1 words=$2 first=$3 others=$4 said status=0
+    cat >differs.sh <<EOF
 #!/bin/sh
 rank=\${PMI_RANK:-\$OMPI_COMM_WORLD_RANK}
-exec "$stripmine" run dense-gas --quiet --set particles.seed="\$((rank + 1))" --out other
+if [ "\$rank" = 1 ]; then $first; fi
+exec "$stripmine" $others --quiet --threads 1
 EOF
-chmod +x other.sh
-refused "rank 1 has another scene" mpiexec -n 2 ./other.sh
-echo "refused: too many ranks, hard discs, ranks twice, another scene"
+    chmod +x differs.sh
+    said=$(timeout 60 mpiexec -n 3 ./differs.sh 2>&1) || status=$?
+    [[ $status == "$code" && $said == *"error: rank 1"*"$words"* && $(grep -c "error:" <<<"$said") == 1 ]] ||
+        bad "rank 1: $first; the others: $others: exit code $status in place of $code, and: $said"
+}
+program="exec \"$stripmine\""
+limit="ulimit -v 300000"
+gas="dense-gas --set particles.count=200000 --set run.steps=10"
+one_differs 4 "another scene" "$program run dense-gas --set particles.seed=2 --quiet --out o1" "run dense-gas --out o1"
+one_differs 3 "none.toml" "$program run none.toml --quiet --out o2" "run dense-gas --out o2"
+one_differs 2 "--nonsense" "$program run dense-gas --nonsense" "run dense-gas --out o3"
+one_differs 4 "other arguments" "$program table --quiet" "run dense-gas --out o4"
+one_differs 3 "ulimit -v" "$limit" "run $gas --out o5"
+one_differs 3 "none.toml" "$program run none.toml --seeds 3 --quiet --out o6" "run hard-disks --seeds 3 --set run.time=1 --out o6"
+one_differs 4 "other arguments" "$program run hard-disks --seeds 4 --quiet --out o7" "run hard-disks --seeds 3 --set run.time=1 --out o7"
+one_differs 2 "0.907" "$program bench lattice --packing-fraction 2 --quiet" "bench lattice --steps 100 --repeats 1 --particles 6000"
+one_differs 3 "ulimit -v" "$limit" "bench lattice --steps 10 --repeats 1 --particles 200000"
+one_differs 3 "none.toml" "$program chart stability none.toml --out o8" "chart stability two-discs --size 3 --seeds 1 --budget 5 --out o8"
+one_differs 4 "other arguments" "$program reproduce --only mask --out o9" "reproduce --only table --out o9"
+for out in o[1-9]*; do
+    [[ ! -e $out/thermo.csv ]] || bad "$out: a run that could not begin has written rows"
+done
+echo "a rank that cannot begin, or does something else: all end, and the message names it"
 exit $failed

@@ -36,14 +36,19 @@ pub struct OfRanks {
     pub each: f64,
     /// How many rows of all discs there are, and how long one is: each rank has those of its own, rounded up.
     pub rows: [f64; 2],
+    /// Address space of their threads.
+    pub threads: f64,
 }
+
+/// Address space that a thread takes: its stack, and pages that short arrays of it share.
+const THREAD: f64 = (2 << 20) as f64 + (4 << 20) as f64;
 
 impl OfRanks {
     /// Of `count` discs in bands, with cells of which every rank has all (bytes), and rows of the discs.
     pub fn in_bands(count: f64, cells: f64, rows: [f64; 2]) -> OfRanks {
         // Seven words a disc on their way, and six where they have arrived. Its row, the periods that it has crossed; the rest is what allocators of
         // several threads keep, as measured.
-        OfRanks { gathered: 8.0 * (7.0 + 6.0) * count, each: 50.0 * count + cells, rows }
+        OfRanks { gathered: 8.0 * (7.0 + 6.0) * count, each: 50.0 * count + cells, rows, threads: 0.0 }
     }
 
     /// By how much more the rows take in as many parts (bytes).
@@ -57,15 +62,27 @@ impl Foreseen {
     /// The same where a run is carried out by others than one rank. Of processes, each may be on a machine of its own: what one of them takes at most.
     #[must_use]
     pub fn on(self, crew: Crew) -> Foreseen {
-        let more = match crew {
+        let (more, threads) = match crew {
             Crew::One | Crew::Threads(..=1) => return self,
             Crew::Threads(count) => {
-                let ranks = &self.ranks;
-                ranks.gathered + (count - 1) as f64 * ranks.each + ranks.rounding(count as f64)
+                let (ranks, others) = (&self.ranks, (count - 1) as f64);
+                let threads = others * (rayon::current_num_threads() + 1) as f64 * THREAD;
+                (ranks.gathered + others * ranks.each + ranks.rounding(count as f64), threads)
             }
-            Crew::Processes(_) => self.ranks.gathered,
+            Crew::Processes(_) => (self.ranks.gathered, 0.0),
         };
-        Foreseen { needed: self.needed + more as u64, ..self }
+        Foreseen { needed: self.needed + more as u64, ranks: OfRanks { threads, ..self.ranks }, ..self }
+    }
+
+    /// The same with another run under way in the same process.
+    #[must_use]
+    pub fn beside(self, other: &Foreseen) -> Foreseen {
+        let needed = self.needed + other.needed.saturating_sub(PROGRAM as u64);
+        let what = match self.what == other.what {
+            true => format!("{}, twice,", self.what),
+            false => format!("{} beside one of {}", self.what, other.what),
+        };
+        Foreseen { needed, what, ..self }
     }
 
     /// Whether the run fits this machine; `scene` is the name that an error gives it.
@@ -73,9 +90,12 @@ impl Foreseen {
     /// # Errors
     /// [`SceneErrors`] with both numbers, where it does not.
     pub fn fits(&self, scene: &str) -> Result<(), SceneErrors> {
-        let Foreseen { needed, available, what, remedy, .. } = self;
+        let Foreseen { needed, available, what, remedy, ranks } = self;
+        // Stacks are address space, of which little is ever taken.
+        let of_threads = |by| if by == Limit::AddressSpace { ranks.threads as u64 } else { 0 };
         match *available {
-            Some(Available { bytes, by }) if *needed > bytes => {
+            Some(Available { bytes, by }) if *needed + of_threads(by) > bytes => {
+                let needed = &(needed + of_threads(by));
                 let spot = Spot { file: scene.to_owned(), place: None };
                 let message = format!(
                     "a run of {what} takes {needed} bytes of memory ({}); {} has {bytes} left ({})",

@@ -19,6 +19,15 @@ pub enum Class {
 }
 
 impl Class {
+    /// Every class.
+    const ALL: [Class; 5] =
+        [Class::Usage, Class::Input, Class::Precondition, Class::InputOutput, Class::Checkpoint];
+
+    /// The class of an exit code; none where a signal ended the program.
+    pub fn of_exit_code(code: u8) -> Option<Class> {
+        Class::ALL.into_iter().find(|class| class.exit_code() == code)
+    }
+
     /// The name in JSON.
     pub fn name(self) -> &'static str {
         match self {

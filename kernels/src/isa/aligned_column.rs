@@ -8,7 +8,6 @@
 
 use super::Element;
 use memmap2::MmapMut;
-use std::alloc::{Layout, handle_alloc_error};
 use std::cell::RefCell;
 use std::fmt::{self, Debug, Formatter};
 use std::ops::{Deref, DerefMut};
@@ -31,7 +30,31 @@ struct Pages {
     origin: NonNull<u8>,
     length: usize,
     /// Keeps them.
-    _map: MmapMut,
+    _bytes: Bytes,
+}
+
+/// Bytes that are kept for pages.
+enum Bytes {
+    Mapped(MmapMut),
+    /// Of the allocator, which has the last word where the system maps no more pages.
+    Allocated(Vec<u8>),
+}
+
+impl Bytes {
+    fn holding(length: usize) -> Bytes {
+        let Ok(map) = MmapMut::map_anon(length) else { return Bytes::Allocated(vec![0; length]) };
+        // Where there are no large pages, small ones do.
+        #[cfg(target_os = "linux")]
+        let _ = map.advise(memmap2::Advice::HugePage);
+        Bytes::Mapped(map)
+    }
+
+    fn all(&mut self) -> &mut [u8] {
+        match self {
+            Bytes::Mapped(map) => map,
+            Bytes::Allocated(bytes) => bytes,
+        }
+    }
 }
 
 // SAFETY: the memory belongs to no thread; who may use which part of it is the rows' affair, and no two rows share any.
@@ -44,15 +67,11 @@ impl Pages {
     #[inline]
     fn holding(bytes: usize) -> Arc<Pages> {
         let length = bytes.next_multiple_of(LARGE);
-        let failed = || -> ! { handle_alloc_error(Layout::new::<[u8; LARGE]>()) };
         // One more, for the first may begin anywhere.
-        let mut map = MmapMut::map_anon(length + LARGE).unwrap_or_else(|_| failed());
-        // Where there are no large pages, small ones do.
-        #[cfg(target_os = "linux")]
-        let _ = map.advise(memmap2::Advice::HugePage);
-        let skipped = map.as_ptr().align_offset(LARGE);
-        let origin = NonNull::new(map[skipped..].as_mut_ptr()).unwrap_or_else(|| failed());
-        Arc::new(Pages { origin, length, _map: map })
+        let mut bytes = Bytes::holding(length + LARGE);
+        let skipped = bytes.all().as_ptr().align_offset(LARGE);
+        let origin = NonNull::from(&mut bytes.all()[skipped..]).cast();
+        Arc::new(Pages { origin, length, _bytes: bytes })
     }
 }
 

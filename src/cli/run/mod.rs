@@ -3,7 +3,9 @@
 mod seeds;
 
 use super::processes;
-use crate::console::{Common, Failure, STEPS, bar, clear_progress, count, print, print_json, say, warn};
+use crate::console::{
+    Common, Failure, MOST_THREADS, STEPS, bar, clear_progress, count_up_to, print, print_json, say, warn,
+};
 use crate::provenance::built;
 use crate::study::explain::{Kept, tuned};
 use crate::study::{Case, StudyError};
@@ -18,7 +20,9 @@ use stripmine_physics::scene::Values;
 use stripmine_physics::signals;
 
 /// More ranks than any machine at hand has cores.
-pub(super) const MOST_RANKS: u16 = 1024;
+pub(super) const MOST_RANKS: u16 = MOST_THREADS;
+/// More seeds than folders that anyone looks at.
+const MOST_SEEDS: u64 = 100_000;
 
 /// One simulation: observables, trajectory, summary and checkpoints in a folder
 #[derive(Args)]
@@ -40,8 +44,8 @@ pub(super) struct RunVerb {
     /// Begin from the start where the folder holds a run; only what that run wrote is removed
     #[arg(long)]
     overwrite: bool,
-    /// A number of runs side by side, each with a seed and a folder of its own, and their means in one summary
-    #[arg(long, value_name = "N", value_parser = count)]
+    /// A number of runs side by side, at most 100000, each with a seed and a folder of its own, and their means in one summary
+    #[arg(long, value_name = "N", value_parser = |text: &str| count_up_to(MOST_SEEDS, text))]
     seeds: Option<u64>,
     /// Ranks that share the particles of lattice MD and Langevin dynamics, each with as many threads as --threads says: the bits are those of one
     #[arg(long, default_value_t = 1, conflicts_with = "seeds", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_RANKS)))]
@@ -77,7 +81,7 @@ impl RunVerb {
             return self.carry_out((&prepared, entry), &folder, crew, common);
         };
         let first = || self.carry_out((&prepared, entry), &folder, crew, common);
-        processes::together(join, &format!("{:?}\n{}", built(), prepared.scene), first, || {
+        processes::together(join, &format!("run\n{:?}\n{}", built(), prepared.scene), first, || {
             processes::serve(crew, || prepared.start(Purpose::Run).map(drop));
         })
     }
@@ -87,7 +91,10 @@ impl RunVerb {
         match (common.crew, self.ranks) {
             (Crew::Processes(_), 2..) => Err(processes::ranks_twice()),
             (crew @ Crew::Processes(_), _) => Ok(crew),
-            (_, ranks) => Ok(Crew::Threads(ranks.into())),
+            (_, ranks) => {
+                threads_of_ranks(ranks, rayon::current_num_threads())?;
+                Ok(Crew::Threads(ranks.into()))
+            }
         }
     }
 
@@ -130,6 +137,17 @@ impl RunVerb {
                 Err(Failure::Interrupted { moment: clock.to_string(), folder: folder.to_owned() })
             }
         }
+    }
+}
+
+/// Refuses ranks with more threads together than any machine at hand has cores.
+///
+/// # Errors
+/// [`Failure::ManyThreads`]
+pub(super) fn threads_of_ranks(ranks: u16, threads: usize) -> Result<(), Failure> {
+    match usize::from(ranks) * threads > MOST_THREADS.into() {
+        true if ranks > 1 => Err(Failure::ManyThreads { ranks, threads }),
+        _ => Ok(()),
     }
 }
 

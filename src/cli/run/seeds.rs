@@ -98,7 +98,8 @@ impl RunVerb {
         prepared.memory.fits(&self.scene)?;
         let begun = Instant::now();
         if let Crew::Processes(join) = common.crew {
-            processes::apart(join, |rank, ranks| {
+            let same = format!("{count} seeds\n{:?}\n{}", built(), prepared.scene);
+            processes::apart(join, &same, |rank, ranks| {
                 let own: Vec<_> = members.iter().skip(rank).step_by(ranks).cloned().collect();
                 self.side_by_side(&own, &prepared, common, methods).map(drop)
             })?;
@@ -112,6 +113,8 @@ impl RunVerb {
         let files = asked.iter().filter_map(|name| observable(name)).map(|it| it.file.to_owned());
         let files: Vec<String> = std::iter::once(SUMMARY.to_owned()).chain(files).collect();
         let own = OwnFiles::claim(&folder, LIST, &files, self.overwrite)?;
+        // A summary of earlier runs says nothing of these, should they be interrupted.
+        own.remove(SUMMARY)?;
         let averages: Vec<Averages> = match common.crew {
             // Each process has made some of the runs.
             Crew::Processes(_) => members
@@ -175,7 +178,7 @@ impl RunVerb {
         let outcomes: Mutex<Vec<Option<Result<Summary, Failure>>>> =
             Mutex::new(members.iter().map(|_| None).collect());
         let notices: Mutex<BTreeSet<String>> = Mutex::default();
-        let work = |pool: &ThreadPool| {
+        let work = &|pool: &ThreadPool| {
             while let Some((number, (folder, seeds))) =
                 Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|at| Some((at, members.get(at)?)))
             {
@@ -199,10 +202,10 @@ impl RunVerb {
             (0..workers).map(|_| ThreadPoolBuilder::new().num_threads(threads / workers).build()).collect();
         let pools = pools.map_err(Failure::Threads)?;
         thread::scope(|scope| {
-            for pool in &pools {
-                scope.spawn(|| work(pool));
-            }
-        });
+            let spawn = |pool| thread::Builder::new().spawn_scoped(scope, move || work(pool)).map(drop);
+            pools.iter().try_for_each(spawn)
+        })
+        .map_err(Failure::writing("the threads of the runs"))?;
         let outcomes = outcomes.into_inner().unwrap_or_else(PoisonError::into_inner);
         outcomes.into_iter().flatten().collect()
     }

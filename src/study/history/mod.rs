@@ -5,8 +5,8 @@ pub mod section;
 use crate::provenance::{Machine, built};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
-use std::fs::OpenOptions;
-use std::io::{ErrorKind, Write};
+use std::fs::{File, OpenOptions};
+use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use stripmine_physics::io::{FileError, regular_file};
 use stripmine_physics::method::throughput::Throughput;
@@ -153,17 +153,31 @@ pub fn admits(file: &Path) -> Result<(), HistoryError> {
     }
 }
 
-/// Adds a measurement to a file, which is made if it is not there.
+/// Adds a measurement to a file, which is made if it is not there. A last line without an end is ended first.
 ///
 /// # Errors
 /// [`HistoryError`] if the system does not let it be written.
 pub fn append(file: &Path, record: &Record) -> Result<(), HistoryError> {
     let at = || FileError::at(file, "writing");
-    let text = serde_json::to_string(record).map_err(|cause| at()(cause.into()))? + "\n";
-    let mut out = OpenOptions::new().create(true).append(true).open(file).map_err(at())?;
+    let mut text = serde_json::to_string(record).map_err(|cause| at()(cause.into()))? + "\n";
+    let mut out = OpenOptions::new().create(true).read(true).append(true).open(file).map_err(at())?;
+    if !ends_a_line(&mut out).map_err(at())? {
+        text.insert(0, '\n');
+    }
     // In one piece: several programs may write at once.
     out.write_all(text.as_bytes()).and_then(|()| out.sync_all()).map_err(at())?;
     Ok(())
+}
+
+/// Whether a file is empty or its last line has an end.
+fn ends_a_line(file: &mut File) -> io::Result<bool> {
+    if file.metadata()?.len() == 0 {
+        return Ok(true);
+    }
+    let mut last = [0];
+    file.seek(SeekFrom::End(-1))?;
+    file.read_exact(&mut last)?;
+    Ok(last == *b"\n")
 }
 
 #[cfg(test)]
@@ -197,6 +211,11 @@ mod tests {
         }
         assert_eq!(read(&file).unwrap(), [record(1.5), record(2.5)]);
         assert_eq!(record(1.0).case(), "lattice 1000 f64");
+        // A last line without its end, as editors leave it.
+        let text = std::fs::read_to_string(&file).unwrap();
+        std::fs::write(&file, text.trim_end()).unwrap();
+        append(&file, &record(3.5)).unwrap();
+        assert_eq!(read(&file).unwrap(), [record(1.5), record(2.5), record(3.5)]);
         std::fs::write(&file, "{}\n").unwrap();
         let error = admits(&file).unwrap_err();
         assert!(matches!(error, HistoryError::Line { line: 1, .. }), "{error}");

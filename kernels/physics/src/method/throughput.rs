@@ -3,6 +3,7 @@
 use crate::memory;
 use crate::method::observed::{UnknownName, find};
 use crate::method::{Bench, Failure, Prepared, Purpose, Simulation};
+use crate::ranks;
 use crate::reported::{Class, Reported};
 use crate::scene::SceneErrors;
 use serde::Serialize;
@@ -154,6 +155,7 @@ impl TimedRun {
         equilibration: u64,
         steps: u64,
     ) -> Result<Self, MeasurementError> {
+        prepared.memory.clone().on(ranks::crew()).fits(bench.name)?;
         let begun = Instant::now();
         let simulation = prepared.start(Purpose::Measurement)?;
         let start = begun.elapsed().as_secs_f64();

@@ -107,23 +107,6 @@ pub fn over<R>(crew: Crew, work: impl FnOnce() -> R) -> R {
     work()
 }
 
-/// Whether all ranks say the same; the first that does not.
-///
-/// # Errors
-/// [`Gone`]
-pub fn first_to_differ(ranks: &dyn Ranks, text: &str) -> Result<Option<usize>, Gone> {
-    let mut own = Parcel::new();
-    own.text(text);
-    let all = ranks.gather(own)?;
-    let differs = all.iter().position(|parcel| parcel.read().text() != text);
-    let said = (ranks.rank() == 0).then(|| {
-        let mut said = Parcel::new();
-        said.push(differs.map_or(0, |rank| rank + 1));
-        said
-    });
-    Ok(ranks.tell(said)?.read().count().checked_sub(1))
-}
-
 /// Says that there is no other simulation, to processes that wait for one; for the first rank to say.
 ///
 /// # Errors
@@ -134,7 +117,7 @@ pub fn dismiss(ranks: &dyn Ranks) -> Result<(), Gone> {
     ranks.tell(Some(none)).map(drop)
 }
 
-/// Waits until [`dismiss`] is said.
-pub fn wait(ranks: &dyn Ranks) {
-    while ranks.tell(None).is_ok_and(|parcel| parcel.read().count() > 0) {}
+/// Waits for the first rank; returns whether it said [`dismiss`], or has ended, in place of beginning a simulation.
+pub fn is_dismissed(ranks: &dyn Ranks) -> bool {
+    ranks.tell(None).is_ok_and(|parcel| parcel.read().count() == 0)
 }

@@ -38,6 +38,11 @@ impl Session {
     }
 }
 
+/// Ends all processes at once, with an exit code.
+pub fn abort(code: u8) -> ! {
+    World::all().abort(code.into())
+}
+
 /// This process among all.
 #[derive(Clone, Copy, Debug)]
 pub struct World;

@@ -158,10 +158,13 @@ fn probed(prepared: &Prepared) -> Result<Option<Probed>, Failure> {
     let (begun, mut each) = (Instant::now(), vec![]);
     let is_late = AtomicBool::new(false);
     thread::scope(|scope| -> Result<(), Failure> {
-        let timer = scope.spawn(|| {
+        let wait = || {
             thread::park_timeout(PATIENCE);
             is_late.store(true, Ordering::Relaxed);
-        });
+        };
+        // Without another thread it is late after the first stretch.
+        let timer = thread::Builder::new().spawn_scoped(scope, wait);
+        is_late.store(timer.is_err(), Ordering::Relaxed);
         let mut probe = || {
             while !until.has_come(&simulation.clock()) && each.len() <= STRETCHES {
                 let (from, start) = (simulation.clock(), Instant::now());
@@ -179,7 +182,7 @@ fn probed(prepared: &Prepared) -> Result<Option<Probed>, Failure> {
             Ok(())
         };
         let done = probe();
-        timer.thread().unpark();
+        timer.iter().for_each(|timer| timer.thread().unpark());
         done
     })?;
     let all = gone(until, &simulation.clock());

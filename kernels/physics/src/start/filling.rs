@@ -26,11 +26,11 @@ pub(super) fn placeable(stated: &Stated<'_>, count: f64, key: &Key) -> Result<()
     match memory::available() {
         Some(Available { bytes, by }) if needed > bytes as f64 => {
             let message = format!(
-                "to place {} discs takes {:.1} GB of memory; {} has {:.1} left",
+                "to place {} discs takes {} of memory; {} has {} left",
                 significant(count, 5),
-                1e-9 * needed,
+                memory::in_words(needed as u64),
                 by.in_words(),
-                1e-9 * bytes as f64
+                memory::in_words(bytes)
             );
             Err(stated.spot(key).error(Reason::Memory, message).advising("take fewer discs"))
         }

@@ -11,6 +11,8 @@ const AT_A_TIME: usize = 512;
 pub(super) const AT_ONCE: usize = 8;
 /// The cells of an axis number less.
 const MOST_CELLS: f64 = 4096.0;
+/// Periods of the box in which images are looked for, at most: discs that reach farther are larger than their box.
+const MOST_PERIODS: f64 = 16.0;
 
 /// Discs sorted into rows of cells. What is behind a periodic side stands there once more, so that no search has to ask for it.
 #[derive(Clone, Debug, Default)]
@@ -43,12 +45,13 @@ impl Cells {
         // About a disc in each.
         let edge = (sides[0] * sides[1] / discs.x.len() as f64).sqrt().max(setting.diameter);
         for (axis, side) in sides.into_iter().enumerate() {
-            let count = (side / edge).floor().clamp(1.0, MOST_CELLS);
+            // One cell also where an overflow leaves no number.
+            let count = (side / edge).floor().max(1.0).min(MOST_CELLS);
             self.origin[axis] = domain.origin[axis];
             self.by_length[axis] = count / side;
             self.count[axis] = count as usize;
             self.margin[axis] = match domain.is_periodic(axis) {
-                true => (reach * self.by_length[axis]).ceil() as usize + 1,
+                true => (reach * self.by_length[axis]).ceil().min(MOST_PERIODS * count) as usize + 1,
                 false => 0,
             };
         }
@@ -172,7 +175,7 @@ impl Cells {
     pub(super) fn halves(&self, reach: f64) -> impl Iterator<Item = f64> + use<'_> {
         // A row is at least so far away.
         let away = |up: i64| (up as f64 - 1.0).max(0.0) / self.by_length[1];
-        let rows = (reach * self.by_length[1]).ceil() as i64;
+        let rows = (reach * self.by_length[1]).ceil().min(self.all()[1] as f64) as i64;
         (0..=rows).map(move |up| (reach * reach - away(up) * away(up)).max(0.0).sqrt())
     }
 }

@@ -102,7 +102,7 @@ impl Checked {
             what: format!("{count} bodies"),
             remedy: "take fewer bodies",
             // Every rank has all bodies.
-            ranks: OfRanks { gathered: 0.0, each: needed - PROGRAM, rows: [0.0; 2] },
+            ranks: OfRanks { each: needed - PROGRAM, ..OfRanks::default() },
         }
     }
 
