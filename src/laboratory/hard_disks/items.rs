@@ -31,7 +31,8 @@ pub(super) const ITEMS: &[Item] = &[
         [4.0, 24.0],
         speed,
         "Hard discs: collisions a second, the fast engine and the source's",
-    ),
+    )
+    .with_memory(400),
     Item::quick(
         "hard-disks-masks",
         Sources,
@@ -47,7 +48,7 @@ pub(super) const ITEMS: &[Item] = &[
         "Hard discs: operations and time of a collision over the number of discs",
     )
     .with_more(450.0)
-    .with_memory(1000),
+    .with_memory(500),
     Item::full("hard-disks-cooling", Beyond, 4.0, haff, "Hard discs: Haff's law, and inelastic collapse"),
     Item::full(
         "hard-disks-collapse",

@@ -57,7 +57,8 @@ pub(super) const ITEMS: &[Item] = &[
         [6.0, 45.0],
         printed,
         "The printed text run the CRAY's way: NOP·(n + D) against wall time, and what thirty years made of it",
-    ),
+    )
+    .with_memory(900),
     Item::quick("measured", Host, [8.0, 21.0], measured, "The same, measured on this host"),
     Item::quick(
         "validation",

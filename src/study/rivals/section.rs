@@ -81,34 +81,31 @@ fn best<'r>(rival: &'r Rival, precision: &str) -> Vec<&'r Contest> {
 fn answer(data: &[Rival]) -> String {
     let mut parts: Vec<String> = vec![];
     for rival in data {
-        for precision in ["f64", "f32"] {
+        let Some(first) = rival.contests.first() else { continue };
+        let system = first.system.split(',').next().unwrap_or_default();
+        let ratios = ["f64", "f32"].into_iter().filter_map(|precision| {
             let ratios: Vec<f64> = best(rival, precision).into_iter().map(ratio).collect();
-            if let [first, ..] = rival.contests.as_slice()
-                && !ratios.is_empty()
-            {
-                let system = first.system.split(',').next().unwrap_or_default();
-                let beside = match precision {
-                    "f32" if DOUBLE_ONLY.contains(&rival.rival.as_str()) => " beside its double precision",
-                    _ => "",
-                };
-                parts.push(format!(
-                    "{} times {} ({system}, {precision}{beside})",
-                    range(ratios, 2),
-                    rival.rival
-                ));
-            }
-        }
+            let theirs = match precision {
+                "f32" if DOUBLE_ONLY.contains(&rival.rival.as_str()) => " over its f64",
+                _ => "",
+            };
+            (!ratios.is_empty()).then(|| format!("{} ({precision}{theirs})", range(ratios, 2)))
+        });
+        parts.push(format!("{system} over {} {}", rival.rival, ratios.collect::<Vec<_>>().join(", ")));
     }
+    let lost: Vec<String> =
+        data.iter().filter_map(|rival| Some(format!(" {}.", defeats(rival)?.0))).collect();
     let native = data.iter().all(|rival| rival.build.contains("native"));
-    let built =
-        if native { ", all built for this processor" } else { ", not all of them built for this processor" };
-    let lost: Vec<String> = data.iter().filter_map(|rival| Some(defeats(rival)?.0)).collect();
-    let lost = if lost.is_empty() { String::new() } else { format!(" {}.", lost.join("; ")) };
-    format!("Ours, by its fastest configuration, is {}{built}.{lost}", parts.join("; "))
+    let built = if native { "All are" } else { "Not all are" };
+    format!(
+        "Our rate over theirs, by our fastest configuration: {}.{} {built} built for this processor.",
+        parts.join("; "),
+        lost.concat()
+    )
 }
 
-/// How many systems a rival computes faster than our fastest configuration in double precision, in a sentence and one by one; none where
-/// ours is the faster everywhere.
+/// Returns the systems that a rival computes faster than our fastest configuration in double precision: a sentence, and the contests.
+/// None where ours is faster everywhere.
 pub fn defeats(rival: &Rival) -> Option<(String, Vec<&Contest>)> {
     let all = best(rival, "f64");
     let lost: Vec<&Contest> = all.iter().copied().filter(|it| ratio(it) < 1.0).collect();
@@ -153,8 +150,8 @@ fn details(data: &[Rival]) -> Vec<String> {
         ));
     }
     details.push(
-        "LAMMPS computes in double precision, beside our f32 too. Its granular pairs are of the general style `granular` (Hertz with \
-         mass-proportional damping and a velocity-dependent friction), of which OPT has no version; its Lennard-Jones pairs are of OPT."
+        "LAMMPS computes in double precision, beside our f32 too. Its granular pairs are of the general style `granular` (Hertz, \
+         damping `mass_velocity`, friction without history), of which OPT has no version; its Lennard-Jones pairs are of OPT."
             .to_owned(),
     );
     details.push("Both programs run in turns, each over the same steps of the same system.".to_owned());
@@ -212,4 +209,57 @@ fn same(data: &[Rival]) -> Table {
         .number("theirs", 6, |(_, it)| it.theirs)
         .short("may differ by", |(_, it)| it.within)
         .table("same-physics", "That both compute the same")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Source;
+    use super::*;
+
+    fn rival(name: &str, contests: &[(&str, &str, f64)]) -> Rival {
+        let contest = |&(system, way, ratio): &(&str, &str, f64)| Contest {
+            system: system.to_owned(),
+            particles: 100,
+            way: way.to_owned(),
+            ours: vec![ratio],
+            theirs: vec![1.0],
+            ratios: vec![ratio],
+        };
+        Rival {
+            rival: name.to_owned(),
+            version: "1".to_owned(),
+            build: "native".to_owned(),
+            instruction_set: "avx512".to_owned(),
+            unit: "steps".to_owned(),
+            contests: contests.iter().map(contest).collect(),
+            same: vec![],
+            memory: vec![],
+            source: Source::default(),
+        }
+    }
+
+    /// The answer says where a rival is faster, and that LAMMPS computes in double precision beside our single precision.
+    #[test]
+    fn the_answer_says_where_a_rival_is_faster() {
+        let discs = [
+            ("hard discs, dilute", "f64", 1.2),
+            ("hard discs, dense", "f64", 0.8),
+            ("hard discs, solid", "f64", 0.9),
+        ];
+        let grains =
+            [("granular discs, dense", "lattice f64", 3.0), ("granular discs, dense", "lattice f32", 5.0)];
+        let data = [rival("LAMMPS", &grains), rival("EDMD", &discs)];
+        assert_eq!(
+            answer(&data),
+            "Our rate over theirs, by our fastest configuration: granular discs over LAMMPS 3 (f64), 5 (f32 over its f64); hard discs over \
+             EDMD 0.8 to 1.2 (f64). EDMD is faster in 2 of 3 systems, where ours reaches 0.8 to 0.9 of its rate. All are built for this \
+             processor."
+        );
+        assert!(
+            details(&data)
+                .concat()
+                .contains("EDMD is faster than ours for hard discs, dense (0.80); hard discs, solid (0.90).")
+        );
+        assert!(defeats(&data[0]).is_none());
+    }
 }
