@@ -23,8 +23,10 @@ use serde::Serialize;
 pub enum Effort {
     /// Under a minute in all.
     Quick,
-    /// As much as the sources show.
+    /// As much as the sources show, in five minutes.
     Full,
+    /// More of the items that say so, for hours to spare.
+    All,
 }
 
 /// A finished item.

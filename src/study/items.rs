@@ -16,14 +16,14 @@ pub const ITEMS: &[Item] = &[
     Item::quick(
         diagram_section::NAME,
         Chapter::Host,
-        [3.0, 55.0],
+        [3.0, 56.0],
         speed_against_accuracy,
         "Speed against accuracy of four scenes: which integrator, step and precision for which wish",
     ),
     Item::quick(
         map_section::NAME,
         Chapter::Beyond,
-        [8.0, 50.0],
+        [8.0, 53.0],
         where_it_works,
         "Where the method works: maps over the step and a second parameter, beside theory",
     ),
@@ -57,7 +57,7 @@ fn plans_judged(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure>
         Effort::Quick => {
             (SCENES.iter().step_by(11).copied().collect(), regret::Effort { plan: 0.3, best: 0.6 })
         }
-        Effort::Full => (SCENES.to_vec(), regret::Effort { plan: 6.0, best: 15.0 }),
+        Effort::Full | Effort::All => (SCENES.to_vec(), regret::Effort { plan: 6.0, best: 15.0 }),
     };
     let judged = regret::judged(&scenes, effort, progress)?;
     plans::made(&judged, effort, format!("stripmine reproduce --only {}", plans::NAME))
@@ -79,7 +79,7 @@ fn speed_against_accuracy(effort: Effort, progress: Progress<'_>) -> Result<Made
     let most = if effort == Effort::Quick { 1 } else { usize::MAX };
     let (budget, repeats, phases) = match effort {
         Effort::Quick => (0.7, 1, 4),
-        Effort::Full => (12.0, 3, 16),
+        Effort::Full | Effort::All => (12.0, 3, 16),
     };
     let effort = work_precision::Effort { budget, repeats, phases, machine: None };
     let shown: Vec<_> = METHODS
@@ -102,7 +102,7 @@ fn where_it_works(effort: Effort, progress: Progress<'_>) -> Result<Made, Failur
     let most = if effort == Effort::Quick { 1 } else { usize::MAX };
     let effort = match effort {
         Effort::Quick => stability::Effort { budget: 0.7, size: 6, seeds: 1, tolerance: 0.2 },
-        Effort::Full => stability::Effort { budget: 6.0, size: 16, seeds: 2, tolerance: 0.05 },
+        Effort::Full | Effort::All => stability::Effort { budget: 6.0, size: 16, seeds: 2, tolerance: 0.05 },
     };
     let mapped: Vec<_> = METHODS
         .iter()

@@ -123,3 +123,25 @@ pub fn anchors(text: &str) -> BTreeSet<String> {
     };
     headings.map(anchor).collect()
 }
+
+/// Every test that is ignored: its file, relative to the repository, and its name.
+pub fn ignored_tests() -> Vec<(PathBuf, String)> {
+    let mut folders = ["src", "kernels", "tests"].map(|folder| root().join(folder)).to_vec();
+    let mut found = vec![];
+    while let Some(folder) = folders.pop() {
+        for path in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|kind| kind == "rs") {
+                let text = fs::read_to_string(&path).unwrap();
+                let short = path.strip_prefix(root()).unwrap();
+                let mut lines = text.lines().map(str::trim_start);
+                while lines.any(|line| line.starts_with("#[ignore")) {
+                    let name = lines.find_map(|line| line.strip_prefix("fn ")?.split('(').next());
+                    found.extend(name.map(|name| (short.to_owned(), name.to_owned())));
+                }
+            }
+        }
+    }
+    found
+}

@@ -279,3 +279,36 @@ fn the_readme_is_short_and_has_the_test_command_alone_on_a_line() {
     assert!(text.lines().count() <= 150);
     assert!(text.lines().any(|line| line == "cargo test --workspace"));
 }
+
+/// The list of long suites is the one that docs/report.md prints, and each line has a command and what it tests.
+#[test]
+fn long_suites_are_those_of_the_documents() {
+    let list = text(".ci/long-suites");
+    assert!(section(&text("docs/report.md"), "The long suites").contains(&format!("```text\n{list}```\n")));
+    for suite in list.lines() {
+        let parts: Vec<&str> = suite.split("   ").filter(|part| !part.trim().is_empty()).collect();
+        assert_eq!(parts.len(), 2, "a command, three spaces or more, what it tests: {suite}");
+    }
+}
+
+/// Every test that is ignored for its length runs in a long suite, chosen by its file and, where the suite has a filter, by its name.
+#[test]
+fn every_ignored_test_is_in_a_long_suite() {
+    let list = text(".ci/long-suites");
+    let ignored = documents::ignored_tests();
+    assert!(ignored.len() > 10, "{} ignored tests", ignored.len());
+    for (path, name) in ignored {
+        let target = match path.strip_prefix("tests") {
+            Ok(within) => {
+                format!("--test {} ", within.iter().next().unwrap().to_str().unwrap().trim_end_matches(".rs"))
+            }
+            Err(_) => "--lib ".to_owned(),
+        };
+        let is_run = list.lines().any(|suite| {
+            let command = suite.split("   ").next().unwrap();
+            let filter = command.split_once("--ignored").map(|(_, filter)| filter.trim());
+            command.contains(&target) && filter.is_some_and(|filter| name.contains(filter))
+        });
+        assert!(is_run, "{}: {name} is ignored, and no line of .ci/long-suites runs it", path.display());
+    }
+}

@@ -14,24 +14,25 @@ pub(super) const ITEMS: &[Item] = &[
     Item::full(
         "hard-disks-fluid",
         Sources,
-        30.0,
+        34.0,
         pressure,
         "Hard discs: pressure and collision rate of the fluid",
     ),
     Item::full(
         "hard-disks-structure",
         Beyond,
-        20.0,
+        24.0,
         melting,
         "Hard discs: order, free times and speeds on both sides of melting",
     ),
     Item::quick(
         "hard-disks-rates",
         Sources,
-        [4.0, 18.0],
+        [4.0, 24.0],
         speed,
         "Hard discs: collisions a second, the fast engine and the source's",
-    ),
+    )
+    .with_memory(400),
     Item::quick(
         "hard-disks-masks",
         Sources,
@@ -42,27 +43,29 @@ pub(super) const ITEMS: &[Item] = &[
     Item::quick(
         "hard-disks-complexity",
         Sources,
-        [2.0, 400.0],
+        [2.0, 45.0],
         growth,
         "Hard discs: operations and time of a collision over the number of discs",
-    ),
-    Item::full("hard-disks-cooling", Beyond, 6.0, haff, "Hard discs: Haff's law, and inelastic collapse"),
+    )
+    .with_more(450.0)
+    .with_memory(500),
+    Item::full("hard-disks-cooling", Beyond, 4.0, haff, "Hard discs: Haff's law, and inelastic collapse"),
     Item::full(
         "hard-disks-collapse",
         Beyond,
-        24.0,
+        20.0,
         collapses,
         "Hard discs: inelastic collapse over restitution and number of discs",
     ),
-    Item::full("hard-disks-precision", Host, 63.0, error, "Hard discs: error of Z against processor time"),
+    Item::full("hard-disks-precision", Host, 70.0, error, "Hard discs: error of Z against processor time"),
     Item::full(
         "hard-disks-atmosphere",
         Beyond,
-        14.0,
+        17.0,
         open_system,
         "Hard discs above a hot floor, without a ceiling",
     ),
-    Item::quick("soft-hard", Beyond, [2.0, 12.0], limit, "Soft discs of growing stiffness against hard ones"),
+    Item::quick("soft-hard", Beyond, [2.0, 10.0], limit, "Soft discs of growing stiffness against hard ones"),
 ];
 
 fn pressure(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
@@ -81,7 +84,7 @@ fn speed(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
         Effort::Quick => {
             rates::Effort { discs: vec![2500], packing_fractions, rounds: 1, collisions: 50_000 }
         }
-        Effort::Full => {
+        Effort::Full | Effort::All => {
             rates::Effort { discs: vec![2500, 250_000], packing_fractions, rounds: 3, collisions: 100_000 }
         }
     };
@@ -92,7 +95,7 @@ fn speed(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
 fn comparison(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let (densities, turns): (&[f64], _) = match effort {
         Effort::Quick => (&[0.10, 0.50], (1, 3000)),
-        Effort::Full => (&[0.02, 0.10, 0.30, 0.50, 0.70], (3, 10_000)),
+        Effort::Full | Effort::All => (&[0.02, 0.10, 0.30, 0.50, 0.70], (3, 10_000)),
     };
     let data = masks::masks(2500, densities, turns, progress)?;
     Made::new(sections::masks::section(&data), &data)
@@ -108,6 +111,13 @@ fn growth(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
             most_by_reference: 10_000,
         },
         Effort::Full => complexity::Effort {
+            discs: vec![1000, 10_000, 100_000, 1_000_000],
+            packing_fractions: vec![0.30, 0.70],
+            rounds: 3,
+            collisions: 200_000,
+            most_by_reference: 100_000,
+        },
+        Effort::All => complexity::Effort {
             discs: vec![1000, 10_000, 100_000, 1_000_000, 10_000_000],
             packing_fractions: vec![0.30, 0.70],
             rounds: 3,
@@ -145,7 +155,7 @@ fn limit(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
         Effort::Quick => {
             Question { discs: 200, stiffnesses: vec![1e3, 1e4, 1e5], seeds: 2, time: 4.0, ..question() }
         }
-        Effort::Full => question(),
+        Effort::Full | Effort::All => question(),
     };
     let data = soft_hard(&question, progress)?;
     Made::new(sections::soft_hard::section(&data, "stripmine reproduce --only soft-hard".into()), &data)

@@ -26,7 +26,7 @@ use stripmine_physics::scene::{Overrides, PACKING_FRACTION, STEPS};
 
 /// Every item, in the order of its chapter.
 pub(super) const ITEMS: &[Item] = &[
-    Item::quick("table", Sources, [0.1, 0.1], table, "BP93's efficiency table"),
+    Item::quick("table", Sources, [0.1, 0.2], table, "BP93's efficiency table"),
     Item::quick(
         "ladder",
         Beyond,
@@ -36,82 +36,83 @@ pub(super) const ITEMS: &[Item] = &[
     ),
     Item::quick("listing", Sources, [0.1, 0.1], listing, "The vector instructions of every part"),
     Item::quick("mask", Sources, [0.1, 0.1], mask, "BP93, figure 2: the mask"),
-    Item::quick("misprints", Sources, [0.5, 0.5], misprints, "What the misprints of the contact law do"),
+    Item::quick("misprints", Sources, [0.1, 0.1], misprints, "What the misprints of the contact law do"),
     Item::quick(
         "cost",
         Sources,
-        [1.0, 1.0],
+        [0.5, 0.5],
         cost,
         "BP93, figures 3 and 4: cost over particles and density, by the model",
     ),
     Item::quick(
         "useful-work",
         Beyond,
-        [1.0, 1.0],
+        [0.3, 0.3],
         useful_work,
         "Operations that act on real contacts, over the density",
     ),
     Item::quick(
         "printed",
         Sources,
-        [6.0, 50.0],
+        [6.0, 45.0],
         printed,
         "The printed text run the CRAY's way: NOP·(n + D) against wall time, and what thirty years made of it",
-    ),
-    Item::quick("measured", Host, [8.0, 17.0], measured, "The same, measured on this host"),
+    )
+    .with_memory(900),
+    Item::quick("measured", Host, [8.0, 21.0], measured, "The same, measured on this host"),
     Item::quick(
         "validation",
         Host,
-        [4.0, 32.0],
+        [4.0, 31.0],
         validation,
         "The timing model of a host against wall time here",
     ),
     Item::full(
         "atlas",
         Host,
-        44.0,
+        36.0,
         atlas,
         "Who wins where: occupancy, number of particles, method and machine",
     ),
     Item::quick(
         "crossover",
         Host,
-        [4.0, 30.0],
+        [4.0, 34.0],
         crossover,
         "Lattice, neighbour lists and sectors: which is the fastest at which density, on this host",
     ),
     Item::quick(
         "threads",
         Host,
-        [3.0, 18.0],
+        [3.0, 16.0],
         threads,
         "What more threads give, and what the machine has to give",
     ),
     Item::quick(
         "bands",
         Host,
-        [2.0, 20.0],
+        [2.0, 18.0],
         bands,
         "Beyond one machine: from how many discs on ranks pay, by the model of a network",
     ),
     Item::quick(
         "identity",
         Sources,
-        [3.0, 3.0],
+        [1.0, 1.0],
         identity,
         "Lattice and neighbour lists: the same to the bit",
     ),
     Item::full(
         "precision",
         Beyond,
-        26.0,
+        23.0,
         precision,
         "What single and mixed precision cost: forces, energy, trajectories",
     ),
     Item::quick(
         "pipe-small",
         Sources,
-        [3.0, 3.0],
+        [1.0, 1.0],
         pipe_small,
         "BP93, figures 5 and 6, in two fifths of the pipe",
     ),
@@ -123,7 +124,7 @@ pub(super) const ITEMS: &[Item] = &[
         pipe_thin,
         "The whole pipe with fewer grains: do waves run both ways?",
     ),
-    Item::full("waves", Sources, 14.0, waves, "Density waves over dissipation, and controls without"),
+    Item::full("waves", Sources, 20.0, waves, "Density waves over dissipation, and controls without"),
 ];
 
 fn table(_: Effort, _: Progress<'_>) -> Result<Made, Failure> {
@@ -174,7 +175,7 @@ fn printed(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
             particles: 1000,
             rounds: Bound::of(3),
         },
-        Effort::Full => printed_cost::Effort {
+        Effort::Full | Effort::All => printed_cost::Effort {
             cells: [&short[..], &long].concat(),
             occupancies: vec![0.05, 0.1, 0.5, 1.0],
             samples: 24,
@@ -205,7 +206,7 @@ fn bands(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
             repeats: 2,
             ranks: vec![2, 4],
         },
-        Effort::Full => bands::Effort {
+        Effort::Full | Effort::All => bands::Effort {
             discs: vec![1000, 10_000, 100_000, 1_000_000],
             packing_fraction: 0.8,
             disc_steps: 10_000_000,
@@ -278,7 +279,7 @@ fn validation(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
             let (host, runs) = (default_model()?, runs(vec![300], vec![0.2], Bound::of(2)));
             validated(&host, Calibrated::Shipped, &runs, &progress)
         }
-        Effort::Full => {
+        Effort::Full | Effort::All => {
             let host = this_host(&|share| progress(0.5 * share))?;
             let runs = runs(vec![150, 4000], vec![0.072, 0.24], bound(6, VALIDATION));
             validated(host, Calibrated::Now, &runs, &|share| progress(0.5 + 0.5 * share))
@@ -324,7 +325,7 @@ fn atlas(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let host = this_host(&|_| {})?;
     let (measured, rounds): (&[usize], Bound) = match effort {
         Effort::Quick => (&[300], Bound::of(2)),
-        Effort::Full => (&[100, 300, 1000, 3000, 10_000], bound(6, ATLAS)),
+        Effort::Full | Effort::All => (&[100, 300, 1000, 3000, 10_000], bound(6, ATLAS)),
     };
     let data = break_even::atlas(&machines, (host, Calibrated::Now), measured, rounds, progress)?;
     made(sections::break_even::section(&data, "stripmine reproduce --only atlas"), &data)
@@ -339,7 +340,7 @@ fn measured_effort(effort: Effort) -> measured_cost::Effort {
             element_steps: 200_000,
             repeats: 3,
         },
-        Effort::Full => measured_cost::Effort {
+        Effort::Full | Effort::All => measured_cost::Effort {
             particles: vec![100, 300, 1000, 3000, 10_000],
             occupancies: vec![0.01, 0.03, 0.1, 0.2, 0.25],
             equilibration: 100,
@@ -358,7 +359,7 @@ fn crossover_effort(effort: Effort) -> crossover::Effort {
             steps: 60,
             repeats: 2,
         },
-        Effort::Full => crossover::Effort {
+        Effort::Full | Effort::All => crossover::Effort {
             precisions: vec!["f64", "mixed", "f32"],
             particles: vec![10_000, 100_000],
             packing_fractions: vec![0.84, 0.8, 0.6, 0.3, 0.1, 0.03],
@@ -376,7 +377,7 @@ fn threads_effort(effort: Effort) -> threads::Effort {
             rounds: 3,
             particle_steps: 1_000_000,
         },
-        Effort::Full => threads::Effort {
+        Effort::Full | Effort::All => threads::Effort {
             particles: vec![10_000, 100_000, 300_000],
             packing_fractions: vec![0.84, 0.3],
             rounds: 5,

@@ -15,22 +15,22 @@ pub(super) const ITEMS: &[Item] = &[
     Item::full(
         "nbody-energy",
         Sources,
-        40.0,
+        4.0,
         orbits,
         "Bodies: energy error of every integrator over cost, and where orbits are lost",
     ),
     Item::quick(
         "nbody-rates",
         Host,
-        [3.0, 20.0],
+        [3.0, 19.0],
         speed,
         "Bodies: interactions a second and how exact forces are",
     ),
-    Item::full("nbody-collapse", Beyond, 5.0, fall, "Bodies: a cold sphere collapses, with a film"),
+    Item::full("nbody-collapse", Beyond, 20.0, fall, "Bodies: a cold sphere collapses, with a film"),
     Item::quick(
         "nbody-programs",
         Beyond,
-        [1.0, 1.0],
+        [0.1, 0.1],
         counted,
         "Bodies: all pairs by cyclic shifts, counted and charged by clocks",
     ),
@@ -44,7 +44,9 @@ fn orbits(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
 fn speed(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let effort = match effort {
         Effort::Quick => rates::Effort { bodies: vec![1024], seconds: 0.05, rounds: 1 },
-        Effort::Full => rates::Effort { bodies: vec![1024, 4096, 16_384], seconds: 0.1, rounds: 3 },
+        Effort::Full | Effort::All => {
+            rates::Effort { bodies: vec![1024, 4096, 16_384], seconds: 0.1, rounds: 3 }
+        }
     };
     let data = rates::rates(&effort, progress)?;
     Made::new(sections::rates::section(&data), &data)

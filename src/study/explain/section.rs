@@ -105,10 +105,12 @@ fn explained(judged: &[Judged]) -> String {
 /// The share of scenes whose cost is at most so many times the best.
 fn figure(judged: &[Judged]) -> Figure {
     let curve = |name: &str, style: Style, hue: usize, of: &dyn Fn(&Judged) -> Option<f64>| {
-        let mut ratios: Vec<f64> = judged.iter().filter_map(of).map(|ratio| ratio.max(0.1)).collect();
+        // The same scenes for every curve: those that have a plan to compare. A curve that does not reach the error in some ends
+        // below 100 %.
+        let compared = || judged.iter().filter(|it| it.regret.is_some());
+        let mut ratios: Vec<f64> = compared().filter_map(of).map(|ratio| ratio.max(0.1)).collect();
         ratios.sort_by(f64::total_cmp);
-        // Those that do not come to the error are the rest up to 100 %.
-        let all = judged.iter().filter(|it| it.regret.is_some()).count().max(1) as f64;
+        let all = compared().count().max(1) as f64;
         let points =
             ratios.iter().zip(1_u32..).map(|(&ratio, count)| (ratio, 100.0 * f64::from(count) / all));
         Series::new(name, style, hue, points.collect::<Vec<_>>())

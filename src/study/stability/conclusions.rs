@@ -85,6 +85,12 @@ pub fn of_theory(data: &Stability) -> Option<[f64; 3]> {
     Some([median(works.iter().copied()), *works.first()?, *works.last()?])
 }
 
+/// The longest step of each integrator that works over the step beyond which theory says that its errors grow, at the scene's own
+/// values.
+pub fn of_schemes(data: &Stability) -> impl Iterator<Item = f64> + '_ {
+    data.schemes.iter().filter_map(|scheme| Some(over_seeds(&scheme.edges.works)?[0] / scheme.theory?.0))
+}
+
 /// What theory and measurement have to do with each other.
 fn theory(data: &Stability) -> Option<String> {
     let [middle, first, last] = of_theory(data)?;

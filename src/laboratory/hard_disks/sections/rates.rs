@@ -5,6 +5,7 @@ use crate::report::figure::{Axis, Chart, Figure, Series, Style};
 use crate::report::{Cell, Rows, Section, Table, Verdict};
 use crate::statistics::median;
 use crate::study::rivals::Rival;
+use crate::study::rivals::section::defeats;
 
 /// Million collisions an hour of the source's program, by the number of discs: the best over the densities; and its memory in MB, where
 /// it is said.
@@ -34,10 +35,11 @@ pub fn section(data: &Rates, rivals: &[Rival]) -> Section {
         .expects("ISO99: 0.128 million a second with 2500 discs and 0.058 million with 2 500 000, on an Alpha of 600 MHz. Our aim: at least 5.5 \
                   million with 2500 discs at ν ≥ 0.5, and 1 million by the source's way.")
         .answers(format!(
-            "One thread, {}: at best {:.2} million collisions a second by lists of each disc's own, {:.2} million the source's way.",
+            "One thread, {}: at best {:.2} million collisions a second by lists of each disc's own, {:.2} million the source's way.{}",
             data.instruction_set,
             best(ENGINES[0]),
-            best(ENGINES[1])
+            best(ENGINES[1]),
+            rivals.iter().filter(|rival| is_of_hard_discs(rival)).filter_map(defeats).map(|it| format!(" {}.", it.0)).collect::<String>()
         ))
         .verdict(Verdict::aim(aimed(ENGINES[0]) >= 5.5 && aimed(ENGINES[1]) >= 1.0))
         .details(["Both engines find the same collisions, to the bit."])
@@ -45,6 +47,10 @@ pub fn section(data: &Rates, rivals: &[Rival]) -> Section {
         .tables([table(data), beside(rivals)])
         .seeds([1])
         .depends_on_host()
+}
+
+fn is_of_hard_discs(rival: &Rival) -> bool {
+    rival.contests.iter().any(|it| it.system.starts_with("hard discs"))
 }
 
 fn sizes(data: &Rates) -> Vec<usize> {

@@ -65,12 +65,10 @@ pub fn section(data: &Sectors) -> Section {
     let fall = at(5).zip(at(20)).map(|(few, many)| few.seconds[0] / many.seconds[0]);
     let floor = at(100).zip(best).map(|(row, best)| row.seconds[0] / best.seconds[0]);
     let gains = [fewest, best].map(|row| row.and_then(Gain::of));
-    let faster = |row: Option<&Row>| {
-        let source = best?.source?[0];
-        Some(format!("{:.0}", source / row?.seconds[0]))
-    };
+    let shortest = SOURCE.iter().map(|(_, [one, _])| *one).fold(f64::INFINITY, f64::min);
+    let faster = |row: Option<&Row>| Some(format!("{:.0}", shortest / row?.seconds[0]));
     let sought = faster(best).zip(faster(lists)).map_or(String::new(), |(sectors, lists)| {
-        format!("On one thread sectors are {sectors} times as fast as the source at its best; neighbour lists, which it has not, {lists} times.")
+        format!("On one thread sectors are {sectors} times as fast as the source at its best; neighbour lists, which it does not have, {lists} times.")
     });
     let is_as = |held: Option<bool>| held.unwrap_or(true);
     let claims = [

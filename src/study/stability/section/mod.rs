@@ -3,7 +3,7 @@
 mod figures;
 mod tables;
 
-use super::conclusions::{of_theory, sentences};
+use super::conclusions::{of_schemes, of_theory, sentences};
 use super::dataset::Stability;
 use super::outcome::Class;
 use crate::console::Failure;
@@ -16,20 +16,24 @@ pub const NAME: &str = "stability";
 
 /// How theory does over all maps, and how much fails in silence.
 fn answer(maps: &[(String, Stability)]) -> String {
-    let ratios: Vec<f64> =
+    let middles: Vec<f64> =
         maps.iter().filter_map(|(_, data)| of_theory(data)).map(|[middle, ..]| middle).collect();
+    let pairs: Vec<f64> = maps.iter().flat_map(|(_, data)| of_schemes(data)).collect();
     let (mut wrong, mut unsaid) = (0, 0);
     for (_, data) in maps {
         let said = data.said(Class::is_unseen);
         wrong += said.all;
         unsaid += said.unsaid();
     }
-    let theory = match ratios.as_slice() {
+    let theory = match pairs.as_slice() {
         [] => String::new(),
-        ratios => format!(
-            "What works ends at {} times the step beyond which theory says that errors grow ({}). ",
-            range(ratios.iter().copied(), 3),
-            counted(ratios.len(), "map", "maps")
+        _ => format!(
+            "The longest step that works is {} times the step beyond which theory says that errors grow, over {} of scene and integrator; \
+             the median over a map is {} times ({}). ",
+            range(pairs.iter().copied(), 3),
+            counted(pairs.len(), "pair", "pairs"),
+            range(middles.iter().copied(), 3),
+            counted(middles.len(), "map", "maps")
         ),
     };
     let silent = match wrong {

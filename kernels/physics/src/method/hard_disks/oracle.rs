@@ -190,7 +190,7 @@ fn energy_and_momentum_stay() {
 
 /// Both engines find the same 10⁶ events, at three densities, with discs of different sizes that lose energy, and under gravity.
 #[test]
-#[ignore = "long: cargo test --release --lib -- --ignored engines_agree"]
+#[ignore = "long: cargo test --workspace --lib -- --ignored engines_agree"]
 fn engines_agree_over_a_million_events() {
     let domain = |side: f64, periodic| Domain::planar([0.0; 2], [side, side], periodic);
     let cases = [
