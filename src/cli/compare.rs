@@ -164,7 +164,7 @@ fn text(scene: &str, comparison: &Comparison) -> String {
     terminal::render(
         &Rows::of(looks)
             .count(unit, |look| if has_events { look.events } else { look.steps })
-            .number("time", 6, |look| look.time)
+            .text("time", |look| significant(look.time, 6))
             .text("same bits", |look| if look.same_bits { "yes" } else { "no" })
             .text("position", |look| significant(look.position, 2))
             .text("velocity", |look| significant(look.velocity, 2))

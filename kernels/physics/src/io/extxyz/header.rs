@@ -3,6 +3,7 @@
 use super::Room;
 use super::error::{Mistake, Mistakes, Reason};
 use super::format::Format;
+use super::real::number;
 use super::rows::Layout;
 
 /// What a comment line says.
@@ -142,14 +143,6 @@ fn lattice(entry: &Entry) -> Result<[f64; 2], Reason> {
         None => Ok([x, y]),
         Some(at) => Err(Reason::Tilt { at: at + 1, value: numbers[at] }),
     }
-}
-
-/// A number as programs write it, Fortran's too, whose exponent may be a `D`.
-pub(super) fn number(text: &str) -> Option<f64> {
-    text.parse().ok().or_else(|| {
-        let at = text.find(['D', 'd']).filter(|&at| at > 0)?;
-        format!("{}E{}", &text[..at], &text[at + 1..]).parse().ok()
-    })
 }
 
 fn boundaries(entry: &Entry) -> Option<[bool; 2]> {

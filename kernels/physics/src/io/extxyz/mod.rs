@@ -18,6 +18,7 @@ mod error;
 mod format;
 mod header;
 mod reader;
+mod real;
 mod rows;
 mod writer;
 

@@ -2,7 +2,7 @@
 
 use super::Room;
 use super::error::{Mistake, Reason};
-use super::header::number;
+use super::real::number;
 use crate::particles::{Kind, Particle};
 
 /// A column that a frame may have.
