@@ -29,7 +29,7 @@ impl Units {
             let square = move |body: usize| {
                 (0..3).map(|axis| (position[axis][body] - about[axis]).powi(2)).sum::<f64>()
             };
-            (0..count).map(move |body| square(body))
+            (0..count).map(square)
         };
         let size = (distances(mean(position, count)).sum::<f64>() / count as f64).sqrt();
         let typical = median(distances(medians(position, count)).collect()).sqrt();
