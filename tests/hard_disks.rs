@@ -374,3 +374,60 @@ fn what_cannot_be_is_refused_with_what_may_be() {
     );
     refused(&list("[[0.3, 5.0], [5.9, 5.0]]"), &[], 3, &["reaches beyond a side"]);
 }
+
+/// A thermal wall draws with a seed of its own where the start has none: runs with several seeds differ, the same seed gives the same run, and a run
+/// that continues from a state does not get back what the wall gave before.
+#[test]
+fn a_thermal_wall_has_a_seed() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("scene.toml");
+    let text = "format = 2\nunits = \"reduced\"\n[method]\nkind = \"hard-disks\"\n[domain]\nsides = [10.0, 10.0]\nperiodic = [true, false]\n\
+                [particles]\ngenerate = \"list\"\nradius = 0.5\nmass = 1.0\npositions = [[2.0, 2.0], [5.0, 5.0]]\n\
+                velocities = [[1.0, 0.3], [0.0, -0.4]]\n[law]\nthermal_side = \"bottom\"\nwall_temperature = 2.0\n\
+                [run]\ntime = 100.0\nthermo_every = 1.0\nsnapshot_every = 100.0\n";
+    fs::write(&scene, text).unwrap();
+    let scene = scene.to_str().unwrap();
+    let out = folder.path().join("seeds");
+    let output = stripmine(&["run", scene, "--seeds", "3", "--quiet", "--out", out.to_str().unwrap()]);
+    assert!(output.status.success(), "{}", said(&output));
+    let rows = |folder: &Path| fs::read_to_string(folder.join("thermo.csv")).unwrap();
+    let seeds: Vec<String> = (1..=3).map(|seed| rows(&out.join(format!("seed-{seed}")))).collect();
+    assert!(seeds[0] != seeds[1] && seeds[1] != seeds[2] && seeds[0] != seeds[2]);
+    let one = |name: &str, sets: &[&str]| {
+        let out = folder.path().join(name);
+        run(scene, &out, sets);
+        rows(&out)
+    };
+    assert_eq!(one("default", &[]), seeds[0]);
+    assert_eq!(one("two", &["--set", "law.noise_seed=2"]), seeds[1]);
+    // The written scene says the seed, and gives the same run.
+    let written = out.join("seed-3").join("scene.toml");
+    let again = folder.path().join("again");
+    run(written.to_str().unwrap(), &again, &[]);
+    assert_eq!(rows(&again), seeds[2]);
+    // Another state draws other numbers: the kinetic energies that the wall gives first are not those of before.
+    let moved = one("moved", &["--set", "particles.velocities=[[1.0, 0.3], [0.0, -0.40000001]]"]);
+    assert!(moved != seeds[0]);
+    let kinetic = |text: &str| -> Vec<f64> {
+        let place = text.lines().next().unwrap().split(',').position(|name| name == "kinetic").unwrap();
+        text.lines().skip(1).map(|line| line.split(',').nth(place).unwrap().parse().unwrap()).collect()
+    };
+    let near = kinetic(&moved)
+        .into_iter()
+        .zip(kinetic(&seeds[0]))
+        .filter(|(a, b)| (a / b - 1.0).abs() < 1e-6)
+        .count();
+    assert!(near < 60, "{near} of 101 rows are those of before");
+    // A generated start gives its own seed to the wall, unless the scene says another.
+    let error = stripmine(&[
+        "run",
+        scene,
+        "--set",
+        "law.thermal_side=none",
+        "--set",
+        "law.noise_seed=1",
+        "--out",
+        "no",
+    ]);
+    assert!(said(&error).contains("law.noise_seed"), "{}", said(&error));
+}

@@ -389,3 +389,149 @@ fn what_cannot_be_is_refused_with_what_may_be() {
     let text = String::from_utf8_lossy(&warned.stdout).into_owned() + &said(&warned);
     assert!(warned.status.success() && text.contains("beyond √(2 m r_c/F) = 0.030584"), "{text}");
 }
+
+/// Free particles that cross the box several times in a step: they run, and their displacements are those in a box that none of them crosses, by
+/// every search and on three ranks. ⟨r²⟩ is 4 D (t − τ) to five standard errors.
+#[test]
+fn free_particles_cross_the_box_in_a_step() {
+    let folder = tempfile::tempdir().unwrap();
+    let hot = [
+        "particles.count=400",
+        "particles.temperature=5e5",
+        "law.bath_temperature=5e5",
+        "particles.seed=7",
+        "integrator.dt=0.05",
+        "particles.mass=1",
+        "law.drag=1",
+        "run.time=20",
+        "run.thermo_every=100",
+        "run.snapshot_every=200",
+        "particles.radius=0.05",
+    ];
+    let msd = |name: &str, sets: &[&str], more: &[&str]| {
+        let out = folder.path().join(name);
+        let summary = run("langevin-free", &out, &[&hot[..], sets].concat(), more);
+        assert_eq!(summary["lost"], 0, "{name}");
+        *column(&out, "msd").last().unwrap()
+    };
+    let wide = msd("wide", &["domain.sides=[1e6, 1e6]"], &[]);
+    let exact = 4.0 * 5e5 * (20.0 - 1.0);
+    assert!((wide / exact - 1.0).abs() < 5.0 / 20.0, "{wide} {exact}");
+    for (name, sets, more) in [
+        ("lists", &["search.by=neighbor-list"][..], &[][..]),
+        ("sectors", &["search.by=sectors"], &[]),
+        ("few", &["search.by=sectors", "search.sectors=3"], &[]),
+        ("ranks", &["search.by=sectors"], &["--ranks", "3"]),
+    ] {
+        let found = msd(name, &[&["domain.sides=[50, 40]"], sets].concat(), more);
+        assert!((found / wide - 1.0).abs() < 1e-9, "{name}: {found} {wide}");
+    }
+}
+
+/// What is lost by pairs is said with a step that would do; where the step is within all limits, with the way and the side.
+#[test]
+fn losses_are_said_with_what_would_help() {
+    let folder = tempfile::tempdir().unwrap();
+    let said = |name: &str, sets: &[&str]| {
+        let output = begin(
+            "langevin-free",
+            &folder.path().join(name),
+            &[&["particles.count=100", "law.kind=wca"], sets].concat(),
+            &[],
+        );
+        assert!(!output.status.success(), "{name}");
+        said(&output)
+    };
+    let far = [
+        "particles.temperature=1e12",
+        "law.drag=0",
+        "particles.radius=0.05",
+        "integrator.dt=1e-3",
+        "domain.sides=[50, 50]",
+    ];
+    let message = said("far", &far);
+    assert!(message.contains("lost") && message.contains("below") && !message.contains("inf"), "{message}");
+}
+
+/// A run from the last frame of another one has new noise, from a file and from a list: the velocities of both after the same number of
+/// steps are uncorrelated. Runs of one start are the same, and another noise_seed gives other noise.
+#[test]
+fn a_run_from_a_frame_does_not_repeat_the_noise() {
+    let folder = tempfile::tempdir().unwrap();
+    let free = [
+        "domain.sides=[50, 50]",
+        "run.time=10",
+        "run.thermo_every=100",
+        "run.snapshot_every=1000",
+        "integrator.dt=0.01",
+        "law.drag=1",
+    ];
+    let first = folder.path().join("first");
+    run("langevin-free", &first, &[&free[..], &["particles.count=200"]].concat(), &[]);
+    let start = folder.path().join("start.xyz");
+    let text = fs::read_to_string(first.join("trajectory.xyz")).unwrap();
+    let frames: Vec<&str> = text.lines().collect();
+    fs::write(&start, frames[frames.len() - 202..].join("\n") + "\n").unwrap();
+    let file = format!("particles.file={}", start.display());
+    let numbers = |line: &str, from: usize| -> String {
+        let all: Vec<&str> = line.split_whitespace().collect();
+        format!("[{}, {}]", all[from], all[from + 1])
+    };
+    let list = |from: usize| {
+        let rows: Vec<String> = frames[frames.len() - 200..].iter().map(|line| numbers(line, from)).collect();
+        format!("[{}]", rows.join(", "))
+    };
+    let positions = format!("particles.positions={}", list(2));
+    let velocities = format!("particles.velocities={}", list(5));
+    let listed = ["particles.generate=list", &positions, &velocities];
+    let velocities = |folder: &Path| -> Vec<f64> {
+        let frame = last_frame(folder);
+        let lines = frame.lines().filter(|line| line.starts_with("Si "));
+        lines
+            .flat_map(|line| {
+                line.split_whitespace().skip(5).take(2).map(|v| v.parse().unwrap()).collect::<Vec<f64>>()
+            })
+            .collect()
+    };
+    let mut all = vec![velocities(&first)];
+    for (name, sets) in
+        [("file", &[file.as_str()][..]), ("file-of-2", &[&file, "law.noise_seed=2"]), ("list", &listed)]
+    {
+        let outs = [name.to_owned(), format!("{name}-again")].map(|name| folder.path().join(name));
+        outs.iter().for_each(|out| _ = run("langevin-free", out, &[&free[..], sets].concat(), &[]));
+        assert_eq!(last_frame(&outs[0]), last_frame(&outs[1]), "{name}");
+        all.push(velocities(&outs[0]));
+    }
+    // File and list are the same state but for the digits of a file, and draw alike or not at all alike.
+    for (a, b) in [(0, 1), (0, 2), (0, 3), (1, 2)] {
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
+        let correlation = dot(&all[a], &all[b]) / (dot(&all[a], &all[a]) * dot(&all[b], &all[b])).sqrt();
+        assert!(correlation.abs() < 4.5 / f64::sqrt(400.0), "{a} {b}: {correlation}");
+    }
+}
+
+/// Without friction there is no bath: momentum stays, and a single free particle has no temperature; with it, kT is half of m v².
+#[test]
+fn the_temperature_counts_what_the_bath_moves() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows = |name: &str, sets: &[&str]| {
+        let out = folder.path().join(name);
+        let list = [
+            "particles.generate=list",
+            "particles.mass=2",
+            "law.kind=none",
+            "run.steps=2",
+            "run.thermo_every=1",
+        ];
+        run("langevin-free", &out, &[&list[..], sets].concat(), &[]);
+        column(&out, "temperature")[0]
+    };
+    let one = ["particles.positions=[[2.0, 3.0]]", "particles.velocities=[[1.0, 2.0]]"];
+    assert_eq!(rows("one", &one), 5.0);
+    assert!(rows("one-free", &[&one[..], &["law.drag=0"]].concat()).is_nan());
+    // Σ m v² = 2 (1 + 4 + 1) = 12; less the mean motion, 2 · 2 (0² + 1²) = 4, it is 8.
+    let two =
+        ["particles.positions=[[2.0, 3.0], [5.0, 5.0]]", "particles.velocities=[[1.0, 2.0], [-1.0, 0.0]]"];
+    assert_eq!(rows("two", &two), 12.0 / 4.0);
+    assert_eq!(rows("two-free", &[&two[..], &["law.drag=0"]].concat()), 8.0 / 2.0);
+}

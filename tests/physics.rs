@@ -69,7 +69,8 @@ fn the_pressure_of_soft_discs_is_that_of_hard_ones_of_their_effective_diameter()
         .collect();
     let mean = |of: &dyn Fn(&Observation) -> f64| seen.iter().map(of).sum::<f64>() / seen.len() as f64;
     let (count, temperature) = (gas.particles().grains().len() as f64, mean(&|seen| seen.temperature));
-    let compressibility = mean(&|seen| seen.pressure) * area / (count * temperature);
+    // The kinetic energy of count − 1 discs presses, for momentum is conserved.
+    let compressibility = (mean(&|seen| seen.pressure) * area + temperature) / (count * temperature);
     let gamma = 0.887_263_817_503_075; // Γ(7/5)
     let diameter = 1.0 - gamma * (temperature / (0.4 * CONTACT.stiffness)).powf(0.4);
     let nu = count * std::f64::consts::FRAC_PI_4 * diameter * diameter / area;

@@ -7,7 +7,7 @@ use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::gravity::Gravity;
 use stripmine_kernels::noise::{Purpose, Stream};
-use stripmine_kernels::sweep::all_pairs::{AllPairs, Arithmetic, BANDS, Bodies, Manner, padded};
+use stripmine_kernels::sweep::all_pairs::{AllPairs, Arithmetic, BANDS, Bodies, Manner, padded, padding};
 
 fn never() -> bool {
     false
@@ -32,16 +32,20 @@ impl<P: Precision> System<P> {
     fn random(count: usize, seed: u64) -> Self {
         let mut random = Stream::new(seed, Purpose::Test, 0);
         let entries = padded(count);
-        let mut column = |from: f64, to: f64, padding: f64| -> Vec<P> {
-            let bodies: Vec<f64> = (0..count).map(|_| random.random_range(from..to)).collect();
-            bodies.into_iter().chain((count..entries).map(|n| padding * n as f64)).map(P::from_f64).collect()
+        let mut column = |from: f64, to: f64| -> Vec<P> {
+            let bodies = (0..count).map(|_| P::from_f64(random.random_range(from..to)));
+            let mut column: Vec<P> = bodies.collect();
+            column.resize(entries, P::default());
+            column
         };
+        let mut position = [0, 1, 2].map(|_| column(-1.0, 1.0));
+        position[0][count..].iter_mut().enumerate().for_each(|(n, x)| *x = padding(n));
         System {
             count,
-            position: [0, 1, 2].map(|_| column(-1.0, 1.0, 7.0)),
+            position,
             rest: std::array::from_fn(|_| vec![P::default(); entries]),
-            velocity: [0, 1, 2].map(|_| column(-1.0, 1.0, 0.0)),
-            mass: column(0.5 / count as f64, 1.5 / count as f64, 0.0),
+            velocity: [0, 1, 2].map(|_| column(-1.0, 1.0)),
+            mass: column(0.5 / count as f64, 1.5 / count as f64),
         }
     }
 
@@ -79,6 +83,14 @@ impl<P: Precision> System<P> {
                 *x = P::from_f64(exact);
                 *rest = P::from_f64(exact - x.to_f64());
             }
+        }
+        self
+    }
+
+    /// The same bodies at places so many times as far from the origin.
+    fn spread(mut self, times: f64) -> Self {
+        for column in &mut self.position {
+            column[..self.count].iter_mut().for_each(|x| *x = P::from_f64(times * x.to_f64()));
         }
         self
     }
@@ -195,6 +207,24 @@ fn forces_in_single_precision_do_not_depend_on_the_origin() {
             let far = error_of::<f32, false, 3>(&of(1000.0), 0.0, arithmetic, set);
             let rates = error_of::<f32, true, 6>(&of(1000.0), 0.0, arithmetic, set);
             assert!(far < 3e-6 && rates < 3e-5, "{far} {rates} by {}", set.name());
+        }
+    }
+}
+
+/// Bodies at places where numbers are coarser than 1 attract each other as others do, with padding behind them and without.
+#[test]
+fn far_bodies_attract_each_other_without_softening() {
+    for (count, double, single) in [(16, 1e16, 1e8), (17, 1e16, 1e8), (37, 1e40, 3e7), (5, 1e55, 1e6)] {
+        for set in InstructionSet::available() {
+            for arithmetic in [Arithmetic::Exact, Arithmetic::Estimated] {
+                let found = [
+                    error_of::<f64, false, 3>(&System::random(count, 5).spread(double), 0.0, arithmetic, set),
+                    error_of::<f64, true, 6>(&System::random(count, 5).spread(double), 0.0, arithmetic, set),
+                    error_of::<f32, false, 3>(&System::random(count, 5).spread(single), 0.0, arithmetic, set),
+                ];
+                let here = format!("{count} bodies, {arithmetic:?}, {}: {found:?}", set.name());
+                assert!(found[0] < 4e-15 && found[1] < 4e-14 && found[2] < 4e-6, "{here}");
+            }
         }
     }
 }

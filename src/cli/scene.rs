@@ -131,8 +131,9 @@ fn table(name: &str, facts: &[Fact], prepared: &Prepared) -> Table {
 fn check(name: &str, overrides: &[String], common: &Common, methods: Methods) -> Result<(), Failure> {
     let (prepared, entry) = load(name, overrides, methods)?;
     prepared.memory.fits(name)?;
+    let above = forecast::above_limits(&prepared);
     if !common.quiet {
-        prepared.warnings.iter().for_each(warn);
+        prepared.warnings.iter().chain(&above).for_each(warn);
     }
     let mut facts = prepared.facts.clone();
     facts.extend(forecast::of_the_step(&prepared));
@@ -148,7 +149,7 @@ fn check(name: &str, overrides: &[String], common: &Common, methods: Methods) ->
     data.extend(forecast::as_data(facts));
     data.insert("choices".to_owned(), json!(prepared.choices));
     data.insert("left_out".to_owned(), json!(prepared.left_out));
-    data.insert("warnings".to_owned(), json!(prepared.warnings));
+    data.insert("warnings".to_owned(), json!(prepared.warnings.iter().chain(&above).collect::<Vec<_>>()));
     print_json(&data)
 }
 

@@ -25,7 +25,8 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         return None;
     }
     let distance = |candidate: &str| strsim::damerau_levenshtein(&name.to_lowercase(), candidate);
-    let near = |candidate: &&str| distance(candidate) <= (candidate.len() / 3).max(2).min(name.len());
+    let near =
+        |candidate: &&str| distance(candidate) <= (candidate.len() / 3).max(2).min((name.len() / 2).max(1));
     candidates.into_iter().filter(near).min_by_key(|candidate| distance(candidate))
 }
 

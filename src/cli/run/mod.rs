@@ -191,7 +191,9 @@ impl RunVerb {
 fn before(prepared: &Prepared, begins: bool) {
     let of_the_time = begins.then(|| forecast::of_the_time(prepared)).flatten();
     let of_this_host = of_the_time.into_iter().chain([forecast::of_the_memory(prepared)]);
-    let facts = forecast::of_the_step(prepared).into_iter().chain(of_this_host);
+    forecast::above_limits(prepared).iter().for_each(warn);
+    let of_the_start = forecast::of_the_start(prepared).filter(|_| begins);
+    let facts = of_the_start.into_iter().chain(forecast::of_the_step(prepared)).chain(of_this_host);
     for (label, words) in facts.filter_map(|fact| fact.words) {
         say(format_args!("expected: {label}: {words}"));
     }

@@ -1,6 +1,7 @@
 //! The methods. Each is a folder beside this file and a line of this list.
 
 use super::entry::{Entry, Kind, Prepared, Quantity};
+use super::start_temperature::{asked_temperature, start_temperature};
 use super::{hard_disks, langevin, lattice_md, nbody};
 use crate::quoted::quoted;
 use crate::scene::{METHOD, Reason, STRUCTURE, SceneError, SceneErrors, TARGET, Value, Values, Vocabulary};
@@ -51,12 +52,14 @@ pub fn prepare(values: Values, methods: Methods) -> Result<(Prepared, &'static E
     let unlisted = || values.spot(&METHOD).error(Reason::Unknown, "there is no such method");
     let entry = method(methods, values.method()).ok_or_else(unlisted)?;
     let wrong = wrong_target(&values, entry);
+    let asked = asked_temperature(&values, &entry.vocabulary.keys);
     let spot = values.spot(&STRUCTURE);
     match ((entry.prepare)(values), wrong) {
         (Ok(mut prepared), None) => match not_there(&prepared) {
             Some(why) => Err(spot.error(Reason::Contradiction, why).into()),
             None => {
                 prepared.memory.needed += memory_of_looks(&prepared);
+                prepared.facts.extend(asked.and_then(|asked| start_temperature(asked, &prepared)));
                 Ok((prepared, entry))
             }
         },

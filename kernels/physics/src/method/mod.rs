@@ -15,6 +15,7 @@ mod probe;
 mod restored;
 mod several;
 mod snapshot;
+mod start_temperature;
 pub mod throughput;
 mod trials;
 
@@ -30,6 +31,7 @@ pub use list::{METHODS, Methods, load, method, observer, prepare, vocabularies};
 pub use probe::probed;
 pub use several::{DISMISSED, refuse_several_ranks};
 pub use snapshot::Snapshot;
+pub use start_temperature::START_TEMPERATURE;
 pub use trials::{
     Axis, Balance, Becomes, Decides, Length, Mapped, Parameter, Rewritten, SMALLEST_RADIUS, Setting, Theory,
     Trials, Twin,

@@ -1,6 +1,6 @@
 //! Sums over the grains.
 
-use super::Scenery;
+use super::{AxisMotion, Scenery};
 use crate::particles::Particle;
 
 /// What is summed up over the grains as they stand.
@@ -12,6 +12,8 @@ pub struct GrainSums {
     pub mass: f64,
     /// Kinetic energy of their translation.
     pub kinetic: f64,
+    /// Σ m v² along x and y (energy).
+    pub twice_kinetic: [f64; 2],
     /// Kinetic energy of their rotation.
     pub rotational: f64,
     /// Potential energy in gravity, from the box's corner.
@@ -49,6 +51,7 @@ impl GrainSums {
         self.square += square;
         for (axis, along) in velocity.into_iter().enumerate() {
             self.momentum[axis] += mass * along;
+            self.twice_kinetic[axis] += mass * along * along;
             self.velocity[axis] += along;
         }
         if *gravity != [0.0; 2] {
@@ -57,6 +60,12 @@ impl GrainSums {
                 self.gravitational -= mass * gravity[axis] * (place[axis] - domain.origin[axis]);
             }
         }
+    }
+
+    /// Motion along x and y.
+    pub fn motion(&self) -> [AxisMotion; 2] {
+        [0, 1]
+            .map(|axis| AxisMotion { twice_kinetic: self.twice_kinetic[axis], momentum: self.momentum[axis] })
     }
 
     /// Those of grains that follow.
@@ -70,6 +79,7 @@ impl GrainSums {
         self.gravity_work += more.gravity_work;
         for axis in 0..2 {
             self.momentum[axis] += more.momentum[axis];
+            self.twice_kinetic[axis] += more.twice_kinetic[axis];
             self.velocity[axis] += more.velocity[axis];
         }
     }

@@ -49,10 +49,10 @@ pub struct Observation {
     pub momentum_x: f64,
     /// Momentum of the grains along y.
     pub momentum_y: f64,
-    /// Kinetic energy a grain and dimension, about the mean motion.
+    /// Temperature of the grains' translation ([`temperature()`]), about the mean motion along periodic axes.
     pub temperature: f64,
-    /// Pressure of the grains (force/length): (N T + ½ Σ F_N |r_i − r_j|)/A over the contacts between grains, with the
-    /// temperature T and the area A of the whole box.
+    /// Pressure of the grains (force/length): (K + ½ Σ F_N |r_i − r_j|)/A over the contacts between grains, with their kinetic energy K
+    /// about the mean motion along periodic axes and the area A of the whole box.
     pub pressure: f64,
     /// Mean velocity of the grains along gravity, or along x without gravity (length/time).
     pub flow: f64,
@@ -135,16 +135,19 @@ impl Observation {
             contacts: contacts.count,
             ..Observation::default()
         };
-        let n = grains.count as f64;
+        let (n, conserved) = (grains.count as f64, conserved_axes(&scenery.domain));
+        let mut thermal = grains.kinetic;
         if grains.count > 0 {
-            let drift = (momentum_x * momentum_x + momentum_y * momentum_y) / (2.0 * grains.mass);
-            seen.temperature = (grains.kinetic - drift) / n;
+            seen.temperature = temperature(grains.motion(), conserved, grains.mass, n);
+            let [along_x, along_y] =
+                [0, 1].map(|axis| if conserved[axis] { grains.momentum[axis].powi(2) } else { 0.0 });
+            thermal -= (along_x + along_y) / (2.0 * grains.mass);
             let gravity = scenery.gravity;
             let strength = gravity[0].hypot(gravity[1]);
             let along = if strength > 0.0 { gravity.map(|g| g / strength) } else { [1.0, 0.0] };
             seen.flow = (grains.velocity[0] * along[0] + grains.velocity[1] * along[1]) / n;
         }
-        seen.pressure = (n * seen.temperature + 0.5 * contacts.virial) / scenery.domain.area();
+        seen.pressure = (thermal + 0.5 * contacts.virial) / scenery.domain.area();
         seen
     }
 

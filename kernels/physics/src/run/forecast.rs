@@ -2,8 +2,9 @@
 
 use super::structured::every;
 use crate::memory::in_words;
-use crate::method::{Beyond, Clock, Fact, Failure, Prepared, Purpose, Until};
+use crate::method::{Beyond, Clock, Fact, Failure, Prepared, Purpose, START_TEMPERATURE, StepLimit, Until};
 use crate::number::{counted, significant};
+use crate::scene::{DT, Warning};
 use serde_json::{Map, Value, json};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
@@ -28,17 +29,53 @@ pub fn of_the_step(prepared: &Prepared) -> Vec<Fact> {
         facts.push(Fact::data("step_limits", json!(limits)));
     }
     let said = limits.iter().map(|limit| {
-        let beyond = match limit.beyond {
-            Beyond::Unstable => "errors grow beyond",
-            Beyond::Inaccurate => "inaccurate beyond",
-            Beyond::Unseen => "contacts pass unseen beyond",
-        };
-        let words = format!("dt is {:.3} of {}; {beyond}", limit.share, significant(limit.step, 5));
+        let words = format!("at most {}, {}; {}", significant(limit.step, 5), multiple(limit), beyond(limit));
         Fact { data: None, words: Some((limit.name, words)) }
     });
     facts.extend(said);
     facts.extend(prepared.expected_error.clone());
     facts
+}
+
+/// The limit as a multiple of the step, or, above it, the step as one of the limit.
+fn multiple(limit: &StepLimit) -> String {
+    match limit.share > 1.0 {
+        true => format!("and dt is {} times that", significant(limit.share, 3)),
+        false => format!("{} times dt", significant(1.0 / limit.share, 3)),
+    }
+}
+
+fn beyond(limit: &StepLimit) -> &'static str {
+    match limit.beyond {
+        Beyond::Unstable => "errors grow beyond",
+        Beyond::Inaccurate => "inaccurate beyond",
+        Beyond::Unseen => "contacts pass unseen beyond",
+    }
+}
+
+/// A warning of a step above limits: the lowest of them, unless the scene's check has warned of its step.
+pub fn above_limits(prepared: &Prepared) -> Option<Warning> {
+    let key = DT.path();
+    if prepared.warnings.iter().any(|warning| warning.key == key) {
+        return None;
+    }
+    let above = prepared.step_limits.iter().filter(|limit| limit.share > 1.0);
+    let limit = above.max_by(|a, b| a.share.total_cmp(&b.share))?;
+    let message = format!(
+        "dt = {} is {} times the limit {} ({}); {}",
+        significant(limit.share * limit.step, 5),
+        significant(limit.share, 3),
+        significant(limit.step, 5),
+        limit.name,
+        beyond(limit)
+    );
+    Some(Warning { key, message, suggestion: format!("take dt <= {}", significant(limit.step, 3)) })
+}
+
+/// What there is to be said of the start of a run.
+pub fn of_the_start(prepared: &Prepared) -> Option<Fact> {
+    let is_it = |fact: &&Fact| fact.data.as_ref().is_some_and(|(name, _)| *name == START_TEMPERATURE);
+    prepared.facts.iter().find(is_it).cloned()
 }
 
 /// The memory that it takes, and what this host has left.

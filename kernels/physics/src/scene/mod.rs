@@ -20,6 +20,7 @@ mod reading;
 mod rules;
 mod target;
 mod text;
+mod unknown;
 mod values;
 mod vocabulary;
 

@@ -4,6 +4,7 @@ use super::error::{Mistakes, Place, Reason, SceneError, SceneErrors, Spot};
 use super::general::{FORMAT, METHOD};
 use super::key_set::{KeySet, SECTIONS};
 use super::keys::{Fault, Key};
+use super::unknown::{Help, Unknown};
 use super::values::{Entry, Values};
 use super::vocabulary::Vocabulary;
 use crate::quoted::quoted;
@@ -270,7 +271,6 @@ impl Source<'_> {
         if !values.errors.has_room() {
             return values.errors.count();
         }
-        let in_section = || self.keys.section(section).map(|key| key.name);
         let place =
             if section.is_empty() { "at the top of the file".to_owned() } else { format!("in [{section}]") };
         let place =
@@ -278,44 +278,22 @@ impl Source<'_> {
         let mut error = self
             .spot(name.span().start)
             .error(Reason::Unknown, format!("unknown key `{}` {place}", quoted(name.get_ref())));
-        let elsewhere = self.keys.keys().find(|key| key.name == name.get_ref());
-        let has_it = |method: &&&Vocabulary| method.keys.key(section, name.get_ref()).is_some();
-        let others: Vec<String> =
-            self.methods.iter().filter(has_it).map(|method| format!("\"{}\"", method.keys.method)).collect();
-        let by_name = self.full_names(name.get_ref());
-        let path = format!("{section}.{}", name.get_ref());
-        if let Some((_, advice)) = self.keys.advice.iter().find(|(key, _)| *key == path) {
-            error = error.advising(*advice);
-        } else if self.lines.is_none() && !by_name.is_empty() {
-            let paths: Vec<String> = by_name.iter().map(|key| format!("`{}`", key.path())).collect();
-            error = error.advising(format!("did you mean {}?", paths.join(" or ")));
-            values.faulty.extend(by_name.iter().map(|key| key.id()));
-        } else if let Some(key) = elsewhere {
-            let home = match key.section {
-                "" => "at the top of the file".to_owned(),
-                section => format!("in [{section}]"),
-            };
-            error = error.advising(format!("`{}` belongs {home}", key.name));
-            values.faulty.insert(key.id());
-        } else if !others.is_empty() {
-            let methods = others.join(" or ");
-            error = error.advising(format!("it is a key of scenes with {} = {methods}", METHOD.path()));
-        } else if let Some(nearest) = nearest(name.get_ref(), in_section()) {
-            error = error.advising(format!("did you mean `{nearest}`?"));
-            values.faulty.insert((section, nearest));
-        } else {
-            error = error.expecting(in_section().collect::<Vec<_>>().join(", "));
-        }
+        let unknown = Unknown {
+            keys: self.keys,
+            methods: self.methods,
+            section,
+            name: name.get_ref(),
+            overrides: self.lines.is_none(),
+        };
+        error = match unknown.help() {
+            Help::Advice(advice, meant) => {
+                // What is missing is not missing, only under another name.
+                values.faulty.extend(meant.iter().map(|key| key.id()));
+                error.advising(advice)
+            }
+            Help::Expected(keys) => error.expecting(keys),
+        };
         values.errors.push(error);
-    }
-
-    /// The keys of the method that are called so, in whichever section, or, where there are none, as nearly so as any.
-    fn full_names(&self, name: &str) -> Vec<&'static Key> {
-        let called = |name: &str| self.keys.keys().filter(|key| key.name == name).collect::<Vec<_>>();
-        match called(name) {
-            exact if !exact.is_empty() => exact,
-            _ => nearest(name, self.keys.keys().map(|key| key.name)).map_or(vec![], called),
-        }
     }
 
     fn fault(&self, key: &Key, fault: &Fault) -> SceneError {

@@ -5,9 +5,11 @@ mod compressing;
 mod filling;
 mod making;
 mod meshing;
+mod noise;
 
 pub use checks::{deepest_overlap, noun, outside, overlaps, readable};
 pub use making::{Made, make, radii};
+pub use noise::noise_seed;
 
 use crate::particles::Particle;
 use crate::scene::{Domain, Key, Spot, Start, Values, WallMotion};

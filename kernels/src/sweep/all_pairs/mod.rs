@@ -58,7 +58,8 @@ pub enum Arithmetic {
     Raw,
 }
 
-/// Bodies, an entry each; as many as [`padded`] says. Those behind the last body have no mass and are at the place of no other.
+/// Bodies, an entry each; as many as [`padded`] says. Entries behind the last body have no mass; the one numbered n is at [`padding`] of n
+/// along x.
 #[derive(Clone, Copy, Debug)]
 pub struct Bodies<'a, P> {
     /// Positions (length).
@@ -88,6 +89,16 @@ pub struct Manner<'a> {
 #[inline]
 pub const fn padded(bodies: usize) -> usize {
     bodies.next_multiple_of(GROUP)
+}
+
+/// The place along x of the padding entry `n` behind the last body (length).
+///
+/// Bodies do not come near it, and no square or cube of a distance to it overflows: what has no mass then adds zeros, never
+/// 0 · ∞. In single precision the unit of length must be about the size of the system.
+#[inline]
+pub fn padding<P: Precision>(n: usize) -> P {
+    let far = if is_split::<P>() { 1e12 } else { 1e100 };
+    P::from_f64(far * (1.0 + n as f64 / GROUP as f64))
 }
 
 /// A band of rows and its sums.

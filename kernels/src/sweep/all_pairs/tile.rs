@@ -192,7 +192,7 @@ impl<P: Precision, L: Law<3>, const SUMS: usize, const EXACT: bool> Tile<'_, P, 
             // SAFETY: the group's entries exist, and a part is one register of them.
             let partner = unsafe { Self::partner(registers, bodies, at) };
             for (n, own) in own.into_iter().enumerate() {
-                let partner = apart(registers, own, partner, (start + first + n).wrapping_sub(at));
+                let (own, partner) = apart(registers, own, partner, (start + first + n).wrapping_sub(at));
                 let own_sums = &own_sums[n][part % kept];
                 let meeting = Meeting::<R, SUMS, false> {
                     registers,
@@ -322,17 +322,17 @@ fn meet<R: Registers, L: Law<3>, const SUMS: usize, const BOTH: bool>(
     law.pair(env, partner, &own);
 }
 
-/// The partners, but that a body's own lane is a body without mass elsewhere: a body does nothing to itself, with or without
-/// softening.
+/// Own bodies and partners, but that in a body's own lane its partner has no mass and is 1 away: a body does nothing to itself, with or
+/// without softening, wherever it is.
 #[inline(always)]
 fn apart<R: Registers>(
     registers: R,
     own: Partner<R::V>,
     partner: Partner<R::V>,
     lane: usize,
-) -> Partner<R::V> {
+) -> (Partner<R::V>, Partner<R::V>) {
     if lane >= R::LANES {
-        return partner;
+        return (own, partner);
     }
     let mut numbers = [R::Lane::default(); GROUP];
     numbers[lane] = R::Lane::from_f64(1.0);
@@ -340,15 +340,13 @@ fn apart<R: Registers>(
     let one_at_own = unsafe { registers.load(numbers.as_ptr()) };
     let zero = registers.splat(R::Lane::default());
     let is_own = zero.less_than(one_at_own);
-    let [x, y, z] = partner.position;
-    let elsewhere = own.position[0] + registers.splat(R::Lane::from_f64(1.0));
-    let elsewhere = R::V::select(is_own, elsewhere, x);
-    Partner {
-        position: [elsewhere, y, z],
-        rest: partner.rest,
-        velocity: partner.velocity,
-        mass: R::V::select(is_own, zero, partner.mass),
-    }
+    // Both places along x are replaced: a step of 1 from the body's own place is lost where numbers are coarser than 1.
+    let along_x = |instead: R::V, of: Partner<R::V>| {
+        let [x, y, z] = of.position;
+        Partner { position: [R::V::select(is_own, instead, x), y, z], ..of }
+    };
+    let mass = R::V::select(is_own, zero, partner.mass);
+    (along_x(zero, own), Partner { mass, ..along_x(one_at_own, partner) })
 }
 
 /// Takes sums out of the registers, and leaves zeros there.

@@ -207,7 +207,8 @@ impl Way {
             fluid.until(self.at(melted + question.time * look as f64 / LOOKS as f64))?;
             if let Way::Soft { .. } = self {
                 let [seen, temperature] = fluid.observed(["pressure", "temperature"])?;
-                pressure += seen * area / (discs as f64 * temperature);
+                // The pressure has the kinetic energy of N − 1 discs, for momentum is conserved; that of hard discs has all.
+                pressure += (seen * area + temperature) / (discs as f64 * temperature);
             }
         }
         let flown = fluid.simulation.clock().time - time;

@@ -117,10 +117,16 @@ pub fn energies(progress: Progress<'_>) -> Result<Energies, StudyError> {
     Ok(Energies { orbits: ORBITS, errors, edges, damped })
 }
 
+/// The energy now. Published errors are relative to the energy itself, which an orbit's is far from losing.
+fn energy(running: &Running) -> Result<f64, StudyError> {
+    let [kinetic, potential] = running.observed(["kinetic", "potential"])?;
+    Ok(kinetic + potential)
+}
+
 fn orbit(scheme: SchemeName, steps: u64) -> Result<Orbit, StudyError> {
     let mut running = Running::timed("kepler", &overrides(scheme, steps, 0.5))?;
-    let names = ["energy_error", "momentum", "angular_momentum_z"];
-    let turning = running.observed(names)?[2];
+    let names = ["momentum", "angular_momentum_z"];
+    let (turning, start) = (running.observed(names)?[1], energy(&running)?);
     let (mut largest, mut drift, before) = (0.0f64, [0.0f64; 2], running.simulation.work());
     let mut done = Ok(());
     // Energy and momenta are looked at so often that the passage of the centre has a dozen looks.
@@ -130,7 +136,7 @@ fn orbit(scheme: SchemeName, steps: u64) -> Result<Orbit, StudyError> {
         if done.is_err() {
             break;
         }
-        let [error, momentum, angular] = running.observed(names)?;
+        let ([momentum, angular], error) = (running.observed(names)?, energy(&running)? / start - 1.0);
         largest = largest.max(error.abs());
         drift = [drift[0].max(momentum), drift[1].max((angular - turning).abs())];
     }
@@ -151,11 +157,12 @@ fn orbit(scheme: SchemeName, steps: u64) -> Result<Orbit, StudyError> {
 /// Whether an orbit is kept.
 fn keeps(scheme: SchemeName, steps: u64, eccentricity: f64) -> Result<bool, StudyError> {
     let mut running = Running::timed("kepler", &overrides(scheme, steps, eccentricity))?;
+    let start = energy(&running)?;
     for _ in 0..ORBITS {
         if running.steps(steps).is_err() {
             return Ok(false);
         }
-        let [error] = running.observed(["energy_error"])?;
+        let error = energy(&running)? / start - 1.0;
         if error.is_nan() || error.abs() > LOST {
             return Ok(false);
         }
@@ -184,7 +191,8 @@ fn edge(scheme: SchemeName, eccentricity: f64) -> Result<Edge, StudyError> {
 fn damped_orbit(steps: u64, damping: f64) -> Result<Damped, StudyError> {
     let overrides = overrides(SchemeName::DampedEuler, steps, 0.5).set(&DAMPING, damping);
     let mut running = Running::timed("kepler", &overrides)?;
+    let start = energy(&running)?;
     let done = running.steps(10 * steps);
-    let [error] = running.observed(["energy_error"])?;
-    Ok(Damped { steps, damping, energy: done.is_ok().then_some(1.0 + error) })
+    let ratio = 1.0 + (energy(&running)? / start - 1.0);
+    Ok(Damped { steps, damping, energy: done.is_ok().then_some(ratio) })
 }

@@ -125,7 +125,7 @@ fn rate(
 ) -> Result<(Rate, bool), StudyError> {
     let mut scene = Scene { softening: 0.01, precision, arithmetic, ..Scene::default() };
     (scene.start.kind, scene.start.count) = (StartKind::Plummer, count);
-    let all = Bodies::new(bodies(&scene.start, 0.01).into_iter().map(|(m, r, v)| (r, v, m)));
+    let all = Bodies::new(bodies(&scene.start, 0.01, 1.0).into_iter().map(|(m, r, v)| (r, v, m)));
     let mut found = [vec![], vec![]];
     let mut last = vec![];
     for _ in 0..effort.rounds {

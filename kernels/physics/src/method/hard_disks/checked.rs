@@ -14,7 +14,7 @@ use crate::method::{Prepared, Until};
 use crate::number::significant;
 use crate::particles::{Particle, Particles};
 use crate::scene::{GENERATE, RADIUS, Read, Reason, SceneError, SceneErrors, Values, WallMotion, Warning};
-use crate::start::{Stated, make, outside, overlaps};
+use crate::start::{Stated, make, noise_seed, outside, overlaps};
 use std::sync::Arc;
 use stripmine_kernels::flight::Disc;
 use stripmine_kernels::mask::Mask;
@@ -75,6 +75,13 @@ pub(super) fn prepare(values: Values) -> Result<Prepared, SceneErrors> {
     });
     SceneErrors::none_of(errors)?;
     SceneErrors::none_of(without_events(&values, &scene, domain, &particles).into_iter().collect())?;
+    if let Some(thermal) = &mut scene.law.thermal {
+        // Written down where the start has no seed.
+        if scene.start.seed().is_none() {
+            scene.noise_seed.get_or_insert(thermal.seed);
+        }
+        thermal.seed = noise_seed(&scene.start, thermal.seed, &particles);
+    }
     let particles = Arc::new(particles);
     Ok(Checked { scene, domain, particles, mask, warnings, choices }.prepared())
 }

@@ -36,6 +36,8 @@ define_keys! {
         "A side that is not periodic and gives back every disc with a velocity of its own temperature.";
     WALL_TEMPERATURE = "law" "wall_temperature", Number(Positive), "mass·length²/time²", Is("1.0"), HEATED,
         "Its temperature kT.";
+    NOISE_SEED = "law" "noise_seed", Whole(0, u64::MAX), "", Otherwise("`particles.seed`; 1 where the start has none"), HEATED,
+        "Seed of the velocities that the thermal side gives. Where the start is a file or a list, they depend on the state as well: a run that continues from a frame has new ones.";
     FLOOR_AMPLITUDE = "law" "floor_amplitude", Number(NonNegative), "length", Is("0.0"), ALWAYS,
         "A: the floor, the lower end of the second side, is A (1 − cos 2π f t) above the end of the box; 0 for a floor at rest.";
     FLOOR_FREQUENCY = "law" "floor_frequency", Number(Positive), "1/time", Is("1.0"), ALWAYS,
@@ -73,7 +75,30 @@ pub(super) static VOCABULARY: Vocabulary = Vocabulary {
         method: "hard-disks",
         groups: &[HEADING, PLANAR_DOMAIN, DISCS, OWN, INSTRUCTIONS, TARGETED, OUTPUT, SUMMED],
         rivals: &[DISC_RIVALS, DURATION],
-        advice: &[],
+        advice: &[
+            (
+                "law.temperature",
+                "the start has `particles.temperature`, a thermal side `law.wall_temperature`",
+            ),
+            ("integrator.dt", "hard discs have no time step: they fly freely from one collision to the next"),
+            (
+                "integrator.kind",
+                "hard discs have no time step: they fly freely from one collision to the next",
+            ),
+            (
+                "integrator.scheme",
+                "hard discs have no time step: they fly freely from one collision to the next",
+            ),
+            ("run.steps", "hard discs take no steps: give `run.events` or `run.time`"),
+            (
+                "law.bath_temperature",
+                "hard discs have no bath: `particles.temperature` is that of the start, and a thermal side (`law.thermal_side`) keeps one",
+            ),
+            ("law.drag", "hard discs have no bath: they fly freely between collisions"),
+            ("law.friction", "hard discs are smooth: collisions change no spin"),
+            ("law.stiffness", "hard discs are rigid: `law.restitution` says what a collision takes"),
+            ("machine.precision", "hard discs are always in double precision"),
+        ],
     },
     rules: &[disagreements, own_rules],
     presets: super::presets::PRESETS,

@@ -73,6 +73,11 @@ impl Checked {
             Fact::new("engine", self.scene.engine.word(), "engine", self.scene.engine.word()),
             Fact::words("end", self.scene.run.until.to_string()),
         ];
+        if self.scene.law.thermal.is_some() {
+            let seed = self.scene.noise_seed.or(self.scene.start.seed()).unwrap_or(1);
+            let state = if self.scene.start.seed().is_none() { ", with the state at the start" } else { "" };
+            facts.push(Fact::new("noise_seed", seed, "seed of the thermal side", format!("{seed}{state}")));
+        }
         if let Some(mask) = &self.mask {
             let [columns, rows] = Sizes::new(&self.domain, low).cells;
             let cells = format!("{columns} × {rows} = {}", columns * rows);

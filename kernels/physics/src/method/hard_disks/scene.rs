@@ -22,6 +22,8 @@ pub struct Scene {
     pub start: Start,
     /// What collisions do.
     pub law: Law,
+    /// Seed of the thermal side, where it is not that of the start.
+    pub noise_seed: Option<u64>,
     /// Whether there is no ceiling.
     pub open_top: bool,
     /// How events are found.
@@ -60,6 +62,7 @@ impl Default for Scene {
             domain: Domain::default(),
             start: Start::default(),
             law: Law::ELASTIC,
+            noise_seed: None,
             open_top: false,
             engine: EngineChoice::default(),
             instruction_set: None,
@@ -153,8 +156,9 @@ impl Scene {
         // Without a side that is hot it means nothing.
         if side(&name).is_some() {
             binding.number(&WALL_TEMPERATURE, &mut temperature);
+            binding.whole_if_any(&NOISE_SEED, &mut self.noise_seed);
         }
-        let seed = self.start.seed().unwrap_or(0);
+        let seed = self.noise_seed.or(self.start.seed()).unwrap_or(1);
         self.law.thermal = side(&name).map(|side| Thermal { side, temperature, seed });
     }
 

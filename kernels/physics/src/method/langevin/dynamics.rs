@@ -2,7 +2,7 @@
 
 use super::checked::Checked;
 use super::found::Found;
-use super::options::{SchemeKind, SortKind};
+use super::options::{PairLaw, SchemeKind, SortKind};
 use crate::domain::Domain;
 use crate::method::pairwise::search::{LatticeSearch, ListSearch, OnConflict, Search, SectorSearch};
 use crate::method::pairwise::{Dynamics, Sort, Stepping, System, WithLaw, WithScheme, begin};
@@ -92,8 +92,10 @@ fn of_precision<S: backend::Precision, P: backend::Precision>(
             SortKind::Auto | SortKind::WhenNeeded => Sort::WhenNeeded,
         },
         longest_step: f64::INFINITY,
+        // Particles that do not act on each other may go as far as they like.
+        crosses_any: scene.law == PairLaw::None,
         followed: [follows; 2],
-        seed: checked.seed,
+        seed: checked.noise_seed,
     };
     let count = particles.len();
     let set = scene.instructions();

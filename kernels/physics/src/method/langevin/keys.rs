@@ -29,7 +29,7 @@ define_keys! {
     BATH_TEMPERATURE = "law" "bath_temperature", Number(NonNegative), "energy", Is("1.0"), ALWAYS,
         "Temperature kT of the bath.";
     NOISE_SEED = "law" "noise_seed", Whole(0, u64::MAX), "", Otherwise("`particles.seed`; 1 where the start has none"), ALWAYS,
-        "Seed of the bath's noise: runs of one start with different seeds are independent replicas.";
+        "Seed of the bath's noise: runs of one start with different seeds are independent replicas. Where the start is a file or a list, the noise depends on the state as well: a run that continues from a frame has new noise.";
 
     SEARCH = "search" "by", Choice(By::WORDS), "", Is("\"auto\""), ALWAYS,
         "How pairs are found: on a lattice of cells that are one particle's each (wca only), in sectors, or by lists of neighbours; auto takes the fastest that the scene allows.";
@@ -67,7 +67,15 @@ pub(super) static VOCABULARY: Vocabulary = Vocabulary {
             SUMMED,
         ],
         rivals: &[DISC_RIVALS, DURATION],
-        advice: &[],
+        advice: &[
+            ("integrator.step", "did you mean `integrator.dt`?"),
+            ("integrator.timestep", "did you mean `integrator.dt`?"),
+            ("integrator.time_step", "did you mean `integrator.dt`?"),
+            ("law.friction", "the friction of the bath is `law.drag`"),
+            ("law.gamma", "the friction of the bath is `law.drag`"),
+            ("law.epsilon", "the depth of the pair potential is `law.strength`"),
+            ("law.sigma", "the diameter σ is twice `particles.radius`"),
+        ],
     },
     rules: &[disagreements, too_many_steps, own_rules],
     presets: super::presets::PRESETS,

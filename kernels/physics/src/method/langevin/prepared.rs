@@ -84,7 +84,11 @@ impl Checked {
             facts.push(Fact::new("cutoff", *reach, "cut-off", significant(*reach, 7)));
         }
         facts.push(Fact::new("search", scene.by.word(), "search", by));
-        facts.push(Fact::new("noise_seed", self.seed, "seed of the noise", self.seed.to_string()));
+        let mut noise = self.seed.to_string();
+        if self.noise_seed != self.seed {
+            noise += ", with the state at the start";
+        }
+        facts.push(Fact::new("noise_seed", self.seed, "seed of the noise", noise));
         facts.push(Fact::words("steps", format!("{} of dt = {:?}", scene.run.steps, scene.dt)));
         facts
     }

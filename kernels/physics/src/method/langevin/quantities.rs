@@ -23,7 +23,7 @@ pub(super) const OBSERVABLES: [Observable<Seen>; 10] = observables! {
     "time", "time", Time, |seen| seen.time, "The time.";
     "kinetic", "energy", Instant, |seen| seen.kinetic, "Kinetic energy; by baoab of the velocities after the bath, which have m⟨v²⟩ = kT but for higher orders than dt², where those of the end of the step, in trajectory.xyz, are low by dt²⟨F²⟩/(4 m).";
     "potential", "energy", Instant, |seen| seen.potential, "Energy of the pairs.";
-    "temperature", "energy", Instant, |seen| seen.temperature, "Kinetic energy a particle and dimension: over N, for a bath does not conserve momentum, and all 2 N degrees of freedom have its temperature.";
+    "temperature", "energy", Instant, |seen| seen.temperature, "Σ m v² over all 2 N degrees of freedom: a bath conserves no momentum. Without friction Σ m v² about the mean motion over 2 N − 2.";
     "pressure", "force/length", Instant, |seen| seen.pressure, "Pressure of the motion and of the pairs, over the area of the box.";
     "msd", "length²", Instant, |seen| seen.msd, "Mean square displacement since the start, by the positions as if there were no sides.";
     "rms", "length", Instant, |seen| seen.msd.sqrt(), "Its root.";

@@ -9,6 +9,7 @@ use crate::method::observed::values;
 use crate::method::pairwise::Stepping;
 use crate::method::{Clock, Failure, Purpose, RunWarning, Simulation, Snapshot, Until};
 use crate::number::significant;
+use crate::observe::{AxisMotion, temperature};
 use crate::particles::{Particle, Particles, States};
 use serde_json::{Map, Value, json};
 use std::collections::{BTreeMap, BTreeSet};
@@ -104,14 +105,34 @@ impl Running {
     fn too_many(&self, failure: Failure, lost: u64, most: u64) -> Failure {
         let first = failure.culprits.first().map(|culprit| format!(", now {culprit}")).unwrap_or_default();
         let message = format!("{lost} particles were lost{first}; run.most_lost = {most}");
-        let limits = self.checked.limits();
-        let shortest = limits.iter().map(|limit| limit.step).fold(f64::INFINITY, f64::min);
-        let remedy = format!(
-            "the time step is too long for the pairs: take integrator.dt below {shortest}, or allow losses by run.most_lost",
-            shortest = significant(shortest, 3)
-        );
+        let remedy = self.remedy(&failure);
         let failure = Failure { message, remedy, kind: super::LOST, ..failure };
         failure.with([("lost", lost as f64), ("most_lost", most as f64)])
+    }
+
+    /// What helps against the losses of a failure.
+    fn remedy(&self, failure: &Failure) -> String {
+        let dt = self.checked.scene.dt;
+        let shortest = self.checked.limits().iter().map(|limit| limit.step).fold(f64::INFINITY, f64::min);
+        if shortest < dt {
+            let of = if self.checked.has_pairs() { "pairs" } else { "friction" };
+            return format!(
+                "the time step is too long for the {of}: take integrator.dt below {}, or allow losses by run.most_lost",
+                significant(shortest, 3)
+            );
+        }
+        let velocity = failure.culprits.first().map_or([0.0; 3], |culprit| culprit.velocity);
+        let sides = self.checked.domain.lengths();
+        match (0..2).find(|&axis| velocity[axis].is_finite() && velocity[axis].abs() * dt > sides[axis]) {
+            Some(axis) => format!(
+                "a particle moves {} in the step, farther than the side {} of the box: take integrator.dt below {}, a larger box, or a \
+                 lower temperature",
+                significant(velocity[axis].abs() * dt, 3),
+                significant(sides[axis], 5),
+                significant(sides[axis] / velocity[axis].abs(), 3)
+            ),
+            None => format!("lower integrator.dt (it is {dt}), or allow losses by run.most_lost"),
+        }
     }
 
     /// The same state without particles of some places and ids.
@@ -192,6 +213,12 @@ impl Running {
             true => self.stepper.predicted_velocities(),
             false => velocities().collect(),
         };
+        let motion = [0, 1].map(|axis| AxisMotion {
+            twice_kinetic: mass * thermal.iter().map(|velocity| velocity[axis] * velocity[axis]).sum::<f64>(),
+            momentum: mass * thermal.iter().map(|velocity| velocity[axis]).sum::<f64>(),
+        });
+        // Without friction there is no bath, and momentum stays.
+        let conserved = [self.checked.scene.bath.friction == 0.0; 2];
         let kinetic = 0.5 * mass * thermal.iter().map(|[u, v]| u * u + v * v).sum::<f64>();
         let [potential, virial] = self.of_pairs;
         let square = self.displacements(&particles).iter().map(|[x, y]| x * x + y * y).sum::<f64>();
@@ -199,7 +226,7 @@ impl Running {
             time: self.clock().time,
             kinetic,
             potential,
-            temperature: kinetic / count,
+            temperature: temperature(motion, conserved, count * mass, count),
             pressure: (kinetic + 0.5 * virial) / self.checked.domain.area(),
             msd: square / count,
             momentum: [0, 1].map(|axis| mass * velocities().map(|velocity| velocity[axis]).sum::<f64>()),
@@ -318,9 +345,10 @@ impl Simulation for Running {
     fn warnings(&self) -> Vec<RunWarning> {
         let (lost, all) = (self.losses.count(), self.checked.particles.len());
         let first = self.losses.first_in_words().unwrap_or_default();
+        let of_pairs = if self.checked.has_pairs() { " for the pairs" } else { "" };
         let listed = if self.checked.lists_losses() { "events.csv" } else { "summary.json" };
         let message = format!(
-            "{lost} of {all} particles were thrown out of the box and lost, {first}: the time step is too long for the pairs; \
+            "{lost} of {all} particles were thrown out of the box and lost, {first}: the time step is too long{of_pairs}; \
              {listed} lists them"
         );
         let warning = RunWarning { check: "lost", value: lost as f64, limit: 0.0, message };

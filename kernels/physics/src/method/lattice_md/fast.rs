@@ -114,6 +114,7 @@ fn stepping<S: Precision, P: Precision, Q: Search<S, P> + 'static>(
         reach: reach(&particles),
         sort: Sort::WhenNeeded,
         longest_step: model.watch.map_or(f64::INFINITY, |watch| watch.longest_step()),
+        crosses_any: false,
         followed: model.counts_crossings(),
         // None of these schemes draws random numbers.
         seed: 0,

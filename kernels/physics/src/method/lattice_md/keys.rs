@@ -97,7 +97,11 @@ pub(super) static VOCABULARY: Vocabulary = Vocabulary {
             SUMMED,
         ],
         rivals: &[DISC_RIVALS, DURATION],
-        advice: &[],
+        advice: &[
+            ("integrator.step", "did you mean `integrator.dt`?"),
+            ("integrator.timestep", "did you mean `integrator.dt`?"),
+            ("integrator.time_step", "did you mean `integrator.dt`?"),
+        ],
     },
     rules: &[disagreements, too_many_steps, own_rules],
     presets: super::presets::PRESETS,

@@ -34,9 +34,9 @@ pub(super) const OBSERVABLES: [Observable<Seen>; 18] = observables! {
     "momentum_x", "mass·length/time", Kept, |seen| seen.now.momentum_x, "Momentum of the grains along x.";
     "momentum_y", "mass·length/time", Kept, |seen| seen.now.momentum_y, "Momentum of the grains along y.";
     "temperature", "energy", Instant, |seen| seen.now.temperature,
-        "Kinetic energy a grain and dimension, about the mean motion: over N, also where momentum is conserved and 2 N − 2 degrees of freedom move; the temperature of these is N/(N − 1) times it.";
+        "Σ m v² over the degrees of freedom: about the mean motion and over N − 1 along periodic axes, over N along the others; NaN for a single grain in a periodic box.";
     "pressure", "force/length", Instant, |seen| seen.now.pressure,
-        "Pressure of the grains, of their motion and of the contacts between them, over the area of the whole box.";
+        "Pressure of the grains over the area of the whole box: their kinetic energy about the mean motion along periodic axes, and the virial of the contacts between them.";
     "flow", "length/time", Instant, |seen| seen.now.flow,
         "Mean velocity of the grains along gravity, or along x without gravity.";
     "deepest_penetration", "", Instant, |seen| seen.now.deepest_penetration,

@@ -1,6 +1,6 @@
 //! Bodies as columns.
 
-use stripmine_kernels::sweep::all_pairs::padded;
+use stripmine_kernels::sweep::all_pairs::{padded, padding};
 
 /// A quantity along three axes, an entry for every body and padding.
 pub type Columns = [Vec<f64>; 3];
@@ -15,11 +15,6 @@ pub fn add(to: &mut Columns, factor: f64, of: &Columns) {
     for (to, of) in to.iter_mut().zip(of) {
         to.iter_mut().zip(of).for_each(|(to, of)| *to += factor * of);
     }
-}
-
-/// The place along an axis of padding `n`, beyond the farthest body and at no other's place however far that is.
-pub fn elsewhere(farthest: f64, n: usize) -> f64 {
-    (2.0 * farthest + 1.0) * (1.0 + n as f64 / 16.0)
 }
 
 /// Point masses in space. Behind the last there are entries without mass, far from the others, up to whole groups.
@@ -48,15 +43,9 @@ impl Bodies {
                 made.velocity[axis][n] = velocity[axis];
             }
         }
-        made.move_padding();
+        // Padding has no mass and no velocity: no step moves it.
+        made.position[0][count..].iter_mut().enumerate().for_each(|(n, x)| *x = padding(n));
         made
-    }
-
-    /// Puts the padding where no body is.
-    fn move_padding(&mut self) {
-        let farthest = self.position[0][..self.count].iter().fold(0.0f64, |far, x| far.max(x.abs()));
-        // However the bodies move, the padding has no mass: it only must not be at a body's place to begin with.
-        self.position[0][self.count..].iter_mut().enumerate().for_each(|(n, x)| *x = elsewhere(farthest, n));
     }
 
     /// How many there are, without the padding.

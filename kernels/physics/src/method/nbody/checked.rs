@@ -54,7 +54,7 @@ pub(super) fn checked(values: Values) -> Result<Checked, SceneErrors> {
         errors.extend(wrong_rows(&values, &scene));
         SceneErrors::none_of(std::mem::take(&mut errors))?;
     }
-    let of = bodies(&scene.start, scene.softening);
+    let of = bodies(&scene.start, scene.softening, scene.gravitational_constant);
     let radius = radius_shown(&scene, &of);
     let all = of.iter().zip(1..).map(|(&(mass, position, velocity), id)| Particle {
         id,

@@ -21,9 +21,12 @@ const ORDERS: usize = 4;
 /// The attraction of some masses.
 pub struct Attraction {
     softening: f64,
+    constant: f64,
     mass: Vec<f64>,
-    /// 0 where there is no mass.
-    inverse_mass: Vec<f64>,
+    /// G m.
+    pull: Vec<f64>,
+    /// G/m: accelerations over sums of m₁ m₂ d/d³; 0 where there is no mass.
+    per_mass: Vec<f64>,
     bodies: usize,
     pub(super) pairs: Pairs,
     /// How often accelerations were asked for.
@@ -78,11 +81,14 @@ impl Attraction {
                 Pairs::Summed(Box::new(Shifted::<f32>::new(softening, bodies, execution)))
             }
         };
-        let inverse_mass = bodies.mass.iter().map(|&m| if m > 0.0 { 1.0 / m } else { 0.0 }).collect();
+        let constant = scene.gravitational_constant;
+        let per_mass = bodies.mass.iter().map(|&m| if m > 0.0 { constant / m } else { 0.0 }).collect();
         Ok(Attraction {
             softening: scene.softening,
+            constant,
             mass: bodies.mass.clone(),
-            inverse_mass,
+            pull: bodies.mass.iter().map(|m| constant * m).collect(),
+            per_mass,
             bodies: bodies.len(),
             pairs,
             evaluations: 0,
@@ -99,7 +105,7 @@ impl Attraction {
             (Engine::Programs, Precision::F64) => Shifted::<f64>::bytes(count, has_rates),
             (Engine::Programs, _) => Shifted::<f32>::bytes(count, has_rates),
         };
-        pairs + 2 * size_of::<f64>() * count
+        pairs + 3 * size_of::<f64>() * count
     }
 
     /// For a step: whether the energy at its end is wanted, and what may stop it.
@@ -112,10 +118,11 @@ impl Attraction {
     /// # Errors
     /// [`ProgramError`] if the processor lacks what is asked for, or `stop` says so.
     pub fn potential(&mut self, position: &Columns, stop: Stop<'_>) -> Result<f64, ProgramError> {
-        match &mut self.pairs {
+        let energy = match &mut self.pairs {
             Pairs::Reference => potential(&self.mass[..self.bodies], position, self.softening, stop),
             Pairs::Summed(sums) => sums.sum(position, None, true, stop),
-        }
+        };
+        energy.map(|energy| self.constant * energy)
     }
 
     fn square(&self, position: &Columns, body: usize, other: usize) -> f64 {
@@ -130,7 +137,7 @@ impl Attraction {
             let mut sum = [0.0; 3];
             for other in (0..self.bodies).filter(|&other| other != body) {
                 let square = self.square(position, body, other);
-                let pull = self.mass[other] / (square * square.sqrt());
+                let pull = self.pull[other] / (square * square.sqrt());
                 (0..3).for_each(|axis| sum[axis] += pull * (position[axis][other] - position[axis][body]));
             }
             (0..3).for_each(|axis| into[axis][body] = sum[axis]);
@@ -191,7 +198,7 @@ impl Attraction {
             let cube = power(&square, -1.5, order);
             for axis in 0..3 {
                 let term: f64 = (0..=order).map(|i| way[axis][i] * cube[order - i]).sum();
-                found[axis] += self.mass[other] * term;
+                found[axis] += self.pull[other] * term;
             }
         }
         found
@@ -226,12 +233,12 @@ impl Asking<'_> {
     ) -> Result<Option<f64>, ProgramError> {
         let Asking { attraction, stop, .. } = self;
         attraction.evaluations += 1;
-        let Attraction { pairs: Pairs::Summed(sums), inverse_mass, .. } = &mut **attraction else {
+        let Attraction { pairs: Pairs::Summed(sums), per_mass, constant, .. } = &mut **attraction else {
             return attraction.written(position, into, stop).map(|()| None);
         };
         let energy = sums.sum(position, None, observed, stop)?;
-        sums.over(inverse_mass, [Some(into), None]);
-        Ok(observed.then_some(energy))
+        sums.over(per_mass, [Some(into), None]);
+        Ok(observed.then_some(*constant * energy))
     }
 }
 
@@ -254,9 +261,9 @@ impl Field for Asking<'_> {
         let Asking { attraction, stop, .. } = self;
         attraction.evaluations += 1;
         match (&mut **attraction, orders) {
-            (Attraction { pairs: Pairs::Summed(sums), inverse_mass, .. }, [acceleration, jerk]) => {
+            (Attraction { pairs: Pairs::Summed(sums), per_mass, .. }, [acceleration, jerk]) => {
                 sums.sum(position, Some(velocity), false, stop)?;
-                sums.over(inverse_mass, [Some(acceleration), Some(jerk)]);
+                sums.over(per_mass, [Some(acceleration), Some(jerk)]);
                 Ok(())
             }
             (attraction, orders) => attraction.series(position, velocity, orders, stop),
@@ -276,9 +283,9 @@ mod tests {
     /// The derivatives by series against differences of the accelerations along a path of theirs, and the fast sweep's jerk.
     #[test]
     fn derivatives_are_those_of_the_motion() {
-        let mut scene = Scene { softening: 0.2, ..Scene::default() };
+        let mut scene = Scene { softening: 0.2, gravitational_constant: 3.7, ..Scene::default() };
         (scene.start.kind, scene.start.count) = (StartKind::Plummer, 12);
-        let of = bodies(&scene.start, 0.2);
+        let of = bodies(&scene.start, 0.2, 1.0);
         let all = Bodies::new(of.iter().map(|&(m, r, v)| (r, v, m)));
         let mut field = Attraction::new(&scene, &all).unwrap();
         let mut orders: Vec<Columns> = (0..ORDERS).map(|_| zeros(all.entries())).collect();
@@ -337,9 +344,9 @@ mod tests {
     /// The reference and every fast way agree to what their precision has.
     #[test]
     fn ways_agree() {
-        let mut scene = Scene { softening: 0.05, ..Scene::default() };
+        let mut scene = Scene { softening: 0.05, gravitational_constant: 0.31, ..Scene::default() };
         (scene.start.kind, scene.start.count) = (StartKind::Plummer, 301);
-        let of = bodies(&scene.start, 0.05);
+        let of = bodies(&scene.start, 0.05, 1.0);
         let all = Bodies::new(of.iter().map(|&(m, r, v)| (r, v, m)));
         let found = |engine, execution, precision, arithmetic| {
             let scene = Scene { engine, execution, precision, arithmetic, ..scene.clone() };

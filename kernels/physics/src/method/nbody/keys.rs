@@ -3,7 +3,7 @@
 use super::options::{ArithmeticKind, Engine, StartKind};
 use super::schemes::SchemeName;
 use crate::scene::Bounds::{AtMost, Finite, NonNegative, Positive, UpTo};
-use crate::scene::Fallback::{Is, Required};
+use crate::scene::Fallback::{Is, Otherwise, Required};
 use crate::scene::Kind::{Choice, Number, Rows, Whole};
 use crate::scene::keys::define_keys;
 use crate::scene::{
@@ -27,7 +27,7 @@ define_keys! {
     /// Bodies, softening, integrator and machine.
     static OWN;
     GENERATE = "particles" "generate", Choice(StartKind::WORDS), "", Required, ALWAYS,
-        "Where bodies start: two on an ellipse of half axis 1, at their nearest; three on the figure of eight; Plummer's sphere of scale 1; a uniform sphere or shell of radius 1; two Plummer spheres; as listed. The gravitational constant and, unless listed, the total mass are 1, the total momentum 0.";
+        "Where bodies start: two on an ellipse of half axis 1, at their nearest; three on the figure of eight; Plummer's sphere of scale 1; a uniform sphere or shell of radius 1; two Plummer spheres; as listed. Unless listed, the total mass is 1 and the total momentum 0, and velocities that follow from the attraction go with √G.";
     COUNT = "particles" "count", Whole(2, 1_000_000), "", Is("1024"), DRAWN,
         "Number of bodies.";
     SEED = "particles" "seed", Whole(0, u64::MAX), "", Is("1"), DRAWN,
@@ -48,7 +48,10 @@ define_keys! {
         "A row for each body: mass, position along x, y, z (length), velocity along x, y, z (length/time); ids are 1, 2, …";
 
     SOFTENING = "law" "softening", Number(NonNegative), "length", Is("0.0"), ALWAYS,
-        "ε: the attraction is d/(d² + ε²)^{3/2}.";
+        "ε: the attraction of a unit mass is G d/(d² + ε²)^{3/2}.";
+
+    CONSTANT = "law" "gravitational_constant", Number(Positive), "length³/(mass·time²)", Otherwise("6.6743e-11 where `units` is \"SI\", else 1"), ALWAYS,
+        "G: two bodies attract each other by G m₁ m₂/d². Masses may be given as G m instead, with a constant of 1.";
 
     INTEGRATOR = "integrator" "kind", Choice(SchemeName::WORDS), "", Is("\"leapfrog\""), ALWAYS,
         "damped-euler is the source's; euler and euler-with-half fail and show how; leapfrog, yoshida-4, -6 and -8 are symplectic; runge-kutta-4, hermite-4 and gear-6 (started exactly) drift.";
@@ -69,11 +72,28 @@ pub(super) static VOCABULARY: Vocabulary = Vocabulary {
         method: "nbody",
         groups: &[HEADING, OWN, STEP, ARITHMETIC, INSTRUCTIONS, STEPPED_RUN, TARGETED, OUTPUT],
         rivals: &[DURATION],
-        advice: &[(
-            "particles.file",
-            "bodies have no start file: list them in particles.bodies, a row [mass, x, y, z, vx, vy, vz] each, with \
+        advice: &[
+            (
+                "particles.file",
+                "bodies have no start file: list them in particles.bodies, a row [mass, x, y, z, vx, vy, vz] each, with \
              particles.generate = \"list\"",
-        )],
+            ),
+            ("integrator.step", "did you mean `integrator.dt`?"),
+            ("integrator.timestep", "did you mean `integrator.dt`?"),
+            ("integrator.time_step", "did you mean `integrator.dt`?"),
+            ("law.G", "did you mean `law.gravitational_constant`?"),
+            ("law.g", "did you mean `law.gravitational_constant`?"),
+            ("law.epsilon", "did you mean `law.softening`?"),
+            ("domain.sides", "bodies are in open space: there is no box and no gravity but their own"),
+            ("domain.gravity", "bodies are in open space: there is no box and no gravity but their own"),
+            ("domain.periodic", "bodies are in open space: there is no box and no gravity but their own"),
+            ("particles.radius", "bodies are points: `law.softening` is the only length of theirs"),
+            (
+                "particles.temperature",
+                "bodies have no temperature: `particles.virial` is the kinetic energy of a sphere over the potential one",
+            ),
+            ("particles.positions", "list bodies by `particles.bodies`: mass, position and velocity of each"),
+        ],
     },
     rules: &[too_many_steps, own_rules],
     presets: super::presets::PRESETS,

@@ -1,4 +1,4 @@
-//! PWP: bodies in space that all attract each other, by softened gravity with G = 1.
+//! PWP: bodies in space that all attract each other, by softened gravity.
 
 mod benches;
 pub mod bodies;

@@ -3,6 +3,7 @@
 use super::checked::Checked;
 use super::field::Attraction;
 use super::options::StartKind;
+use super::scene::constant_of;
 use super::shifted::counted;
 use super::simulation::Running;
 use super::starts::ORBIT;
@@ -48,9 +49,19 @@ impl Checked {
             Fact::new("grains", count, "bodies", count.to_string()),
             Fact::new("start", scene.start.kind.word(), "start", scene.start.kind.word()),
             Fact::new("softening", scene.softening, "softening", scene.softening.to_string()),
+            self.constant_in_words(),
             Fact::new("integrator", scene.scheme.word(), "integrator", scene.scheme.word()),
             Fact::words("steps", format!("{} of dt = {:?}", scene.run.steps, scene.dt)),
         ]
+    }
+
+    fn constant_in_words(&self) -> Fact {
+        let (units, constant) = (self.scene.units.as_str(), self.scene.gravitational_constant);
+        let mut words = constant.to_string();
+        if constant == constant_of(units) && constant != 1.0 {
+            words = format!("{constant:e} m³/(kg s²), for units = \"{units}\"");
+        }
+        Fact::new("gravitational_constant", constant, "constant of gravity", words)
     }
 
     fn step_limits(&self) -> Vec<StepLimit> {
@@ -58,9 +69,10 @@ impl Checked {
         match scene.start.kind {
             StartKind::Kepler => {
                 // At their nearest the bodies turn as on a circle of that radius.
-                let step = ORBIT * (1.0 - scene.start.eccentricity).powf(1.5) / 20.0;
+                let orbit = ORBIT / scene.gravitational_constant.sqrt();
+                let step = orbit * (1.0 - scene.start.eccentricity).powf(1.5) / 20.0;
                 let why =
-                    "a twentieth of the time of a circle through the nearest point, 2π (1 − e)^{3/2}/20"
+                    "a twentieth of the time of a circle through the nearest point, 2π (1 − e)^{3/2}/(20 √G)"
                         .to_owned();
                 vec![StepLimit {
                     name: "nearest-passage",
@@ -72,9 +84,10 @@ impl Checked {
             }
             _ if scene.softening > 0.0 => {
                 let heaviest = self.particles.all().iter().map(|body| body.mass).fold(0.0, f64::max);
-                let step = (scene.softening.powi(3) / (2.0 * heaviest)).sqrt();
+                let attraction = scene.gravitational_constant * heaviest;
+                let step = (scene.softening.powi(3) / (2.0 * attraction)).sqrt();
                 let why =
-                    "√(ε³/2m): the time of a swing of two of the heaviest bodies through each other, over 2π"
+                    "√(ε³/2Gm): the time of a swing of two of the heaviest bodies through each other, over 2π"
                         .to_owned();
                 vec![StepLimit {
                     name: "closest-encounter",

@@ -36,7 +36,7 @@ pub(super) const OBSERVABLES: [Observable<Seen>; 12] = observables! {
     "time", "time", Time, |seen| seen.time, "The time.";
     "kinetic", "energy", Instant, |seen| seen.conserved.kinetic, "Kinetic energy.";
     "potential", "energy", Instant, |seen| seen.conserved.potential, "Energy of the softened pairs.";
-    "energy_error", "", Kept, |seen| seen.energy_error, "The energy less that of the start, over that of the start.";
+    "energy_error", "", Kept, |seen| seen.energy_error, "The energy less that of the start, over the larger of its magnitude and the kinetic energy at the start.";
     "virial_ratio", "", Instant, |seen| seen.virial_ratio(), "Kinetic energy over the magnitude of the potential energy: 0.5 in equilibrium.";
     "momentum", "mass·length/time", Kept, |seen| seen.momentum(), "Magnitude of the momentum.";
     "angular_momentum_x", "mass·length²/time", Kept, |seen| seen.conserved.angular_momentum[0], "Angular momentum about the origin, along x.";

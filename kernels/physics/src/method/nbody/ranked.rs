@@ -180,8 +180,8 @@ impl<P: Precision> Sums for RankedSums<P> {
         }
     }
 
-    fn over(&self, inverse_mass: &[f64], into: [Option<&mut Columns>; 2]) {
-        self.own.over(inverse_mass, into);
+    fn over(&self, per_mass: &[f64], into: [Option<&mut Columns>; 2]) {
+        self.own.over(per_mass, into);
     }
 }
 

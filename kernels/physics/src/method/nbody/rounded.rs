@@ -1,8 +1,12 @@
 //! Bodies as a sweep sees them: in its precision, and, where that is single, about their middle and in units of their own.
 
-use super::bodies::{Bodies, Columns, elsewhere};
+use super::bodies::{Bodies, Columns};
 use stripmine_kernels::backend::Precision;
-use stripmine_kernels::sweep::all_pairs::{self, is_split};
+use stripmine_kernels::sweep::all_pairs::{self, is_split, padding};
+
+/// Bodies farther than this many units of length from their mean take its place from it: a few that escape must not move the rest
+/// to where numbers are coarse.
+const FAR: f64 = 1024.0;
 
 /// Units of a sweep: powers of two, with which no bit is lost; 1 in double precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,21 +17,24 @@ pub(super) struct Units {
 
 impl Units {
     /// In single precision the heaviest body has a mass of 1 to 2, and the bodies a root mean square distance of 1 to 2 from their
-    /// middle: products of masses and cubes of distances then neither underflow nor overflow.
+    /// mean: products of masses and cubes of distances then neither underflow nor overflow. Where a few bodies are far away, the
+    /// distance is the median one.
     fn of<P: Precision>(bodies: &Bodies) -> Units {
         if P::BYTES == size_of::<f64>() {
             return Units { length: 1.0, mass: 1.0 };
         }
-        let count = bodies.len();
+        let (position, count) = (&bodies.position, bodies.len());
         let heaviest = bodies.mass[..count].iter().copied().fold(0.0, f64::max);
-        let middle = middle(&bodies.position, count);
-        let axes = bodies.position.iter().zip(middle);
-        let squares =
-            axes.map(|(column, middle)| column[..count].iter().map(|x| (x - middle).powi(2)).sum::<f64>());
-        Units {
-            length: power_of_two((squares.sum::<f64>() / count as f64).sqrt()),
-            mass: power_of_two(heaviest),
-        }
+        let distances = |about: [f64; 3]| {
+            let square = move |body: usize| {
+                (0..3).map(|axis| (position[axis][body] - about[axis]).powi(2)).sum::<f64>()
+            };
+            (0..count).map(square)
+        };
+        let size = (distances(mean(position, count)).sum::<f64>() / count as f64).sqrt();
+        let typical = median(distances(medians(position, count)).collect()).sqrt();
+        let size = if typical > 0.0 && size > FAR * typical { typical } else { size };
+        Units { length: power_of_two(size), mass: power_of_two(heaviest) }
     }
 
     /// A length in these units.
@@ -57,8 +64,21 @@ fn power_of_two(number: f64) -> f64 {
 }
 
 /// The mean of the first entries.
-fn middle(columns: &Columns, count: usize) -> [f64; 3] {
+fn mean(columns: &Columns, count: usize) -> [f64; 3] {
     columns.each_ref().map(|column| column[..count].iter().sum::<f64>() / count as f64)
+}
+
+/// The median of the first entries.
+fn medians(columns: &Columns, count: usize) -> [f64; 3] {
+    columns.each_ref().map(|column| median(column[..count].to_vec()))
+}
+
+/// The upper median; 0 of no numbers.
+fn median(mut numbers: Vec<f64>) -> f64 {
+    match numbers.len() {
+        0 => 0.0,
+        count => *numbers.select_nth_unstable_by(count / 2, f64::total_cmp).1,
+    }
 }
 
 /// Columns of bodies, one behind the other as often as a sweep wants them.
@@ -103,25 +123,34 @@ impl<P: Precision> Rounded<P> {
             columns.for_each(|(to, from)| fill(to, &from[..entries], P::from_f64));
             return;
         }
-        let (units, about) = (self.units, middle(position, count));
+        self.place_about(position, mean(position, count));
+        let is_far = |x: &P| x.to_f64().abs() > FAR;
+        let has_far =
+            self.position.iter().any(|column| column[..count].iter().filter(|x| is_far(x)).count() > 0);
+        if has_far {
+            self.place_about(position, medians(position, count));
+        }
+        for (n, entry) in (count..entries).enumerate() {
+            self.position[0][entry] = padding(n);
+            self.rest[0][entry] = P::default();
+        }
+        // What all bodies have in common changes nothing between them.
+        if let Some(velocity) = velocity {
+            let drift = if has_far { medians(velocity, count) } else { mean(velocity, count) };
+            for ((to, from), drift) in self.velocity.iter_mut().zip(velocity).zip(drift) {
+                fill(to, &from[..entries], |v| P::from_f64(v - drift));
+            }
+        }
+    }
+
+    /// Takes positions as seen from a place (length), and what rounding leaves of them.
+    fn place_about(&mut self, position: &Columns, about: [f64; 3]) {
+        let ([_, entries], units) = (self.sizes, self.units);
         for (axis, from) in position.iter().enumerate() {
             let place = |x: f64| units.length(x - about[axis]);
             let rest = |x: f64| P::from_f64(place(x) - P::from_f64(place(x)).to_f64());
             fill(&mut self.position[axis], &from[..entries], |x| P::from_f64(place(x)));
             fill(&mut self.rest[axis], &from[..entries], rest);
-        }
-        // The padding is where no body is.
-        let far = self.position[0][..count].iter().fold(0.0f64, |far, x| far.max(x.to_f64().abs()));
-        for (n, padding) in (count..entries).enumerate() {
-            self.position[0][padding] = P::from_f64(elsewhere(far, n));
-            self.rest[0][padding] = P::default();
-        }
-        // What all bodies have in common changes nothing between them.
-        if let Some(velocity) = velocity {
-            let drift = middle(velocity, count);
-            for ((to, from), drift) in self.velocity.iter_mut().zip(velocity).zip(drift) {
-                fill(to, &from[..entries], |v| P::from_f64(v - drift));
-            }
         }
     }
 

@@ -40,6 +40,8 @@ pub struct Scene {
     pub start: Start,
     /// ε (length).
     pub softening: f64,
+    /// G (length³/(mass·time²)).
+    pub gravitational_constant: f64,
     /// The integrator.
     pub scheme: SchemeName,
     /// What the source's multiplies velocities by.
@@ -79,6 +81,7 @@ impl Default for Scene {
                 bodies: vec![],
             },
             softening: 0.0,
+            gravitational_constant: 1.0,
             scheme: SchemeName::Leapfrog,
             damping: 1.0,
             dt: 0.0,
@@ -124,12 +127,21 @@ impl Start {
     }
 }
 
+/// The gravitational constant of CODATA 2018 (m³/(kg s²)).
+const CODATA: f64 = 6.674_30e-11;
+
+/// The gravitational constant of a unit system: 1 unless it is the SI.
+pub(super) fn constant_of(units: &str) -> f64 {
+    if units == "SI" { CODATA } else { 1.0 }
+}
+
 impl Scene {
     /// Meets every key of the method.
     pub(super) fn bind(&mut self, binding: &mut dyn Binding) {
         bind_heading(binding, &mut self.units, VOCABULARY.keys.method);
         self.start.bind(binding);
         binding.number(&SOFTENING, &mut self.softening);
+        self.bind_constant(binding);
         binding.choice(&INTEGRATOR, &mut self.scheme);
         if self.scheme == SchemeName::DampedEuler {
             binding.number(&DAMPING, &mut self.damping);
@@ -145,6 +157,15 @@ impl Scene {
         bind_arithmetic(binding, &mut self.precision, &mut self.instruction_set);
         self.run.bind(binding, self.dt);
         self.output.bind(binding);
+    }
+
+    fn bind_constant(&mut self, binding: &mut dyn Binding) {
+        let mut constant = match binding.reads() {
+            true => None,
+            false => Some(self.gravitational_constant),
+        };
+        binding.number_if_any(&CONSTANT, &mut constant);
+        self.gravitational_constant = constant.unwrap_or_else(|| constant_of(&self.units));
     }
 
     /// The instructions of a run.

@@ -158,9 +158,9 @@ impl<P: backend::Precision> Sums for Shifted<P> {
         if observed { potential(&self.masses, position, self.softening, stop) } else { Ok(0.0) }
     }
 
-    fn over(&self, inverse_mass: &[f64], [acceleration, jerk]: [Option<&mut Columns>; 2]) {
+    fn over(&self, per_mass: &[f64], [acceleration, jerk]: [Option<&mut Columns>; 2]) {
         let units = self.bodies.units;
-        over(&self.sums[..3], units.force(), inverse_mass, acceleration);
-        over(&self.sums[3..], units.force_rate(), inverse_mass, jerk);
+        over(&self.sums[..3], units.force(), per_mass, acceleration);
+        over(&self.sums[3..], units.force_rate(), per_mass, jerk);
     }
 }

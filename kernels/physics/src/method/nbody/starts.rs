@@ -1,31 +1,40 @@
-//! Where bodies start. All are about the origin, with no momentum and, unless they are listed, a total mass of 1.
+//! Where bodies start. All are about the origin, with no momentum and, unless they are listed, a total mass of 1. Velocities that follow
+//! from the attraction go with √G.
 
 use super::options::StartKind;
 use super::scene::Start;
 use rand::RngExt;
 use std::f64::consts::{PI, TAU};
+use std::ops::Range;
 use stripmine_kernels::noise::{Purpose, Stream};
 
 /// A body: mass, position (length) and velocity (length/time).
 pub type Body = (f64, [f64; 3], [f64; 3]);
 
-/// The bodies of a start, softened by ε (length).
-pub fn bodies(start: &Start, softening: f64) -> Vec<Body> {
+/// The bodies of a start, softened by ε (length), that attract each other with G.
+pub fn bodies(start: &Start, softening: f64, constant: f64) -> Vec<Body> {
+    let root = constant.sqrt();
     match start.kind {
-        StartKind::Kepler => kepler(start.eccentricity, start.mass_ratio),
-        StartKind::FigureEight => figure_eight(),
+        StartKind::Kepler => faster(kepler(start.eccentricity, start.mass_ratio), root),
+        StartKind::FigureEight => faster(figure_eight(), root),
         StartKind::List => {
             let body = |row: &Vec<f64>| (row[0], [row[1], row[2], row[3]], [row[4], row[5], row[6]]);
             start.bodies.iter().map(body).collect()
         }
-        StartKind::Plummer => centred(plummer(start.count, start.seed)),
+        StartKind::Plummer => centred(faster(plummer(0..start.count, start.seed), root)),
         StartKind::Sphere | StartKind::Shell => {
             let mut bodies = centred(sphere(start));
-            stir(&mut bodies, start, softening);
+            stir(&mut bodies, start, softening, constant);
             bodies
         }
-        StartKind::TwoClusters => two_clusters(start),
+        StartKind::TwoClusters => two_clusters(start, root),
     }
+}
+
+/// The same bodies, so many times as fast.
+fn faster(mut bodies: Vec<Body>, times: f64) -> Vec<Body> {
+    bodies.iter_mut().for_each(|(.., velocity)| *velocity = velocity.map(|v| times * v));
+    bodies
 }
 
 /// Two bodies about their centre of mass, at their nearest: half axis, total mass and G are 1.
@@ -62,8 +71,10 @@ fn direction(random: &mut Stream) -> [f64; 3] {
 }
 
 /// Plummer's sphere of scale 1 in equilibrium (Aarseth, Hénon and Wielen 1974), cut off where it holds 0.999 of its mass.
-fn plummer(count: usize, seed: u64) -> Vec<Body> {
-    let mass = 1.0 / count as f64;
+///
+/// The bodies are numbered: each number draws from a stream of its own.
+fn plummer(numbers: Range<usize>, seed: u64) -> Vec<Body> {
+    let mass = 1.0 / numbers.len() as f64;
     let body = |number: usize| {
         let mut random = Stream::new(seed, Purpose::Placement, number as u32 + 1);
         let inside = random.random_range(0.0..0.999);
@@ -79,7 +90,7 @@ fn plummer(count: usize, seed: u64) -> Vec<Body> {
         let speed = q * f64::sqrt(2.0) * libm::pow(1.0 + radius * radius, -0.25);
         (mass, place, direction(&mut random).map(|v| speed * v))
     };
-    (0..count).map(body).collect()
+    numbers.map(body).collect()
 }
 
 /// A uniform sphere of radius 1, or its surface, expanding.
@@ -98,11 +109,11 @@ fn sphere(start: &Start) -> Vec<Body> {
 }
 
 /// Adds random velocities of a kinetic energy that is a part of the potential one.
-fn stir(bodies: &mut [Body], start: &Start, softening: f64) {
+fn stir(bodies: &mut [Body], start: &Start, softening: f64, constant: f64) {
     if start.virial == 0.0 {
         return;
     }
-    let potential = potential(bodies, softening);
+    let potential = constant * potential(bodies, softening);
     let drawn: Vec<[f64; 3]> = (0..bodies.len())
         .map(|number| {
             let [a, b] = [1, 2].map(|step| {
@@ -138,16 +149,15 @@ fn potential(bodies: &[Body], softening: f64) -> f64 {
     (0..bodies.len()).map(of).sum()
 }
 
-/// Two Plummer spheres of half the bodies each and half the mass, that approach each other.
-fn two_clusters(start: &Start) -> Vec<Body> {
+/// Two Plummer spheres of half the bodies each and half the mass, that approach each other; `root` is √G.
+fn two_clusters(start: &Start, root: f64) -> Vec<Body> {
     let first = start.count - start.count / 2;
     let mut bodies = vec![];
-    for (number, count) in [first, start.count / 2].into_iter().enumerate() {
-        let side = if number == 0 { -0.5 } else { 0.5 };
-        let share = count as f64 / start.count as f64;
+    for (side, numbers) in [(-0.5, 0..first), (0.5, first..start.count)] {
+        let share = numbers.len() as f64 / start.count as f64;
         // Half the mass in equilibrium at the same scale moves √½ as fast.
-        let slow = share.sqrt();
-        for (mass, place, velocity) in centred(plummer(count, start.seed.wrapping_add(number as u64))) {
+        let slow = share.sqrt() * root;
+        for (mass, place, velocity) in centred(plummer(numbers, start.seed)) {
             let place = [place[0] + side * start.separation, place[1], place[2]];
             let [u, v, w] = velocity.map(|v| slow * v);
             let velocity = [u - 2.0 * side * 0.5 * start.approach, v - side * 0.5 * start.approach, w];
@@ -194,7 +204,7 @@ mod tests {
     /// Plummer's sphere: energy −3π/32 · ½, in virial equilibrium, half of the mass within 1.305.
     #[test]
     fn a_plummer_sphere_is_in_equilibrium() {
-        let bodies = bodies(&start(StartKind::Plummer, 4000), 0.0);
+        let bodies = bodies(&start(StartKind::Plummer, 4000), 0.0, 1.0);
         let (kinetic, potential) = (kinetic(&bodies), potential(&bodies, 0.0));
         assert!((potential / (-3.0 * PI / 32.0) - 1.0).abs() < 0.04, "{potential}");
         assert!((kinetic / -potential - 0.5).abs() < 0.02, "{kinetic} {potential}");
@@ -211,15 +221,52 @@ mod tests {
             let energy = kinetic(&bodies) + potential(&bodies, 0.0);
             assert!((energy / (-0.5 * bodies[0].0 * bodies[1].0) - 1.0).abs() < 1e-13);
         }
-        let sphere = bodies(&Start { virial: 0.5, ..start(StartKind::Sphere, 3000) }, 0.0);
+        let sphere = bodies(&Start { virial: 0.5, ..start(StartKind::Sphere, 3000) }, 0.0, 1.0);
         let potential = potential(&sphere, 0.0);
         assert!((potential / -0.6 - 1.0).abs() < 0.03, "{potential}");
         assert!((kinetic(&sphere) / -potential - 0.5).abs() < 1e-3);
         for kind in [StartKind::Plummer, StartKind::Shell, StartKind::TwoClusters, StartKind::FigureEight] {
-            let bodies = bodies(&start(kind, 500), 0.0);
+            let bodies = bodies(&start(kind, 500), 0.0, 1.0);
             let momentum = [0, 1, 2].map(|axis| bodies.iter().map(|(m, _, v)| m * v[axis]).sum::<f64>());
             assert!(momentum.iter().all(|p| p.abs() < 1e-15), "{kind:?} {momentum:?}");
             assert!((bodies.iter().map(|(m, ..)| m).sum::<f64>() - 1.0).abs() < 1e-12);
         }
+    }
+
+    /// Clusters of one seed and of seeds one apart are unrelated: no body of any is, about its centre, where one of another is.
+    #[test]
+    fn clusters_and_seeds_share_no_body() {
+        let mut seen: Vec<[f64; 6]> = vec![];
+        for seed in [0, 1, 2, 3, u64::MAX] {
+            let all = bodies(&Start { seed, ..start(StartKind::TwoClusters, 64) }, 0.0, 1.0);
+            for cluster in all.chunks(32) {
+                let state: Vec<[f64; 6]> =
+                    cluster.iter().map(|(_, [x, y, z], [u, v, w])| [*x, *y, *z, *u, *v, *w]).collect();
+                let mean: [f64; 6] =
+                    std::array::from_fn(|k| state.iter().map(|body| body[k]).sum::<f64>() / 32.0);
+                seen.extend(state.iter().map(|body| std::array::from_fn(|k| body[k] - mean[k])));
+            }
+        }
+        for (number, body) in seen.iter().enumerate() {
+            for other in &seen[..number] {
+                let near = |range: Range<usize>| range.into_iter().all(|k| (body[k] - other[k]).abs() < 1e-6);
+                assert!(!near(0..3) && !near(3..6), "body {number}: {body:?}");
+            }
+        }
+    }
+
+    /// With another constant the virial ratio of every start that follows from the attraction is the same; speeds that are given stay.
+    #[test]
+    fn velocities_go_with_the_root_of_the_constant() {
+        for kind in [StartKind::Kepler, StartKind::FigureEight, StartKind::Plummer, StartKind::Sphere] {
+            let start = Start { virial: 0.5, ..start(kind, 100) };
+            let [one, other] = [1.0, 6.6743e-11].map(|constant| {
+                let bodies = bodies(&start, 0.0, constant);
+                kinetic(&bodies) / (constant * potential(&bodies, 0.0))
+            });
+            assert!((other / one - 1.0).abs() < 1e-12, "{kind:?}: {one} {other}");
+        }
+        let expanding = Start { expansion: 2.0, ..start(StartKind::Shell, 10) };
+        assert_eq!(bodies(&expanding, 0.0, 1.0), bodies(&expanding, 0.0, 6.6743e-11));
     }
 }

@@ -14,7 +14,7 @@ pub fn never() -> bool {
 
 /// A way to sum up forces and, where velocities are given, their rates.
 pub trait Sums: Send + Sync {
-    /// Sums up; gives the energy of the pairs if it is observed, else 0.
+    /// Sums up for a gravitational constant of 1; gives the energy of the pairs if it is observed, else 0.
     ///
     /// # Errors
     /// [`ProgramError`] if the processor lacks what is asked for, or `stop` says so.
@@ -26,8 +26,8 @@ pub trait Sums: Send + Sync {
         stop: Stop<'_>,
     ) -> Result<f64, ProgramError>;
 
-    /// The forces, and their rates, over the masses.
-    fn over(&self, inverse_mass: &[f64], into: [Option<&mut Columns>; 2]);
+    /// The forces, and their rates, times `per_mass`.
+    fn over(&self, per_mass: &[f64], into: [Option<&mut Columns>; 2]);
 }
 
 /// Stops where it should.
@@ -35,7 +35,7 @@ pub(super) fn go_on(stop: Stop<'_>) -> Result<(), ProgramError> {
     if stop() { Err(ProgramError::Interrupted) } else { Ok(()) }
 }
 
-/// The energy of all pairs, as it is written.
+/// The energy of all pairs, as it is written, for a gravitational constant of 1.
 ///
 /// # Errors
 /// [`ProgramError::Interrupted`] if `stop` says so.
@@ -56,16 +56,16 @@ pub fn potential(
     Ok(energy)
 }
 
-/// Three sums in their unit over the masses.
+/// Three sums in their unit times `per_mass`.
 pub(super) fn over<P: backend::Precision>(
     sums: &[Vec<P>],
     unit: f64,
-    inverse_mass: &[f64],
+    per_mass: &[f64],
     into: Option<&mut Columns>,
 ) {
     for (into, sum) in into.into_iter().flatten().zip(sums) {
-        for ((into, sum), inverse) in into.iter_mut().zip(sum).zip(inverse_mass) {
-            *into = unit * sum.to_f64() * inverse;
+        for ((into, sum), per_mass) in into.iter_mut().zip(sum).zip(per_mass) {
+            *into = unit * sum.to_f64() * per_mass;
         }
     }
 }

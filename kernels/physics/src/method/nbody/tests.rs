@@ -50,9 +50,9 @@ where
         (self.with)(inner, position, velocity, observed, stop)
     }
 
-    fn over(&self, inverse_mass: &[f64], into: [Option<&mut Columns>; 2]) {
+    fn over(&self, per_mass: &[f64], into: [Option<&mut Columns>; 2]) {
         if let Some(inner) = &self.inner {
-            inner.over(inverse_mass, into);
+            inner.over(per_mass, into);
         }
     }
 }
@@ -285,5 +285,163 @@ fn bodies_that_meet_are_named() {
             assert!(words.iter().all(|word| said.contains(word)), "{engine} {kind}: {said}");
             assert!(!said.contains("units"), "{said}");
         }
+    }
+}
+
+/// Two spheres of 1 kg, 0.1 m apart, in SI units: each falls G/d² · t²/2, in 0.2 s 1.33486e-10 m, by every engine. A constant that is given is
+/// taken, whatever the units; other units have 1.
+#[test]
+fn gravity_has_the_constant_of_its_units() {
+    let bodies = "particles.bodies=[[1.0, -0.05, 0, 0, 0, 0, 0], [1.0, 0.05, 0, 0, 0, 0, 0]]";
+    let constant = |units: &str, dt: f64, more: &[&str]| {
+        let (units, step) = (format!("units={units}"), format!("integrator.dt={dt:?}"));
+        let sets = ["particles.generate=list", bodies, "run.steps=20", &units, &step];
+        let mut running = started("figure-eight", &[&sets[..], more].concat());
+        advance(&mut running, 20).unwrap();
+        (running.particles().all()[0].position[0] + 0.05) * 0.01 * 2.0 / (20.0 * dt).powi(2)
+    };
+    for engine in ["reference", "fast", "programs"] {
+        for kind in ["leapfrog", "yoshida-4", "hermite-4", "gear-6", "runge-kutta-4"] {
+            for precision in if engine == "reference" { &["f64"][..] } else { &["f64", "mixed"] } {
+                let [engine, kind] = [format!("machine.engine={engine}"), format!("integrator.kind={kind}")];
+                let precision = format!("machine.precision={precision}");
+                let found = constant("SI", 0.01, &[&engine, &kind, &precision]);
+                assert!((found / 6.6743e-11 - 1.0).abs() < 1e-5, "{engine} {kind} {precision}: {found}");
+            }
+        }
+    }
+    for (units, dt, more, expected) in [
+        ("SI", 0.01, &["law.gravitational_constant=2e-9"][..], 2e-9),
+        ("kpc", 0.01, &["law.gravitational_constant=2e-9"], 2e-9),
+        ("SI, masses as G m", 1e-6, &[], 1.0),
+    ] {
+        let found = constant(units, dt, more);
+        assert!((found / expected - 1.0).abs() < 1e-5, "{units}: {found}");
+    }
+}
+
+/// The Earth is where it was after a sidereal year of 365.25636 days, and on the other side of the Sun after half of one.
+#[test]
+fn the_earth_needs_a_year_around_the_sun() {
+    let bodies =
+        "particles.bodies=[[1.98841e30, 0, 0, 0, 0, 0, 0], [5.9722e24, 1.49598e11, 0, 0, 0, 29784.7, 0]]";
+    let dt = format!("integrator.dt={:?}", 365.25636 * 86400.0 / 2000.0);
+    let sets =
+        ["particles.generate=list", bodies, &dt, "run.steps=2000", "units=SI", "integrator.kind=yoshida-4"];
+    let mut running = started("figure-eight", &sets);
+    let seen = scene("figure-eight", &sets).prepared();
+    let said = seen
+        .facts
+        .iter()
+        .filter_map(|fact| fact.words.clone())
+        .find(|(label, _)| *label == "constant of gravity");
+    assert!(said.clone().is_some_and(|(_, words)| words.starts_with("6.6743e-11 m³/(kg s²)")), "{said:?}");
+    for (steps, side) in [(1000, -1.0), (2000, 1.0)] {
+        advance(&mut running, steps).unwrap();
+        let all = running.particles();
+        let [x, y] =
+            [0, 1].map(|axis| (all.all()[1].position[axis] - all.all()[0].position[axis]) / 1.49598e11);
+        assert!((x - side).abs() < 1e-3 && y.abs() < 2e-3, "{steps}: {x} {y}");
+    }
+}
+
+/// Sixteen stars within a parsec, in metres: every engine, scheme and precision has the energies of the sum as it is written.
+#[test]
+fn far_bodies_run_without_softening() {
+    let rows: Vec<String> = (0..17)
+        .map(|n| {
+            let place = |k: usize| 3e16 * ((n * k) as f64 * 0.7548776662466927).fract() - 1.5e16;
+            let speed = |k: usize| 300.0 * (((n + 3) * k) as f64 * 0.5698402909980532).fract() - 150.0;
+            let numbers = [1.327e20, place(1), place(3), place(5), speed(1), speed(2), speed(3)];
+            format!("{numbers:?}")
+        })
+        .collect();
+    for count in [2, 16, 17] {
+        let bodies = format!("particles.bodies=[{}]", rows[..count].join(", "));
+        let list =
+            ["particles.generate=list", &bodies, "integrator.dt=1e9", "run.steps=8", "law.softening=0"];
+        let seen = |engine: &str, more: &[&str]| {
+            let engine = format!("machine.engine={engine}");
+            let mut running = started("figure-eight", &[&list[..], &[&engine], more].concat());
+            advance(&mut running, 8).unwrap_or_else(|failure| panic!("{engine} {more:?}: {failure}"));
+            running.observe()
+        };
+        for kind in ["leapfrog", "hermite-4", "gear-6"] {
+            let kind = format!("integrator.kind={kind}");
+            let [_, kinetic, potential, ..] = seen("reference", &[&kind])[..] else { panic!() };
+            for engine in ["fast", "programs"] {
+                for more in [&[][..], &["machine.precision=mixed"], &["machine.arithmetic=estimated"]] {
+                    if engine == "programs" && more.iter().any(|set| set.contains("arithmetic")) {
+                        continue;
+                    }
+                    let found = seen(engine, &[&[kind.as_str()], more].concat());
+                    let off = |found: f64, expected: f64| (found / expected - 1.0).abs();
+                    let here = format!("{count} {engine} {kind} {more:?}: {found:?}");
+                    assert!(off(found[1], kinetic) < 1e-6 && off(found[2], potential) < 1e-6, "{here}");
+                }
+            }
+        }
+    }
+}
+
+/// A light body that flies off at 1e18, past where numbers are coarser than 1: the others move as without it.
+#[test]
+fn a_body_that_escapes_disturbs_nothing() {
+    let rows: Vec<String> = (0..15)
+        .map(|n| {
+            let place = |k: usize| 2.0 * ((n * k) as f64 * 0.7548776662466927).fract() - 1.0;
+            format!("{:?}", [0.0625, place(1), place(3), place(5), 0.0, 0.0, 0.0])
+        })
+        .collect();
+    let places = |with: bool, more: &[&str]| {
+        let escaper = if with { ", [1e-6, 5e15, 0.0, 0.0, 1e18, 0.0, 0.0]" } else { "" };
+        let bodies = format!("particles.bodies=[{}{escaper}]", rows.join(", "));
+        let list = ["particles.generate=list", &bodies, "integrator.dt=1e-4", "run.steps=200"];
+        let mut running = started("figure-eight", &[&list[..], more].concat());
+        advance(&mut running, 200).unwrap_or_else(|failure| panic!("{more:?}: {failure}"));
+        let all = running.particles();
+        all.all()[..15].iter().map(|body| body.position).collect::<Vec<_>>()
+    };
+    let alone = places(false, &["machine.engine=reference"]);
+    for more in [
+        &["machine.engine=reference"][..],
+        &["machine.engine=fast"],
+        &["machine.engine=fast", "machine.arithmetic=estimated"],
+        &["machine.engine=fast", "machine.precision=mixed"],
+        &["machine.engine=programs", "machine.precision=mixed"],
+        &["machine.engine=fast", "integrator.kind=hermite-4"],
+        &["machine.engine=fast", "integrator.kind=hermite-4", "machine.precision=mixed"],
+    ] {
+        for (body, (found, expected)) in places(true, more).iter().zip(&alone).enumerate() {
+            let off = (0..3).map(|axis| (found[axis] - expected[axis]).abs()).fold(0.0, f64::max);
+            assert!(off < 1e-7, "{more:?}: body {body} is off by {off}");
+        }
+    }
+}
+
+/// Two bodies on a parabola have an energy of 0 but for rounding: its error is relative to the kinetic energy at the start, ¼, and so is that
+/// of speeds with eight decimals.
+#[test]
+fn the_energy_error_of_a_parabola_is_small() {
+    for speed in ["0.7071067811865476", "0.70710678", "0.7"] {
+        let bodies =
+            format!("particles.bodies=[[0.5, -0.5, 0, 0, 0, -{speed}, 0], [0.5, 0.5, 0, 0, 0, {speed}, 0]]");
+        let sets = [
+            "particles.generate=list",
+            &bodies,
+            "integrator.dt=0.001",
+            "integrator.kind=leapfrog",
+            "run.steps=5000",
+        ];
+        let mut running = started("figure-eight", &sets);
+        advance(&mut running, 5000).unwrap();
+        let [error, balance] = [3, 10].map(|column| running.observe()[column]);
+        let kinetic = 0.5 * speed.parse::<f64>().unwrap().powi(2);
+        assert!(
+            (error - balance / kinetic).abs() < 1e-3 * error.abs() && error.abs() < 1e-6,
+            "{error} {balance}"
+        );
+        assert_eq!(running.summary()["energy_error"].as_f64().unwrap(), error);
+        assert!(running.in_words().contains("e-") && running.warnings().is_empty(), "{}", running.in_words());
     }
 }

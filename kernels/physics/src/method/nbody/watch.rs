@@ -5,6 +5,7 @@ use super::encounter::Encounter;
 use crate::io::checkpoint::Column;
 use crate::method::RunWarning;
 use crate::number::significant;
+use crate::observe::relative_energy_error;
 use serde_json::{Value, json};
 
 /// Columns of a checkpoint: energy and step of the largest error; both bodies, distance, place and step of the nearest encounter.
@@ -13,8 +14,6 @@ const NEAREST: &str = "nearest_encounter";
 
 /// The largest error that is no reason for a warning.
 const MOST: f64 = 0.01;
-/// Energies below so much of the kinetic and potential energy are held against these: they are what is left of a difference.
-const SMALL: f64 = 0.01;
 /// A part of the kinetic and potential energy that may be rounding.
 const ROUNDING: f64 = 1e-6;
 
@@ -23,7 +22,8 @@ const ROUNDING: f64 = 1e-6;
 pub(super) struct Watch {
     /// The energy at the start.
     pub(super) start: f64,
-    /// Kinetic and magnitude of the potential energy at the start.
+    /// Kinetic energy, and that and the magnitude of the potential energy, at the start.
+    kinetic: f64,
     size: f64,
     /// The energy that was the farthest from that of the start, and after how many steps.
     worst: (f64, u64),
@@ -35,8 +35,8 @@ impl Watch {
     /// From the start on.
     pub(super) fn new(start: &Conserved) -> Watch {
         let energy = start.energy();
-        let size = start.kinetic + start.potential.abs();
-        Watch { start: energy, size, worst: (energy, 0), nearest: None }
+        let (kinetic, size) = (start.kinetic, start.kinetic + start.potential.abs());
+        Watch { start: energy, kinetic, size, worst: (energy, 0), nearest: None }
     }
 
     /// Takes note of a state after some steps.
@@ -48,13 +48,9 @@ impl Watch {
         self.nearest = encounter.filter(|it| it.distance < known).map(|it| (it, steps)).or(self.nearest);
     }
 
-    /// The energy less that of the start, over that of the start; over kinetic and potential energy where that is 0.
+    /// The error of an energy, relative to what does not vanish: bodies that attract each other have a kinetic or a total energy.
     pub(super) fn relative(&self, energy: f64) -> f64 {
-        match (self.start, self.size) {
-            (0.0, 0.0) => energy,
-            (0.0, size) => energy / size,
-            (start, _) => energy / start - 1.0,
-        }
+        relative_energy_error(energy - self.start, self.start, self.kinetic, 0.0)
     }
 
     /// Whether bodies that were bound are not any more.
@@ -73,13 +69,9 @@ impl Watch {
     /// What is to be said at the end, when the energy is `now`.
     pub(super) fn warning(&self, now: (f64, u64), dt: f64, id: impl Fn(usize) -> u32) -> Option<RunWarning> {
         let (energy, steps) = self.worst_with(now);
-        let is_small = self.start.abs() < SMALL * self.size;
-        let (scale, of) = if is_small {
-            (self.size, "of the kinetic and potential energy at the start")
-        } else {
-            (self.start.abs(), "of itself")
-        };
-        let error = (energy - self.start).abs() / scale;
+        let is_small = self.start.abs() < self.kinetic;
+        let of = if is_small { "of the kinetic energy at the start" } else { "of itself" };
+        let error = self.relative(energy).abs();
         if error <= MOST {
             return None;
         }

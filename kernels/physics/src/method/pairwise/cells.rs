@@ -71,9 +71,11 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
             let steps = (place[axis] / edge + 0.5).floor();
             let mut there = cell[axis] as f64 + steps;
             to.place[axis] = place[axis] - steps * edge;
-            if periodic[axis] && (-count..2.0 * count).contains(&there) {
-                to.periods[axis] = (there / count).floor();
-                there = there.rem_euclid(count);
+            let is_near = (-count..2.0 * count).contains(&there);
+            if periodic[axis] && (is_near || self.system.crosses_any && there.is_finite()) {
+                let inside = there.rem_euclid(count);
+                to.periods[axis] = (there - inside) / count;
+                there = inside;
             } else if there == count && to.place[axis] <= -0.5 * edge {
                 // On the far side: that is the last cell's.
                 there -= 1.0;

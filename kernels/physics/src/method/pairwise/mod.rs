@@ -67,6 +67,8 @@ pub struct System {
     pub reach: f64,
     /// Discs that move farther in a step (length) are listed.
     pub longest_step: f64,
+    /// Whether discs may cross any number of periods in a step; else one that goes farther than a period is outside.
+    pub crosses_any: bool,
     /// Along which axes it is followed how many periods discs cross.
     pub followed: [bool; 2],
     /// Seed of the random numbers, for a scheme that draws some.

@@ -11,7 +11,8 @@ use crate::method::lattice_md::theory::step_matrix::largest_step;
 use crate::number::significant;
 use crate::particles::{Particle, Particles, longest_step};
 use crate::scene::{
-    DT, GRAVITY, INSTRUCTION_SET, Key, PRECISION, Precision, Reason, SceneError, WallMotion, Warning,
+    DT, GRAVITY, INSTRUCTION_SET, Key, PERIODIC, PRECISION, Precision, Reason, SceneError, WallMotion,
+    Warning,
 };
 use crate::start::noun;
 use serde::Serialize;
@@ -308,6 +309,11 @@ pub(super) fn warnings(
         let why =
             "there is gravity but there are no walls: discs fall for ever, or out of the box".to_owned();
         warn(&GRAVITY, why, "add walls, or set domain.gravity = [0, 0]".to_owned());
+    }
+    if domain.periodic() != [true; 2] && particles.grain_count() == particles.len() {
+        let why = "sides that are not periodic hold nothing back, and there are no wall discs: a grain that leaves the box ends the run";
+        let what = "make them periodic, line them with wall discs (particles.wall_positions), or take method.kind = \"hard-disks\"";
+        warn(&PERIODIC, why.to_owned(), what.to_owned());
     }
     if scene.machine.precision != Precision::F64 && are_absolute(scene) {
         let why = "absolute coordinates in f32: forces are right to 3e-4 at best, to 1e-2 in large boxes"

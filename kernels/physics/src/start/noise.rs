@@ -1,0 +1,52 @@
+//! Seeds of the random numbers that a run draws.
+
+use crate::particles::{Particle, Particles};
+use crate::scene::Start;
+use stripmine_kernels::noise::seed_of_state;
+
+/// The seed with which bath and thermal walls draw.
+///
+/// A generated start has it from the scene. A start that is listed or read from a file makes one of its own of that and of the state: a run that
+/// continues from a frame does not repeat the noise of the run before.
+pub fn noise_seed(start: &Start, seed: u64, particles: &Particles) -> u64 {
+    if start.seed().is_some() {
+        return seed;
+    }
+    let words = |&Particle { id, position: [x, y, _], velocity: [u, v, _], .. }: &Particle| {
+        [[u64::from(id), x.to_bits()], [y.to_bits(), u.to_bits()], [v.to_bits(), 0]]
+    };
+    seed_of_state(seed, particles.all().iter().flat_map(words))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::method::{METHODS, load};
+    use crate::scene::List;
+
+    /// A generated start draws with the scene's seed; the same particles listed with a seed of their own, which depends on the seed and on
+    /// every place and velocity.
+    #[test]
+    fn a_listed_start_has_a_seed_of_its_own() {
+        let (prepared, _) = load("langevin-free", &["particles.count=5".to_owned()], METHODS).unwrap();
+        let particles = prepared.particles().clone();
+        let (drawn, listed) = (Start::default(), Start::List(List::default()));
+        assert_eq!(noise_seed(&drawn, 9, &particles), 9);
+        let own = noise_seed(&listed, 9, &particles);
+        let mut seeds = vec![9, own, noise_seed(&listed, 10, &particles)];
+        for axis in 0..2 {
+            for of_velocity in [false, true] {
+                let mut other = particles.clone();
+                let particle = &mut other.all_mut()[4];
+                let number =
+                    &mut if of_velocity { &mut particle.velocity } else { &mut particle.position }[axis];
+                *number = f64::from_bits(number.to_bits() + 1);
+                seeds.push(noise_seed(&listed, 9, &other));
+            }
+        }
+        assert_eq!(noise_seed(&listed, 9, &particles), own);
+        seeds.sort_unstable();
+        seeds.dedup();
+        assert_eq!(seeds.len(), 7);
+    }
+}
