@@ -76,11 +76,15 @@ impl Squares {
 }
 
 /// Whether the mean of a first part is not that of the rest. Where the part is shorter than the rest remembers, it varies as one value does.
+/// No stretch of the rest as long may have such a mean: rare events are no transient.
 fn differ(first: &[f64], rest: &[f64]) -> bool {
     let WaveError { mean: expected, standard_error, samples, .. } = WaveError::of(rest);
     let square = standard_error * standard_error;
     let of_first = (square * rest.len() as f64 / first.len() as f64).min(square * samples);
-    (mean(first) - expected).abs() > DIFFERENT * (of_first + square).sqrt()
+    let off = mean(first) - expected;
+    let farthest =
+        rest.chunks_exact(first.len()).map(|it| (mean(it) - expected) * off.signum()).fold(0.0, f64::max);
+    off.abs() > farthest.max(DIFFERENT * (of_first + square).sqrt())
 }
 
 /// The number of values of a batch, and the means of all whole batches.
