@@ -11,6 +11,7 @@ mod event;
 mod fall;
 mod fast;
 mod floor;
+mod followed;
 mod idle;
 pub mod keys;
 mod operations;

@@ -6,6 +6,7 @@ use super::collision_log::Log;
 use super::engine::{Engine, EngineError, Occurred, Partner};
 use super::event::Arena;
 use super::fast::Fast;
+use super::followed::Followed;
 use super::idle::never;
 use super::quantities::{OBSERVABLES, Seen};
 use super::reference;
@@ -44,7 +45,18 @@ pub(super) struct Running {
     places: Vec<usize>,
     /// Rows of collisions, where they are asked for.
     log: Option<Log>,
+    /// The periods that discs cross, where displacements are asked for.
+    followed: Option<Followed>,
     seconds: f64,
+}
+
+/// What of a run is kept beside its motion.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Observed {
+    /// Every collision, until it is taken.
+    pub(super) logs: bool,
+    /// The periods that discs cross.
+    pub(super) follows: bool,
 }
 
 /// How events are found.
@@ -72,8 +84,8 @@ struct Totals {
 }
 
 impl Running {
-    /// Discs at their start; `logs` whether every collision is kept until it is taken.
-    pub(super) fn new(checked: &Checked, logs: bool) -> Result<Running, Failure> {
+    /// Discs at their start.
+    pub(super) fn new(checked: &Checked, observed: Observed) -> Result<Running, Failure> {
         let (discs, places) = checked.discs();
         let arena = checked.scene.arena(checked.domain);
         let kinetic = kinetic(discs.iter(), &arena, 0.0);
@@ -82,6 +94,7 @@ impl Running {
             Some(mask) => Way::Reference(mask.clone()),
             None => Way::Fast(checked.scene.instructions()),
         };
+        let followed = observed.follows.then(|| Followed::new(&arena, discs.clone()));
         // The engine takes the discs: a failure makes them again.
         let stopped = |why| {
             let (discs, _) = checked.discs();
@@ -98,7 +111,8 @@ impl Running {
             particles: Arc::clone(&checked.particles),
             places,
             may_meet: false,
-            log: logs.then(Log::default),
+            log: observed.logs.then(Log::default),
+            followed,
             seconds: 0.0,
         })
     }
@@ -116,6 +130,13 @@ impl Running {
             self.totals.collisions += 1;
             self.totals.made_elastic += u64::from(impact.was_made_elastic);
             self.totals.virial += impact.virial;
+        }
+        if let Some(followed) = &mut self.followed {
+            let mut see = |disc: u32| followed.see(&self.arena, disc, self.engine.disc(disc));
+            see(happened.disc);
+            if let Partner::Disc(other) = happened.with {
+                see(other);
+            }
         }
         if let Some(log) = &mut self.log {
             let all = self.particles.all();
@@ -347,6 +368,17 @@ impl Simulation for Running {
         }
     }
 
+    fn images(&self) -> Vec<[i32; 2]> {
+        let Some(followed) = self.followed.as_ref().filter(|it| it.follows(&self.arena)) else {
+            return vec![];
+        };
+        let mut images = vec![[0; 2]; self.particles.len()];
+        for (number, &place) in self.places.iter().enumerate() {
+            images[place] = followed.image(&self.arena, number, self.clock.time);
+        }
+        images
+    }
+
     fn observe(&self) -> Vec<f64> {
         values(&OBSERVABLES, &self.seen())
     }
@@ -363,6 +395,7 @@ impl Simulation for Running {
         kept.add_count("made_elastic", made_elastic);
         kept.add_sum("virial", virial);
         self.watch.keep(&mut kept);
+        kept.columns.extend(self.followed.iter().flat_map(Followed::columns));
         kept
     }
 
@@ -383,6 +416,9 @@ impl Simulation for Running {
             virial: snapshot.sum("virial")?,
         };
         self.watch.restore(&snapshot)?;
+        if let Some(followed) = &mut self.followed {
+            followed.take_up(&discs, &snapshot.columns)?;
+        }
         self.engine.restore(discs, &snapshot)?;
         (self.clock, self.may_meet) = (clock, false);
         Ok(())
