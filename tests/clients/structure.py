@@ -19,7 +19,6 @@ from pathlib import Path
 LOOKS = 64
 BLOCK = 2  # looks of a block: 64 looks in at most 32 blocks
 HARD = {"particles.generate": '"random"', "run.time": 32.0, "run.snapshot_every": 0.5, "run.thermo_every": 0.5}
-MIXTURE = '[{ share = 0.9, radius = 0.25 }, { share = 0.1, radius = 3.0 }]'
 BOXES = {
     "square": ("hard-disks", HARD | {"domain.sides": "[20.0, 20.0]", "particles.count": 150}),
     "4 x 60": ("hard-disks", HARD | {"domain.sides": "[4.0, 60.0]", "particles.count": 90}),
@@ -32,9 +31,9 @@ BOXES = {
     "5 particles": ("hard-disks", HARD | {"domain.sides": "[9.0, 9.0]", "particles.count": 5}),
     "channel": (
         "pipe-small",
-        {"run.steps": 6400, "run.snapshot_every": 100, "run.thermo_every": 100},
+        {"run.time": 0.64, "run.snapshot_every": 100, "run.thermo_every": 100},
     ),
-    "bath": ("langevin-dense", {"run.steps": 6400, "run.snapshot_every": 100, "run.thermo_every": 100, "run.time": None}),
+    "bath": ("langevin-dense", {"run.time": 32.0, "run.snapshot_every": 100, "run.thermo_every": 100}),
 }
 FUNCTIONS = {
     "g(r)": 5e-3, "S(k)": 1e-9, "coordination": 1e-9, "psi6": 1e-4, "velocities": 1e-9, "density(x)": 1e-9, "density(y)": 1e-9,
@@ -83,7 +82,7 @@ def frames(path, numpy):
         rows = [line.split() for line in lines[at + 2 : at + 2 + count]]
         species = [row[names["species"]] for row in rows]
         take = lambda name, width: numpy.array([row[names[name] : names[name] + width] for row in rows], dtype=float)
-        grains = numpy.array([word != species[-1] or len(set(species)) == 1 for word in species])
+        grains = numpy.array([word != "W" for word in species])
         yield {
             "sides": numpy.array([cell[0], cell[4]]), "origin": numpy.array(origin[:2]), "periodic": periodic, "grains": grains,
             "at": take("pos", 2), "v": take("velo", 2), "radius": take("radius", 1)[:, 0], "mass": take("mass", 1)[:, 0],
@@ -213,7 +212,7 @@ class Box:
         return np.array([it["mean"] for it in summary["headlines"]]), np.mean(orders, axis=0)
 
     def velocities(self, ours):
-        np, density = self.np, np_zeros(self.np, len(ours))
+        np, density = self.np, self.np.zeros(len(ours))
         for v in self.of_grains("v"):
             temperature = (self.mass[:, None] * v**2).mean()
             scaled = (v * np.sqrt(self.mass / temperature)[:, None]).ravel()
@@ -282,10 +281,6 @@ class Box:
         return self.over_lags(ours, of)
 
 
-def np_zeros(numpy, count):
-    return numpy.zeros(count)
-
-
 def differences(stripmine, scene, settings, numpy, freud, folder):
     """The largest difference of each function over its largest value."""
     if scene.endswith(".toml"):
@@ -293,7 +288,7 @@ def differences(stripmine, scene, settings, numpy, freud, folder):
         scene = str(folder / scene)
     names = [name for name in FUNCTIONS if not (name == "S(k)" and "false, false" in str(settings.get("domain.periodic")))]
     settings = settings | {"output.structure": json.dumps(names), "output.structure_share": 1000.0, "output.gsd": "true"}
-    sets = [part for key, value in settings.items() if value is not None for part in ("--set", f"{key}={value}")]
+    sets = [part for key, value in settings.items() for part in ("--set", f"{key}={value}")]
     out = folder / "run"
     done = subprocess.run([stripmine, "run", scene, "--quiet", "--out", out, *sets], capture_output=True, text=True)
     if done.returncode == 3 and "upper side is open" in done.stderr:

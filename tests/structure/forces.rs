@@ -20,7 +20,10 @@ fn stress(setting: Setting, discs: &Particles, forces: &PairForces) -> [Vec<f64>
     let mut look = Look::new(setting, discs, observables.into_iter());
     assert!(look.at(|states| states.take_up(discs)));
     look.meet(discs, forces);
-    observables.map(|it| look.values(it))
+    observables.map(|it| {
+        let [values, _] = look.values(it);
+        values
+    })
 }
 
 /// A force of no law in particular, which the velocities have part in: it is neither along the line of the centres nor even.

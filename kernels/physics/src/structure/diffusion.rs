@@ -8,11 +8,14 @@
 use super::blocks::MOST as MOST_BLOCKS;
 use super::motion::{integral, slope};
 use super::{Verdict, Whole};
+use crate::number::significant;
 
 /// Lags are at least so many times τ: what is missing is 0.1 and 0.2 %.
 const LONG_ENOUGH: [f64; 2] = [10.0, 6.0];
 /// A change is one where it is larger than its half width of the interval of 95 % by this factor.
-const CERTAIN: f64 = 1.5;
+const CERTAIN: f64 = 2.0;
+/// Longer than what would be enough, for τ has an error.
+const MARGIN: f64 = 1.25;
 /// Of what remains of the autocorrelation at the first lag, the least for its integral to be known: by trapeziums it is 1 % off
 /// where it decays exponentially.
 const RESOLVED: f64 = 0.7;
@@ -102,16 +105,20 @@ impl Rising {
         let Some(&last) = whole.over.last().filter(|_| !octaves(whole.over).is_empty()) else {
             return Verdict::None(format!(
                 "no diffusion constant: the longest lag is of fewer than 4 rows; at least {} rows would do",
-                8 * MOST_BLOCKS
+                4 * MOST_BLOCKS
             ));
         };
         match self.memory(whole) {
             Some(memory) if memory * self.long_enough > last => {
                 // A lag is at least the length of the run over the number of blocks.
-                let enough = (MOST_BLOCKS as f64 * self.long_enough * memory).max(2.0 * whole.elapsed);
+                let enough =
+                    (MARGIN * MOST_BLOCKS as f64 * self.long_enough * memory).max(2.0 * whole.elapsed);
                 Verdict::None(format!(
-                    "no diffusion constant: motion is not diffusive yet at the longest lag, {last:.2e}, for it is remembered for about \
-                     {memory:.1e}; a run until about time {enough:.1e} would do"
+                    "no diffusion constant: motion is not diffusive yet at the longest lag, {}, for it is remembered for about {}; a run \
+                     until about time {} would do",
+                    significant(last, 2),
+                    significant(memory, 2),
+                    significant(enough, 2)
                 ))
             }
             _ => Verdict::Sound,

@@ -3,6 +3,7 @@
 use super::waves;
 use super::{Asks, Headline, Observable, Over, Seen, Verdict, Whole};
 use super::{diffusion, motion, neighbours, pairs, single};
+use crate::number::significant;
 
 /// Every function can be relied on.
 const SOUND: fn(&Whole<'_>) -> Verdict = |_| Verdict::Sound;
@@ -390,7 +391,8 @@ fn judge_lines(whole: &Whole<'_>) -> Verdict {
     let lines = whole.over.len();
     match (whole.mean)(&|block| block[lines + 1], 0) {
         Some([share, _]) if share > 0.0 => Verdict::Doubt(format!(
-            "{share:.1e} of the discs have more than {} neighbours and no line; the mean number counts them",
+            "{} % of the discs have more than {} neighbours and no line; the mean number counts them",
+            significant(100.0 * share, 2),
             lines - 1
         )),
         _ => Verdict::Sound,

@@ -77,7 +77,10 @@ pub fn bytes(observables: &[&Observable], discs: usize, rows: Option<u64>) -> u6
     let state = size_of::<[f64; 4]>() as u64 * discs as u64;
     let mut bytes = 0;
     if moves {
-        bytes += States::bytes(discs) as u64 + 2 * state * Motion::most_kept(rows.unwrap_or(u64::MAX));
+        let follows = observables.iter().any(|observable| observable.follows_motion());
+        let images = if follows { size_of::<[i32; 2]>() * discs } else { 0 };
+        bytes +=
+            (States::bytes(discs) + images) as u64 + 2 * state * Motion::most_kept(rows.unwrap_or(u64::MAX));
     }
     if stands {
         // Six columns, three in the order of cells with images, three of cells; sizes.
