@@ -166,9 +166,14 @@ class Box:
         edges = np.arange(len(ours) + 1) * width
         counts = np.zeros(len(ours))
         for places in self.of_grains("at"):
-            rdf = self.freud.density.RDF(len(ours), edges[-1])
-            rdf.compute((self.freud_box(), self.freud_box().wrap(self.shifted(places))))
-            counts += rdf.bin_counts / 2
+            if edges[-1] < 0.499 * min(self.sides):
+                rdf = self.freud.density.RDF(len(ours), edges[-1])
+                rdf.compute((self.freud_box(), self.freud_box().wrap(self.shifted(places))))
+                counts += rdf.bin_counts / 2
+            else:
+                # Freud does not go as far as half a side.
+                distances = np.hypot(*np.moveaxis(self.ways(places), 2, 0))
+                counts += np.histogram(distances[np.triu_indices(len(places), 1)], edges)[0]
         pairs = len(self.radius) * (len(self.radius) - 1) / 2
         ideal = self.ideal(edges)
         if not all(self.periodic):

