@@ -1,7 +1,7 @@
 //! `stripmine average`: the mean of every quantity of a run, or of several, with its error.
 
 use super::run_folder;
-use crate::console::{Common, Failure, print, print_json};
+use crate::console::{Common, Failure, print, print_json, warn};
 use crate::report::{Cell, Rows, Table, csv, terminal};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
@@ -44,16 +44,21 @@ impl AverageVerb {
         let folders = || folders.iter().map(PathBuf::as_path);
         if let Some(observable) = self.structure.as_deref().and_then(observable) {
             let function = function_of(folders(), observable)?;
-            return match (common.json, self.csv) {
-                (true, _) => print_json(&function),
-                (_, true) => print(&String::from_utf8_lossy(&function.csv())),
-                _ => print(&terminal::render(&of_function(&function))),
+            if common.json {
+                return print_json(&function);
+            }
+            // Beside a table for programs, and not in it.
+            doubts(std::slice::from_ref(&function));
+            return match self.csv {
+                true => print(&String::from_utf8_lossy(&function.csv())),
+                false => print(&terminal::render(&of_function(&function))),
             };
         }
         let functions = functions_of(folders());
         if common.json {
             return print_json(&Said { averages: &averages, structure: &functions });
         }
+        doubts(&functions);
         let table = table(&averages);
         if self.csv {
             let mut bytes = vec![];
@@ -65,6 +70,13 @@ impl AverageVerb {
             return Ok(());
         }
         print(&format!("\n{}", terminal::render(&of_structure(&functions))))
+    }
+}
+
+/// Says what is doubtful of functions.
+fn doubts(functions: &[Function]) {
+    for Function { name, doubt, .. } in functions {
+        doubt.iter().for_each(|doubt| warn(format_args!("{name}: {doubt}")));
     }
 }
 

@@ -17,10 +17,13 @@ const NAMES: [&str; 3] = ["stress_xx(x,y)", "stress_xy(x,y)", "stress_yy(x,y)"];
 /// The components cell by cell.
 fn stress(setting: Setting, discs: &Particles, forces: &PairForces) -> [Vec<f64>; 3] {
     let observables = NAMES.map(|name| observable(name).unwrap());
-    let mut look = Look::new(setting, discs.grains(), observables.into_iter());
+    let mut look = Look::new(setting, discs, observables.into_iter());
     assert!(look.at(|states| states.take_up(discs)));
     look.meet(discs, forces);
-    observables.map(|it| look.values(it))
+    observables.map(|it| {
+        let [values, _] = look.values(it);
+        values
+    })
 }
 
 /// A force of no law in particular, which the velocities have part in: it is neither along the line of the centres nor even.

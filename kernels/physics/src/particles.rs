@@ -181,6 +181,20 @@ impl States {
         }
     }
 
+    /// Moves each grain by whole sides (length) to where it would be without: by the periods that particles have crossed, which are in
+    /// the scene's order, or in that of `left` where some are lost.
+    pub fn unfold(&mut self, sides: [f64; 2], images: &[[i32; 2]], left: Option<&Particles>) {
+        for (at, image) in images.iter().enumerate() {
+            let number = match left {
+                None => Some(at),
+                Some(left) => left.all().get(at).and_then(|particle| self.number(particle.id)),
+            };
+            if let Some(row) = number.and_then(|number| self.rows.get_mut(number)) {
+                (0..2).for_each(|axis| row[axis] += f64::from(image[axis]) * sides[axis]);
+            }
+        }
+    }
+
     fn number(&self, id: u32) -> Option<usize> {
         let number = match self.numbers.is_empty() {
             true => self.ids.iter().position(|&it| it == id),

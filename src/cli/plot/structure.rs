@@ -1,12 +1,18 @@
 //! The structure that a run has summed up: a chart of each of its files, with the bars, or a map where it is one of places.
 
+use crate::console::warn;
 use crate::report::figure::{Axis, Chart, Figure, Map, Picture, Series, Style};
 use std::path::Path;
 use stripmine_physics::run::{Function, Point, functions_of};
+use stripmine_physics::structure::{Observable, Over, Seen};
 
-/// A figure of each file that is there and has rows.
+/// A figure of each file that is there and has rows; says why there is none of another.
 pub(super) fn figures(run: &Path) -> Vec<Figure> {
-    functions_of(std::iter::once(run)).iter().filter_map(figure).collect()
+    let functions = functions_of(std::iter::once(run));
+    for Function { name, doubt, .. } in functions.iter().filter(|function| function.points.is_empty()) {
+        doubt.iter().for_each(|doubt| warn(format_args!("{name}: {doubt}")));
+    }
+    functions.iter().filter(|function| !function.points.is_empty()).filter_map(figure).collect()
 }
 
 fn axis([label, unit]: [&str; 2]) -> Axis {
@@ -18,17 +24,42 @@ fn figure(function: &Function) -> Option<Figure> {
     let name = observable.file.trim_end_matches(".csv").to_owned();
     let figure = match *observable.over {
         [over] => {
-            let point = |Point { over, mean, bar }: &Point| (over[0], *mean, [mean - bar, mean + bar]);
-            let points: Vec<_> = function.points.iter().map(point).collect();
-            let series = Series::new(observable.name, Style::Joined, 0, points);
+            let series = series(function, observable.name, 0, |point| Some(point.over[0]));
             Chart::of(axis(over), axis(observable.value))
                 .with([series])
+                .figure(name, observable.name.to_owned())
+        }
+        _ if is_of_waves(observable) => {
+            let along = [0, 1].map(|axis| {
+                // The other component is 0.
+                let number = move |point: &Point| Some(point.over[axis]).filter(|number| *number > 0.0);
+                series(function, ["along x", "along y"][axis], axis, number)
+            });
+            Chart::of(Axis::linear("k", Some("1/length")), axis(observable.value))
+                .with(along.into_iter().filter(|series| !series.points.is_empty()))
                 .figure(name, observable.name.to_owned())
         }
         [x, y] => map(function, [axis(x), axis(y)])?.figure(name, observable.name.to_owned()),
         _ => return None,
     };
-    Some(figure.caption(observable.doc))
+    Some(match &function.doubt {
+        Some(doubt) => figure.caption(format!("{} {doubt}.", observable.doc)),
+        None => figure.caption(observable.doc),
+    })
+}
+
+/// Whether a function is over wave vectors.
+fn is_of_waves(observable: &Observable) -> bool {
+    matches!(observable.seen, Seen::Once { over: Over::Waves, .. })
+}
+
+/// The points of a function that have a coordinate, with their bars where these are known.
+fn series(function: &Function, name: &str, hue: usize, of: impl Fn(&Point) -> Option<f64>) -> Series {
+    let point = |point: &Point| {
+        let bar = if point.bar.is_nan() { 0.0 } else { point.bar };
+        Some((of(point)?, point.mean, [point.mean - bar, point.mean + bar]))
+    };
+    Series::new(name, Style::Joined, hue, function.points.iter().filter_map(point).collect::<Vec<_>>())
 }
 
 /// A function of places on a whole grid, which it has row by row; none where some of its cells are missing.

@@ -15,7 +15,9 @@ use stripmine_physics::method::{Clock, Entry, Methods, Prepared, Purpose, prepar
 use stripmine_physics::number::significant;
 use stripmine_physics::quoted;
 use stripmine_physics::ranks::{self, Crew};
-use stripmine_physics::run::{Ending, Existing, Job, Summary, begins, chosen_otherwise, forecast, run};
+use stripmine_physics::run::{
+    Ending, Existing, Job, Summary, Summed, begins, chosen_otherwise, forecast, run,
+};
 use stripmine_physics::scene::Values;
 use stripmine_physics::signals;
 
@@ -207,6 +209,9 @@ fn text(summary: &Summary, folder: &Path) -> String {
     let mut text =
         format!("{done}, time {time}, in {seconds:.2} s{session}\nat the end: {}\n", summary.in_words);
     text.push_str(&summary.averages.to_string());
+    for Summed { name, doubt, .. } in &summary.structure {
+        doubt.iter().for_each(|doubt| text.push_str(&format!("{name}: {doubt}\n")));
+    }
     for choice in &summary.choices {
         text.push_str(&format!("chosen: {choice}\n"));
     }

@@ -144,9 +144,11 @@ impl RunVerb {
         if common.json {
             return print_json(&ensemble);
         }
-        let Ensemble { averages, seconds, .. } = &ensemble;
+        let Ensemble { averages, seconds, structure, .. } = &ensemble;
+        let doubt = |it: &Function| Some(format!("{}: {}\n", it.name, it.doubt.as_ref()?));
+        let doubts: String = structure.iter().filter_map(doubt).collect();
         print(&format!(
-            "{count} runs with seeds of their own in {seconds:.2} s\n{averages}results in {}\n",
+            "{count} runs with seeds of their own in {seconds:.2} s\n{averages}{doubts}results in {}\n",
             quoted::path(&folder)
         ))
     }

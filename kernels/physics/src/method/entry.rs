@@ -348,6 +348,11 @@ pub trait Startable: Send + Sync {
         None
     }
 
+    /// Whether a run counts the periods that each disc crosses ([`Simulation::images`]) where the scene asks for displacements.
+    fn follows_crossings(&self) -> bool {
+        false
+    }
+
     /// Begins.
     ///
     /// # Errors

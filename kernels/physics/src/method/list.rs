@@ -83,6 +83,14 @@ fn not_there(prepared: &Prepared) -> Option<String> {
         Seen::Once { asks: Asks::Forces, .. } if prepared.model.pair_forces().is_none() => {
             Some("needs forces between discs that act at any moment: this method has none")
         }
+        _ if observable.follows_motion()
+            && prepared.domain.periodic() != [false; 2]
+            && !prepared.model.follows_crossings() =>
+        {
+            Some(
+                "needs discs that are followed across periodic sides: this method does not count what they cross",
+            )
+        }
         _ => None,
     };
     let asked = prepared.output.structure.iter().filter_map(|name| observable(name));

@@ -28,6 +28,9 @@ pub struct Function {
     pub points: Vec<Point>,
     /// The numbers that stand for it.
     pub headlines: Vec<Number>,
+    /// What makes the values doubtful, or why no number stands for them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub doubt: Option<String>,
     /// What it is.
     #[serde(skip)]
     pub observable: &'static Observable,
@@ -73,7 +76,11 @@ pub fn functions_of<'f>(folders: impl Iterator<Item = &'f Path>) -> Vec<Function
     let of = |observable: &'static Observable| {
         let files: Option<Vec<Vec<Point>>> =
             folders.iter().map(|folder| points(&folder.join(observable.file), observable)).collect();
-        let points = joined(&files?);
+        let mut points = joined(&files?);
+        if observable.is_density_of_places() {
+            // Where no disc was ever seen, nothing tells how seldom one is there.
+            points.iter_mut().filter(|point| point.mean == 0.0).for_each(|point| point.bar = f64::NAN);
+        }
         let headline = |name: &'static str, unit: &'static str| {
             let of = |summary: &Value| number(summary, observable.name, name);
             let runs: Option<Vec<Point>> = summaries.iter().map(of).collect();
@@ -83,12 +90,14 @@ pub fn functions_of<'f>(folders: impl Iterator<Item = &'f Path>) -> Vec<Function
         let headlines = observable.headlines.iter();
         let headlines = headlines.filter_map(|it| headline(it.name, it.unit)).collect();
         let Observable { name, file, .. } = *observable;
-        (!points.is_empty()).then_some(Function {
+        let doubt = doubt(&summaries, name);
+        (!points.is_empty() || doubt.is_some()).then_some(Function {
             name,
             file,
             runs: folders.len(),
             points,
             headlines,
+            doubt,
             observable,
         })
     };
@@ -163,6 +172,18 @@ fn number(summary: &Value, observable: &str, name: &str) -> Option<Point> {
     let find = |list: &Value, name: &str| list.as_array()?.iter().find(|it| it["name"] == name).cloned();
     let found = find(&find(&summary["structure"], observable)?["headlines"], name)?;
     Some(Point { over: vec![], mean: found["mean"].as_f64()?, bar: found["bar"].as_f64()? })
+}
+
+/// What is doubtful of an observable by one run or several.
+fn doubt(summaries: &[Value], observable: &str) -> Option<String> {
+    let of = |summary: &Value| {
+        let all = summary["structure"].as_array()?;
+        Some(all.iter().find(|it| it["name"] == observable)?["doubt"].as_str()?.to_owned())
+    };
+    let doubts: Vec<String> = summaries.iter().filter_map(of).collect();
+    let first = doubts.first()?;
+    let (some, all) = (doubts.len(), summaries.len());
+    Some(if all == 1 { first.clone() } else { format!("in {some} of {all} runs: {first}") })
 }
 
 /// The points that are in all runs.

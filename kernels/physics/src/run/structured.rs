@@ -9,15 +9,15 @@
 
 use super::RunError;
 use super::folder::RunFolder;
-use super::functions::{Point, write_csv};
-use crate::averages::of_independent;
+use super::functions::{Number, Point, write_csv};
+use crate::averages::student;
 use crate::io::checkpoint::{Checkpoint, Column};
 use crate::method::{Every, Prepared, Simulation, Snapshot};
 use crate::particles::States;
 use crate::scene::Output;
 use crate::structure::{
-    Asks, Blocks, Headline, Look, Motion, OBSERVABLES, Observable, PairForces, Seen, Setting, strides,
-    widening,
+    Asks, Block, Blocks, Headline, Look, Motion, OBSERVABLES, Observable, PairForces, Seen, Setting, Verdict,
+    Whole, strides, widening,
 };
 use serde::Serialize;
 
@@ -37,6 +37,9 @@ pub(super) struct Structured {
     forces: Option<PairForces>,
     /// The discs at earlier rows, where an observable asks for them, and as they stand.
     motion: Option<(Motion, States)>,
+    /// Whether discs are followed across periodic sides, and how many particles there are at the start.
+    follows: bool,
+    particles: usize,
 }
 
 /// The sums of an observable.
@@ -62,30 +65,16 @@ pub struct Summed {
     /// Looks of each of them.
     pub looks_of_a_block: u64,
     /// What stands for the whole; nothing where there are too few blocks.
-    pub headlines: Vec<Headlined>,
-    /// What makes the values doubtful.
+    pub headlines: Vec<Number>,
+    /// What makes the values doubtful, or why no number stands for them.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub doubt: Option<&'static str>,
-}
-
-/// A number that stands for a whole function.
-#[derive(Clone, Debug, Serialize)]
-pub struct Headlined {
-    /// Its name.
-    pub name: &'static str,
-    /// Its unit, empty for pure numbers.
-    pub unit: &'static str,
-    /// The mean over blocks.
-    pub mean: f64,
-    /// Half the width of its interval of 95 %.
-    pub bar: f64,
+    pub doubt: Option<String>,
 }
 
 /// The share of a run's work that looking takes at most, where the scene does not say.
 const SHARE: f64 = 0.05;
-/// Where the ways of discs cannot be known.
-const DOUBT: &str =
-    "a disc went farther than a quarter of a periodic side between two rows: make them closer";
+/// Blocks that bars take at least, in the second half of a run.
+const FEWEST_BLOCKS: usize = 2;
 
 /// The observables that a scene asks for, in the order of their list.
 pub(super) fn chosen(output: &Output) -> impl Iterator<Item = &'static Observable> + use<'_> {
@@ -113,7 +102,7 @@ impl Structured {
         let stands = asked.iter().any(|observable| matches!(observable.seen, Seen::Once { .. }));
         let moves = asked.iter().any(|observable| matches!(observable.seen, Seen::Twice { .. }));
         let sum = |observable| Sum { observable, looks: 0, blocks: Blocks::new(width(observable, &setting)) };
-        let look = stands.then(|| Look::new(setting, grains, asked.iter().copied()));
+        let look = stands.then(|| Look::new(setting, prepared.particles(), asked.iter().copied()));
         let meets = look.as_ref().is_some_and(|look| look.asks(Asks::Forces));
         Structured {
             setting,
@@ -124,6 +113,8 @@ impl Structured {
             look,
             forces: prepared.model.pair_forces().filter(|_| meets),
             motion: moves.then(|| (Motion::new(grains.len()), States::of(grains))),
+            follows: prepared.output.follows_motion() && prepared.domain.periodic().contains(&true),
+            particles: prepared.particles().len(),
         }
     }
 
@@ -169,9 +160,9 @@ impl Structured {
         if let Some((motion, _)) = structured.motion.as_mut().filter(|_| motion_is_known) {
             let values = column(MOTION).ok_or_else(|| wrong(MOTION))?;
             let looks = there.count(&key(MOTION))?;
-            let [first, last, farthest] = MOTIONS.map(|name| there.sum(&key(name)));
+            let [first, last] = MOTIONS.map(|name| there.sum(&key(name)));
             let discs = prepared.particles().grain_count();
-            let restored = Motion::restored(discs, looks, [first?, last?, farthest?], values);
+            let restored = Motion::restored(discs, looks, [first?, last?], values);
             *motion = restored.ok_or_else(|| wrong(MOTION))?;
         }
         Ok(structured)
@@ -197,14 +188,20 @@ impl Structured {
         let Some((motion, states)) = motion else { return };
         states.forget();
         simulation.states(states);
+        if self.follows {
+            let images = simulation.images();
+            // Lost particles have no images.
+            let left = (images.len() < self.particles).then(|| simulation.particles());
+            states.unfold(setting.domain.lengths(), &images, left.as_ref());
+        }
         let of = |sum: &Sum| match sum.observable.seen {
-            Seen::Twice { of } => Some(of),
+            Seen::Twice { of, .. } => Some(of),
             Seen::Once { .. } => None,
         };
-        motion.look(&setting.domain, states.rows(), simulation.clock().time, |look, place, means| {
+        motion.look(states.rows(), simulation.clock().time, |look, place, means| {
             for sum in &mut *sums {
                 if let Some(of) = of(sum) {
-                    sum.blocks.add(look, place, of(means));
+                    sum.blocks.add(look, place, of(means), 1.0);
                 }
             }
         });
@@ -229,9 +226,12 @@ impl Structured {
         }
         for sum in &mut self.sums {
             if let Seen::Once { .. } = sum.observable.seen {
-                let values = look.values(sum.observable).into_iter().enumerate();
-                let seen = values.filter(|(_, value)| !value.is_nan());
-                seen.for_each(|(place, value)| sum.blocks.add(sum.looks, place, value));
+                let [values, weights] = look.values(sum.observable);
+                for (place, (value, weight)) in values.into_iter().zip(weights).enumerate() {
+                    if !value.is_nan() {
+                        sum.blocks.add(sum.looks, place, value, weight);
+                    }
+                }
                 sum.looks += 1;
             }
         }
@@ -252,7 +252,7 @@ impl Structured {
         }
         if let Some((motion, _)) = &self.motion {
             snapshot.add_count(&key(MOTION), motion.looks());
-            let numbers = MOTIONS.into_iter().zip(motion.numbers());
+            let numbers = MOTIONS.into_iter().zip(motion.ends());
             numbers.for_each(|(name, number)| snapshot.add_sum(&key(name), number));
             snapshot.add_column(&key(MOTION), Column::F64(motion.column()));
         }
@@ -271,38 +271,50 @@ impl Structured {
 
     /// What `summary.json` says of each.
     pub(super) fn summed(&self) -> Vec<Summed> {
-        let of = |sum: &Sum| {
-            let function = self.function(sum);
-            let Function { over, blocks, .. } = &function;
-            let over: Vec<f64> = over.iter().map(|place| place[0]).collect();
-            let mean: Vec<f64> = function.means.iter().map(|[mean, _]| *mean).collect();
-            let headlines: &[Headline] = if over.len() > 1 { sum.observable.headlines } else { &[] };
-            let never = headlines.iter().find_map(|headline| (headline.never)(&over, &mean));
-            let headline = |headline: &Headline| {
-                let of = |block: &Vec<f64>| (headline.of)(&over, &mean, block);
-                let [mean, bar] = function.mean(of, over.len() - 1)?;
-                Some(Headlined { name: headline.name, unit: headline.unit, mean, bar })
-            };
-            let is_far = matches!(sum.observable.seen, Seen::Twice { .. })
-                && self.motion.as_ref().is_some_and(|(motion, _)| !motion.is_certain());
-            Summed {
-                name: sum.observable.name,
-                file: sum.observable.file,
-                looks: sum.looks,
-                blocks: blocks.len(),
-                looks_of_a_block: sum.blocks.length(),
-                headlines: match never {
-                    Some(_) => vec![],
-                    None => headlines.iter().filter_map(headline).collect(),
-                },
-                every: self.strides[match sum.observable.seen {
-                    Seen::Once { .. } => SNAPSHOTS,
-                    Seen::Twice { .. } => ROWS,
-                }],
-                doubt: is_far.then_some(DOUBT).or(never),
-            }
+        self.sums.iter().map(|sum| self.summed_of(sum)).collect()
+    }
+
+    fn summed_of(&self, sum: &Sum) -> Summed {
+        let Observable { name, file, headlines, judged, seen, .. } = *sum.observable;
+        let function = self.function(sum);
+        let over: Vec<f64> = function.over.iter().map(|place| length(place)).collect();
+        let every = self.strides[match seen {
+            Seen::Once { .. } => SNAPSHOTS,
+            Seen::Twice { .. } => ROWS,
+        }];
+        let whole = Whole {
+            setting: &self.setting,
+            over: &over,
+            means: &function.means,
+            elapsed: self.motion.as_ref().map_or(0.0, |(motion, _)| motion.ends()[1]),
+            mean: &|of, place| function.mean(|block| of(&block.means), place),
         };
-        self.sums.iter().map(of).collect()
+        let verdict = match function.missing(sum.looks, every) {
+            Some(why) => Verdict::None(why),
+            None => judged(&whole),
+        };
+        let headline = |headline: &Headline| {
+            let of = |block: &Block| (headline.of)(&whole, &block.means);
+            let [mean, bar] = function.mean(of, over.len() - 1)?;
+            let bar = bar + ((headline.bias)(&whole) * mean).abs();
+            Some(Number { name: headline.name, unit: headline.unit, mean, bar })
+                .filter(|it| !it.mean.is_nan())
+        };
+        let (headlines, doubt) = match verdict {
+            Verdict::Sound => (headlines, None),
+            Verdict::Doubt(why) => (headlines, Some(why)),
+            Verdict::None(why) => (&[][..], Some(why)),
+        };
+        Summed {
+            name,
+            file,
+            looks: sum.looks,
+            blocks: function.blocks.len(),
+            looks_of_a_block: sum.blocks.length(),
+            headlines: headlines.iter().filter_map(headline).collect(),
+            every,
+            doubt,
+        }
     }
 
     /// The function that an observable is, as far as it is known.
@@ -320,7 +332,12 @@ impl Structured {
         };
         let blocks = sum.blocks.second_half(sum.looks, last);
         let mut function = Function { over, means: vec![], blocks, lags, length };
-        let means = (0..function.over.len()).map_while(|place| function.mean(|block| block[place], place));
+        let is_density = sum.observable.is_density_of_places();
+        let means = (0..function.over.len()).map_while(|place| {
+            let [mean, bar] = function.mean_at(place)?;
+            // Where no disc was ever seen, nothing tells how seldom one is there.
+            Some([mean, if is_density && mean == 0.0 { f64::NAN } else { bar }])
+        });
         function.means = means.collect();
         function.over.truncate(function.means.len());
         function
@@ -332,22 +349,73 @@ struct Function {
     over: Vec<Vec<f64>>,
     /// Not a number where fewer than two blocks have a value.
     means: Vec<[f64; 2]>,
-    blocks: Vec<Vec<f64>>,
+    blocks: Vec<Block>,
     /// The lags (looks) where it is over lags, and the looks of a block.
     lags: Vec<u64>,
     length: u64,
 }
 
 impl Function {
+    /// Its mean over blocks at a place, each with its weight, and the bar; none where there are too few blocks.
+    fn mean_at(&self, place: usize) -> Option<[f64; 2]> {
+        self.weighted(|block| [block.means[place], block.weights[place]], place)
+    }
+
     /// The mean over blocks of a number that is of lags up to that at `place`, with its bar; none where there are too few blocks.
-    fn mean(&self, of: impl Fn(&Vec<f64>) -> f64, place: usize) -> Option<[f64; 2]> {
-        if self.blocks.len() < 2 {
+    fn mean(&self, of: impl Fn(&Block) -> f64, place: usize) -> Option<[f64; 2]> {
+        self.weighted(|block| [of(block), 1.0], place)
+    }
+
+    fn weighted(&self, of: impl Fn(&Block) -> [f64; 2], place: usize) -> Option<[f64; 2]> {
+        if self.blocks.len() < FEWEST_BLOCKS {
             return None;
         }
-        let values: Vec<f64> = self.blocks.iter().map(of).filter(|value| !value.is_nan()).collect();
-        let Some([mean, bar]) = of_independent(&values) else { return Some([f64::NAN; 2]) };
+        let values: Vec<[f64; 2]> = self.blocks.iter().map(of).filter(|[value, _]| !value.is_nan()).collect();
+        let [mean, bar] = mean_of_weighted(&values);
         let wider = self.lags.get(place).map_or(1.0, |&lag| widening(lag, self.length, values.len()));
         Some([mean, wider * bar])
+    }
+
+    /// Why nothing is known of it, with what would be enough.
+    fn missing(&self, looks: u64, every: u64) -> Option<String> {
+        let needed = 2 * (FEWEST_BLOCKS + 1);
+        let rarer = match every {
+            1 => String::new(),
+            every => format!(", or a larger output.structure_share: only every {every}th counts"),
+        };
+        let why = match () {
+            () if self.blocks.len() < FEWEST_BLOCKS => {
+                format!("too few moments were looked at, {looks}: {needed} would do for a first bar{rarer}")
+            }
+            () if self.means.iter().all(|[mean, _]| mean.is_nan()) => {
+                format!("there was nothing to be seen at {looks} moments{rarer}")
+            }
+            () => return None,
+        };
+        Some(why)
+    }
+}
+
+/// The mean of values, each with its weight, and half the width of its interval of 95 % by Student's t: as a ratio of sums. Freedoms are
+/// those of as many values as would have the same weight. Not a number where fewer than two count.
+fn mean_of_weighted(values: &[[f64; 2]]) -> [f64; 2] {
+    let sum = |of: &dyn Fn(f64, f64) -> f64| values.iter().map(|&[x, w]| of(x, w)).sum::<f64>();
+    let (all, squares) = (sum(&|_, w| w), sum(&|_, w| w * w));
+    let (count, alike) = (values.len() as f64, all * all / squares);
+    if values.len() < FEWEST_BLOCKS || all <= 0.0 {
+        return [f64::NAN; 2];
+    }
+    let mean = sum(&|x, w| w * x) / all;
+    let square = sum(&|x, w| (w * (x - mean)).powi(2)) / (all * all) * count / (count - 1.0);
+    let freedoms = (alike - 1.0).round().max(1.0) as usize;
+    [mean, student(0.95, freedoms) * square.sqrt()]
+}
+
+/// Of one coordinate itself, of two the distance from the origin.
+fn length(place: &[f64]) -> f64 {
+    match *place {
+        [along] => along,
+        _ => place.iter().map(|along| along * along).sum::<f64>().sqrt(),
     }
 }
 
@@ -359,7 +427,7 @@ const SNAPSHOTS: usize = 1;
 const SPACINGS: [&str; 2] = ["rows", "snapshots"];
 const PASSED: [&str; 2] = ["rows passed", "snapshots passed"];
 const MOTION: &str = "motion";
-const MOTIONS: [&str; 3] = ["motion first", "motion last", "motion farthest"];
+const MOTIONS: [&str; 2] = ["motion first", "motion last"];
 
 /// What checkpoints call something of the structure.
 fn key(name: &str) -> String {

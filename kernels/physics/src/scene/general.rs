@@ -146,6 +146,11 @@ pub struct Output {
 }
 
 impl Output {
+    /// Whether displacements are asked for, for which discs are followed across periodic sides.
+    pub fn follows_motion(&self) -> bool {
+        self.structure.iter().filter_map(|name| structure::observable(name)).any(|it| it.follows_motion())
+    }
+
     /// Meets its keys.
     pub fn bind(&mut self, binding: &mut dyn Binding) {
         binding.switch(&TRAJECTORY, &mut self.trajectory);

@@ -1,7 +1,7 @@
 //! Sums by blocks of time: a bounded number of them, however long a run is.
 
 /// Blocks at most; then each two become one.
-const MOST: usize = 32;
+pub(super) const MOST: usize = 32;
 
 /// Sums of the values of a function over looks, by blocks of as many looks.
 #[derive(Clone, Debug, PartialEq)]
@@ -9,7 +9,7 @@ pub struct Blocks {
     width: usize,
     /// Looks of a block.
     length: u64,
-    /// For each block its sums, then how many values are in each of them.
+    /// For each block its sums, then the weights of the values in each of them.
     rows: Vec<Vec<f64>>,
 }
 
@@ -37,8 +37,8 @@ impl Blocks {
         self.rows.concat()
     }
 
-    /// Adds a value of the look of a number, the first of which is 0.
-    pub fn add(&mut self, look: u64, place: usize, value: f64) {
+    /// Adds a value that counts by its weight, of the look of a number, the first of which is 0.
+    pub fn add(&mut self, look: u64, place: usize, value: f64, weight: f64) {
         while look / self.length >= MOST as u64 {
             self.length *= 2;
             let pairs = self.rows.chunks(2);
@@ -52,20 +52,32 @@ impl Blocks {
         if self.rows.len() <= block {
             self.rows.resize(block + 1, vec![0.0; 2 * self.width]);
         }
-        self.rows[block][place] += value;
-        self.rows[block][self.width + place] += 1.0;
+        self.rows[block][place] += weight * value;
+        self.rows[block][self.width + place] += weight;
     }
 
-    /// The means of the whole blocks of the second half of `looks` looks, but for `last` more at the end: what comes before is taken
-    /// for the transient.
-    pub fn second_half(&self, looks: u64, last: usize) -> Vec<Vec<f64>> {
+    /// The means of the whole blocks of the second half of `looks` looks, but for `last` more at the end, each with its weights: what
+    /// comes before is taken for the transient. A mean without weight is not a number.
+    pub fn second_half(&self, looks: u64, last: usize) -> Vec<Block> {
         let whole = ((looks / self.length) as usize).min(self.rows.len()).saturating_sub(last);
-        let mean = |row: &Vec<f64>| -> Vec<f64> {
-            let (sums, counts) = row.split_at(self.width);
-            sums.iter().zip(counts).map(|(sum, count)| sum / count).collect()
+        let mean = |row: &Vec<f64>| {
+            let (sums, weights) = row.split_at(self.width);
+            Block {
+                means: sums.iter().zip(weights).map(|(sum, weight)| sum / weight).collect(),
+                weights: weights.to_vec(),
+            }
         };
         self.rows[whole.div_ceil(2)..whole].iter().map(mean).collect()
     }
+}
+
+/// The values of a function in a block of looks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Block {
+    /// Their means.
+    pub means: Vec<f64>,
+    /// How much is in each.
+    pub weights: Vec<f64>,
 }
 
 #[cfg(test)]
@@ -78,8 +90,8 @@ mod tests {
         for looks in [1_u64, 2, 31, 32, 33, 100, 1000] {
             let mut blocks = Blocks::new(2);
             for look in 0..looks {
-                blocks.add(look, 0, look as f64);
-                blocks.add(look, 1, 1.0);
+                blocks.add(look, 0, look as f64, 1.0);
+                blocks.add(look, 1, 1.0, if look % 2 == 0 { 3.0 } else { 0.5 });
             }
             let half = blocks.second_half(looks, 0);
             let whole = looks / blocks.length();
@@ -87,7 +99,7 @@ mod tests {
             let first = whole.div_ceil(2);
             for (block, at) in half.iter().zip(first..) {
                 let middle = (at as f64 + 0.5) * blocks.length() as f64 - 0.5;
-                assert_eq!(block[..], [middle, 1.0], "{looks}");
+                assert_eq!(block.means[..], [middle, 1.0], "{looks}");
             }
             let again = Blocks::restored(2, blocks.length(), &blocks.column());
             assert_eq!(again.as_ref(), Some(&blocks));

@@ -3,11 +3,13 @@
 use super::cells::Cells;
 use super::discs::Discs;
 use super::forces::{PairForces, Stress};
-use super::pairs::{Distances, Neighbours};
+use super::ideal::chances;
+use super::neighbours::Neighbours;
+use super::pairs::Distances;
 use super::setting::Setting;
 use super::waves::Waves;
 use super::{Asks, Observable, Seen};
-use crate::particles::{Particle, Particles, States};
+use crate::particles::{Particles, States};
 
 /// What is seen of discs as they stand.
 #[derive(Clone, Debug)]
@@ -19,6 +21,8 @@ pub struct Look {
     pub(super) discs: Discs,
     cells: Cells,
     pub(super) distances: Distances,
+    /// The chance of a pair of an ideal gas to be in each bin of distances, where pairs are asked for.
+    pub(super) chances: Vec<f64>,
     pub(super) neighbours: Neighbours,
     pub(super) waves: Waves,
     pub(super) stress: Stress,
@@ -26,16 +30,17 @@ pub struct Look {
 }
 
 impl Look {
-    /// For some observables of the grains of a scene.
+    /// For some observables of the particles of a scene.
     pub fn new<'o>(
         setting: Setting,
-        grains: &[Particle],
+        particles: &Particles,
         observables: impl Iterator<Item = &'o Observable>,
     ) -> Look {
         let asks = |observable: &Observable| match observable.seen {
             Seen::Once { asks, .. } => Some(asks),
             Seen::Twice { .. } => None,
         };
+        let (grains, asked) = (particles.grains(), observables.filter_map(asks).collect::<Vec<Asks>>());
         Look {
             setting,
             sizes: grains.iter().map(|grain| [grain.radius, grain.mass]).collect(),
@@ -46,7 +51,8 @@ impl Look {
             neighbours: Neighbours::default(),
             waves: Waves::new(&setting),
             stress: Stress::default(),
-            asked: observables.filter_map(asks).collect(),
+            chances: if asked.contains(&Asks::Distances) { chances(&setting, particles) } else { vec![] },
+            asked,
         }
     }
 
@@ -89,12 +95,13 @@ impl Look {
         self.stress.sum(&self.setting, particles.all(), forces);
     }
 
-    /// The values of an observable that is seen of one moment.
-    pub fn values(&self, observable: &Observable) -> Vec<f64> {
-        let Seen::Once { over, of, further, .. } = observable.seen else { return vec![] };
-        let mut values = vec![0.0; over.places(&self.setting).len() + further];
-        of(self, &mut values);
-        values
+    /// The values of an observable that is seen of one moment, and by what each of them counts in a mean.
+    pub fn values(&self, observable: &Observable) -> [Vec<f64>; 2] {
+        let Seen::Once { over, of, further, .. } = observable.seen else { return [vec![], vec![]] };
+        let width = over.places(&self.setting).len() + further;
+        let (mut values, mut weights) = (vec![0.0; width], vec![1.0; width]);
+        of(self, &mut values, &mut weights);
+        [values, weights]
     }
 
     /// The states as the columns of those that are there.
@@ -115,7 +122,7 @@ impl Look {
 
 /// ψ6 of each disc, its real and its imaginary part: the mean of exp(6iθ) over the six nearest.
 pub fn hexatic_orders(setting: &Setting, discs: &Particles) -> Vec<[f64; 2]> {
-    let mut look = Look::new(*setting, discs.grains(), std::iter::empty());
+    let mut look = Look::new(*setting, discs, std::iter::empty());
     look.states.take_up(discs);
     look.take_up();
     if look.discs.x.is_empty() {
@@ -128,8 +135,8 @@ pub fn hexatic_orders(setting: &Setting, discs: &Particles) -> Vec<[f64; 2]> {
     look.neighbours.each()
 }
 
-/// What an observable says of some discs.
-pub fn seen(observable: &'static Observable, setting: Setting, discs: &Particles) -> Vec<f64> {
-    let mut look = Look::new(setting, discs.grains(), std::iter::once(observable));
-    if look.at(|states| states.take_up(discs)) { look.values(observable) } else { vec![] }
+/// What an observable says of some discs, and by what each value counts in a mean.
+pub fn seen(observable: &'static Observable, setting: Setting, discs: &Particles) -> [Vec<f64>; 2] {
+    let mut look = Look::new(setting, discs, std::iter::once(observable));
+    if look.at(|states| states.take_up(discs)) { look.values(observable) } else { [vec![], vec![]] }
 }

@@ -1,9 +1,8 @@
-//! How far discs go, and how long they remember their velocity: functions of the time between two looks.
+//! How far discs go, across periodic sides, and how long they remember their velocity: functions of the time between two looks.
 //!
 //! Lags are 0 to 7 looks, then 4 to 7 times each power of two: looks are kept only as long as a lag needs them, so that memory
 //! goes with the logarithm of the length of a run (the order-n algorithm of Frenkel and Smit, section 4.4.2, without coarse-graining).
 
-use crate::domain::Domain;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::{Registers, Task, dispatch_native};
 
@@ -13,41 +12,26 @@ const LAGS: u64 = 8;
 const LANES: usize = 4;
 /// Powers of two.
 const LEVELS: u32 = 16;
-/// More of a periodic side than a disc may go between two looks for its way to be certain.
-const CERTAIN: f64 = 0.25;
 
 /// |r(t) − r(0)|² (length²).
 pub(super) fn square_displacement([x, y, _, _]: [f64; 4]) -> f64 {
     x + y
 }
 
-/// v(0)·v(t)/2 (length²/time²).
+/// v(0)·v(t) (length²/time²).
 pub(super) fn velocity_product([_, _, x, y]: [f64; 4]) -> f64 {
-    0.5 * (x + y)
+    x + y
 }
 
-/// D by the slope of the second half of the mean square displacement: (M(t) − M(t/2))/(4 t/2).
-pub(super) fn by_displacements(lags: &[f64], _: &[f64], block: &[f64]) -> f64 {
-    let last = lags.len() - 1;
-    let middle = lags.partition_point(|&lag| lag < 0.5 * lags[last]).min(last.saturating_sub(1));
-    (block[last] - block[middle]) / (4.0 * (lags[last] - lags[middle]))
+/// The slope between two lags of a function of these.
+pub(super) fn slope(lags: &[f64], values: &[f64], from: usize, to: usize) -> f64 {
+    (values[to] - values[from]) / (lags[to] - lags[from])
 }
 
-/// D by the integral of the autocorrelation of a component, trapezium by trapezium.
-pub(super) fn by_velocities(lags: &[f64], _: &[f64], block: &[f64]) -> f64 {
-    let pairs = lags.windows(2).zip(block.windows(2));
+/// The integral up to a lag, trapezium by trapezium.
+pub(super) fn integral(lags: &[f64], values: &[f64], to: usize) -> f64 {
+    let pairs = lags[..=to].windows(2).zip(values[..=to].windows(2));
     pairs.map(|(lag, value)| 0.5 * (lag[1] - lag[0]) * (value[0] + value[1])).sum()
-}
-
-/// Of what remains of the autocorrelation at the first lag, the least for its integral to be known: by trapeziums it is 1 % off
-/// where it decays exponentially.
-const RESOLVED: f64 = 0.7;
-
-/// Why the integral cannot be known: velocities are forgotten between two rows.
-pub(super) fn unresolved(_: &[f64], mean: &[f64]) -> Option<&'static str> {
-    (mean[1] < RESOLVED * mean[0]).then_some(
-        "rows too far apart: velocities are forgotten from one to the next, and their integral is not known",
-    )
 }
 
 /// By how much bars are wider than those of as many independent blocks of `length` looks, for a lag (looks) that is no longer than a
@@ -62,7 +46,7 @@ pub fn widening(lag: u64, length: u64, blocks: usize) -> f64 {
     ((1.0 + 2.0 * correlation) / (1.0 - 2.0 * correlation / blocks as f64)).sqrt()
 }
 
-/// Discs as they were at some looks: place across periodic sides, and velocity; not a number where a disc is lost.
+/// Discs as they were at some looks: where they would be without periodic sides, and velocity; not a number where a disc is lost.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion {
     /// How many discs there are.
@@ -71,8 +55,6 @@ pub struct Motion {
     looks: u64,
     /// Times of the first and the last of them.
     times: [f64; 2],
-    /// The largest part of a periodic side that a disc went between two looks.
-    farthest: f64,
     /// The looks that are kept, in their order.
     kept: Vec<(u64, Vec<[f64; 4]>)>,
     /// Room for later ones.
@@ -82,16 +64,11 @@ pub struct Motion {
 impl Motion {
     /// Of as many discs.
     pub fn new(discs: usize) -> Motion {
-        Motion { discs, looks: 0, times: [0.0; 2], farthest: 0.0, kept: vec![], spare: vec![] }
+        Motion { discs, looks: 0, times: [0.0; 2], kept: vec![], spare: vec![] }
     }
 
-    /// What was kept of discs, as [`Motion::numbers`] and [`Motion::column`] gave it; none where it does not fit the discs.
-    pub fn restored(
-        discs: usize,
-        looks: u64,
-        [first, last, farthest]: [f64; 3],
-        column: &[f64],
-    ) -> Option<Motion> {
+    /// What was kept of discs, as [`Motion::ends`] and [`Motion::column`] gave it; none where it does not fit the discs.
+    pub fn restored(discs: usize, looks: u64, times: [f64; 2], column: &[f64]) -> Option<Motion> {
         let mut motion = Motion::new(discs);
         let length = 1 + 4 * discs;
         let of = |row: &[f64]| {
@@ -102,15 +79,15 @@ impl Motion {
             return None;
         }
         motion.kept = column.chunks(length).map(of).collect();
-        (motion.looks, motion.times, motion.farthest) = (looks, [first, last], farthest);
+        (motion.looks, motion.times) = (looks, times);
         let ascends = motion.kept.is_sorted_by(|(a, _), (b, _)| a < b);
         let ends = motion.kept.last().map_or(0, |(look, _)| look + 1) == looks;
         (ascends && ends && motion.kept.iter().all(|(look, _)| is_kept(*look, looks))).then_some(motion)
     }
 
-    /// Times of the first and the last look, and the largest part of a side.
-    pub fn numbers(&self) -> [f64; 3] {
-        [self.times[0], self.times[1], self.farthest]
+    /// Times of the first and the last look.
+    pub fn ends(&self) -> [f64; 2] {
+        self.times
     }
 
     /// All that is kept, in one column: each look with its number.
@@ -124,11 +101,6 @@ impl Motion {
     /// Looks so far.
     pub fn looks(&self) -> u64 {
         self.looks
-    }
-
-    /// Whether no disc went so far between two looks that its way is not certain.
-    pub fn is_certain(&self) -> bool {
-        self.farthest <= CERTAIN
     }
 
     /// Every lag, in looks.
@@ -153,37 +125,13 @@ impl Motion {
         looks.min(LAGS + (LAGS - 1) * levels / 2)
     }
 
-    /// Looks at the discs, as `put` gives them in the order of the scene, at a time; gives each pair of looks that a lag is between
-    /// to `meet`: the number of the earlier look, the place among the lags, and the means over the discs of Δx², Δy² and the
-    /// products of velocities along x and y.
-    pub fn look(
-        &mut self,
-        domain: &Domain,
-        discs: &[[f64; 4]],
-        time: f64,
-        mut meet: impl FnMut(u64, usize, [f64; 4]),
-    ) {
+    /// Looks at the discs at a time: in the order of the scene, each where it would be without periodic sides. Gives each pair of looks that
+    /// a lag is between to `meet`: the number of the earlier look, the place among the lags, and the means over the discs of Δx², Δy² and
+    /// the products of velocities along x and y.
+    pub fn look(&mut self, discs: &[[f64; 4]], time: f64, mut meet: impl FnMut(u64, usize, [f64; 4])) {
         let mut states = self.spare.pop().unwrap_or_default();
         states.clear();
         states.extend_from_slice(discs);
-        if let Some((_, last)) = self.kept.last() {
-            let sides = [0, 1].map(|axis| match domain.is_periodic(axis) {
-                true => domain.length(axis),
-                false => f64::INFINITY,
-            });
-            let mut farthest = [0.0_f64; 2];
-            for (state, before) in states.iter_mut().zip(last) {
-                for axis in 0..2 {
-                    let (side, mut way) = (sides[axis], state[axis] - before[axis]);
-                    if way.abs() > 0.5 * side {
-                        way -= (way / side).round() * side;
-                    }
-                    state[axis] = before[axis] + way;
-                    farthest[axis] = farthest[axis].max(way.abs() / side);
-                }
-            }
-            self.farthest = self.farthest.max(farthest[0]).max(farthest[1]);
-        }
         let look = self.looks;
         self.kept.push((look, states));
         self.looks += 1;

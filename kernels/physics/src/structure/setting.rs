@@ -15,6 +15,10 @@ pub struct Setting {
     pub diameter: f64,
     /// The largest radius at the start (length).
     pub largest_radius: f64,
+    /// The smallest radius at the start (length).
+    pub smallest_radius: f64,
+    /// How many discs there are at the start.
+    pub discs: usize,
     /// How far pairs are looked at (length).
     pub reach: f64,
 }
@@ -30,10 +34,11 @@ impl Setting {
         });
         let reach = reaches.into_iter().fold(REACH * diameter, f64::min).max(0.0);
         let largest_radius = discs.iter().map(|disc| disc.radius).fold(0.0, f64::max);
-        Setting { domain, diameter, largest_radius, reach }
+        let smallest_radius = discs.iter().map(|disc| disc.radius).fold(f64::INFINITY, f64::min);
+        Setting { domain, diameter, largest_radius, smallest_radius, discs: discs.len(), reach }
     }
 
-    /// The sides of the rectangle that centres of discs may be in (length).
+    /// The sides of the rectangle that centres of discs of the mean size may be in, were there no wall discs (length).
     pub fn room(&self) -> [f64; 2] {
         [0, 1].map(|axis| match self.domain.is_periodic(axis) {
             true => self.domain.length(axis),

@@ -16,12 +16,14 @@ pub(super) fn speeds(_: &Setting) -> Vec<f64> {
 }
 
 /// The density of the components of v/√(kT/m), and their kurtosis, which is 3 by Maxwell.
-pub(super) fn velocities(discs: &Discs, values: &mut [f64]) {
+pub(super) fn velocities(discs: &Discs, values: &mut [f64], weights: &mut [f64]) {
     let (width, count) = VELOCITIES;
     let components = 2.0 * discs.x.len() as f64;
     let moving = || discs.vx.iter().zip(&discs.vy).zip(&discs.mass);
     let temperature = moving().map(|((x, y), mass)| mass * (x * x + y * y)).sum::<f64>() / components;
     if temperature <= 0.0 {
+        // Of discs at rest there is none.
+        weights.fill(0.0);
         return;
     }
     let mut counts = [0_u32; VELOCITIES.1];
@@ -65,18 +67,34 @@ pub(super) fn density<const AXIS: usize>(domain: &Domain, discs: &Discs, values:
     values.iter_mut().zip(sums::<AXIS>(domain, discs)).for_each(|(value, [discs, ..])| *value = discs * one);
 }
 
-/// The velocity across the axis (length/time): Σmv/Σm; not a number where there is no disc.
-pub(super) fn flow<const AXIS: usize>(domain: &Domain, discs: &Discs, values: &mut [f64]) {
-    let of = |[_, mass, x, y, _]: [f64; 5]| if AXIS == 0 { y / mass } else { x / mass };
-    values.iter_mut().zip(sums::<AXIS>(domain, discs)).for_each(|(value, sums)| *value = of(sums));
+/// The velocity across the axis (length/time): Σmv/Σm, which counts by the mass in the slice; 0 where there is no disc.
+pub(super) fn flow<const AXIS: usize>(
+    domain: &Domain,
+    discs: &Discs,
+    values: &mut [f64],
+    weights: &mut [f64],
+) {
+    let slices = values.iter_mut().zip(weights).zip(sums::<AXIS>(domain, discs));
+    for ((value, weight), [_, mass, x, y, _]) in slices {
+        let momentum = if AXIS == 0 { y } else { x };
+        (*value, *weight) = if mass > 0.0 { (momentum / mass, mass) } else { (0.0, 0.0) };
+    }
 }
 
-/// kT of both components beside the flow of the slice, which takes one disc's part away: Σm|v − u|²/(2(n − 1)); not a number where
-/// there are fewer than two discs.
-pub(super) fn temperature<const AXIS: usize>(domain: &Domain, discs: &Discs, values: &mut [f64]) {
-    let of = |[discs, mass, x, y, square]: [f64; 5]| match discs > 1.0 {
-        true => (square - (x * x + y * y) / mass) / (2.0 * (discs - 1.0)),
-        false => f64::NAN,
-    };
-    values.iter_mut().zip(sums::<AXIS>(domain, discs)).for_each(|(value, sums)| *value = of(sums));
+/// kT of both components beside the flow of the slice, which takes one disc's part away: Σm|v − u|²/(2(n − 1)), which counts by the
+/// degrees of freedom n − 1; 0 where there are fewer than two discs.
+pub(super) fn temperature<const AXIS: usize>(
+    domain: &Domain,
+    discs: &Discs,
+    values: &mut [f64],
+    weights: &mut [f64],
+) {
+    let slices = values.iter_mut().zip(weights).zip(sums::<AXIS>(domain, discs));
+    for ((value, weight), [discs, mass, x, y, square]) in slices {
+        let freedoms = (discs - 1.0).max(0.0);
+        (*value, *weight) = match freedoms > 0.0 {
+            true => ((square - (x * x + y * y) / mass) / (2.0 * freedoms), freedoms),
+            false => (0.0, 0.0),
+        };
+    }
 }

@@ -8,8 +8,9 @@ use std::f64::consts::TAU;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::{Registers, Task, dispatch_native};
 
-/// Waves along an axis at most, and the largest wave number times the diameter.
-const WAVES: (usize, f64) = (100, 25.0);
+/// Waves along an axis, the longest ones first, then others up to the largest wave number times the diameter: how many of each.
+const WAVES: [u32; 2] = [128, 128];
+const LARGEST: f64 = 25.0;
 /// Discs whose waves are summed up together.
 const AT_A_TIME: usize = 512;
 /// Discs at once, each with sums of its own.
@@ -18,19 +19,17 @@ const LANES: usize = 8;
 /// A complex number of each of some discs.
 type Turns = [[f64; LANES]; 2];
 
-/// For each wave its periods along both sides, the nearest to the same wave number; along all sides that are periodic.
-fn periods(setting: &Setting) -> Vec<[u32; 2]> {
-    let (count, largest) = WAVES;
-    let of = |wave: usize| {
-        let number = largest / setting.diameter * wave as f64 / count as f64;
-        [0, 1].map(|axis| match setting.domain.is_periodic(axis) {
-            true => ((number * setting.domain.length(axis) / TAU).round() as u32).max(1),
-            false => 0,
-        })
-    };
-    let mut periods: Vec<[u32; 2]> = (1..=count).map(of).collect();
-    periods.dedup();
-    periods
+/// The periods along a side of each of its waves: all of them up to the largest wave number where they are not too many, else the
+/// longest and, evenly between these and the shortest, as many others.
+fn periods(setting: &Setting, axis: usize) -> Vec<u32> {
+    let [longest, others] = WAVES;
+    let most = (LARGEST / setting.diameter * setting.domain.length(axis) / TAU) as u32;
+    if most <= longest + others {
+        return (1..=most.max(1)).collect();
+    }
+    let between =
+        |other: u32| longest + (u64::from(most - longest) * u64::from(other) / u64::from(others)) as u32;
+    (1..=longest).chain((1..=others).map(between)).collect()
 }
 
 /// The periodic axes.
@@ -41,19 +40,29 @@ fn axes(setting: &Setting) -> impl Iterator<Item = usize> {
 
 /// How many sums a disc is part of.
 pub(super) fn sums_of_a_disc(setting: &Setting) -> usize {
-    periods(setting).len() * axes(setting).count()
+    axes(setting).map(|axis| periods(setting, axis).len()).sum()
 }
 
-/// The wave number of each wave (1/length): the mean along both axes.
-pub(super) fn numbers(setting: &Setting) -> Vec<f64> {
-    let count = axes(setting).count() as f64;
-    let along =
-        |periods: &[u32; 2], axis: usize| TAU * f64::from(periods[axis]) / setting.domain.length(axis);
-    let of = |wave: [u32; 2]| axes(setting).map(|axis| along(&wave, axis)).sum::<f64>() / count;
-    periods(setting).into_iter().map(of).collect()
+/// Bytes at most of the sums of waves along an axis.
+pub(super) fn bytes_of_waves(discs: usize) -> u64 {
+    let waves = WAVES.iter().sum::<u32>() as usize;
+    (discs.div_ceil(AT_A_TIME) * waves * size_of::<Turns>()) as u64
 }
 
-/// S(k) = |Σ exp(ikr)|²/N, the mean along both axes.
+/// The wave vector of each wave (1/length): those along x, then those along y.
+pub(super) fn vectors(setting: &Setting) -> Vec<[f64; 2]> {
+    let along = |axis: usize| {
+        let of = move |periods: u32| {
+            let mut vector = [0.0; 2];
+            vector[axis] = TAU * f64::from(periods) / setting.domain.length(axis);
+            vector
+        };
+        periods(setting, axis).into_iter().map(of)
+    };
+    axes(setting).flat_map(along).collect()
+}
+
+/// S(k) = |Σ exp(ikr)|²/N of each wave.
 pub(super) fn factor(waves: &Waves, values: &mut [f64]) {
     values.copy_from_slice(&waves.factor);
 }
@@ -79,9 +88,8 @@ struct Along {
 impl Waves {
     /// Those of a box.
     pub(super) fn new(setting: &Setting) -> Waves {
-        let periods = periods(setting);
         let of = |axis: usize| {
-            let ends = periods.iter().map(|wave| wave[axis]);
+            let ends = periods(setting, axis).into_iter();
             let steps: Vec<u32> =
                 ends.scan(0, |last, now| Some(now - std::mem::replace(last, now))).collect();
             let mut different = steps.clone();
@@ -90,14 +98,18 @@ impl Waves {
             let steps = steps.iter().map(|step| different.partition_point(|it| it < step)).collect();
             Along { axis, different, steps }
         };
-        Waves { along: axes(setting).map(of).collect(), factor: vec![0.0; periods.len()], parts: vec![] }
+        Waves {
+            along: axes(setting).map(of).collect(),
+            factor: vec![0.0; sums_of_a_disc(setting)],
+            parts: vec![],
+        }
     }
 
     /// Sums up the discs.
     pub(super) fn sum(&mut self, setting: &Setting, discs: &Discs) {
         let Waves { along, factor, parts } = self;
-        factor.fill(0.0);
         let count = discs.x.len();
+        let mut values = factor.iter_mut();
         parts.resize(count.div_ceil(AT_A_TIME), vec![]);
         for Along { axis, different, steps } in &*along {
             let by_length = TAU / setting.domain.length(*axis);
@@ -109,11 +121,11 @@ impl Waves {
                 let summing = Summing { places, origin, by_length, different, steps, sums };
                 dispatch_native(InstructionSet::best(), summing).unwrap_or_default();
             });
-            for (wave, value) in factor.iter_mut().enumerate() {
+            for (wave, value) in values.by_ref().take(steps.len()).enumerate() {
                 let part = |sums: &Vec<Turns>| sums[wave].map(|lanes| lanes.iter().sum::<f64>());
                 // Added in the order of the discs, however many threads.
                 let [x, y] = parts.iter().map(part).fold([0.0; 2], |[x, y], [a, b]| [x + a, y + b]);
-                *value += (x * x + y * y) / (count * along.len()) as f64;
+                *value = (x * x + y * y) / count as f64;
             }
         }
     }

@@ -1,34 +1,41 @@
 //! What looking takes: how often it is done for its part of a run's work, and its memory.
 
-use super::waves::sums_of_a_disc;
+use super::neighbours::candidates as neighbours_looked_at;
+use super::waves::{bytes_of_waves, sums_of_a_disc};
 use super::{Asks, Motion, Observable, Seen, Setting};
 use crate::particles::{Particle, States};
 use std::f64::consts::PI;
 
-/// Nanoseconds of a disc: to take it up, in a pair within reach, with its neighbours, in a density wave, in what it is alone, with the
-/// forces on it; in a row.
+/// Nanoseconds of a disc: to take it up, in a pair within reach, with its neighbours and for each disc that might be one, in a density
+/// wave, in what it is alone, with the forces on it; in a row, and to be followed across periodic sides. Then of each value of a function.
 /// They were measured once; nothing is measured in a run, so that every machine looks at the same moments.
 const TAKEN_UP: f64 = 60.0;
 const PAIR: f64 = 8.0;
-const NEIGHBOURS: f64 = 260.0;
+const NEIGHBOURS: f64 = 100.0;
+const CANDIDATE: f64 = 16.0;
 const WAVE: f64 = 0.5;
 const ALONE: f64 = 15.0;
 const FORCES: f64 = 250.0;
 const ROW: f64 = 55.0;
+const FOLLOWED: f64 = 20.0;
+const VALUE: f64 = 8.0;
 
 /// Nanoseconds that looks at a row and at a snapshot take a disc.
 fn nanoseconds(observables: &[&Observable], setting: &Setting, discs: usize) -> [f64; 2] {
     let [mut row, mut snapshot]: [f64; 2] = [0.0; 2];
     let (mut found, [x, y]) = (vec![], setting.room());
+    let density = discs as f64 / (x * y);
     for observable in observables {
-        let asks = match observable.seen {
-            Seen::Once { asks, .. } => asks,
-            Seen::Twice { .. } => {
-                row = ROW;
+        let (over, asks) = match observable.seen {
+            Seen::Once { over, asks, .. } => (over, asks),
+            Seen::Twice { follows, .. } => {
+                row = row.max(ROW) + if follows { FOLLOWED } else { 0.0 };
                 continue;
             }
         };
-        snapshot = snapshot.max(TAKEN_UP);
+        // Functions of few discs are more work than the discs.
+        let values = VALUE * over.places(setting).len() as f64 / discs as f64;
+        snapshot = snapshot.max(TAKEN_UP) + values;
         if asks != Asks::Discs && found.contains(&asks) {
             continue;
         }
@@ -36,8 +43,8 @@ fn nanoseconds(observables: &[&Observable], setting: &Setting, discs: usize) -> 
         snapshot += match asks {
             Asks::Discs => ALONE,
             Asks::Forces => FORCES,
-            Asks::Distances => PAIR * 0.5 * PI * setting.reach * setting.reach * discs as f64 / (x * y),
-            Asks::Neighbours => NEIGHBOURS,
+            Asks::Distances => PAIR * 0.5 * PI * setting.reach * setting.reach * density,
+            Asks::Neighbours => NEIGHBOURS + CANDIDATE * neighbours_looked_at(setting, discs),
             Asks::Waves => WAVE * sums_of_a_disc(setting) as f64,
         };
     }
@@ -70,7 +77,10 @@ pub fn bytes(observables: &[&Observable], discs: usize, rows: Option<u64>) -> u6
     let state = size_of::<[f64; 4]>() as u64 * discs as u64;
     let mut bytes = 0;
     if moves {
-        bytes += States::bytes(discs) as u64 + 2 * state * Motion::most_kept(rows.unwrap_or(u64::MAX));
+        let follows = observables.iter().any(|observable| observable.follows_motion());
+        let images = if follows { size_of::<[i32; 2]>() * discs } else { 0 };
+        bytes +=
+            (States::bytes(discs) + images) as u64 + 2 * state * Motion::most_kept(rows.unwrap_or(u64::MAX));
     }
     if stands {
         // Six columns, three in the order of cells with images, three of cells; sizes.
@@ -80,6 +90,11 @@ pub fn bytes(observables: &[&Observable], discs: usize, rows: Option<u64>) -> u6
         if observables.iter().any(meets) {
             // The particles once more, their places, and the sums of every 512 of them.
             bytes += ((size_of::<Particle>() + 6 * size_of::<f64>()) * discs) as u64;
+        }
+        let waves =
+            |observable: &&Observable| matches!(observable.seen, Seen::Once { asks: Asks::Waves, .. });
+        if observables.iter().any(waves) {
+            bytes += bytes_of_waves(discs);
         }
         bytes += (States::bytes(discs) + (of_a_disc + size_of::<[f64; 2]>()) * discs) as u64;
     }

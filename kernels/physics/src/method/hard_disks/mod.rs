@@ -12,6 +12,7 @@ mod failures;
 mod fall;
 mod fast;
 mod floor;
+mod followed;
 mod idle;
 pub mod keys;
 mod operations;

@@ -3,7 +3,7 @@
 use super::checked::Checked;
 use super::collision_log::COLUMNS;
 use super::reference::grid::Sizes;
-use super::simulation::Running;
+use super::simulation::{Observed, Running};
 use crate::memory::{Foreseen, OfRanks, PROGRAM, available};
 use crate::method::entry::left_out;
 use crate::method::refuse_several_ranks;
@@ -101,9 +101,14 @@ impl Checked {
             // List, time, partner, place, numbers and cells; discs and keys once more while they are sorted.
             None => (64.0 + 9.2 + 4.0 + 16.0 + 8.0 + 8.0 + 80.0) * discs,
         };
+        // Each disc as its last event left it, and two counts.
+        let followed = match self.scene.output.follows_motion() {
+            true => (size_of::<Disc>() + 2 * size_of::<f64>()) as f64,
+            false => 0.0,
+        };
         // A disc; the scene's particles, which the simulation shares, once more as they are where a run goes on, and the two frames that
         // are made and written; what is written of them.
-        let disc = size_of::<Disc>() as f64 + 4.0 * size_of::<Particle>() as f64 + 100.0;
+        let disc = size_of::<Disc>() as f64 + 4.0 * size_of::<Particle>() as f64 + 100.0 + followed;
         Foreseen {
             needed: (PROGRAM + disc * discs + of_engine) as u64,
             available: available(),
@@ -150,9 +155,18 @@ impl Startable for Checked {
         650.0 * PI.sqrt() * density * diameter * at_contact * square.sqrt()
     }
 
+    fn follows_crossings(&self) -> bool {
+        true
+    }
+
     fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure> {
         refuse_several_ranks("the events of hard discs are done one after the other, wherever they are")?;
-        Ok(Box::new(Running::new(self, self.scene.collision_log && purpose == Purpose::Run)?))
+        let is_run = purpose == Purpose::Run;
+        let observed = Observed {
+            logs: is_run && self.scene.collision_log,
+            follows: is_run && self.scene.output.follows_motion(),
+        };
+        Ok(Box::new(Running::new(self, observed)?))
     }
 
     fn started_from(&self, particles: Particles) -> Prepared {

@@ -7,6 +7,7 @@ use super::engine::{Engine, EngineError, Occurred, Partner};
 use super::event::Arena;
 use super::failures::{culprit, failure};
 use super::fast::Fast;
+use super::followed::Followed;
 use super::idle::never;
 use super::quantities::{OBSERVABLES, Seen};
 use super::reference;
@@ -48,7 +49,18 @@ pub(super) struct Running {
     places: Vec<usize>,
     /// Rows of collisions, where they are asked for.
     log: Option<Log>,
+    /// The periods that discs cross, where displacements are asked for.
+    followed: Option<Followed>,
     seconds: f64,
+}
+
+/// What of a run is kept beside its motion.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Observed {
+    /// Every collision, until it is taken.
+    pub(super) logs: bool,
+    /// The periods that discs cross.
+    pub(super) follows: bool,
 }
 
 /// How events are found.
@@ -68,8 +80,8 @@ impl Way {
 }
 
 impl Running {
-    /// Discs at their start; `logs` whether every collision is kept until it is taken.
-    pub(super) fn new(checked: &Checked, logs: bool) -> Result<Running, Failure> {
+    /// Discs at their start.
+    pub(super) fn new(checked: &Checked, observed: Observed) -> Result<Running, Failure> {
         let (discs, places) = checked.discs();
         let arena = checked.scene.arena(checked.domain);
         let kinetic = Motion::of(discs.iter(), &arena, 0.0).kinetic();
@@ -79,6 +91,7 @@ impl Running {
             Some(mask) => Way::Reference(mask.clone()),
             None => Way::Fast(checked.scene.instructions()),
         };
+        let followed = observed.follows.then(|| Followed::new(&arena, discs.clone()));
         // The engine takes the discs: a failure makes them again.
         let stopped = |why| {
             let (discs, _) = checked.discs();
@@ -96,7 +109,8 @@ impl Running {
             particles: Arc::clone(&checked.particles),
             places,
             may_meet: false,
-            log: logs.then(Log::default),
+            log: observed.logs.then(Log::default),
+            followed,
             seconds: 0.0,
         })
     }
@@ -111,6 +125,13 @@ impl Running {
         self.clock.time = happened.time;
         self.may_meet = false;
         self.totals.add(happened);
+        if let Some(followed) = &mut self.followed {
+            let mut see = |disc: u32| followed.see(&self.arena, disc, self.engine.disc(disc));
+            see(happened.disc);
+            if let Partner::Disc(other) = happened.with {
+                see(other);
+            }
+        }
         if let Some(log) = &mut self.log {
             let all = self.particles.all();
             let id = |disc: u32| all[self.places[disc as usize]].id;
@@ -295,6 +316,17 @@ impl Simulation for Running {
         }
     }
 
+    fn images(&self) -> Vec<[i32; 2]> {
+        let Some(followed) = self.followed.as_ref().filter(|it| it.follows(&self.arena)) else {
+            return vec![];
+        };
+        let mut images = vec![[0; 2]; self.particles.len()];
+        for (number, &place) in self.places.iter().enumerate() {
+            images[place] = followed.image(&self.arena, number, self.clock.time);
+        }
+        images
+    }
+
     fn observe(&self) -> Vec<f64> {
         values(&OBSERVABLES, &self.seen().0)
     }
@@ -315,6 +347,7 @@ impl Simulation for Running {
         self.totals.keep(&mut kept);
         self.row.keep(&mut kept);
         self.watch.keep(&mut kept);
+        kept.columns.extend(self.followed.iter().flat_map(Followed::columns));
         kept
     }
 
@@ -331,6 +364,9 @@ impl Simulation for Running {
         self.totals = Totals::kept(&snapshot, clock.events)?;
         self.row = Mark::kept(&snapshot, &self.totals)?;
         self.watch.restore(&snapshot)?;
+        if let Some(followed) = &mut self.followed {
+            followed.take_up(&discs, &snapshot.columns)?;
+        }
         self.engine.restore(discs, &snapshot)?;
         (self.clock, self.may_meet) = (clock, false);
         Ok(())

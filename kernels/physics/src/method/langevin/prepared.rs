@@ -160,6 +160,10 @@ impl Startable for Checked {
         })
     }
 
+    fn follows_crossings(&self) -> bool {
+        true
+    }
+
     fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure> {
         Ok(Box::new(Running::new(self, purpose)?))
     }

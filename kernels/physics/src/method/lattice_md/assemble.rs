@@ -40,6 +40,7 @@ pub fn model(checked: &Checked) -> Model {
             smallest_radius: geometry.radii[0],
             on_long_step: scene.integrator.on_long_step,
             energy: false,
+            motion: false,
         }),
     }
 }
@@ -67,7 +68,8 @@ pub fn assemble(checked: &Checked) -> Result<Box<dyn Engine>, Failure> {
     start_of(checked, model(checked))
 }
 
-/// The same, with energy followed: what contacts dissipate, what walls put in, periods that discs cross along gravity.
+/// The same, with energy followed: what contacts dissipate, what walls put in, periods that discs cross along gravity; and along every
+/// axis, where the scene asks for displacements.
 ///
 /// # Errors
 /// As [`assemble`].
@@ -78,7 +80,8 @@ pub fn assemble_following_energy(checked: &Checked) -> Result<Box<dyn Engine>, F
 /// What a checked scene models where energy is followed.
 pub(super) fn model_following_energy(checked: &Checked) -> Model {
     let mut model = model(checked);
-    model.watch = model.watch.map(|watch| Watch { energy: true, ..watch });
+    let motion = checked.scene.output.follows_motion();
+    model.watch = model.watch.map(|watch| Watch { energy: true, motion, ..watch });
     model
 }
 

@@ -95,6 +95,8 @@ pub struct Watch {
     /// Whether energy is followed: what contacts dissipate, what moving walls put in, periods that discs cross along
     /// gravity.
     pub energy: bool,
+    /// Whether the periods that discs cross are counted along every axis.
+    pub motion: bool,
 }
 
 define_words! {
@@ -109,10 +111,11 @@ define_words! {
 
 impl Watch {
     /// Looks for contacts that are too deep (fractions of the sum of the radii) and stops at discs that are too fast, if no
-    /// radius is below `smallest_radius` (length); does not follow energy.
+    /// radius is below `smallest_radius` (length); follows neither energy nor motion.
     pub fn new(max_penetration: f64, stop_penetration: f64, smallest_radius: f64) -> Watch {
         let on_long_step = OnLongStep::Stop;
-        Watch { max_penetration, stop_penetration, smallest_radius, on_long_step, energy: false }
+        let [energy, motion] = [false; 2];
+        Watch { max_penetration, stop_penetration, smallest_radius, on_long_step, energy, motion }
     }
 
     /// Penetration (length) that no pair passes whose fraction is at most `max_penetration`: what programs look for, so
@@ -250,10 +253,21 @@ impl Model {
         }
     }
 
-    /// Along which axes it is followed how many periods discs cross: gravity works along them.
+    /// Along which axes it is followed how many periods discs cross: gravity works along them, or displacements are asked for.
     pub fn counts_crossings(&self) -> [bool; 2] {
         let periodic = self.shape.periodic();
-        [0, 1].map(|axis| self.follows_energy() && periodic[axis] && self.gravity[axis] != 0.0)
+        let motion = self.watch.is_some_and(|watch| watch.motion);
+        [0, 1].map(|axis| periodic[axis] && (motion || self.does_gravity_work_along(axis)))
+    }
+
+    /// Whether crossings are counted for displacements alone: a run that was begun without these has no counts.
+    pub fn counts_crossings_for_motion_alone(&self) -> bool {
+        let periodic = self.shape.periodic();
+        (0..2).all(|axis| !(periodic[axis] && self.does_gravity_work_along(axis)))
+    }
+
+    fn does_gravity_work_along(&self, axis: usize) -> bool {
+        self.follows_energy() && self.gravity[axis] != 0.0
     }
 
     /// Whether energy is followed.

@@ -1,5 +1,6 @@
 //! A checked scene and its simulation, as every method offers them.
 
+use super::assemble::model_following_energy;
 use super::balance::{Way, Work};
 use super::check::{Checked, Estimates};
 use super::checks;
@@ -17,7 +18,7 @@ use super::{
 };
 use crate::io::checkpoint::Counter;
 use crate::method::observed::values;
-use crate::method::pairwise::ToReach;
+use crate::method::pairwise::{Crossings, ToReach};
 use crate::method::{
     Clock, Failure, Prepared, Purpose, RunWarning, Schedule, Simulation, Snapshot, Startable, Until,
     VectorProgram,
@@ -132,6 +133,10 @@ impl Startable for Checked {
         Some(with_law_of_text(&model(self), ToReach(reach(&self.particles))))
     }
 
+    fn follows_crossings(&self) -> bool {
+        true
+    }
+
     fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure> {
         let engine = match purpose {
             Purpose::Run => assemble_following_energy(self)?,
@@ -167,6 +172,8 @@ struct Running {
     discs: [usize; 2],
     /// What is looked at now and then, in a run.
     run_monitor: Option<RunMonitor>,
+    /// Whether a checkpoint may have no counts of the periods that discs cross.
+    counts_for_motion_alone: bool,
 }
 
 impl Running {
@@ -194,6 +201,7 @@ impl Running {
             lattice: scene.needs_lattice().then_some((cells, geometry.occupancy)),
             discs: [grains, particles.len() - grains],
             run_monitor,
+            counts_for_motion_alone: model_following_energy(checked).counts_crossings_for_motion_alone(),
         }
     }
 
@@ -323,7 +331,11 @@ impl Simulation for Running {
             run_monitor.restore(&snapshot.counters)?;
         }
         self.seen.take();
-        self.engine.restore(clock.steps, totals, snapshot.columns)
+        let mut columns = snapshot.columns;
+        if self.counts_for_motion_alone {
+            Crossings::begin_in(&mut columns, discs);
+        }
+        self.engine.restore(clock.steps, totals, columns)
     }
 
     fn phases(&self) -> BTreeMap<&'static str, f64> {

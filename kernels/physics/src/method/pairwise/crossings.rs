@@ -60,6 +60,20 @@ impl Crossings {
         })
     }
 
+    /// The counts among the columns of a checkpoint.
+    pub fn among(columns: &[(String, Column)]) -> impl Iterator<Item = &(String, Column)> {
+        columns.iter().filter(|(name, _)| CROSSINGS.contains(&name.as_str()))
+    }
+
+    /// Adds counts of 0 to columns that have none: of a run in which nothing was followed.
+    pub fn begin_in(columns: &mut Vec<(String, Column)>, discs: usize) {
+        for name in CROSSINGS {
+            if !columns.iter().any(|(there, _)| there == name) {
+                columns.push((name.to_owned(), Column::F64(vec![0.0; discs])));
+            }
+        }
+    }
+
     /// Takes up what [`columns`](Self::columns) gave.
     ///
     /// # Errors

@@ -1,0 +1,189 @@
+//! The diffusion constant by two functions of lags, and whether lags are long enough for it.
+//!
+//! Both are known to rise towards it. Where velocities are forgotten within a time τ, the slope of the mean square displacement between
+//! half a lag t and the lag is short of 4 D by the part 2τ/t (exp(−t/2τ) − exp(−t/τ)), and the integral of the autocorrelation of velocities
+//! by exp(−t/τ). From one octave of lags to the next they still change, which tells τ; where they change by more than their error, lags have to
+//! be so many τ long that what is missing does not matter, and it is added to the bar.
+
+use super::blocks::MOST as MOST_BLOCKS;
+use super::motion::{integral, slope};
+use super::{Verdict, Whole};
+use crate::number::significant;
+
+/// Lags are at least so many times τ: what is missing is 0.1 and 0.2 %.
+const LONG_ENOUGH: [f64; 2] = [10.0, 6.0];
+/// A change is one where it is larger than its half width of the interval of 95 % by this factor.
+const CERTAIN: f64 = 2.0;
+/// Longer than what would be enough, for τ has an error.
+const MARGIN: f64 = 1.25;
+/// Of what remains of the autocorrelation at the first lag, the least for its integral to be known: by trapeziums it is 1 % off
+/// where it decays exponentially.
+const RESOLVED: f64 = 0.7;
+/// Lags over τ among which the ratio of two octaves is looked for.
+const RATIOS: [f64; 2] = [0.05, 200.0];
+
+/// The constant by a function of lags.
+struct Rising {
+    /// Of an octave of lags, by the lags, the values and the places of its ends.
+    of: fn(&[f64], &[f64], [usize; 2]) -> f64,
+    /// What is missing (part of the whole) at a lag over τ.
+    missing: fn(f64) -> f64,
+    /// The ratio to the next octave, which ends at a lag over τ.
+    ratio: fn(f64) -> f64,
+    long_enough: f64,
+}
+
+/// What is missing of the slope between half a lag and the lag.
+fn missing_of_slope(x: f64) -> f64 {
+    2.0 / x * (libm::exp(-0.5 * x) - libm::exp(-x))
+}
+
+const SLOPE: Rising = Rising {
+    of: |lags, values, [from, to]| slope(lags, values, from, to) / 4.0,
+    missing: missing_of_slope,
+    ratio: |x| (1.0 - missing_of_slope(0.5 * x)) / (1.0 - missing_of_slope(x)),
+    long_enough: LONG_ENOUGH[0],
+};
+
+const INTEGRAL: Rising = Rising {
+    of: |lags, values, [_, to]| 0.5 * integral(lags, values, to),
+    missing: |x| libm::exp(-x),
+    ratio: |x| 1.0 / (1.0 + libm::exp(-0.5 * x)),
+    long_enough: LONG_ENOUGH[1],
+};
+
+/// The places among lags of a quarter and half of the longest one, and its own; then those of half of it, down to four rows.
+fn octaves(lags: &[f64]) -> Vec<[usize; 3]> {
+    let [Some(&first), Some(&last)] = [lags.get(1), lags.last()] else { return vec![] };
+    let at = |lag: f64| lags.partition_point(|&it| it < lag * (1.0 - 1e-6));
+    let ends = std::iter::successors(Some(last), |lag| Some(0.5 * lag));
+    let ends = ends.take_while(|lag| 0.25 * lag > first * (1.0 - 1e-6));
+    ends.map(|lag| [at(0.25 * lag), at(0.5 * lag), at(lag)]).collect()
+}
+
+impl Rising {
+    /// D by the longest octave, of a block or of means.
+    fn constant(&self, lags: &[f64], values: &[f64]) -> f64 {
+        octaves(lags).first().map_or(f64::NAN, |&[_, half, last]| (self.of)(lags, values, [half, last]))
+    }
+
+    /// τ (time) by the changes from octave to octave: the longest that one of them tells; none where none changes.
+    fn memory(&self, whole: &Whole<'_>) -> Option<f64> {
+        let of = |&[quarter, half, last]: &[usize; 3]| {
+            let later = |block: &[f64]| (self.of)(whole.over, block, [half, last]);
+            let change = |block: &[f64]| later(block) - (self.of)(whole.over, block, [quarter, half]);
+            let ([change, bar], [value, _]) = ((whole.mean)(&change, last)?, (whole.mean)(&later, last)?);
+            let is_change = change.abs() > CERTAIN * bar;
+            is_change.then(|| whole.over[last] / self.lags_of((1.0 - change.abs() / value.abs()).max(0.0)))
+        };
+        octaves(whole.over).iter().filter_map(of).reduce(f64::max)
+    }
+
+    /// The lag over τ at which two octaves have a ratio.
+    fn lags_of(&self, ratio: f64) -> f64 {
+        let [mut low, mut high] = RATIOS;
+        while high - low > 1e-6 * high {
+            let middle = 0.5 * (low + high);
+            if (self.ratio)(middle) < ratio { low = middle } else { high = middle }
+        }
+        low
+    }
+
+    /// What is missing at the longest lag, over what is there.
+    fn bias(&self, whole: &Whole<'_>) -> f64 {
+        let (Some(memory), Some(last)) = (self.memory(whole), whole.over.last()) else { return 0.0 };
+        let missing = (self.missing)(last / memory);
+        missing / (1.0 - missing)
+    }
+
+    /// Why there is no constant, with what would be enough.
+    fn judge(&self, whole: &Whole<'_>) -> Verdict {
+        if whole.setting.domain.periodic() != [true; 2] {
+            let why = "no diffusion constant: closed sides bound the displacements, and both sides would have to be periodic";
+            return Verdict::None(why.to_owned());
+        }
+        let Some(&last) = whole.over.last().filter(|_| !octaves(whole.over).is_empty()) else {
+            return Verdict::None(format!(
+                "no diffusion constant: the longest lag is of fewer than 4 rows; at least {} rows would do",
+                4 * MOST_BLOCKS
+            ));
+        };
+        match self.memory(whole) {
+            Some(memory) if memory * self.long_enough > last => {
+                // A lag is at least the length of the run over the number of blocks.
+                let enough =
+                    (MARGIN * MOST_BLOCKS as f64 * self.long_enough * memory).max(2.0 * whole.elapsed);
+                Verdict::None(format!(
+                    "no diffusion constant: motion is not diffusive yet at the longest lag, {}, for it is remembered for about {}; a run \
+                     until about time {} would do",
+                    significant(last, 2),
+                    significant(memory, 2),
+                    significant(enough, 2)
+                ))
+            }
+            _ => Verdict::Sound,
+        }
+    }
+}
+
+/// D by the slope of the mean square displacement, between half of the longest lag and the longest lag.
+pub(super) fn by_displacements(whole: &Whole<'_>, block: &[f64]) -> f64 {
+    SLOPE.constant(whole.over, &block[..whole.over.len()])
+}
+
+/// What it may be short of (part).
+pub(super) fn bias_of_displacements(whole: &Whole<'_>) -> f64 {
+    SLOPE.bias(whole)
+}
+
+/// Why there is no such constant.
+pub(super) fn judge_displacements(whole: &Whole<'_>) -> Verdict {
+    SLOPE.judge(whole)
+}
+
+/// D by half of the integral of ⟨v(0)·v(t)⟩, trapezium by trapezium.
+pub(super) fn by_velocities(whole: &Whole<'_>, block: &[f64]) -> f64 {
+    INTEGRAL.constant(whole.over, &block[..whole.over.len()])
+}
+
+/// What it may be short of (part).
+pub(super) fn bias_of_velocities(whole: &Whole<'_>) -> f64 {
+    INTEGRAL.bias(whole)
+}
+
+/// Why there is no such constant: also where velocities are forgotten between two rows.
+pub(super) fn judge_velocities(whole: &Whole<'_>) -> Verdict {
+    match INTEGRAL.judge(whole) {
+        Verdict::Sound if whole.means[1][0] < RESOLVED * whole.means[0][0] => Verdict::None(
+            "no diffusion constant: rows too far apart, velocities are forgotten from one to the next; rows in which they fall by less \
+             than a third would do"
+                .to_owned(),
+        ),
+        verdict => verdict,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By hand, for velocities that are forgotten exponentially: M = 4 (t − 1 + exp(−t)), C = 2 exp(−t), τ = D = 1.
+    #[test]
+    fn what_is_missing_is_that_of_exponential_memory() {
+        for last in [1.0_f64, 3.0, 10.0] {
+            let lags = [0.0, 0.25 * last, 0.5 * last, last];
+            let displacements = lags.map(|t| 4.0 * (t - 1.0 + (-t).exp()));
+            let [earlier, later] = [[1, 2], [2, 3]].map(|ends| (SLOPE.of)(&lags, &displacements, ends));
+            assert!((later / (1.0 - (SLOPE.missing)(last)) - 1.0).abs() < 1e-12, "{last}");
+            assert!((SLOPE.lags_of(earlier / later) / last - 1.0).abs() < 1e-4, "{last}");
+            let fine: Vec<f64> = (0..=4000).map(|step| f64::from(step) * last / 4000.0).collect();
+            let products: Vec<f64> = fine.iter().map(|t| 2.0 * (-t).exp()).collect();
+            let [earlier, later] = [2000, 4000].map(|to| (INTEGRAL.of)(&fine, &products, [0, to]));
+            assert!((later - (1.0 - (INTEGRAL.missing)(last))).abs() < 1e-5, "{last}");
+            assert!((INTEGRAL.lags_of(earlier / later) / last - 1.0).abs() < 1e-3, "{last}");
+        }
+        let lags: Vec<f64> = [0, 1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16].map(f64::from).to_vec();
+        assert_eq!(octaves(&lags), [[4, 8, 12], [2, 4, 8], [1, 2, 4]]);
+        assert!(octaves(&lags[..4]).is_empty() && octaves(&[]).is_empty());
+    }
+}

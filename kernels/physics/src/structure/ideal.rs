@@ -1,0 +1,295 @@
+//! Pairs that an ideal gas has at a distance: discs that know nothing of each other, in the area that their centres can reach.
+//!
+//! The chance of two discs to be in a bin is the area of its ring, times the share of the ring that is reachable from a reachable place,
+//! over the reachable area. That share has a formula between closed sides for discs of one size; an integral over angles for sizes that
+//! differ; and is sampled on a grid where there are wall discs, of which the part counts that is connected to the start of the discs.
+
+use super::pairs::{BINS, bins};
+use super::setting::Setting;
+use crate::domain::Domain;
+use crate::particles::{Kind, Particle, Particles};
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
+use std::f64::consts::{PI, TAU};
+
+/// Sizes of discs that are told apart, at most.
+const SIZES: usize = 4;
+/// Angles of a quarter turn.
+const ANGLES: usize = 256;
+/// Samples of each bin.
+const SAMPLES: usize = 1 << 14;
+/// Edge of the cells of the grid over the smallest radius; cells at most.
+const EDGE: f64 = 0.08;
+const MOST_CELLS: f64 = 4e6;
+/// A sequence that fills a square evenly: powers of the inverse of the root of x³ = x + 1.
+const EVEN: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
+
+/// Discs of about one size.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Size {
+    /// Their mean radius (length).
+    radius: f64,
+    /// How many there are.
+    count: f64,
+}
+
+/// For each bin of distances the chance of a pair of discs to be in it. Walls and the connected area are those of the start.
+pub(super) fn chances(setting: &Setting, particles: &Particles) -> Vec<f64> {
+    let domain = &setting.domain;
+    let has_walls = particles.grain_count() < particles.len();
+    let sizes = sizes(particles.grains());
+    if has_walls {
+        let grids: Vec<Grid> = sizes.iter().map(|size| Grid::new(domain, size.radius, particles)).collect();
+        return of_sizes(setting, &sizes, |a, b, r| grids[a].share(&grids[b], r) / grids[b].area());
+    }
+    if sizes.len() > 1 && domain.periodic() != [true; 2] {
+        let share = |a: usize, b: usize, r: f64| shared_area(domain, [sizes[a].radius, sizes[b].radius], r);
+        return of_sizes(setting, &sizes, share);
+    }
+    let [x, y] = setting.room();
+    let closed = [0, 1].map(|axis| f64::from(!domain.is_periodic(axis)));
+    let [over_x, over_y] = [closed[0] / x, closed[1] / y];
+    // Within a distance r of a place, on average over all places: the set covariance of the rectangle, integrated.
+    let within = |r: f64| {
+        let (linear, square) = (2.0 / PI * (over_x + over_y), over_x * over_y / PI);
+        2.0 * PI * r * r * (0.5 - linear * r / 3.0 + 0.25 * square * r * r)
+    };
+    let width = setting.diameter / BINS;
+    let of = |bin: usize| (within((bin + 1) as f64 * width) - within(bin as f64 * width)) / (x * y);
+    (0..bins(setting)).map(of).collect()
+}
+
+/// The chance over pairs of sizes, where `by_area` gives it for a unit of area at a distance.
+fn of_sizes(
+    setting: &Setting,
+    sizes: &[Size],
+    by_area: impl Fn(usize, usize, f64) -> f64 + Sync,
+) -> Vec<f64> {
+    let width = setting.diameter / BINS;
+    let discs: f64 = sizes.iter().map(|size| size.count).sum();
+    let of = |bin: usize| {
+        let [inner, outer] = [bin, bin + 1].map(|edge| edge as f64 * width);
+        let (ring, middle) = (PI * (outer * outer - inner * inner), 0.5 * (inner + outer));
+        let mut chance = 0.0;
+        for (a, one) in sizes.iter().enumerate() {
+            for (b, other) in sizes.iter().enumerate() {
+                let others = other.count - f64::from(u8::from(a == b));
+                chance += one.count * others / (discs * (discs - 1.0)) * ring * by_area(a, b, middle);
+            }
+        }
+        chance
+    };
+    (0..bins(setting)).into_par_iter().map(of).collect()
+}
+
+/// Discs by their radius: each radius alone where there are few, else ranges of them with about as many discs each.
+fn sizes(grains: &[Particle]) -> Vec<Size> {
+    let mut radii: Vec<f64> = grains.iter().map(|grain| grain.radius).collect();
+    radii.sort_by(f64::total_cmp);
+    let mut sizes: Vec<Size> = vec![];
+    for alike in radii.chunk_by(|a, b| a == b).take(SIZES + 1) {
+        sizes.push(Size { radius: alike[0], count: alike.len() as f64 });
+    }
+    if sizes.len() <= SIZES {
+        return sizes;
+    }
+    let of = |radii: &[f64]| {
+        let count = radii.len() as f64;
+        Size { radius: radii.iter().sum::<f64>() / count, count }
+    };
+    radii.chunks(radii.len().div_ceil(SIZES)).map(of).collect()
+}
+
+/// The share of places of a disc of one radius from which a way of a length leads to a place of one of another radius, over the area
+/// that the latter has; the mean over all directions.
+fn shared_area(domain: &Domain, radii: [f64; 2], r: f64) -> f64 {
+    let room = |axis: usize, radius: f64| match domain.is_periodic(axis) {
+        true => domain.length(axis),
+        false => domain.length(axis) - 2.0 * radius,
+    };
+    let overlap = |axis: usize, way: f64| {
+        let [a, b] = radii.map(|radius| room(axis, radius));
+        match domain.is_periodic(axis) {
+            true => a,
+            false => (0.5 * (a + b) - way).min(a).min(b).max(0.0),
+        }
+    };
+    let at = |step: usize| {
+        let (sine, cosine) = libm::sincos((step as f64 + 0.5) * 0.5 * PI / ANGLES as f64);
+        overlap(0, r * cosine) * overlap(1, r * sine)
+    };
+    let mean = (0..ANGLES).map(at).sum::<f64>() / ANGLES as f64;
+    mean / radii.map(|radius| room(0, radius) * room(1, radius)).iter().product::<f64>()
+}
+
+/// The cells of a grid over the box that the centre of a disc can be in, coming from where the discs are.
+struct Grid {
+    domain: Domain,
+    counts: [usize; 2],
+    edges: [f64; 2],
+    /// Row by row.
+    is_reached: Vec<bool>,
+    /// Those that are.
+    reached: Vec<u32>,
+}
+
+impl Grid {
+    /// For discs of a radius (length).
+    fn new(domain: &Domain, radius: f64, particles: &Particles) -> Grid {
+        let edge = (EDGE * radius).max((domain.area() / MOST_CELLS).sqrt());
+        let counts = [0, 1].map(|axis| (domain.length(axis) / edge).ceil().max(1.0) as usize);
+        let edges = [0, 1].map(|axis| domain.length(axis) / counts[axis] as f64);
+        let mut grid = Grid { domain: *domain, counts, edges, is_reached: vec![], reached: vec![] };
+        let is_free = grid.free_of_walls(radius, particles);
+        grid.flood(&is_free, particles.grains());
+        grid
+    }
+
+    /// The cells whose middle no wall disc and no closed side keeps the centre of a disc from.
+    fn free_of_walls(&self, radius: f64, particles: &Particles) -> Vec<bool> {
+        let [columns, rows] = self.counts;
+        let mut is_free = vec![true; columns * rows];
+        for (cell, is_free) in is_free.iter_mut().enumerate() {
+            let place = [cell % columns, cell / columns];
+            *is_free = (0..2).all(|axis| {
+                let at = (place[axis] as f64 + 0.5) * self.edges[axis];
+                self.domain.is_periodic(axis) || (radius..=self.domain.length(axis) - radius).contains(&at)
+            });
+        }
+        for wall in particles.all().iter().filter(|disc| disc.kind == Kind::Wall) {
+            let reach = wall.radius + radius;
+            let from = [0, 1].map(|axis| wall.position[axis] - self.domain.origin[axis]);
+            let [low, high] = [-reach, reach]
+                .map(|way| [0, 1].map(|axis| ((from[axis] + way) / self.edges[axis]).floor() as i64));
+            for row in low[1]..=high[1] {
+                for column in low[0]..=high[0] {
+                    let ways = [(0, column), (1, row)]
+                        .map(|(axis, at)| (at as f64 + 0.5) * self.edges[axis] - from[axis]);
+                    if let Some(cell) = self.cell([column, row])
+                        && ways[0] * ways[0] + ways[1] * ways[1] < reach * reach
+                    {
+                        is_free[cell] = false;
+                    }
+                }
+            }
+        }
+        is_free
+    }
+
+    /// The cell of a column and a row, across periodic sides; none beyond others.
+    fn cell(&self, at: [i64; 2]) -> Option<usize> {
+        let mut inside = [0; 2];
+        for axis in 0..2 {
+            let count = self.counts[axis] as i64;
+            let there = if self.domain.is_periodic(axis) { at[axis].rem_euclid(count) } else { at[axis] };
+            inside[axis] = usize::try_from(there).ok().filter(|&there| there < self.counts[axis])?;
+        }
+        Some(inside[1] * self.counts[0] + inside[0])
+    }
+
+    /// Reaches all cells that are connected to a disc through free ones. A disc that touches a wall may be in a cell that is not free.
+    fn flood(&mut self, is_free: &[bool], grains: &[Particle]) {
+        let mut is_reached = vec![false; is_free.len()];
+        let mut reached: Vec<u32> = vec![];
+        let mut enter = |cell: Option<usize>, reached: &mut Vec<u32>| {
+            if let Some(cell) = cell.filter(|&cell| is_free[cell] && !is_reached[cell]) {
+                is_reached[cell] = true;
+                reached.push(cell as u32);
+            }
+        };
+        for grain in grains {
+            let [column, row] = [0, 1].map(|axis| {
+                ((grain.position[axis] - self.domain.origin[axis]) / self.edges[axis]).floor() as i64
+            });
+            for (right, up) in (-1..=1).flat_map(|up| (-1..=1).map(move |right| (right, up))) {
+                enter(self.cell([column + right, row + up]), &mut reached);
+            }
+        }
+        let mut next = 0;
+        while let Some(&cell) = reached.get(next) {
+            next += 1;
+            let [column, row] = [cell as usize % self.counts[0], cell as usize / self.counts[0]];
+            let [column, row] = [column as i64, row as i64];
+            for at in [[column - 1, row], [column + 1, row], [column, row - 1], [column, row + 1]] {
+                enter(self.cell(at), &mut reached);
+            }
+        }
+        // In the order of cells, so that samples are spread evenly.
+        reached.sort_unstable();
+        (self.is_reached, self.reached) = (is_reached, reached);
+    }
+
+    /// The area that is reached (length²).
+    fn area(&self) -> f64 {
+        self.reached.len() as f64 * self.edges[0] * self.edges[1]
+    }
+
+    /// The share of reached places from which a way of a length leads to one that is reached on another grid, over all directions.
+    fn share(&self, other: &Grid, r: f64) -> f64 {
+        let reached = self.reached.len() as f64;
+        let leads = |sample: usize| {
+            let [place, turn] = EVEN.map(|step| (step * sample as f64).fract());
+            let cell = self.reached[((place * reached) as usize).min(self.reached.len() - 1)] as usize;
+            let from = [cell % self.counts[0], cell / self.counts[0]];
+            let (sine, cosine) = libm::sincos(TAU * turn);
+            let to = [(0, cosine), (1, sine)].map(|(axis, along): (usize, f64)| {
+                let at = (from[axis] as f64 + 0.5) * self.edges[axis] + r * along;
+                (at / other.edges[axis]).floor() as i64
+            });
+            other.cell(to).is_some_and(|cell| other.is_reached[cell])
+        };
+        if self.reached.is_empty() {
+            return 0.0;
+        }
+        (0..SAMPLES).filter(|&sample| leads(sample)).count() as f64 / SAMPLES as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn disc(id: u32, kind: Kind, position: [f64; 2], radius: f64) -> Particle {
+        let position = [position[0], position[1], 0.0];
+        Particle { id, kind, position, velocity: [0.0; 3], angle: 0.0, omega: 0.0, radius, mass: 1.0 }
+    }
+
+    /// Between walls, an integral over angles and samples on a grid are the formula of the rectangle.
+    #[test]
+    fn three_ways_to_the_share_of_a_ring_agree() {
+        let discs = Particles::new((0..3).map(|id| disc(id, Kind::Grain, [3.0, 4.0], 0.5)).collect());
+        for (sides, periodic) in [([12.0, 9.0], [true, false]), ([12.0, 9.0], [false, false])] {
+            let domain = Domain::planar([0.0; 2], sides, periodic);
+            let setting = Setting::new(domain, &discs);
+            let formula = chances(&setting, &discs);
+            let size = [Size { radius: 0.5, count: 3.0 }];
+            let integral = of_sizes(&setting, &size, |_, _, r| shared_area(&domain, [0.5; 2], r));
+            let grid = Grid::new(&domain, 0.5, &discs);
+            let sampled = of_sizes(&setting, &size, |_, _, r| grid.share(&grid, r) / grid.area());
+            assert!(formula.len() > 100);
+            for ((formula, integral), sampled) in formula.into_iter().zip(integral).zip(sampled) {
+                assert!((integral / formula - 1.0).abs() < 1e-4, "{integral} {formula}");
+                assert!((sampled / formula - 1.0).abs() < 0.01, "{sampled} {formula}");
+            }
+        }
+    }
+
+    /// A channel between rows of wall discs that nearly touch is a strip: its rim is a little uneven. Outside of it there is nothing.
+    #[test]
+    fn a_channel_is_what_its_walls_leave() {
+        let mut all = vec![disc(0, Kind::Grain, [10.0, 6.0], 0.5)];
+        for column in 0..200 {
+            for height in [3.0, 9.0] {
+                all.push(disc(all.len() as u32, Kind::Wall, [0.1 * f64::from(column), height], 0.5));
+            }
+        }
+        let particles = Particles::new(all);
+        let domain = Domain::planar([0.0; 2], [20.0, 12.0], [true, false]);
+        let grid = Grid::new(&domain, 0.5, &particles);
+        // Centres reach up to 1 from the middles of the walls.
+        assert!((grid.area() / (20.0 * 4.0) - 1.0).abs() < 0.01, "{}", grid.area());
+        for r in [0.5, 2.0, 3.5] {
+            let strip = 1.0 - 2.0 * r / (4.0 * PI);
+            assert!((grid.share(&grid, r) - strip).abs() < 0.01, "{r}: {}", grid.share(&grid, r));
+        }
+    }
+}

@@ -1,0 +1,400 @@
+//! The observables of the structure, one after the other.
+
+use super::waves;
+use super::{Asks, Headline, Observable, Over, Seen, Verdict, Whole};
+use super::{diffusion, motion, neighbours, pairs, single};
+use crate::number::significant;
+
+/// Every function can be relied on.
+const SOUND: fn(&Whole<'_>) -> Verdict = |_| Verdict::Sound;
+/// Nothing but statistical error.
+const NO_BIAS: fn(&Whole<'_>) -> f64 = |_| 0.0;
+
+/// A grid over the box.
+const PLACES: &[[&str; 2]] = &[["x", "length"], ["y", "length"]];
+/// Where the definition of the stress comes from.
+const STRESS: &str = "Irving and Kirkwood 1950, half of a pair to either disc (Thompson, Plimpton and Mattson 2009); velocities as seen from the box";
+/// The number that stands for a component of the stress.
+const OVER_BOX: [Headline; 1] = [Headline {
+    name: "mean over the box",
+    unit: "force/length",
+    of: |_, block| block.iter().sum::<f64>() / block.len() as f64,
+    bias: NO_BIAS,
+}];
+
+/// All of them.
+pub static OBSERVABLES: [Observable; 16] = [
+    Observable {
+        name: "g(r)",
+        file: "g.csv",
+        over: &[["r", "length"]],
+        value: ["g", ""],
+        doc: "Pairs at a distance over those of an ideal gas in the area that centres of discs can reach, between closed sides and wall discs.",
+        source: "Hansen and McDonald, Theory of Simple Liquids, section 2.5; closed sides by the set covariance of a rectangle (Stoyan \
+                 and Stoyan 1994)",
+        seen: Seen::Once {
+            over: Over::Axis(pairs::distances),
+            of: |it, values, _| pairs::correlation(&it.discs, &it.distances, &it.chances, values),
+            further: 0,
+            asks: Asks::Distances,
+        },
+        headlines: &[
+            Headline {
+                name: "height of the first peak",
+                unit: "",
+                of: |whole, block| block[first_peak(whole)],
+                bias: NO_BIAS,
+            },
+            Headline {
+                name: "place of the first peak",
+                unit: "length",
+                of: |whole, block| whole.over[peak_near(block, first_peak(whole))],
+                bias: NO_BIAS,
+            },
+        ],
+        judged: judge_peak,
+    },
+    Observable {
+        name: "S(k)",
+        file: "s.csv",
+        over: &[["kx", "1/length"], ["ky", "1/length"]],
+        value: ["S", ""],
+        doc: "The structure factor |Σ exp(ikr)|²/N, a line for each wave vector along a periodic axis of the box.",
+        source: "Hansen and McDonald, Theory of Simple Liquids, section 4.1",
+        seen: Seen::Once {
+            over: Over::Waves,
+            of: |it, values, _| waves::factor(&it.waves, values),
+            further: 0,
+            asks: Asks::Waves,
+        },
+        headlines: &[
+            Headline {
+                name: "height of the main peak",
+                unit: "",
+                of: |whole, block| block[highest(whole)],
+                bias: NO_BIAS,
+            },
+            Headline {
+                name: "place of the main peak",
+                unit: "1/length",
+                of: |whole, block| whole.over[peak(&block[..whole.over.len()])],
+                bias: NO_BIAS,
+            },
+        ],
+        judged: SOUND,
+    },
+    Observable {
+        name: "coordination",
+        file: "coordination.csv",
+        over: &[["neighbours", ""]],
+        value: ["share of discs", ""],
+        doc: "Shares of discs by their number of neighbours: others nearer than 1.5 times the sum of the radii.",
+        source: "the first minimum of g(r) of dense discs lies there",
+        seen: Seen::Once {
+            over: Over::Axis(neighbours::neighbour_numbers),
+            of: |it, values, _| neighbours::coordination(&it.discs, &it.neighbours, values),
+            further: 2,
+            asks: Asks::Neighbours,
+        },
+        headlines: &[Headline {
+            name: "mean number of neighbours",
+            unit: "",
+            of: |whole, block| block[whole.over.len()],
+            bias: NO_BIAS,
+        }],
+        judged: judge_lines,
+    },
+    Observable {
+        name: "psi6",
+        file: "psi6.csv",
+        over: &[["|psi6| of a disc", ""]],
+        value: ["density", ""],
+        doc: "Distribution of the hexatic order of single discs, ψ6 = ⟨exp(6iθ)⟩ over the six nearest, or all others where there are fewer.",
+        source: "Nelson and Halperin 1979; six nearest neighbours in place of Voronoi's",
+        seen: Seen::Once {
+            over: Over::Axis(neighbours::orders),
+            of: |it, values, _| neighbours::hexatic(&it.neighbours, values),
+            further: 2,
+            asks: Asks::Neighbours,
+        },
+        headlines: &[
+            Headline {
+                name: "global order |Ψ6|",
+                unit: "",
+                of: |whole, block| block[whole.over.len()],
+                bias: NO_BIAS,
+            },
+            Headline {
+                name: "mean order of a disc",
+                unit: "",
+                of: |whole, block| block[whole.over.len() + 1],
+                bias: NO_BIAS,
+            },
+        ],
+        judged: SOUND,
+    },
+    Observable {
+        name: "velocities",
+        file: "velocities.csv",
+        over: &[["v/sqrt(kT/m)", ""]],
+        value: ["density", ""],
+        doc: "Distribution of both components of the velocity over √(kT/m), kT by the kinetic energy of the same moment.",
+        source: "Maxwell 1860: the normal distribution in equilibrium",
+        seen: Seen::Once {
+            over: Over::Axis(single::speeds),
+            of: |it, values, weights| single::velocities(&it.discs, values, weights),
+            further: 1,
+            asks: Asks::Discs,
+        },
+        headlines: &[Headline {
+            name: "kurtosis",
+            unit: "",
+            of: |whole, block| block[whole.over.len()],
+            bias: NO_BIAS,
+        }],
+        judged: SOUND,
+    },
+    Observable {
+        name: "density(x)",
+        file: "density-x.csv",
+        over: &[["x", "length"]],
+        value: ["density", "1/length²"],
+        doc: "Centres of discs by area in a hundred slices along the first axis.",
+        source: "Hansen and McDonald, Theory of Simple Liquids, section 2.5: the single-particle density, averaged across the axis",
+        seen: Seen::Once {
+            over: Over::Axis(single::slices::<0>),
+            of: |it, values, _| single::density::<0>(&it.setting.domain, &it.discs, values),
+            further: 0,
+            asks: Asks::Discs,
+        },
+        headlines: &[],
+        judged: SOUND,
+    },
+    Observable {
+        name: "density(y)",
+        file: "density-y.csv",
+        over: &[["y", "length"]],
+        value: ["density", "1/length²"],
+        doc: "Centres of discs by area in a hundred slices along the second axis.",
+        source: "Hansen and McDonald, Theory of Simple Liquids, section 2.5: the single-particle density, averaged across the axis",
+        seen: Seen::Once {
+            over: Over::Axis(single::slices::<1>),
+            of: |it, values, _| single::density::<1>(&it.setting.domain, &it.discs, values),
+            further: 0,
+            asks: Asks::Discs,
+        },
+        headlines: &[],
+        judged: SOUND,
+    },
+    Observable {
+        name: "flow(x)",
+        file: "flow-x.csv",
+        over: &[["x", "length"]],
+        value: ["velocity along y", "length/time"],
+        doc: "Velocity of the discs along y in a hundred slices along x: all momentum over all mass that was there.",
+        source: "Irving and Kirkwood 1950: momentum density over mass density",
+        seen: Seen::Once {
+            over: Over::Axis(single::slices::<0>),
+            of: |it, values, weights| single::flow::<0>(&it.setting.domain, &it.discs, values, weights),
+            further: 0,
+            asks: Asks::Discs,
+        },
+        headlines: &[],
+        judged: SOUND,
+    },
+    Observable {
+        name: "flow(y)",
+        file: "flow-y.csv",
+        over: &[["y", "length"]],
+        value: ["velocity along x", "length/time"],
+        doc: "Velocity of the discs along x in a hundred slices along y: all momentum over all mass that was there.",
+        source: "Irving and Kirkwood 1950: momentum density over mass density",
+        seen: Seen::Once {
+            over: Over::Axis(single::slices::<1>),
+            of: |it, values, weights| single::flow::<1>(&it.setting.domain, &it.discs, values, weights),
+            further: 0,
+            asks: Asks::Discs,
+        },
+        headlines: &[],
+        judged: SOUND,
+    },
+    Observable {
+        name: "temperature(x)",
+        file: "temperature-x.csv",
+        over: &[["x", "length"]],
+        value: ["kT", "energy"],
+        doc: "Kinetic energy beside the flow of the slice, ΣΣm|v − u|²/(2Σ(n − 1)) over discs and snapshots, in a hundred slices along the first axis.",
+        source: "Irving and Kirkwood 1950: the kinetic part, with one disc less a snapshot for the mean velocity",
+        seen: Seen::Once {
+            over: Over::Axis(single::slices::<0>),
+            of: |it, values, weights| {
+                single::temperature::<0>(&it.setting.domain, &it.discs, values, weights)
+            },
+            further: 0,
+            asks: Asks::Discs,
+        },
+        headlines: &[],
+        judged: SOUND,
+    },
+    Observable {
+        name: "temperature(y)",
+        file: "temperature-y.csv",
+        over: &[["y", "length"]],
+        value: ["kT", "energy"],
+        doc: "Kinetic energy beside the flow of the slice, ΣΣm|v − u|²/(2Σ(n − 1)) over discs and snapshots, in a hundred slices along the second axis.",
+        source: "Irving and Kirkwood 1950: the kinetic part, with one disc less a snapshot for the mean velocity",
+        seen: Seen::Once {
+            over: Over::Axis(single::slices::<1>),
+            of: |it, values, weights| {
+                single::temperature::<1>(&it.setting.domain, &it.discs, values, weights)
+            },
+            further: 0,
+            asks: Asks::Discs,
+        },
+        headlines: &[],
+        judged: SOUND,
+    },
+    Observable {
+        name: "stress_xx(x,y)",
+        file: "stress-xx.csv",
+        over: PLACES,
+        value: ["stress xx", "force/length"],
+        doc: "Flow of momentum along x through a line across x, positive under pressure: Σm v_x v_x of the discs of a cell and half of r_x F_x of each of their pairs, walls among them, over its area.",
+        source: STRESS,
+        seen: Seen::Once {
+            over: Over::Grid,
+            of: |it, values, _| it.stress.component(0, values),
+            further: 0,
+            asks: Asks::Forces,
+        },
+        headlines: &OVER_BOX,
+        judged: SOUND,
+    },
+    Observable {
+        name: "stress_xy(x,y)",
+        file: "stress-xy.csv",
+        over: PLACES,
+        value: ["stress xy", "force/length"],
+        doc: "Flow of momentum along y through a line across x, as the stress xx: the symmetric part, (r_x F_y + r_y F_x)/2 of each pair.",
+        source: STRESS,
+        seen: Seen::Once {
+            over: Over::Grid,
+            of: |it, values, _| it.stress.component(1, values),
+            further: 0,
+            asks: Asks::Forces,
+        },
+        headlines: &OVER_BOX,
+        judged: SOUND,
+    },
+    Observable {
+        name: "stress_yy(x,y)",
+        file: "stress-yy.csv",
+        over: PLACES,
+        value: ["stress yy", "force/length"],
+        doc: "Flow of momentum along y through a line across y, as the stress xx.",
+        source: STRESS,
+        seen: Seen::Once {
+            over: Over::Grid,
+            of: |it, values, _| it.stress.component(2, values),
+            further: 0,
+            asks: Asks::Forces,
+        },
+        headlines: &OVER_BOX,
+        judged: SOUND,
+    },
+    Observable {
+        name: "msd",
+        file: "msd.csv",
+        over: &[["lag", "time"]],
+        value: ["mean square displacement", "length²"],
+        doc: "Mean square displacement of a disc within a time, followed across periodic sides.",
+        source: "Einstein 1905: 4 D t in the plane after long times",
+        seen: Seen::Twice { of: motion::square_displacement, follows: true },
+        headlines: &[Headline {
+            name: "diffusion constant",
+            unit: "length²/time",
+            of: diffusion::by_displacements,
+            bias: diffusion::bias_of_displacements,
+        }],
+        judged: diffusion::judge_displacements,
+    },
+    Observable {
+        name: "vacf",
+        file: "vacf.csv",
+        over: &[["lag", "time"]],
+        value: ["velocity autocorrelation", "length²/time²"],
+        doc: "⟨v(0)·v(t)⟩, the autocorrelation of the velocity: 2kT/m at first, in equilibrium.",
+        source: "Green and Kubo: half of its integral is D in the plane",
+        seen: Seen::Twice { of: motion::velocity_product, follows: false },
+        headlines: &[Headline {
+            name: "diffusion constant",
+            unit: "length²/time",
+            of: diffusion::by_velocities,
+            bias: diffusion::bias_of_velocities,
+        }],
+        judged: diffusion::judge_velocities,
+    },
+];
+
+/// Where a function is largest; the first place of several.
+fn peak(values: &[f64]) -> usize {
+    let larger = |best: usize, at: usize| if values[at] > values[best] { at } else { best };
+    (0..values.len()).fold(0, larger)
+}
+
+/// Where the mean of a function is largest.
+fn highest(whole: &Whole<'_>) -> usize {
+    let means: Vec<f64> = whole.means.iter().map(|[mean, _]| *mean).collect();
+    peak(&means)
+}
+
+/// A peak ends where the function has fallen by this part of it.
+const FALL: f64 = 0.1;
+/// A difference is one where it is larger than the bars by this factor.
+const CERTAIN: f64 = 2.0;
+/// How many places around a peak of the mean it is in a block.
+const AROUND: usize = 5;
+
+/// Where the mean of a function has its first peak above 1: from there it falls by a part of it, and by more than its error.
+fn first_peak(whole: &Whole<'_>) -> usize {
+    let mut best = 0;
+    for (at, &[mean, bar]) in whole.means.iter().enumerate() {
+        let [highest, its_bar] = whole.means[best];
+        if mean > highest {
+            best = at;
+        } else if highest > 1.0 && mean < highest - (FALL * highest).max(CERTAIN * (bar + its_bar)) {
+            break;
+        }
+    }
+    best
+}
+
+/// Where a block of a function is largest near the peak of its mean.
+fn peak_near(block: &[f64], place: usize) -> usize {
+    let first = place.saturating_sub(AROUND);
+    first + peak(&block[first..(place + AROUND + 1).min(block.len())])
+}
+
+/// Whether there is a peak at all.
+fn judge_peak(whole: &Whole<'_>) -> Verdict {
+    let [height, bar] = whole.means[first_peak(whole)];
+    match height - CERTAIN * bar > 1.0 {
+        true => Verdict::Sound,
+        false => Verdict::None(
+            "no peak stands out of the noise: g(r) is 1 within twice its bar everywhere".to_owned(),
+        ),
+    }
+}
+
+/// Whether every number of neighbours has a line.
+fn judge_lines(whole: &Whole<'_>) -> Verdict {
+    let lines = whole.over.len();
+    match (whole.mean)(&|block| block[lines + 1], 0) {
+        Some([share, _]) if share > 0.0 => Verdict::Doubt(format!(
+            "{} % of the discs have more than {} neighbours and no line; the mean number counts them",
+            significant(100.0 * share, 2),
+            lines - 1
+        )),
+        _ => Verdict::Sound,
+    }
+}

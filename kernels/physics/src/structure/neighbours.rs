@@ -1,0 +1,369 @@
+//! The discs around each: numbers of neighbours, and hexatic order. Every other disc counts once, by its nearest image.
+
+use super::cells::{AT_ONCE, Cells};
+use super::discs::Discs;
+use super::pairs::ways;
+use super::setting::Setting;
+use crate::domain::Domain;
+use rayon::iter::{
+    IndexedParallelIterator, IntoParallelRefIterator, IntoParallelRefMutIterator, ParallelIterator,
+};
+use std::f64::consts::PI;
+use std::ops::Range;
+use stripmine_kernels::InstructionSet;
+use stripmine_kernels::backend::{Registers, Task, dispatch_native};
+
+/// Neighbours are nearer than this many sums of the radii.
+const NEIGHBOURS: f64 = 1.5;
+/// Numbers of neighbours that have a line, for discs that overlap; and at most.
+const LINES: [f64; 2] = [24.0, 1000.0];
+/// Bins of the order of single discs.
+const ORDERS: usize = 50;
+/// Whom the hexatic order is over.
+const NEAREST: usize = 6;
+/// Where these are looked for, farther and farther, in mean distances 1/√n: about ten others are there in a gas, and twelve in a
+/// corner. Where there still are fewer, all discs are looked at.
+const LOOKED_FOR: [f64; 3] = [1.8, 2.7, 4.0];
+
+/// The discs around each.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Neighbours {
+    parts: Vec<Around>,
+    /// Whether ψ6 of each disc is kept beside the sums.
+    pub(super) keeps_each: bool,
+}
+
+/// What some discs have around them, summed up, and room for the others around one.
+#[derive(Clone, Debug)]
+struct Around {
+    /// Discs by their number of neighbours, those with more than have a line, and the neighbours of all.
+    numbers: Vec<u32>,
+    beyond: u32,
+    neighbours: u64,
+    /// Discs by the bin of |ψ6|, and those that have one.
+    orders: [u32; ORDERS],
+    ordered: u32,
+    /// Sums of ψ6, and of |ψ6|.
+    order: [f64; 3],
+    /// Of those around a disc the ways along x and y (length), the squares of the distances, and the places in the order of cells.
+    right: Vec<f64>,
+    up: Vec<f64>,
+    squares: Vec<f64>,
+    places: Vec<usize>,
+    /// ψ6 of each disc by its number, where it is kept.
+    each: Vec<(u32, [f64; 2])>,
+    /// The reach (length) that was last asked for, and how far it goes along each row.
+    reach: f64,
+    halves: Vec<f64>,
+}
+
+impl Neighbours {
+    /// How far neighbours and the six nearest are looked for (length).
+    pub(super) fn reach(setting: &Setting, discs: usize) -> f64 {
+        (2.0 * NEIGHBOURS * setting.largest_radius).max(Neighbours::looked_for(setting, discs)[2])
+    }
+
+    fn looked_for(setting: &Setting, discs: usize) -> [f64; 3] {
+        let [x, y] = setting.room();
+        let apart = (x * y / discs as f64).sqrt();
+        LOOKED_FOR.map(|distances| distances * apart)
+    }
+
+    /// Looks around every disc.
+    pub(super) fn find(&mut self, setting: &Setting, discs: &Discs, cells: &Cells) {
+        let none = Around {
+            numbers: vec![0; most_neighbours(setting) + 1],
+            beyond: 0,
+            neighbours: 0,
+            orders: [0; ORDERS],
+            ordered: 0,
+            order: [0.0; 3],
+            right: vec![],
+            up: vec![],
+            squares: vec![],
+            places: vec![],
+            each: vec![],
+            reach: f64::NAN,
+            halves: vec![],
+        };
+        self.parts.resize(cells.parts.len(), none);
+        let looked_for = Neighbours::looked_for(setting, discs.x.len());
+        let (largest, keeps_each) = (setting.largest_radius, self.keeps_each);
+        self.parts.par_iter_mut().zip(cells.parts.par_iter()).for_each(|(around, rows)| {
+            let rows = rows.clone();
+            let domain = &setting.domain;
+            let looking = Looking { discs, domain, cells, rows, looked_for, largest, keeps_each, around };
+            dispatch_native(InstructionSet::best(), looking).unwrap_or_default();
+        });
+    }
+
+    /// ψ6 of each disc, where it was kept, in the order of their numbers.
+    pub(super) fn each(&self) -> Vec<[f64; 2]> {
+        let mut all: Vec<(u32, [f64; 2])> =
+            self.parts.iter().flat_map(|part| part.each.iter().copied()).collect();
+        all.sort_unstable_by_key(|(number, _)| *number);
+        all.into_iter().map(|(_, order)| order).collect()
+    }
+
+    /// The sum of a number of each part, in the order of the parts.
+    fn sum<T: Into<f64>>(&self, of: impl Fn(&Around) -> T) -> f64 {
+        self.parts.iter().map(|part| of(part).into()).sum()
+    }
+
+    /// The neighbours of all discs.
+    fn count(&self) -> u64 {
+        self.parts.iter().map(|part| part.neighbours).sum()
+    }
+}
+
+/// Looks around the discs of some rows.
+struct Looking<'c> {
+    discs: &'c Discs,
+    domain: &'c Domain,
+    cells: &'c Cells,
+    rows: Range<usize>,
+    looked_for: [f64; 3],
+    largest: f64,
+    keeps_each: bool,
+    around: &'c mut Around,
+}
+
+impl Task<f64> for Looking<'_> {
+    #[inline(always)]
+    fn on<R: Registers<Lane = f64>>(self, _: R) {
+        let Looking { discs, domain, cells, rows, looked_for, largest, keeps_each, around } = self;
+        let radius = &discs.radius;
+        around.begin();
+        // Images that are farther than half a side are not the nearest ones.
+        let halves = [0, 1].map(|axis| match domain.is_periodic(axis) {
+            true => 0.5 * domain.length(axis),
+            false => f64::INFINITY,
+        });
+        let wanted = NEAREST.min(discs.x.len() - 1);
+        for row in rows {
+            for own in cells.own(row) {
+                let own_radius = radius[cells.number[own] as usize];
+                let near = (NEIGHBOURS * (own_radius + largest)).max(looked_for[0]);
+                let mut found = around.look(cells, row, own, near, halves);
+                let neighbours =
+                    around.places[..found].iter().zip(&around.squares).filter(|&(&at, &square)| {
+                        let reach = NEIGHBOURS * (own_radius + radius[cells.number[at] as usize]);
+                        square < reach * reach
+                    });
+                let neighbours = neighbours.count();
+                around.neighbours += neighbours as u64;
+                match around.numbers.get_mut(neighbours) {
+                    Some(number) => *number += 1,
+                    None => around.beyond += 1,
+                }
+                for reach in [looked_for[1], looked_for[2]] {
+                    if found < wanted && near < reach {
+                        found = around.look(cells, row, own, reach, halves);
+                    }
+                }
+                if found < wanted {
+                    found = around.look_at_all(domain, discs, cells.number[own] as usize);
+                }
+                let [x, y] = around.hexatic(found);
+                if found > 0 {
+                    let order = (x * x + y * y).sqrt();
+                    around.orders[((order * ORDERS as f64) as usize).min(ORDERS - 1)] += 1;
+                    around.ordered += 1;
+                    around.order[0] += x;
+                    around.order[1] += y;
+                    around.order[2] += order;
+                }
+                if keeps_each {
+                    around.each.push((cells.number[own], [x, y]));
+                }
+            }
+        }
+    }
+}
+
+impl Around {
+    /// Nothing is seen yet.
+    fn begin(&mut self) {
+        self.numbers.fill(0);
+        self.orders.fill(0);
+        (self.beyond, self.neighbours, self.ordered) = (0, 0, 0);
+        self.order = [0.0; 3];
+        self.each.clear();
+        self.reach = f64::NAN;
+    }
+
+    /// Notes the discs nearer than `reach` (length) to a disc, itself left out and each by its nearest image, which is within half a
+    /// side: how many. Entries that follow are at no finite distance.
+    #[inline(always)]
+    fn look(
+        &mut self,
+        cells: &Cells,
+        row: usize,
+        own: usize,
+        reach: f64,
+        [half_x, half_y]: [f64; 2],
+    ) -> usize {
+        let (x, y) = (cells.x[own], cells.y[own]);
+        // Mostly the same for one disc after the other.
+        if reach != self.reach {
+            self.reach = reach;
+            self.halves.clear();
+            self.halves.extend(cells.halves(reach));
+        }
+        let rows = self.halves.len() as i64 - 1;
+        let mut found = 0;
+        for up in -rows..=rows {
+            let span = cells.span(row, up, x, self.halves[up.unsigned_abs() as usize]);
+            if self.squares.len() < found + span.len() + AT_ONCE {
+                let room = 2 * (found + span.len() + AT_ONCE);
+                for column in [&mut self.squares, &mut self.right, &mut self.up] {
+                    column.resize(room, 0.0);
+                }
+                self.places.resize(room, 0);
+            }
+            for begin in (span.start..span.end).step_by(AT_ONCE) {
+                let [right, up, squares] = ways(cells, begin, [x, y]);
+                // Written in any case, one over the other where it is too far.
+                for at in 0..AT_ONCE.min(span.end - begin) {
+                    self.squares[found] = squares[at];
+                    self.right[found] = right[at];
+                    self.up[found] = up[at];
+                    self.places[found] = begin + at;
+                    let is_nearest = (-half_x <= right[at]) & (right[at] < half_x);
+                    let is_nearest = is_nearest & (-half_y <= up[at]) & (up[at] < half_y);
+                    let is_near = squares[at] < reach * reach && begin + at != own;
+                    found += usize::from(is_near & is_nearest);
+                }
+            }
+        }
+        self.squares[found..found + AT_ONCE].fill(f64::INFINITY);
+        found
+    }
+
+    /// The same of all other discs, however far.
+    fn look_at_all(&mut self, domain: &Domain, discs: &Discs, own: usize) -> usize {
+        for column in [&mut self.squares, &mut self.right, &mut self.up] {
+            column.clear();
+        }
+        for other in (0..discs.x.len()).filter(|&other| other != own) {
+            let [from, to] = [own, other].map(|disc| [discs.x[disc], discs.y[disc]]);
+            let [x, y] = domain.displacement(from, to);
+            self.right.push(x);
+            self.up.push(y);
+            self.squares.push(x * x + y * y);
+        }
+        let found = self.squares.len();
+        for column in [&mut self.squares, &mut self.right, &mut self.up] {
+            column.extend([f64::INFINITY; AT_ONCE]);
+        }
+        self.places.resize(found + AT_ONCE, 0);
+        found
+    }
+
+    /// ⟨exp(6iθ)⟩ over the six nearest of those found; over all where they are fewer, not a number of none.
+    #[inline(always)]
+    fn hexatic(&self, found: usize) -> [f64; 2] {
+        // The smallest so far, in order: each pushes what is larger along.
+        let mut nearest = [f64::INFINITY; NEAREST];
+        for &square in &self.squares[..found] {
+            let mut pushed = square;
+            for held in &mut nearest {
+                (*held, pushed) = if pushed < *held { (pushed, *held) } else { (*held, pushed) };
+            }
+        }
+        let [.., farthest] = nearest.map(|square| if square.is_finite() { square } else { f64::MAX });
+        let ([mut x, mut y], mut count) = ([[0.0; AT_ONCE]; 2], 0);
+        for begin in (0..found).step_by(AT_ONCE) {
+            let [mut right, mut up, mut squares] = [[0.0; AT_ONCE]; 3];
+            right.copy_from_slice(&self.right[begin..begin + AT_ONCE]);
+            up.copy_from_slice(&self.up[begin..begin + AT_ONCE]);
+            squares.copy_from_slice(&self.squares[begin..begin + AT_ONCE]);
+            for at in 0..AT_ONCE {
+                let is_near = squares[at] <= farthest;
+                let part = sixth_power([right[at], up[at]])
+                    .map(|part| part / (squares[at] * squares[at] * squares[at]));
+                x[at] += if is_near { part[0] } else { 0.0 };
+                y[at] += if is_near { part[1] } else { 0.0 };
+                count += usize::from(is_near);
+            }
+        }
+        if count > NEAREST {
+            return self.hexatic_of_equals(found, farthest);
+        }
+        [x, y].map(|lanes| lanes.iter().sum::<f64>() / count as f64)
+    }
+
+    /// The same where several are just as far as the sixth: the first ones of these count.
+    fn hexatic_of_equals(&self, found: usize, farthest: f64) -> [f64; 2] {
+        let nearer = self.squares[..found].iter().filter(|&&square| square < farthest).count();
+        let (mut sum, mut equals) = ([0.0; 2], NEAREST - nearer);
+        for at in 0..found {
+            let square = self.squares[at];
+            if square < farthest || square == farthest && equals > 0 {
+                equals -= usize::from(square == farthest);
+                let [x, y] = sixth_power([self.right[at], self.up[at]]);
+                sum = [sum[0] + x / (square * square * square), sum[1] + y / (square * square * square)];
+            }
+        }
+        sum.map(|part| part / NEAREST as f64)
+    }
+}
+
+/// The largest number of neighbours that has a line: what fits around the largest disc, were all others as the smallest. Discs
+/// overlap a little.
+fn most_neighbours(setting: &Setting) -> usize {
+    let [large, small] = [setting.largest_radius, setting.smallest_radius];
+    let rim = NEIGHBOURS * (large + small) + small;
+    let fit = (rim * rim - large * large) / (small * small);
+    (fit.max(LINES[0]).min(LINES[1]) as usize).min(setting.discs.max(1) - 1)
+}
+
+/// About how many others are looked at for those around a disc of the mean size.
+pub(super) fn candidates(setting: &Setting, discs: usize) -> f64 {
+    let [x, y] = setting.room();
+    let near = (NEIGHBOURS * (0.5 * setting.diameter + setting.largest_radius))
+        .max(Neighbours::looked_for(setting, discs)[0]);
+    (PI * near * near * discs as f64 / (x * y)).min(discs as f64)
+}
+
+/// Numbers of neighbours.
+pub(super) fn neighbour_numbers(setting: &Setting) -> Vec<f64> {
+    (0..=most_neighbours(setting)).map(|number| number as f64).collect()
+}
+
+/// Shares of discs by their number of neighbours; then the mean number, and the share of discs with more than have a line.
+pub(super) fn coordination(discs: &Discs, found: &Neighbours, values: &mut [f64]) {
+    let discs = discs.x.len() as f64;
+    let (shares, whole) = values.split_at_mut(values.len() - 2);
+    for (number, value) in shares.iter_mut().enumerate() {
+        *value = found.sum(|part| part.numbers[number]) / discs;
+    }
+    whole[0] = found.count() as f64 / discs;
+    whole[1] = found.sum(|part| part.beyond) / discs;
+}
+
+/// The middles of the bins of |ψ6|.
+pub(super) fn orders(_: &Setting) -> Vec<f64> {
+    (0..ORDERS).map(|bin| (bin as f64 + 0.5) / ORDERS as f64).collect()
+}
+
+/// The density of |ψ6| of the discs, then |Ψ6|, the order of all of them, and the mean |ψ6|: of discs that have others around them; not
+/// numbers where there are none.
+pub(super) fn hexatic(found: &Neighbours, values: &mut [f64]) {
+    let discs = found.sum(|part| part.ordered);
+    let (densities, whole) = values.split_at_mut(ORDERS);
+    for (bin, value) in densities.iter_mut().enumerate() {
+        *value = found.sum(|part| part.orders[bin]) * ORDERS as f64 / discs;
+    }
+    let [x, y, single] = [0, 1, 2].map(|sum| found.sum(|part| part.order[sum]) / discs);
+    whole[0] = x.hypot(y);
+    whole[1] = single;
+}
+
+/// (x + iy)⁶.
+#[inline(always)]
+fn sixth_power([x, y]: [f64; 2]) -> [f64; 2] {
+    let [a, b] = [x * x - y * y, 2.0 * x * y];
+    let [c, d] = [a * a - b * b, 2.0 * a * b];
+    [a * c - b * d, a * d + b * c]
+}
