@@ -225,11 +225,6 @@ mod tests {
     fn the_baseline_charges_every_operation_of_every_element() {
         assert_eq!(host().baseline(&sums(3), 40, Execution::Eager), 0.5 * 120.0);
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
 
     /// One sample has no spread, whatever the load; a load above the free cores is no quiet machine.
     #[test]
