@@ -146,13 +146,11 @@ fn an_unusable_cache_costs_no_plan() {
     let folder = folder.path();
     assert!(begin(folder).status.success());
     let kept = fs::read_dir(folder.join("cache/stripmine/explain")).unwrap().next().unwrap().unwrap().path();
-    for make in [
-        &|file: &Path| {
-            assert!(Command::new("mkfifo").arg(file).status().unwrap().success()) as &dyn Fn(&Path)
-        },
-        &|file: &Path| symlink("/dev/zero", file).unwrap(),
-        &|file: &Path| fs::write(file, vec![b' '; 5 << 20]).unwrap(),
-    ] {
+    let pipe = |file: &Path| assert!(Command::new("mkfifo").arg(file).status().unwrap().success());
+    let endless = |file: &Path| symlink("/dev/zero", file).unwrap();
+    let long = |file: &Path| fs::write(file, vec![b' '; 5 << 20]).unwrap();
+    let all: [&dyn Fn(&Path); 3] = [&pipe, &endless, &long];
+    for make in all {
         fs::remove_file(&kept).unwrap();
         make(&kept);
         warned(&begin(folder));
