@@ -6,6 +6,9 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
+/// A change of a value.
+type Forgery<'f> = &'f dyn Fn(&Value) -> Value;
+
 /// The exit code and what is said of a study in a folder.
 fn study(arguments: &[&str], out: &Path) -> (Option<i32>, String) {
     let mut command = Command::new(env!("CARGO_BIN_EXE_stripmine"));
@@ -76,7 +79,7 @@ fn forged_lines_are_measured_again() {
         assert_eq!(code, Some(0), "{name}: {said}");
         let journal = out.join("journal.jsonl");
         let own = fs::read_to_string(&journal).unwrap();
-        let forgeries: [(&str, &dyn Fn(&Value) -> Value); 5] = [
+        let forgeries: [(&str, Forgery); 5] = [
             ("20000001", &|value| changed(value, &|_| json!(20_000_001), false)),
             ("-1", &|value| changed(value, &|_| json!(-1), false)),
             ("1e300", &|value| {
