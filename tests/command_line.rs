@@ -71,6 +71,34 @@ fn the_printed_text_is_benched_and_named_by_its_equations() {
     }
 }
 
+/// Whatever finds contacts in a run of a preset, the programs of the lattice are counted, and where the run has others that is said.
+#[test]
+fn every_preset_with_contacts_on_a_lattice_is_counted() {
+    let mut said_so = 0;
+    for preset in
+        ["bench", "dense-gas", "dense-gas-printed", "pipe-small", "pipe-small-printed", "shaken-box"]
+    {
+        let of = |more: &[&str]| json(&[&["scene", "programs", preset, "--json"], more].concat());
+        let (own, on_lattice) = (of(&[]), of(&["--set", "search.by=lattice"]));
+        let parts: Vec<&str> =
+            own["counted"].as_array().unwrap().iter().map(|it| it["part"].as_str().unwrap()).collect();
+        assert!(parts.contains(&"predictor") && parts.contains(&"forces"), "{preset}: {parts:?}");
+        assert_eq!(own["counted"], on_lattice["counted"], "{preset}");
+        assert!(on_lattice["note"].is_null());
+        let checked = json(&["scene", "check", preset, "--json"]);
+        let is_by_lattice = checked["choices"].as_array().unwrap().iter().all(|choice| {
+            let choice = choice.as_str().unwrap();
+            !choice.starts_with("search.by") || choice.starts_with("search.by = \"lattice\"")
+        });
+        assert_eq!(own["note"].is_null(), is_by_lattice, "{preset}: {}", checked["choices"]);
+        said_so += usize::from(!is_by_lattice);
+    }
+    assert!(said_so > 1, "{said_so}");
+    let listing = stripmine(&["scene", "programs", "pipe-small", "--listing"]);
+    assert!(String::from_utf8_lossy(&listing.stdout).starts_with("; the programs are those of search.by"));
+    assert_eq!(stripmine(&["scene", "programs", "hard-disks"]).status.code(), Some(2));
+}
+
 /// What a scene does not need is not executed.
 #[test]
 fn simpler_scenes_cost_less() {

@@ -77,6 +77,178 @@ fn what_was_measured_is_kept_for_this_host_and_may_be_forgotten() {
     assert!(!file.exists());
 }
 
+/// A file that is there is refused before trials, whatever it is; with --overwrite a link is replaced, not followed, and what is no file stays.
+#[cfg(unix)]
+#[test]
+fn a_plan_is_not_written_over_what_is_there() {
+    use std::os::unix::fs::{FileTypeExt, symlink};
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let scene = folder.join("scene.toml");
+    let mut show = Command::cargo_bin("stripmine").unwrap();
+    fs::write(&scene, show.args(["scene", "show", "hard-disks"]).output().unwrap().stdout).unwrap();
+    let own = fs::read(&scene).unwrap();
+    fs::write(folder.join("mine.txt"), "mine").unwrap();
+    fs::create_dir(folder.join("folder")).unwrap();
+    symlink("mine.txt", folder.join("link.toml")).unwrap();
+    symlink("nowhere", folder.join("broken.toml")).unwrap();
+    assert!(Command::new("mkfifo").arg(folder.join("pipe")).status().unwrap().success());
+    let to = |file: &str, more: &[&str]| {
+        explain(folder, &[&["scene.toml"], &GAS[1..], &["--error", "5%", "--write", file], more].concat())
+    };
+    for (file, more, words) in [
+        ("scene.toml", &[][..], &["scene.toml", "--overwrite"][..]),
+        ("mine.txt", &[], &["mine.txt", "--overwrite"]),
+        ("link.toml", &[], &["link.toml", "--overwrite"]),
+        ("broken.toml", &[], &["broken.toml", "--overwrite"]),
+        ("pipe", &[], &["pipe", "--overwrite"]),
+        ("folder", &["--overwrite"], &["folder", "not an ordinary file"]),
+        ("pipe", &["--overwrite"], &["pipe", "not an ordinary file"]),
+    ] {
+        ends_with(&to(file, more), 2, words);
+        // No trial was made.
+        assert!(!folder.join("cache").exists(), "{file}");
+    }
+    ends_with(&to("no/such/plan.toml", &[]), 5, &["no/such/plan.toml"]);
+    assert!(!folder.join("cache").exists());
+    assert_eq!(fs::read(&scene).unwrap(), own);
+    ends_with(&to("link.toml", &["--overwrite"]), 0, &[]);
+    assert!(fs::symlink_metadata(folder.join("link.toml")).unwrap().is_file());
+    assert!(fs::read_to_string(folder.join("link.toml")).unwrap().starts_with("# By stripmine explain"));
+    assert_eq!(fs::read_to_string(folder.join("mine.txt")).unwrap(), "mine");
+    assert!(fs::metadata(folder.join("pipe")).unwrap().file_type().is_fifo());
+    // Nothing temporary is left.
+    let names: Vec<_> = fs::read_dir(folder).unwrap().map(|it| it.unwrap().file_name()).collect();
+    assert_eq!(names.len(), 7, "{names:?}");
+}
+
+/// A cache that cannot be read or written is warned of, and costs no plan: a file in its place, a pipe or an endless device under the name of what was kept.
+#[cfg(unix)]
+#[test]
+fn an_unusable_cache_costs_no_plan() {
+    use std::os::unix::fs::symlink;
+    let begin = |folder: &Path| {
+        let mut command = Command::cargo_bin("stripmine").unwrap();
+        command.current_dir(folder).env("XDG_CACHE_HOME", folder.join("cache")).arg("explain").args(GAS);
+        command.args(["--error", "5%", "--json"]).output().unwrap()
+    };
+    let warned = |output: &Output| {
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success() && said.contains("warning: trials are not kept"), "{said}");
+        let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert!(found["mean"][0].as_f64().unwrap() > 3.0, "{found:#}");
+    };
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("cache"), "mine").unwrap();
+    warned(&begin(folder.path()));
+    assert_eq!(fs::read_to_string(folder.path().join("cache")).unwrap(), "mine");
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    assert!(begin(folder).status.success());
+    let kept = fs::read_dir(folder.join("cache/stripmine/explain")).unwrap().next().unwrap().unwrap().path();
+    let pipe = |file: &Path| assert!(Command::new("mkfifo").arg(file).status().unwrap().success());
+    let endless = |file: &Path| symlink("/dev/zero", file).unwrap();
+    let long = |file: &Path| fs::write(file, vec![b' '; 5 << 20]).unwrap();
+    let all: [&dyn Fn(&Path); 3] = [&pipe, &endless, &long];
+    for make in all {
+        fs::remove_file(&kept).unwrap();
+        make(&kept);
+        warned(&begin(folder));
+        // It is kept again in the place of that.
+        assert!(fs::symlink_metadata(&kept).unwrap().is_file());
+    }
+}
+
+/// A folder that a variable names relative to wherever one is, is none.
+#[test]
+fn a_relative_cache_folder_is_ignored() {
+    let folder = tempfile::tempdir().unwrap();
+    let home = folder.path().join("home");
+    fs::create_dir(&home).unwrap();
+    let mut command = Command::cargo_bin("stripmine").unwrap();
+    command.current_dir(folder.path()).env("XDG_CACHE_HOME", "cache").env("HOME", &home).arg("explain");
+    ends_with(&command.args(GAS).args(["--error", "5%", "--quiet"]).output().unwrap(), 0, &[]);
+    assert!(!folder.path().join("cache").exists());
+    assert_eq!(fs::read_dir(home.join(".cache/stripmine/explain")).unwrap().count(), 1);
+}
+
+/// Quantities without scatter are kept too: infinitely many degrees of freedom are found again.
+#[test]
+fn what_does_not_vary_is_found_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    // The temperature of elastic hard discs is constant, and the energy of two bodies should be.
+    for (scene, quantity) in [("hard-disks", "temperature"), ("kepler", "energy_error")] {
+        let asked = [scene, "--of", quantity, "--json"];
+        let found = plan(&explain(folder, &[&asked[..], &["--seconds", "1"]].concat()));
+        let again = plan(&explain(folder, &[&asked[..], &["--estimate"]].concat()));
+        assert!(again["origin"].as_str().unwrap().starts_with("kept from"), "{again:#}");
+        assert_eq!(again["mean"], found["mean"]);
+        assert!(
+            again["time"].as_f64().unwrap() > 0.0 && again["expected"]["most"].as_f64().is_some(),
+            "{again:#}"
+        );
+    }
+}
+
+/// Files of the user in the cache stay.
+#[test]
+fn only_what_was_kept_is_forgotten() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    plan(&explain(folder, &[&GAS[..], &["--error", "5%", "--json"]].concat()));
+    let cache = folder.join("cache/stripmine/explain");
+    let key = "0123456789abcdef01234567.json";
+    let mine =
+        [("mine.json", "{\"scene\":\"mine\"}"), (key, "{\"scene\":\"another\"}"), ("notes.txt", "mine")];
+    mine.iter().for_each(|(name, text)| fs::write(cache.join(name), text).unwrap());
+    let forgotten = explain(folder, &["--forget"]);
+    assert_eq!(String::from_utf8_lossy(&forgotten.stdout), "removed: 1\n");
+    let mut left: Vec<_> = fs::read_dir(&cache).unwrap().map(|it| it.unwrap().file_name()).collect();
+    left.sort();
+    assert_eq!(left, [key, "mine.json", "notes.txt"]);
+    assert!(mine.iter().all(|(name, text)| fs::read_to_string(cache.join(name)).unwrap() == *text));
+}
+
+/// A scene is read once: trials, the plan and its file are of what it was at the beginning.
+#[test]
+fn a_scene_that_changes_meanwhile_is_that_of_the_beginning() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let scene = folder.join("scene.toml");
+    let mut show = Command::cargo_bin("stripmine").unwrap();
+    fs::write(&scene, show.args(["scene", "show", "hard-disks"]).output().unwrap().stdout).unwrap();
+    let mut command = Command::cargo_bin("stripmine").unwrap();
+    command.current_dir(folder).env("XDG_CACHE_HOME", folder.join("cache")).args(["explain", "scene.toml"]);
+    command
+        .args(&GAS[1..])
+        .args(["--error", "5%", "--write", "plan.toml"])
+        .stderr(std::process::Stdio::piped());
+    let mut running = command.spawn().unwrap();
+    // Its first words are said once it has read the scene.
+    let mut said = std::io::BufReader::new(running.stderr.take().unwrap());
+    std::io::BufRead::read_line(&mut said, &mut String::new()).unwrap();
+    fs::write(&scene, "none").unwrap();
+    std::io::copy(&mut said, &mut std::io::sink()).unwrap();
+    assert!(running.wait().unwrap().success());
+    assert!(fs::read_to_string(folder.join("plan.toml")).unwrap().contains("hard-disks"));
+}
+
+/// A plan of more than a minute is not carried out where nobody can be asked, but printed.
+#[test]
+fn a_long_plan_is_carried_out_only_if_the_user_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let long = explain(folder, &[&GAS[..], &["--error", "0.02%", "--analyze"]].concat());
+    ends_with(&long, 2, &["was not carried out", "takes about", "--yes"]);
+    let page = String::from_utf8_lossy(&long.stdout).into_owned();
+    assert!(
+        page.contains("stripmine run hard-disks") && page.contains("expected: compressibility"),
+        "{page}"
+    );
+    ends_with(&explain(folder, &["hard-disks", "--yes"]), 2, &["--analyze"]);
+}
+
 /// What `auto` becomes by what is kept of a scene that is alike is said, stands in the resolved scene, and is what a resumption goes on with; nothing that
 /// the scene states is changed, and a scene that is not alike is run as ever.
 #[test]
@@ -149,7 +321,10 @@ fn what_cannot_be_planned_is_refused() {
     ends_with(
         &bad(&kepler),
         4,
-        &["no way to run the scene is known to come to an error of 1e-30", "at best"],
+        &[
+            "no configuration tried reaches an error of 1e-30 of energy_error",
+            "the best error that is known is",
+        ],
     );
 }
 

@@ -20,9 +20,10 @@ fn succeeds(output: &Output) -> Value {
 }
 
 fn map(scene: &str, out: &Path, more: &[&str]) -> Output {
-    let begin = ["chart", "stability", scene, "--json", "--out", out.to_str().unwrap(), "--size", "6"];
+    let begin = ["chart", "stability", scene, "--json", "--out", out.to_str().unwrap()];
+    let size = if more.contains(&"--size") { &[][..] } else { &["--size", "6"] };
     let rest = ["--seeds", "2", "--tolerance", "0.2", "--budget", "4"];
-    stripmine(&[&begin[..], &rest, more].concat())
+    stripmine(&[&begin[..], size, &rest, more].concat())
 }
 
 fn classes(data: &Value) -> Vec<&str> {
@@ -125,6 +126,39 @@ fn maps_that_cannot_be_are_refused_with_what_may_be() {
         "{}",
         said(&output)
     );
+}
+
+/// Without `--over` the first is varied that the scene has a value of; a method without steps is refused, and the help says so.
+#[test]
+fn every_method_with_steps_has_a_map_without_an_axis() {
+    let folder = tempfile::tempdir().unwrap();
+    let small = ["particles.count=64", "domain.sides=[10.0, 10.0]", "run.time=1"];
+    let small: Vec<&str> = small.iter().flat_map(|set| ["--set", set]).collect();
+    for (scene, more, parameter) in [
+        ("langevin-dense", &small[..], "strength"),
+        ("kepler", &["--set", "run.time=6.28"], "eccentricity"),
+        ("two-discs", &["--set", "run.time=0.5"], "stiffness"),
+    ] {
+        let data = succeeds(&map(scene, &folder.path().join(scene), &[&["--size", "3"], more].concat()));
+        assert_eq!(data[scene]["parameter"]["name"], parameter);
+    }
+    let hard = map("hard-disks", &folder.path().join("hard"), &[]);
+    assert_eq!(hard.status.code(), Some(2));
+    assert!(said(&hard).contains("hard-disks take no time steps"), "{}", said(&hard));
+    let help = stripmine(&["chart", "stability", "--help"]);
+    assert!(String::from_utf8_lossy(&help.stdout).contains("Scenes of hard-disks take no steps"));
+}
+
+/// A map that does not fit into its time is refused with the time that it takes.
+#[test]
+fn a_map_for_which_there_is_too_little_time_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let large = ["--set", "particles.count=100000", "--set", "run.time=100"];
+    let out = folder.path().join("map");
+    let begin = ["chart", "stability", "dense-gas", "--budget", "1", "--out", out.to_str().unwrap()];
+    let refused = stripmine(&[&begin[..], &large].concat());
+    assert_eq!(refused.status.code(), Some(2), "{}", said(&refused));
+    assert!(said(&refused).contains("the smallest map of the scene takes about"), "{}", said(&refused));
 }
 
 /// Discs so soft that they pass through each other, whatever the step.

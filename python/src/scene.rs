@@ -149,7 +149,8 @@ impl Scene {
         json::to_python(py, &Value::Object(data))
     }
 
-    /// The whole-array operations of a step, as `stripmine scene programs --json` counts them.
+    /// The whole-array operations of a step, as `stripmine scene programs --json` counts them: by the programs of the lattice, whatever finds contacts or pairs
+    /// in a run of the scene. No rows where a step has no vector programs.
     fn counts(&self, py: Python<'_>) -> PyResult<Table> {
         let model = &self.checked.prepared.model;
         let counted = computed(py, || Counted::of(&model.programs()))?;

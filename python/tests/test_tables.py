@@ -52,6 +52,13 @@ class Tables(unittest.TestCase):
         self.assertTrue((counts["computing"] <= counts["operations"]).all())
         self.assertEqual(len(stripmine.scene("hard-disks").counts()), 0)
 
+    def test_scenes_by_lists_are_counted_on_the_lattice(self):
+        for preset in ["pipe-small", "dense-gas", "shaken-box", "two-discs"]:
+            own = stripmine.scene(preset).counts()
+            by_lattice = stripmine.scene(preset, {"search.by": "lattice"}).counts()
+            self.assertGreater(int(own["operations"].sum()), 100, preset)
+            self.assertEqual(list(own["operations"]), list(by_lattice["operations"]), preset)
+
     @unittest.skipUnless(there("pandas"), "there is no pandas")
     def test_pandas_reads_a_table(self):
         import pandas

@@ -80,7 +80,8 @@ struct WorkPrecisionVerb {
     out: Option<PathBuf>,
 }
 
-/// Where a scene works, over the step and a second parameter: edges by bisection, failures by kind, theory beside them
+/// Where a scene works, over the step and a second parameter: edges by bisection, failures by kind, theory beside them. Scenes of hard-disks take no steps, and have
+/// no such map
 #[derive(Args)]
 struct StabilityVerb {
     /// A preset's name, or a scene file
@@ -88,22 +89,23 @@ struct StabilityVerb {
     /// Overrides a value; may be given several times
     #[arg(long = "set", value_name = "SECTION.KEY=VALUE")]
     overrides: Vec<String>,
-    /// What is varied beside the step, such as stiffness, damping, density, speed; one that does not exist names them all
-    #[arg(long, value_name = "NAME", default_value = "stiffness")]
-    over: String,
+    /// What is varied beside the step: stiffness, damping, density or speed of lattice-md, strength, temperature or friction of langevin, eccentricity or softening
+    /// of nbody, and more; one that does not exist names them all. By default the first that the scene has a value of
+    #[arg(long, value_name = "NAME")]
+    over: Option<String>,
     /// From where to where it goes; a range about the scene's own value by default
     #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"])]
     range: Option<Vec<f64>>,
-    /// Values, and steps
+    /// Values, and steps, at most
     #[arg(long, default_value_t = 24, value_parser = clap::value_parser!(u16).range(SIZE))]
     size: u16,
-    /// Seeds of the edges
+    /// Seeds of the edges, at most
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(SEEDS))]
     seeds: u16,
     /// Edges are found within this part of the step
     #[arg(long, default_value_t = 0.05, value_parser = part)]
     tolerance: f64,
-    /// Processor seconds that it may take about; runs are shorter than the scene where it is not enough
+    /// Processor seconds that it may take; where these are not enough, there are fewer seeds, values and steps, and shorter runs
     #[arg(long, default_value_t = 300, value_parser = clap::value_parser!(u32).range(BUDGET))]
     budget: u32,
     /// Folder for data, tables and figures; the scene's name with `.stability` by default. A study that was interrupted goes on
@@ -188,7 +190,7 @@ impl StabilityVerb {
     fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
         let subject = Subject::load(&self.scene, &self.overrides, methods)?;
         let range = self.range.as_ref().map(|ends| [ends[0], ends[1]]);
-        let over = Over::of(&subject, &self.over, range)?;
+        let over = Over::of(&subject, self.over.as_deref(), range)?;
         let effort = stability::Effort {
             budget: f64::from(self.budget),
             size: self.size.into(),
@@ -198,7 +200,11 @@ impl StabilityVerb {
         let again = range.map_or(String::new(), |[low, high]| format!(" --range {low} {high}"));
         let options = format!(
             "--over {}{again} --size {} --seeds {} --tolerance {} --budget {}",
-            self.over, self.size, self.seeds, self.tolerance, self.budget
+            over.name(),
+            self.size,
+            self.seeds,
+            self.tolerance,
+            self.budget
         );
         let place = Place { name: map_section::NAME, scene: &self.scene, out: self.out.as_deref() };
         place.study(common, &subject, &options, |journal, progress, stem, again| {

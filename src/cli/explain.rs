@@ -1,19 +1,24 @@
 //! `stripmine explain`: which way to run a scene, which step and how long, for an error that can be borne.
 
-use crate::console::{Common, Failure, clear_progress, print, print_json, say};
+use crate::console::{Common, Failure, clear_progress, print, print_json, say, warn};
 use crate::report::{Cell, Rows, terminal};
 use crate::study::explain::{
-    ExplainError, Kept, Plan, SECONDS, Sample, Span, Target, explain, page, sample, with_unit,
+    ExplainError, Kept, KeptError, Plan, SECONDS, Sample, Span, Target, explain, page, sample, seconds,
+    with_unit,
 };
 use crate::study::{Case, StudyError};
 use clap::Args;
 use serde::Serialize;
+use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
 use stripmine_physics::averages::Outcome;
+use stripmine_physics::io::replace::{folder_of, temporary, written_beside};
 use stripmine_physics::memory::peak;
-use stripmine_physics::method::{Methods, load};
+use stripmine_physics::method::Methods;
 use stripmine_physics::number::significant;
 use stripmine_physics::quoted;
+use stripmine_physics::reported::{Class, FilePlace, Reported};
 use stripmine_physics::scene::Width;
 use stripmine_physics::signals;
 
@@ -38,22 +43,58 @@ pub(super) struct ExplainVerb {
     /// Runs nothing: by what is kept of the scene
     #[arg(long, conflicts_with = "patient")]
     estimate: bool,
-    /// Trials of a minute in the place of some seconds
+    /// Trials of up to a minute in the place of ten seconds
     #[arg(long)]
     patient: bool,
-    /// Seconds of trials
+    /// Seconds of trials at most
     #[arg(long, conflicts_with_all = ["estimate", "patient"], value_parser = clap::value_parser!(u16).range(1..=3600))]
     seconds: Option<u16>,
-    /// Carries out the plan, and prints what was expected beside what came out
+    /// Carries out one run of the plan, and prints what was expected beside what came out; asks first where that takes above a minute
     #[arg(long)]
     analyze: bool,
+    /// Carries out also a plan of more than a minute, without asking
+    #[arg(long, requires = "analyze")]
+    yes: bool,
     /// Writes the plan as a scene file
     #[arg(long, value_name = "FILE")]
     write: Option<PathBuf>,
+    /// Write over a file that is there
+    #[arg(long, requires = "write")]
+    overwrite: bool,
     /// Removes what is kept of scenes on this host
     #[arg(long)]
     forget: bool,
 }
+
+/// Why a plan is not written or not carried out.
+#[derive(Debug, thiserror::Error)]
+enum Refusal {
+    /// There is a file.
+    #[error("{} is there already: choose another --write, or add --overwrite to lose it", quoted::path(.0))]
+    Exists(PathBuf),
+    /// There is something that is no file.
+    #[error("{} is not an ordinary file: choose another --write", quoted::path(.0))]
+    NoFile(PathBuf),
+    /// It takes long, and nobody said that it may.
+    #[error("the plan was not carried out: a run of it takes about {}\n  help: add --yes to carry it out", seconds(*.0))]
+    Long(f64),
+}
+
+impl Reported for Refusal {
+    fn class(&self) -> Class {
+        Class::Usage
+    }
+
+    fn place(&self) -> Option<FilePlace> {
+        match self {
+            Refusal::Exists(file) | Refusal::NoFile(file) => Some(FilePlace::at(file)),
+            Refusal::Long(_) => None,
+        }
+    }
+}
+
+/// Plans that take longer are carried out only if the user says so (s).
+const LONG: f64 = 60.0;
 
 fn above_zero(text: &str) -> Result<f64, String> {
     let is_time = |seconds: &f64| seconds.is_finite() && *seconds > 0.0;
@@ -89,6 +130,16 @@ struct Said {
     plan: Plan,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     analyzed: Vec<Compared>,
+    /// Where the run that was analyzed ended before its time.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    cut_off: Option<String>,
+}
+
+/// What came of carrying out a plan.
+#[derive(Default)]
+struct Analysis {
+    rows: Vec<Compared>,
+    cut_off: Option<String>,
 }
 
 impl ExplainVerb {
@@ -99,6 +150,8 @@ impl ExplainVerb {
             print(&format!("removed: {count}\n"))?;
         }
         let Some(scene) = &self.scene else { return Ok(()) };
+        // Before trials take their time.
+        self.may_write()?;
         let case = Case::load(scene, &self.overrides, methods)?;
         let target = Target::of(&case, self.quantity.as_deref(), self.error).map_err(failed)?;
         let target = Target { within: self.within, ..target };
@@ -108,31 +161,77 @@ impl ExplainVerb {
             _ => self.seconds.map_or(SECONDS[0], f64::from),
         };
         if !common.quiet && seconds > 0.0 {
-            say(format_args!("trials of about {seconds} s, unless they are kept"));
+            say(format_args!("trials of at most about {seconds} s, unless they are kept"));
         }
-        let plan = explain(&case, &target, seconds, &kept, signals::asked()).map_err(failed)?;
-        clear_progress();
-        if let Some(file) = &self.write {
-            self.written(&plan, file, scene, methods)?;
+        let notice = |error: &KeptError| {
             if !common.quiet {
-                say(format_args!("written: {}", quoted::path(file)));
+                warn(format_args!("trials are not kept, or not found again: {error}"));
             }
+        };
+        let plan = explain(&case, &target, seconds, &kept, signals::asked(), &notice).map_err(failed)?;
+        clear_progress();
+        if !common.json {
+            print(&page(&plan))?;
         }
-        let analyzed = if self.analyze { self.analyzed(&plan, &target, scene, methods)? } else { vec![] };
+        let written = self.write.as_ref().map_or(Ok(()), |file| self.written(&plan, file, &case));
+        if let (Some(file), Ok(()), false) = (&self.write, &written, common.quiet) {
+            say(format_args!("written: {}", quoted::path(file)));
+        }
+        let (analysis, refused) = match self.analyze.then(|| self.may_analyze(&plan)) {
+            None => (Analysis::default(), Ok(())),
+            Some(Err(refusal)) => (Analysis::default(), Err(refusal)),
+            Some(Ok(())) => (Self::analyzed(&plan, &target, &case)?, Ok(())),
+        };
+        let Analysis { rows, cut_off } = analysis;
         if common.json {
-            return print_json(&Said { plan, analyzed });
+            print_json(&Said { plan, analyzed: rows, cut_off })?;
+        } else if !rows.is_empty() {
+            print(&table(&rows, cut_off))?;
         }
-        print(&page(&plan))?;
-        if analyzed.is_empty() { Ok(()) } else { print(&table(&analyzed)) }
+        if signals::asked().load(Ordering::SeqCst) {
+            return Err(Failure::Stopped(signals::End::Whole));
+        }
+        written.and(refused.map_err(Failure::from))
     }
 
-    /// The overrides of the plan.
-    fn overrides(&self, plan: &Plan) -> Vec<String> {
-        [&self.overrides[..], &plan.overrides].concat()
+    /// That the plan may be written where it is to be, and that this can be done.
+    fn may_write(&self) -> Result<(), Failure> {
+        let Some(file) = &self.write else { return Ok(()) };
+        match file.symlink_metadata() {
+            Ok(_) if !self.overwrite => return Err(Refusal::Exists(file.clone()).into()),
+            // A link is replaced, not followed.
+            Ok(there) if !there.is_file() && !there.is_symlink() => {
+                return Err(Refusal::NoFile(file.clone()).into());
+            }
+            _ => {}
+        }
+        temporary()
+            .tempfile_in(folder_of(file))
+            .map(drop)
+            .map_err(Failure::writing(file.display().to_string()))
     }
 
-    fn written(&self, plan: &Plan, file: &Path, scene: &str, methods: Methods) -> Result<(), Failure> {
-        let (prepared, _) = load(scene, &self.overrides(plan), methods)?;
+    /// That the plan may be carried out: its user says so where it takes long.
+    fn may_analyze(&self, plan: &Plan) -> Result<(), Refusal> {
+        let likely = plan.seconds.likely;
+        if likely <= LONG || self.yes {
+            return Ok(());
+        }
+        let refusal = || Err(Refusal::Long(likely));
+        if !io::stdin().is_terminal() || !io::stderr().is_terminal() {
+            return refusal();
+        }
+        let mut answer = String::new();
+        // Where nothing can be asked, the answer is no.
+        let _ =
+            write!(io::stderr(), "a run of the plan takes about {}: carry it out? [y/N] ", seconds(likely));
+        let _ = io::stdin().read_line(&mut answer);
+        if matches!(answer.trim(), "y" | "Y" | "yes") { Ok(()) } else { refusal() }
+    }
+
+    /// Writes the whole file, or leaves what was there.
+    fn written(&self, plan: &Plan, file: &Path, case: &Case) -> Result<(), Failure> {
+        let prepared = case.prepared_with(&plan.overrides)?;
         let seeds = if plan.seeds > 1 { format!(" --seeds {}", plan.seeds) } else { String::new() };
         let text = format!(
             "# By stripmine explain, for {}: run it with{} stripmine run FILE{seeds}\n{}",
@@ -140,21 +239,33 @@ impl ExplainVerb {
             if seeds.is_empty() { "" } else { " its seeds:" },
             prepared.scene
         );
-        std::fs::write(file, text).map_err(Failure::writing("the plan"))
+        let fail = || Failure::writing(file.display().to_string());
+        let beside = written_beside(file, |out| out.write_all(text.as_bytes())).map_err(fail())?;
+        // What has come there meanwhile stays.
+        let placed = if self.overwrite { beside.persist(file) } else { beside.persist_noclobber(file) };
+        placed.map(drop).map_err(|refused| fail()(refused.error))
     }
 
     /// Carries out one run of the plan.
-    fn analyzed(
-        &self,
-        plan: &Plan,
-        target: &Target,
-        scene: &str,
-        methods: Methods,
-    ) -> Result<Vec<Compared>, Failure> {
-        let (prepared, entry) = load(scene, &self.overrides(plan), methods)?;
-        let observed = (entry.quantities, target.place);
+    fn analyzed(plan: &Plan, target: &Target, case: &Case) -> Result<Analysis, Failure> {
+        let prepared = case.prepared_with(&plan.overrides)?;
+        let observed = (case.entry.quantities, target.place);
+        // Interrupted, it ends early and says so.
+        let held = signals::hold();
         let found: Sample = sample(&prepared, observed, Span::Time(plan.time, None), signals::asked())
             .map_err(Failure::from)?;
+        drop(held);
+        if let Some(cut_off) = found.cut_off(plan.time) {
+            let wall = Compared {
+                what: "wall time of a run".to_owned(),
+                estimated: plan.seconds.likely,
+                actual: found.seconds,
+                unit: "s".to_owned(),
+                is_within: false,
+                advice: "the run was cut off",
+            };
+            return Ok(Analysis { rows: vec![wall], cut_off: Some(cut_off) });
+        }
         let seeds = plan.seeds as f64;
         let known = if plan.is_whole { None } else { found.known() };
         let mut rows = vec![Compared {
@@ -211,11 +322,11 @@ impl ExplainVerb {
         if let (Some(known), Some([mean, bar])) = (known, plan.mean) {
             let chance = plan.expected.chance * seeds.sqrt();
             rows.push(Compared {
-                what: format!("chance of {} in a run (95 %)", plan.quantity),
+                what: format!("chance of {} in a run (95 %), at most", plan.quantity),
                 estimated: chance,
                 actual: known.bar,
                 unit: plan.unit.to_owned(),
-                is_within: known.bar <= 1.5 * chance,
+                is_within: known.bar <= chance,
                 advice: "the scatter was hardly known: --patient",
             });
             let allowed = plan.expected.bias.with(known.bar.hypot(bar));
@@ -228,11 +339,11 @@ impl ExplainVerb {
                 advice: "the step or the digits take it off: --patient",
             });
         }
-        Ok(rows)
+        Ok(Analysis { rows, cut_off: None })
     }
 }
 
-fn table(rows: &[Compared]) -> String {
+fn table(rows: &[Compared], cut_off: Option<String>) -> String {
     let number =
         |of: fn(&Compared) -> f64| move |it: &&Compared| with_unit(&significant(of(it), 3), &it.unit);
     let table = Rows::of(rows)
@@ -245,7 +356,8 @@ fn table(rows: &[Compared]) -> String {
         .text("remark", |it| {
             if it.is_within { String::new() } else { format!("outside of what was expected: {}", it.advice) }
         })
-        .table("analyzed", "Expected and come out");
+        .table("analyzed", "Expected and come out")
+        .notes(cut_off.map(|why| format!("The run was {why}: nothing else of it is compared.")));
     terminal::render(&table)
 }
 

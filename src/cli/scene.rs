@@ -172,12 +172,12 @@ fn programs(
     listing: bool,
     common: &Common,
 ) -> Result<(), Failure> {
-    let programs = prepared.model.programs();
+    let (programs, note) = (prepared.model.programs(), prepared.model.programs_note());
     if programs.is_empty() {
         return Err(StudyError::NoPrograms(name.to_owned()).into());
     }
     if !listing {
-        let counted = Programs::of(name, &programs, std::slice::from_ref(machine));
+        let counted = Programs::of(name, &programs, note, std::slice::from_ref(machine));
         return match common.json {
             true => print_json(&counted),
             false => print(&counted.tables().iter().map(terminal::render).collect::<Vec<_>>().join("\n")),
@@ -199,7 +199,8 @@ fn programs(
         let Listing { part, length, n, times, text, .. } = it;
         format!("; {part}: vectors of n = {length} = {n} elements, {times} times a step\n{text}")
     };
-    print(&listings.iter().map(text).collect::<String>())
+    let note = note.map_or(String::new(), |note| format!("; {note}\n"));
+    print(&(note + &listings.iter().map(text).collect::<String>()))
 }
 
 /// A key, as data.

@@ -31,11 +31,19 @@ pub struct Programs {
     pub counted: Vec<Counted>,
     /// What it takes on machines.
     pub clocks: Vec<Clocks>,
+    /// What there is to be said beside: that the scene itself is run otherwise.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub note: Option<String>,
 }
 
 impl Programs {
     /// Counts the programs of a scene, and charges them by every clock of some machines.
-    pub fn of(scene: &str, programs: &[VectorProgram], machines: &[MachineModel]) -> Programs {
+    pub fn of(
+        scene: &str,
+        programs: &[VectorProgram],
+        note: Option<String>,
+        machines: &[MachineModel],
+    ) -> Programs {
         let works: Vec<(Work, &VectorProgram)> =
             programs.iter().map(|it| (Work::of(it.program.as_ref()), it)).collect();
         let charged = |machine: &MachineModel, clock: Clock| {
@@ -53,7 +61,7 @@ impl Programs {
         let clocks =
             machines.iter().flat_map(|machine| Clock::ALL.iter().map(|&clock| charged(machine, clock)));
         let clocks = clocks.collect();
-        Programs { scene: scene.to_owned(), counted: Counted::of(programs), clocks }
+        Programs { scene: scene.to_owned(), counted: Counted::of(programs), clocks, note }
     }
 
     /// Operations of a step.
@@ -76,6 +84,7 @@ impl Programs {
             .count("of them computing", |it| it.computing)
             .count("divisions and roots", |it| it.divisions_and_roots)
             .table("operations", format!("{}: whole-array operations of a step", self.scene))
+            .notes(self.note.clone())
     }
 
     fn clocks_table(&self) -> Table {
@@ -114,7 +123,7 @@ pub fn made(
         .iter()
         .map(|(scene, prepared)| {
             let programs = prepared.model.programs();
-            (Programs::of(scene, &programs, &machines), programs)
+            (Programs::of(scene, &programs, prepared.model.programs_note(), &machines), programs)
         })
         .collect();
     let mut said = all.iter().map(|(counted, _)| {

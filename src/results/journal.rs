@@ -302,17 +302,24 @@ impl Journal {
         self.found(key).is_some()
     }
 
-    /// What a run gave, if it was finished before, and otherwise what it gives now, which is kept.
+    /// What a run gave, if it was finished before and `fits` the study, and otherwise what it gives now, which is kept. A checksum tells damage, not whether a line
+    /// is one of this study: a value that no run of it gives is measured again.
     ///
     /// # Errors
     /// Those of the run, and [`JournalError`] if it cannot be kept.
-    pub fn recall<T, E>(&self, key: &str, run: impl FnOnce() -> Result<T, E>) -> Result<T, E>
+    pub fn recall<T, E>(
+        &self,
+        key: &str,
+        fits: impl FnOnce(&T) -> bool,
+        run: impl FnOnce() -> Result<T, E>,
+    ) -> Result<T, E>
     where
         T: Serialize + DeserializeOwned,
         E: From<JournalError>,
     {
         if let Some(value) = self.found(key)
             && let Ok(value) = serde_json::from_value(value)
+            && fits(&value)
         {
             return Ok(value);
         }
@@ -358,7 +365,7 @@ mod tests {
     }
 
     fn run(journal: &Journal, key: &str, value: u64) -> u64 {
-        journal.recall(key, || Ok::<_, JournalError>(value)).unwrap()
+        journal.recall(key, |_| true, || Ok::<_, JournalError>(value)).unwrap()
     }
 
     #[test]
@@ -391,6 +398,19 @@ mod tests {
             assert!(!is_journal(folder.path()));
             assert_eq!(fs::read_to_string(folder.path().join(NAME)).unwrap(), mine);
         }
+    }
+
+    /// A line may have its right checksum and a value that no run gives.
+    #[test]
+    fn values_that_do_not_fit_are_measured_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let open = || Journal::open(folder.path(), &identity("12345678"), None).unwrap();
+        assert_eq!(run(&open(), "a", 20_000_001), 20_000_001);
+        let fits = |value: &u64| *value < 10;
+        let again = open();
+        assert_eq!(again.recall("a", fits, || Ok::<_, JournalError>(3)).unwrap(), 3);
+        drop(again);
+        assert_eq!(open().recall("a", fits, || Ok::<_, JournalError>(4)).unwrap(), 3);
     }
 
     /// Every part of a line is held by its checksum, and a line of another journal is none of this one.

@@ -120,10 +120,11 @@ mod tests {
                     let rank = team.rank;
                     let journal = Journal::open(folder, &identity, Some(team)).ok()?;
                     let run = |&key: &u64| {
-                        journal.recall(&key.to_string(), || {
+                        let make = || {
                             made.lock().unwrap().push((rank, key));
                             Ok::<_, JournalError>(10 * key)
-                        })
+                        };
+                        journal.recall(&key.to_string(), |_| true, make)
                     };
                     let first = journal.once(|| run(&0)).ok()?;
                     if fails && rank == 0 {

@@ -68,6 +68,16 @@ impl<'s> Averages<'s> {
     }
 }
 
+/// Whether these are means of a run of the scene: all of them, each with as many values as it has, and these are numbers.
+pub fn are_of(subject: &Subject, means: &Means) -> bool {
+    let has_seeds = subject.prepared.seed.is_some();
+    let watched = subject.observed.means.iter().filter(|watched| has_seeds || !watched.fluctuates);
+    let expected: BTreeMap<&str, usize> =
+        watched.map(|watched| (watched.name, 1)).chain([(PROFILE, 2 * BINS)]).collect();
+    means.iter().map(|(name, values)| (name.as_str(), values.len())).eq(expected)
+        && means.values().flatten().all(|value| value.is_finite())
+}
+
 /// The share of the particles in each bin, along one side of the box and then the other, times the bins: 1 where they are even.
 fn profile(state: &State, domain: &Domain) -> Vec<f64> {
     let mut bins = vec![0.0; 2 * BINS];

@@ -7,8 +7,8 @@ use stripmine_physics::scene::{SceneErrors, Values};
 /// A scene with what its method states of the ways to run it.
 pub struct Case {
     what: String,
-    /// Its text, where it is neither a preset nor a file.
-    text: Option<String>,
+    /// Its text, read once: all trials are of the same scene, whatever becomes of the file.
+    text: String,
     overrides: Vec<String>,
     methods: Methods,
     /// Its method.
@@ -27,7 +27,8 @@ impl Case {
     /// # Errors
     /// [`SceneErrors`] if the scene is bad, or takes more memory than there is.
     pub fn load(what: &str, overrides: &[String], methods: Methods) -> Result<Case, SceneErrors> {
-        Case::of(what, None, overrides, methods)
+        let text = Values::text(what, &vocabularies(methods))?;
+        Case::of(what, text, overrides, methods)
     }
 
     /// The scene of a text; `what` is the name that errors give it.
@@ -35,16 +36,11 @@ impl Case {
     /// # Errors
     /// As [`load`](Self::load).
     pub fn parse(what: &str, text: String, methods: Methods) -> Result<Case, SceneErrors> {
-        Case::of(what, Some(text), &[], methods)
+        Case::of(what, text, &[], methods)
     }
 
-    fn of(
-        what: &str,
-        text: Option<String>,
-        overrides: &[String],
-        methods: Methods,
-    ) -> Result<Case, SceneErrors> {
-        let values = values(what, text.as_deref(), overrides, methods)?;
+    fn of(what: &str, text: String, overrides: &[String], methods: Methods) -> Result<Case, SceneErrors> {
+        let values = Values::parse(what, &text, overrides, &vocabularies(methods))?;
         let (prepared, entry) = prepare(values.clone(), methods)?;
         prepared.memory.fits("scene")?;
         let own = Choice::own(entry.axes, &prepared);
@@ -85,6 +81,14 @@ impl Case {
         }
     }
 
+    /// The same scene with further overrides.
+    ///
+    /// # Errors
+    /// [`SceneErrors`]: why it cannot be run so.
+    pub fn prepared_with(&self, more: &[String]) -> Result<Prepared, SceneErrors> {
+        self.prepared_in(&Choice::own(&[], &self.prepared), more)
+    }
+
     /// The same scene in a way to run it, with further overrides.
     ///
     /// # Errors
@@ -100,7 +104,7 @@ impl Case {
     pub fn values_in(&self, choice: &Choice, more: &[String]) -> Result<Values, SceneErrors> {
         let chosen: Vec<String> = choice.overrides().collect();
         let overrides = [&self.overrides[..], &chosen, more].concat();
-        values(&self.what, self.text.as_deref(), &overrides, self.methods)
+        Values::parse(&self.what, &self.text, &overrides, &vocabularies(self.methods))
     }
 
     /// A scene by the same methods.
@@ -109,17 +113,5 @@ impl Case {
     /// As [`parse`](Self::parse).
     pub fn beside(&self, text: String) -> Result<Case, SceneErrors> {
         Case::parse(&self.what, text, self.methods)
-    }
-}
-
-fn values(
-    what: &str,
-    text: Option<&str>,
-    overrides: &[String],
-    methods: Methods,
-) -> Result<Values, SceneErrors> {
-    match text {
-        Some(text) => Values::parse(what, text, overrides, &vocabularies(methods)),
-        None => Values::load(what, overrides, &vocabularies(methods)),
     }
 }

@@ -79,7 +79,8 @@ pub fn collision(
     let Some(&smallest) = steps.first() else { return Ok(None) };
     let outcome = |choice: &Choice, step: f64, phase: u32| {
         let key = format!("collision|{}|{step:?}|{phase}/{phases}", choice.label());
-        journal.recall(&key, || {
+        let fits = |found: &Option<[f64; 2]>| found.iter().flatten().all(|value| value.is_finite());
+        journal.recall(&key, fits, || {
             Ok::<_, JournalError>(outcome(subject, choice, step, f64::from(phase) / f64::from(phases), meter))
         })
     };

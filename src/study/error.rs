@@ -13,9 +13,21 @@ use stripmine_physics::scene::SceneErrors;
 pub enum StudyError {
     /// The method states no trials.
     #[error(
-        "scenes of the method {0} have nothing that a study may vary\n  help: choose a scene of another method"
+        "scenes of the method {0} take no time steps, and this study varies the step\n  help: choose a scene of another method"
     )]
     NothingToVary(&'static str),
+    /// Less time than the smallest study takes.
+    #[error(
+        "the smallest map of the scene takes about {} processor seconds, more than --budget {budget}\n  help: raise --budget, or choose \
+         a smaller scene",
+        significant(*needed, 2)
+    )]
+    TooLittleTime {
+        /// Processor seconds of the smallest map.
+        needed: f64,
+        /// What was asked for.
+        budget: f64,
+    },
     /// Trajectories mean nothing.
     #[error(
         "noise moves the particles of {0}: runs with different steps follow different trajectories, and errors of positions mean \
@@ -24,8 +36,8 @@ pub enum StudyError {
     NoTrajectories(String),
     /// The scene is run without vector programs.
     #[error(
-        "a step of {0} has no vector programs: discs fly from event to event, nothing acts between particles, or the box is too small \
-         for a lattice\n  help: choose a scene of lattice-md, langevin with pairs, or nbody"
+        "a step of {0} has no vector programs: discs fly from event to event, nothing acts between particles, or they fit no \
+         lattice in the box\n  help: choose a scene of lattice-md, langevin with pairs, or nbody"
     )]
     NoPrograms(String),
     /// The method names something in its trials that it does not observe.
@@ -62,6 +74,16 @@ pub enum StudyError {
     NoSuchParameter {
         /// What was asked for.
         name: String,
+        /// What there is.
+        known: Vec<&'static str>,
+    },
+    /// The scene has no value of anything that its method varies, so that nothing suggests itself.
+    #[error(
+        "the scene has no value of its own of what may be varied beside the step\n  help: choose what and from where to where: --over \
+         NAME --range LOW HIGH, with one of {}",
+        known.join(", ")
+    )]
+    NothingOfItsOwn {
         /// What there is.
         known: Vec<&'static str>,
     },

@@ -44,6 +44,21 @@ pub struct Growth {
     pub ended_by: EndedBy,
 }
 
+impl Growth {
+    /// Whether it is what a run of the scene shows: as many distances as times, within the time of the scene.
+    pub fn is_of(&self, subject: &Subject) -> bool {
+        let Growth { step, times, separation, error, rate, window, .. } = self;
+        let whole = subject.steps as f64 * subject.step * (1.0 + 1e-9);
+        let least = subject.step * 0.5f64.powi(HALVINGS);
+        let all = times.iter().chain(separation).chain(error).chain(rate).chain([step, window]);
+        [separation.len(), error.len()] == [times.len(); 2]
+            && (least..=subject.step).contains(step)
+            && (0.0..=whole).contains(window)
+            && times.iter().all(|time| (0.0..=whole).contains(time))
+            && all.copied().all(f64::is_finite)
+    }
+}
+
 /// What ends the time in which trajectories are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum EndedBy {

@@ -1,6 +1,6 @@
 //! What `reproduce` makes of studies.
 
-use super::explain::{SCENES, regret, section as plans};
+use super::explain::{SCENES, SECONDS, regret, section as plans};
 use super::history::{section as history, shipped};
 use super::rivals::section as rivals;
 use super::stability::{self, Over, stability};
@@ -55,9 +55,9 @@ fn plans_judged(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure>
     // One scene of each method, where time is short.
     let (scenes, effort) = match effort {
         Effort::Quick => {
-            (SCENES.iter().step_by(11).copied().collect(), regret::Effort { plan: 0.3, best: 0.6 })
+            (SCENES.iter().step_by(11).copied().collect(), regret::Effort { plan: 0.6, best: 1.2 })
         }
-        Effort::Full | Effort::All => (SCENES.to_vec(), regret::Effort { plan: 6.0, best: 15.0 }),
+        Effort::Full | Effort::All => (SCENES.to_vec(), regret::Effort { plan: SECONDS[0], best: 30.0 }),
     };
     let judged = regret::judged(&scenes, effort, progress)?;
     plans::made(&judged, effort, format!("stripmine reproduce --only {}", plans::NAME))
@@ -114,7 +114,7 @@ fn where_it_works(effort: Effort, progress: Progress<'_>) -> Result<Made, Failur
     for map in mapped {
         let overrides: Vec<String> = map.overrides.iter().map(|&text| text.to_owned()).collect();
         let subject = Subject::load(map.preset, &overrides, METHODS)?;
-        let over = Over::of(&subject, map.parameter, None)?;
+        let over = Over::of(&subject, Some(map.parameter), None)?;
         surveys.push((map.name.to_owned(), subject, over));
     }
     let (mut maps, all) = (vec![], surveys.len() as f64);

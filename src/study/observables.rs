@@ -1,6 +1,6 @@
 //! What is left of a comparison once trajectories have parted: means over time, with error bars from independent seeds.
 
-use super::averages::{Averages, LOOKS, Means, PROFILE};
+use super::averages::{self, Averages, LOOKS, Means, PROFILE};
 use super::choice::Choice;
 use super::subject::Subject;
 use super::trial::{Course, follow};
@@ -73,7 +73,10 @@ pub fn observables(
         cases.iter().flat_map(|case| SEEDS.map(|seed| (case, seed))).collect();
     let means: Vec<Result<Means, String>> = journal.over(&runs, |&((choice, factor), seed)| {
         let key = format!("means|{}|{factor}|{seed}", choice.label());
-        journal.recall(&key, || {
+        let fits = |found: &Result<Means, String>| {
+            found.as_ref().map_or(true, |means| averages::are_of(subject, means))
+        };
+        journal.recall(&key, fits, || {
             Ok::<_, JournalError>(means(subject, choice, *factor, seed, (steps, each), meter))
         })
     })?;

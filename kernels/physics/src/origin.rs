@@ -41,6 +41,11 @@ pub fn host() -> String {
     name.map_or(platform.clone(), |(_, name)| format!("{name}, {platform}"))
 }
 
+/// Threads that ran or waited to run in the last minute, in the mean; none where the system does not say.
+pub fn load_average() -> Option<f64> {
+    std::fs::read_to_string("/proc/loadavg").ok()?.split(' ').next()?.parse().ok()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

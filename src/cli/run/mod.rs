@@ -7,8 +7,8 @@ use crate::console::{
     Common, Failure, MOST_THREADS, STEPS, bar, clear_progress, count_up_to, print, print_json, say, warn,
 };
 use crate::provenance::built;
+use crate::study::Case;
 use crate::study::explain::{Kept, tuned};
-use crate::study::{Case, StudyError};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use stripmine_physics::method::{Clock, Entry, Methods, Prepared, Purpose, prepare, vocabularies};
@@ -157,17 +157,22 @@ impl RunVerb {
     /// The overrides, with what `auto` becomes by what is kept.
     fn tuned(&self, common: &Common, methods: Methods) -> Result<Vec<String>, Failure> {
         let case = Case::load(&self.scene, &self.overrides, methods)?;
-        let found = tuned(&case, &Kept::here()).map_err(|error| StudyError::Own(Box::new(error)))?;
+        let found = tuned(&case, &Kept::here());
         if !common.quiet {
             match &found {
-                Some(found) => say(format_args!("tuned: {}: {}", found.overrides.join(", "), found.origin)),
-                None => say(format_args!(
-                    "tuned: nothing is open, or nothing is kept of a scene that is alike: stripmine explain {} measures it",
-                    self.scene
-                )),
+                Err(error) => warn(format_args!("nothing is tuned: {error}")),
+                Ok(found) => match found {
+                    Some(found) => {
+                        say(format_args!("tuned: {}: {}", found.overrides.join(", "), found.origin))
+                    }
+                    None => say(format_args!(
+                        "tuned: nothing is open, or nothing is kept of a scene that is alike: stripmine explain {} measures it",
+                        self.scene
+                    )),
+                },
             }
         }
-        let chosen = found.map_or(vec![], |found| found.overrides);
+        let chosen = found.ok().flatten().map_or(vec![], |found| found.overrides);
         Ok([&self.overrides[..], &chosen].concat())
     }
 

@@ -3,6 +3,7 @@
 use super::model::HostModel;
 use crate::model::machine_file::{LONGEST, Position};
 use std::path::Path;
+use stripmine_kernels::InstructionSet;
 use stripmine_physics::io::{FileError, regular_file};
 use stripmine_physics::quoted::{message, one_line, quoted};
 use stripmine_physics::reported::{Class, FilePlace, Reported};
@@ -102,6 +103,11 @@ impl HostModel {
         let mut defects = vec![];
         if self.format != FORMAT {
             defects.push(wrong_format(self.format.into()));
+        }
+        let sets: Vec<&str> = InstructionSet::ALL.iter().map(|set| set.name()).collect();
+        if !sets.contains(&&*self.instruction_set) {
+            let what = format!("is \"{}\", but must be one of {}", self.instruction_set, sets.join(", "));
+            defects.push(("instruction_set".to_owned(), what));
         }
         if self.levels.is_empty() || self.lanes.is_empty() {
             defects.push(("levels".to_owned(), "with `lanes` must not be empty".to_owned()));
@@ -239,6 +245,7 @@ mod tests {
         };
         for (old, new, expected) in [
             ("bind = ", "bind = -", "`bind` is -"),
+            ("\"avx512\"", "\"purple\"", "`instruction_set` is \"purple\", but must be one of scalar, wide"),
             ("bind = ", "binds = ", "unknown field `binds`"),
             ("footprint = ", "footprints = ", "unknown field `footprints`"),
             ("footprint = ", "footprint = 1e12 #", "`levels.footprint` must be positive and rise"),

@@ -9,19 +9,25 @@ use std::collections::BTreeMap;
 use stripmine_kernels::Execution;
 use stripmine_kernels::backend::tape::Outlines;
 use stripmine_kernels::isa::OpClass;
+use stripmine_physics::number::{counted, significant};
 
 /// How the numbers were measured.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Measured {
-    /// In which state the machine was: quiet, or how noisy.
+    /// In which state the machine was: quiet, busy, how noisy, or unknown.
     pub state: String,
+    /// Load average of the last minute before it began; none where the system does not say.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub load: Option<f64>,
     /// Seconds that it took.
     pub seconds: f64,
-    /// Median, over all points, of half the range of the middle half of the samples, as a share.
-    pub spread: f64,
-    /// Median, over all points, of how far the two halves of the measurement differ.
-    pub disagreement: f64,
+    /// Median, over all points, of half the range of the middle half of the samples, as a share; none where most points have too few.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spread: Option<f64>,
+    /// Median, over all points, of how far the two halves of the measurement differ; none where most points have too few.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub disagreement: Option<f64>,
     /// Shortest vectors.
     pub shortest: usize,
     /// Longest vectors.
@@ -36,17 +42,30 @@ impl Measured {
     /// With a larger difference between the halves of the measurement it changed meanwhile.
     const CHANGED: f64 = 0.05;
 
-    /// The state of a machine whose samples lie so far apart, and the halves of whose measurement so.
-    pub fn state_of(spread: f64, disagreement: f64) -> String {
-        match (spread > Measured::NOISY, disagreement > Measured::CHANGED) {
-            (false, false) => "quiet".to_owned(),
-            (true, false) => format!("noisy: half of the samples lie within {:.0} %", 100.0 * spread),
-            (noisy, true) => format!(
+    /// The state of a machine with so many cores and this load, whose samples lie so far apart, and the halves of whose measurement so.
+    pub fn state_of([spread, disagreement]: [Option<f64>; 2], load: Option<f64>, cores: usize) -> String {
+        // A core is free for what is measured, or half of the only one.
+        let bearable = (cores as f64 - 1.0).max(0.5);
+        let busy = load.filter(|load| *load > bearable).map(|load| {
+            let cores = counted(cores, "core", "cores");
+            format!("busy: the load average was {} on {cores} when it began", significant(load, 3))
+        });
+        let noisy = spread.is_some_and(|spread| spread > Measured::NOISY);
+        let seen = match (spread, disagreement) {
+            (Some(_), Some(apart)) if apart > Measured::CHANGED => Some(format!(
                 "{}: the halves of the measurement differ by {:.0} %",
                 if noisy { "noisy and changing" } else { "changing" },
-                100.0 * disagreement
+                100.0 * apart
+            )),
+            (Some(spread), Some(_)) => {
+                noisy.then(|| format!("noisy: half of the samples lie within {:.0} %", 100.0 * spread))
+            }
+            _ => Some(
+                "in an unknown state: too few samples of each program tell how far they scatter".to_owned(),
             ),
-        }
+        };
+        let said: Vec<String> = busy.into_iter().chain(seen).collect();
+        if said.is_empty() { "quiet".to_owned() } else { said.join("; ") }
     }
 
     /// Whether it was quiet.
@@ -80,6 +99,16 @@ pub struct HostModel {
 }
 
 impl HostModel {
+    /// By what the host differs from another one, in words; none where it is the same processor with the same instructions.
+    pub fn differs_from(&self, title: &str, instruction_set: &str) -> Option<String> {
+        ((&*self.title, &*self.instruction_set) != (title, instruction_set)).then(|| {
+            format!(
+                "the model is of {} by {}, and this host is {title}, which measures by {instruction_set}",
+                self.title, self.instruction_set
+            )
+        })
+    }
+
     /// The same host where no byte takes time.
     #[must_use]
     pub fn in_cache(&self) -> HostModel {
@@ -195,5 +224,39 @@ mod tests {
     #[test]
     fn the_baseline_charges_every_operation_of_every_element() {
         assert_eq!(host().baseline(&sums(3), 40, Execution::Eager), 0.5 * 120.0);
+    }
+
+    /// One sample has no spread, whatever the load; a load above the free cores is no quiet machine.
+    #[test]
+    fn a_state_is_said_only_as_far_as_it_was_measured() {
+        let state = |seen: [Option<f64>; 2], load: Option<f64>| Measured::state_of(seen, load, 2);
+        for (seen, load, begins, has) in [
+            ([Some(0.01), Some(0.01)], Some(0.3), "quiet", ""),
+            ([Some(0.01), Some(0.01)], None, "quiet", ""),
+            ([None, None], Some(0.0), "in an unknown state", "too few samples"),
+            ([None, Some(0.0)], None, "in an unknown state", "too few samples"),
+            ([Some(0.01), Some(0.01)], Some(19.0), "busy: the load average was 19 on 2 cores", ""),
+            ([None, None], Some(19.0), "busy", "unknown state"),
+            ([Some(0.2), Some(0.01)], Some(0.5), "noisy", "20 %"),
+            ([Some(0.01), Some(0.14)], Some(0.5), "changing", "14 %"),
+            ([Some(0.2), Some(0.14)], Some(1.5), "busy", "noisy and changing"),
+        ] {
+            let said = state(seen, load);
+            assert!(said.starts_with(begins) && said.contains(has), "{seen:?} {load:?}: {said}");
+        }
+    }
+
+    #[test]
+    fn a_model_of_another_host_is_told() {
+        let model = HostModel {
+            title: "A CPU".to_owned(),
+            instruction_set: "avx2".to_owned(),
+            ..HostModel::default()
+        };
+        assert_eq!(model.differs_from("A CPU", "avx2"), None);
+        for (title, set) in [("Another CPU", "avx2"), ("A CPU", "avx512")] {
+            let said = model.differs_from(title, set).unwrap();
+            assert!(["A CPU by avx2", title, set].iter().all(|word| said.contains(word)), "{said}");
+        }
     }
 }

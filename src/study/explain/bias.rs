@@ -1,5 +1,6 @@
 //! How far a step takes a mean from its limit: what a comparison at a long step shows, carried to shorter ones.
 
+use super::any_number;
 use super::sample::Known;
 use serde::{Deserialize, Serialize};
 
@@ -12,8 +13,10 @@ pub struct Bias {
     /// The step that was compared (time).
     pub step: f64,
     /// The mean there less that of the reference (the quantity's unit).
+    #[serde(with = "any_number")]
     pub difference: f64,
     /// Half the width of the interval of 95 % of that.
+    #[serde(with = "any_number")]
     pub bar: f64,
     /// The power of the step with which it falls.
     pub power: f64,
@@ -23,6 +26,16 @@ impl Bias {
     /// What two runs say, one at a long step, the other the reference.
     pub fn of(step: f64, own: &Known, reference: &Known, power: f64) -> Bias {
         Bias { step, difference: own.mean - reference.mean, bar: own.bar.hypot(reference.bar), power }
+    }
+
+    /// What was seen at the step that was compared.
+    pub fn seen(&self) -> Off {
+        self.at(self.step)
+    }
+
+    /// Whether it is within its bar, and that is more than an error: it is only thought to fall with the step.
+    pub fn is_unseen_for(&self, error: f64) -> bool {
+        self.difference.abs() <= self.bar && self.seen().most() > error
     }
 
     /// What it is taken to be at a step: what was seen, and what the reference has of it itself, the part of it that a shorter step has. Rounding by

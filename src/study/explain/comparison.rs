@@ -143,7 +143,8 @@ impl Work<'_> {
 
     /// How far what should keep its value goes, by the cheapest way of each integrator at two steps.
     pub(super) fn drifts(&self, mut ways: Vec<Way>) -> Result<Findings, ExplainError> {
-        let seconds = (1.0 - SHARES[0]) * self.seconds / (2.0 * ways.len().min(8) as f64);
+        let usable = ways.iter().filter(|way| way.dropped.is_none()).count();
+        let seconds = (1.0 - SHARES[0]) * self.seconds / (2.0 * usable.max(1) as f64);
         let span =
             self.case.duration().map_or(Span::Seconds(seconds), |time| Span::Time(time, Some(seconds)));
         let (mut start, mut row) = (0.0, 0.0);

@@ -1,5 +1,6 @@
 //! What should keep its value and does not quite: by how much at two steps, and from that at others.
 
+use super::any_number;
 use serde::{Deserialize, Serialize};
 
 /// The power of the step is taken to be no lower: noise in two values says nothing beyond.
@@ -15,6 +16,7 @@ pub struct Drift {
     /// The longer step; the other is half of it (time).
     pub step: f64,
     /// The farthest at both (the quantity's unit).
+    #[serde(with = "any_number")]
     pub farthest: [f64; 2],
     /// The time that was seen (time).
     pub time: f64,

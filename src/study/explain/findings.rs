@@ -1,12 +1,14 @@
 //! What is measured of a scene before anything is recommended, and the scene at work.
 
 use super::Target;
+use super::any_number;
 use super::bias::Bias;
 use super::drift::Drift;
 use super::sample::{Known, Sample, Span, sample};
 use crate::study::{Case, Choice};
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::AtomicBool;
+use std::time::Instant;
 use stripmine_physics::method::Prepared;
 use stripmine_physics::scene::Overrides;
 
@@ -26,6 +28,7 @@ pub struct Way {
     /// The overrides that it makes.
     pub overrides: Vec<String>,
     /// Wall seconds of a unit of time at `step`; none where it was given up.
+    #[serde(with = "any_number")]
     pub cost: Option<f64>,
     /// The longest step that nothing speaks against (time); none where the method takes none.
     pub step: Option<f64>,
@@ -57,12 +60,16 @@ pub struct Findings {
     /// Where the quantity changes all along and its mean over the whole run is asked for: the scene's own time (time).
     pub whole: Option<f64>,
     /// By how much the mean of another start differs, where that is beyond both bars: what is kept of a start does not average out.
+    #[serde(with = "any_number")]
     pub starts_differ: Option<f64>,
     /// Wall seconds until the first step.
+    #[serde(with = "any_number")]
     pub start: f64,
     /// Wall seconds of a row.
+    #[serde(with = "any_number")]
     pub row: f64,
     /// Cost of one thread over that of all.
+    #[serde(with = "any_number")]
     pub one_thread: f64,
     /// Threads.
     pub threads: usize,
@@ -74,7 +81,10 @@ pub struct Findings {
 pub(super) struct Work<'w> {
     pub(super) case: &'w Case,
     pub(super) target: &'w Target,
+    /// Seconds of which [`SHARES`] are parts.
     pub(super) seconds: f64,
+    /// No trial begins later, and one that has begun ends then.
+    pub(super) end: Instant,
     pub(super) stop: &'w AtomicBool,
     /// The scene's own time, where the quantity changes all along and its mean over the whole run is asked for (time).
     pub(super) whole: Option<f64>,
@@ -86,20 +96,29 @@ pub struct Without {
     /// What is lacking.
     pub name: String,
     /// The mean less that with it, and its bar; none where it breaks or has no mean.
+    #[serde(with = "any_number")]
     pub difference: Option<[f64; 2]>,
     /// Cost over that with it.
+    #[serde(with = "any_number")]
     pub cost: Option<f64>,
     /// Why there is nothing to compare.
     pub failed: Option<String>,
 }
 
+/// Why a trial was not made.
+pub(super) const NO_TIME: &str = "the time of the trials was over: --patient has more";
+
 impl Work<'_> {
+    /// Seconds until the trials end.
+    pub(super) fn left(&self) -> f64 {
+        self.end.saturating_duration_since(Instant::now()).as_secs_f64()
+    }
+
     pub(super) fn prepared(&self, overrides: &[String], step: Option<f64>) -> Result<Prepared, String> {
         let trials = self.case.entry.trials;
         let step = trials.zip(step).map(|(trials, step)| Overrides::new().set(trials.step, step));
-        let own = Choice::own(&[], &self.case.prepared);
         let more = [overrides, step.as_deref().map_or(&[][..], |step| step)].concat();
-        self.case.prepared_in(&own, &more).map_err(|errors| {
+        self.case.prepared_with(&more).map_err(|errors| {
             let messages: Vec<&str> = errors.0.iter().map(|error| error.message.as_str()).collect();
             messages.join("; ")
         })
@@ -110,7 +129,11 @@ impl Work<'_> {
     }
 
     pub(super) fn sampled_over(&self, way: &Way, step: Option<f64>, span: Span) -> Result<Sample, String> {
+        if self.left() == 0.0 {
+            return Err(NO_TIME.to_owned());
+        }
         let prepared = self.prepared(&way.overrides, step)?;
+        let span = span.within(self.left());
         let observed = (self.case.entry.quantities, self.target.place);
         sample(&prepared, observed, span, self.stop).map_err(|failure| first_line(&failure.what()))
     }

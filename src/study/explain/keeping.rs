@@ -9,14 +9,15 @@ use super::optimum::Optimum;
 use super::plan::{TIME_WITHIN, in_unit, overrides, phases};
 use super::recommended::{Decision, Expected, Interval, Own, Plan};
 use super::sample::ROWS;
+use super::unreached::Unreached;
 use crate::study::Case;
 use stripmine_physics::number::significant;
 
 /// What is recommended for a quantity that should keep its value over the scene's own time.
 ///
 /// # Errors
-/// The least error that can be had, where no way comes to what is asked for.
-pub fn keeping(case: &Case, target: &Target, findings: &Findings, origin: &str) -> Result<Plan, f64> {
+/// [`Unreached`], where no way comes to what is asked for.
+pub fn keeping(case: &Case, target: &Target, findings: &Findings, origin: &str) -> Result<Plan, Unreached> {
     let usable = || findings.ways.iter().filter(|way| way.dropped.is_none());
     let time = case.duration().or_else(|| Some(usable().next()?.drift?.time)).unwrap_or(0.0);
     let of_own = usable().find(|way| way.label == case.own.label());
@@ -42,7 +43,8 @@ pub fn keeping(case: &Case, target: &Target, findings: &Findings, origin: &str) 
     weighed.sort_by(|a, b| a.optimum.seconds.total_cmp(&b.optimum.seconds));
     let Some(best) = weighed.first() else {
         let least = usable().filter_map(|way| Some(way.drift?.over(time).farthest[1]));
-        return Err(least.fold(f64::INFINITY, f64::min));
+        let least = least.fold(f64::INFINITY, f64::min);
+        return Err(Unreached { wanted, least, takes: None });
     };
     let step = best.way.step.map(|step| best.optimum.part * step);
     let likely = best.optimum.seconds;
@@ -66,6 +68,7 @@ pub fn keeping(case: &Case, target: &Target, findings: &Findings, origin: &str) 
     Ok(Plan {
         scene: case.arguments(),
         method: case.entry.vocabulary.keys.method,
+        way: best.way.label.clone(),
         quantity: target.quantity.name,
         unit: target.quantity.unit,
         mean: None,

@@ -7,28 +7,29 @@ use crate::provenance::Provenance;
 use crate::study::Case;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
+use std::ffi::OsStr;
 use std::fs;
-use std::io::ErrorKind;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
+use stripmine_physics::io::replace::replace;
+use stripmine_physics::io::{FileError, regular_file};
 use stripmine_physics::number::significant;
-use stripmine_physics::quoted;
 use stripmine_physics::reported::{Class, Reported};
 
 /// The folder of the user's caches, by the variables that name it.
 const PLACES: [(&str, &str); 2] = [("XDG_CACHE_HOME", "stripmine"), ("HOME", ".cache/stripmine")];
+/// Longer than any kept file (bytes).
+const LONGEST: u64 = 1 << 22;
+/// Digits of a key.
+const KEY: usize = 24;
 
 /// Why what is kept is of no use.
 #[derive(Debug, thiserror::Error)]
 pub enum KeptError {
-    /// A file that cannot be read or written.
-    #[error("{}: {source}", quoted::path(path))]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// What the system says.
-        source: std::io::Error,
-    },
+    /// A file or folder that cannot be read, written or removed.
+    #[error(transparent)]
+    File(#[from] FileError),
 }
 
 impl Reported for KeptError {
@@ -47,7 +48,7 @@ pub struct Kept {
 /// A file of what was measured.
 #[derive(Serialize, Deserialize)]
 struct File {
-    /// The scene.
+    /// The key of the scene: the name of the file.
     scene: String,
     /// Processor and version that it was measured with.
     host: String,
@@ -69,11 +70,7 @@ fn short(commit: &str) -> &str {
 impl Kept {
     /// In the user's folder of caches, for this processor, number of threads and version.
     pub fn here() -> Kept {
-        let folder = PLACES.iter().find_map(|(variable, below)| {
-            let place = std::env::var_os(variable).filter(|place| !place.is_empty())?;
-            Some(Path::new(&place).join(below).join("explain"))
-        });
-        Kept::within(folder)
+        Kept::within(PLACES.iter().find_map(|(variable, below)| place(&std::env::var_os(variable)?, below)))
     }
 
     /// In a folder.
@@ -106,7 +103,7 @@ impl Kept {
             sum.update(part.as_bytes());
             sum.update([0]);
         }
-        sum.finalize().iter().take(12).map(|byte| format!("{byte:02x}")).collect()
+        sum.finalize().iter().take(KEY / 2).map(|byte| format!("{byte:02x}")).collect()
     }
 
     fn path(&self, key: &str) -> Option<PathBuf> {
@@ -120,10 +117,10 @@ impl Kept {
     /// [`KeptError`] if it is there and cannot be read.
     pub fn recall(&self, key: &str, seconds: f64) -> Result<Option<(Findings, String)>, KeptError> {
         let Some(path) = self.path(key) else { return Ok(None) };
-        let text = match fs::read(&path) {
+        let text = match regular_file::read(&path, LONGEST) {
             Ok(text) => text,
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
-            Err(source) => return Err(KeptError::File { path, source }),
+            Err(cause) => return Err(FileError::at(&path, "reading")(cause).into()),
         };
         let Ok(file) = serde_json::from_slice::<File>(&text) else { return Ok(None) };
         if file.host != self.host || file.seconds < seconds {
@@ -141,7 +138,7 @@ impl Kept {
     pub(super) fn alike(&self, case: &Case) -> Result<Option<(Findings, String)>, KeptError> {
         let own = Alike::of(case);
         let near = |path: PathBuf| {
-            let file: File = serde_json::from_slice(&fs::read(path).ok()?).ok()?;
+            let file: File = serde_json::from_slice(&regular_file::read(&path, LONGEST).ok()?).ok()?;
             let apart = own.apart(&file.alike).filter(|_| file.host == self.host)?;
             Some((apart, file))
         };
@@ -153,7 +150,7 @@ impl Kept {
         }))
     }
 
-    /// Keeps what was measured with the seconds of trials that were asked for and that they took, and says where it comes from.
+    /// Keeps what was measured with the seconds of trials that were asked for and that they took.
     ///
     /// # Errors
     /// [`KeptError`] if it cannot be written.
@@ -163,9 +160,8 @@ impl Kept {
         key: &str,
         [seconds, taken]: [f64; 2],
         findings: &Findings,
-    ) -> Result<String, KeptError> {
-        let origin = format!("{} s of trials on {}", significant(taken, 2), self.host);
-        let Some(path) = self.path(key) else { return Ok(origin) };
+    ) -> Result<(), KeptError> {
+        let Some(path) = self.path(key) else { return Ok(()) };
         let file = File {
             scene: key.to_owned(),
             host: self.host.clone(),
@@ -175,41 +171,90 @@ impl Kept {
             alike: Alike::of(case),
             findings: findings.clone(),
         };
-        let fail = |source| KeptError::File { path: path.clone(), source };
         if let Some(folder) = path.parent() {
-            fs::create_dir_all(folder).map_err(fail)?;
+            fs::create_dir_all(folder).map_err(FileError::at(folder, "creating the folder"))?;
         }
-        let text = serde_json::to_vec_pretty(&file).map_err(|error| fail(error.into()))?;
+        let text = serde_json::to_vec_pretty(&file);
+        let text = text.map_err(|error| FileError::at(&path, "writing")(error.into()))?;
         // In one step, so that two at a time do not mix.
-        let beside = path.with_extension(format!("{}", std::process::id()));
-        fs::write(&beside, text).map_err(fail)?;
-        fs::rename(&beside, &path).map_err(fail)?;
-        Ok(origin)
+        replace(&path, |out| out.write_all(&text))?;
+        Ok(())
     }
 
-    /// Removes all that is kept, and says how many files that were.
+    /// Where measurements of just now come from, which took some seconds.
+    pub fn origin(&self, taken: f64) -> String {
+        format!("{} s of trials on {}", significant(taken, 2), self.host)
+    }
+
+    /// Removes all that is kept, of whatever version, and says how many files that were. Files of others in the folder stay.
     ///
     /// # Errors
     /// [`KeptError`] if one cannot be removed.
     pub fn forget(&self) -> Result<usize, KeptError> {
-        let files = self.files()?;
+        let files: Vec<PathBuf> = self.files()?.into_iter().filter(|file| is_marked(file)).collect();
         for file in &files {
-            fs::remove_file(file).map_err(|source| KeptError::File { path: file.clone(), source })?;
+            fs::remove_file(file).map_err(FileError::at(file, "removing"))?;
         }
         Ok(files.len())
     }
 
-    /// All files, by their names.
+    /// All files with the name of a key, in order.
     fn files(&self) -> Result<Vec<PathBuf>, KeptError> {
         let Some(folder) = &self.folder else { return Ok(vec![]) };
         let files = match fs::read_dir(folder) {
             Ok(files) => files,
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(vec![]),
-            Err(source) => return Err(KeptError::File { path: folder.clone(), source }),
+            Err(cause) => return Err(FileError::at(folder, "reading the folder")(cause).into()),
         };
-        let is_ours = |file: &PathBuf| file.extension().is_some_and(|ending| ending == "json");
-        let mut files: Vec<PathBuf> = files.flatten().map(|file| file.path()).filter(is_ours).collect();
+        let is_named = |file: &PathBuf| file.file_name().and_then(OsStr::to_str).is_some_and(is_key);
+        let mut files: Vec<PathBuf> = files.flatten().map(|file| file.path()).filter(is_named).collect();
         files.sort();
         Ok(files)
+    }
+}
+
+/// The folder below one that a variable names; none where that is empty or relative, which is to be ignored by the specification of these variables.
+fn place(variable: &OsStr, below: &str) -> Option<PathBuf> {
+    let folder = Path::new(variable);
+    folder.is_absolute().then(|| folder.join(below).join("explain"))
+}
+
+/// Whether a file is called as kept ones are.
+fn is_key(name: &str) -> bool {
+    let is_digit = |byte: u8| matches!(byte, b'0'..=b'9' | b'a'..=b'f');
+    name.strip_suffix(".json").is_some_and(|key| key.len() == KEY && key.bytes().all(is_digit))
+}
+
+/// Whether a file says that this program kept it, of whatever version: it holds its own name as its key. Links are not followed.
+fn is_marked(file: &Path) -> bool {
+    #[derive(Deserialize)]
+    struct Mark {
+        scene: String,
+    }
+    let is_file = fs::symlink_metadata(file).is_ok_and(|it| it.is_file());
+    let text = is_file.then(|| regular_file::read(file, LONGEST).ok()).flatten();
+    let mark = text.and_then(|text| serde_json::from_slice::<Mark>(&text).ok());
+    mark.is_some_and(|mark| file.file_stem() == Some(OsStr::new(&mark.scene)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The specification of XDG base directories: "all paths set in these environment variables must be absolute"; relative ones are ignored.
+    #[test]
+    fn relative_folders_are_ignored() {
+        let of = |variable: &str| place(OsStr::new(variable), "stripmine");
+        assert_eq!(of("/home/me/.cache"), Some(PathBuf::from("/home/me/.cache/stripmine/explain")));
+        assert_eq!([of(""), of("cache"), of("./cache"), of("~/.cache")], [const { None }; 4]);
+    }
+
+    #[test]
+    fn kept_files_have_names_of_their_own() {
+        assert!(is_key("0123456789abcdef01234567.json"));
+        for other in ["mine.json", "0123456789abcdef01234567.toml", "0123456789ABCDEF01234567.json", ".json"]
+        {
+            assert!(!is_key(other), "{other}");
+        }
     }
 }

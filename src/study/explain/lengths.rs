@@ -5,6 +5,7 @@ use super::findings::{Findings, Way};
 use super::optimum::{Optimum, Terms, optimum};
 use super::sample::ROWS;
 use crate::study::Case;
+use stripmine_physics::method::Every;
 use stripmine_physics::number::significant;
 
 /// Independent samples that a run has at least: enough that it knows the error of its own mean.
@@ -18,12 +19,27 @@ pub(super) struct Weighed<'w> {
 
 /// The cheapest step and time of a way; a way that was not compared has the bias of none, and is not weighed where others were.
 pub(super) fn weigh(way: &Way, findings: &Findings, wanted: f64) -> Option<Optimum> {
-    let reference = &findings.reference;
-    let terms = Terms { cost: way.cost?, square: reference.square, transient: reference.transient };
+    let terms = Terms { cost: way.cost?, transient: findings.reference.transient };
+    let time_for = |chance| findings.time_for(chance);
     match (way.step, way.bias) {
-        (None, _) => optimum(terms, wanted, |_| Off::default()).filter(|it| it.part == 1.0),
-        (Some(step), Some(bias)) => optimum(terms, wanted, |part| bias.at(part * step)),
+        (None, _) => optimum(terms, wanted, |_| Off::default(), time_for).filter(|it| it.part == 1.0),
+        (Some(step), Some(bias)) => optimum(terms, wanted, |part| bias.at(part * step), time_for),
         (Some(_), None) => None,
+    }
+}
+
+impl Findings {
+    /// The time of all runs together that leaves no more than this to chance (time).
+    pub(super) fn time_for(&self, chance: f64) -> f64 {
+        let alone = self.reference.square / (chance * chance);
+        // A whole run that is enough has no bar of its own: its error is that which other starts show.
+        if self.whole.is_some_and(|time| alone <= time) { alone } else { self.reference.time_for(chance) }
+    }
+
+    /// What chance leaves at most in runs of that time together (time): as [`time_for`](Self::time_for).
+    pub(super) fn chance_over(&self, time: f64) -> f64 {
+        let alone = (self.reference.square / time).sqrt();
+        if self.whole.is_some_and(|whole| time <= whole) { alone } else { self.reference.bar_over(time) }
     }
 }
 
@@ -43,7 +59,7 @@ pub(super) fn length(case: &Case, best: &Weighed<'_>, findings: &Findings) -> Re
     if let Some(time) = findings.whole {
         return whole_runs(case, best, findings, time);
     }
-    Ok(length_of_stretches(best, findings))
+    Ok(length_of_stretches(case, best, findings))
 }
 
 /// Whole runs, as many as the error asks for.
@@ -68,10 +84,17 @@ fn whole_runs(case: &Case, best: &Weighed<'_>, findings: &Findings, time: f64) -
     })
 }
 
-fn length_of_stretches(best: &Weighed<'_>, findings: &Findings) -> Length {
+fn length_of_stretches(case: &Case, best: &Weighed<'_>, findings: &Findings) -> Length {
     let transient = findings.reference.transient;
-    // So that each run has a mean of its own, with a bar.
-    let least = SAMPLES * findings.reference.apart;
+    // So that each run has a mean of its own, with a bar; what does not vary is seen in a run of the scene's own time, or in some rows.
+    let first = match case.prepared.schedule.rows {
+        Every::Time(time) => SAMPLES * time,
+        _ => 1.0,
+    };
+    let least = match findings.reference.square {
+        0.0 => case.duration().unwrap_or(first),
+        _ => SAMPLES * findings.reference.apart,
+    };
     let time = best.optimum.time.max(transient).max(least);
     let cost = best.way.cost.unwrap_or(0.0) / best.optimum.part;
     let start = findings.start + ROWS[1] * findings.row;

@@ -5,6 +5,8 @@
 //! (`optimum`), and with them a plan (`plan`). Nothing here is fitted: what trials could not see is counted as error, with its bar.
 
 mod alike;
+mod any_number;
+mod as_it_stands;
 mod bias;
 mod comparison;
 mod decisions;
@@ -13,6 +15,7 @@ mod findings;
 mod keeping;
 mod kept;
 mod lengths;
+mod margin;
 mod optimum;
 mod plan;
 pub mod precision;
@@ -28,6 +31,7 @@ mod skin;
 mod timing;
 mod tuned;
 mod twins;
+mod unreached;
 mod whole;
 mod words;
 
@@ -38,7 +42,8 @@ pub use recommended::{Beside, Decision, Expected, Interval, LeftOut, Need, Own, 
 pub use sample::{Known, Sample, Span, sample};
 pub use scenes::SCENES;
 pub use tuned::{Tuned, tuned};
-pub use words::{page, with_unit};
+pub use unreached::Unreached;
+pub use words::{page, seconds, with_unit};
 
 use super::Case;
 use findings::Findings;
@@ -50,8 +55,8 @@ use stripmine_physics::number::significant;
 use stripmine_physics::reported::{Class, Reported};
 use stripmine_physics::scene::Width;
 
-/// Seconds of trials where nothing else is asked for, and where one is patient.
-pub const SECONDS: [f64; 2] = [6.0, 60.0];
+/// Seconds of trials at most, where nothing else is asked for, and where one is patient.
+pub const SECONDS: [f64; 2] = [10.0, 60.0];
 
 /// What is asked for.
 #[derive(Clone, Debug)]
@@ -95,20 +100,14 @@ pub enum ExplainError {
     },
     /// No way comes to the error.
     #[error(
-        "no way to run the scene is known to come to an error of {} of {quantity}: in the trials {}{}\n  help: --patient \
-         knows it better; or ask for a larger error",
-        significant(*wanted, 3),
-        if least.is_finite() { format!("the bias is known to {} at best", significant(*least, 2)) } else { "the bias of no step was seen".to_owned() }, cost.as_ref().map_or(String::new(), |cost| format!(", which would take {cost}"))
+        "no configuration tried reaches an error of {} of {quantity}: {unreached}\n  help: --patient knows it better; or ask for a larger error",
+        significant(unreached.wanted, 3)
     )]
     OutOfReach {
         /// The quantity.
         quantity: &'static str,
-        /// What was asked for.
-        wanted: f64,
-        /// What can be had.
-        least: f64,
-        /// What that would take.
-        cost: Option<String>,
+        /// What was asked for, and what is known.
+        unreached: Unreached,
     },
     /// No plan is as quick.
     #[error(
@@ -178,7 +177,7 @@ impl Target {
 }
 
 /// What is recommended: by what is kept of the scene from trials at least as long, or by trials of some seconds, which are kept. Of no seconds at
-/// all nothing is run.
+/// all nothing is run. What cannot be kept, or recalled, is no reason not to plan: `notice` is told.
 ///
 /// # Errors
 /// [`ExplainError`]
@@ -188,27 +187,32 @@ pub fn explain(
     seconds: f64,
     kept: &Kept,
     stop: &AtomicBool,
+    notice: &dyn Fn(&KeptError),
 ) -> Result<Plan, ExplainError> {
     let key = kept.key(case, target);
-    let (findings, origin) = match kept.recall(&key, seconds)? {
+    let recalled = kept.recall(&key, seconds).unwrap_or_else(|error| {
+        notice(&error);
+        None
+    });
+    let (findings, origin) = match recalled {
         Some((findings, origin)) => (findings, origin),
         None if seconds == 0.0 => return Err(ExplainError::NothingKept),
         None => {
             let begun = Instant::now();
             let findings = seen(case, target, seconds, stop)?;
-            let origin = kept.keep(case, &key, [seconds, begun.elapsed().as_secs_f64()], &findings)?;
-            (findings, origin)
+            let taken = begun.elapsed().as_secs_f64();
+            if let Err(error) = kept.keep(case, &key, [seconds, taken], &findings) {
+                notice(&error);
+            }
+            (findings, kept.origin(taken))
         }
     };
     if let Some(within) = target.within {
         return within_seconds(case, target, &findings, &origin, within);
     }
-    planned(case, target, &findings, &origin).map_err(|least| ExplainError::OutOfReach {
-        quantity: target.quantity.name,
-        wanted: target.error.map_or(0.0, |width| in_unit(width, findings.reference.mean)),
-        least,
-        cost: None,
-    })
+    let quantity = target.quantity.name;
+    planned(case, target, &findings, &origin)
+        .map_err(|unreached| ExplainError::OutOfReach { quantity, unreached })
 }
 
 /// Errors are asked for within this factor of the least that can be had in a time.

@@ -7,8 +7,6 @@ use super::bias::Off;
 pub struct Terms {
     /// Wall seconds of a unit of time at the longest step.
     pub cost: f64,
-    /// Square of the bar of a mean over one unit of time.
-    pub square: f64,
     /// Time that does not count (time).
     pub transient: f64,
 }
@@ -29,18 +27,22 @@ pub struct Optimum {
 /// Steps that are weighed: so many between a step and half of it.
 const BETWEEN: i32 = 4;
 /// The shortest that is weighed, in parts of the longest.
-const SHORTEST: f64 = 1.0 / 256.0;
+pub(super) const SHORTEST: f64 = 1.0 / 256.0;
 
-/// The cheapest step and time for an error of at most `error`, of which `bias` (of the step in parts of the longest) is one part and chance the other;
-/// none where bias alone is more.
+/// The cheapest step and time for an error of at most `error`, of which `bias` (of the step in parts of the longest) is one part and chance the other, for
+/// which a run takes `time_for` it; none where bias alone is more.
 ///
 /// A shorter step costs more for a unit of time and has less bias, which leaves more of the error to chance and so asks for a shorter time.
-pub fn optimum(terms: Terms, error: f64, bias: impl Fn(f64) -> Off) -> Option<Optimum> {
+pub fn optimum(
+    terms: Terms,
+    error: f64,
+    bias: impl Fn(f64) -> Off,
+    time_for: impl Fn(f64) -> f64,
+) -> Option<Optimum> {
     let parts = (0..).map(|at| 2f64.powf(-f64::from(at) / f64::from(BETWEEN)));
     let of = |part: f64| {
         let bias = bias(part);
-        let chance = bias.leaves(error)?;
-        let time = terms.square / (chance * chance);
+        let time = time_for(bias.leaves(error)?);
         let seconds = terms.cost / part * (time + terms.transient);
         Some(Optimum { part, bias, time, seconds })
     };
@@ -51,19 +53,23 @@ pub fn optimum(terms: Terms, error: f64, bias: impl Fn(f64) -> Off) -> Option<Op
 mod tests {
     use super::*;
 
-    const TERMS: Terms = Terms { cost: 2.0, square: 4.0, transient: 0.0 };
+    const TERMS: Terms = Terms { cost: 2.0, transient: 0.0 };
+
+    fn best(terms: Terms, bias: impl Fn(f64) -> Off) -> Option<Optimum> {
+        optimum(terms, 0.1, bias, |chance| 4.0 / (chance * chance))
+    }
 
     /// Without bias the longest step; with b·part the cost 1/(part (e − b part)²) is least at part = e/(3 b): a third of the error.
     #[test]
     fn a_third_of_the_error_is_bias_where_it_falls_with_the_step() {
-        let free = optimum(TERMS, 0.1, |_| Off::default()).unwrap();
+        let free = best(TERMS, |_| Off::default()).unwrap();
         assert!(free.part == 1.0 && (free.time - 400.0).abs() < 1e-9 && (free.seconds - 800.0).abs() < 1e-9);
-        let bound = optimum(TERMS, 0.1, |part| Off::exactly(0.3 * part)).unwrap();
+        let bound = best(TERMS, |part| Off::exactly(0.3 * part)).unwrap();
         assert!((bound.bias.shift / 0.1 - 1.0 / 3.0).abs() < 0.05, "{bound:?}");
         // What is not seen to fall is not reached at any step.
-        assert_eq!(optimum(TERMS, 0.1, |_| Off::exactly(0.1)), None);
+        assert_eq!(best(TERMS, |_| Off::exactly(0.1)), None);
         // A transient that is long asks for a longer step.
         let long = Terms { transient: 1e5, ..TERMS };
-        assert!(optimum(long, 0.1, |part| Off::exactly(0.3 * part)).unwrap().part > bound.part);
+        assert!(best(long, |part| Off::exactly(0.3 * part)).unwrap().part > bound.part);
     }
 }

@@ -5,8 +5,10 @@ use super::bias::{Bias, Off};
 use super::decisions::{decisions, left_out};
 use super::findings::{Findings, Way};
 use super::lengths::{Weighed, length, weigh};
+use super::optimum::SHORTEST;
 use super::recommended::{Expected, Interval, Own, Plan};
 use super::sample::ROWS;
+use super::unreached::Unreached;
 use crate::study::Case;
 use stripmine_physics::method::Every;
 use stripmine_physics::number::significant;
@@ -17,18 +19,21 @@ pub(super) const TIME_WITHIN: f64 = 1.5;
 /// Rows that a mean is taken of, at least.
 const FEWEST_ROWS: f64 = 100.0;
 
+/// A plan that takes longer rests on what the trials saw of the bias, not on how it should fall with the step (s).
+const LONG: f64 = 3600.0;
+
 /// What is recommended for an error in the quantity's unit.
 ///
 /// # Errors
-/// The least error that can be had, where no way comes to what is asked for.
-pub fn plan(case: &Case, target: &Target, findings: &Findings, origin: &str) -> Result<Plan, f64> {
+/// [`Unreached`], where no way comes to what is asked for.
+pub fn plan(case: &Case, target: &Target, findings: &Findings, origin: &str) -> Result<Plan, Unreached> {
     let reference = &findings.reference;
     let own_way = findings.ways.iter().find(|way| way.label == case.own.label());
     let own = own_way.and_then(|way| own(case, way, findings));
     let error = target.error.map(|width| in_unit(width, reference.mean));
     // Without an error: as good as the scene's own values.
-    let wanted = error.or(own.as_ref().map(|own| own.error.most));
-    let wanted = wanted.unwrap_or(0.01 * reference.mean.abs());
+    let of_own = own.as_ref().map(|own| own.error.most).filter(|most| most.is_finite() && *most > 0.0);
+    let wanted = error.or(of_own).unwrap_or(0.01 * reference.mean.abs());
     let usable = |way: &&Way| way.cost.is_some() && way.dropped.is_none();
     let mut weighed: Vec<Weighed<'_>> = findings
         .ways
@@ -39,13 +44,19 @@ pub fn plan(case: &Case, target: &Target, findings: &Findings, origin: &str) -> 
     weighed.sort_by(|a, b| a.optimum.seconds.total_cmp(&b.optimum.seconds));
     let Some(best) = weighed.first() else {
         // Bias at the shortest step that is weighed is all that is left.
-        let least = findings.ways.iter().filter(usable).filter_map(|way| Some(way.bias?.at(0.0).most()));
-        return Err(least.fold(f64::INFINITY, f64::min));
+        let least = |way: &Way| Some(way.bias?.at(SHORTEST * way.step?).most());
+        let least = findings.ways.iter().filter(usable).filter_map(least).fold(f64::INFINITY, f64::min);
+        return Err(Unreached { wanted, least, takes: None });
     };
-    let length = length(case, best, findings)?;
+    let length = length(case, best, findings).map_err(|least| Unreached { wanted, least, takes: None })?;
+    if length.seconds > LONG && best.way.bias.is_some_and(|bias| bias.is_unseen_for(wanted)) {
+        let seen = findings.ways.iter().filter(usable).filter_map(|way| Some(way.bias?.seen().most()));
+        let least = seen.fold(f64::INFINITY, f64::min);
+        return Err(Unreached { wanted, least, takes: Some(length.seconds) });
+    }
     let step = best.way.step.map(|step| best.optimum.part * step);
     let per_run = findings.whole.unwrap_or(length.time / length.seeds as f64 + reference.transient);
-    let expected = Expected::of(best.optimum.bias, (reference.square / length.time).sqrt());
+    let expected = Expected::of(best.optimum.bias, findings.chance_over(length.time));
     // The square of a bar is known to its degrees of freedom.
     let scatter = 1.0 + 2.0 * (2.0 / reference.freedoms.max(2.0)).sqrt();
     let seconds = Interval {
@@ -56,6 +67,7 @@ pub fn plan(case: &Case, target: &Target, findings: &Findings, origin: &str) -> 
     Ok(Plan {
         scene: case.arguments(),
         method: case.entry.vocabulary.keys.method,
+        way: best.way.label.clone(),
         quantity: target.quantity.name,
         unit: target.quantity.unit,
         mean: Some([reference.mean, reference.bar]),
@@ -113,12 +125,7 @@ pub(super) fn overrides(case: &Case, way: &Way, step: Option<f64>, time: Option<
 
 /// The way of a plan among those of other findings.
 pub(super) fn way_of<'f>(plan: &Plan, findings: &'f Findings) -> Option<&'f Way> {
-    // A skin of lists makes no way of its own.
-    let is_chosen = |way: &&Way| {
-        let mut overrides = way.overrides.iter().filter(|text| !text.starts_with("search.skin"));
-        overrides.all(|text| plan.overrides.contains(text))
-    };
-    findings.ways.iter().filter(is_chosen).max_by_key(|way| way.overrides.len())
+    findings.ways.iter().find(|way| way.label == plan.way)
 }
 
 /// An error in the quantity's unit.
@@ -156,6 +163,7 @@ fn own(case: &Case, way: &Way, findings: &Findings) -> Option<Own> {
         (_, None) => Off::default(),
     };
     let left = time - reference.transient;
-    let chance = if left > 0.0 { (reference.square / left).sqrt() } else { f64::INFINITY };
-    Some(Own { seconds: findings.start + cost * time, error: Expected::of(bias, chance) })
+    let chance = if left > 0.0 { findings.chance_over(left) } else { f64::INFINITY };
+    let seconds = findings.start + ROWS[1] * findings.row + cost * time;
+    Some(Own { seconds, error: Expected::of(bias, chance) })
 }

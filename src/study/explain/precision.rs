@@ -7,6 +7,7 @@ use super::{ExplainError, Target};
 use crate::study::Case;
 use serde::Serialize;
 use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
 use stripmine_physics::method::Decides;
 
 /// Ways that are measured, and the steps of each in parts of its longest.
@@ -66,7 +67,8 @@ pub fn precision(
     stop: &AtomicBool,
     progress: &dyn Fn(f64),
 ) -> Result<Precision, ExplainError> {
-    let mut work = Work { case, target, seconds, stop, whole: None };
+    let end = Instant::now() + Duration::from_secs_f64(seconds);
+    let mut work = Work { case, target, seconds, end, stop, whole: None };
     let ways = work.timed_ways()?;
     progress(SHARES[0]);
     let reference = work.reference(&ways)?;
@@ -88,7 +90,7 @@ pub fn precision(
     }
     let steps = if case.entry.trials.is_some() { &STEPS[..] } else { &STEPS[..1] };
     let share = 1.0 - SHARES[0] - SHARES[1];
-    let each = share * seconds / (chosen.len() * steps.len()).max(1) as f64;
+    let each = work.left() / (chosen.len() * steps.len()).max(1) as f64;
     let (mut curves, mut samples) = (vec![], vec![]);
     for (at, way) in chosen.iter().enumerate() {
         let mut longest = way.step;

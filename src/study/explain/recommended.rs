@@ -45,6 +45,8 @@ pub struct Plan {
     pub scene: String,
     /// Its method.
     pub method: &'static str,
+    /// The configuration by which it is run: its settings.
+    pub way: String,
     /// The quantity.
     pub quantity: &'static str,
     /// Its unit, empty for a pure number.

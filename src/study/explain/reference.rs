@@ -14,8 +14,8 @@ const SURE: f64 = 1.5;
 
 /// How often the reference is looked for, each time for longer.
 const ATTEMPTS: usize = 4;
-/// Whole runs of the reference may take this many times the seconds of all trials: they are the only way to a mean.
-const WHOLE: f64 = 2.0;
+/// Another attempt is made where it may be this many times as long as the one before, at least.
+const LONGER: f64 = 1.5;
 
 /// The reference, as measured.
 pub(super) struct Reference {
@@ -44,16 +44,21 @@ impl Work<'_> {
         let mut way = known.unwrap_or(&ways[0]).clone();
         let mut step = way.step.map(|step| REFERENCE * step);
         let mut seconds = SHARES[1] * self.seconds;
+        let kept_back = SHARES[2] * self.seconds;
         let mut why = String::new();
-        for _ in 0..ATTEMPTS {
+        for attempt in 0..ATTEMPTS {
+            let spare = self.left() - kept_back;
+            if attempt > 0 {
+                let Some(longer) = longer(seconds, spare) else { break };
+                seconds = longer;
+            }
             match self.measured(&way, step, seconds, Warned::GoesOn) {
                 // What changes all along is asked for over the whole run.
                 Ok((sample, _)) if self.whole.is_none() && changes(&sample) => {
                     why = no_mean(&sample);
-                    self.whole = self.whole_in(sample.cost, WHOLE * self.seconds);
+                    self.whole = self.whole_in(sample.cost, self.left() - kept_back);
                     if self.whole.is_none() {
                         why.push_str(&self.too_dear(sample.cost));
-                        seconds *= 2.0;
                     }
                 }
                 Ok((sample, known)) => match known {
@@ -69,10 +74,7 @@ impl Work<'_> {
                             transients: vec![known.transient],
                         });
                     }
-                    None => {
-                        why = no_mean(&sample);
-                        seconds *= 2.0;
-                    }
+                    None => why = no_mean(&sample),
                 },
                 Err(failure) => {
                     why = failure;
@@ -101,11 +103,16 @@ impl Work<'_> {
     }
 }
 
+/// Seconds of an attempt after one of so many: twice as many, as far as these can be spared; none where that is hardly more.
+fn longer(before: f64, spare: f64) -> Option<f64> {
+    Some((2.0 * before).min(spare)).filter(|seconds| *seconds >= LONGER * before)
+}
+
 /// Where the bar of a bias makes a plan dearer than this many times what it would be without, and by more than the trials take, it is seen again.
 const WORTH: f64 = 1.5;
 
-/// Looks again at the bias of a way and at the reference, for as long as all trials before, where a plan is dear only for what is not known of it;
-/// false where it is not, or nothing better came of it.
+/// Looks again at the bias of a way and at the reference, for the time that is left, where a plan is dear only for what is not known of it; false where it is
+/// not, or nothing better came of it.
 pub(super) fn refined(work: &Work<'_>, findings: &mut Findings, way: &str, seconds: [f64; 2]) -> bool {
     let [with_bar, without] = seconds;
     if with_bar < WORTH * without || with_bar - without < work.seconds {
@@ -115,7 +122,7 @@ pub(super) fn refined(work: &Work<'_>, findings: &mut Findings, way: &str, secon
     let (way, Some(before)) = (findings.ways[at].clone(), findings.ways[at].bias) else { return false };
     let of_reference = findings.ways.iter().find(|it| it.label == findings.reference_way).cloned();
     let of_reference = of_reference.unwrap_or_else(|| way.clone());
-    let half = 0.5 * work.seconds;
+    let half = 0.5 * work.left();
     let known =
         |way: &Way, step| work.measured(way, step, half, Warned::GoesOn).ok().and_then(|(_, known)| known);
     let again = known(&of_reference, findings.reference_step);

@@ -1,11 +1,12 @@
 //! How good plans are: each beside the best that trials of several times as long know, carried out, and held against the error that was asked for.
 
+use super::as_it_stands::AS_IT_STANDS;
 use super::bias::Off;
 use super::findings::Findings;
 use super::plan::way_of;
 use super::recommended::{LeftOut, Plan};
 use super::reference::no_mean;
-use super::sample::{Known, ROWS, Sample, Span, sample};
+use super::sample::{ROWS, Sample, Span, sample};
 use super::seen::{planned, seen};
 use super::{Target, in_unit};
 use crate::results::{Meter, Progress};
@@ -110,8 +111,7 @@ fn judge(asked: &Asked, effort: Effort) -> Result<Judged, StudyError> {
     let never = AtomicBool::new(false);
     let by_trials = |seconds: f64| -> Result<(Findings, Plan), String> {
         let found = seen(&case, &target, seconds, &never).map_err(|error| error.to_string())?;
-        let made = planned(&case, &target, &found, "")
-            .map_err(|least| format!("no way comes to it; the bias is known to {least:.2e} at best"))?;
+        let made = planned(&case, &target, &found, "").map_err(|unreached| unreached.to_string())?;
         Ok((found, made))
     };
     let (found, made) = match by_trials(effort.plan) {
@@ -145,7 +145,7 @@ fn judge(asked: &Asked, effort: Effort) -> Result<Judged, StudyError> {
         judged.failed = Some(format!("not carried out: it would take {:.0} s", made.seconds.likely));
         return Ok(judged);
     }
-    match carried_out(&case, &target, &made, &overrides) {
+    match carried_out(&case, &target, &made) {
         Ok((value, seconds)) => {
             let [mean, bar] = best.mean.unwrap_or([0.0; 2]);
             judged.off = Some([value - mean, bar]);
@@ -172,14 +172,23 @@ fn cost_for(plan: &Plan, findings: &Findings, error: f64) -> Option<f64> {
     let part = way.step.zip(plan.step).map_or(1.0, |(longest, step)| step / longest);
     let bias = way.bias.zip(plan.step).map_or(Off::default(), |(bias, step)| bias.at(step));
     let chance = bias.leaves(error)?;
-    let Known { square, transient, .. } = findings.reference;
-    Some(way.cost? / part * (square / (chance * chance) + transient))
+    Some(way.cost? / part * (findings.time_for(chance) + findings.reference.transient))
 }
 
 /// A plan in a line.
 fn said(plan: &Plan) -> String {
     let chosen = |what: &str| plan.decisions.iter().find(|it| it.what == what).map(|it| it.chosen.as_str());
-    let names = ["integrator", "precision", "search", "engine", "execution", "dt", "run length", "seeds"];
+    let names = [
+        AS_IT_STANDS,
+        "integrator",
+        "precision",
+        "search",
+        "engine",
+        "execution",
+        "dt",
+        "run length",
+        "seeds",
+    ];
     let named = names.into_iter().filter_map(|name| Some((name, chosen(name)?)));
     let words = named.map(|(name, chosen)| match name {
         "dt" => format!("dt {chosen}"),
@@ -221,21 +230,20 @@ fn baselines(case: &Case, target: &Target, findings: &Findings) -> [Option<f64>;
 }
 
 /// Carries out a plan, its seeds side by side: the mean, or how far what should be kept went, and wall seconds.
-fn carried_out(
-    case: &Case,
-    target: &Target,
-    plan: &Plan,
-    overrides: &[String],
-) -> Result<(f64, f64), String> {
+fn carried_out(case: &Case, target: &Target, plan: &Plan) -> Result<(f64, f64), String> {
     let observed = (case.entry.quantities, target.place);
     let one = |seed: u64| -> Result<Sample, String> {
         let seeded =
             if case.prepared.seed.is_some() { Overrides::new().set(&SEED, seed) } else { Overrides::new() };
-        let all = [overrides, &plan.overrides, &seeded].concat();
-        let (prepared, _) = stripmine_physics::method::load(case.name(), &all, METHODS)
-            .map_err(|errors| errors.to_string())?;
-        sample(&prepared, observed, Span::Time(plan.time, Some(5.0 * LONGEST)), &AtomicBool::new(false))
-            .map_err(|failure| failure.what())
+        let all = [&plan.overrides[..], &seeded].concat();
+        let prepared = case.prepared_with(&all).map_err(|errors| errors.to_string())?;
+        let found =
+            sample(&prepared, observed, Span::Time(plan.time, Some(5.0 * LONGEST)), &AtomicBool::new(false))
+                .map_err(|failure| failure.what())?;
+        match found.cut_off(plan.time) {
+            Some(why) => Err(why),
+            None => Ok(found),
+        }
     };
     // Another seed than that of the trials, where starts are alike.
     let own = case.prepared.seed.unwrap_or_default();

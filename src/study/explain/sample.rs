@@ -1,5 +1,6 @@
 //! A run of some seconds: what a unit of time costs, and what it says of a mean.
 
+use super::any_number;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -7,6 +8,7 @@ use stripmine_physics::averages::{Average, Estimate, Outcome, Rows};
 use stripmine_physics::method::{
     Clock, Every, Failure, Prepared, Purpose, Quantity, RunWarning, Simulation, Until,
 };
+use stripmine_physics::number::significant;
 
 /// Rows of a sample of some seconds, about: as many as a correlation needs, and so few that they cost little; and of one whose time is known.
 pub const ROWS: [f64; 2] = [1000.0, 250.0];
@@ -44,16 +46,22 @@ pub struct Sample {
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Known {
     /// The mean.
+    #[serde(with = "any_number")]
     pub mean: f64,
     /// Half the width of its interval of 95 %.
+    #[serde(with = "any_number")]
     pub bar: f64,
     /// Square of the bar of a mean over one unit of time.
+    #[serde(with = "any_number")]
     pub square: f64,
     /// Time that does not count (time).
+    #[serde(with = "any_number")]
     pub transient: f64,
     /// Time between independent samples (time).
+    #[serde(with = "any_number")]
     pub apart: f64,
-    /// Degrees of freedom of the bar.
+    /// Degrees of freedom of the bar; infinite where it is exact.
+    #[serde(with = "any_number")]
     pub freedoms: f64,
 }
 
@@ -99,6 +107,19 @@ impl Sample {
         self.warnings.iter().map(|warning| warning.message.as_str()).collect::<Vec<_>>().join("; ")
     }
 
+    /// That it ended before a time, in words; none where it did not.
+    pub fn cut_off(&self, time: f64) -> Option<String> {
+        // The last stretch may end by rounding before.
+        (self.time < time * (1.0 - 1e-9)).then(|| {
+            format!(
+                "cut off at a time of {} of {}, after {} s",
+                significant(self.time, 3),
+                significant(time, 3),
+                significant(self.seconds, 3)
+            )
+        })
+    }
+
     /// The mean over the whole run, its beginning among it.
     pub fn whole_mean(&self) -> f64 {
         self.series.iter().map(|[_, value]| value).sum::<f64>() / self.series.len() as f64
@@ -112,6 +133,17 @@ pub enum Span {
     Seconds(f64),
     /// A time (time), but no more wall seconds than these where they are given.
     Time(f64, Option<f64>),
+}
+
+impl Span {
+    /// The same in no more than some wall seconds.
+    #[must_use]
+    pub(super) fn within(self, left: f64) -> Span {
+        match self {
+            Span::Seconds(seconds) => Span::Seconds(seconds.min(left)),
+            Span::Time(time, seconds) => Span::Time(time, Some(seconds.map_or(left, |it| it.min(left)))),
+        }
+    }
 }
 
 /// Runs a scene, observing a quantity.
@@ -148,6 +180,8 @@ pub fn sample(
     // Rows are evenly spaced from here on.
     rows.add(&simulation.row());
     let running = Instant::now();
+    // The start is a part of the time.
+    let limit = limit.saturating_sub(running - begun);
     // Of the stretches once it is warm, and of all.
     let (mut warm, mut all) = ((0.0, 0.0), (0.0, 0.0));
     while running.elapsed() < limit && simulation.clock().time < most && !stop.load(Ordering::Relaxed) {

@@ -5,18 +5,22 @@ use super::keeping::keeping;
 use super::plan::{dear_for_what_is_unknown, plan};
 use super::recommended::Plan;
 use super::reference::refined;
+use super::unreached::Unreached;
 use super::{ExplainError, Target};
 use crate::study::Case;
 use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
 
-/// Measures a scene in about some seconds.
+/// Parts of the time that trials may take before it is known what they do not tell: the rest is for that.
+const FIRST: f64 = 0.5;
+
+/// Measures a scene.
 ///
 /// # Errors
 /// [`ExplainError`] if every trial breaks, or the quantity comes to no mean.
-fn findings(case: &Case, target: &Target, seconds: f64, stop: &AtomicBool) -> Result<Findings, ExplainError> {
-    let mut work = Work { case, target, seconds, stop, whole: None };
+fn findings(work: &mut Work<'_>) -> Result<Findings, ExplainError> {
     let mut ways = work.timed_ways()?;
-    if target.is_kept() {
+    if work.target.is_kept() {
         return work.drifts(ways);
     }
     let mut reference = work.reference(&ways)?;
@@ -42,24 +46,31 @@ fn findings(case: &Case, target: &Target, seconds: f64, stop: &AtomicBool) -> Re
     })
 }
 
-/// What is measured in about some seconds, and once more as long where a plan would be dear only for what that does not tell.
+/// What is measured in some seconds; the second half of them is for plans that would be dear only for what the first does not tell.
+///
 /// # Errors
 /// [`ExplainError`] if every trial breaks, or the quantity comes to no mean.
 pub fn seen(case: &Case, target: &Target, seconds: f64, stop: &AtomicBool) -> Result<Findings, ExplainError> {
-    let mut found = findings(case, target, seconds, stop)?;
-    let plan = planned(case, target, &found, "").ok();
+    let end = Instant::now() + Duration::from_secs_f64(seconds);
+    let first = if target.is_kept() { seconds } else { FIRST * seconds };
+    let mut work = Work { case, target, seconds: first, end, stop, whole: None };
+    let mut found = findings(&mut work)?;
+    let plan = made(case, target, &found, "").ok();
     if let Some((way, costs)) = plan.and_then(|plan| dear_for_what_is_unknown(&plan, &found)) {
-        let work = Work { case, target, seconds, stop, whole: found.whole };
         refined(&work, &mut found, &way, costs);
     }
     Ok(found)
 }
 
-/// A plan from what was measured.
+/// A plan from what was measured: the scene as it stands, where that is as good and no plan is quicker.
 ///
 /// # Errors
-/// The least error that can be had, where no way comes to what is asked for.
-pub fn planned(case: &Case, target: &Target, findings: &Findings, origin: &str) -> Result<Plan, f64> {
+/// [`Unreached`], where no way comes to what is asked for.
+pub fn planned(case: &Case, target: &Target, findings: &Findings, origin: &str) -> Result<Plan, Unreached> {
+    Ok(made(case, target, findings, origin)?.or_as_it_stands(case, findings))
+}
+
+fn made(case: &Case, target: &Target, findings: &Findings, origin: &str) -> Result<Plan, Unreached> {
     let make = if target.is_kept() { keeping } else { plan };
     make(case, target, findings, origin)
 }

@@ -13,7 +13,9 @@ impl Work<'_> {
     /// Where lists are the cheapest search, their skin is the cheapest of some, for all ways by lists.
     pub(super) fn tune_skin(&self, ways: &mut [Way], seconds: f64) {
         let by_lists = |way: &Way| way.settings.iter().any(|(axis, name)| axis == "search" && name == LISTS);
-        let Some(best) = ways.first().filter(|way| by_lists(way)).cloned() else { return };
+        let Some(best) = ways.first().filter(|way| by_lists(way) && self.left() > seconds).cloned() else {
+            return;
+        };
         let Ok(prepared) = self.prepared(&best.overrides, best.step) else { return };
         // A resolved scene spells its skin out.
         let resolved = prepared.scene.parse::<toml::Table>().ok();

@@ -1,10 +1,11 @@
 //! What each way to run a scene costs, at the longest step that nothing speaks against.
 
 use super::ExplainError;
-use super::findings::{HALVINGS, SHARES, Way, Work, first_line, sort};
+use super::findings::{HALVINGS, NO_TIME, SHARES, Way, Work, first_line, sort};
 use super::sample::timed;
 use crate::study::Choice;
 use rayon::ThreadPoolBuilder;
+use std::time::{Duration, Instant};
 use stripmine_physics::method::{Decides, StepLimit};
 use stripmine_physics::number::significant;
 
@@ -16,6 +17,8 @@ const TIMES_OWN: f64 = 4.0;
 const DEAR: f64 = 5.0;
 /// How often each way is timed.
 const ROUNDS: usize = 2;
+/// Preparing and starting may take as long as the timing itself, and what is left after that is not timed.
+const OVERHEAD: f64 = 2.0;
 
 impl Work<'_> {
     /// Every way with its cost at its longest step, the cheapest first.
@@ -27,9 +30,12 @@ impl Work<'_> {
         let own = &self.case.own;
         let of_own_arithmetic =
             |choice: &&Choice| choice.agrees(own, Decides::Order) && choice.agrees(own, Decides::Digits);
-        let searches: Vec<&Choice> = all.iter().filter(of_own_arithmetic).collect();
+        let mut searches: Vec<&Choice> = all.iter().filter(of_own_arithmetic).collect();
+        // The scene's own is timed whatever that takes.
+        searches.sort_by_key(|choice| *choice != own);
         let each = SHARES[0] * self.seconds / 2.0;
-        let mut ways = self.timed(&searches, each);
+        let end = |share: f64| self.end.min(Instant::now() + Duration::from_secs_f64(OVERHEAD * share));
+        let mut ways = self.timed(&searches, each, end(each));
         give_up(&mut ways);
         let Some(best) = ways.iter().position(|way| way.cost.is_some()).map(|at| ways[at].label.clone())
         else {
@@ -41,7 +47,7 @@ impl Work<'_> {
             .iter()
             .filter(|choice| choice.agrees(best, Decides::Cost) && !of_own_arithmetic(choice))
             .collect();
-        ways.extend(self.timed(&others, each));
+        ways.extend(self.timed(&others, each, end(each)));
         sort(&mut ways);
         self.tune_skin(&mut ways, each);
         Ok(ways)
@@ -49,13 +55,25 @@ impl Work<'_> {
 
     /// Ways with their costs, the cheapest first.
     ///
-    /// Each is timed again after all the others: other programs come and go, and the faster time of both is the better one.
-    fn timed(&self, choices: &[&Choice], seconds: f64) -> Vec<Way> {
+    /// Each is timed again after all the others: other programs come and go, and the faster time of both is the better one. None but the scene's own is begun after
+    /// the end.
+    fn timed(&self, choices: &[&Choice], seconds: f64, end: Instant) -> Vec<Way> {
         let each = seconds / (ROUNDS * choices.len().max(1)) as f64;
-        let mut ways: Vec<Way> = choices.iter().map(|choice| self.at_longest(choice, each)).collect();
+        let is_over = || Instant::now() >= end;
+        let of = |choice: &&Choice| {
+            if is_over() && **choice != self.case.own {
+                let dropped = Some(format!("not timed: {NO_TIME}"));
+                return Way { dropped, ..untimed(choice) };
+            }
+            self.at_longest(choice, each)
+        };
+        let mut ways: Vec<Way> = choices.iter().map(of).collect();
         for _ in 1..ROUNDS {
             let limit = DEAR * least(&ways);
             for way in ways.iter_mut().filter(|way| way.cost.is_some_and(|cost| cost < limit)) {
+                if is_over() {
+                    break;
+                }
                 let again = self.prepared(&way.overrides, way.step).ok();
                 let again = again.and_then(|prepared| timed(&prepared, each, self.stop).ok());
                 way.cost = way.cost.into_iter().chain(again).reduce(f64::min);
@@ -67,21 +85,7 @@ impl Work<'_> {
 
     /// A way at the longest step that theory has nothing against and at which it runs.
     fn at_longest(&self, choice: &Choice, seconds: f64) -> Way {
-        let overrides: Vec<String> = choice.overrides().collect();
-        let settings = choice.settings().map(|(axis, name)| (axis.to_owned(), name.to_owned())).collect();
-        let mut way = Way {
-            label: choice.label(),
-            settings,
-            overrides,
-            cost: None,
-            step: None,
-            bound: None,
-            skin: None,
-            phases: vec![],
-            bias: None,
-            drift: None,
-            dropped: None,
-        };
+        let mut way = untimed(choice);
         let own_step = self.case.step();
         let prepared = match self.prepared(&way.overrides, None) {
             Ok(prepared) => prepared,
@@ -118,12 +122,34 @@ impl Work<'_> {
         let threads = rayon::current_num_threads();
         let seconds = 0.05 * self.seconds;
         let measured = || {
+            if self.left() < 2.0 * seconds {
+                return None;
+            }
             let prepared = self.prepared(&way.overrides, way.step).ok()?;
             let all = timed(&prepared, seconds, self.stop).ok()?;
             let pool = ThreadPoolBuilder::new().num_threads(1).build().ok()?;
             Some(pool.install(|| timed(&prepared, seconds, self.stop)).ok()? / all)
         };
-        if threads == 1 { 1.0 } else { measured().unwrap_or(1.0) }
+        // Where that is not known, several runs side by side are no gain.
+        let unknown = threads as f64;
+        if threads == 1 { 1.0 } else { measured().unwrap_or(unknown) }
+    }
+}
+
+/// A way of which nothing is known.
+fn untimed(choice: &Choice) -> Way {
+    Way {
+        label: choice.label(),
+        settings: choice.settings().map(|(axis, name)| (axis.to_owned(), name.to_owned())).collect(),
+        overrides: choice.overrides().collect(),
+        cost: None,
+        step: None,
+        bound: None,
+        skin: None,
+        phases: vec![],
+        bias: None,
+        drift: None,
+        dropped: None,
     }
 }
 

@@ -1,7 +1,7 @@
 //! What a scene may be modelled without, and what that changes and saves.
 
 use super::Target;
-use super::findings::{SHARES, Way, Without, Work};
+use super::findings::{NO_TIME, SHARES, Way, Without, Work};
 use super::reference::no_mean;
 use super::sample::{Known, Sample};
 use super::whole::Warned;
@@ -71,6 +71,9 @@ impl Work<'_> {
         };
         let case = self.case.beside(scene.text).map_err(errors)?;
         let target = Target::of(&case, Some(scene.quantity), None).map_err(|error| error.to_string())?;
+        if self.left() == 0.0 {
+            return Err(NO_TIME.to_owned());
+        }
         let mut work = Work { case: &case, target: &target, seconds, ..*self };
         let ways = work.timed_ways().map_err(|error| error.to_string())?;
         work.seconds = self.seconds;

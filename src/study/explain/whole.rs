@@ -1,7 +1,7 @@
 //! Means over whole runs, of what changes all along: a hopper that empties, a gas that cools. Runs from starts that differ by next to nothing tell
 //! how far chance takes such a mean.
 
-use super::findings::{Way, Work};
+use super::findings::{NO_TIME, Way, Work};
 use super::sample::{Known, Sample, Span, sample};
 use crate::study::state::displaced;
 use std::time::Instant;
@@ -13,8 +13,6 @@ use stripmine_physics::scene::{Overrides, SEED};
 
 /// Runs of which a mean and its scatter are, at least and at most.
 const RUNS: [usize; 2] = [3, 16];
-/// No run takes longer than the seconds of all trials, and this many times that.
-const LONGEST: f64 = 2.0;
 /// Where nothing of a start is random, particles are displaced by as much (parts of the largest radius, or of the box where they have none): far
 /// more than rounding, and far less than matters before collisions have multiplied it.
 const DISPLACED: f64 = 1e-7;
@@ -71,12 +69,17 @@ impl Work<'_> {
     ) -> Result<(Sample, Option<Known>), String> {
         let begun = Instant::now();
         let cost = way.cost.zip(way.step).zip(step).map(|((cost, longest), step)| cost * longest / step);
-        if let Some(run) = cost.map(|cost| cost * time).filter(|run| *run > LONGEST * self.seconds) {
-            return Err(format!("a whole run takes about {} s", significant(run, 2)));
+        let left = self.left();
+        if left == 0.0 {
+            return Err(NO_TIME.to_owned());
+        }
+        if let Some(run) = cost.map(|cost| cost * time).filter(|run| *run > left) {
+            return Err(format!("a whole run takes about {} s, and {NO_TIME}", significant(run, 2)));
         }
         let (mut first, mut means): (Option<Sample>, Vec<f64>) = (None, vec![]);
         for run in 0..RUNS[1] {
-            if run >= RUNS[0] && begun.elapsed().as_secs_f64() * (run + 1) as f64 / run as f64 > seconds {
+            let next = begun.elapsed().as_secs_f64() * (run + 1) as f64 / run as f64;
+            if run > 0 && next > left || run >= RUNS[0] && next > seconds {
                 break;
             }
             let prepared = self.another_start(way, step, run as u64)?;

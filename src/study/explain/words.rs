@@ -27,9 +27,9 @@ pub fn page(plan: &Plan) -> String {
 
 /// Overrides that say the same as the scene itself are no news, but none is left out: the plan is the same where the scene changes.
 fn answer(plan: &Plan) -> String {
-    let set: Vec<String> = plan.overrides.iter().map(|text| format!("--set {text}")).collect();
+    let set: String = plan.overrides.iter().map(|text| format!(" \\\n    --set {text}")).collect();
     let seeds = if plan.seeds > 1 { format!(" --seeds {}", plan.seeds) } else { String::new() };
-    format!("stripmine run {}{seeds} \\\n    {}", plan.scene, set.join(" \\\n    "))
+    format!("stripmine run {}{seeds}{set}", plan.scene)
 }
 
 fn expected(plan: &Plan) -> String {
@@ -76,7 +76,8 @@ fn share(plan: &Plan, error: f64) -> String {
     }
 }
 
-fn seconds(seconds: f64) -> String {
+/// A wall time.
+pub fn seconds(seconds: f64) -> String {
     match seconds {
         _ if seconds < 120.0 => format!("{} s", significant(seconds, 2)),
         _ if seconds < 7200.0 => format!("{} min", significant(seconds / 60.0, 2)),

@@ -8,6 +8,7 @@
 mod boundary;
 pub mod conclusions;
 mod dataset;
+mod extent;
 mod outcome;
 mod reference;
 pub mod section;
@@ -21,8 +22,10 @@ use super::choice::Choice;
 use super::{StudyError, Subject};
 use crate::results::{Journal, JournalError, Meter, Progress};
 use crate::statistics::median;
+use cpu_time::ProcessTime;
+use extent::Costs;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
-use stripmine_physics::method::{Decides, Parameter, probed};
+use stripmine_physics::method::{Decides, Parameter, Purpose, probed};
 use stripmine_physics::number::significant;
 use survey::{Case, Known, Survey};
 
@@ -30,21 +33,17 @@ use survey::{Case, Known, Survey};
 const STEPS: [f64; 2] = [0.5, 128.0];
 /// Steps of a probe at most.
 const PROBED: u64 = 4096;
-/// Steps of the scene's own that a run lasts at least, if the scene does: eight of the largest.
-const LEAST: f64 = 1024.0;
-/// Runs that an edge takes about, each as long as one with four own steps.
-const EDGE: f64 = 8.0 / 4.0;
 /// Failures that an error names at most.
 const TRIED: usize = 8;
 
 /// How much is done.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
-    /// Processor seconds that it may take about.
+    /// Processor seconds that it may take.
     pub budget: f64,
-    /// Values of the parameter, and steps.
+    /// Values of the parameter, and steps, at most.
     pub size: usize,
-    /// Seeds of the edges.
+    /// Seeds of the edges, at most.
     pub seeds: u64,
     /// How far apart the two ends of an edge are at most, in parts of the step.
     pub tolerance: f64,
@@ -58,17 +57,20 @@ pub struct Over {
 }
 
 impl Over {
-    /// What a scene lets vary, by name; over a range that is asked for, or about the scene's own value.
+    /// What a scene lets vary, by name, or the first that it has a value of; over a range that is asked for, or about the scene's own value.
     ///
     /// # Errors
     /// [`StudyError`] if it has nothing of that name, or the range is none.
-    pub fn of(subject: &Subject, name: &str, asked: Option<[f64; 2]>) -> Result<Over, StudyError> {
+    pub fn of(subject: &Subject, name: Option<&str>, asked: Option<[f64; 2]>) -> Result<Over, StudyError> {
         let all = subject.trials.parameters;
-        let parameter = all.iter().find(|parameter| parameter.name == name).ok_or_else(|| {
-            StudyError::NoSuchParameter {
-                name: name.to_owned(),
-                known: all.iter().map(|parameter| parameter.name).collect(),
-            }
+        let known = || all.iter().map(|parameter| parameter.name).collect();
+        let is_meant = |parameter: &&Parameter| match name {
+            Some(name) => parameter.name == name,
+            None => (parameter.range)(&subject.values).is_some(),
+        };
+        let parameter = all.iter().find(is_meant).ok_or_else(|| match name {
+            Some(name) => StudyError::NoSuchParameter { name: name.to_owned(), known: known() },
+            None => StudyError::NothingOfItsOwn { known: known() },
         })?;
         let Some(range) = asked.or_else(|| (parameter.range)(&subject.values)) else {
             return Err(StudyError::NothingOfTheKind(parameter.name));
@@ -81,6 +83,11 @@ impl Over {
             return Err(StudyError::OutOfRange { name: parameter.name, range, bounds: parameter.bounds });
         }
         Ok(Over { parameter, range })
+    }
+
+    /// The name of what is varied.
+    pub fn name(&self) -> &'static str {
+        self.parameter.name
     }
 }
 
@@ -107,19 +114,19 @@ pub fn stability(
     journal: &Journal,
     progress: Progress<'_>,
 ) -> Result<Stability, StudyError> {
-    let values = ladder(range, effort.size, parameter.is_logarithmic);
-    let steps = ladder(STEPS.map(|factor| factor * subject.step), effort.size, true);
     let meter = Meter::new(effort.budget, progress);
     let schemes = schemes(subject);
-    let each: f64 = journal
-        .once(|| journal.recall("probe", || Ok::<_, JournalError>(rate(subject, parameter, &values))))?;
-    let units = units(subject, &steps, effort, schemes.len());
-    let least = LEAST.min(subject.steps as f64);
-    let own_steps = (effort.budget / (each * units)).max(least).min(subject.steps as f64);
-    meter.expect(each * units * own_steps);
-    let duration = own_steps * subject.step;
+    let probed = || Ok::<_, JournalError>(probe(subject, parameter, range));
+    let fits = |costs: &[f64; 2]| costs.iter().all(|cost| cost.is_finite() && *cost > 0.0);
+    let [each, start] = journal.once(|| journal.recall("probe", fits, probed))?;
+    let (asked, scene) = ((effort.size, effort.seeds), subject.steps as f64);
+    let extent = Costs { each, start, schemes: schemes.len() }.extent(effort.budget, asked, scene)?;
+    meter.expect(extent.seconds);
+    let values = ladder(range, extent.size, parameter.is_logarithmic);
+    let steps = ladder(STEPS.map(|factor| factor * subject.step), extent.size, true);
+    let duration = extent.own_steps * subject.step;
     let survey = Survey { subject, parameter, journal, meter: &meter, steps: &steps, duration, each };
-    let seeds: Vec<u64> = (1..=effort.seeds).collect();
+    let seeds: Vec<u64> = (1..=extent.seeds).collect();
     let own = |value: f64| Case { choice: &subject.own, value: Some(value) };
     let column = |&value: &f64| -> Result<(Vec<Cell>, Boundary, Option<String>), JournalError> {
         let known = survey.known(Some(value))?;
@@ -151,8 +158,7 @@ pub fn stability(
         time_unit: subject.unit("time"),
         step: subject.step,
         duration,
-        left_out: (own_steps < 0.99 * subject.steps as f64)
-            .then(|| format!("what comes after {own_steps:.0} of the scene's {} steps", subject.steps)),
+        left_out: extent.left_out(asked, scene),
         parameter: Varied::of(parameter, subject),
         limits: limits(&survey, &values, own),
         marks: (parameter.marks)(&subject.values).into_iter().filter(|(at, _)| inside(*at, range)).collect(),
@@ -178,29 +184,26 @@ fn schemes(subject: &Subject) -> Vec<Choice> {
         .collect()
 }
 
-/// Seconds of a step: the middle over the ends and the middle of what is varied.
-fn rate(subject: &Subject, parameter: &Parameter, values: &[f64]) -> f64 {
-    let at = [0, values.len() / 2, values.len() - 1].map(|place| values[place]);
+/// Seconds of a step, and those before the first: the middle over the ends and the middle of what is varied.
+fn probe(subject: &Subject, parameter: &Parameter, range: [f64; 2]) -> [f64; 2] {
     let of = |value: f64| {
         let overrides = (parameter.overrides)(&subject.values, value);
+        let before = ProcessTime::now();
         let scene = subject.prepared_at_any_step(&subject.own, subject.step, &overrides).ok()?;
-        probed(&scene, subject.steps.min(PROBED)).ok()
+        drop(scene.start(Purpose::Run).ok()?);
+        let start = before.elapsed().as_secs_f64();
+        Some((probed(&scene, subject.steps.min(PROBED)).ok()?, start))
     };
-    let rates: Vec<f64> = at.into_iter().filter_map(of).collect();
-    if rates.is_empty() { SLOW } else { median(rates.into_iter()) }
+    let found: Vec<(f64, f64)> =
+        ladder(range, 3, parameter.is_logarithmic).into_iter().filter_map(of).collect();
+    if found.is_empty() {
+        return SLOW;
+    }
+    [median(found.iter().map(|it| it.0)), median(found.iter().map(|it| it.1))]
 }
 
-/// Seconds of a step where none could be timed.
-const SLOW: f64 = 1e-3;
-
-/// What all runs cost together, in runs of the scene's own step.
-fn units(subject: &Subject, steps: &[f64], effort: &Effort, schemes: usize) -> f64 {
-    let cost = |step: &f64| subject.step / step;
-    let column: f64 = steps.iter().map(cost).sum();
-    let reference = reference::SEEDS as f64 * cost(&steps[0]);
-    let (values, seeds) = (effort.size as f64, effort.seeds as f64);
-    values * (column + reference + seeds * EDGE) + reference + schemes as f64 * seeds * EDGE
-}
+/// Seconds of a step and before the first, where none could be timed.
+const SLOW: [f64; 2] = [1e-3, 1e-2];
 
 fn limits<'c>(survey: &Survey<'_>, values: &[f64], own: impl Fn(f64) -> Case<'c>) -> Vec<Limit> {
     let mut limits: Vec<Limit> = vec![];

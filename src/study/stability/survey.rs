@@ -6,7 +6,7 @@ use super::outcome::{Cell, Class, End, Foreseen, Ran};
 use super::reference::{Expected, SEEDS};
 use crate::results::{Journal, JournalError, Meter};
 use crate::statistics::Spread;
-use crate::study::averages::{Averages, LOOKS, Means};
+use crate::study::averages::{self, Averages, LOOKS, Means};
 use crate::study::choice::Choice;
 use crate::study::state::displaced;
 use crate::study::subject::Subject;
@@ -168,7 +168,11 @@ impl Survey<'_> {
     fn run(&self, case: Case<'_>, step: f64, seed: u64) -> Result<Ran, JournalError> {
         let value = case.value.map_or("own".to_owned(), |value| format!("{value:?}"));
         let key = format!("run|{}|{value}|{step:?}|{seed}", case.choice.label());
-        self.journal.recall(&key, || Ok(self.ran(case, step, seed)))
+        let fits = |ran: &Ran| match &ran.end {
+            End::Broken(..) => true,
+            End::Whole { means, speed, .. } => averages::are_of(self.subject, means) && speed.is_finite(),
+        };
+        self.journal.recall(&key, fits, || Ok(self.ran(case, step, seed)))
     }
 
     fn ran(&self, case: Case<'_>, step: f64, seed: u64) -> Ran {

@@ -44,9 +44,16 @@ pub fn probes(
         probed(&scene, subject.steps.min(PROBED)).map_err(|failure| first_line(&failure.what()))
     };
     let of = |choice: &Choice| {
-        journal.recall(&format!("probe|{}", choice.label()), || Ok::<_, JournalError>(probe(choice)))
+        let fits = |found: &Result<f64, String>| found.as_ref().map_or(true, |each| is_rate(*each));
+        let key = format!("probe|{}", choice.label());
+        journal.recall(&key, fits, || Ok::<_, JournalError>(probe(choice)))
     };
     choices.iter().map(of).collect()
+}
+
+/// Whether something takes a time.
+fn is_rate(seconds: f64) -> bool {
+    seconds.is_finite() && seconds > 0.0
 }
 
 /// Every mistake, in one line.
@@ -176,7 +183,8 @@ impl Work<'_> {
         let cases = [(&first, power), (&first, power + 1), (&second, power)];
         let ends: Vec<Ended> = self.journal.over(&cases, |&(choice, power)| {
             let key = format!("reference|{}|{power}", choice.label());
-            self.journal.recall(&key, || {
+            let fits = |ended: &Ended| ended.state.len() == self.subject.prepared.particles().grain_count();
+            self.journal.recall(&key, fits, || {
                 self.ended(choice, power, each).map_err(|why| {
                     let what = format!(
                         "the reference by {}, step {}",
@@ -238,7 +246,12 @@ impl Work<'_> {
     fn run(&self, way: usize, power: i32, reference: &State) -> Result<Run, JournalError> {
         let choice = &self.choices[way];
         let each = self.rates[way].unwrap_or(0.0);
-        self.journal.recall(&format!("run|{}|{power}", choice.label()), || {
+        let fits = |run: &Run| {
+            let is_ours = (run.way, run.power, run.step) == (way, power, self.step(power));
+            let errors = run.outcome.iter().flat_map(Errors::values);
+            is_ours && run.costs.is_empty() && errors.copied().all(f64::is_finite)
+        };
+        self.journal.recall(&format!("run|{}|{power}", choice.label()), fits, || {
             let end = self.ended(choice, power, each);
             let clocks = end.as_ref().ok().and_then(|end| end.clocks);
             let objections = end.as_ref().map_or(vec![], |end| end.objections.clone());
@@ -266,7 +279,8 @@ impl Work<'_> {
             for run in runs.iter_mut().filter(|run| run.outcome.is_ok()) {
                 let choice = &self.choices[run.way];
                 let key = format!("time|{}|{}|{repeat}", choice.label(), run.power);
-                let seconds = self.journal.recall(&key, || {
+                let fits = |seconds: &Option<f64>| seconds.is_none_or(is_rate);
+                let seconds = self.journal.recall(&key, fits, || {
                     let each = self.rates[run.way].unwrap_or(0.0);
                     let course = Course { steps: self.steps(run.power), looks: 1, each };
                     let scene = self.prepared(choice, run.power);

@@ -83,9 +83,8 @@ pub fn work_precision(
     let growth = journal.once(|| longest_growth(subject, most, own_rate, journal, &meter))?;
     let comparable = (growth.window / subject.step).round() as u64;
     let seconds = effort.budget;
-    let plan: Plan = journal.recall("plan", || {
-        Ok::<_, JournalError>(plan(&choices, &rates, &subject.own, comparable, seconds, effort.repeats))
-    })?;
+    // It follows from what is recalled.
+    let plan = plan(&choices, &rates, &subject.own, comparable, seconds, effort.repeats);
     let work =
         Work { subject, effort, journal, meter: &meter, choices: &choices, rates: &rates, plan: &plan };
     meter.expect(plan.seconds + MEANS_SHARE * effort.budget);
@@ -102,7 +101,10 @@ pub fn work_precision(
     }
     let counted = (&own_in_full_digits(subject), growth.step);
     let encounters: Encounters = journal.once(|| {
-        journal.recall("encounters", || {
+        let fits = |it: &Encounters| {
+            it.of_contacts == subject.trials.has_contacts && it.each.is_finite() && it.each >= 0.0
+        };
+        journal.recall("encounters", fits, || {
             Ok::<_, JournalError>(encounters(subject, counted, work.duration(), own_rate, &meter))
         })
     })?;
@@ -145,7 +147,8 @@ fn longest_growth(
     meter: &Meter<'_>,
 ) -> Result<Growth, StudyError> {
     let own = own_in_full_digits(subject);
-    let first: Growth = journal.recall("growth", || {
+    let fits = |growth: &Growth| growth.is_of(subject);
+    let first: Growth = journal.recall("growth", fits, || {
         growth(subject, (&own, HALVINGS), most, each, meter)
             .map_err(|tried| StudyError::EveryRunFails { tried })
     })?;
@@ -153,7 +156,8 @@ fn longest_growth(
     if first.ended_by != EndedBy::Growth || reference == own {
         return Ok(first);
     }
-    let second: Option<Growth> = journal.recall("growth of the reference", || {
+    let fits = |found: &Option<Growth>| found.as_ref().is_none_or(|growth| growth.is_of(subject));
+    let second: Option<Growth> = journal.recall("growth of the reference", fits, || {
         Ok::<_, JournalError>(growth(subject, (&reference, 0), most, each, meter).ok())
     })?;
     Ok(second.filter(|second| second.window > first.window).unwrap_or(first))

@@ -18,6 +18,7 @@ pub use estimate::{Estimate, FEWEST_SAMPLES, Outcome, estimated, of_correlated, 
 pub use joined::joined;
 pub use rows::Rows;
 pub use student::student;
+pub use waves::MOST as MOST_WAVES;
 
 use crate::method::{Kind, Quantity};
 use serde::Serialize;

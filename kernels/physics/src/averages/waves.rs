@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 /// The number of waves for the shortest series that has a mean.
 const FEWEST: usize = 6;
 /// The number of waves for a long series. More would make bars 5 % shorter, and miss correlations that last for a hundredth of the series.
-const MOST: usize = 16;
+pub const MOST: usize = 16;
 /// Waves for the root of the number of independent samples: slower than the correlation time where there are 20 samples or more.
 const PER_ROOT: f64 = 1.2;
 /// The error is no smaller than that of this many times as many waves. It has less noise, and rarely lies below by chance.

@@ -337,6 +337,11 @@ pub trait Startable: Send + Sync {
         vec![]
     }
 
+    /// What there is to be said of the vector programs beside their counts: that the scene itself is run otherwise.
+    fn programs_note(&self) -> Option<String> {
+        None
+    }
+
     /// What a disc takes in a step, or in a unit of time where there are no steps: nanoseconds by a count of its pairs or events at
     /// the start, on no machine in particular. How often the structure is looked at goes by it: at every row and snapshot where it is 0.
     fn work(&self) -> f64 {

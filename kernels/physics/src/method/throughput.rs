@@ -11,6 +11,8 @@ use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
+use stripmine_kernels::isa::ProgramError;
+use stripmine_kernels::sweep::lattice::ShapeError;
 
 /// What is measured.
 pub struct Measurement {
@@ -38,6 +40,12 @@ pub enum MeasurementError {
     /// A quantity that the bench is to say and the method does not observe.
     #[error(transparent)]
     Unknown(#[from] UnknownName),
+    /// A vector program that cannot be run.
+    #[error(transparent)]
+    Program(#[from] ProgramError),
+    /// A lattice that cannot be.
+    #[error(transparent)]
+    Shape(#[from] ShapeError),
     /// No thread to measure on.
     #[error("no thread to measure on: {0}")]
     Threads(rayon::ThreadPoolBuildError),
@@ -256,7 +264,8 @@ impl Reported for MeasurementError {
             MeasurementError::Scene(errors) => errors.class(),
             MeasurementError::Physics(failure) => failure.class(),
             MeasurementError::Unknown(error) => error.class(),
-            MeasurementError::Threads(_) => Class::InputOutput,
+            MeasurementError::Shape(_) => Class::Precondition,
+            MeasurementError::Program(_) | MeasurementError::Threads(_) => Class::InputOutput,
         }
     }
 
@@ -265,7 +274,7 @@ impl Reported for MeasurementError {
             MeasurementError::Scene(errors) => Some(errors),
             MeasurementError::Physics(failure) => Some(failure),
             MeasurementError::Unknown(error) => Some(error),
-            MeasurementError::Threads(_) => None,
+            MeasurementError::Program(_) | MeasurementError::Shape(_) | MeasurementError::Threads(_) => None,
         }
     }
 }

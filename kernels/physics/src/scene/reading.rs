@@ -38,9 +38,18 @@ impl Values {
         overrides: &[String],
         methods: &[&'static Vocabulary],
     ) -> Result<Values, SceneErrors> {
+        Values::parse(what, &Values::text(what, methods)?, overrides, methods)
+    }
+
+    /// Reads the text of the scene that is a preset's name or a file's path. A program that needs the scene several times parses this text each time: the file
+    /// may change meanwhile.
+    ///
+    /// # Errors
+    /// [`SceneErrors`]: neither preset nor readable file.
+    pub fn text(what: &str, methods: &[&'static Vocabulary]) -> Result<String, SceneErrors> {
         let presets = || methods.iter().flat_map(|method| method.presets);
         if let Some(Preset { text, .. }) = presets().find(|preset| preset.name == what) {
-            return Values::parse(what, text, overrides, methods);
+            return Ok((*text).to_owned());
         }
         let nowhere = Spot { file: what.to_owned(), place: None };
         let names: Vec<&str> = presets().map(|preset| preset.name).collect();
@@ -56,11 +65,11 @@ impl Values {
                 None => error,
             }
         })?;
-        let text = String::from_utf8(bytes).map_err(|cause| {
+        String::from_utf8(bytes).map_err(|cause| {
             let line = regular_file::line_that_is_not_text(cause.as_bytes()).unwrap_or(1);
             let spot = Spot { file: what.to_owned(), place: Some(Place { line: line as u32, column: 1 }) };
-            spot.error(Reason::Syntax, "this line is not UTF-8 text").expecting("a TOML file in UTF-8")
-        })?;
-        Values::parse(what, &text, overrides, methods)
+            let error = spot.error(Reason::Syntax, "this line is not UTF-8 text");
+            error.expecting("a TOML file in UTF-8").into()
+        })
     }
 }

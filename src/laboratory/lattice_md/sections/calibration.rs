@@ -18,7 +18,16 @@ fn operations(model: &HostModel) -> Table {
             both.iter().any(Option::is_some).then_some((lane, class, both))
         })
     });
-    let Measured { state, seconds, spread, disagreement, shortest, longest, residuals } = &model.measured;
+    let Measured { state, seconds, spread, disagreement, shortest, longest, residuals, .. } = &model.measured;
+    let share = |value: &Option<f64>| value.map(|value| format!("{:.1} %", 100.0 * value));
+    let scatter = match (share(spread), share(disagreement)) {
+        (Some(spread), Some(apart)) => {
+            format!(
+                ": half of the samples lie within {spread} of the middle, the two halves of the measurement differ by {apart}"
+            )
+        }
+        _ => String::new(),
+    };
     let starts = model.lanes.iter().map(|(lane, costs)| format!("{:.1} ns on {lane} lanes", costs.start));
     Rows::of(measured)
         .text("lanes", |(lane, ..)| *lane)
@@ -27,10 +36,7 @@ fn operations(model: &HostModel) -> Table {
         .number("chained (ns an element)", 4, |(.., [_, chained])| *chained)
         .table("operations", format!("Operations of {}, {}", model.title, model.instruction_set))
         .note(format!(
-            "Vectors of {shortest} to {longest} elements. Measured in {seconds:.0} s on a machine that was {state}: half of the samples \
-             lie within {:.1} % of the middle, the two halves of the measurement differ by {:.1} %.",
-            100.0 * spread,
-            100.0 * disagreement
+            "Vectors of {shortest} to {longest} elements. Measured in {seconds:.0} s on a machine that was {state}{scatter}."
         ))
         .note(format!(
             "Fitted, with the levels, to the programs of the lattice method, which deviate by {:.0} % (the median; compiled loops by \

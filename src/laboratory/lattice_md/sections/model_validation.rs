@@ -23,7 +23,7 @@ pub fn section(data: &ModelValidation) -> Section {
     let again = match data.calibrated {
         Calibrated::Now => "stripmine validate-model --calibrate --out reports",
         Calibrated::Shipped => "stripmine validate-model --out reports",
-        Calibrated::Before => {
+        Calibrated::Before | Calibrated::Elsewhere => {
             "stripmine calibrate --out host.toml, then stripmine validate-model --host host.toml --out reports"
         }
     };
@@ -81,6 +81,9 @@ fn errors(data: &ModelValidation) -> Table {
             "This is the model that comes with the program, not one of this host: calibrate first."
         }
         Calibrated::Before => "The model was calibrated at another time.",
+        Calibrated::Elsewhere => {
+            "It is a model of another processor, or of other instructions than this host measures by: errors are those of a wrong model."
+        }
         Calibrated::Now => "The model was calibrated just before, on other numbers of discs and densities.",
     };
     Rows::of(&data.errors)

@@ -14,6 +14,7 @@ use std::f64::consts::PI;
 use stripmine_kernels::backend::tape::{Outlines, Place};
 use stripmine_kernels::isa::Array;
 use stripmine_kernels::noise::{Purpose, Stream};
+use stripmine_kernels::sweep::lattice::ShapeError;
 use stripmine_kernels::{Execution, InstructionSet};
 use stripmine_physics::method::lattice_md::keys::{CELL_EDGE, COHESIONLESS, ENGINE, EXECUTION, SEARCH, TEXT};
 use stripmine_physics::method::lattice_md::options::{By, EngineChoice};
@@ -191,16 +192,16 @@ fn measured(effort: &Effort, progress: &dyn Fn(f64)) -> Result<PrintedCost, Meas
     let all: f64 = places.iter().map(|&(cells, _)| weight(cells)).sum();
     let (mut timed, mut done) = (vec![], 0.0);
     for &(cells, occupancy) in &places {
-        timed.extend(eager(cells, occupancy, Choice::default().printed(), effort.samples));
+        timed.extend(eager(cells, occupancy, Choice::default().printed(), effort.samples)?);
         done += weight(cells);
         progress(0.6 * done / all);
     }
     let step = |choice| {
-        let timed = eager(CELLS, OCCUPANCY, choice, effort.samples);
-        timed.iter().map(|timed| timed.ns).sum()
+        let timed = eager(CELLS, OCCUPANCY, choice, effort.samples)?;
+        Ok::<f64, MeasurementError>(timed.iter().map(|timed| timed.ns).sum())
     };
-    let [ours_eager_ns, printed_eager_ns] = [Choice::default(), Choice::default().printed()].map(step);
-    let fitted = SOURCES_PARTS.iter().map(|part| fit(part.name(), &timed)).collect();
+    let (ours_eager_ns, printed_eager_ns) = (step(Choice::default())?, step(Choice::default().printed())?);
+    let fitted = SOURCES_PARTS.iter().map(|part| fit(part.name(), &timed)).collect::<Result<_, _>>()?;
     let packing_fraction = 0.2 * PI;
     let (prices, rounds) = prices(effort, packing_fraction, |share| progress(0.6 + 0.4 * share))?;
     Ok(PrintedCost {
@@ -250,10 +251,13 @@ fn scattered(model: &Model, occupancy: f64) -> Particles {
 
 /// Every part of an eager step on a lattice of about a number of cells. Nothing in it depends on the data, so the discs need not move: the
 /// step is so short that none leaves its cell.
-fn eager(cells: usize, occupancy: f64, choice: Choice, samples: usize) -> Vec<Timed> {
-    // Every lattice of 25 cells and more is one.
-    let Ok(model) = counting_model(cells, choice) else { return vec![] };
-    let model = Model { dt: 1e-9, ..model };
+fn eager(
+    cells: usize,
+    occupancy: f64,
+    choice: Choice,
+    samples: usize,
+) -> Result<Vec<Timed>, MeasurementError> {
+    let model = Model { dt: 1e-9, ..counting_model(cells, choice)? };
     let particles = scattered(&model, occupancy);
     let mut arrays = Arrays::<f64, f64>::new(&model, &particles);
     drop(particles);
@@ -268,33 +272,31 @@ fn eager(cells: usize, occupancy: f64, choice: Choice, samples: usize) -> Vec<Ti
     for _ in 0..samples {
         Samples::take_in_turns(&mut all, times, |at| {
             let (memory, lengths) = arrays.memory();
-            // Admitted by every run of a scene; a refusal would be seen there.
-            drop(execute(&step, &parts[at..=at], &memory, lengths, Execution::Eager, set));
-        });
+            execute(&step, &parts[at..=at], &memory, lengths, Execution::Eager, set)
+        })?;
     }
     let timed = parts.iter().zip(&all).filter(|(part, _)| SOURCES_PARTS.contains(part));
-    timed
-        .map(|(part, samples)| {
-            let of_part = |program: &&StepProgram| program.part == *part;
-            let nop = |program: &StepProgram| -> u64 {
-                program.program.tally().iter().map(|(_, counts)| counts.total()).sum()
-            };
-            let length = step.iter().rfind(of_part).map(|program| program.length);
-            Timed {
-                part: part.name(),
-                occupancy,
-                n: length.map_or(0, |length| arrays.lengths().range(length).len()),
-                nop: step.iter().filter(of_part).map(nop).sum(),
-                ns: samples.middle(),
-                quartiles: samples.quartiles(),
-                of_parts: std::array::from_fn(|part| samples.of_part(part)),
-            }
-        })
-        .collect()
+    let timed = timed.map(|(part, samples)| {
+        let of_part = |program: &&StepProgram| program.part == *part;
+        let nop = |program: &StepProgram| -> u64 {
+            program.program.tally().iter().map(|(_, counts)| counts.total()).sum()
+        };
+        let length = step.iter().rfind(of_part).map(|program| program.length);
+        Timed {
+            part: part.name(),
+            occupancy,
+            n: length.map_or(0, |length| arrays.lengths().range(length).len()),
+            nop: step.iter().filter(of_part).map(nop).sum(),
+            ns: samples.middle(),
+            quartiles: samples.quartiles(),
+            of_parts: std::array::from_fn(|part| samples.of_part(part)),
+        }
+    });
+    Ok(timed.collect())
 }
 
 /// The straight line through the shortest vectors, up to where it holds.
-fn fit(part: &'static str, timed: &[Timed]) -> Fitted {
+fn fit(part: &'static str, timed: &[Timed]) -> Result<Fitted, ShapeError> {
     let mut points: Vec<&Timed> =
         timed.iter().filter(|timed| timed.part == part && timed.occupancy == OCCUPANCY).collect();
     points.sort_by_key(|timed| timed.n);
@@ -324,18 +326,18 @@ fn fit(part: &'static str, timed: &[Timed]) -> Fitted {
         [spread.lowest.min(middle[at]), middle[at], spread.highest.max(middle[at])]
     };
     let holds_to = points.get(held.saturating_sub(1)).map_or(0, |timed| timed.n);
-    Fitted {
+    Ok(Fitted {
         part,
         nop,
         period_ns: ends(0),
         depth: ends(1),
         holds_to,
-        bytes: holds_to as f64 * bytes_an_element(part),
+        bytes: holds_to as f64 * bytes_an_element(part)?,
         worst: worst(held),
         beyond: points
             .last()
             .map_or(1.0, |timed| timed.ns / (middle[0] * (timed.n as f64 + middle[1]) * nop as f64)),
-    }
+    })
 }
 
 /// Slope τ and D of y = τ (x + D) by least squares of the relative differences.
@@ -355,8 +357,8 @@ fn straight(points: &[(f64, f64)]) -> [f64; 2] {
 }
 
 /// Bytes of registers and arrays that the passes of a part hold for an element.
-fn bytes_an_element(part: &str) -> f64 {
-    let Ok(model) = counting_model(400, Choice::default().printed()) else { return f64::NAN };
+fn bytes_an_element(part: &str) -> Result<f64, ShapeError> {
+    let model = counting_model(400, Choice::default().printed())?;
     let of_part = programs(&model, Precision::F64).into_iter().filter(|step| step.part.name() == part);
     let bytes = of_part.map(|step| {
         let Outlines { registers, passes, .. } = step.program.outlines();
@@ -370,7 +372,7 @@ fn bytes_an_element(part: &str) -> f64 {
         }
         8.0 * (registers[0] + arrays.len()) as f64 + 4.0 * registers[2] as f64
     });
-    bytes.fold(0.0, f64::max)
+    Ok(bytes.fold(0.0, f64::max))
 }
 
 /// The ways of the scene, in turns.
@@ -426,7 +428,7 @@ mod tests {
                 Timed { part: "forces", occupancy: OCCUPANCY, n, nop: 100, ns, quartiles: [ns; 2], of_parts }
             })
             .to_vec();
-        let fitted = fit("forces", &timed);
+        let fitted = fit("forces", &timed).unwrap();
         assert_eq!(fitted.holds_to, 10_000);
         assert!((fitted.period_ns[1] - 0.2).abs() < 1e-9 && (fitted.depth[1] - 30.0).abs() < 1e-6);
         assert!(fitted.period_ns[0] < 0.2 && fitted.period_ns[2] > 0.2);
@@ -435,10 +437,10 @@ mod tests {
 
     #[test]
     fn every_part_of_the_sources_table_is_timed() {
-        let timed = eager(400, 0.5, Choice::default().printed(), 1);
+        let timed = eager(400, 0.5, Choice::default().printed(), 1).unwrap();
         let parts: Vec<&str> = timed.iter().map(|timed| timed.part).collect();
         assert_eq!(parts, SOURCES_PARTS.map(Part::name));
         assert!(timed.iter().all(|timed| timed.n > 100 && timed.ns > 0.0 && timed.nop > 10), "{timed:?}");
-        assert!(bytes_an_element("forces") > 100.0);
+        assert!(bytes_an_element("forces").unwrap() > 100.0);
     }
 }

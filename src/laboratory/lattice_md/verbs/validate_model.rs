@@ -78,7 +78,13 @@ pub(super) fn host_model(file: Option<&Path>, common: &Common) -> Result<(HostMo
             model.measured.state
         ));
     }
-    Ok((model, Calibrated::Before))
+    let Some(difference) = model.differs_from(&origin::host(), InstructionSet::best().name()) else {
+        return Ok((model, Calibrated::Before));
+    };
+    if !common.quiet {
+        warn(format_args!("{}: {difference}", file.display()));
+    }
+    Ok((model, Calibrated::Elsewhere))
 }
 
 impl ValidateModel {

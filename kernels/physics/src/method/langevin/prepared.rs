@@ -4,7 +4,7 @@ use super::checked::Checked;
 use super::dynamics::InBath;
 use super::found::Found;
 use super::losses;
-use super::options::PairLaw;
+use super::options::{By, PairLaw};
 use super::programs::programs;
 use super::simulation::Running;
 use crate::memory::{Foreseen, OfRanks, PROGRAM, available};
@@ -142,6 +142,16 @@ impl Startable for Checked {
 
     fn programs(&self) -> Vec<VectorProgram> {
         programs(self)
+    }
+
+    fn programs_note(&self) -> Option<String> {
+        let by = self.scene.by;
+        (self.has_pairs() && by != By::Lattice).then(|| {
+            format!(
+                "the programs are those of search.by = \"lattice\"; a run of the scene finds pairs by {}",
+                by.word()
+            )
+        })
     }
 
     fn work(&self) -> f64 {

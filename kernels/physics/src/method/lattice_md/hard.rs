@@ -3,6 +3,7 @@
 use super::keys::{COHESIONLESS, FRICTION, LAW, NORMAL_DAMPING, SHEAR_DAMPING, STIFFNESS};
 use crate::method::hard_disks::keys::RESTITUTION;
 use crate::method::{Prepared, Rewritten, Until};
+use crate::observe::{AxisMotion, conserved_axes, temperature};
 use crate::scene::{DT, Key, Value, Values};
 use crate::words::Words;
 use std::f64::consts::PI;
@@ -14,7 +15,7 @@ const SHARED: [&str; 4] = ["format", "units", "domain", "particles"];
 /// Rows in a run.
 const ROWS: f64 = 100.0;
 
-/// The scene of hard discs; none where walls stand, sides are closed or discs rub, or where nothing of it is the quantity.
+/// The scene of hard discs; none where walls stand, sides are closed or discs rub, where a single disc has no temperature, or where nothing of it is the quantity.
 ///
 /// The restitution is that of an impact at the mean speed of collisions at the temperature of the start.
 pub(super) fn hard(values: &Values, prepared: &Prepared, quantity: &str) -> Option<Rewritten> {
@@ -26,10 +27,17 @@ pub(super) fn hard(values: &Values, prepared: &Prepared, quantity: &str) -> Opti
     if !is_free || !is_smooth || values.value(&COHESIONLESS) != Some(Value::Switch(true)) {
         return None;
     }
-    let twice: f64 =
-        grains.iter().map(|it| it.mass * (it.velocity[0].powi(2) + it.velocity[1].powi(2))).sum();
-    let temperature = twice / (2 * discs) as f64;
-    let mass = grains.iter().map(|it| it.mass).sum::<f64>() / discs as f64;
+    let all_mass = grains.iter().map(|it| it.mass).sum::<f64>();
+    let motion = [0, 1].map(|axis| AxisMotion {
+        twice_kinetic: grains.iter().map(|it| it.mass * it.velocity[axis].powi(2)).sum(),
+        momentum: grains.iter().map(|it| it.mass * it.velocity[axis]).sum(),
+    });
+    // A common drift is no heat: it changes nothing between discs.
+    let temperature = temperature(motion, conserved_axes(&prepared.domain), all_mass, discs as f64);
+    if temperature.is_nan() {
+        return None;
+    }
+    let mass = all_mass / discs as f64;
     let damping = values.number(&NORMAL_DAMPING)?;
     let restitution = if damping == 0.0 {
         1.0
@@ -86,6 +94,42 @@ mod tests {
             (prepare(values, METHODS).unwrap().0, twin)
         });
         (soft.particles().clone(), twin)
+    }
+
+    /// The temperature of the twin by hand, Σ m |v − v̄|² over 2 N − 2 degrees of freedom: a common drift changes neither the unit of the pressure, N kT/A, nor the
+    /// restitution.
+    #[test]
+    fn a_common_drift_does_not_change_the_twin() {
+        let twin = |drift: [f64; 2], law: &[&str], quantity: &str| {
+            let overrides: Vec<String> =
+                ["particles.count=100"].iter().chain(law).map(|&text| text.to_owned()).collect();
+            let values = Values::load("dense-gas", &overrides, &vocabularies(METHODS)).unwrap();
+            let (soft, _) = prepare(values.clone(), METHODS).unwrap();
+            let mut moved = soft.particles().clone();
+            moved.all_mut().iter_mut().for_each(|disc| {
+                (disc.velocity[0], disc.velocity[1]) =
+                    (disc.velocity[0] + drift[0], disc.velocity[1] + drift[1]);
+            });
+            let discs = moved.all();
+            let n = discs.len() as f64;
+            let mean = [0, 1].map(|axis| discs.iter().map(|disc| disc.velocity[axis]).sum::<f64>() / n);
+            let about = |disc: &crate::particles::Particle| {
+                disc.mass * ((disc.velocity[0] - mean[0]).powi(2) + (disc.velocity[1] - mean[1]).powi(2))
+            };
+            let by_hand = discs.iter().map(about).sum::<f64>() / (2.0 * n - 2.0);
+            let moved = soft.model.started_from(moved);
+            let twin = hard(&values, &moved, quantity).unwrap();
+            let scene = twin.text.parse::<Table>().unwrap();
+            let restitution = scene["law"]["restitution"].as_float().unwrap();
+            (twin.unit, restitution, n * by_hand / moved.domain.area())
+        };
+        for drift in [[0.0; 2], [0.2, 0.0], [0.2, -3.0]] {
+            let (unit, _, by_hand) = twin(drift, &[], "pressure");
+            assert!((unit / by_hand - 1.0).abs() < 1e-9, "{drift:?}: {unit} {by_hand}");
+            let damped = |drift| twin(drift, &["law.normal_damping=0.3"], "temperature").1;
+            let [own, at_rest] = [damped(drift), damped([0.0; 2])];
+            assert!((own - at_rest).abs() < 1e-9, "{drift:?}: {own} {at_rest}");
+        }
     }
 
     /// The same discs, with the restitution of their law; what hard discs lack has no twin.

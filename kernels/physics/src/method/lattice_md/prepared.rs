@@ -113,11 +113,16 @@ impl Startable for Checked {
     }
 
     fn programs(&self) -> Vec<VectorProgram> {
-        let Checked { scene, particles, .. } = self;
-        if !scene.needs_lattice() {
-            return vec![];
-        }
-        let model = model(self);
+        // Lists and sectors have no vector programs: those of the lattice are counted.
+        let on_lattice = match self.scene.needs_lattice() {
+            true => None,
+            false => match self.on_lattice() {
+                Some(on_lattice) => Some(on_lattice),
+                None => return vec![],
+            },
+        };
+        let model = model(on_lattice.as_ref().unwrap_or(self));
+        let particles = &self.particles;
         let lengths = Lengths::new(&model, particles.grain_count(), particles.len());
         let as_any = |step: StepProgram| VectorProgram {
             part: step.part.name(),
@@ -127,6 +132,16 @@ impl Startable for Checked {
             program: step.program,
         };
         programs(&model, Precision::F64).into_iter().map(as_any).collect()
+    }
+
+    fn programs_note(&self) -> Option<String> {
+        let by = self.scene.search.by;
+        (!self.scene.needs_lattice()).then(|| {
+            format!(
+                "the programs are those of search.by = \"lattice\"; a run of the scene finds contacts by {}",
+                by.word()
+            )
+        })
     }
 
     fn pair_forces(&self) -> Option<PairForces> {

@@ -15,6 +15,7 @@ use stripmine_kernels::backend::tape::register_shape;
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::{Execution, InstructionSet};
 use stripmine_physics::method::throughput::MeasurementError;
+use stripmine_physics::origin::load_average;
 
 /// How much is measured.
 #[derive(Clone, Copy, Debug)]
@@ -71,6 +72,8 @@ struct Calibration {
     title: String,
     set: InstructionSet,
     begun: Instant,
+    /// Load average before that.
+    load: Option<f64>,
     /// Sweeps done.
     sweeps: usize,
     /// Bytes of an element in a register of each file and the lanes of a hardware register, of the lanes' types.
@@ -87,6 +90,7 @@ impl Calibration {
             title,
             set,
             begun: Instant::now(),
+            load: load_average(),
             sweeps: 0,
             shapes: [register_shape::<f64>(set)?, register_shape::<f32>(set)?],
             programs: Programs::new()?,
@@ -101,7 +105,7 @@ impl Calibration {
         let (begun, mut of_scenes) = (self.begun, Duration::ZERO);
         let done = || (begun.elapsed().as_secs_f64() / time.as_secs_f64()).min(1.0);
         loop {
-            self.programs.sweep(self.set, self.sweeps, &mut self.binding);
+            self.programs.sweep(self.set, self.sweeps, &mut self.binding)?;
             self.sweeps += 1;
             progress(done());
             if of_scenes < begun.elapsed().mul_f64(SCENES) {
@@ -118,7 +122,7 @@ impl Calibration {
 
     /// The model fitted to what was measured.
     fn model(self) -> HostModel {
-        let Calibration { title, set, begun, shapes, programs, scenes, binding, .. } = self;
+        let Calibration { title, set, begun, load, shapes, programs, scenes, binding, .. } = self;
         let ran: Vec<Ran> = programs.ran().collect();
         let fitted = |chained: bool| {
             let alike = ran.iter().filter(|ran| (ran.execution == Execution::Chained) == chained);
@@ -136,10 +140,12 @@ impl Calibration {
             interpreted,
             chained,
         });
-        let spread = middle(programs.samples().map(Samples::spread));
-        let disagreement = middle(programs.samples().map(Samples::disagreement));
+        let spread = middle_of_most(programs.samples().map(Samples::spread));
+        let disagreement = middle_of_most(programs.samples().map(Samples::disagreement));
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let measured = Measured {
-            state: Measured::state_of(spread, disagreement),
+            state: Measured::state_of([spread, disagreement], load, cores),
+            load,
             seconds: begun.elapsed().as_secs_f64(),
             spread,
             disagreement,
@@ -163,7 +169,23 @@ impl Calibration {
     }
 }
 
-/// The middle one of those that are finite.
-fn middle(values: impl Iterator<Item = f64>) -> f64 {
-    median(values.filter(|value| value.is_finite())).max(0.0)
+/// The middle one of those that are known; none where most are not.
+fn middle_of_most(values: impl Iterator<Item = Option<f64>>) -> Option<f64> {
+    let all: Vec<Option<f64>> = values.collect();
+    let known: Vec<f64> = all.iter().copied().flatten().filter(|value| value.is_finite()).collect();
+    (2 * known.len() > all.len()).then(|| median(known.into_iter()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_most_points_do_not_know_is_unknown() {
+        let of = |values: &[Option<f64>]| middle_of_most(values.iter().copied());
+        assert_eq!(of(&[]), None);
+        assert_eq!(of(&[None, None, Some(0.1)]), None);
+        assert_eq!(of(&[None, Some(0.3), Some(0.1), Some(0.2)]), Some(0.2));
+        assert_eq!(of(&[Some(f64::NAN), Some(0.1)]), None);
+    }
 }

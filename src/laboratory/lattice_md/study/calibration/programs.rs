@@ -11,7 +11,7 @@ use std::ops::Range;
 use std::rc::Rc;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::backend::tape::Outlines;
-use stripmine_kernels::isa::{Memory, OpClass};
+use stripmine_kernels::isa::{Memory, OpClass, ProgramError};
 use stripmine_kernels::sweep::lattice::Coordinates;
 use stripmine_kernels::{Execution, InstructionSet};
 use stripmine_physics::method::lattice_md::{Arrays, Discs, Lengths, Model, StepProgram, model, programs};
@@ -147,10 +147,10 @@ impl Step {
     }
 
     /// One more sample of the programs one after the other, as in a step, by every execution, where it is their turn.
-    fn sweep(&mut self, set: InstructionSet, number: usize) {
+    fn sweep(&mut self, set: InstructionSet, number: usize) -> Result<(), ProgramError> {
         let longest = self.ranges.iter().map(ExactSizeIterator::len).max().unwrap_or(1).max(1);
         if !number.is_multiple_of(turn(longest)) {
-            return;
+            return Ok(());
         }
         self.arrays.elsewhere();
         let memory = self.arrays.memory();
@@ -160,10 +160,10 @@ impl Step {
                 _ => INTERPRETED_ELEMENTS,
             };
             Samples::take_in_turns(samples, (elements / longest).clamp(1, MOST), |at| {
-                let outcome = self.programs[at].program.run(&memory, self.ranges[at].clone(), execution, set);
-                debug_assert!(outcome.is_ok(), "{outcome:?}");
-            });
+                self.programs[at].program.run(&memory, self.ranges[at].clone(), execution, set)
+            })?;
         }
+        Ok(())
     }
 
     /// Its programs as they were run.
@@ -211,11 +211,21 @@ impl Programs {
     }
 
     /// One more sample of all, and of the binding of their arrays.
-    pub(super) fn sweep(&mut self, set: InstructionSet, number: usize, binding: &mut Samples) {
-        self.0.iter_mut().for_each(|step| step.sweep(set, number));
-        if let Some(step) = self.0.first_mut() {
-            binding.take(20_000.0, || _ = std::hint::black_box(step.arrays.memory()));
-        }
+    ///
+    /// # Errors
+    /// [`ProgramError`] if one cannot be run.
+    pub(super) fn sweep(
+        &mut self,
+        set: InstructionSet,
+        number: usize,
+        binding: &mut Samples,
+    ) -> Result<(), ProgramError> {
+        self.0.iter_mut().try_for_each(|step| step.sweep(set, number))?;
+        let Some(step) = self.0.first_mut() else { return Ok(()) };
+        binding.take(20_000.0, || {
+            _ = std::hint::black_box(step.arrays.memory());
+            Ok(())
+        })
     }
 
     /// All samples.

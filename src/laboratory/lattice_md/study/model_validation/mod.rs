@@ -70,8 +70,10 @@ pub enum ValidationError {
 pub enum Calibrated {
     /// With the program, of another machine perhaps.
     Shipped,
-    /// From a host file.
+    /// From a host file of this processor and its instructions.
     Before,
+    /// From a host file of another processor, or of other instructions.
+    Elsewhere,
     /// Just before the runs.
     Now,
 }
@@ -82,6 +84,7 @@ impl Calibrated {
         match self {
             Calibrated::Shipped => format!("the shipped model of {title}"),
             Calibrated::Before => format!("the model of {title} from a host file"),
+            Calibrated::Elsewhere => format!("the model of another host, {title}, from a host file"),
             Calibrated::Now => format!("the model of this host, {title}, calibrated just before"),
         }
     }

@@ -60,6 +60,18 @@ impl Document {
     }
 }
 
+impl Checked {
+    /// The same scene with contacts found on the lattice, whatever finds them in a run; none where its discs fit no lattice.
+    pub(super) fn on_lattice(&self) -> Option<Checked> {
+        let mut scene = self.scene.clone();
+        scene.search.by = By::Lattice;
+        let document = Document { scene, values: Values::of_no_text(&VOCABULARY.keys) };
+        let geometry =
+            geometry::fit(&document, &self.domain, self.geometry.radii, self.particles.len()).ok()?;
+        Some(Checked { scene: document.scene, geometry, ..self.clone() })
+    }
+}
+
 /// Which steps pass.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Steps {

@@ -1,0 +1,100 @@
+//! Numbers of a kept file. JSON has neither infinities nor NaN: these are written as words, so that a file with them is found again.
+
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+/// A number as JSON can hold it.
+#[derive(Serialize, Deserialize)]
+#[serde(untagged)]
+pub(super) enum Held {
+    Finite(f64),
+    Word(String),
+}
+
+/// Values made of numbers, and how a file holds them.
+pub(super) trait OfNumbers: Sized {
+    /// The same with each number as a file holds it.
+    type Held: Serialize + for<'de> Deserialize<'de>;
+
+    fn held(&self) -> Self::Held;
+
+    /// None where a word is no number.
+    fn of(held: Self::Held) -> Option<Self>;
+}
+
+impl OfNumbers for f64 {
+    type Held = Held;
+
+    fn held(&self) -> Held {
+        if self.is_finite() { Held::Finite(*self) } else { Held::Word(self.to_string()) }
+    }
+
+    fn of(held: Held) -> Option<f64> {
+        match held {
+            Held::Finite(value) => Some(value),
+            Held::Word(word) => word.parse().ok(),
+        }
+    }
+}
+
+impl OfNumbers for [f64; 2] {
+    type Held = [Held; 2];
+
+    fn held(&self) -> [Held; 2] {
+        self.each_ref().map(OfNumbers::held)
+    }
+
+    fn of([first, second]: [Held; 2]) -> Option<[f64; 2]> {
+        Some([f64::of(first)?, f64::of(second)?])
+    }
+}
+
+impl<T: OfNumbers> OfNumbers for Option<T> {
+    type Held = Option<T::Held>;
+
+    fn held(&self) -> Option<T::Held> {
+        self.as_ref().map(OfNumbers::held)
+    }
+
+    fn of(held: Option<T::Held>) -> Option<Option<T>> {
+        match held {
+            None => Some(None),
+            Some(held) => T::of(held).map(Some),
+        }
+    }
+}
+
+pub(super) fn serialize<T: OfNumbers, S: Serializer>(value: &T, to: S) -> Result<S::Ok, S::Error> {
+    value.held().serialize(to)
+}
+
+pub(super) fn deserialize<'de, T: OfNumbers, D: Deserializer<'de>>(from: D) -> Result<T, D::Error> {
+    let held = T::Held::deserialize(from)?;
+    T::of(held).ok_or_else(|| serde::de::Error::custom("expected a number, inf, -inf or NaN"))
+}
+
+#[cfg(test)]
+mod tests {
+    use serde::{Deserialize, Serialize};
+
+    #[derive(Debug, Serialize, Deserialize)]
+    struct Kept {
+        #[serde(with = "super")]
+        one: f64,
+        #[serde(with = "super")]
+        two: Option<[f64; 2]>,
+    }
+
+    /// Bits, not values: NaN equals nothing.
+    #[test]
+    fn every_number_is_read_as_it_was_written() {
+        for one in [0.1, -0.0, 5e-324, f64::MAX, f64::INFINITY, f64::NEG_INFINITY, f64::NAN] {
+            for two in [None, Some([one, 2.0])] {
+                let text = serde_json::to_string(&Kept { one, two }).unwrap();
+                let read: Kept = serde_json::from_str(&text).unwrap();
+                assert_eq!(read.one.to_bits(), one.to_bits(), "{text}");
+                assert_eq!(read.two.map(|it| it.map(f64::to_bits)), two.map(|it| it.map(f64::to_bits)));
+            }
+        }
+        assert!(serde_json::from_str::<Kept>("{\"one\":\"many\",\"two\":null}").is_err());
+    }
+}

@@ -1,0 +1,57 @@
+//! The scene as it stands in the place of a plan that is no better.
+
+use super::findings::Findings;
+use super::plan::TIME_WITHIN;
+use super::recommended::{Decision, Interval, Plan};
+use super::words::seconds;
+use crate::study::Case;
+
+/// What the decision is about that leaves the scene as it stands.
+pub(super) const AS_IT_STANDS: &str = "the scene";
+
+impl Plan {
+    /// The plan; or the scene as it stands, where its error is as small and it takes no longer.
+    #[must_use]
+    pub(super) fn or_as_it_stands(self, case: &Case, findings: &Findings) -> Plan {
+        let is_better = |own: &super::recommended::Own| {
+            own.seconds <= self.seconds.likely && own.error.most <= self.expected.most
+        };
+        let Some(own) = self.own.clone().filter(is_better) else { return self };
+        let of_own = findings.ways.iter().find(|way| way.label == case.own.label());
+        let time = case.duration().unwrap_or(self.time);
+        let slower =
+            of_own.and_then(|way| way.step.zip(case.step())).map_or(1.0, |(longest, own)| longest / own);
+        let phases = of_own.map_or(vec![], |way| {
+            way.phases.iter().map(|(name, cost)| (name.clone(), cost * slower * time)).collect()
+        });
+        // The interval of the plan, about the time of the scene.
+        let around = (self.seconds.most / self.seconds.likely).max(TIME_WITHIN);
+        let why = format!(
+            "no plan reaches an error as small in less time: the best takes {}",
+            seconds(self.seconds.likely)
+        );
+        Plan {
+            way: case.own.label(),
+            decisions: vec![Decision {
+                what: AS_IT_STANDS.to_owned(),
+                chosen: "as it stands".to_owned(),
+                why,
+                beside: vec![],
+            }],
+            expected: own.error,
+            seconds: Interval {
+                least: own.seconds / around,
+                likely: own.seconds,
+                most: own.seconds * around,
+            },
+            memory: case.prepared.memory.needed,
+            phases,
+            step: case.step(),
+            time,
+            seeds: 1,
+            overrides: vec![],
+            own: None,
+            ..self
+        }
+    }
+}

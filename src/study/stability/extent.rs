@@ -1,0 +1,155 @@
+//! How large a map is, and how long its runs: as much as fits into the time that is given.
+
+use super::STEPS;
+use super::reference;
+use crate::study::StudyError;
+
+/// Steps of the scene's own that a run lasts where the map may be made smaller for it: eight of the largest.
+const LEAST: f64 = 1024.0;
+/// Steps of the scene's own that a run lasts in the smallest map: one of the largest.
+const SHORTEST: f64 = 128.0;
+/// The smallest map.
+const SMALLEST: usize = 3;
+/// Runs that an edge takes about, and what these cost: each is as long as one with four own steps.
+const EDGE: [f64; 2] = [8.0, 8.0 / 4.0];
+/// The part of the time that is planned. The rest is for what is not known before: looks at the runs, means that are off and are confirmed from another seed, edges
+/// below the scene's own step. Maps of four scenes took 1.7 to 2.6 times what their steps and starts alone should.
+const PLANNED: f64 = 0.38;
+
+/// What runs cost.
+#[derive(Clone, Copy, Debug)]
+pub struct Costs {
+    /// Seconds of a step.
+    pub each: f64,
+    /// Seconds before the first step of a run.
+    pub start: f64,
+    /// Integrators whose edges are found at the scene's own value.
+    pub schemes: usize,
+}
+
+/// The extent of a map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extent {
+    /// Values of the parameter, and steps.
+    pub size: usize,
+    /// Seeds of the edges.
+    pub seeds: u64,
+    /// Steps of the scene's own that each run lasts.
+    pub own_steps: f64,
+    /// Seconds that it takes about.
+    pub seconds: f64,
+}
+
+/// Steps from the shortest to the longest in parts of the scene's own.
+fn parts(size: usize) -> Vec<f64> {
+    super::ladder(STEPS, size, true)
+}
+
+impl Costs {
+    /// Seconds of a map: for each step of the scene's own that runs last, and of the starts of all runs.
+    fn of_map(&self, size: usize, seeds: u64) -> [f64; 2] {
+        let parts = parts(size);
+        let (count, seeds, schemes) = (size as f64, seeds as f64, self.schemes as f64);
+        let references = reference::SEEDS as f64;
+        let column: f64 = parts.iter().map(|part| 1.0 / part).sum();
+        let reference = references / parts[0];
+        let steps = count * (column + reference + seeds * EDGE[1]) + reference + schemes * seeds * EDGE[1];
+        let runs = count * (count + references + seeds * EDGE[0]) + references + schemes * seeds * EDGE[0];
+        [self.each * steps, self.start * runs]
+    }
+
+    /// The largest map up to one that is asked for that some seconds allow: fewer seeds first, then fewer values and steps, shorter runs last.
+    ///
+    /// # Errors
+    /// [`StudyError::TooLittleTime`] where the smallest map takes longer.
+    pub fn extent(&self, budget: f64, asked: (usize, u64), scene: f64) -> Result<Extent, StudyError> {
+        let planned = PLANNED * budget;
+        let fitting = |size: usize, seeds: u64, least: f64| {
+            let [each, starts] = self.of_map(size, seeds);
+            let own_steps = ((planned - starts) / each).min(scene);
+            let seconds = starts + each * own_steps;
+            (own_steps >= least.min(scene)).then_some(Extent { size, seeds, own_steps, seconds })
+        };
+        let sizes = (SMALLEST.min(asked.0)..=asked.0).rev();
+        let mut all = sizes.flat_map(|size| (1..=asked.1).rev().map(move |seeds| (size, seeds)));
+        let largest = all.find_map(|(size, seeds)| fitting(size, seeds, LEAST));
+        let smallest = SMALLEST.min(asked.0);
+        largest.or_else(|| fitting(smallest, 1, SHORTEST)).ok_or_else(|| {
+            let [each, starts] = self.of_map(smallest, 1);
+            let needed = (starts + each * SHORTEST.min(scene)) / PLANNED;
+            StudyError::TooLittleTime { needed, budget }
+        })
+    }
+}
+
+impl Extent {
+    /// What is left out for want of time, in words; none where nothing is.
+    pub fn left_out(&self, (size, seeds): (usize, u64), scene: f64) -> Option<String> {
+        let mut all = vec![];
+        if self.size < size {
+            all.push(format!("{size} values and steps: {} of each are tried", self.size));
+        }
+        if self.seeds < seeds {
+            all.push(format!("{seeds} seeds of the edges: there are {}", self.seeds));
+        }
+        if self.own_steps < 0.99 * scene {
+            all.push(format!("what comes after {:.0} of the scene's {scene:.0} steps", self.own_steps));
+        }
+        (!all.is_empty()).then(|| all.join("; "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ASKED: (usize, u64) = (24, 3);
+
+    /// No map is planned for more than the time, however dear its steps and starts; what is left out is said.
+    #[test]
+    fn no_map_takes_more_than_its_time() {
+        let mut last = 0;
+        for budget in [1.0, 5.0, 30.0, 300.0, 3000.0] {
+            for each in [1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 0.1] {
+                for start in [1e-5, 1e-3, 0.02, 0.5] {
+                    let costs = Costs { each, start, schemes: 3 };
+                    match costs.extent(budget, ASKED, 50_000.0) {
+                        Ok(extent) => {
+                            let [steps, starts] = costs.of_map(extent.size, extent.seeds);
+                            let seconds = steps * extent.own_steps + starts;
+                            assert!((seconds / extent.seconds - 1.0).abs() < 1e-9);
+                            assert!(
+                                seconds <= PLANNED * budget * (1.0 + 1e-9),
+                                "{budget} {each} {start}: {extent:?}"
+                            );
+                            assert!(extent.size >= 3 && extent.seeds >= 1 && extent.own_steps >= SHORTEST);
+                            let is_whole = (extent.size, extent.seeds, extent.own_steps) == (24, 3, 50_000.0);
+                            assert_eq!(extent.left_out(ASKED, 50_000.0).is_none(), is_whole);
+                        }
+                        Err(error) => {
+                            let StudyError::TooLittleTime { needed, .. } = error else { panic!("{error}") };
+                            assert!(needed > budget, "{needed} {budget}");
+                            // What is named is enough.
+                            assert!(costs.extent(1.001 * needed, ASKED, 50_000.0).is_ok());
+                        }
+                    }
+                }
+            }
+            let size = Costs { each: 5e-5, start: 5e-3, schemes: 3 }
+                .extent(budget, ASKED, 50_000.0)
+                .map_or(0, |it| it.size);
+            assert!(size >= last, "{budget}");
+            last = size;
+        }
+        assert_eq!(last, 24);
+    }
+
+    /// By hand: a map of 3 values and steps (0.5, 8 and 128 of the own) from one seed with one integrator. Steps: 3 (2 + 1/8 + 1/128 + 16 + 2) + 16 + 2, starts:
+    /// 3 (3 + 8 + 8) + 8 + 8.
+    #[test]
+    fn a_map_costs_its_steps_and_starts() {
+        let [steps, starts] = Costs { each: 1.0, start: 1.0, schemes: 1 }.of_map(3, 1);
+        assert!((steps - (3.0 * (20.0 + 0.125 + 1.0 / 128.0) + 18.0)).abs() < 1e-9, "{steps}");
+        assert_eq!(starts, 73.0);
+    }
+}
