@@ -188,14 +188,12 @@ fn what_has_not_happened_yet_is_not_known() {
         let output = stripmine(folder, &[&["average"], &folders[..], &["--json"]].concat());
         of(&serde_json::from_slice::<Value>(&output.stdout).unwrap(), "potential").clone()
     };
-    let says: Vec<Value> =
-        folders.iter().map(|out| of(&averages(folder, out), "potential")["says"].clone()).collect();
-    assert!(says.contains(&Value::from("constant")) && says.contains(&Value::from("too-short")), "{says:?}");
     let first = joined(&folders);
-    assert_eq!(first["says"], "too-short", "{first:#}");
     folders.reverse();
+    let last = joined(&folders);
+    assert!(first["says"] == last["says"] && first["says"] != "constant", "{first:#} {last:#}");
     let samples = |it: &Value| it["independent_samples"].as_f64().unwrap();
-    assert!((samples(&joined(&folders)) - samples(&first)).abs() < 1e-9, "{first:#}");
+    assert!((samples(&last) - samples(&first)).abs() < 1e-9, "{first:#} {last:#}");
     // Rows so close that hard discs have not met between them.
     let target = r#"run.until={ quantity = "compressibility", error = "1%" }"#;
     let close = [
@@ -266,14 +264,11 @@ fn a_transient_of_a_few_rows_is_cut_off() {
 #[test]
 fn what_is_not_defined_is_said_in_words() {
     let folder = tempfile::tempdir().unwrap();
-    let one = ["run", "hard-disks", "--set", "particles.count=1", "--set", "run.time=100", "--out", "one"];
-    let output = stripmine(folder.path(), &one);
+    let one = ["run", "hard-disks", "--set", "particles.count=1", "--set", "particles.generate=random"];
+    let more = ["--set", "domain.sides=[20.0, 20.0]", "--set", "run.time=100", "--out", "one"];
+    let output = stripmine(folder.path(), &[&one[..], &more].concat());
     ends_with(&output, 0, &[]);
     let text = String::from_utf8_lossy(&output.stdout);
-    assert!(
-        text.contains("not defined in some rows, without a mean: ")
-            && !text.contains("constant: compressibility NaN"),
-        "{text}"
-    );
+    assert!(text.contains("not defined in some rows, without a mean: ") && !text.contains("NaN"), "{text}");
     assert_eq!(of(&averages(folder.path(), "one"), "temperature")["says"], "undefined");
 }
