@@ -17,7 +17,7 @@ fn words(scene: &str, out: &Path, more: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// Z of a gas that cools from 1 to a fifth within a row, against sums over rows eighty times as close, with the temperature between two of them
+/// Z of a gas that cools to about a half within a row, against sums over rows eighty times as close, with the temperature between two of them
 /// as their mean; between the times 1 and 5 it is 1.77 (theory: 1 + (1 + e)/2 (Z of elastic discs − 1) = 1.75).
 #[test]
 fn rows_of_a_cooling_gas_are_means_over_their_time() {
@@ -39,7 +39,7 @@ fn rows_of_a_cooling_gas_are_means_over_their_time() {
     };
     let (_, [_, _, _, of_moment, z, rate]) = rows("4");
     assert_eq!((z.len(), z[0], rate[0]), (3, 1.0, 0.0));
-    assert!(of_moment[1] < 0.3, "{of_moment:?}");
+    assert!(of_moment[1] < 0.6, "{of_moment:?}");
     for (row, from, to) in [(1, 0, 80), (2, 80, 160)] {
         let [expected, expected_rate] = of(from, to);
         assert!((z[row] - expected).abs() < 2e-3, "{} and {expected}", z[row]);
@@ -99,7 +99,7 @@ fn a_single_disc_has_a_temperature_where_something_is_thermal() {
     );
     let summary = run(&scene, &folder.path().join("hot"), &[]);
     let found = average(&summary, "temperature");
-    let [mean, bar] = ["mean", "error_95"].map(|name| found[name].as_f64().unwrap_or(f64::NAN));
+    let [mean, bar] = ["mean", "bar"].map(|name| found[name].as_f64().unwrap_or(f64::NAN));
     assert!((mean - 2.0).abs() < 2.0 * bar && bar < 0.4, "{found}");
     assert!(column(&folder.path().join("hot"), "compressibility").iter().all(|&z| z == 1.0));
     let scene =
@@ -149,7 +149,7 @@ fn the_error_of_the_energy_is_rounding_in_every_scene() {
             assert!(column(&out, "work").iter().all(|&work| work == 0.0));
         }
     }
-    for preset in ["hot-floor", "vibrating-floor", "cooling-gas", "row-of-discs"] {
+    for preset in ["hot-floor", "vibrating-floor", "cooling-gas"] {
         let out = folder.path().join(preset);
         run(preset, &out, &["--set", "run.events=20000", "--set", "run.thermo_every=1"]);
         let error = column(&out, "energy_error");
@@ -206,7 +206,7 @@ fn overlaps_of_the_last_digit_are_taken() {
     run(&scene, &out, &[]);
     let frame = fs::read_to_string(out.join("trajectory.xyz")).unwrap();
     let first = frame.lines().nth(2).unwrap();
-    assert!(first.contains("0.499999996"), "{first}");
+    assert!(first.contains(" 0.4999999959"), "{first}");
     for (by, number) in [(2e-5, "2e-5"), (0.1, "0.1")] {
         let refused = check(&begin(by));
         let text = said(&refused);
