@@ -92,7 +92,7 @@ fn of_function(function: &Function) -> Table {
             .cell(with_unit(over), move |point| Cell::Number(point.over[at], decimals(point.over[at], 4)));
     }
     rows.cell(with_unit(function.observable.value), |Point { mean, bar, .. }| {
-        Cell::Number(*mean, decimals(*bar, 2))
+        Cell::Number(*mean, decimals_of_mean(*mean, *bar))
     })
     .cell("± 95 %", |point| Cell::Number(point.bar, decimals(point.bar, 2)))
     .table("structure", format!("{} of {}", function.name, counted(function.runs, "run", "runs")))
@@ -108,7 +108,7 @@ fn of_structure(functions: &[Function]) -> Table {
     Rows::of(&headlines)
         .text("structure", |(name, _)| *name)
         .text("number", |(_, number)| number.name)
-        .cell("mean", |(_, number)| Cell::Number(number.mean, decimals(number.bar, 2)))
+        .cell("mean", |(_, number)| Cell::Number(number.mean, decimals_of_mean(number.mean, number.bar)))
         .cell("± 95 %", |(_, number)| Cell::Number(number.bar, decimals(number.bar, 2)))
         .text("unit", |(_, number)| number.unit)
         .table("structure", "Structure".to_owned())
@@ -156,6 +156,11 @@ fn table(averages: &Averages) -> Table {
 fn decimals(value: f64, digits: i32) -> usize {
     let magnitude = value.abs().log10().floor();
     if magnitude.is_finite() { (digits - 1 - magnitude as i32).max(0) as usize } else { 0 }
+}
+
+/// Decimals of a mean with its bar; more where there is none, or it is of rounding alone.
+fn decimals_of_mean(mean: f64, bar: f64) -> usize {
+    if bar > 1e-9 * mean.abs() { decimals(bar, 2) } else { decimals(mean, 6) }
 }
 
 fn remark(average: &Average) -> String {
