@@ -23,7 +23,7 @@ fn discs_are_followed_across_periodic_sides() {
         ("hard-disks", with(&["machine.engine=\"reference\""]), 0.2),
         ("hard-disks", with(&["domain.sides=[4.0, 60.0]"]), 0.2),
         ("hard-disks", with(&["domain.periodic=[true, false]", "domain.gravity=[0.0, -0.2]"]), 0.2),
-        ("hard-disks", with(&["particles.count=1"]), 0.2),
+        ("hard-disks", with(&["particles.count=1", "run.time=80.0"]), 0.2),
         ("dense-gas", soft.to_vec(), 0.0),
         ("dense-gas", [&soft[..], &["machine.engine=\"programs\""]].concat(), 0.0),
         ("dense-gas", [&soft[..], &["machine.precision=\"f32\""]].concat(), 0.0),
