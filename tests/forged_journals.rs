@@ -54,9 +54,21 @@ fn forged(journal: &str, change: &dyn Fn(&Value) -> Value) -> String {
 #[test]
 fn forged_lines_are_measured_again() {
     let folder = tempfile::tempdir().unwrap();
-    let short = ["--set", "run.time=0.4"];
     for (name, arguments) in [
-        ("work-precision", &["chart", "work-precision", "two-discs", "--budget", "2", "--repeats", "1"][..]),
+        (
+            "work-precision",
+            &[
+                "chart",
+                "work-precision",
+                "two-discs",
+                "--set",
+                "run.time=0.4",
+                "--budget",
+                "2",
+                "--repeats",
+                "1",
+            ][..],
+        ),
         (
             "means",
             &[
@@ -71,9 +83,23 @@ fn forged_lines_are_measured_again() {
                 "particles.count=16",
             ],
         ),
-        ("stability", &["chart", "stability", "two-discs", "--budget", "2", "--size", "4", "--seeds", "1"]),
+        (
+            "stability",
+            &[
+                "chart",
+                "stability",
+                "two-discs",
+                "--set",
+                "run.time=0.4",
+                "--budget",
+                "2",
+                "--size",
+                "4",
+                "--seeds",
+                "1",
+            ],
+        ),
     ] {
-        let arguments = &[arguments, &short].concat();
         let out = folder.path().join(name);
         let (code, said) = study(arguments, &out);
         assert_eq!(code, Some(0), "{name}: {said}");

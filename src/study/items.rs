@@ -101,8 +101,8 @@ fn speed_against_accuracy(effort: Effort, progress: Progress<'_>) -> Result<Made
 fn where_it_works(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let most = if effort == Effort::Quick { 1 } else { usize::MAX };
     let effort = match effort {
-        Effort::Quick => stability::Effort { budget: 0.7, size: 6, seeds: 1, tolerance: 0.2 },
-        Effort::Full | Effort::All => stability::Effort { budget: 6.0, size: 16, seeds: 2, tolerance: 0.05 },
+        Effort::Quick => stability::Effort { budget: 6.0, size: 6, seeds: 1, tolerance: 0.2 },
+        Effort::Full | Effort::All => stability::Effort { budget: 16.0, size: 16, seeds: 2, tolerance: 0.05 },
     };
     let mapped: Vec<_> = METHODS
         .iter()
