@@ -46,7 +46,7 @@ impl Cells {
         let edge = (sides[0] * sides[1] / discs.x.len() as f64).sqrt().max(setting.diameter);
         for (axis, side) in sides.into_iter().enumerate() {
             // One cell also where an overflow leaves no number.
-            let count = (side / edge).floor().max(1.0).min(MOST_CELLS);
+            let count = if side / edge >= 1.0 { (side / edge).floor().min(MOST_CELLS) } else { 1.0 };
             self.origin[axis] = domain.origin[axis];
             self.by_length[axis] = count / side;
             self.count[axis] = count as usize;
