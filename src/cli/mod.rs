@@ -148,7 +148,9 @@ pub fn run_with(arguments: impl Iterator<Item = OsString>, methods: Methods) -> 
         (Ok(session), matches) => {
             let outcome = matches.and_then(|matches| {
                 let Some(matches) = matches else { return Ok(()) };
-                signals::install(last_words).map_err(Failure::writing("the handler of interruptions"))?;
+                // It waits in a thread of its own, which is the first thing to fail where memory is short.
+                let what = "the handler of interruptions (a thread, which takes some megabytes of memory)";
+                signals::install(last_words).map_err(Failure::writing(what))?;
                 carried_out(&matches, &command_line(&arguments), session.crew(), methods)
             });
             clear_progress();

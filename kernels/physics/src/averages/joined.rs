@@ -68,9 +68,13 @@ fn joined_outcome(outcomes: &[Outcome], spans: &[f64], is_one_ensemble: bool) ->
         return Outcome::Constant { mean: values[0][0] };
     }
     let have_errors = outcomes.iter().all(|outcome| matches!(outcome, Outcome::Mean(_)));
-    let error =
-        if is_one_ensemble && have_errors { Error::within(&estimates) } else { Error::between(&values) };
-    let estimate = error.estimate(&values, &estimates);
+    // Runs of one ensemble count by their time; a run that is one sample counts as much as any other.
+    let by_time = is_one_ensemble && have_errors;
+    let values: Vec<[f64; 2]> =
+        values.into_iter().map(|[mean, span]| [mean, if by_time { span } else { 1.0 }]).collect();
+    let error = if by_time { Error::within(&estimates) } else { Error::between(&values) };
+    let span = parts.iter().map(|part| part.1).sum();
+    let estimate = error.estimate(&values, span, &estimates);
     let independent_samples: f64 = estimates.iter().map(|it| it.independent_samples).sum();
     if !estimates.is_empty() && independent_samples < FEWEST_SAMPLES {
         let longer = LIKELY_ENOUGH / independent_samples;
@@ -103,19 +107,18 @@ struct Error {
     samples: f64,
 }
 
-/// The mean of means, each by its span: [mean, span].
+/// The mean of means, each by its weight: [mean, weight]; 0 of none.
 fn weighted(values: &[[f64; 2]]) -> f64 {
-    let all: f64 = values.iter().map(|[_, span]| span).sum();
-    values.iter().map(|[mean, span]| span / all * mean).sum()
+    let all: f64 = values.iter().map(|[_, weight]| weight).sum();
+    values.iter().fold(0.0, |sum, [mean, weight]| sum + weight / all * mean)
 }
 
 impl Error {
-    /// Of what lies between the runs.
+    /// Of what lies between runs of equal weight.
     fn between(values: &[[f64; 2]]) -> Error {
         let (runs, mean) = (values.len() as f64, weighted(values));
-        let all: f64 = values.iter().map(|[_, span]| span).sum();
-        let squares: f64 = values.iter().map(|[it, span]| (span / all * (it - mean)).powi(2)).sum();
-        Error { standard_error: (squares * runs / (runs - 1.0)).sqrt(), freedoms: runs - 1.0, samples: runs }
+        let squares: f64 = values.iter().map(|[it, _]| (it - mean).powi(2)).sum();
+        Error { standard_error: (squares / runs / (runs - 1.0)).sqrt(), freedoms: runs - 1.0, samples: runs }
     }
 
     /// Of the errors of the runs.
@@ -135,7 +138,7 @@ impl Error {
         }
     }
 
-    fn estimate(self, values: &[[f64; 2]], estimates: &[Estimate]) -> Estimate {
+    fn estimate(self, values: &[[f64; 2]], span: f64, estimates: &[Estimate]) -> Estimate {
         let of = |of: fn(&Estimate) -> f64| {
             weighted(&estimates.iter().map(|it| [of(it), it.span]).collect::<Vec<_>>())
         };
@@ -148,7 +151,7 @@ impl Error {
             correlation_time: of(|it| it.correlation_time),
             equilibrated_at: estimates.iter().map(|it| it.equilibrated_at).fold(0.0, f64::max),
             independent_samples: self.samples,
-            span: values.iter().map(|[_, span]| span).sum(),
+            span,
         }
     }
 }

@@ -199,7 +199,7 @@ mod tests {
         assert!(tenth.answer.starts_with("Two threads do as in the source: "), "{}", tenth.answer);
         assert!(
             tenth.answer.contains("sectors are 10 times")
-                && tenth.answer.contains("which it has not, 100 times")
+                && tenth.answer.contains("which it does not have, 100 times")
         );
         // Two threads that help everywhere, also where the source's do not.
         let better = section_of(|_, [one, _]| [0.1 * one, 0.05 * one], [0.04, 0.02]);

@@ -15,6 +15,9 @@ const REGISTERED: [&str; 2] = ["registered.x", "registered.y"];
 /// Lists of a checkpoint reach at least this part of the largest radius beyond contact.
 const NARROWEST: f64 = 1e-6;
 
+/// A disc takes at least this many spacings of the clock's numbers to leave its list.
+const RESOLVED: f64 = 1e3;
+
 impl Fast {
     /// What goes into a checkpoint, by the numbers of the discs.
     pub(super) fn kept(&self) -> Snapshot {
@@ -119,6 +122,12 @@ impl Fast {
             };
             if times[number as usize] - now > within + 1e-9 * now.abs() {
                 return Err(format!("disc number {number} expects nothing before it leaves its list"));
+            }
+            // Otherwise the clock would stand still, one renewal of the list after the other.
+            let [u, v] = self.discs[place].velocity_at(&self.arena.space, now);
+            let unresolved = RESOLVED * f64::EPSILON * now.abs() * u.hypot(v);
+            if limit.is_nan() || unresolved.is_nan() || limit < unresolved {
+                return Err(format!("disc number {number} moves too fast for times near {now}"));
             }
         }
         Ok(())
