@@ -68,10 +68,7 @@ fn presets_pass_the_check() {
         let checked = Document::load(preset.name, &[]).and_then(Document::check);
         let checked = checked.unwrap_or_else(|errors| panic!("{}: {errors}", preset.name));
         let soft = checked.warnings.iter().filter(|warning| warning.key == "law.stiffness").count();
-        // Nothing holds back two discs that fly past each other.
-        let without_walls = checked.warnings.iter().filter(|it| it.key == "domain.periodic").count();
-        assert_eq!(without_walls > 0, preset.name == "two-discs", "{}", preset.name);
-        assert_eq!(checked.warnings.len(), soft + without_walls, "{}", preset.name);
+        assert_eq!(checked.warnings.len(), soft, "{}", preset.name);
         assert_eq!(soft > 0, preset.name == "pipe-as-printed", "{}", preset.name);
         assert!(preset.title().len() > 20 && !checked.particles.is_empty());
         if checked.scene.needs_lattice() {

@@ -378,16 +378,16 @@ impl Function {
 
     /// Why nothing is known of it, with what would be enough.
     fn missing(&self, looks: u64, every: u64) -> Option<String> {
-        let needed = 2 * (FEWEST_BLOCKS + 1);
+        let needed = 2 * (FEWEST_BLOCKS as u64 + 1);
         let rarer = match every {
             1 => String::new(),
             every => format!(", or a larger output.structure_share: only every {every}th counts"),
         };
         let why = match () {
-            () if self.blocks.len() < FEWEST_BLOCKS => {
+            () if looks < needed && self.blocks.len() < FEWEST_BLOCKS => {
                 format!("too few moments were looked at, {looks}: {needed} would do for a first bar{rarer}")
             }
-            () if self.means.iter().all(|[mean, _]| mean.is_nan()) => {
+            () if self.blocks.len() < FEWEST_BLOCKS || self.means.iter().all(|[mean, _]| mean.is_nan()) => {
                 format!("there was nothing to be seen at {looks} moments{rarer}")
             }
             () => return None,

@@ -48,15 +48,7 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
             to.copy_from_slice(&find_column::<S>(columns, array.label(), to.len())?);
         }
         if self.keeps_cells() {
-            let label = Array::DiscCell.label();
-            let cells = find_column::<f64>(columns, label, self.arrays.cell().len())?;
-            let most = self.model.shape.padded() as f64;
-            if let Some(cell) =
-                cells.iter().find(|&&cell| !(1.0..=most).contains(&cell) || cell.fract() != 0.0)
-            {
-                return Err(format!("the column {label} holds {cell}, which is no cell of the lattice"));
-            }
-            self.arrays.cell_mut().iter_mut().zip(cells).for_each(|(to, cell)| *to = cell as u32);
+            self.take_up_cells(columns)?;
         }
         self.elapsed.crossings.take_up(columns)?;
         if let Some(rival) = &mut self.rival {
@@ -68,6 +60,26 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
             }
             rival.take_up(&self.model, made_at, counts[0] as u64, counts[1] as u64);
         }
+        Ok(())
+    }
+
+    /// Takes up the cells that discs were in; where the run so far had no need of them, they are those of the positions.
+    fn take_up_cells(&mut self, columns: &[(String, Column)]) -> Result<(), String> {
+        let label = Array::DiscCell.label();
+        let is_kept = columns.iter().any(|(name, _)| name == label);
+        if !is_kept && !self.model.is_anchored::<S>() && self.model.counts_crossings_for_motion_alone() {
+            let [x, y] = [Array::X0, Array::Y0].map(|array| self.arrays.state(array).unwrap_or(&[]).to_vec());
+            for (disc, (x, y)) in x.into_iter().zip(y).enumerate() {
+                self.arrays.cell_mut()[disc] = self.model.anchored([x.to_f64(), y.to_f64()]).0;
+            }
+            return Ok(());
+        }
+        let cells = find_column::<f64>(columns, label, self.arrays.cell().len())?;
+        let most = self.model.shape.padded() as f64;
+        if let Some(cell) = cells.iter().find(|&&cell| !(1.0..=most).contains(&cell) || cell.fract() != 0.0) {
+            return Err(format!("the column {label} holds {cell}, which is no cell of the lattice"));
+        }
+        self.arrays.cell_mut().iter_mut().zip(cells).for_each(|(to, cell)| *to = cell as u32);
         Ok(())
     }
 }
