@@ -143,11 +143,12 @@ pub fn run_with(arguments: impl Iterator<Item = OsString>, methods: Methods) -> 
     let matches = understood(&arguments, methods);
     let verb = matches.as_ref().ok().and_then(Option::as_ref).and_then(ArgMatches::subcommand_name);
     let verb = verb.unwrap_or_default().to_owned();
-    // It lasts as long as what is carried out. A process that has nothing to carry out joins the others to end them.
-    let outcome = match (Session::begin(&verb), matches) {
-        (Ok(session), matches) => {
+    // Help and version need no other process. One with a mistake among its arguments joins the others to end them.
+    let outcome = match matches.transpose().map(|matches| (Session::begin(&verb), matches)) {
+        None => Ok(()),
+        // The session lasts as long as what is carried out.
+        Some((Ok(session), matches)) => {
             let outcome = matches.and_then(|matches| {
-                let Some(matches) = matches else { return Ok(()) };
                 // It waits in a thread of its own, which is the first thing to fail where memory is short.
                 let what = "the handler of interruptions (a thread, which takes some megabytes of memory)";
                 signals::install(last_words).map_err(Failure::writing(what))?;
@@ -156,8 +157,8 @@ pub fn run_with(arguments: impl Iterator<Item = OsString>, methods: Methods) -> 
             clear_progress();
             session.ended(outcome)
         }
-        (Err(failure), Ok(Some(_))) => Err(failure),
-        (Err(_), matches) => matches.map(drop),
+        Some((Err(failure), Ok(_))) => Err(failure),
+        Some((Err(_), Err(mistake))) => Err(mistake),
     };
     clear_progress();
     match outcome {
