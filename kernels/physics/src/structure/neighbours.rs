@@ -315,7 +315,7 @@ fn most_neighbours(setting: &Setting) -> usize {
     let [large, small] = [setting.largest_radius, setting.smallest_radius];
     let rim = NEIGHBOURS * (large + small) + small;
     let fit = (rim * rim - large * large) / (small * small);
-    (fit.max(LINES[0]).min(LINES[1]) as usize).min(setting.discs.max(1) - 1)
+    (fit.clamp(LINES[0], LINES[1]) as usize).min(setting.discs.max(1) - 1)
 }
 
 /// About how many others are looked at for those around a disc of the mean size.
