@@ -421,7 +421,7 @@ fn free_particles_cross_the_box_in_a_step() {
         ("lists", &["search.by=neighbor-list"][..], &[][..]),
         ("sectors", &["search.by=sectors"], &[]),
         ("few", &["search.by=sectors", "search.sectors=3"], &[]),
-        ("ranks", &["search.by=sectors"], &["--ranks", "3"]),
+        ("ranks", &["search.by=sectors", "search.sectors=60"], &["--ranks", "3"]),
     ] {
         let found = msd(name, &[&["domain.sides=[50, 40]"], sets].concat(), more);
         assert!((found / wide - 1.0).abs() < 1e-9, "{name}: {found} {wide}");
