@@ -410,8 +410,7 @@ fn positions_too_coarse_for_their_distance_are_refused() {
 #[test]
 fn boxes_without_room_for_lists_are_refused_when_checked() {
     let lists = ["search.by=neighbor-list", "machine.engine=fast"];
-    let closed = ["domain.periodic=[false, false]", "search.skin=7.4"];
-    let mut method = assemble(&checked("two-discs", &[&lists, &closed])).unwrap();
+    let mut method = assemble(&checked("two-discs", &[&lists, &["search.skin=7.4"]])).unwrap();
     advance(method.as_mut(), 50);
     let said = refused("dense-gas", &[&lists[..], &["particles.count=64", "search.skin=4.0"]].concat());
     assert!(said.contains("no room for three sectors"), "{said}");

@@ -310,7 +310,16 @@ pub(super) fn warnings(
             "there is gravity but there are no walls: discs fall for ever, or out of the box".to_owned();
         warn(&GRAVITY, why, "add walls, or set domain.gravity = [0, 0]".to_owned());
     }
-    if domain.periodic() != [true; 2] && particles.grain_count() == particles.len() {
+    // Along an open side a grain that meets nothing flies, or falls, out of the box before the run ends.
+    let time = scene.duration();
+    let leaves = |grain: &Particle| {
+        (0..2).filter(|&axis| !domain.is_periodic(axis)).any(|axis| {
+            let way = time * (grain.velocity[axis] + 0.5 * scene.domain.gravity[axis] * time);
+            !(0.0..=domain.length(axis)).contains(&(grain.position[axis] - domain.origin[axis] + way))
+        })
+    };
+    let has_no_walls = particles.grain_count() == particles.len();
+    if has_no_walls && particles.grains().iter().any(leaves) {
         let why = "sides that are not periodic hold nothing back, and there are no wall discs: a grain that leaves the box ends the run";
         let what = "make them periodic, line them with wall discs (particles.wall_positions), or take method.kind = \"hard-disks\"";
         warn(&PERIODIC, why.to_owned(), what.to_owned());
