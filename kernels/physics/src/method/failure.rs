@@ -207,7 +207,7 @@ mod tests {
         let failure = at(Clock { steps: 61, time: 0.5, events: 0 });
         assert_eq!(
             failure.to_string(),
-            "step 61: first disc 7 at (1.000000000, NaN) with velocity (0.5, 0)\n  help: halve dt"
+            "step 61: first disc 7 at (1, NaN) with velocity (0.5, 0)\n  help: halve dt"
         );
         assert_eq!((failure.value("limit"), failure.value("depth")), (Some(0.25), None));
         let data = json!({

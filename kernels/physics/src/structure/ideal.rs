@@ -266,9 +266,11 @@ mod tests {
             let grid = Grid::new(&domain, 0.5, &discs);
             let sampled = of_sizes(&setting, &size, |_, _, r| grid.share(&grid, r) / grid.area());
             assert!(formula.len() > 100);
+            // In the last rings only corners are left: there an error of the integral is one of the largest share.
+            let largest = formula.iter().copied().fold(0.0, f64::max);
             for ((formula, integral), sampled) in formula.into_iter().zip(integral).zip(sampled) {
-                assert!((integral / formula - 1.0).abs() < 1e-4, "{integral} {formula}");
-                assert!((sampled / formula - 1.0).abs() < 0.01, "{sampled} {formula}");
+                assert!((integral - formula).abs() < 1e-4 * formula + 1e-6 * largest, "{integral} {formula}");
+                assert!((sampled - formula).abs() < 0.01 * formula + 1e-3 * largest, "{sampled} {formula}");
             }
         }
     }
