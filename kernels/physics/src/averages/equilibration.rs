@@ -75,7 +75,7 @@ impl Squares {
     }
 }
 
-/// Whether the mean of a first part is not that of the rest. Where the part is shorter than the rest remembers, it varies as one value does.
+/// Tests for a first part whose mean differs from that of the rest. A part shorter than the correlation time varies as a single value does.
 /// No stretch of the rest as long may have such a mean: rare events are no transient.
 fn differ(first: &[f64], rest: &[f64]) -> bool {
     let WaveError { mean: expected, standard_error, samples, .. } = WaveError::of(rest);

@@ -32,7 +32,7 @@ pub fn joined(runs: &[Averages]) -> Averages {
     Averages { bar: BAR, rows, span: spans.iter().sum(), runs: runs.len(), quantities: quantities.collect() }
 }
 
-/// Whether a quantity is conserved in every run, and not the same in all of them.
+/// Tests for a quantity that every run conserves and that differs between runs.
 fn differ_for_good(outcomes: &[Outcome]) -> bool {
     let conserved = outcomes.iter().map(|outcome| match *outcome {
         Outcome::Constant { mean } => Some((mean, 0.0)),

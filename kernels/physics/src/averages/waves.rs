@@ -75,7 +75,7 @@ impl WaveError {
         self.standard_error * (self.samples / self.seeming).sqrt()
     }
 
-    /// Whether the slowest wave is larger than the others by more than chance makes it, with a probability: the series drifts.
+    /// Tests for drift: the slowest wave is larger than the others by more than chance explains, at a given probability.
     pub(super) fn drifts(&self, probability: f64) -> bool {
         self.waves > 1 && self.slowest > student(probability, self.waves - 1).powi(2)
     }
