@@ -40,6 +40,9 @@ fn naive(arena: &Arena, discs: &mut [Disc], now: f64) -> Occurred {
     }
 }
 
+/// Height below which discs start where there is no ceiling.
+const HEIGHT: f64 = 20.0;
+
 /// Discs at random places with random velocities; radii and masses differ by up to `spread`.
 fn random(domain: &Domain, count: usize, spread: f64, seed: u64) -> Vec<Disc> {
     let mut stream = Stream::new(seed, Purpose::Test, 1);
@@ -47,7 +50,8 @@ fn random(domain: &Domain, count: usize, spread: f64, seed: u64) -> Vec<Disc> {
     while discs.len() < count {
         let radius = 0.5 * (1.0 + spread * stream.random_range(0.0..1.0));
         let position = [0, 1].map(|axis| {
-            let room = domain.length(axis).min(20.0) - 2.0 * radius;
+            let length = domain.length(axis);
+            let room = if length.is_finite() { length } else { HEIGHT } - 2.0 * radius;
             domain.origin[axis] + radius + stream.random_range(0.0..1.0) * room
         });
         if discs.iter().all(|it| domain.distance(it.position, position) > radius + it.radius) {
