@@ -358,9 +358,7 @@ fn what_changes_all_along_is_meant_over_the_whole_run() {
         rows.iter().any(|row| row["what"].as_str().unwrap().starts_with("kinetic over the whole run")),
         "{rows:#?}"
     );
-    // Phases are foreseen of a configuration that was tried; of the scene as it stands, on a busy machine, perhaps not.
-    let phases = found["phases"].as_array().unwrap();
-    assert!(phases.is_empty() || rows.iter().any(|row| row["what"] == "of it: forces"), "{rows:#?}");
+    assert!(rows.iter().any(|row| row["what"] == "of it: forces") && rows.len() > 4, "{rows:#?}");
 }
 
 #[test]

@@ -83,6 +83,7 @@ impl Work<'_> {
                 {
                     let shorter = other.step.zip(way.step).map_or(1.0, |(longest, step)| longest / step);
                     other.cost = other.cost.map(|cost| slower * shorter * cost);
+                    other.phases.iter_mut().for_each(|(_, cost)| *cost *= slower * shorter);
                     (other.step, other.bias) = (way.step, way.bias);
                     (other.bound, other.dropped) = (way.bound.clone(), way.dropped.clone());
                 }

@@ -23,6 +23,8 @@ pub mod precision_page;
 mod recommended;
 mod reference;
 pub mod regret;
+#[cfg(test)]
+mod rules;
 mod sample;
 mod scenes;
 pub mod section;
