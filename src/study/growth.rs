@@ -135,7 +135,8 @@ fn at_step(
         let angle = 2.399_963_229_728_653 * (place as f64 + 1.0);
         [libm::cos(angle), libm::sin(angle)].map(|part| DISTURBANCE * length * part)
     }));
-    let begin = |scene: &Prepared| scene.start(Purpose::Measurement).map_err(|failure| first_line(&failure.what()));
+    let begin =
+        |scene: &Prepared| scene.start(Purpose::Measurement).map_err(|failure| first_line(&failure.what()));
     let mut runs = [begin(&base)?, begin(&disturbed)?, begin(&halved)?];
     let looks = LOOKS.min(most);
     let mut growth = Growth {

@@ -134,7 +134,8 @@ fn means(
             averages.pass();
         }
     };
-    follow(&prepared, Purpose::Measurement, course, None, meter, see).map_err(|failure| first_line(&failure.what()))?;
+    follow(&prepared, Purpose::Measurement, course, None, meter, see)
+        .map_err(|failure| first_line(&failure.what()))?;
     Ok(averages.means())
 }
 

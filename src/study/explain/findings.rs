@@ -14,6 +14,8 @@ use stripmine_physics::scene::Overrides;
 
 /// How often a step that fails or is warned of is halved.
 pub(super) const HALVINGS: u32 = 6;
+/// The part of the time that trials may take before it is known what they do not tell: the rest is for that.
+pub(super) const FIRST: f64 = 0.5;
 /// Parts of the time that is given: to time the ways, to the reference, to those that are compared with it, to what may be left out, to another
 /// start.
 pub(super) const SHARES: [f64; 5] = [0.15, 0.3, 0.25, 0.2, 0.1];

@@ -68,7 +68,8 @@ impl Bars {
     pub fn time_for(&self, bar: f64) -> f64 {
         let least = self.square / (bar * bar) * ROUNDED_UP;
         let next = self.levels.iter().skip(1).map(|level| level.from).chain([f64::INFINITY]);
-        let times = self.levels.iter().zip(next).map(|(level, next)| ((least * level.margin).max(level.from), next));
+        let times =
+            self.levels.iter().zip(next).map(|(level, next)| ((least * level.margin).max(level.from), next));
         // The last level has no end.
         times.into_iter().find(|(time, next)| time < next).map_or(f64::INFINITY, |(time, _)| time)
     }
@@ -132,7 +133,10 @@ mod tests {
                         let what = format!("{square} {freedoms} {span} {bar}: {time}");
                         assert!(bars.over(time) <= bar, "{what}");
                         assert!(bars.over(time * (1.0 - 1e-9)) > bar, "{what}");
-                        assert!([1.0 + 1e-12, 1.01, 1.3, 2.0, 50.0].iter().all(|by| bars.over(by * time) <= bar), "{what}");
+                        assert!(
+                            [1.0 + 1e-12, 1.01, 1.3, 2.0, 50.0].iter().all(|by| bars.over(by * time) <= bar),
+                            "{what}"
+                        );
                     }
                 }
             }

@@ -92,13 +92,16 @@ pub enum ExplainError {
     EveryWayFails(Vec<(String, String)>),
     /// The quantity comes to no mean.
     #[error(
-        "{quantity} comes to no mean in the trials: {why}\n  help: --patient looks longer, and where some whole runs take less than that, at these; or choose another quantity with --of"
+        "{quantity} did not become stationary during the trials: {why}\n  help: {}; or choose another quantity with --of",
+        longer_trials(*enough)
     )]
     NoMean {
         /// The quantity.
         quantity: &'static str,
         /// What was seen.
         why: String,
+        /// Seconds of trials that would be enough, as far as these tell.
+        enough: Option<f64>,
     },
     /// No way comes to the error.
     #[error(
@@ -133,6 +136,25 @@ pub enum ExplainError {
     /// What is kept.
     #[error(transparent)]
     Kept(#[from] KeptError),
+}
+
+/// The longest that trials may be asked to take (s).
+const LONGEST: f64 = 3600.0;
+
+/// How to make trials long enough.
+fn longer_trials(enough: Option<f64>) -> String {
+    match enough.map(f64::ceil) {
+        Some(seconds) if seconds <= LONGEST => {
+            format!("trials of about {seconds:.0} s should be enough: --seconds {seconds:.0}")
+        }
+        Some(seconds) => {
+            format!(
+                "trials of about {} s should be enough, more than {LONGEST:.0} s",
+                significant(seconds, 2)
+            )
+        }
+        None => "--patient looks longer, and where some whole runs take less than that, at these".to_owned(),
+    }
 }
 
 impl Reported for ExplainError {

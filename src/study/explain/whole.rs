@@ -13,7 +13,7 @@ use stripmine_physics::particles::Particles;
 use stripmine_physics::scene::{Overrides, SEED};
 
 /// Runs of which a mean and its scatter are, at least and at most.
-const RUNS: [usize; 2] = [3, 16];
+pub(super) const RUNS: [usize; 2] = [3, 16];
 /// Where nothing of a start is random, particles are displaced by as much (parts of the largest radius, or of the box where they have none): far
 /// more than rounding, and far less than matters before collisions have multiplied it.
 const DISPLACED: f64 = 1e-7;

@@ -209,9 +209,7 @@ impl Survey<'_> {
                 let energy = energy.filter(|_| scale > 0.0).map(|error| error / scale);
                 End::Whole { speed: averages.speed(), means: averages.means(), energy, warned }
             }
-            Err(failure) => {
-                End::Broken(Class::of(failure.kind), first_line(&failure.what()))
-            }
+            Err(failure) => End::Broken(Class::of(failure.kind), first_line(&failure.what())),
         };
         Ran { foreseen, end }
     }

@@ -102,8 +102,10 @@ mod tests {
     fn students_t_squared_is_a_ratio_of_variances() {
         for probability in [0.5, 0.95, 0.99, 0.999] {
             for freedoms in (1..=40).chain([100, 300, 1000]) {
-                let [t, f] =
-                    [student(probability, freedoms), variance_ratio(probability, 1.0, freedoms as f64).sqrt()];
+                let [t, f] = [
+                    student(probability, freedoms),
+                    variance_ratio(probability, 1.0, freedoms as f64).sqrt(),
+                ];
                 assert!((t / f - 1.0).abs() < 1e-9, "{probability} {freedoms}: {t} {f}");
             }
         }
