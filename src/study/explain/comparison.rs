@@ -12,7 +12,7 @@ use stripmine_physics::averages::Outcome;
 use stripmine_physics::method::Decides;
 
 /// Ways whose means are compared.
-const COMPARED: usize = 3;
+pub(super) const COMPARED: usize = 3;
 /// Errors of means fall with a power of the step between these.
 const POWERS: [f64; 2] = [1.0, 2.0];
 /// The highest order of an integrator here.

@@ -49,6 +49,7 @@ pub use words::{page, seconds, with_unit};
 
 use super::Case;
 use findings::Findings;
+use reference::LONGER;
 use seen::{planned, seen};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
@@ -105,8 +106,9 @@ pub enum ExplainError {
     },
     /// No way comes to the error.
     #[error(
-        "no configuration tried reaches an error of {} of {quantity}: {unreached}\n  help: --patient knows it better; or ask for a larger error",
-        significant(unreached.wanted, 3)
+        "no configuration tried reaches an error of {} of {quantity}: {unreached}\n  help: {}; or ask for a larger error",
+        significant(unreached.wanted, 3),
+        unreached.enough.map_or_else(|| "--patient knows it better".to_owned(), |enough| longer_trials(Some(enough)))
     )]
     OutOfReach {
         /// The quantity.
@@ -235,8 +237,11 @@ pub fn explain(
         return within_seconds(case, target, &findings, &origin, within);
     }
     let quantity = target.quantity.name;
-    planned(case, target, &findings, &origin)
-        .map_err(|unreached| ExplainError::OutOfReach { quantity, unreached })
+    planned(case, target, &findings, &origin).map_err(|unreached| {
+        // Trials of this length saw nothing.
+        let enough = unreached.enough.map(|enough| enough.max(LONGER * seconds));
+        ExplainError::OutOfReach { quantity, unreached: Unreached { enough, ..unreached } }
+    })
 }
 
 /// Errors are asked for within this factor of the least that can be had in a time.

@@ -2,14 +2,16 @@
 
 use super::Target;
 use super::bias::{Bias, Off};
+use super::comparison::COMPARED;
 use super::decisions::{decisions, left_out};
-use super::findings::{Findings, Way};
+use super::findings::{FIRST, Findings, SHARES, Way};
 use super::lengths::{Weighed, length, weigh};
 use super::optimum::SHORTEST;
 use super::recommended::{Expected, Interval, Own, Plan};
-use super::sample::ROWS;
+use super::sample::{Known, ROWS};
 use super::unreached::Unreached;
 use crate::study::Case;
+use stripmine_physics::averages::FEWEST_SAMPLES;
 use stripmine_physics::method::Every;
 use stripmine_physics::number::significant;
 use stripmine_physics::scene::{STEPS, Width};
@@ -19,6 +21,8 @@ pub(super) const TIME_WITHIN: f64 = 1.5;
 /// Rows that a mean is taken of, at least.
 const FEWEST_ROWS: f64 = 100.0;
 
+/// Independent samples with which a mean is known well beyond the fewest.
+const SEEN: f64 = 2.0 * FEWEST_SAMPLES;
 /// A plan that takes longer rests on what the trials saw of the bias, not on how it should fall with the step (s).
 const LONG: f64 = 3600.0;
 
@@ -47,13 +51,19 @@ pub fn plan(case: &Case, target: &Target, findings: &Findings, origin: &str) -> 
         // Bias at the shortest step that is weighed is all that is left.
         let least = |way: &Way| Some(way.bias?.at(SHORTEST * way.step?).most());
         let least = findings.ways.iter().filter(usable).filter_map(least).fold(f64::INFINITY, f64::min);
-        return Err(Unreached { wanted, least, takes: None });
+        let enough = seen_in(findings).filter(|_| least.is_infinite());
+        return Err(Unreached { wanted, least, takes: None, enough });
     };
-    let length = length(case, best, findings).map_err(|least| Unreached { wanted, least, takes: None })?;
+    let length = length(case, best, findings).map_err(|least| Unreached {
+        wanted,
+        least,
+        takes: None,
+        enough: None,
+    })?;
     if length.seconds > LONG && best.way.bias.is_some_and(|bias| bias.is_unseen_for(wanted)) {
         let seen = findings.ways.iter().filter(usable).filter_map(|way| Some(way.bias?.seen().most()));
         let least = seen.fold(f64::INFINITY, f64::min);
-        return Err(Unreached { wanted, least, takes: Some(length.seconds) });
+        return Err(Unreached { wanted, least, takes: Some(length.seconds), enough: None });
     }
     let step = best.way.step.map(|step| best.optimum.part * step);
     let per_run = findings.whole.unwrap_or(length.time / length.seeds as f64 + reference.transient);
@@ -89,6 +99,14 @@ pub fn plan(case: &Case, target: &Target, findings: &Findings, origin: &str) -> 
         left_out: left_out(findings, wanted, reference.mean),
         origin: origin.to_owned(),
     })
+}
+
+/// Seconds of trials in which the mean of each configuration that is compared should be known, by the reference; none where nothing is known of that.
+fn seen_in(findings: &Findings) -> Option<f64> {
+    let Known { transient, apart, .. } = findings.reference;
+    let cost = findings.ways.iter().filter_map(|way| way.cost).reduce(f64::min)?;
+    let seconds = cost * (transient + SEEN * apart) * (COMPARED + 1) as f64;
+    Some(seconds / (SHARES[2] * FIRST)).filter(|seconds| seconds.is_finite() && *seconds > 0.0)
 }
 
 /// Wall seconds of a run in each phase.

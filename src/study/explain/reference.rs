@@ -15,7 +15,7 @@ const SURE: f64 = 1.5;
 /// How often the reference is looked for, each time for longer.
 const ATTEMPTS: usize = 4;
 /// Another attempt is made where it may be this many times as long as the one before, at least.
-const LONGER: f64 = 1.5;
+pub(super) const LONGER: f64 = 1.5;
 
 /// The reference, as measured.
 pub(super) struct Reference {
@@ -104,7 +104,8 @@ impl Work<'_> {
             Outcome::Changing { .. } => RUNS[0] as f64 * self.case.duration()?,
             _ => return None,
         };
-        Some(trials_for(sample.cost * time))
+        // These were not enough, whatever a unit of time cost in them.
+        Some(trials_for(sample.cost * time).max(LONGER * self.seconds / FIRST))
     }
 
     /// The mean of another start less that of the reference, where that is beyond both bars.

@@ -5,7 +5,7 @@ use super::bias::Bias;
 use super::findings::{Findings, Way};
 use super::plan::plan;
 use super::seen::planned;
-use super::{Known, Target, page};
+use super::{ExplainError, Known, Target, page};
 use crate::study::{Case, Choice};
 use stripmine_physics::method::METHODS;
 use stripmine_physics::scene::Width;
@@ -107,6 +107,19 @@ fn a_plan_of_hours_whose_bias_was_not_seen_is_refused() {
             }
         }
     }
+}
+
+/// Where no bias was seen the refusal has the seconds of trials that should be enough, by hand: a transient of 2 and 40 samples 0.05 apart at 3 s, for four
+/// configurations, of which the comparison is an eighth of the trials.
+#[test]
+fn trials_that_saw_no_bias_say_how_long_would_be_enough() {
+    let case = gas();
+    let known = Known { transient: 2.0, apart: 0.05, ..reference(1e-6, 16.0) };
+    let found = findings(&case, &[(&case.own, 3.0, None)], known);
+    let refused = plan(&case, &asking(&case, 0.01), &found, "trials").err().unwrap();
+    assert!((refused.enough.unwrap() - 3.0 * 4.0 * 4.0 * 8.0).abs() < 1e-9, "{refused:?}");
+    let said = ExplainError::OutOfReach { quantity: "pressure", unreached: refused }.to_string();
+    assert!(said.contains("trials of about 384 s should be enough: --seconds 384"), "{said}");
 }
 
 /// However the reference scatters: what a plan expects is no more than what was asked for, and the run that is printed is no shorter than planned; in stretches,
