@@ -316,7 +316,11 @@ fn what_cannot_be_planned_is_refused() {
     ends_with(&bad(&["hard-disks", "--error", "little"]), 2, &["above 0, or a part such as 1%"]);
     ends_with(&bad(&["nothing.toml"]), 3, &["nothing.toml"]);
     let cooling = ["cooling-gas", "--of", "temperature", "--error", "1%", "--seconds", "1"];
-    ends_with(&bad(&cooling), 4, &["temperature comes to no mean", "still changing", "--patient"]);
+    ends_with(
+        &bad(&cooling),
+        4,
+        &["temperature did not become stationary during the trials", "still changing"],
+    );
     let kepler = ["kepler", "--of", "energy_error", "--error", "1e-30", "--seconds", "1"];
     ends_with(
         &bad(&kepler),
@@ -358,9 +362,7 @@ fn what_changes_all_along_is_meant_over_the_whole_run() {
         rows.iter().any(|row| row["what"].as_str().unwrap().starts_with("kinetic over the whole run")),
         "{rows:#?}"
     );
-    // Phases are foreseen of a configuration that was tried; of the scene as it stands, on a busy machine, perhaps not.
-    let phases = found["phases"].as_array().unwrap();
-    assert!(phases.is_empty() || rows.iter().any(|row| row["what"] == "of it: forces"), "{rows:#?}");
+    assert!(rows.iter().any(|row| row["what"] == "of it: forces") && rows.len() > 4, "{rows:#?}");
 }
 
 #[test]

@@ -267,3 +267,42 @@ fn checkpoints_are_written_by_the_wall_clock() {
         assert!(matches!(given, Every::Steps(7) | Every::Time(7.0)), "{}: {given:?}", preset.name);
     }
 }
+
+/// The seeds of a run are of one scene, which is read once with its start file: both may go while they run.
+#[test]
+fn seeds_are_of_the_scene_of_the_beginning() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let inside = |arguments: &[&str]| {
+        let mut command = stripmine(arguments);
+        command.current_dir(folder).args(["--quiet", "--threads", "1"]);
+        command
+    };
+    let short = ["--set", "particles.count=20", "--set", "run.time=0.1", "--out", "first"];
+    succeed(inside(&[&["run", "langevin-free"], &short[..]].concat()).output().unwrap());
+    let preset = String::from_utf8(output(&["scene", "show", "langevin-free"]).stdout).unwrap();
+    let mut text: toml::Table = preset.parse().unwrap();
+    text.insert(
+        "particles".to_owned(),
+        toml::Table::from_iter([("file".to_owned(), "start.xyz".into())]).into(),
+    );
+    let write = || {
+        std::fs::copy(folder.join("first/trajectory.xyz"), folder.join("start.xyz")).unwrap();
+        std::fs::write(folder.join("scene.toml"), text.to_string()).unwrap();
+    };
+    let seeds = ["run", "scene.toml", "--set", "run.time=1000", "--seeds", "4", "--out"];
+    write();
+    succeed(inside(&[&seeds[..], &["whole"]].concat()).output().unwrap());
+    let mut running = inside(&[&seeds[..], &["changed"]].concat()).spawn().unwrap();
+    // One seed after the other: the first has begun.
+    while !folder.join("changed/seed-1").exists() {
+        assert!(running.try_wait().unwrap().is_none());
+        std::thread::yield_now();
+    }
+    ["scene.toml", "start.xyz"].iter().for_each(|name| std::fs::remove_file(folder.join(name)).unwrap());
+    succeed(running.wait_with_output().unwrap());
+    for seed in 1..=4 {
+        let name = format!("seed-{seed}/thermo.csv");
+        assert_eq!(read(&folder.join("changed"), &name), read(&folder.join("whole"), &name), "{name}");
+    }
+}

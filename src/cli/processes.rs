@@ -3,7 +3,11 @@
 //! The first rank is the program that the user sees. The others read the same scene and do as it says, or runs of their own; they print nothing.
 
 mod agreement;
+#[cfg(any(test, feature = "mpi"))]
+mod joining;
 
+#[cfg(feature = "mpi")]
+use crate::console::warn;
 use crate::console::{Failure, tell};
 use crate::study::StudyError;
 use agreement::{Part, Verdict, agreed};
@@ -79,10 +83,8 @@ impl Session {
             });
         };
         #[cfg(feature = "mpi")]
-        let _ = place;
-        #[cfg(feature = "mpi")]
         return Ok(Session {
-            _session: stripmine_physics::ranks::mpi::Session::begin(),
+            _session: joining::watched(stripmine_physics::ranks::mpi::Session::begin, waiting(place)),
             crew: Crew::Processes(stripmine_physics::ranks::mpi::world),
         });
         #[cfg(not(feature = "mpi"))]
@@ -154,6 +156,34 @@ pub(super) fn begin(ranks: &dyn Ranks, same: &str) -> Result<(), Failure> {
         Verdict::Own => Ok(()),
         Verdict::Failed(failure) => Err(failure),
     }
+}
+
+/// What a process does that waits for others to join: the first two say so, for one of them may be missing itself; all end in the end.
+#[cfg(feature = "mpi")]
+fn waiting(Launched { rank, count, .. }: Launched) -> Vec<(std::time::Duration, joining::Act)> {
+    let [notice, end] = joining::PATIENCE;
+    let words = move |seconds: u64| {
+        format!("rank {rank} waits for others of {count} processes, which have not joined for {seconds} s")
+    };
+    let remedy = format!(
+        "give all ranks the same verb: {}, --help and --version join no other process",
+        ALONE.join(", ")
+    );
+    let says = rank < 2;
+    let warns = move || {
+        if says {
+            warn(format_args!("{}", words(notice)));
+        }
+    };
+    let ends = move || {
+        let failure = broken(words(notice + end), &remedy);
+        if says {
+            tell(&failure, false);
+        }
+        std::process::exit(failure.exit_code().into());
+    };
+    let seconds = std::time::Duration::from_secs;
+    vec![(seconds(notice), Box::new(warns)), (seconds(end), Box::new(ends))]
 }
 
 #[cfg(not(feature = "mpi"))]

@@ -7,7 +7,7 @@ use stripmine_physics::scene::{SceneErrors, Values};
 /// A scene with what its method states of the ways to run it.
 pub struct Case {
     what: String,
-    /// Its text, read once: all trials are of the same scene, whatever becomes of the file.
+    /// Its text, read once, as its start file is: all trials are of the same scene, whatever becomes of the files.
     text: String,
     overrides: Vec<String>,
     methods: Methods,
@@ -28,7 +28,7 @@ impl Case {
     /// [`SceneErrors`] if the scene is bad, or takes more memory than there is.
     pub fn load(what: &str, overrides: &[String], methods: Methods) -> Result<Case, SceneErrors> {
         let text = Values::text(what, &vocabularies(methods))?;
-        Case::of(what, text, overrides, methods)
+        Case::of(what, text, overrides, methods, None)
     }
 
     /// The scene of a text; `what` is the name that errors give it.
@@ -36,11 +36,22 @@ impl Case {
     /// # Errors
     /// As [`load`](Self::load).
     pub fn parse(what: &str, text: String, methods: Methods) -> Result<Case, SceneErrors> {
-        Case::of(what, text, &[], methods)
+        Case::of(what, text, &[], methods, None)
     }
 
-    fn of(what: &str, text: String, overrides: &[String], methods: Methods) -> Result<Case, SceneErrors> {
+    /// With the start file as another scene has read it, where one is given.
+    fn of(
+        what: &str,
+        text: String,
+        overrides: &[String],
+        methods: Methods,
+        start: Option<&Values>,
+    ) -> Result<Case, SceneErrors> {
         let values = Values::parse(what, &text, overrides, &vocabularies(methods))?;
+        let values = match start {
+            Some(other) => values.with_start_of(other),
+            None => values.sharing_start(),
+        };
         let (prepared, entry) = prepare(values.clone(), methods)?;
         prepared.memory.fits("scene")?;
         let own = Choice::own(entry.axes, &prepared);
@@ -104,14 +115,66 @@ impl Case {
     pub fn values_in(&self, choice: &Choice, more: &[String]) -> Result<Values, SceneErrors> {
         let chosen: Vec<String> = choice.overrides().collect();
         let overrides = [&self.overrides[..], &chosen, more].concat();
-        Values::parse(&self.what, &self.text, &overrides, &vocabularies(self.methods))
+        let values = Values::parse(&self.what, &self.text, &overrides, &vocabularies(self.methods))?;
+        Ok(values.with_start_of(&self.values))
     }
 
-    /// A scene by the same methods.
+    /// A scene by the same methods, from the same start file if it has one.
     ///
     /// # Errors
     /// As [`parse`](Self::parse).
     pub fn beside(&self, text: String) -> Result<Case, SceneErrors> {
-        Case::parse(&self.what, text, self.methods)
+        Case::of(&self.what, text, &[], self.methods, Some(&self.values))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+    use stripmine_physics::io::extxyz::{Frame, write};
+    use stripmine_physics::method::{METHODS, load};
+    use stripmine_physics::particles::Particles;
+
+    /// A scene and its start file may change or go once they are read: every preparation has the discs of the beginning, and so has a scene beside it.
+    #[test]
+    fn a_scene_and_its_start_file_are_read_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let [scene, start] = ["scene.toml", "start.xyz"].map(|name| folder.path().join(name));
+        let (gas, _) = load("hard-disks", &["particles.count=20".to_owned()], METHODS).unwrap();
+        let written = |particles: &Particles| {
+            let frame = Frame {
+                particles: particles.clone(),
+                cell: gas.domain.lengths(),
+                origin: gas.domain.corner(),
+                periodic: None,
+                time: 0.0,
+                step: 0,
+                seed: None,
+            };
+            write(&frame, &mut fs::File::create(&start).unwrap()).unwrap();
+        };
+        written(gas.particles());
+        let text = format!(
+            "format = 2\n[method]\nkind = \"hard-disks\"\n[domain]\nsides = {:?}\n[particles]\nfile = \"start.xyz\"\n[run]\ntime = 1.0\n",
+            gas.domain.lengths()
+        );
+        fs::write(&scene, &text).unwrap();
+        let case = Case::load(scene.to_str().unwrap(), &[], METHODS).unwrap();
+        let checksum = case.prepared.particles().checksum();
+        let again =
+            |case: &Case| case.prepared_with(&["run.time=2.0".to_owned()]).unwrap().particles().checksum();
+        // Another frame, then none.
+        let mut others = gas.particles().clone();
+        others.all_mut()[0].velocity[0] += 1.0;
+        written(&others);
+        fs::write(&scene, "none").unwrap();
+        assert_eq!(again(&case), checksum);
+        fs::remove_file(&start).unwrap();
+        fs::remove_file(&scene).unwrap();
+        assert_eq!(again(&case), checksum);
+        assert_eq!(again(&case.beside(text.clone()).unwrap()), checksum);
+        // Another scene reads its own.
+        assert!(Case::parse(scene.to_str().unwrap(), text, METHODS).is_err());
     }
 }

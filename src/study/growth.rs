@@ -1,6 +1,7 @@
 //! How fast a small disturbance grows, and up to which time trajectories are therefore comparable.
 
 use super::choice::Choice;
+use super::shortened::first_line;
 use super::state::{State, displaced};
 use super::subject::Subject;
 use super::trial::advance;
@@ -134,7 +135,8 @@ fn at_step(
         let angle = 2.399_963_229_728_653 * (place as f64 + 1.0);
         [libm::cos(angle), libm::sin(angle)].map(|part| DISTURBANCE * length * part)
     }));
-    let begin = |scene: &Prepared| scene.start(Purpose::Measurement).map_err(|failure| failure.what());
+    let begin =
+        |scene: &Prepared| scene.start(Purpose::Measurement).map_err(|failure| first_line(&failure.what()));
     let mut runs = [begin(&base)?, begin(&disturbed)?, begin(&halved)?];
     let looks = LOOKS.min(most);
     let mut growth = Growth {
@@ -149,7 +151,7 @@ fn at_step(
     };
     for look in 1..=looks {
         let steps = most * look / looks;
-        all_up_to(&mut runs, steps, each, meter).map_err(|failure| failure.what())?;
+        all_up_to(&mut runs, steps, each, meter).map_err(|failure| first_line(&failure.what()))?;
         let [base, disturbed, halved] = runs.each_ref().map(|run| State::of(&run.particles()));
         let apart = |other: &State| base.distance(other, &domain)[0] / length;
         let error = apart(&halved);

@@ -2,6 +2,7 @@
 
 use super::averages::{self, Averages, LOOKS, Means, PROFILE};
 use super::choice::Choice;
+use super::shortened::first_line;
 use super::subject::Subject;
 use super::trial::{Course, follow};
 use crate::results::{Journal, JournalError, Meter};
@@ -133,7 +134,8 @@ fn means(
             averages.pass();
         }
     };
-    follow(&prepared, Purpose::Measurement, course, None, meter, see).map_err(|failure| failure.what())?;
+    follow(&prepared, Purpose::Measurement, course, None, meter, see)
+        .map_err(|failure| first_line(&failure.what()))?;
     Ok(averages.means())
 }
 

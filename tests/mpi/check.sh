@@ -84,6 +84,12 @@ mpi -n 3 "$stripmine" run "${seeds[@]}" --out three >/dev/null || bad "seeds"
 for seed in 1 2 3 4 5; do
     cmp "one/seed-$seed/thermo.csv" "three/seed-$seed/thermo.csv" || bad "seed $seed"
 done
+# Seeds that are refused leave what there is; what earlier runs said together is gone before new ones begin: here the third seed fails.
+if mpi -n 3 "$stripmine" run "${seeds[@]}" --out three >/dev/null 2>&1; then bad "seeds are written over"; fi
+[[ -e three/seeds.json ]] || bad "seeds.json is gone though nothing was run"
+mv three/seed-3 three/seed-3.before && touch three/seed-3
+if mpi -n 3 "$stripmine" run "${seeds[@]}" --out three --overwrite >/dev/null 2>&1; then bad "a seed without a folder"; fi
+[[ ! -e three/seeds.json ]] || bad "seeds.json of earlier runs stays beside new ones"
 echo "seeds: the same runs on 1 and 3 ranks"
 
 # Studies and items are made together, and are what one process makes.
@@ -138,6 +144,9 @@ one_differs 2 "0.907" "$program bench lattice --packing-fraction 2 --quiet" "ben
 one_differs 3 "ulimit -v" "$limit" "bench lattice --steps 10 --repeats 1 --particles 200000"
 one_differs 3 "none.toml" "$program chart stability none.toml --out o8" "chart stability two-discs --size 3 --seeds 1 --budget 5 --out o8"
 one_differs 4 "other arguments" "$program reproduce --only mask --out o9" "reproduce --only table --out o9"
+# One that joins no other leaves them waiting, which they say.
+said=$(timeout 40 mpiexec -n 3 sh -c "[ \"\${PMI_RANK:-\$OMPI_COMM_WORLD_RANK}\" = 1 ] && exec $stripmine --version; exec $stripmine run dense-gas --out o10" 2>&1) || true
+[[ $said == *"rank 0 waits for others of 3 processes"* ]] || bad "a rank with --version: $said"
 for out in o[1-9]*; do
     [[ ! -e $out/thermo.csv ]] || bad "$out: a run that could not begin has written rows"
 done

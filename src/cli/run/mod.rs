@@ -67,13 +67,15 @@ impl RunVerb {
         // A run that goes on has chosen.
         let is_open = self.tuned && begins(&folder, self.existing())?;
         let given = if is_open { self.tuned(common, methods)? } else { self.overrides.clone() };
-        let values = Values::load(&self.scene, &given, &vocabularies)?;
+        let text = Values::text(&self.scene, &vocabularies)?;
+        let values = Values::parse(&self.scene, &text, &given, &vocabularies)?;
         let (mut prepared, entry) = prepare(values.clone(), methods)?;
         if self.resume {
             let chosen = chosen_otherwise(&values, entry.vocabulary, &prepared.scene, &folder);
             if !chosen.is_empty() {
                 let overrides = [given.as_slice(), &chosen].concat();
-                (prepared, _) = prepare(Values::load(&self.scene, &overrides, &vocabularies)?, methods)?;
+                let values = Values::parse(&self.scene, &text, &overrides, &vocabularies)?;
+                (prepared, _) = prepare(values, methods)?;
             }
         }
         let crew = self.crew(common)?;

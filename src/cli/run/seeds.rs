@@ -15,7 +15,7 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::thread;
 use std::time::Instant;
 use stripmine_physics::averages::{Averages, joined};
-use stripmine_physics::method::{Methods, Prepared, load, vocabularies};
+use stripmine_physics::method::{Entry, Methods, Prepared, prepare, vocabularies};
 use stripmine_physics::quoted;
 use stripmine_physics::ranks::Crew;
 use stripmine_physics::run::{
@@ -45,6 +45,11 @@ struct Ensemble {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     structure: Vec<Function>,
 }
+
+/// The folder of a run, and its seeds as overrides.
+type Seeded = (PathBuf, Vec<String>);
+/// Prepares the scene with seeds.
+type WithSeeds<'s> = &'s (dyn Fn(&[String]) -> Result<(Prepared, &'static Entry), Failure> + Sync);
 
 /// A run with a seed of its own.
 #[derive(Serialize)]
@@ -78,7 +83,9 @@ impl RunVerb {
     /// Runs the scene with a number of seeds, the scene's own the first of them.
     pub(super) fn run_seeds(&self, count: u64, common: &Common, methods: Methods) -> Result<(), Failure> {
         let folder = self.folder("seeds");
-        let values = Values::load(&self.scene, &self.overrides, &vocabularies(methods))?;
+        // Read once, as its start file is: all seeds are of the same scene, whatever becomes of the files.
+        let text = Values::text(&self.scene, &vocabularies(methods))?;
+        let values = self.values(&text, &[], methods)?.sharing_start();
         let method = methods.iter().find(|method| method.vocabulary.keys.method == values.method());
         let keys = method.map_or(vec![], |method| seeds_of(&values, method.vocabulary));
         if keys.is_empty() {
@@ -86,46 +93,53 @@ impl RunVerb {
             let message = "nothing of this scene is drawn at random: every seed gives the same run";
             return Err(Failure::Options(error.error(Reason::Unused, message).into()));
         }
-        let members: Vec<(PathBuf, Vec<String>)> = (0..count)
+        let members: Vec<Seeded> = (0..count)
             .map(|number| {
                 let seeds =
                     keys.iter().map(|(key, first)| format!("{}={}", key.path(), first.wrapping_add(number)));
                 (folder.join(format!("seed-{}", keys[0].1.wrapping_add(number))), seeds.collect())
             })
             .collect();
+        let with_seeds = |seeds: &[String]| -> Result<_, Failure> {
+            Ok(prepare(self.values(&text, seeds, methods)?.with_start_of(&values), methods)?)
+        };
         // What is wrong with the scene is said once, before anything is written.
-        let (prepared, _) = self.prepared(&members[0].1, methods)?;
+        let (prepared, _) = with_seeds(&members[0].1)?;
         prepared.memory.fits(&self.scene)?;
         let begun = Instant::now();
-        if let Crew::Processes(join) = common.crew {
-            let same = format!("{count} seeds\n{:?}\n{}", built(), prepared.scene);
-            processes::apart(join, &same, |rank, ranks| {
-                let own: Vec<_> = members.iter().skip(rank).step_by(ranks).cloned().collect();
-                self.side_by_side(&own, &prepared, common, methods).map(drop)
-            })?;
-            if join().rank() > 0 {
-                return Ok(());
-            }
-        } else {
-            members.iter().try_for_each(|(folder, _)| begins(folder, self.existing()).map(drop))?;
-        }
         let asked = &prepared.output.structure;
         let files = asked.iter().filter_map(|name| observable(name)).map(|it| it.file.to_owned());
         let files: Vec<String> = std::iter::once(SUMMARY.to_owned()).chain(files).collect();
-        let own = OwnFiles::claim(&folder, LIST, &files, self.overwrite)?;
-        // A summary of earlier runs says nothing of these, should they be interrupted.
-        own.remove(SUMMARY)?;
-        let averages: Vec<Averages> = match common.crew {
-            // Each process has made some of the runs.
-            Crew::Processes(_) => members
-                .iter()
-                .map(|(folder, _)| averages_of(&[Finished::read(folder, methods)?]))
-                .collect::<Result<_, _>>()?,
-            _ => {
-                let found = self.side_by_side(&members, &prepared, common, methods);
-                clear_progress();
-                found?.into_iter().map(|summary| summary.averages).collect()
-            }
+        let claimed = || -> Result<OwnFiles, Failure> {
+            let own = OwnFiles::claim(&folder, LIST, &files, self.overwrite)?;
+            // A summary of earlier runs says nothing of these, should they be interrupted.
+            own.remove(SUMMARY)?;
+            Ok(own)
+        };
+        // Where runs are refused, all stays as it is.
+        if processes::rank(common.crew) == 0 {
+            members.iter().try_for_each(|(folder, _)| begins(folder, self.existing()).map(drop))?;
+        }
+        let side_by_side = |some: &[Seeded]| self.side_by_side(some, &prepared, common, &with_seeds);
+        let (own, averages) = if let Crew::Processes(join) = common.crew {
+            let same = format!("{count} seeds\n{:?}\n{}", built(), prepared.scene);
+            let mut own = None;
+            processes::apart(join, &same, |rank, ranks| {
+                if rank == 0 {
+                    own = Some(claimed()?);
+                }
+                let some: Vec<_> = members.iter().skip(rank).step_by(ranks).cloned().collect();
+                side_by_side(&some).map(drop)
+            })?;
+            // The first rank alone has claimed the folder, and sums up.
+            let Some(own) = own else { return Ok(()) };
+            let read = |(folder, _): &Seeded| averages_of(&[Finished::read(folder, methods)?]);
+            (own, members.iter().map(read).collect::<Result<_, _>>()?)
+        } else {
+            let own = claimed()?;
+            let found = side_by_side(&members);
+            clear_progress();
+            (own, found?.into_iter().map(|summary| summary.averages).collect::<Vec<Averages>>())
         };
         let members = members.into_iter().zip(averages);
         let runs: Vec<Member> =
@@ -153,22 +167,19 @@ impl RunVerb {
         ))
     }
 
-    /// The scene with seeds.
-    fn prepared(
-        &self,
-        seeds: &[String],
-        methods: Methods,
-    ) -> Result<(Prepared, &'static stripmine_physics::method::Entry), Failure> {
-        Ok(load(&self.scene, &[self.overrides.as_slice(), seeds].concat(), methods)?)
+    /// The values of the scene's text, with seeds.
+    fn values(&self, text: &str, seeds: &[String], methods: Methods) -> Result<Values, Failure> {
+        let overrides = [self.overrides.as_slice(), seeds].concat();
+        Ok(Values::parse(&self.scene, text, &overrides, &vocabularies(methods))?)
     }
 
     /// Every run, as many at a time as there are threads and memory for; the first failure, once all have ended.
     fn side_by_side(
         &self,
-        members: &[(PathBuf, Vec<String>)],
+        members: &[Seeded],
         prepared: &Prepared,
         common: &Common,
-        methods: Methods,
+        with_seeds: WithSeeds<'_>,
     ) -> Result<Vec<Summary>, Failure> {
         let threads = rayon::current_num_threads();
         let memory = &prepared.memory;
@@ -196,7 +207,7 @@ impl RunVerb {
                         say(format_args!("{}: {note}", quoted::path(folder)));
                     }
                 };
-                let outcome = pool.install(|| self.one(folder, seeds, methods, progress, notice));
+                let outcome = pool.install(|| self.one(folder, with_seeds(seeds), progress, notice));
                 outcomes.lock().unwrap_or_else(PoisonError::into_inner)[number] = Some(outcome);
             }
         };
@@ -215,12 +226,11 @@ impl RunVerb {
     fn one(
         &self,
         folder: &Path,
-        seeds: &[String],
-        methods: Methods,
+        scene: Result<(Prepared, &'static Entry), Failure>,
         progress: impl FnMut(u64, u64) + Send,
         notice: impl FnMut(&str) + Send,
     ) -> Result<Summary, Failure> {
-        let (prepared, entry) = self.prepared(seeds, methods)?;
+        let (prepared, entry) = scene?;
         let job = Job { prepared: &prepared, quantities: entry.quantities, program: &built() };
         match run(job, folder, self.existing(), signals::asked(), progress, notice)? {
             Ending::Done(summary) => {

@@ -12,7 +12,7 @@ use stripmine_physics::averages::Outcome;
 use stripmine_physics::method::Decides;
 
 /// Ways whose means are compared.
-const COMPARED: usize = 3;
+pub(super) const COMPARED: usize = 3;
 /// Errors of means fall with a power of the step between these.
 const POWERS: [f64; 2] = [1.0, 2.0];
 /// The highest order of an integrator here.
@@ -83,6 +83,7 @@ impl Work<'_> {
                 {
                     let shorter = other.step.zip(way.step).map_or(1.0, |(longest, step)| longest / step);
                     other.cost = other.cost.map(|cost| slower * shorter * cost);
+                    other.phases.iter_mut().for_each(|(_, cost)| *cost *= slower * shorter);
                     (other.step, other.bias) = (way.step, way.bias);
                     (other.bound, other.dropped) = (way.bound.clone(), way.dropped.clone());
                 }

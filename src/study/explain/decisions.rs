@@ -65,7 +65,7 @@ pub(super) fn decisions(
         } else { format!(
             "{} to average over for a chance of ± {}, after a transient of {}",
             significant(length.time, 3),
-            significant(findings.chance_over(length.time), 2),
+            significant(findings.chance().over(length.time), 2),
             significant(reference.transient, 3)
         ) },
         beside: vec![],

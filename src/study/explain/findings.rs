@@ -5,7 +5,7 @@ use super::any_number;
 use super::bias::Bias;
 use super::drift::Drift;
 use super::sample::{Known, Sample, Span, sample};
-use crate::study::{Case, Choice};
+use crate::study::{Case, Choice, first_line};
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
@@ -14,6 +14,8 @@ use stripmine_physics::scene::Overrides;
 
 /// How often a step that fails or is warned of is halved.
 pub(super) const HALVINGS: u32 = 6;
+/// The part of the time that trials may take before it is known what they do not tell: the rest is for that.
+pub(super) const FIRST: f64 = 0.5;
 /// Parts of the time that is given: to time the ways, to the reference, to those that are compared with it, to what may be left out, to another
 /// start.
 pub(super) const SHARES: [f64; 5] = [0.15, 0.3, 0.25, 0.2, 0.1];
@@ -36,7 +38,7 @@ pub struct Way {
     pub bound: Option<String>,
     /// Where it pays to change the skin of its lists: its own and the better one (length), and the cost with this over that with its own.
     pub skin: Option<[f64; 3]>,
-    /// Wall seconds of a unit of time in each phase, by name, at `step`; none where it was only timed.
+    /// Wall seconds of a unit of time in each phase, by name, at `step`; none where it was not timed.
     pub phases: Vec<(String, f64)>,
     /// What it is off by; none where it was not compared.
     pub bias: Option<Bias>,
@@ -149,9 +151,4 @@ impl Work<'_> {
 pub(super) fn sort(ways: &mut [Way]) {
     let key = |way: &Way| (way.dropped.is_some(), way.cost.unwrap_or(f64::INFINITY));
     ways.sort_by(|a, b| key(a).0.cmp(&key(b).0).then(key(a).1.total_cmp(&key(b).1)));
-}
-
-/// A message without its advice, in one line.
-pub(super) fn first_line(message: &str) -> String {
-    message.lines().next().unwrap_or_default().to_owned()
 }

@@ -44,7 +44,7 @@ pub fn keeping(case: &Case, target: &Target, findings: &Findings, origin: &str) 
     let Some(best) = weighed.first() else {
         let least = usable().filter_map(|way| Some(way.drift?.over(time).farthest[1]));
         let least = least.fold(f64::INFINITY, f64::min);
-        return Err(Unreached { wanted, least, takes: None });
+        return Err(Unreached { wanted, least, takes: None, enough: None });
     };
     let step = best.way.step.map(|step| best.optimum.part * step);
     let likely = best.optimum.seconds;

@@ -2,6 +2,7 @@
 
 use super::bias::Off;
 use super::findings::{Findings, Way};
+use super::margin::Bars;
 use super::optimum::{Optimum, Terms, optimum};
 use super::sample::ROWS;
 use crate::study::Case;
@@ -18,9 +19,9 @@ pub(super) struct Weighed<'w> {
 }
 
 /// The cheapest step and time of a way; a way that was not compared has the bias of none, and is not weighed where others were.
-pub(super) fn weigh(way: &Way, findings: &Findings, wanted: f64) -> Option<Optimum> {
+pub(super) fn weigh(way: &Way, findings: &Findings, chance: &Chance, wanted: f64) -> Option<Optimum> {
     let terms = Terms { cost: way.cost?, transient: findings.reference.transient };
-    let time_for = |chance| findings.time_for(chance);
+    let time_for = |bar| chance.time_for(bar);
     match (way.step, way.bias) {
         (None, _) => optimum(terms, wanted, |_| Off::default(), time_for).filter(|it| it.part == 1.0),
         (Some(step), Some(bias)) => optimum(terms, wanted, |part| bias.at(part * step), time_for),
@@ -28,18 +29,36 @@ pub(super) fn weigh(way: &Way, findings: &Findings, wanted: f64) -> Option<Optim
     }
 }
 
+/// What chance leaves of an error, by the time of all runs together.
+pub(super) struct Chance {
+    bars: Bars,
+    /// Square of the bar of a mean over one unit of time.
+    square: f64,
+    /// Time of a whole run, where these are averaged over (time).
+    whole: Option<f64>,
+}
+
 impl Findings {
+    /// What chance leaves by the time.
+    pub(super) fn chance(&self) -> Chance {
+        Chance { bars: self.reference.bars(), square: self.reference.square, whole: self.whole }
+    }
+}
+
+impl Chance {
     /// The time of all runs together that leaves no more than this to chance (time).
-    pub(super) fn time_for(&self, chance: f64) -> f64 {
-        let alone = self.reference.square / (chance * chance);
+    pub(super) fn time_for(&self, bar: f64) -> f64 {
+        let alone = self.square / (bar * bar);
         // A whole run that is enough has no bar of its own: its error is that which other starts show.
-        if self.whole.is_some_and(|time| alone <= time) { alone } else { self.reference.time_for(chance) }
+        if self.whole.is_some_and(|time| alone <= time) { alone } else { self.bars.time_for(bar) }
     }
 
     /// What chance leaves at most in runs of that time together (time): as [`time_for`](Self::time_for).
-    pub(super) fn chance_over(&self, time: f64) -> f64 {
-        let alone = (self.reference.square / time).sqrt();
-        if self.whole.is_some_and(|whole| time <= whole) { alone } else { self.reference.bar_over(time) }
+    pub(super) fn over(&self, time: f64) -> f64 {
+        match self.whole {
+            Some(whole) if time <= whole => (self.square / time).sqrt(),
+            _ => self.bars.over(time),
+        }
     }
 }
 

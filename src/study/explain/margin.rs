@@ -2,111 +2,84 @@
 //! another one.
 
 use super::sample::Known;
-use stripmine_physics::averages::{MOST_WAVES, student};
+use stripmine_physics::averages::{MOST_WAVES, variance_ratio};
 
 /// The probability with which a bar comes out as small as planned; that of bars themselves.
 const SURE: f64 = 0.95;
-/// Rounds in which the time and its degrees of freedom are found, one given the other.
-const ROUNDS: usize = 8;
+/// Times are longer by so much that a bar computed from one is not larger by rounding.
+const ROUNDED_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
+
+/// The bars of runs of any length, as far as trials tell them.
+pub struct Bars {
+    /// Square of the bar of a mean over one unit of time.
+    square: f64,
+    /// For each number of waves that a bar may be made of: the time from which it is (time), and how many times larger the square of the bar may come out than that
+    /// which follows from the trials.
+    levels: Vec<WaveLevel>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct WaveLevel {
+    from: f64,
+    margin: f64,
+}
 
 impl Known {
-    /// The bar that a mean over some time has at most with a probability of 95 %.
-    pub fn bar_over(&self, time: f64) -> f64 {
-        // What does not vary is known from any time.
-        if self.square == 0.0 { 0.0 } else { (self.square * self.margin(time) / time).sqrt() }
-    }
-
-    /// The time over which a mean has a bar of at most `bar` with a probability of 95 % (time).
-    pub fn time_for(&self, bar: f64) -> f64 {
-        let least = self.square / (bar * bar);
-        // The margin falls with the time.
-        (0..ROUNDS).fold(least, |time, _| least * self.margin(time))
-    }
-
-    /// How many times larger the square of a bar over some time may come out than that which follows from the trials.
+    /// The bars of runs of any length.
     ///
-    /// The square of a bar is t² s² over the time, with t of Student's distribution. Its two values of s², each a χ² over its degrees of freedom, have a ratio
-    /// that follows the F distribution.
-    fn margin(&self, time: f64) -> f64 {
+    /// The square of a bar is t² s² over the time, with t of Student's distribution. Its two values of s², that of the trials and that of the run, each a χ² over its
+    /// degrees of freedom, have a ratio that follows the F distribution.
+    pub fn bars(&self) -> Bars {
+        let all = |margin| Bars { square: self.square, levels: vec![WaveLevel { from: 0.0, margin }] };
         if self.square == 0.0 || !self.freedoms.is_finite() {
-            return 1.0;
+            return all(1.0);
         }
-        let most = MOST_WAVES as f64;
         let seen = self.freedoms.max(1.0);
-        // The waves that a bar is made of grow with the root of the time up to a number; the time that was seen is the square over the bar's own.
-        let longer = time * self.bar * self.bar / self.square;
-        let planned = (seen * longer.sqrt()).clamp(1.0, most.max(seen));
-        let t = |freedoms: f64| student(SURE, freedoms as usize);
-        (t(planned) / t(seen)).powi(2) * largest_ratio(planned, seen)
-    }
-}
-
-/// The ratio of two variances by these degrees of freedom that is not passed with a probability of 95 %.
-fn largest_ratio(above: f64, below: f64) -> f64 {
-    // In x = ν₁ F/(ν₁ F + ν₂) the distribution is an incomplete beta function (Abramowitz and Stegun, 26.6.2).
-    let (mut low, mut high) = (0.0, 1.0);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if incomplete_beta(middle, 0.5 * above, 0.5 * below) < SURE { low = middle } else { high = middle }
-    }
-    below * low / (above * (1.0 - low))
-}
-
-/// The regularised incomplete beta function, by its continued fraction (Abramowitz and Stegun, 26.5.8).
-fn incomplete_beta(x: f64, a: f64, b: f64) -> f64 {
-    if x > (a + 1.0) / (a + b + 2.0) {
-        return 1.0 - incomplete_beta(1.0 - x, b, a);
-    }
-    let front = libm::exp(
-        libm::lgamma(a + b) - libm::lgamma(a) - libm::lgamma(b) + a * libm::log(x) + b * libm::log(1.0 - x),
-    ) / a;
-    let (mut fraction, mut c, mut d) = (1.0, 1.0, 0.0);
-    for term in 0..TERMS {
-        let m = f64::from(term / 2);
-        let numerator = match term {
-            0 => 1.0,
-            _ if term % 2 == 0 => m * (b - m) * x / ((a + 2.0 * m - 1.0) * (a + 2.0 * m)),
-            _ => -(a + m) * (a + b + m) * x / ((a + 2.0 * m) * (a + 2.0 * m + 1.0)),
+        let t_squared = |freedoms: f64| variance_ratio(SURE, 1.0, freedoms);
+        let of_trials = t_squared(seen);
+        // The time that was seen is the square over the bar's own.
+        let span = self.square / (self.bar * self.bar);
+        // The waves that a bar is made of are a whole number, and grow with the root of the time.
+        let level = |waves: usize| {
+            let waves = waves as f64;
+            WaveLevel {
+                from: if waves > 1.0 { span * (waves / seen).powi(2) } else { 0.0 },
+                margin: t_squared(waves) / of_trials * variance_ratio(SURE, waves, seen),
+            }
         };
-        d = 1.0 / not_zero(1.0 + numerator * d);
-        c = not_zero(1.0 + numerator / c);
-        fraction *= c * d;
-        if (c * d - 1.0).abs() < 1e-12 {
-            break;
-        }
+        Bars { square: self.square, levels: (1..=MOST_WAVES).map(level).collect() }
     }
-    front * (fraction - 1.0)
 }
 
-/// Terms of the fraction at most: some times the root of the degrees of freedom are needed.
-const TERMS: u32 = 2000;
+impl Bars {
+    /// The bar that a mean over some time has at most with a probability of 95 %.
+    pub fn over(&self, time: f64) -> f64 {
+        // What does not vary is known from any time.
+        if self.square == 0.0 {
+            return 0.0;
+        }
+        let reached = self.levels.iter().rev().find(|level| level.from <= time);
+        (self.square * reached.map_or(f64::INFINITY, |level| level.margin) / time).sqrt()
+    }
 
-fn not_zero(value: f64) -> f64 {
-    if value.abs() < 1e-300 { 1e-300 } else { value }
+    /// The shortest time over which a mean has a bar of at most `bar` with a probability of 95 % (time).
+    ///
+    /// [`over`](Self::over) falls with the time, by steps where there is one wave more, so that every longer time has as small a bar.
+    pub fn time_for(&self, bar: f64) -> f64 {
+        let least = self.square / (bar * bar) * ROUNDED_UP;
+        let next = self.levels.iter().skip(1).map(|level| level.from).chain([f64::INFINITY]);
+        let times =
+            self.levels.iter().zip(next).map(|(level, next)| ((least * level.margin).max(level.from), next));
+        // The last level has no end.
+        times.into_iter().find(|(time, next)| time < next).map_or(f64::INFINITY, |(time, _)| time)
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use std::f64::consts::PI;
-
-    /// The table of every textbook: F at 95 %, by the degrees of freedom above and below.
-    #[test]
-    fn ratios_of_variances_are_those_of_the_tables() {
-        for (above, below, f) in [
-            (1.0, 1.0, 161.45),
-            (5.0, 2.0, 19.30),
-            (2.0, 5.0, 5.786),
-            (10.0, 10.0, 2.978),
-            (30.0, 30.0, 1.841),
-            (120.0, 30.0, 1.683),
-            (10_000.0, 30.0, 1.623),
-            (10_000.0, 10.0, 2.539),
-        ] {
-            let found = largest_ratio(above, below);
-            assert!((found / f - 1.0).abs() < 1e-3, "{above} {below}: {found}");
-        }
-    }
+    use stripmine_physics::averages::student;
 
     /// Bars as averages have them, of independent normal values with a variance of 1: by 1.2 √n of their waves, at most 16, whose squares are independent. The plan is
     /// made of some values, and the bar of another run of the planned length is to be as small as asked. Of 2000 plans each.
@@ -129,15 +102,8 @@ mod tests {
             let kept = (0..plans)
                 .filter(|_| {
                     let first = bar(seen);
-                    let known = Known {
-                        mean: 0.0,
-                        bar: first,
-                        square: first * first * seen as f64,
-                        transient: 0.0,
-                        apart: 1.0,
-                        freedoms: waves(seen) as f64,
-                    };
-                    bar((known.time_for(asked).ceil() as usize).max(2)) <= asked
+                    let known = known(first * first * seen as f64, waves(seen) as f64, first);
+                    bar((known.bars().time_for(asked).ceil() as usize).max(2)) <= asked
                 })
                 .count();
             let share = kept as f64 / f64::from(plans);
@@ -146,10 +112,40 @@ mod tests {
         }
     }
 
+    fn known(square: f64, freedoms: f64, bar: f64) -> Known {
+        Known { mean: 0.0, bar, square, transient: 0.0, apart: 1.0, freedoms }
+    }
+
+    /// The time for a bar has that bar, hardly more than that, and any longer one as well; margins are factors above 1 that fall with the time.
+    #[test]
+    fn the_time_for_a_bar_has_a_bar_as_small() {
+        for square in [1e-20, 3e-3, 1.0, 7e5] {
+            for freedoms in [1.0, 1.7, 2.0, 5.0, 6.0, 9.3, 15.0, 16.0, 40.0, 1000.0] {
+                for span in [1e-3, 1.0, 470.0] {
+                    let own = f64::sqrt(square / span);
+                    let bars = known(square, freedoms, own).bars();
+                    let margins: Vec<f64> = bars.levels.iter().map(|level| level.margin).collect();
+                    assert!(margins.windows(2).all(|pair| pair[1] <= pair[0]), "{freedoms}: {margins:?}");
+                    assert!(margins.iter().all(|it| *it >= 1.0), "{freedoms}: {margins:?}");
+                    for step in -60..60 {
+                        let bar = own * libm::pow(1.131, f64::from(step));
+                        let time = bars.time_for(bar);
+                        let what = format!("{square} {freedoms} {span} {bar}: {time}");
+                        assert!(bars.over(time) <= bar, "{what}");
+                        assert!(bars.over(time * (1.0 - 1e-9)) > bar, "{what}");
+                        assert!(
+                            [1.0 + 1e-12, 1.01, 1.3, 2.0, 50.0].iter().all(|by| bars.over(by * time) <= bar),
+                            "{what}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+
     #[test]
     fn what_does_not_vary_needs_no_time() {
-        let known =
-            Known { mean: 1.0, bar: 0.0, square: 0.0, transient: 0.0, apart: 0.0, freedoms: f64::INFINITY };
-        assert_eq!((known.time_for(0.1), known.bar_over(3.0), known.bar_over(0.0)), (0.0, 0.0, 0.0));
+        let bars = known(0.0, f64::INFINITY, 0.0).bars();
+        assert_eq!((bars.time_for(0.1), bars.over(3.0), bars.over(0.0)), (0.0, 0.0, 0.0));
     }
 }

@@ -23,6 +23,8 @@ pub mod precision_page;
 mod recommended;
 mod reference;
 pub mod regret;
+#[cfg(test)]
+mod rules;
 mod sample;
 mod scenes;
 pub mod section;
@@ -47,6 +49,7 @@ pub use words::{page, seconds, with_unit};
 
 use super::Case;
 use findings::Findings;
+use reference::LONGER;
 use seen::{planned, seen};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
@@ -90,18 +93,22 @@ pub enum ExplainError {
     EveryWayFails(Vec<(String, String)>),
     /// The quantity comes to no mean.
     #[error(
-        "{quantity} comes to no mean in the trials: {why}\n  help: --patient looks longer, and where some whole runs take less than that, at these; or choose another quantity with --of"
+        "{quantity} did not become stationary during the trials: {why}\n  help: {}; or choose another quantity with --of",
+        longer_trials(*enough)
     )]
     NoMean {
         /// The quantity.
         quantity: &'static str,
         /// What was seen.
         why: String,
+        /// Seconds of trials that would be enough, as far as these tell.
+        enough: Option<f64>,
     },
     /// No way comes to the error.
     #[error(
-        "no configuration tried reaches an error of {} of {quantity}: {unreached}\n  help: --patient knows it better; or ask for a larger error",
-        significant(unreached.wanted, 3)
+        "no configuration tried reaches an error of {} of {quantity}: {unreached}\n  help: {}; or ask for a larger error",
+        significant(unreached.wanted, 3),
+        unreached.enough.map_or_else(|| "--patient knows it better".to_owned(), |enough| longer_trials(Some(enough)))
     )]
     OutOfReach {
         /// The quantity.
@@ -131,6 +138,25 @@ pub enum ExplainError {
     /// What is kept.
     #[error(transparent)]
     Kept(#[from] KeptError),
+}
+
+/// The longest that trials may be asked to take (s).
+const LONGEST: f64 = 3600.0;
+
+/// How to make trials long enough.
+fn longer_trials(enough: Option<f64>) -> String {
+    match enough.map(f64::ceil) {
+        Some(seconds) if seconds <= LONGEST => {
+            format!("trials of about {seconds:.0} s should be enough: --seconds {seconds:.0}")
+        }
+        Some(seconds) => {
+            format!(
+                "trials of about {} s should be enough, more than {LONGEST:.0} s",
+                significant(seconds, 2)
+            )
+        }
+        None => "--patient looks longer, and where some whole runs take less than that, at these".to_owned(),
+    }
 }
 
 impl Reported for ExplainError {
@@ -211,8 +237,11 @@ pub fn explain(
         return within_seconds(case, target, &findings, &origin, within);
     }
     let quantity = target.quantity.name;
-    planned(case, target, &findings, &origin)
-        .map_err(|unreached| ExplainError::OutOfReach { quantity, unreached })
+    planned(case, target, &findings, &origin).map_err(|unreached| {
+        // Trials of this length saw nothing.
+        let enough = unreached.enough.map(|enough| enough.max(LONGER * seconds));
+        ExplainError::OutOfReach { quantity, unreached: Unreached { enough, ..unreached } }
+    })
 }
 
 /// Errors are asked for within this factor of the least that can be had in a time.

@@ -2,14 +2,16 @@
 
 use super::Target;
 use super::bias::{Bias, Off};
+use super::comparison::COMPARED;
 use super::decisions::{decisions, left_out};
-use super::findings::{Findings, Way};
+use super::findings::{FIRST, Findings, SHARES, Way};
 use super::lengths::{Weighed, length, weigh};
 use super::optimum::SHORTEST;
 use super::recommended::{Expected, Interval, Own, Plan};
-use super::sample::ROWS;
+use super::sample::{Known, ROWS};
 use super::unreached::Unreached;
 use crate::study::Case;
+use stripmine_physics::averages::FEWEST_SAMPLES;
 use stripmine_physics::method::Every;
 use stripmine_physics::number::significant;
 use stripmine_physics::scene::{STEPS, Width};
@@ -19,6 +21,8 @@ pub(super) const TIME_WITHIN: f64 = 1.5;
 /// Rows that a mean is taken of, at least.
 const FEWEST_ROWS: f64 = 100.0;
 
+/// Independent samples with which a mean is known well beyond the fewest.
+const SEEN: f64 = 2.0 * FEWEST_SAMPLES;
 /// A plan that takes longer rests on what the trials saw of the bias, not on how it should fall with the step (s).
 const LONG: f64 = 3600.0;
 
@@ -35,28 +39,35 @@ pub fn plan(case: &Case, target: &Target, findings: &Findings, origin: &str) -> 
     let of_own = own.as_ref().map(|own| own.error.most).filter(|most| most.is_finite() && *most > 0.0);
     let wanted = error.or(of_own).unwrap_or(0.01 * reference.mean.abs());
     let usable = |way: &&Way| way.cost.is_some() && way.dropped.is_none();
+    let chance = findings.chance();
     let mut weighed: Vec<Weighed<'_>> = findings
         .ways
         .iter()
         .filter(usable)
-        .filter_map(|way| Some(Weighed { way, optimum: weigh(way, findings, wanted)? }))
+        .filter_map(|way| Some(Weighed { way, optimum: weigh(way, findings, &chance, wanted)? }))
         .collect();
     weighed.sort_by(|a, b| a.optimum.seconds.total_cmp(&b.optimum.seconds));
     let Some(best) = weighed.first() else {
         // Bias at the shortest step that is weighed is all that is left.
         let least = |way: &Way| Some(way.bias?.at(SHORTEST * way.step?).most());
         let least = findings.ways.iter().filter(usable).filter_map(least).fold(f64::INFINITY, f64::min);
-        return Err(Unreached { wanted, least, takes: None });
+        let enough = seen_in(findings).filter(|_| least.is_infinite());
+        return Err(Unreached { wanted, least, takes: None, enough });
     };
-    let length = length(case, best, findings).map_err(|least| Unreached { wanted, least, takes: None })?;
+    let length = length(case, best, findings).map_err(|least| Unreached {
+        wanted,
+        least,
+        takes: None,
+        enough: None,
+    })?;
     if length.seconds > LONG && best.way.bias.is_some_and(|bias| bias.is_unseen_for(wanted)) {
         let seen = findings.ways.iter().filter(usable).filter_map(|way| Some(way.bias?.seen().most()));
         let least = seen.fold(f64::INFINITY, f64::min);
-        return Err(Unreached { wanted, least, takes: Some(length.seconds) });
+        return Err(Unreached { wanted, least, takes: Some(length.seconds), enough: None });
     }
     let step = best.way.step.map(|step| best.optimum.part * step);
     let per_run = findings.whole.unwrap_or(length.time / length.seeds as f64 + reference.transient);
-    let expected = Expected::of(best.optimum.bias, findings.chance_over(length.time));
+    let expected = Expected::of(best.optimum.bias, chance.over(length.time));
     // The square of a bar is known to its degrees of freedom.
     let scatter = 1.0 + 2.0 * (2.0 / reference.freedoms.max(2.0)).sqrt();
     let seconds = Interval {
@@ -90,6 +101,14 @@ pub fn plan(case: &Case, target: &Target, findings: &Findings, origin: &str) -> 
     })
 }
 
+/// Seconds of trials in which the mean of each configuration that is compared should be known, by the reference; none where nothing is known of that.
+fn seen_in(findings: &Findings) -> Option<f64> {
+    let Known { transient, apart, .. } = findings.reference;
+    let cost = findings.ways.iter().filter_map(|way| way.cost).reduce(f64::min)?;
+    let seconds = cost * (transient + SEEN * apart) * (COMPARED + 1) as f64;
+    Some(seconds / (SHARES[2] * FIRST)).filter(|seconds| seconds.is_finite() && *seconds > 0.0)
+}
+
 /// Wall seconds of a run in each phase.
 pub(super) fn phases(best: &Weighed<'_>, time: f64) -> Vec<(String, f64)> {
     let scaled = |(name, cost): &(String, f64)| (name.clone(), cost / best.optimum.part * time);
@@ -99,15 +118,18 @@ pub(super) fn phases(best: &Weighed<'_>, time: f64) -> Vec<(String, f64)> {
 /// The overrides that make a plan of a scene.
 pub(super) fn overrides(case: &Case, way: &Way, step: Option<f64>, time: Option<f64>) -> Vec<String> {
     let mut overrides = way.overrides.clone();
-    if let (Some(trials), Some(step)) = (case.entry.trials, step) {
-        overrides.push(format!("{}={}", trials.step.path(), significant(step, 4)));
+    let printed = step.map(|step| significant(step, 4));
+    if let (Some(trials), Some(step)) = (case.entry.trials, &printed) {
+        overrides.push(format!("{}={step}", trials.step.path()));
     }
+    // The run takes the step that is printed.
+    let step = printed.and_then(|step| step.parse::<f64>().ok());
     let time = time.or(case.duration());
     // The length of a run is given as the scene has it, in steps or as a time.
     let Some(time) = time else { return overrides };
     overrides.push(match (case.values.gives(&STEPS), step) {
         (true, Some(step)) => format!("{}={}", STEPS.path(), (time / step).ceil()),
-        _ => format!("run.time={}", significant(time, 6)),
+        _ => format!("run.time={}", no_shorter(time)),
     });
     // Its own rows, where these are enough for a mean with a bar.
     let apart = match case.prepared.schedule.rows {
@@ -121,6 +143,15 @@ pub(super) fn overrides(case: &Case, way: &Way, step: Option<f64>, time: Option<
         overrides.push(format!("run.thermo_every={every}"));
     }
     overrides
+}
+
+/// A time in six digits, or one more in the last of them where it would be shorter.
+fn no_shorter(time: f64) -> String {
+    let nearest = significant(time, 6);
+    match nearest.parse::<f64>() {
+        Ok(rounded) if rounded < time => significant(time * (1.0 + 5.1e-6), 6),
+        _ => nearest,
+    }
 }
 
 /// The way of a plan among those of other findings.
@@ -142,7 +173,9 @@ pub(super) fn dear_for_what_is_unknown(plan: &Plan, findings: &Findings) -> Opti
     let wanted = plan.expected.most;
     let way = way_of(plan, findings).filter(|way| way.bias.is_some())?;
     let exact = Way { bias: way.bias.map(|bias| Bias { bar: 0.0, ..bias }), ..way.clone() };
-    let [with_bar, without] = [weigh(way, findings, wanted)?, weigh(&exact, findings, wanted)?];
+    let chance = findings.chance();
+    let [with_bar, without] =
+        [weigh(way, findings, &chance, wanted)?, weigh(&exact, findings, &chance, wanted)?];
     Some((way.label.clone(), [with_bar.seconds, without.seconds]))
 }
 
@@ -163,7 +196,7 @@ fn own(case: &Case, way: &Way, findings: &Findings) -> Option<Own> {
         (_, None) => Off::default(),
     };
     let left = time - reference.transient;
-    let chance = if left > 0.0 { findings.chance_over(left) } else { f64::INFINITY };
+    let chance = if left > 0.0 { findings.chance().over(left) } else { f64::INFINITY };
     let seconds = findings.start + ROWS[1] * findings.row + cost * time;
     Some(Own { seconds, error: Expected::of(bias, chance) })
 }

@@ -2,9 +2,9 @@
 
 use super::ExplainError;
 use super::bias::{Bias, REFERENCE};
-use super::findings::{Findings, SHARES, Way, Work};
+use super::findings::{FIRST, Findings, SHARES, Way, Work};
 use super::sample::{Known, Sample};
-use super::whole::Warned;
+use super::whole::{RUNS, Warned};
 use stripmine_physics::averages::Outcome;
 use stripmine_physics::number::significant;
 use stripmine_physics::scene::{Overrides, SEED};
@@ -15,7 +15,7 @@ const SURE: f64 = 1.5;
 /// How often the reference is looked for, each time for longer.
 const ATTEMPTS: usize = 4;
 /// Another attempt is made where it may be this many times as long as the one before, at least.
-const LONGER: f64 = 1.5;
+pub(super) const LONGER: f64 = 1.5;
 
 /// The reference, as measured.
 pub(super) struct Reference {
@@ -45,7 +45,7 @@ impl Work<'_> {
         let mut step = way.step.map(|step| REFERENCE * step);
         let mut seconds = SHARES[1] * self.seconds;
         let kept_back = SHARES[2] * self.seconds;
-        let mut why = String::new();
+        let (mut why, mut enough) = (String::new(), self.for_whole_run(&way, step));
         for attempt in 0..ATTEMPTS {
             let spare = self.left() - kept_back;
             if attempt > 0 {
@@ -55,7 +55,7 @@ impl Work<'_> {
             match self.measured(&way, step, seconds, Warned::GoesOn) {
                 // What changes all along is asked for over the whole run.
                 Ok((sample, _)) if self.whole.is_none() && changes(&sample) => {
-                    why = no_mean(&sample);
+                    (why, enough) = (no_mean(&sample), self.enough(&sample));
                     self.whole = self.whole_in(sample.cost, self.left() - kept_back);
                     if self.whole.is_none() {
                         why.push_str(&self.too_dear(sample.cost));
@@ -74,7 +74,7 @@ impl Work<'_> {
                             transients: vec![known.transient],
                         });
                     }
-                    None => why = no_mean(&sample),
+                    None => (why, enough) = (no_mean(&sample), self.enough(&sample)),
                 },
                 Err(failure) => {
                     why = failure;
@@ -83,7 +83,29 @@ impl Work<'_> {
                 }
             }
         }
-        Err(ExplainError::NoMean { quantity: self.target.quantity.name, why })
+        Err(ExplainError::NoMean { quantity: self.target.quantity.name, why, enough })
+    }
+
+    /// Seconds of trials whose reference is as long as the scene's own run; none where its end is no time, or nothing is known of the cost.
+    fn for_whole_run(&self, way: &Way, step: Option<f64>) -> Option<f64> {
+        let slower = way.step.zip(step).map_or(1.0, |(longest, step)| longest / step);
+        Some(trials_for(self.case.duration()? * way.cost? * slower))
+    }
+
+    /// Seconds of trials whose reference is long enough for a mean, by a sample that was too short.
+    fn enough(&self, sample: &Sample) -> Option<f64> {
+        let time = match sample.outcome {
+            Outcome::TooShort { enough_at, .. } => enough_at,
+            // Where it will have become stationary is not known before the end of the scene's own run.
+            Outcome::Changing { .. } if !sample.comes_beyond_end => {
+                self.case.duration()?.max(LONGER * sample.time)
+            }
+            // Whole runs have means of their own.
+            Outcome::Changing { .. } => RUNS[0] as f64 * self.case.duration()?,
+            _ => return None,
+        };
+        // These were not enough, whatever a unit of time cost in them.
+        Some(trials_for(sample.cost * time).max(LONGER * self.seconds / FIRST))
     }
 
     /// The mean of another start less that of the reference, where that is beyond both bars.
@@ -101,6 +123,11 @@ impl Work<'_> {
         let difference = known.mean - reference.known.mean;
         (difference.abs() > SURE * known.bar.hypot(reference.known.bar)).then_some(difference)
     }
+}
+
+/// Seconds of trials in which an attempt is as long as this (s): its share of the time before it is known what trials do not tell, once doubled.
+fn trials_for(seconds: f64) -> f64 {
+    seconds / (2.0 * SHARES[1] * FIRST)
 }
 
 /// Seconds of an attempt after one of so many: twice as many, as far as these can be spared; none where that is hardly more.

@@ -10,7 +10,7 @@ use super::sample::{ROWS, Sample, Span, sample};
 use super::seen::{planned, seen};
 use super::{Target, in_unit};
 use crate::results::{Meter, Progress};
-use crate::study::{Case, StudyError};
+use crate::study::{Case, StudyError, first_line};
 use rayon::ThreadPoolBuilder;
 use serde::Serialize;
 use std::sync::atomic::AtomicBool;
@@ -172,7 +172,7 @@ fn cost_for(plan: &Plan, findings: &Findings, error: f64) -> Option<f64> {
     let part = way.step.zip(plan.step).map_or(1.0, |(longest, step)| step / longest);
     let bias = way.bias.zip(plan.step).map_or(Off::default(), |(bias, step)| bias.at(step));
     let chance = bias.leaves(error)?;
-    Some(way.cost? / part * (findings.time_for(chance) + findings.reference.transient))
+    Some(way.cost? / part * (findings.chance().time_for(chance) + findings.reference.transient))
 }
 
 /// A plan in a line.
@@ -239,7 +239,7 @@ fn carried_out(case: &Case, target: &Target, plan: &Plan) -> Result<(f64, f64), 
         let prepared = case.prepared_with(&all).map_err(|errors| errors.to_string())?;
         let found =
             sample(&prepared, observed, Span::Time(plan.time, Some(5.0 * LONGEST)), &AtomicBool::new(false))
-                .map_err(|failure| failure.what())?;
+                .map_err(|failure| first_line(&failure.what()))?;
         match found.cut_off(plan.time) {
             Some(why) => Err(why),
             None => Ok(found),

@@ -209,11 +209,7 @@ pub fn sample(
         warnings: simulation.warnings(),
         spacing: series.windows(2).map(|pair| pair[1][0] - pair[0][0]).next().unwrap_or(0.0),
         series,
-        phases: simulation
-            .phases()
-            .into_iter()
-            .map(|(name, spent)| (name.to_owned(), spent / time))
-            .collect(),
+        phases: phases(simulation.as_ref()),
     })
 }
 
@@ -255,11 +251,20 @@ fn stride(
     }
 }
 
-/// Wall seconds of a unit of time, by the fastest of some stretches.
+/// What a unit of time costs.
+#[derive(Clone, Debug)]
+pub struct UnitCost {
+    /// Wall seconds, by the fastest of some stretches.
+    pub seconds: f64,
+    /// Wall seconds in each phase, by name, over all stretches.
+    pub phases: Vec<(String, f64)>,
+}
+
+/// Runs a scene without rows to time it.
 ///
 /// # Errors
 /// [`Failure`] if it breaks.
-pub fn timed(prepared: &Prepared, seconds: f64, stop: &AtomicBool) -> Result<f64, Failure> {
+pub fn timed(prepared: &Prepared, seconds: f64, stop: &AtomicBool) -> Result<UnitCost, Failure> {
     const STRETCHES: u32 = 4;
     let mut simulation = prepared.start(Purpose::Run)?;
     let stride = stride(simulation.as_mut(), prepared, seconds / f64::from(STRETCHES), stop)?;
@@ -269,5 +274,11 @@ pub fn timed(prepared: &Prepared, seconds: f64, stop: &AtomicBool) -> Result<f64
         simulation.advance(&[stride.after(&from)], stop)?;
         least = least.min(begun.elapsed().as_secs_f64() / (simulation.clock().time - from.time));
     }
-    Ok(least)
+    Ok(UnitCost { seconds: least, phases: phases(simulation.as_ref()) })
+}
+
+/// Wall seconds of a unit of time in each phase of a run so far, by name.
+fn phases(simulation: &dyn Simulation) -> Vec<(String, f64)> {
+    let time = simulation.clock().time;
+    simulation.phases().into_iter().map(|(name, spent)| (name.to_owned(), spent / time)).collect()
 }

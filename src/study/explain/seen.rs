@@ -1,6 +1,6 @@
 //! The trials of a scene one after the other, and the plan that follows.
 
-use super::findings::{Findings, Work};
+use super::findings::{FIRST, Findings, Work};
 use super::keeping::keeping;
 use super::plan::{dear_for_what_is_unknown, plan};
 use super::recommended::Plan;
@@ -10,9 +10,6 @@ use super::{ExplainError, Target};
 use crate::study::Case;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
-
-/// Parts of the time that trials may take before it is known what they do not tell: the rest is for that.
-const FIRST: f64 = 0.5;
 
 /// Measures a scene.
 ///

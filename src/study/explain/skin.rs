@@ -24,7 +24,7 @@ impl Work<'_> {
         let each = seconds / (TRIED.len() + 1) as f64;
         let cost = |skin: f64| {
             let overrides = [&best.overrides[..], &[over(skin)]].concat();
-            timed(&self.prepared(&overrides, best.step).ok()?, each, self.stop).ok()
+            timed(&self.prepared(&overrides, best.step).ok()?, each, self.stop).ok().map(|it| it.seconds)
         };
         // Its own is timed again beside them.
         let Some(of_own) = cost(own) else { return };

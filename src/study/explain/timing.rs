@@ -1,9 +1,9 @@
 //! What each way to run a scene costs, at the longest step that nothing speaks against.
 
 use super::ExplainError;
-use super::findings::{HALVINGS, NO_TIME, SHARES, Way, Work, first_line, sort};
+use super::findings::{HALVINGS, NO_TIME, SHARES, Way, Work, sort};
 use super::sample::timed;
-use crate::study::Choice;
+use crate::study::{Choice, first_line};
 use rayon::ThreadPoolBuilder;
 use std::time::{Duration, Instant};
 use stripmine_physics::method::{Decides, StepLimit};
@@ -76,6 +76,7 @@ impl Work<'_> {
                 }
                 let again = self.prepared(&way.overrides, way.step).ok();
                 let again = again.and_then(|prepared| timed(&prepared, each, self.stop).ok());
+                let again = again.map(|it| it.seconds);
                 way.cost = way.cost.into_iter().chain(again).reduce(f64::min);
             }
         }
@@ -105,7 +106,8 @@ impl Work<'_> {
             });
             match tried {
                 Ok(cost) => {
-                    (way.cost, way.step, way.dropped) = (Some(cost), step, None);
+                    (way.cost, way.step, way.dropped) = (Some(cost.seconds), step, None);
+                    way.phases = cost.phases;
                     return way;
                 }
                 Err(why) => way.dropped = Some(why),
@@ -126,9 +128,9 @@ impl Work<'_> {
                 return None;
             }
             let prepared = self.prepared(&way.overrides, way.step).ok()?;
-            let all = timed(&prepared, seconds, self.stop).ok()?;
+            let all = timed(&prepared, seconds, self.stop).ok()?.seconds;
             let pool = ThreadPoolBuilder::new().num_threads(1).build().ok()?;
-            Some(pool.install(|| timed(&prepared, seconds, self.stop)).ok()? / all)
+            Some(pool.install(|| timed(&prepared, seconds, self.stop)).ok()?.seconds / all)
         };
         // Where that is not known, several runs side by side are no gain.
         let unknown = threads as f64;

@@ -5,6 +5,7 @@ use super::findings::{NO_TIME, SHARES, Way, Without, Work};
 use super::reference::no_mean;
 use super::sample::{Known, Sample};
 use super::whole::Warned;
+use crate::study::first_line;
 use stripmine_physics::method::{Becomes, Prepared, Rewritten};
 
 /// What is measured of a twin.
@@ -67,7 +68,7 @@ impl Work<'_> {
     /// By another method, in its own cheapest way.
     fn rewritten(&self, scene: Rewritten, seconds: f64) -> Measured {
         let errors = |errors: stripmine_physics::scene::SceneErrors| {
-            errors.0.first().map_or(String::new(), |error| error.message.clone())
+            errors.0.first().map_or(String::new(), |error| first_line(&error.message))
         };
         let case = self.case.beside(scene.text).map_err(errors)?;
         let target = Target::of(&case, Some(scene.quantity), None).map_err(|error| error.to_string())?;

@@ -13,6 +13,8 @@ pub struct Unreached {
     pub least: f64,
     /// Wall seconds of the plan that would reach it if the bias fell with the step as it should, where the trials did not see that.
     pub takes: Option<f64>,
+    /// Seconds of trials in which the bias of a step should be seen, where these saw none.
+    pub enough: Option<f64>,
 }
 
 impl Display for Unreached {

@@ -3,6 +3,7 @@
 
 use super::findings::{NO_TIME, Way, Work};
 use super::sample::{Known, Sample, Span, sample};
+use crate::study::first_line;
 use crate::study::state::displaced;
 use std::time::Instant;
 use stripmine_physics::averages::of_independent;
@@ -12,7 +13,7 @@ use stripmine_physics::particles::Particles;
 use stripmine_physics::scene::{Overrides, SEED};
 
 /// Runs of which a mean and its scatter are, at least and at most.
-const RUNS: [usize; 2] = [3, 16];
+pub(super) const RUNS: [usize; 2] = [3, 16];
 /// Where nothing of a start is random, particles are displaced by as much (parts of the largest radius, or of the box where they have none): far
 /// more than rounding, and far less than matters before collisions have multiplied it.
 const DISPLACED: f64 = 1e-7;
@@ -85,7 +86,7 @@ impl Work<'_> {
             let prepared = self.another_start(way, step, run as u64)?;
             let observed = (self.case.entry.quantities, self.target.place);
             let found = sample(&prepared, observed, Span::Time(time, None), self.stop);
-            let found = found.map_err(|failure| failure.what())?;
+            let found = found.map_err(|failure| first_line(&failure.what()))?;
             means.push(found.whole_mean());
             let stops = warned == Warned::Stops && !found.warnings.is_empty();
             first.get_or_insert(found);

@@ -8,6 +8,7 @@ use crate::results::{Journal, JournalError, Meter};
 use crate::statistics::Spread;
 use crate::study::averages::{self, Averages, LOOKS, Means};
 use crate::study::choice::Choice;
+use crate::study::first_line;
 use crate::study::state::displaced;
 use crate::study::subject::Subject;
 use crate::study::trial::{Course, follow};
@@ -208,11 +209,7 @@ impl Survey<'_> {
                 let energy = energy.filter(|_| scale > 0.0).map(|error| error / scale);
                 End::Whole { speed: averages.speed(), means: averages.means(), energy, warned }
             }
-            Err(failure) => {
-                let what = failure.what();
-                let line = what.lines().next().unwrap_or_default().to_owned();
-                End::Broken(Class::of(failure.kind), line)
-            }
+            Err(failure) => End::Broken(Class::of(failure.kind), first_line(&failure.what())),
         };
         Ran { foreseen, end }
     }

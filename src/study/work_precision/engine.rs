@@ -12,7 +12,7 @@ use crate::study::observables::{Observables, REFERENCE, SEEDS, STEPS, observable
 use crate::study::orders::fit;
 use crate::study::state::State;
 use crate::study::trial::{Course, follow, timed};
-use crate::study::{StudyError, Subject};
+use crate::study::{StudyError, Subject, first_line};
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
 use stripmine_physics::method::{Decides, Prepared, Purpose, Simulation, probed};
@@ -60,11 +60,6 @@ fn is_rate(seconds: f64) -> bool {
 fn refusal(errors: &SceneErrors) -> String {
     let messages: Vec<&str> = errors.0.iter().map(|error| error.message.as_str()).collect();
     format!("refused: {}", messages.join("; "))
-}
-
-/// A message without its advice, in one line.
-fn first_line(message: &str) -> String {
-    message.lines().next().unwrap_or_default().to_owned()
 }
 
 /// A way as it is shown, beside the scene's own.

@@ -17,7 +17,7 @@ mod words;
 pub use estimate::{Estimate, FEWEST_SAMPLES, Outcome, estimated, of_correlated, of_independent};
 pub use joined::joined;
 pub use rows::Rows;
-pub use student::student;
+pub use student::{student, variance_ratio};
 pub use waves::MOST as MOST_WAVES;
 
 use crate::method::{Kind, Quantity};

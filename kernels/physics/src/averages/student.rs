@@ -1,4 +1,4 @@
-//! Student's distribution.
+//! Student's distribution, and that of the ratio of two variances (F).
 
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 
@@ -25,9 +25,91 @@ pub fn student(probability: f64, freedoms: usize) -> f64 {
     (freedoms as f64).sqrt() * libm::tan(high)
 }
 
+/// Quantile of the F distribution: the ratio of two variances, by `above` and `below` degrees of freedom, that is not passed with a probability.
+///
+/// With one degree of freedom above it is the square of Student's t, for degrees of freedom that need not be whole.
+pub fn variance_ratio(probability: f64, above: f64, below: f64) -> f64 {
+    // In x = ν₁ F/(ν₁ F + ν₂) the distribution is an incomplete beta function (Abramowitz and Stegun, 26.6.2).
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if incomplete_beta(middle, 0.5 * above, 0.5 * below) < probability {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    below * low / (above * (1.0 - low))
+}
+
+/// Terms of the continued fraction at most: some times the root of the degrees of freedom are needed.
+const TERMS: u32 = 2000;
+
+/// The regularised incomplete beta function, by its continued fraction (Abramowitz and Stegun, 26.5.8).
+fn incomplete_beta(x: f64, a: f64, b: f64) -> f64 {
+    if x > (a + 1.0) / (a + b + 2.0) {
+        return 1.0 - incomplete_beta(1.0 - x, b, a);
+    }
+    let front = libm::exp(
+        libm::lgamma(a + b) - libm::lgamma(a) - libm::lgamma(b) + a * libm::log(x) + b * libm::log(1.0 - x),
+    ) / a;
+    let (mut fraction, mut c, mut d) = (1.0, 1.0, 0.0);
+    for term in 0..TERMS {
+        let m = f64::from(term / 2);
+        let numerator = match term {
+            0 => 1.0,
+            _ if term % 2 == 0 => m * (b - m) * x / ((a + 2.0 * m - 1.0) * (a + 2.0 * m)),
+            _ => -(a + m) * (a + b + m) * x / ((a + 2.0 * m) * (a + 2.0 * m + 1.0)),
+        };
+        d = 1.0 / not_zero(1.0 + numerator * d);
+        c = not_zero(1.0 + numerator / c);
+        fraction *= c * d;
+        if (c * d - 1.0).abs() < 1e-12 {
+            break;
+        }
+    }
+    front * (fraction - 1.0)
+}
+
+fn not_zero(value: f64) -> f64 {
+    if value.abs() < 1e-300 { 1e-300 } else { value }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The table of every textbook: F at 95 %, by the degrees of freedom above and below.
+    #[test]
+    fn ratios_of_variances_are_those_of_the_tables() {
+        for (above, below, f) in [
+            (1.0, 1.0, 161.45),
+            (5.0, 2.0, 19.30),
+            (2.0, 5.0, 5.786),
+            (10.0, 10.0, 2.978),
+            (30.0, 30.0, 1.841),
+            (120.0, 30.0, 1.683),
+            (10_000.0, 30.0, 1.623),
+            (10_000.0, 10.0, 2.539),
+        ] {
+            let found = variance_ratio(0.95, above, below);
+            assert!((found / f - 1.0).abs() < 1e-3, "{above} {below}: {found}");
+        }
+    }
+
+    /// By two formulas: a finite sum, and an incomplete beta function.
+    #[test]
+    fn students_t_squared_is_a_ratio_of_variances() {
+        for probability in [0.5, 0.95, 0.99, 0.999] {
+            for freedoms in (1..=40).chain([100, 300, 1000]) {
+                let [t, f] = [
+                    student(probability, freedoms),
+                    variance_ratio(probability, 1.0, freedoms as f64).sqrt(),
+                ];
+                assert!((t / f - 1.0).abs() < 1e-9, "{probability} {freedoms}: {t} {f}");
+            }
+        }
+    }
 
     /// The table of every textbook: two-sided probability, degrees of freedom, t.
     #[test]

@@ -3,6 +3,7 @@
 use super::error::{Reason, SceneError, SceneErrors};
 use super::key_set::{KeySet, SECTIONS};
 use super::keys::{Fallback, Key, Value};
+use super::start_file::SharedFrame;
 use super::target::Target;
 use super::values::Values;
 use crate::words::Words;
@@ -20,6 +21,11 @@ pub trait Binding {
     /// The scene file, beside which other files are looked for; empty where none is read.
     fn file(&self) -> &str {
         ""
+    }
+
+    /// The frame of the start file that runs of this scene share; none where each reads it itself.
+    fn shared_start(&self) -> Option<SharedFrame> {
+        None
     }
 }
 
@@ -122,6 +128,10 @@ impl Binding for Read<'_> {
 
     fn file(&self) -> &str {
         self.values.file()
+    }
+
+    fn shared_start(&self) -> Option<SharedFrame> {
+        self.values.start.clone()
     }
 }
 

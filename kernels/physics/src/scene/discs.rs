@@ -3,6 +3,7 @@
 use super::binding::Binding;
 use super::disc_keys::*;
 use super::keys::{Key, Value};
+use super::start_file::StartFile;
 use crate::placement::Second;
 use crate::words::define_words;
 use std::path::{Path, PathBuf};
@@ -33,7 +34,7 @@ define_words! {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Start {
     /// Read from an extended XYZ file.
-    File(PathBuf),
+    File(StartFile),
     /// As listed.
     List(List),
     /// On a hexagonal lattice, each shifted at random by at most 0.45 of the gap; the box is made to fit.
@@ -241,7 +242,7 @@ impl Start {
             Origin::Pipe => Start::Pipe { amount, grains, lining, clear_width: 0.0 },
             Origin::Box => Start::Box { amount, grains, lining, fill_height: 0.0 },
             Origin::List => Start::List(List::default()),
-            Origin::File => Start::File(PathBuf::new()),
+            Origin::File => Start::File(StartFile::default()),
         }
     }
 
@@ -253,10 +254,10 @@ impl Start {
             *self = Start::empty(origin);
         }
         match self {
-            Start::File(path) => {
-                let mut name = path.to_string_lossy().into_owned();
+            Start::File(file) => {
+                let mut name = file.path().to_string_lossy().into_owned();
                 binding.word(&FILE, &mut name);
-                *path = beside(binding.file(), &name);
+                *file = StartFile::new(beside(binding.file(), &name), binding.shared_start());
             }
             Start::List(list) => list.bind(binding),
             Start::Hexagonal { count, packing_fraction, grains } => {
@@ -304,7 +305,7 @@ impl Start {
     /// The file that it is read from.
     pub fn file(&self) -> Option<&Path> {
         match self {
-            Start::File(path) => Some(path),
+            Start::File(file) => Some(file.path()),
             _ => None,
         }
     }

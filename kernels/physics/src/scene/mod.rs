@@ -18,6 +18,7 @@ mod machine;
 mod overrides;
 mod reading;
 mod rules;
+mod start_file;
 mod target;
 mod text;
 mod unknown;
@@ -45,6 +46,7 @@ pub use machine::{
 };
 pub use overrides::Overrides;
 pub use rules::disagreements;
+pub use start_file::StartFile;
 pub use target::{Target, Width};
 pub use values::Values;
 pub use vocabulary::{Preset, Renamed, Vocabulary};

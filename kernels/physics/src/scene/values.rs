@@ -3,6 +3,7 @@
 use super::error::{Mistakes, Place, Spot};
 use super::key_set::KeySet;
 use super::keys::{Fallback, Key, Use, Value};
+use super::start_file::SharedFrame;
 use std::collections::{BTreeMap, BTreeSet};
 use toml::de::DeValue;
 
@@ -28,9 +29,23 @@ pub struct Values {
     /// Keys that were given, but not well.
     pub(super) faulty: BTreeSet<Id>,
     pub(super) errors: Mistakes,
+    /// The frame of its start file, where other scenes share it.
+    pub(super) start: Option<SharedFrame>,
 }
 
 impl Values {
+    /// The same, with a start file that is read once: all clones, and scenes [with the start of this one](Self::with_start_of), take what the first of them read.
+    #[must_use]
+    pub fn sharing_start(self) -> Values {
+        Values { start: Some(SharedFrame::default()), ..self }
+    }
+
+    /// The same, with the start file as another scene has read it.
+    #[must_use]
+    pub fn with_start_of(self, other: &Values) -> Values {
+        Values { start: other.start.clone(), ..self }
+    }
+
     /// Those of no text: everything is as the program that made the scene says.
     pub fn of_no_text(keys: &'static KeySet) -> Values {
         Values::none("scene", keys)
@@ -44,6 +59,7 @@ impl Values {
             sections: BTreeMap::new(),
             faulty: BTreeSet::new(),
             errors: Mistakes::default(),
+            start: None,
         }
     }
 

@@ -5,14 +5,13 @@ use super::filling::{JAMMING, MOST, disc, fill, grain_count, placeable};
 use super::meshing::on_mesh;
 use super::{Stated, readable};
 use crate::domain::Domain;
-use crate::io::extxyz;
 use crate::number::significant;
 use crate::particles::{Kind, Particle, Particles, in_space};
 use crate::placement::{Row, hexagonal, row};
 use crate::quoted;
 use crate::scene::{
     Amount, CLEAR_WIDTH, COUNT, FILE, FILL_HEIGHT, Grains, Key, Lining, List, ORIGIN, PERIODIC, Reason,
-    SIDES, SceneError, Speed, Start, WALL_SPACING, WallMotion, Warning,
+    SIDES, SceneError, Speed, Start, StartFile, WALL_SPACING, WallMotion, Warning,
 };
 
 /// Smallest and largest radius: those that the scene admits, and those that there are.
@@ -52,7 +51,7 @@ pub fn make(stated: &Stated<'_>) -> Result<Made, SceneError> {
     let domain = stated.domain.stated().unwrap_or(Domain::planar([0.0; 2], [1.0; 2], [true; 2]));
     resolved(stated, &domain, radii(stated.start, None))?;
     let (domain, mut particles) = match stated.start {
-        Start::File(path) => (domain, from_file(stated, &domain, path)?),
+        Start::File(file) => (domain, from_file(stated, &domain, file)?),
         Start::List(list) => (domain, listed(list)),
         Start::Hexagonal { count, packing_fraction, grains } => {
             placeable(stated, *count as f64, &COUNT)?;
@@ -133,8 +132,9 @@ fn resolved(stated: &Stated<'_>, domain: &Domain, radii: Option<[f64; 2]>) -> Re
 }
 
 /// The discs of the last frame of a start file, which must be of the scene's box.
-fn from_file(stated: &Stated<'_>, domain: &Domain, path: &std::path::Path) -> Result<Particles, SceneError> {
-    let frame = extxyz::read(path, extxyz::Which::Last).map_err(|error| {
+fn from_file(stated: &Stated<'_>, domain: &Domain, file: &StartFile) -> Result<Particles, SceneError> {
+    let path = file.path();
+    let frame = file.last_frame().map_err(|error| {
         stated.spot(&FILE).error(Reason::StartFile, format!("the start file cannot be used: {error}"))
     })?;
     if frame.particles.is_empty() {

@@ -2,7 +2,7 @@
 
 use crate::laboratory::running::{Running, prepared};
 use crate::results::{Meter, Progress};
-use crate::study::StudyError;
+use crate::study::{StudyError, first_line};
 use serde::Serialize;
 use stripmine_physics::method::Until;
 use stripmine_physics::method::hard_disks::keys::{CONTACT_DURATION, RESTITUTION};
@@ -125,7 +125,7 @@ fn fate(discs: u64, restitution: f64, contact_duration: f64) -> Result<Fate, Stu
     let collapse = match gas.until(Until::Events(events)) {
         Ok(()) => None,
         Err(failure) if failure.kind == stripmine_physics::method::hard_disks::INELASTIC_COLLAPSE => {
-            Some(failure.what())
+            Some(first_line(&failure.what()))
         }
         Err(failure) => return Err(failure.into()),
     };

@@ -130,6 +130,9 @@ fn fitted(all: &[Vec<Vec<Done>>]) -> (Vec<Units>, Vec<f64>) {
     let mut slower = vec![1.0; all.first().map_or(0, Vec::len)];
     let mut units: Vec<Units> = vec![];
     for _ in 0..ROUNDS {
+        // Only their product with the units is known: without this both drift apart, by a factor in each round, where runs scatter much.
+        let smallest = slower.first().copied().unwrap_or(1.0);
+        slower.iter_mut().for_each(|slower| *slower /= smallest);
         let rows = |by_size: &Vec<Vec<Done>>| -> Vec<Row<_>> {
             let each = by_size.iter().zip(&slower);
             each.flat_map(|(alike, &slower)| alike.iter().map(move |done| row(done, slower))).collect()
@@ -164,6 +167,19 @@ fn charged(phase: Phase, amounts: &Amounts) -> Amounts {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Runs that scatter by a factor of a thousand, as on a busy machine: what is fitted stays within the scatter of what was measured.
+    #[test]
+    fn scattered_runs_do_not_drive_units_and_slowdowns_apart() {
+        let done = |size: usize, run: usize| {
+            let amounts = Amounts { discs: 100.0 * libm::pow(4.0, size as f64), ..Amounts::default() };
+            let scatter = [1.0, 900.0, 0.8, 40.0][(size + 2 * run) % 4];
+            (amounts, 2.0 * scatter * amounts.discs)
+        };
+        let of = |size| (0..5).map(|run| done(size, run)).collect();
+        let (_, slower) = fitted(&[(0..6).map(of).collect()]);
+        assert!(slower.iter().all(|it| (1e-4..1e4).contains(it)), "{slower:?}");
+    }
 
     /// Two precisions, of which the second takes twice as long; of a thousand discs there is one run alone, of ten thousand none.
     #[test]
