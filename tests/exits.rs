@@ -148,6 +148,32 @@ fn every_verb_refuses_with_its_exit_code_in_words_and_as_data() {
     assert_eq!(std::fs::read(folder.join("file")).unwrap(), b"mine");
 }
 
+/// A number of threads in the environment is bounded as that of `--threads`, which comes before it.
+#[test]
+fn threads_of_the_environment_are_bounded() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |threads: &str, more: &[&str]| {
+        let mut command = Command::cargo_bin("stripmine").unwrap();
+        command.current_dir(folder.path()).env("RAYON_NUM_THREADS", threads);
+        command.args(["scene", "check", "two-discs"]).args(more).output().unwrap()
+    };
+    for (threads, more, code) in [
+        ("1000000000", &[][..], 2),
+        ("1025", &[], 2),
+        ("18446744073709551616", &[], 2),
+        ("-1", &[], 2),
+        ("two", &[], 2),
+        ("2", &[], 0),
+        ("1000000000", &["--threads", "2"], 0),
+    ] {
+        let output = run(threads, more);
+        let said = String::from_utf8_lossy(&output.stderr);
+        let names =
+            said.contains(&format!("RAYON_NUM_THREADS is {threads}")) && said.contains("from 1 to 1024");
+        assert!(output.status.code() == Some(code) && names == (code == 2), "{threads} {more:?}: {said}");
+    }
+}
+
 /// What broke a simulation is there as data: kind, moment, particles, values, wherever the verb met it.
 #[test]
 fn failures_of_the_physics_are_data() {

@@ -41,6 +41,7 @@ fn frame(step: u64) -> Frame {
         time: 0.1 * step as f64,
         step,
         seed: Some(u64::MAX),
+        has_raised_ids: false,
     }
 }
 

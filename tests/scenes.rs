@@ -211,6 +211,40 @@ fn start_files_are_read_beside_the_scene() {
     assert!(checked.alike);
 }
 
+/// Ids from 0 are raised by one, and a warning says so; of ids from 1 nothing is said.
+#[test]
+fn ids_that_are_raised_are_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let (start, path) = (folder.path().join("start.xyz"), folder.path().join("scene.toml"));
+    let head = "Lattice=\"10.0 0 0 0 8.0 0 0 0 1\" Properties=species:S:1:pos:R:3:id:I:1:velo:R:3:radius:R:1:mass:R:1:omega:R:3";
+    for (method, law) in [
+        ("lattice-md", "[law]\nstiffness = 100.0\n[integrator]\ndt = 0.005\n[run]\nsteps = 1\n"),
+        ("hard-disks", "[run]\ntime = 1.0\n"),
+        (
+            "langevin",
+            "[law]\nkind = \"none\"\ndrag = 1.0\nbath_temperature = 1.0\n[integrator]\ndt = 0.01\n[run]\nsteps = 1\n",
+        ),
+    ] {
+        for first in [0, 1] {
+            let row = |id: u32| format!("Si {}.0 4.0 0.0 {id} 0.5 0.0 0.0 0.5 1.0 0.0 0.0 0.0\n", 2 + 3 * id);
+            std::fs::write(&start, format!("2\n{head}\n{}{}", row(first), row(first + 1))).unwrap();
+            let scene = format!(
+                "format = 2\nmethod.kind = \"{method}\"\nunits = \"reduced\"\n[domain]\nsides = [10.0, 8.0]\n[particles]\nfile = \"start.xyz\"\n{law}"
+            );
+            std::fs::write(&path, scene).unwrap();
+            let (prepared, _) =
+                stripmine_physics::method::load(path.to_str().unwrap(), &[], METHODS).unwrap();
+            let ids: Vec<u32> = prepared.particles().all().iter().map(|disc| disc.id).collect();
+            assert_eq!(ids, [1, 2], "{method}");
+            let said = prepared
+                .warnings
+                .iter()
+                .filter(|it| it.message.contains("begin at 0; each is raised by one"));
+            assert_eq!(said.count(), usize::from(first == 0), "{method} {first}: {:?}", prepared.warnings);
+        }
+    }
+}
+
 /// Whatever is cut off or flipped in a scene, the answer is a scene or errors, never a panic.
 #[test]
 fn damaged_scenes_never_panic() {

@@ -2,6 +2,7 @@
 
 use crate::exceptions;
 use crate::particles::{Particles, dimensions};
+use crate::pickling::class_of_attributes;
 use crate::scratch::Scratch;
 use pyo3::prelude::*;
 use std::path::Path;
@@ -10,34 +11,22 @@ use stripmine_physics::io::extxyz;
 use stripmine_physics::io::trajectory::{Trajectory, TrajectoryError};
 use stripmine_physics::reported::Class;
 
-/// Particles in their box at one time.
-#[pyclass(frozen, get_all, module = "stripmine")]
-pub(crate) struct Frame {
-    /// Time since the start (time).
-    time: f64,
-    /// Steps since the start; for hard discs the number of events.
-    step: u64,
-    /// The particles.
-    particles: Py<Particles>,
-    /// The sides of the box along x and y (length); infinite where there is no box.
-    sides: [f64; 2],
-    /// The lower left corner of the box (length).
-    origin: [f64; 2],
-    /// Whether the box repeats along x and along y.
-    periodic: Option<[bool; 2]>,
-}
-
-/// A frame of these values, as pickle hands it over.
-#[pyfunction]
-pub(crate) fn _frame(
-    time: f64,
-    step: u64,
-    particles: Py<Particles>,
-    sides: [f64; 2],
-    origin: [f64; 2],
-    periodic: Option<[bool; 2]>,
-) -> Frame {
-    Frame { time, step, particles, sides, origin, periodic }
+class_of_attributes! {
+    /// Particles in their box at one time.
+    Frame, made again by _frame {
+        /// Time since the start (time).
+        time: f64,
+        /// Steps since the start; for hard discs the number of events.
+        step: u64,
+        /// The particles.
+        particles: Py<Particles>,
+        /// The sides of the box along x and y (length); infinite where there is no box.
+        sides: [f64; 2],
+        /// The lower left corner of the box (length).
+        origin: [f64; 2],
+        /// Whether the box repeats along x and along y.
+        periodic: Option<[bool; 2]>,
+    }
 }
 
 #[pymethods]

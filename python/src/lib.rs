@@ -9,6 +9,7 @@ mod json;
 mod lists;
 mod overrides;
 mod particles;
+mod pickling;
 mod pulse;
 mod run;
 mod running;
@@ -42,6 +43,8 @@ mod _stripmine {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("_attributes_of_particles", Particles::ATTRIBUTES.to_vec())?;
+        module.add("_attributes_of_a_frame", Frame::ATTRIBUTES.to_vec())?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

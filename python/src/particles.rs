@@ -1,29 +1,31 @@
 //! Particles as arrays.
 
+use crate::pickling::class_of_attributes;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use stripmine_physics::particles::{self, Kind, Particle};
 
-/// Particles at a moment, as arrays of their own: those that forces move first, then discs of walls. N is their number; D is 2, or 3 for
-/// bodies in space.
-#[pyclass(frozen, get_all, module = "stripmine")]
-pub(crate) struct Particles {
-    /// A number of its own, which stays with it; shape (N,).
-    id: Py<PyArray1<u32>>,
-    /// Whether it is a disc of a wall, which no force moves; shape (N,).
-    wall: Py<PyArray1<bool>>,
-    /// Centres (length), shape (N, D).
-    positions: Py<PyArray2<f64>>,
-    /// Velocities (length/time), shape (N, D).
-    velocities: Py<PyArray2<f64>>,
-    /// Angles (radian), counter-clockwise, shape (N,); 0 in frames, which have none.
-    angle: Py<PyArray1<f64>>,
-    /// Angular velocities (1/time), counter-clockwise, shape (N,).
-    angular_velocity: Py<PyArray1<f64>>,
-    /// Radii (length), shape (N,).
-    radius: Py<PyArray1<f64>>,
-    /// Masses (mass), shape (N,).
-    mass: Py<PyArray1<f64>>,
+class_of_attributes! {
+    /// Particles at a moment, as arrays of their own: those that forces move first, then discs of walls. N is their number; D is 2, or 3 for
+    /// bodies in space.
+    Particles, made again by _particles {
+        /// A number of its own, which stays with it; shape (N,).
+        id: Py<PyArray1<u32>>,
+        /// Whether it is a disc of a wall, which no force moves; shape (N,).
+        wall: Py<PyArray1<bool>>,
+        /// Centres (length), shape (N, D).
+        positions: Py<PyArray2<f64>>,
+        /// Velocities (length/time), shape (N, D).
+        velocities: Py<PyArray2<f64>>,
+        /// Angles (radian), counter-clockwise, shape (N,); 0 in frames, which have none.
+        angle: Py<PyArray1<f64>>,
+        /// Angular velocities (1/time), counter-clockwise, shape (N,).
+        angular_velocity: Py<PyArray1<f64>>,
+        /// Radii (length), shape (N,).
+        radius: Py<PyArray1<f64>>,
+        /// Masses (mass), shape (N,).
+        mass: Py<PyArray1<f64>>,
+    }
 }
 
 impl Particles {
@@ -47,23 +49,6 @@ impl Particles {
             mass: numbers(|it| it.mass),
         })
     }
-}
-
-/// Particles of these arrays, as pickle hands them over.
-#[pyfunction]
-#[pyo3(signature = (id, wall, positions, velocities, angle, angular_velocity, radius, mass))]
-#[expect(clippy::too_many_arguments, reason = "one for each array")]
-pub(crate) fn _particles(
-    id: Py<PyArray1<u32>>,
-    wall: Py<PyArray1<bool>>,
-    positions: Py<PyArray2<f64>>,
-    velocities: Py<PyArray2<f64>>,
-    angle: Py<PyArray1<f64>>,
-    angular_velocity: Py<PyArray1<f64>>,
-    radius: Py<PyArray1<f64>>,
-    mass: Py<PyArray1<f64>>,
-) -> Particles {
-    Particles { id, wall, positions, velocities, angle, angular_velocity, radius, mass }
 }
 
 #[pymethods]

@@ -5,10 +5,6 @@ import copyreg
 
 from . import _stripmine
 
-_ARRAYS = ("id", "wall", "positions", "velocities", "angle", "angular_velocity", "radius", "mass")
-_OF_A_FRAME = ("time", "step", "particles", "sides", "origin", "periodic")
-
-
 def _scene(text):
     return _stripmine.scene(text)
 
@@ -23,6 +19,10 @@ def _particles(*arrays):
 
 def _frame(*values):
     return _stripmine._frame(*values)
+
+
+def _by_attributes(make, names):
+    return lambda it: (make, tuple(getattr(it, name) for name in names))
 
 
 def _reduced_run(run):
@@ -44,8 +44,8 @@ def register():
     """Tells `copyreg`, which both modules ask."""
     copyreg.pickle(_stripmine.Scene, lambda scene: (_scene, (scene.toml(),)))
     copyreg.pickle(_stripmine.Run, _reduced_run)
-    copyreg.pickle(_stripmine.Particles, lambda it: (_particles, tuple(getattr(it, name) for name in _ARRAYS)))
-    copyreg.pickle(_stripmine.Frame, lambda it: (_frame, tuple(getattr(it, name) for name in _OF_A_FRAME)))
+    copyreg.pickle(_stripmine.Particles, _by_attributes(_particles, _stripmine._attributes_of_particles))
+    copyreg.pickle(_stripmine.Frame, _by_attributes(_frame, _stripmine._attributes_of_a_frame))
     for kind, message in (
         (_stripmine.Simulation, "a simulation under way cannot be handed over or copied: hand over the scene, and start it there"),
         (_stripmine.Frames, "an open trajectory cannot be handed over or copied: hand over the run, or list(run.frames())"),

@@ -4,6 +4,7 @@
 //! it has a checksum of the digest, its key and its value. What does not fit is left out, so that it is measured again; a last
 //! line that was cut off too, without a word.
 
+use super::journal_error::JournalError;
 use super::team::{Runs, Team};
 use crc32fast::Hasher;
 use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
@@ -17,8 +18,6 @@ use std::sync::{Mutex, MutexGuard, PoisonError, RwLock};
 use stripmine_physics::io::replace::replace;
 use stripmine_physics::io::{FileError, regular_file};
 use stripmine_physics::quoted;
-use stripmine_physics::ranks::Gone;
-use stripmine_physics::reported::{Class, FilePlace, Reported};
 
 /// The name of the file.
 pub(super) const NAME: &str = "journal.jsonl";
@@ -26,60 +25,6 @@ pub(super) const NAME: &str = "journal.jsonl";
 const MARK: &str = "{\"stripmine journal\":2,";
 /// Longer than any journal (bytes).
 const LONGEST: u64 = 1 << 30;
-
-/// Why there is no journal.
-#[derive(Debug, thiserror::Error)]
-pub enum JournalError {
-    /// The folder holds the runs of something else.
-    #[error(
-        "{} holds the runs of {}, not of {ours}: a study goes on only with the scene, the options and the version \
-         of the program that it was begun with; choose another --out",
-        quoted::path(file),
-        quoted::one_line(theirs)
-    )]
-    Other {
-        /// The journal.
-        file: PathBuf,
-        /// What it was begun with.
-        theirs: String,
-        /// What was asked for.
-        ours: String,
-    },
-    /// A file of that name that is none of ours.
-    #[error(
-        "{} is no journal of this version of the program: move it away, or choose another --out",
-        quoted::path(.0)
-    )]
-    Foreign(PathBuf),
-    /// The system.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// Processes of one study were given other things.
-    #[error(
-        "the processes have not the same scene, options and program: give all of them the same files and the same program"
-    )]
-    Differs,
-    /// Another process of the study has ended.
-    #[error("{0}: a study goes on with the runs that were finished when it is begun again")]
-    Gone(#[from] Gone),
-}
-
-impl Reported for JournalError {
-    fn class(&self) -> Class {
-        match self {
-            JournalError::Other { .. } | JournalError::Foreign(_) | JournalError::Differs => Class::Usage,
-            JournalError::File(_) | JournalError::Gone(_) => Class::InputOutput,
-        }
-    }
-
-    fn place(&self) -> Option<FilePlace> {
-        match self {
-            JournalError::Other { file, .. } | JournalError::Foreign(file) => Some(FilePlace::at(file)),
-            JournalError::File(error) => Some(FilePlace::at(&error.file)),
-            JournalError::Differs | JournalError::Gone(_) => None,
-        }
-    }
-}
 
 /// Whose runs a journal holds.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -359,6 +304,7 @@ fn refused(file: PathBuf, first: &str, ours: &Identity) -> JournalError {
 mod tests {
     use super::*;
     use std::fs;
+    use stripmine_physics::reported::{Class, Reported};
 
     fn identity(digest: &str) -> Identity {
         Identity { of: "a study of a scene".to_owned(), digest: digest.to_owned() }

@@ -3,13 +3,15 @@
 mod folder;
 mod item;
 mod journal;
+mod journal_error;
 mod meter;
 mod own_files;
 mod team;
 
 pub use folder::{Folder, FolderError};
 pub use item::{Item, Progress};
-pub use journal::{Identity, Journal, JournalError};
+pub use journal::{Identity, Journal};
+pub use journal_error::JournalError;
 pub use meter::Meter;
 pub(crate) use own_files::OwnFiles;
 pub use team::Team;

@@ -3,7 +3,8 @@
 #
 #   tests/clients/check.sh RUN_FOLDER [ENVIRONMENT_FOLDER [REPORT_FOLDER]]
 #
-# With a report, its tables are read with pandas, too.
+# With a report, its tables are read with pandas, too. With STRIPMINE, the program's path, what runs sum up of the structure is held
+# against freud and MDAnalysis.
 #
 # Needs Python 3 and, for the first time, a network. The packages go into a virtual environment: in ENVIRONMENT_FOLDER,
 # to be used again, or else in a temporary folder. A package that cannot be had is skipped, with the reason.
@@ -28,4 +29,9 @@ export LD_LIBRARY_PATH=$environment/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
 "$python" "$here/open_run.py" "$1"
 if [[ -n ${3:-} ]]; then
     "$python" "$here/report_tables.py" "$3"
+fi
+if [[ -n ${STRIPMINE:-} ]]; then
+    "$python" "$here/structure.py" "$STRIPMINE"
+else
+    echo "SKIPPED: structure against freud and MDAnalysis (no STRIPMINE)"
 fi

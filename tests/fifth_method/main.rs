@@ -8,6 +8,8 @@ mod files;
 mod free_flight;
 #[path = "../promises/table.rs"]
 mod table;
+#[path = "../promises/ways.rs"]
+mod ways;
 
 use std::path::Path;
 use std::process::{Command, ExitCode, Output};

@@ -5,6 +5,7 @@
 //! what is found is mended and its input kept in `corpus/`, which is read as it is as well.
 
 mod allocations;
+mod edges;
 mod mutation;
 mod readers;
 mod runs;

@@ -10,7 +10,7 @@ fn frames(text: &str) -> Result<Vec<Frame>, ReadError> {
 }
 
 fn bits(frame: &Frame) -> Vec<u64> {
-    let Frame { particles, cell, origin, periodic, time, step, seed } = frame;
+    let Frame { particles, cell, origin, periodic, time, step, seed, .. } = frame;
     let disc = |disc: &Particle| {
         let Particle { id, kind, position: [x, y, z], velocity: [u, v, w], angle, omega, radius, mass } =
             *disc;

@@ -50,6 +50,7 @@ fn plane(step: u64) -> LoggedFrame {
         time: 0.1 * step as f64,
         step,
         seed: None,
+        has_raised_ids: false,
     };
     LoggedFrame { frame: frame.into(), images: vec![], values: vec![step as f64, f64::NAN] }
 }

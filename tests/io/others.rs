@@ -76,6 +76,8 @@ fn frames_of_other_programs_are_read() {
     assert_eq!((other.id, other.radius, other.mass, other.omega), (2, 0.5, 2.0, 0.0));
     assert_eq!((ours.cell, ours.periodic), ([20.0; 2], Some([true; 2])));
     for (program, comment, rows) in CASES {
-        assert_eq!(read(program, comment, rows), ours, "{program}");
+        let frame = read(program, comment, rows);
+        assert_eq!(frame.has_raised_ids, program == "ids from 0", "{program}");
+        assert_eq!(Frame { has_raised_ids: false, ..frame }, ours, "{program}");
     }
 }

@@ -1,5 +1,6 @@
 //! Few particles in every kind of box, resumed at random moments: the state and all that is observed of it are those of one piece.
 
+use super::ways::ways;
 use rand::RngExt;
 use std::fmt::Write;
 use std::fs;
@@ -7,7 +8,6 @@ use std::sync::atomic::AtomicBool;
 use stripmine_kernels::noise::{Purpose as Of, Stream};
 use stripmine_physics::domain::Domain;
 use stripmine_physics::method::{Clock, METHODS, Prepared, Purpose, Simulation, Snapshot, Until, load};
-use stripmine_physics::scene::Kind;
 
 /// Most particles of a scene.
 const MOST: usize = 12;
@@ -23,6 +23,10 @@ const METHOD_SCENES: [(&str, Scenes, usize); 4] = [
     ("langevin", langevin, 4),
     ("nbody", bodies, 4),
 ];
+
+/// Keys whose words are tried beside engines and searches.
+const CHOICES: [(&str, &str); 4] =
+    [("machine", "precision"), ("integrator", "kind"), ("machine", "coordinates"), ("machine", "execution")];
 
 /// What is compared.
 #[derive(Debug, PartialEq)]
@@ -51,7 +55,8 @@ pub fn hold(times: usize) -> [usize; 2] {
     let mut stream = Stream::new(53, Of::Test, 0);
     let mut held = [0; 2];
     for (method, scene, count) in METHOD_SCENES {
-        let ways = ways(method);
+        let entry = METHODS.iter().find(|entry| entry.vocabulary.keys.method == method).expect("a method");
+        let ways = ways(entry, &CHOICES);
         for _ in 0..count * times {
             let text = scene(&mut stream);
             fs::write(&path, &text).expect("there is room");
@@ -65,28 +70,6 @@ pub fn hold(times: usize) -> [usize; 2] {
         }
     }
     held
-}
-
-/// Every engine, search, integrator, and precision of a method.
-fn ways(method: &str) -> Vec<Vec<String>> {
-    let entry = METHODS.iter().find(|entry| entry.vocabulary.keys.method == method).expect("a method");
-    let words = |section: &'static str, name: &'static str| {
-        let words = match entry.vocabulary.keys.key(section, name).map(|key| key.kind) {
-            Some(Kind::Choice(words)) => words,
-            _ => &[],
-        };
-        let given = words.iter().filter(|word| **word != "auto");
-        std::iter::once(vec![]).chain(given.map(move |word| vec![format!("{section}.{name}={word}")]))
-    };
-    let engines = words("machine", "engine")
-        .flat_map(|engine| words("search", "by").map(move |by| [engine.clone(), by].concat()));
-    let others = [
-        ("machine", "precision"),
-        ("integrator", "kind"),
-        ("machine", "coordinates"),
-        ("machine", "execution"),
-    ];
-    engines.chain(others.into_iter().flat_map(|(section, name)| words(section, name).skip(1))).collect()
 }
 
 /// Runs a scene in one piece and in several, and compares both at each cut; how often it was resumed.

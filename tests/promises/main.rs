@@ -3,6 +3,7 @@
 mod few;
 mod files;
 mod table;
+mod ways;
 
 use std::process::Command;
 use stripmine_physics::method::METHODS;

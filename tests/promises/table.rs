@@ -4,6 +4,7 @@
 //! as many frames and rows as the scene says, ends with the final state, and is the same bytes each time; so is the summary, but for times.
 
 use super::files::{GsdFrame, Places, TextFrame, dcd, extended_xyz, gsd, lammps_dump, table};
+use super::ways::ways;
 use rand::RngExt;
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -105,18 +106,7 @@ impl Held {
 
 /// Every preset of a method, with every engine and every search that the scene allows.
 fn cases(methods: Methods, entry: &'static Entry, extent: Extent) -> Vec<Case> {
-    let words = |section: &'static str, name: &'static str| {
-        let words = match entry.vocabulary.keys.key(section, name).map(|key| key.kind) {
-            Some(Kind::Choice(words)) => words,
-            _ => &[],
-        };
-        let given = words.iter().filter(|word| **word != "auto");
-        std::iter::once(vec![]).chain(given.map(move |word| vec![format!("{section}.{name}={word}")]))
-    };
-    let engines = words("machine", "engine")
-        .flat_map(|engine| words("search", "by").map(move |by| [engine.clone(), by].concat()));
-    let precise = words("machine", "precision").skip(1);
-    let ways: Vec<Vec<String>> = engines.chain(precise).collect();
+    let ways = ways(entry, &[("machine", "precision")]);
     let (mut cases, mut seen) = (vec![], BTreeSet::new());
     for preset in entry.vocabulary.presets {
         let short = shortened(methods, entry, preset.name);

@@ -1,4 +1,4 @@
-//! The structure that a run sums up: against theory (here), against naive sums (`oracles`) in six boxes (`boxes`), its bars (`bars`), small
+//! The structure that a run sums up: against theory (here), against naive sums (`oracles`) in boxes of every kind (`boxes`), below an open top (`open_top`), its bars (`bars`), small
 //! scenes whose values are known (`cases`), discs across periodic sides (`followed`), and the same in however many sessions.
 
 mod bars;
@@ -6,6 +6,7 @@ mod boxes;
 mod cases;
 mod followed;
 mod forces;
+mod open_top;
 mod oracles;
 
 use assert_cmd::cargo::CommandCargoExt;
@@ -277,17 +278,25 @@ fn two_sessions_write_the_same() {
     }
 }
 
+/// Waves run along a periodic side: a box without one has no S(k), whether its top is open or not.
 #[test]
-fn what_has_no_box_is_refused() {
+fn waves_need_a_periodic_side() {
     let folder = tempfile::tempdir().unwrap();
-    for (open, words) in [(true, "needs a box, but its upper side is open"), (false, "needs a periodic side")]
-    {
-        let all = format!("output.structure={:?}", names());
-        let top = format!("domain.open_top={open}");
-        let sets = [all.as_str(), &top, "domain.periodic=[false, false]"].into_iter();
-        let sets: Vec<&str> = sets.flat_map(|set| ["--set", set]).collect();
-        let output = stripmine(folder.path(), &[&["scene", "check", "vibrating-floor"], &sets[..]].concat());
-        let said = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.code() == Some(3) && said.contains(words), "{said}");
+    for open in [true, false] {
+        for (periodic, code) in [("[false, false]", 3), ("[true, false]", 0)] {
+            let all = format!("output.structure={:?}", names());
+            let top = format!("domain.open_top={open}");
+            let sides = format!("domain.periodic={periodic}");
+            let sets: Vec<&str> =
+                [all.as_str(), &top, &sides].into_iter().flat_map(|set| ["--set", set]).collect();
+            let output =
+                stripmine(folder.path(), &[&["scene", "check", "vibrating-floor"], &sets[..]].concat());
+            let said = String::from_utf8_lossy(&output.stderr);
+            let is_refused = said.contains("\"S(k)\" of `output.structure` needs a periodic side");
+            assert!(
+                output.status.code() == Some(code) && is_refused == (code == 3),
+                "{open} {periodic}: {said}"
+            );
+        }
     }
 }

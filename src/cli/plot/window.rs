@@ -124,7 +124,16 @@ mod tests {
             mass: 1.0,
         };
         let particles = Particles::new(places.iter().zip(1..).map(particle).collect());
-        Frame { particles, cell, origin: [0.0; 2], periodic: None, time: 0.0, step: 0, seed: None }
+        Frame {
+            particles,
+            cell,
+            origin: [0.0; 2],
+            periodic: None,
+            time: 0.0,
+            step: 0,
+            seed: None,
+            has_raised_ids: false,
+        }
     }
 
     fn seen(places: &[[f64; 3]], cell: [f64; 2], axes: [usize; 2]) -> [[f64; 2]; 2] {

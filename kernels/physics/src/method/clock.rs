@@ -211,14 +211,14 @@ impl Schedule {
 
     /// Rows of observables of the whole run, that of the start among them; none where it is not known beforehand.
     pub fn row_count(&self) -> Option<u64> {
-        self.rows.times(self.until).map(|(times, _)| times + 1)
+        self.rows.times(self.until).map(|(times, _)| times.saturating_add(1))
     }
 
     /// Snapshots of the whole run: the start, those that are due, and the end.
     pub fn snapshot_count(&self) -> Option<u64> {
         let (times, ends) = self.snapshots.times(self.until)?;
         let is_over = self.until.has_come(&Clock::default());
-        Some(times + 1 + u64::from(!ends && !is_over))
+        Some(times.saturating_add(1 + u64::from(!ends && !is_over)))
     }
 }
 

@@ -1,21 +1,18 @@
 //! What a method states of itself: its entry in the list of methods, and what its scenes become.
 
-use super::clock::{Clock, Schedule, Until};
+use super::clock::{Schedule, Until};
 use super::failure::Failure;
-use super::snapshot::Snapshot;
+use super::simulation::Simulation;
 use super::trials::{Axis, Trials, Twin};
 use crate::domain::Domain;
 use crate::memory::Foreseen;
-use crate::particles::{Particles, States};
+use crate::particles::Particles;
 use crate::scene::{Output, SceneErrors, Target, Values, Vocabulary, Warning};
 use crate::structure::PairForces;
 use serde::Serialize;
 use serde_json::{Map, Value};
-use std::collections::BTreeMap;
 use std::path::PathBuf;
-use std::sync::atomic::AtomicBool;
 use stripmine_kernels::Runnable;
-use stripmine_kernels::isa::OpCounts;
 
 /// A method, as everything else knows it.
 #[derive(Debug)]
@@ -232,19 +229,6 @@ pub enum Beyond {
     Unseen,
 }
 
-/// What a check has found along a run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct RunWarning {
-    /// The name of the check.
-    pub check: &'static str,
-    /// What was found.
-    pub value: f64,
-    /// What it is held against.
-    pub limit: f64,
-    /// What was found, in a sentence with what to do.
-    pub message: String,
-}
-
 /// What a simulation is started for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
@@ -353,6 +337,11 @@ pub trait Startable: Send + Sync {
         None
     }
 
+    /// Whether discs may be above the upper end of the second side of the box: nothing bounds their height.
+    fn has_open_top(&self) -> bool {
+        false
+    }
+
     /// Whether a run counts the periods that each disc crosses ([`Simulation::images`]) where the scene asks for displacements.
     fn follows_crossings(&self) -> bool {
         false
@@ -366,100 +355,4 @@ pub trait Startable: Send + Sync {
 
     /// The same scene with other positions and velocities at the start: of the same particles in the same order.
     fn started_from(&self, particles: Particles) -> Prepared;
-}
-
-/// A simulation under way. It never prints and never writes a file.
-pub trait Simulation: Send {
-    /// Goes on until the first of some moments has come, or `interrupted` is set; soon after that in either case.
-    ///
-    /// # Errors
-    /// [`Failure`] says what broke, which particles, where, and what to do; the state is that of the failing step.
-    fn advance(&mut self, until: &[Until], interrupted: &AtomicBool) -> Result<(), Failure>;
-
-    /// How far it has come.
-    fn clock(&self) -> Clock;
-
-    /// The time step (time); none where a method takes no steps.
-    fn time_step(&self) -> Option<f64> {
-        None
-    }
-
-    /// The particles as they stand, positions inside the box.
-    fn particles(&self) -> Particles;
-
-    /// Places and velocities of the grains in the plane, places inside the box.
-    fn states(&self, states: &mut States) {
-        states.take_up(&self.particles());
-    }
-
-    /// Positions alone, in single precision, one for each particle of the start in its order; no numbers where one is lost.
-    fn positions(&self) -> Vec<[f32; 3]> {
-        self.particles().positions()
-    }
-
-    /// How many periods each particle has moved along x and y since the start, in the order of [`particles`](Self::particles); empty
-    /// where that is not followed along every periodic side.
-    fn images(&self) -> Vec<[i32; 2]> {
-        vec![]
-    }
-
-    /// Holds the state against what only sums over all particles show; asked before every row, and at the end.
-    ///
-    /// # Errors
-    /// [`Failure`] as of [`advance`](Self::advance), where such a sum is wrong, or cannot be had.
-    fn check(&self) -> Result<(), Failure> {
-        Ok(())
-    }
-
-    /// A value for each of the method's quantities; means over an interval are of the time since the last [`row`](Self::row), or since the
-    /// start.
-    fn observe(&self) -> Vec<f64>;
-
-    /// What [`observe`](Self::observe) gives, as a row: the next interval begins here.
-    fn row(&mut self) -> Vec<f64> {
-        self.observe()
-    }
-
-    /// Everything that the future depends on, and what has been counted: a summary is the same in however many sessions.
-    fn snapshot(&self) -> Snapshot;
-
-    /// Takes up a snapshot that was made when the clock showed `clock`.
-    ///
-    /// # Errors
-    /// A sentence, if the snapshot is not one of this method and scene.
-    fn restore(&mut self, clock: Clock, snapshot: Snapshot) -> Result<(), String>;
-
-    /// Seconds spent in each phase since the start or the last reset, by name.
-    fn phases(&self) -> BTreeMap<&'static str, f64>;
-
-    /// Forgets the seconds spent so far.
-    fn reset_phases(&mut self);
-
-    /// How much has been done, in the unit of the rates that `bench` gives.
-    fn work(&self) -> f64;
-
-    /// Operations of the last step on whole vectors, with the elements of each vector; none where they are not counted.
-    fn operations(&self) -> Vec<(OpCounts, u64)> {
-        vec![]
-    }
-
-    /// What there is to be said at the end: the method's own entries of `summary.json`.
-    fn summary(&self) -> Map<String, Value>;
-
-    /// Where it goes from event to event: what it has done for them since it was started or taken up, kind by kind. It is for studies,
-    /// and no part of what a run writes.
-    fn event_operations(&self) -> Vec<(&'static str, u64)> {
-        vec![]
-    }
-
-    /// The rows of `events.csv` since this was last asked, each with its end of line.
-    fn take_events(&mut self) -> String {
-        String::new()
-    }
-
-    /// What happened on the way that seldom means well.
-    fn warnings(&self) -> Vec<RunWarning>;
-
-    /// The last state, in a line.
-    fn in_words(&self) -> String;
 }

@@ -14,6 +14,7 @@ mod pairwise;
 mod probe;
 mod restored;
 mod several;
+mod simulation;
 mod snapshot;
 mod start_temperature;
 pub mod throughput;
@@ -22,14 +23,15 @@ mod trials;
 pub use clock::{Clock, Every, Schedule, Until, steps_over};
 pub use counted::Counted;
 pub use entry::{
-    Bench, BenchOption, Beyond, Entry, Fact, Kind, Observable, Prepared, Purpose, Quantity, RunWarning,
-    Simulation, Startable, StepLimit, Takes, VectorProgram, is_sound, quantities,
+    Bench, BenchOption, Beyond, Entry, Fact, Kind, Observable, Prepared, Purpose, Quantity, Startable,
+    StepLimit, Takes, VectorProgram, is_sound, quantities,
 };
 pub use failure::{Culprit, Failure, FailureKind};
 pub use hard_disks::compress;
 pub use list::{METHODS, Methods, load, method, observer, prepare, vocabularies};
 pub use probe::probed;
 pub use several::{DISMISSED, refuse_several_ranks};
+pub use simulation::{RunWarning, Simulation};
 pub use snapshot::Snapshot;
 pub use start_temperature::START_TEMPERATURE;
 pub use trials::{

@@ -2,6 +2,7 @@
 //! `scene.toml`, `thermo.csv`, `trajectory.xyz`, `summary.json`, `run.checkpoint`, a list of all this (`run.files`) and, on
 //! request, LAMMPS files, a row for each event (`events.csv`) and what is summed up of the structure.
 
+mod block_means;
 mod finished;
 mod folder;
 pub mod forecast;

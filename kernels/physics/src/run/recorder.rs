@@ -301,6 +301,7 @@ impl Recorder {
             time: clock.time,
             step: clock.number(),
             seed: self.seed,
+            has_raised_ids: false,
         })
     }
 

@@ -8,16 +8,16 @@
 //! third, … of them. The work is counted (`structure::strides`), never measured.
 
 use super::RunError;
+use super::block_means::Function;
 use super::folder::RunFolder;
 use super::functions::{Number, Point, write_csv};
-use crate::averages::student;
 use crate::io::checkpoint::{Checkpoint, Column};
 use crate::method::{Every, Prepared, Simulation, Snapshot};
 use crate::particles::States;
 use crate::scene::Output;
 use crate::structure::{
     Asks, Block, Blocks, Headline, Look, Motion, OBSERVABLES, Observable, PairForces, Seen, Setting, Verdict,
-    Whole, strides, widening,
+    Whole, strides,
 };
 use serde::Serialize;
 
@@ -73,8 +73,6 @@ pub struct Summed {
 
 /// The share of a run's work that looking takes at most, where the scene does not say.
 const SHARE: f64 = 0.05;
-/// Blocks that bars take at least, in the second half of a run.
-const FEWEST_BLOCKS: usize = 2;
 
 /// The observables that a scene asks for, in the order of their list.
 pub(super) fn chosen(output: &Output) -> impl Iterator<Item = &'static Observable> + use<'_> {
@@ -83,7 +81,7 @@ pub(super) fn chosen(output: &Output) -> impl Iterator<Item = &'static Observabl
 
 /// Every how many rows and snapshots are looked at.
 pub(super) fn every(prepared: &Prepared) -> [u64; 2] {
-    let setting = Setting::new(prepared.domain, prepared.particles());
+    let setting = setting_of(prepared);
     let asked: Vec<&Observable> = chosen(&prepared.output).collect();
     let share = prepared.output.structure_share.unwrap_or(SHARE);
     let schedule = prepared.schedule;
@@ -91,11 +89,16 @@ pub(super) fn every(prepared: &Prepared) -> [u64; 2] {
     strides(&asked, &setting, prepared.particles().grain_count(), share, work)
 }
 
+fn setting_of(prepared: &Prepared) -> Setting {
+    let of = if prepared.model.has_open_top() { Setting::with_open_top } else { Setting::new };
+    of(prepared.domain, prepared.particles())
+}
+
 impl Structured {
     /// Nothing yet of what a scene asks for.
     pub(super) fn new(prepared: &Prepared) -> Structured {
         let grains = prepared.particles().grains();
-        let setting = Setting::new(prepared.domain, prepared.particles());
+        let setting = setting_of(prepared);
         let asked: Vec<&Observable> = chosen(&prepared.output).collect();
         let strides = every(prepared);
         let spacings = [prepared.schedule.rows, prepared.schedule.snapshots].map(spacing);
@@ -342,73 +345,6 @@ impl Structured {
         function.over.truncate(function.means.len());
         function
     }
-}
-
-/// What a function is over, its means with their bars, and its values in each block.
-struct Function {
-    over: Vec<Vec<f64>>,
-    /// Not a number where fewer than two blocks have a value.
-    means: Vec<[f64; 2]>,
-    blocks: Vec<Block>,
-    /// The lags (looks) where it is over lags, and the looks of a block.
-    lags: Vec<u64>,
-    length: u64,
-}
-
-impl Function {
-    /// Its mean over blocks at a place, each with its weight, and the bar; none where there are too few blocks.
-    fn mean_at(&self, place: usize) -> Option<[f64; 2]> {
-        self.weighted(|block| [block.means[place], block.weights[place]], place)
-    }
-
-    /// The mean over blocks of a number that is of lags up to that at `place`, with its bar; none where there are too few blocks.
-    fn mean(&self, of: impl Fn(&Block) -> f64, place: usize) -> Option<[f64; 2]> {
-        self.weighted(|block| [of(block), 1.0], place)
-    }
-
-    fn weighted(&self, of: impl Fn(&Block) -> [f64; 2], place: usize) -> Option<[f64; 2]> {
-        if self.blocks.len() < FEWEST_BLOCKS {
-            return None;
-        }
-        let values: Vec<[f64; 2]> = self.blocks.iter().map(of).filter(|[value, _]| !value.is_nan()).collect();
-        let [mean, bar] = mean_of_weighted(&values);
-        let wider = self.lags.get(place).map_or(1.0, |&lag| widening(lag, self.length, values.len()));
-        Some([mean, wider * bar])
-    }
-
-    /// Why nothing is known of it, with what would be enough.
-    fn missing(&self, looks: u64, every: u64) -> Option<String> {
-        let needed = 2 * (FEWEST_BLOCKS as u64 + 1);
-        let rarer = match every {
-            1 => String::new(),
-            every => format!(", or a larger output.structure_share: only every {every}th counts"),
-        };
-        let why = match () {
-            () if looks < needed && self.blocks.len() < FEWEST_BLOCKS => {
-                format!("too few moments were looked at, {looks}: {needed} would do for a first bar{rarer}")
-            }
-            () if self.blocks.len() < FEWEST_BLOCKS || self.means.iter().all(|[mean, _]| mean.is_nan()) => {
-                format!("there was nothing to be seen at {looks} moments{rarer}")
-            }
-            () => return None,
-        };
-        Some(why)
-    }
-}
-
-/// The mean of values, each with its weight, and half the width of its interval of 95 % by Student's t: as a ratio of sums. Freedoms are
-/// those of as many values as would have the same weight. Not a number where fewer than two count.
-fn mean_of_weighted(values: &[[f64; 2]]) -> [f64; 2] {
-    let sum = |of: &dyn Fn(f64, f64) -> f64| values.iter().map(|&[x, w]| of(x, w)).sum::<f64>();
-    let (all, squares) = (sum(&|_, w| w), sum(&|_, w| w * w));
-    let (count, alike) = (values.len() as f64, all * all / squares);
-    if values.len() < FEWEST_BLOCKS || all <= 0.0 {
-        return [f64::NAN; 2];
-    }
-    let mean = sum(&|x, w| w * x) / all;
-    let square = sum(&|x, w| (w * (x - mean)).powi(2)) / (all * all) * count / (count - 1.0);
-    let freedoms = (alike - 1.0).round().max(1.0) as usize;
-    [mean, student(0.95, freedoms) * square.sqrt()]
 }
 
 /// Of one coordinate itself, of two the distance from the origin.

@@ -50,8 +50,9 @@ pub struct Made {
 pub fn make(stated: &Stated<'_>) -> Result<Made, SceneError> {
     let domain = stated.domain.stated().unwrap_or(Domain::planar([0.0; 2], [1.0; 2], [true; 2]));
     resolved(stated, &domain, radii(stated.start, None))?;
+    let mut warnings = Vec::new();
     let (domain, mut particles) = match stated.start {
-        Start::File(file) => (domain, from_file(stated, &domain, file)?),
+        Start::File(file) => (domain, from_file(stated, &domain, file, &mut warnings)?),
         Start::List(list) => (domain, listed(list)),
         Start::Hexagonal { count, packing_fraction, grains } => {
             placeable(stated, *count as f64, &COUNT)?;
@@ -86,7 +87,6 @@ pub fn make(stated: &Stated<'_>) -> Result<Made, SceneError> {
             && (disc.velocity != [0.0; 3] || disc.omega != 0.0)
             && disc.planar_velocity() != start_velocity
     };
-    let mut warnings = Vec::new();
     if let Some(first) = particles.all().iter().find(moving) {
         let count = particles.all().iter().filter(moving).count();
         warnings.push(Warning {
@@ -132,7 +132,12 @@ fn resolved(stated: &Stated<'_>, domain: &Domain, radii: Option<[f64; 2]>) -> Re
 }
 
 /// The discs of the last frame of a start file, which must be of the scene's box.
-fn from_file(stated: &Stated<'_>, domain: &Domain, file: &StartFile) -> Result<Particles, SceneError> {
+fn from_file(
+    stated: &Stated<'_>,
+    domain: &Domain,
+    file: &StartFile,
+    warnings: &mut Vec<Warning>,
+) -> Result<Particles, SceneError> {
     let path = file.path();
     let frame = file.last_frame().map_err(|error| {
         stated.spot(&FILE).error(Reason::StartFile, format!("the start file cannot be used: {error}"))
@@ -163,6 +168,17 @@ fn from_file(stated: &Stated<'_>, domain: &Domain, file: &StartFile) -> Result<P
         );
         let error = stated.spot(&PERIODIC).error(Reason::Contradiction, message);
         return Err(error.expecting(format!("periodic = {found:?}")));
+    }
+    if frame.has_raised_ids {
+        warnings.push(Warning {
+            key: FILE.path(),
+            message: format!(
+                "ids of the start file {} begin at 0; each is raised by one, in all files of the run too",
+                quoted::path(path)
+            ),
+            suggestion: "write ids from 1, or take 1 off to compare particles with those of the start file"
+                .to_owned(),
+        });
     }
     Ok(frame.particles)
 }

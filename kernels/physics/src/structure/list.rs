@@ -29,12 +29,12 @@ pub static OBSERVABLES: [Observable; 16] = [
         file: "g.csv",
         over: &[["r", "length"]],
         value: ["g", ""],
-        doc: "Pairs at a distance over those of an ideal gas in the area that centres of discs can reach, between closed sides and wall discs.",
+        doc: "Pairs at a distance over those of an ideal gas in the area that centres of discs can reach, between closed sides and wall discs; below an open top, of discs at the same heights, but anywhere along the floor.",
         source: "Hansen and McDonald, Theory of Simple Liquids, section 2.5; closed sides by the set covariance of a rectangle (Stoyan \
                  and Stoyan 1994)",
         seen: Seen::Once {
             over: Over::Axis(pairs::distances),
-            of: |it, values, _| pairs::correlation(&it.discs, &it.distances, &it.chances, values),
+            of: pairs::correlation,
             further: 0,
             asks: Asks::Distances,
         },
@@ -159,11 +159,11 @@ pub static OBSERVABLES: [Observable; 16] = [
         file: "density-x.csv",
         over: &[["x", "length"]],
         value: ["density", "1/length²"],
-        doc: "Centres of discs by area in a hundred slices along the first axis.",
+        doc: "Centres of discs by area in a hundred slices along the first axis; below an open top, by the area up to the highest centre of the moment.",
         source: "Hansen and McDonald, Theory of Simple Liquids, section 2.5: the single-particle density, averaged across the axis",
         seen: Seen::Once {
             over: Over::Axis(single::slices::<0>),
-            of: |it, values, _| single::density::<0>(&it.setting.domain, &it.discs, values),
+            of: |it, values, weights| single::density::<0>(&it.setting, &it.discs, values, weights),
             further: 0,
             asks: Asks::Discs,
         },
@@ -175,16 +175,16 @@ pub static OBSERVABLES: [Observable; 16] = [
         file: "density-y.csv",
         over: &[["y", "length"]],
         value: ["density", "1/length²"],
-        doc: "Centres of discs by area in a hundred slices along the second axis.",
+        doc: "Centres of discs by area in a hundred slices along the second axis, up to the height that the scene gives.",
         source: "Hansen and McDonald, Theory of Simple Liquids, section 2.5: the single-particle density, averaged across the axis",
         seen: Seen::Once {
             over: Over::Axis(single::slices::<1>),
-            of: |it, values, _| single::density::<1>(&it.setting.domain, &it.discs, values),
+            of: |it, values, weights| single::density::<1>(&it.setting, &it.discs, values, weights),
             further: 0,
             asks: Asks::Discs,
         },
         headlines: &[],
-        judged: SOUND,
+        judged: judge_heights,
     },
     Observable {
         name: "flow(x)",
@@ -195,7 +195,7 @@ pub static OBSERVABLES: [Observable; 16] = [
         source: "Irving and Kirkwood 1950: momentum density over mass density",
         seen: Seen::Once {
             over: Over::Axis(single::slices::<0>),
-            of: |it, values, weights| single::flow::<0>(&it.setting.domain, &it.discs, values, weights),
+            of: |it, values, weights| single::flow::<0>(&it.setting, &it.discs, values, weights),
             further: 0,
             asks: Asks::Discs,
         },
@@ -211,7 +211,7 @@ pub static OBSERVABLES: [Observable; 16] = [
         source: "Irving and Kirkwood 1950: momentum density over mass density",
         seen: Seen::Once {
             over: Over::Axis(single::slices::<1>),
-            of: |it, values, weights| single::flow::<1>(&it.setting.domain, &it.discs, values, weights),
+            of: |it, values, weights| single::flow::<1>(&it.setting, &it.discs, values, weights),
             further: 0,
             asks: Asks::Discs,
         },
@@ -227,9 +227,7 @@ pub static OBSERVABLES: [Observable; 16] = [
         source: "Irving and Kirkwood 1950: the kinetic part, with one disc less a snapshot for the mean velocity",
         seen: Seen::Once {
             over: Over::Axis(single::slices::<0>),
-            of: |it, values, weights| {
-                single::temperature::<0>(&it.setting.domain, &it.discs, values, weights)
-            },
+            of: |it, values, weights| single::temperature::<0>(&it.setting, &it.discs, values, weights),
             further: 0,
             asks: Asks::Discs,
         },
@@ -245,9 +243,7 @@ pub static OBSERVABLES: [Observable; 16] = [
         source: "Irving and Kirkwood 1950: the kinetic part, with one disc less a snapshot for the mean velocity",
         seen: Seen::Once {
             over: Over::Axis(single::slices::<1>),
-            of: |it, values, weights| {
-                single::temperature::<1>(&it.setting.domain, &it.discs, values, weights)
-            },
+            of: |it, values, weights| single::temperature::<1>(&it.setting, &it.discs, values, weights),
             further: 0,
             asks: Asks::Discs,
         },
@@ -375,6 +371,9 @@ fn peak_near(block: &[f64], place: usize) -> usize {
     first + peak(&block[first..(place + AROUND + 1).min(block.len())])
 }
 
+/// What sums of shares may be off by.
+const ROUNDING: f64 = 1e-9;
+
 /// Whether there is a peak at all.
 fn judge_peak(whole: &Whole<'_>) -> Verdict {
     let [height, bar] = whole.means[first_peak(whole)];
@@ -383,6 +382,19 @@ fn judge_peak(whole: &Whole<'_>) -> Verdict {
         false => Verdict::None(
             "no peak stands out of the noise: g(r) is 1 within twice its bar everywhere".to_owned(),
         ),
+    }
+}
+
+/// Whether discs were above the highest slice.
+fn judge_heights(whole: &Whole<'_>) -> Verdict {
+    let slice = whole.setting.domain.area() / whole.over.len() as f64;
+    let seen = whole.means.iter().map(|[mean, _]| mean * slice).sum::<f64>() / whole.setting.discs as f64;
+    match whole.setting.has_open_top && seen < 1.0 - ROUNDING {
+        true => Verdict::Doubt(format!(
+            "{} % of the discs are above the highest slice, for the top is open: a larger second side would have them",
+            significant(100.0 * (1.0 - seen), 2)
+        )),
+        false => Verdict::Sound,
     }
 }
 

@@ -3,6 +3,7 @@
 use super::cells::Cells;
 use super::discs::Discs;
 use super::forces::{PairForces, Stress};
+use super::heights::Heights;
 use super::ideal::chances;
 use super::neighbours::Neighbours;
 use super::pairs::Distances;
@@ -23,6 +24,8 @@ pub struct Look {
     pub(super) distances: Distances,
     /// The chance of a pair of an ideal gas to be in each bin of distances, where pairs are asked for.
     pub(super) chances: Vec<f64>,
+    /// The pairs of an ideal gas at the heights of the moment, where pairs are asked for and the box has an open top.
+    pub(super) heights: Option<Heights>,
     pub(super) neighbours: Neighbours,
     pub(super) waves: Waves,
     pub(super) stress: Stress,
@@ -41,6 +44,8 @@ impl Look {
             Seen::Twice { .. } => None,
         };
         let (grains, asked) = (particles.grains(), observables.filter_map(asks).collect::<Vec<Asks>>());
+        let [by_heights, by_area] =
+            [true, false].map(|open| asked.contains(&Asks::Distances) && setting.has_open_top == open);
         Look {
             setting,
             sizes: grains.iter().map(|grain| [grain.radius, grain.mass]).collect(),
@@ -51,7 +56,8 @@ impl Look {
             neighbours: Neighbours::default(),
             waves: Waves::new(&setting),
             stress: Stress::default(),
-            chances: if asked.contains(&Asks::Distances) { chances(&setting, particles) } else { vec![] },
+            chances: if by_area { chances(&setting, particles) } else { vec![] },
+            heights: by_heights.then(|| Heights::new(&setting, particles)),
             asked,
         }
     }
@@ -75,6 +81,9 @@ impl Look {
         }
         if distances {
             self.distances.count(&self.setting, &self.cells);
+            if let Some(heights) = &mut self.heights {
+                heights.find(&self.discs);
+            }
         }
         if neighbours {
             self.neighbours.find(&self.setting, &self.discs, &self.cells);

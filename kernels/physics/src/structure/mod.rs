@@ -8,6 +8,7 @@ mod cells;
 mod diffusion;
 mod discs;
 mod forces;
+mod heights;
 mod ideal;
 mod list;
 mod look;

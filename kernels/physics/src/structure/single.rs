@@ -2,7 +2,6 @@
 
 use super::discs::Discs;
 use super::setting::Setting;
-use crate::domain::Domain;
 
 /// Width of the bins of velocities, and their number: from −5 to 5.
 const VELOCITIES: (f64, usize) = (0.1, 100);
@@ -47,13 +46,17 @@ pub(super) fn slices<const AXIS: usize>(setting: &Setting) -> Vec<f64> {
     (0..SLICES).map(|slice| origin + (slice as f64 + 0.5) * width).collect()
 }
 
-/// Of each slice: how many discs, their mass, momentum and twice their kinetic energy.
-fn sums<const AXIS: usize>(domain: &Domain, discs: &Discs) -> [[f64; 5]; SLICES] {
+/// Of each slice: how many discs, their mass, momentum and twice their kinetic energy. Discs above an open top are in none.
+fn sums<const AXIS: usize>(setting: &Setting, discs: &Discs) -> [[f64; 5]; SLICES] {
+    let Setting { domain, has_open_top, .. } = setting;
     let by_length = SLICES as f64 / domain.length(AXIS);
     let places = if AXIS == 0 { &discs.x } else { &discs.y };
     let mut sums = [[0.0; 5]; SLICES];
     for (disc, &place) in places.iter().enumerate() {
         let slice = ((place - domain.origin[AXIS]) * by_length) as usize;
+        if AXIS == 1 && *has_open_top && slice >= SLICES {
+            continue;
+        }
         let (mass, [x, y]) = (discs.mass[disc], [discs.vx[disc], discs.vy[disc]]);
         let adds = [1.0, mass, mass * x, mass * y, mass * (x * x + y * y)];
         sums[slice.min(SLICES - 1)].iter_mut().zip(adds).for_each(|(sum, it)| *sum += it);
@@ -61,20 +64,33 @@ fn sums<const AXIS: usize>(domain: &Domain, discs: &Discs) -> [[f64; 5]; SLICES]
     sums
 }
 
-/// Centres of discs by area (1/length²) in each of these slices.
-pub(super) fn density<const AXIS: usize>(domain: &Domain, discs: &Discs, values: &mut [f64]) {
-    let one = SLICES as f64 / domain.area();
-    values.iter_mut().zip(sums::<AXIS>(domain, discs)).for_each(|(value, [discs, ..])| *value = discs * one);
-}
-
-/// The velocity across the axis (length/time): Σmv/Σm, which counts by the mass in the slice; 0 where there is no disc.
-pub(super) fn flow<const AXIS: usize>(
-    domain: &Domain,
+/// Centres of discs by area (1/length²) in each of these slices. Below an open top slices along the floor reach up to the highest
+/// centre, and count by their area.
+pub(super) fn density<const AXIS: usize>(
+    setting: &Setting,
     discs: &Discs,
     values: &mut [f64],
     weights: &mut [f64],
 ) {
-    let slices = values.iter_mut().zip(weights).zip(sums::<AXIS>(domain, discs));
+    let Setting { domain, has_open_top, .. } = setting;
+    let mut area = domain.area();
+    if AXIS == 0 && *has_open_top {
+        let height = discs.y.iter().fold(0.0, |most: f64, y| most.max(y - domain.origin[1]));
+        area = domain.length(0) * height;
+        weights.fill(area);
+    }
+    let one = SLICES as f64 / area;
+    values.iter_mut().zip(sums::<AXIS>(setting, discs)).for_each(|(value, [discs, ..])| *value = discs * one);
+}
+
+/// The velocity across the axis (length/time): Σmv/Σm, which counts by the mass in the slice; 0 where there is no disc.
+pub(super) fn flow<const AXIS: usize>(
+    setting: &Setting,
+    discs: &Discs,
+    values: &mut [f64],
+    weights: &mut [f64],
+) {
+    let slices = values.iter_mut().zip(weights).zip(sums::<AXIS>(setting, discs));
     for ((value, weight), [_, mass, x, y, _]) in slices {
         let momentum = if AXIS == 0 { y } else { x };
         (*value, *weight) = if mass > 0.0 { (momentum / mass, mass) } else { (0.0, 0.0) };
@@ -84,12 +100,12 @@ pub(super) fn flow<const AXIS: usize>(
 /// kT of both components beside the flow of the slice, which takes one disc's part away: Σm|v − u|²/(2(n − 1)), which counts by the
 /// degrees of freedom n − 1; 0 where there are fewer than two discs.
 pub(super) fn temperature<const AXIS: usize>(
-    domain: &Domain,
+    setting: &Setting,
     discs: &Discs,
     values: &mut [f64],
     weights: &mut [f64],
 ) {
-    let slices = values.iter_mut().zip(weights).zip(sums::<AXIS>(domain, discs));
+    let slices = values.iter_mut().zip(weights).zip(sums::<AXIS>(setting, discs));
     for ((value, weight), [discs, mass, x, y, square]) in slices {
         let freedoms = (discs - 1.0).max(0.0);
         (*value, *weight) = match freedoms > 0.0 {

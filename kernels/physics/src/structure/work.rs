@@ -1,5 +1,6 @@
 //! What looking takes: how often it is done for its part of a run's work, and its memory.
 
+use super::heights;
 use super::neighbours::candidates as neighbours_looked_at;
 use super::waves::{bytes_of_waves, sums_of_a_disc};
 use super::{Asks, Motion, Observable, Seen, Setting};
@@ -43,7 +44,10 @@ fn nanoseconds(observables: &[&Observable], setting: &Setting, discs: usize) -> 
         snapshot += match asks {
             Asks::Discs => ALONE,
             Asks::Forces => FORCES,
-            Asks::Distances => PAIR * 0.5 * PI * setting.reach * setting.reach * density,
+            Asks::Distances => {
+                let ideal = if setting.has_open_top { heights::nanoseconds(setting, discs) } else { 0.0 };
+                PAIR * 0.5 * PI * setting.reach * setting.reach * density + ideal
+            }
             Asks::Neighbours => NEIGHBOURS + CANDIDATE * neighbours_looked_at(setting, discs),
             Asks::Waves => WAVE * sums_of_a_disc(setting) as f64,
         };

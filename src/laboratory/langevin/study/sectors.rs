@@ -191,6 +191,7 @@ fn phases() -> Result<BTreeMap<String, f64>, StudyError> {
                 time: 0.0,
                 step,
                 seed: None,
+                has_raised_ids: false,
             };
             // What goes nowhere finds no obstacle.
             drop(extxyz::write(&frame, &mut std::io::sink()));

@@ -247,7 +247,8 @@ fn parse(raw: &RawFrame, room: Room) -> Result<Frame, Mistakes> {
         }
     }
     // Other programs begin at 0.
-    if lines_of_ids.contains_key(&0) {
+    let has_raised_ids = lines_of_ids.contains_key(&0);
+    if has_raised_ids {
         if let Some(&line) = lines_of_ids.get(&u32::MAX) {
             mistakes.add(Mistake::in_line(line, Reason::LastId));
         }
@@ -257,5 +258,5 @@ fn parse(raw: &RawFrame, room: Room) -> Result<Frame, Mistakes> {
         return Err(mistakes);
     }
     let header::Header { cell, origin, periodic, time, step, seed, .. } = header;
-    Ok(Frame { particles: Particles::new(discs), cell, origin, periodic, time, step, seed })
+    Ok(Frame { particles: Particles::new(discs), cell, origin, periodic, time, step, seed, has_raised_ids })
 }

@@ -9,7 +9,7 @@ use std::io::{self, Write};
 /// # Errors
 /// Those of the writer.
 pub fn write(frame: &Frame, out: &mut impl Write) -> io::Result<()> {
-    let Frame { particles, cell: [lx, ly], origin: [x, y], periodic, time, step, seed } = frame;
+    let Frame { particles, cell: [lx, ly], origin: [x, y], periodic, time, step, seed, .. } = frame;
     let [bottom, top] = DEPTH;
     writeln!(out, "{}", particles.len())?;
     // Space without end has no cell.

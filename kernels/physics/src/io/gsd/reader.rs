@@ -287,6 +287,7 @@ impl Chunks<'_> {
             time: self.numbers(TIME, (1, 1), false)?[0],
             step: self.one(STEP)?,
             seed: None,
+            has_raised_ids: false,
         })
     }
 }

@@ -2,6 +2,7 @@
 
 use super::compress::compress;
 use super::fast;
+use super::foreseen::endless;
 use super::idle::never;
 use super::keys::{ENGINE, EVENTS, FLOOR_AMPLITUDE, MASK, MASKS};
 use super::options::EngineChoice;
@@ -83,7 +84,9 @@ pub(super) fn prepare(values: Values) -> Result<Prepared, SceneErrors> {
         thermal.seed = noise_seed(&scene.start, thermal.seed, &particles);
     }
     let particles = Arc::new(particles);
-    Ok(Checked { scene, domain, particles, mask, warnings, choices }.prepared())
+    let checked = Checked { scene, domain, particles, mask, warnings, choices };
+    SceneErrors::none_of(endless(&values, &checked).into_iter().collect())?;
+    Ok(checked.prepared())
 }
 
 /// Discs that reach beyond closed sides.

@@ -7,14 +7,14 @@ use crate::scene::Kind::{Choice, Number, Switch, Whole};
 use crate::scene::keys::define_keys;
 use crate::scene::{
     DISC_RIVALS, DISCS, GRAVITY, HEADING, INSTRUCTIONS, KeySet, OUTPUT, PERIODIC, PLANAR_DOMAIN, Reason,
-    Rivals, STRUCTURE, SUMMED, SceneError, TARGETED, Use, Value, Values, Vocabulary, disagreements,
+    Rivals, SUMMED, SceneError, TARGETED, Use, Value, Values, Vocabulary, disagreements,
 };
 use crate::words::Words;
 
 const ALWAYS: Use = None;
 const HEATED: Use = Some((&THERMAL_SIDE, &["left", "right", "bottom", "top"]));
 /// As many events as a run may have.
-const MOST_EVENTS: u64 = 1_000_000_000_000_000;
+pub(super) const MOST_EVENTS: u64 = 1_000_000_000_000_000;
 
 /// The masks, by the names that scenes give them.
 pub const MASKS: &[&str] = &["auto", "min", "r3", "r4", "r5", "r6", "r7", "r8", "r9", "r10"];
@@ -128,12 +128,6 @@ fn own_rules(values: &Values) -> Vec<SceneError> {
         let message = "`domain.open_top` needs a floor and gravity that points down";
         let error = values.spot(&OPEN_TOP).error(Reason::Contradiction, message.to_owned());
         errors.push(error.expecting("periodic = [true, false] and gravity = [0.0, -1.0], for example"));
-    }
-    let summed = matches!(values.value(&STRUCTURE), Some(Value::Words(names)) if !names.is_empty());
-    if summed && values.value(&OPEN_TOP) == Some(Value::Switch(true)) {
-        let message = format!("`{}` needs a box, but its upper side is open", STRUCTURE.path());
-        let error = values.spot(&STRUCTURE).error(Reason::Contradiction, message);
-        errors.push(error.expecting("open_top = false"));
     }
     let shaken = matches!(values.value(&FLOOR_AMPLITUDE), Some(Value::Number(amplitude)) if amplitude > 0.0);
     if shaken && periodic[1] {

@@ -13,6 +13,7 @@ mod fall;
 mod fast;
 mod floor;
 mod followed;
+mod foreseen;
 mod idle;
 pub mod keys;
 mod operations;

@@ -2,6 +2,7 @@
 
 use super::checked::Checked;
 use super::collision_log::COLUMNS;
+use super::foreseen::{enskog, nanoseconds_of_a_collision, thermal_speed};
 use super::reference::grid::Sizes;
 use super::simulation::{Observed, Running};
 use crate::memory::{Foreseen, OfRanks, PROGRAM, available};
@@ -12,7 +13,6 @@ use crate::number::significant;
 use crate::particles::{Kind, Particle, Particles};
 use crate::words::Words;
 use serde_json::{Map, Value, json};
-use std::f64::consts::PI;
 use std::path::Path;
 use std::sync::Arc;
 use stripmine_kernels::flight::Disc;
@@ -137,22 +137,11 @@ impl Startable for Checked {
     }
 
     fn work(&self) -> f64 {
-        // Collisions of a disc in a unit of time by Enskog, each of two discs and 650 ns.
-        let discs = self.particles.all();
-        let count = discs.len() as f64;
-        let mean = |of: fn(&Particle) -> f64| discs.iter().map(of).sum::<f64>() / count;
-        let [diameter, area, square] = [
-            mean(|it| 2.0 * it.radius),
-            mean(|it| PI * it.radius * it.radius),
-            mean(|it| {
-                let [x, y] = it.planar_velocity();
-                0.5 * (x * x + y * y)
-            }),
-        ];
-        let density = count / self.domain.area();
-        let fraction = (area * density).min(0.9);
-        let at_contact = (1.0 - 7.0 / 16.0 * fraction) / (1.0 - fraction).powi(2);
-        650.0 * PI.sqrt() * density * diameter * at_contact * square.sqrt()
+        nanoseconds_of_a_collision(self) * enskog(self, thermal_speed(self))
+    }
+
+    fn has_open_top(&self) -> bool {
+        self.scene.open_top
     }
 
     fn follows_crossings(&self) -> bool {

@@ -1,0 +1,181 @@
+//! What a run of hard discs is foreseen to take: collisions in a time, and what is written in it.
+
+use super::checked::Checked;
+use super::keys::{CHECKPOINT_EVERY, EVENTS, MOST_EVENTS, SNAPSHOT_EVERY, THERMO_EVERY, TIME};
+use super::options::EngineChoice;
+use crate::method::{Every, Until};
+use crate::number::significant;
+use crate::particles::Particle;
+use crate::scene::{Reason, SceneError, Values};
+use std::f64::consts::{PI, SQRT_2, TAU};
+
+/// Rows, snapshots or checkpoints of a run, at most.
+const MOST_WRITTEN: f64 = 1e12;
+
+/// Nanoseconds of a collision of two discs by their packing fraction, found by lists and the source's way: the rates of the item
+/// `hard-disks-rates` with 2500 discs. More discs take longer, so that looking at them is a smaller part of the work than is asked for.
+const COLLISION: [(f64, [f64; 2]); 5] = [
+    (0.1, [1310.0, 3550.0]),
+    (0.3, [790.0, 2260.0]),
+    (0.5, [500.0, 1830.0]),
+    (0.65, [400.0, 1810.0]),
+    (0.7, [380.0, 1830.0]),
+];
+
+/// Nanoseconds of a collision of two discs of a scene.
+pub(super) fn nanoseconds_of_a_collision(checked: &Checked) -> f64 {
+    of_a_collision(checked.packing_fraction(), checked.scene.engine)
+}
+
+/// The same at a packing fraction: between two of those that are known in proportion, beyond them as at the nearest.
+fn of_a_collision(fraction: f64, engine: EngineChoice) -> f64 {
+    let way = usize::from(engine == EngineChoice::Reference);
+    let [(first, lowest), .., (_, highest)] = COLLISION;
+    let between = COLLISION.windows(2).find(|ends| (ends[0].0..=ends[1].0).contains(&fraction));
+    match between {
+        Some(&[(low, at_low), (high, at_high)]) => {
+            at_low[way] + (fraction - low) / (high - low) * (at_high[way] - at_low[way])
+        }
+        _ if fraction < first => lowest[way],
+        _ => highest[way],
+    }
+}
+
+/// Collisions of a disc with others in a unit of time by Enskog, each counted once for both, for discs of a thermal speed √(kT/m).
+pub(super) fn enskog(checked: &Checked, speed: f64) -> f64 {
+    let count = checked.particles.len() as f64;
+    let [x, y] = checked.domain.lengths();
+    let diameter = 2.0 * mean(checked, |disc| disc.radius);
+    let square = mean(checked, |disc| (disc.radius / x) * (disc.radius / y));
+    let fraction = (PI * square * count).min(0.9);
+    let at_contact = (1.0 - 7.0 / 16.0 * fraction) / (1.0 - fraction).powi(2);
+    PI.sqrt() * (count / x) * (diameter / y) * at_contact * speed
+}
+
+/// The thermal speed √(kT/m) of the discs at the start (length/time).
+pub(super) fn thermal_speed(checked: &Checked) -> f64 {
+    let largest = checked.particles.all().iter().map(speed_of).fold(0.0, f64::max);
+    if largest == 0.0 {
+        return 0.0;
+    }
+    // Over the largest one, for squares of speeds at the ends of the number format are none.
+    largest * mean(checked, |disc| (speed_of(disc) / largest).powi(2)).sqrt() / SQRT_2
+}
+
+fn speed_of(disc: &Particle) -> f64 {
+    let [x, y] = disc.planar_velocity();
+    x.hypot(y)
+}
+
+fn mean(checked: &Checked, of: impl Fn(&Particle) -> f64) -> f64 {
+    let discs = checked.particles.all();
+    discs.iter().map(of).sum::<f64>() / discs.len() as f64
+}
+
+/// Collisions in a unit of time, of pairs and at sides, at the speeds that the start, gravity, a thermal side and a floor give.
+fn rate(checked: &Checked) -> f64 {
+    let (scene, domain) = (&checked.scene, &checked.domain);
+    let fall = |axis: usize| (scene.domain.gravity[axis].abs() * domain.length(axis)).sqrt();
+    let heated = |temperature: f64| temperature.sqrt() / mean(checked, |disc| disc.mass).sqrt();
+    let speed = thermal_speed(checked)
+        + fall(0)
+        + fall(1)
+        + scene.law.thermal.map_or(0.0, |thermal| heated(thermal.temperature))
+        + scene.law.floor.map_or(0.0, |floor| TAU * floor.amplitude * floor.frequency);
+    let at_sides = (0..2).filter(|&axis| !domain.is_periodic(axis)).map(|axis| speed / domain.length(axis));
+    (enskog(checked, speed) + at_sides.sum::<f64>()) * checked.particles.len() as f64
+}
+
+/// A run without an end: more collisions than can be counted, or more rows, snapshots or checkpoints than can be written.
+pub(super) fn endless(values: &Values, checked: &Checked) -> Option<SceneError> {
+    let (run, rate) = (&checked.scene.run, rate(checked));
+    let number = |value: f64| significant(value, 3);
+    let duration = match run.until {
+        Until::Time(time) => {
+            if time * rate > MOST_EVENTS as f64 {
+                let message = format!(
+                    "`{}` = {} takes about {} collisions, at the speeds that discs, gravity and sides give",
+                    TIME.path(),
+                    number(time),
+                    number(time * rate)
+                );
+                let error = values.spot(&TIME).error(Reason::Range, message);
+                return Some(error.expecting(format!(
+                    "a time of at most {}, for {} collisions",
+                    number(MOST_EVENTS as f64 / rate),
+                    number(MOST_EVENTS as f64)
+                )));
+            }
+            time
+        }
+        Until::Events(events) => events as f64 / rate,
+        Until::Steps(_) => return None,
+    };
+    let schedule = run.schedule();
+    let written = [
+        (&THERMO_EVERY, schedule.rows, "rows"),
+        (&SNAPSHOT_EVERY, schedule.snapshots, "snapshots"),
+        (&CHECKPOINT_EVERY, schedule.checkpoints, "checkpoints"),
+    ];
+    written.into_iter().find_map(|(key, every, what)| {
+        let Every::Time(every) = every else { return None };
+        let too_many = duration / every > MOST_WRITTEN;
+        too_many.then(|| {
+            let length = match run.until {
+                Until::Events(events) => format!("the time that `{}` = {events} takes", EVENTS.path()),
+                _ => format!("`{}` = {}", TIME.path(), number(duration)),
+            };
+            let message = format!(
+                "`{}` = {} makes about {} {what} in {length}",
+                key.path(),
+                number(every),
+                number(duration / every)
+            );
+            let error = values.spot(key).error(Reason::Range, message);
+            error.expecting(format!("0 for none, or at least {}", number(duration / MOST_WRITTEN)))
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::method::{METHODS, load};
+
+    /// By hand: √π ρ d χ(ν) √(kT/m) collisions of a disc, each at the rate that was measured at its density (million a second).
+    #[test]
+    fn work_is_that_of_the_measured_collisions() {
+        for (fraction, engine, rate) in [
+            (0.1, "auto", 0.764),
+            (0.3, "fast", 1.272),
+            (0.5, "auto", 2.02),
+            (0.65, "auto", 2.493),
+            (0.7, "auto", 2.64),
+            (0.5, "reference", 0.5466),
+            (0.7, "reference", 0.5478),
+        ] {
+            let sets = [
+                "particles.generate=\"hexagonal\"".to_owned(),
+                format!("particles.packing_fraction={fraction}"),
+                "particles.count=400".to_owned(),
+                "particles.temperature=4.0".to_owned(),
+                format!("machine.engine={engine}"),
+            ];
+            let (prepared, _) = load("hard-disks", &sets, METHODS).unwrap();
+            let density = 4.0 * fraction / PI;
+            let at_contact = (1.0 - 7.0 / 16.0 * fraction) / (1.0 - fraction).powi(2);
+            let collisions = PI.sqrt() * density * at_contact * 2.0;
+            let work = prepared.model.work();
+            let expected = 1000.0 / rate * collisions;
+            assert!((work / expected - 1.0).abs() < 0.1, "{fraction} {engine}: {work} ns, not {expected}");
+        }
+    }
+
+    #[test]
+    fn costs_of_collisions_are_in_proportion_between_those_known() {
+        for (fraction, cost) in [(0.0, 1310.0), (0.2, 1050.0), (0.6, 433.333), (0.8, 380.0)] {
+            let found = of_a_collision(fraction, EngineChoice::Fast);
+            assert!((found - cost).abs() < 1e-2, "{fraction}: {found}");
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! Means of a function over blocks of a run, with their bars.
+
+use crate::averages::student;
+use crate::structure::{Block, widening};
+
+/// Blocks that bars take at least, in the second half of a run.
+const FEWEST_BLOCKS: usize = 2;
+
+/// What a function is over, its means with their bars, and its values in each block.
+pub(super) struct Function {
+    pub(super) over: Vec<Vec<f64>>,
+    /// Not a number where fewer than two blocks have a value.
+    pub(super) means: Vec<[f64; 2]>,
+    pub(super) blocks: Vec<Block>,
+    /// The lags (looks) where it is over lags, and the looks of a block.
+    pub(super) lags: Vec<u64>,
+    pub(super) length: u64,
+}
+
+impl Function {
+    /// Its mean over blocks at a place, each with its weight, and the bar; none where there are too few blocks.
+    pub(super) fn mean_at(&self, place: usize) -> Option<[f64; 2]> {
+        self.weighted(|block| [block.means[place], block.weights[place]], place)
+    }
+
+    /// The mean over blocks of a number that is of lags up to that at `place`, with its bar; none where there are too few blocks.
+    pub(super) fn mean(&self, of: impl Fn(&Block) -> f64, place: usize) -> Option<[f64; 2]> {
+        self.weighted(|block| [of(block), 1.0], place)
+    }
+
+    fn weighted(&self, of: impl Fn(&Block) -> [f64; 2], place: usize) -> Option<[f64; 2]> {
+        if self.blocks.len() < FEWEST_BLOCKS {
+            return None;
+        }
+        let values: Vec<[f64; 2]> = self.blocks.iter().map(of).filter(|[value, _]| !value.is_nan()).collect();
+        let [mean, bar] = mean_of_weighted(&values);
+        let wider = self.lags.get(place).map_or(1.0, |&lag| widening(lag, self.length, values.len()));
+        Some([mean, wider * bar])
+    }
+
+    /// Why nothing is known of it, with what would be enough.
+    pub(super) fn missing(&self, looks: u64, every: u64) -> Option<String> {
+        let needed = 2 * (FEWEST_BLOCKS as u64 + 1);
+        let rarer = match every {
+            1 => String::new(),
+            every => format!(", or a larger output.structure_share: only every {every}th counts"),
+        };
+        let why = match () {
+            () if looks < needed && self.blocks.len() < FEWEST_BLOCKS => {
+                format!("too few moments were looked at, {looks}: {needed} would do for a first bar{rarer}")
+            }
+            () if self.blocks.len() < FEWEST_BLOCKS || self.means.iter().all(|[mean, _]| mean.is_nan()) => {
+                format!("there was nothing to be seen at {looks} moments{rarer}")
+            }
+            () => return None,
+        };
+        Some(why)
+    }
+}
+
+/// The mean of values, each with its weight, and half the width of its interval of 95 % by Student's t: as a ratio of sums. Freedoms are
+/// those of as many values as would have the same weight. Not a number where fewer than two count.
+fn mean_of_weighted(values: &[[f64; 2]]) -> [f64; 2] {
+    let sum = |of: &dyn Fn(f64, f64) -> f64| values.iter().map(|&[x, w]| of(x, w)).sum::<f64>();
+    let (all, squares) = (sum(&|_, w| w), sum(&|_, w| w * w));
+    let (count, alike) = (values.len() as f64, all * all / squares);
+    if values.len() < FEWEST_BLOCKS || all <= 0.0 {
+        return [f64::NAN; 2];
+    }
+    let mean = sum(&|x, w| w * x) / all;
+    let square = sum(&|x, w| (w * (x - mean)).powi(2)) / (all * all) * count / (count - 1.0);
+    let freedoms = (alike - 1.0).round().max(1.0) as usize;
+    [mean, student(0.95, freedoms) * square.sqrt()]
+}

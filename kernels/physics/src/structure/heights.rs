@@ -1,0 +1,147 @@
+//! Pairs that an ideal gas has at a distance above a floor, where nothing bounds it from above.
+//!
+//! The area that centres can reach has no end there. The ideal gas is the discs of the same moment, each at its height, but anywhere along the
+//! floor: what gravity makes of the heights is no correlation of pairs. Differences of heights are shared out to the nearest of some heights, which
+//! are much closer than bins and each have a table of the chance to be in each bin of distances.
+
+use super::discs::Discs;
+use super::ideal::{Size, sizes};
+use super::pairs::{BINS, bins};
+use super::setting::Setting;
+use crate::domain::Side;
+use crate::particles::Particles;
+
+/// Heights with a table in a bin of distances.
+const STEPS: usize = 8;
+
+/// The pairs that the ideal gas of one moment has.
+#[derive(Clone, Debug)]
+pub(super) struct Heights {
+    /// Sizes that the sides of the box treat differently.
+    sizes: Vec<Size>,
+    bins: usize,
+    /// Differences of heights by length.
+    by_length: f64,
+    /// Of each pair of sizes and each height: chances from the first bin that such a pair can be in.
+    chances: Vec<Vec<f64>>,
+    /// Heights in ascending order, each with the place of the size.
+    ascending: Vec<(f64, usize)>,
+    /// Pairs of each pair of sizes at each height.
+    counts: Vec<f64>,
+    /// Pairs in each bin of distances.
+    pub(super) pairs: Vec<f64>,
+}
+
+impl Heights {
+    /// Of the discs of a scene in a box with an open top.
+    pub(super) fn new(setting: &Setting, particles: &Particles) -> Heights {
+        let mut sizes = sizes(particles.grains());
+        if setting.domain.is_periodic(0) {
+            sizes.truncate(1);
+        }
+        let (bins, width) = (bins(setting), setting.diameter / BINS);
+        let step = width / STEPS as f64;
+        let mut chances = vec![];
+        for high in 0..sizes.len() {
+            for low in 0..=high {
+                let radii = [low, high].map(|size| sizes[size].radius);
+                let near = |distance: f64, height: f64| {
+                    let along = (distance * distance - height * height).max(0.0).sqrt();
+                    chance_along(setting.domain.sides[0], radii, along)
+                };
+                let of_height = |at: usize| {
+                    let height = at as f64 * step;
+                    let edge = |bin: usize| near(bin as f64 * width, height);
+                    (at / STEPS..bins).map(|bin| edge(bin + 1) - edge(bin)).collect()
+                };
+                chances.extend((0..=bins * STEPS).map(of_height));
+            }
+        }
+        let counts = vec![0.0; chances.len()];
+        let (by_length, pairs) = (1.0 / step, vec![0.0; bins]);
+        Heights { sizes, bins, by_length, chances, ascending: vec![], counts, pairs }
+    }
+
+    /// Finds the pairs of the ideal gas of some discs.
+    pub(super) fn find(&mut self, discs: &Discs) {
+        let Heights { sizes, bins, by_length, chances, ascending, counts, pairs } = self;
+        let size_of = |radius: f64| {
+            let off = |size: &usize| (sizes[*size].radius - radius).abs();
+            (0..sizes.len()).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0)
+        };
+        ascending.clear();
+        ascending.extend(discs.y.iter().zip(&discs.radius).map(|(&y, &radius)| (y, size_of(radius))));
+        ascending.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        counts.fill(0.0);
+        let steps = *bins * STEPS;
+        for (number, &(below, one)) in ascending.iter().enumerate() {
+            for &(above, other) in &ascending[number + 1..] {
+                let height = (above - below) * *by_length;
+                if height >= steps as f64 {
+                    break;
+                }
+                let [low, high] = [one.min(other), one.max(other)];
+                let at = (high * (high + 1) / 2 + low) * (steps + 1) + height as usize;
+                counts[at] += 1.0 - height.fract();
+                counts[at + 1] += height.fract();
+            }
+        }
+        pairs.fill(0.0);
+        for (at, (&count, chances)) in counts.iter().zip(&*chances).enumerate() {
+            if count > 0.0 {
+                let first = at % (steps + 1) / STEPS;
+                pairs[first..].iter_mut().zip(chances).for_each(|(pairs, chance)| *pairs += count * chance);
+            }
+        }
+    }
+}
+
+/// The chance that discs of two radii, each anywhere along a side, are nearer to each other along it than some length.
+fn chance_along(side: Side, radii: [f64; 2], way: f64) -> f64 {
+    let room = match side {
+        Side::Closed(length) => radii.map(|radius| (length - 2.0 * radius).max(0.0)),
+        _ => return (2.0 * way / side.length()).min(1.0),
+    };
+    let [narrow, wide] = [room[0].min(room[1]), room[0].max(room[1])];
+    // Up to here the narrow room lies within reach of the wide one.
+    let [inner, outer] = [0.5 * (wide - narrow), 0.5 * (wide + narrow)];
+    match () {
+        () if way >= outer => 1.0,
+        () if way <= inner => 2.0 * way / wide,
+        () => {
+            (2.0 * inner * narrow + 2.0 * outer * (way - inner) - way * way + inner * inner) / (narrow * wide)
+        }
+    }
+}
+
+/// Nanoseconds that it takes a disc to find them: its pairs, and its part of the tables.
+pub(super) fn nanoseconds(setting: &Setting, discs: usize) -> f64 {
+    const PAIR: f64 = 1.5;
+    const CHANCE: f64 = 0.3;
+    let [bins, discs] = [bins(setting), discs].map(|count| count as f64);
+    let share = (2.0 * setting.reach / setting.room()[1]).min(1.0);
+    PAIR * 0.5 * share * discs + CHANCE * (0.5 * STEPS as f64 * bins * bins).min(bins * discs * discs) / discs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Hand sums: density of the difference of two uniform places.
+    #[test]
+    fn chances_along_a_side_are_those_of_two_uniform_places() {
+        for (side, radii, way, chance) in [
+            (Side::Periodic(10.0), [0.5, 1.0], 2.0, 0.4),
+            // In rooms of 9 and 9: 1 − (1 − 3/9)².
+            (Side::Closed(10.0), [0.5; 2], 3.0, 5.0 / 9.0),
+            // In rooms of 4 and 8: from the middle, 2 along each way are within the wide room.
+            (Side::Closed(10.0), [3.0, 1.0], 1.0, 0.25),
+            (Side::Closed(10.0), [1.0, 3.0], 4.0, (16.0 + 2.0 * 6.0 * 2.0 - 16.0 + 4.0) / 32.0),
+            (Side::Closed(10.0), [3.0, 1.0], 6.0, 1.0),
+            (Side::Closed(2.0), [1.0; 2], 0.0, 1.0),
+        ] {
+            let found = chance_along(side, radii, way);
+            assert!((found - chance).abs() < 1e-12, "{side:?} {radii:?} {way}: {found} in place of {chance}");
+        }
+    }
+}

@@ -1,0 +1,24 @@
+//! The ways to run the scenes of a method: its engines, its searches, and whatever else a key leaves to choose.
+
+use stripmine_physics::method::Entry;
+use stripmine_physics::scene::Kind;
+
+/// Overrides that give a key each of its words; the first one gives none.
+pub fn words(entry: &Entry, section: &str, name: &str) -> Vec<Vec<String>> {
+    let words = match entry.vocabulary.keys.key(section, name).map(|key| key.kind) {
+        Some(Kind::Choice(words)) => words,
+        _ => &[],
+    };
+    let given = words.iter().filter(|word| **word != "auto");
+    std::iter::once(vec![]).chain(given.map(|word| vec![format!("{section}.{name}={word}")])).collect()
+}
+
+/// Every engine with every search, then each of the other keys alone.
+pub fn ways(entry: &Entry, others: &[(&str, &str)]) -> Vec<Vec<String>> {
+    let searches = words(entry, "search", "by");
+    let engines = words(entry, "machine", "engine").into_iter();
+    let engines =
+        engines.flat_map(|engine| searches.iter().map(move |by| [engine.clone(), by.clone()].concat()));
+    let alone = others.iter().flat_map(|(section, name)| words(entry, section, name).into_iter().skip(1));
+    engines.chain(alone).collect()
+}
