@@ -33,7 +33,7 @@ impl Known {
         }
         let most = MOST_WAVES as f64;
         let seen = self.freedoms.max(1.0);
-        // The waves that a bar is made of grow with the root of the time up to a number; the time that was seen is the square over the bar's own.
+        // The waves that a bar is made of grow at least with the root of the time up to a number; the time that was seen is the square over the bar's own.
         let longer = time * self.bar * self.bar / self.square;
         let planned = (seen * longer.sqrt()).clamp(1.0, most.max(seen));
         let t = |freedoms: f64| student(SURE, freedoms as usize);
