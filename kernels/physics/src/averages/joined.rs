@@ -197,7 +197,7 @@ mod tests {
     /// Runs of one ensemble, and runs with an energy of their own, which moves their means by three of their bars.
     #[test]
     fn joined_bars_hold_the_truth_as_often_as_they_say() {
-        for (runs, own) in [(2, 0.0), (3, 0.0), (8, 0.0), (2, 0.4), (4, 0.4), (8, 0.4)] {
+        for (runs, own) in [(2, 0.0), (3, 0.0), (4, 0.0), (8, 0.0), (2, 0.4), (4, 0.4), (8, 0.4)] {
             let held = (0..300).map(|seed| {
                 let means = Noise::new(1_000_000 + seed).series(runs, 0.0);
                 let runs = means.into_iter().zip(0_u64..).map(|(energy, run)| {
@@ -253,6 +253,31 @@ mod tests {
             let other = Outcome::Changing { first: 0.0, last: 1.0 };
             assert_eq!([join(&[a, other, gravest], true), join(&[gravest, other, a], true)], [gravest; 2]);
         }
+    }
+
+    /// By hand: means 1, 2, 3, 6 over equal times have the mean 3 and the standard error √(14/12), of three degrees of freedom, whatever the
+    /// errors of each; over times of 1, 1, 1, 3 the mean 4, and three runs' worth of weight.
+    #[test]
+    fn four_runs_of_one_ensemble_have_the_error_of_their_spread() {
+        let Outcome::Mean(some) = estimated(&Noise::new(1).series(1000, 0.5), 0.0, 1.0) else { panic!() };
+        let run = |mean, span| Outcome::Mean(Estimate { mean, span, ..some });
+        let joined = mean(join(&[run(1.0, 9.0), run(2.0, 9.0), run(3.0, 9.0), run(6.0, 9.0)], true));
+        assert!((joined.mean - 3.0).abs() < 1e-12 && (joined.freedoms - 3.0).abs() < 1e-12, "{joined:?}");
+        assert!((joined.standard_error - (14.0_f64 / 12.0).sqrt()).abs() < 1e-12, "{joined:?}");
+        assert!((joined.independent_samples / some.independent_samples - 4.0).abs() < 1e-12, "{joined:?}");
+        let joined = mean(join(&[run(1.0, 1.0), run(2.0, 1.0), run(3.0, 1.0), run(6.0, 3.0)], true));
+        assert!((joined.mean - 4.0).abs() < 1e-12 && (joined.freedoms - 2.0).abs() < 1e-12, "{joined:?}");
+    }
+
+    /// One of two runs may be too short, but not two of three.
+    #[test]
+    fn a_join_of_runs_most_of_which_are_too_short_is_too_short() {
+        let long = estimated(&Noise::new(1).series(1000, 0.5), 0.0, 1.0);
+        let short = estimated(&Noise::new(3).series(60, 0.9), 0.0, 1.0);
+        let Outcome::TooShort { enough_at, .. } = short else { panic!("{short:?}") };
+        assert!(matches!(join(&[long, short], true), Outcome::Mean(_)));
+        let Outcome::TooShort { enough_at: found, .. } = join(&[short, long, short], true) else { panic!() };
+        assert_eq!(found, enough_at);
     }
 
     /// Energies that differ make runs of a closed system independent samples; momenta of rounding do not.
