@@ -17,6 +17,8 @@ enum Truth {
     AllRuns,
     /// Nothing: it has no mean.
     Never,
+    /// The runs are too short for it.
+    TooShort,
 }
 
 /// Runs of a scene with seeds of their own, and what is known of its quantities.
@@ -27,7 +29,9 @@ struct System {
 }
 
 /// Systems of all methods. Most begin far from what they come to: particles at another temperature, lattices that melt, discs of one speed, grains at rest.
-const SYSTEMS: [System; 9] = [
+///
+/// Grains are of one size: sizes that are drawn make another system of each seed, with a mean of its own.
+const SYSTEMS: [System; 12] = [
     System {
         preset: "langevin-free",
         overrides: &[
@@ -38,20 +42,27 @@ const SYSTEMS: [System; 9] = [
         ],
         truths: &[("temperature", Truth::Known(1.0)), ("msd", Truth::Never)],
     },
-    // 64 Lennard-Jones particles.
+    // Ten particles are soon known to 8 %.
     System {
-        preset: "langevin-dense",
-        overrides: &[
-            "particles.count=64",
-            "domain.sides=[9.56, 9.56]",
-            "run.time=100",
-            "run.thermo_every=20",
-        ],
-        truths: &[
-            ("temperature", Truth::Known(1.0)),
-            ("potential", Truth::LongRun(100.0)),
-            ("pressure", Truth::LongRun(100.0)),
-        ],
+        preset: "langevin-free",
+        overrides: &["particles.count=10", "run.time=200", "run.thermo_every=10"],
+        truths: &[("temperature", Truth::Known(1.0)), ("momentum_x", Truth::Known(0.0))],
+    },
+    System {
+        preset: "hard-disks",
+        overrides: &["particles.count=64", "run.events=20000", "run.thermo_every=0.1"],
+        truths: &[("compressibility", Truth::LongRun(200.0))],
+    },
+    // Few discs: many rows have no collision.
+    System {
+        preset: "hard-disks",
+        overrides: &["particles.count=6", "run.events=10000", "run.thermo_every=0.1"],
+        truths: &[("compressibility", Truth::LongRun(200.0))],
+    },
+    System {
+        preset: "cooling-gas",
+        overrides: &["particles.count=100", "run.events=10000", "run.thermo_every=0.25"],
+        truths: &[("temperature", Truth::Never), ("collisions", Truth::Never)],
     },
     // Two particles that meet now and then: u(r) over the canonical ensemble, by quadrature.
     System {
@@ -67,10 +78,15 @@ const SYSTEMS: [System; 9] = [
         ],
         truths: &[("potential", Truth::Known(0.018_104)), ("temperature", Truth::Known(1.0))],
     },
+    // 64 Lennard-Jones particles.
     System {
-        preset: "hard-disks",
-        overrides: &["particles.count=64", "run.events=20000", "run.thermo_every=0.1"],
-        truths: &[("compressibility", Truth::LongRun(200.0))],
+        preset: "langevin-dense",
+        overrides: &["particles.count=64", "domain.sides=[9.56, 9.56]", "run.time=60", "run.thermo_every=20"],
+        truths: &[
+            ("temperature", Truth::Known(1.0)),
+            ("potential", Truth::LongRun(100.0)),
+            ("pressure", Truth::LongRun(100.0)),
+        ],
     },
     System {
         preset: "hot-floor",
@@ -80,40 +96,68 @@ const SYSTEMS: [System; 9] = [
             "run.time=2000",
             "run.thermo_every=2",
         ],
-        truths: &[("kinetic", Truth::Known(30.0)), ("collisions", Truth::LongRun(100.0))],
+        truths: &[("kinetic", Truth::Known(30.0)), ("collisions", Truth::LongRun(50.0))],
     },
-    System {
-        preset: "cooling-gas",
-        overrides: &["particles.count=100", "run.events=10000", "run.thermo_every=0.25"],
-        truths: &[("temperature", Truth::Never), ("collisions", Truth::Never)],
-    },
-    // A pipe of a tenth of pipe-small's length.
-    System {
-        preset: "pipe-small",
-        overrides: &["domain.sides=[0.324, 0.088]", "run.time=10"],
-        truths: &[
-            ("flow", Truth::LongRun(100.0)),
-            ("temperature", Truth::LongRun(100.0)),
-            ("gravity_work", Truth::LongRun(100.0)),
-        ],
-    },
-    // A few per cent below 1/2, as softened close pairs have it.
     System {
         preset: "plummer",
-        overrides: &["particles.count=16", "law.softening=0.05", "run.time=150", "run.thermo_every=64"],
+        overrides: &[
+            "particles.count=64",
+            "law.softening=0.1",
+            "integrator.dt=0.015625",
+            "run.time=200",
+            "run.thermo_every=16",
+        ],
         truths: &[("virial_ratio", Truth::AllRuns)],
     },
-    // Ten particles are soon known to 8 %.
     System {
-        preset: "langevin-free",
-        overrides: &["particles.count=10", "run.time=200", "run.thermo_every=10"],
-        truths: &[("temperature", Truth::Known(1.0)), ("momentum_x", Truth::Known(0.0))],
+        preset: "shaken-box",
+        overrides: &[
+            "particles.count=20",
+            "particles.radius_spread=0.0",
+            "domain.sides=[0.1, 0.8]",
+            "run.time=10",
+        ],
+        truths: &[("temperature", Truth::LongRun(50.0)), ("gravitational", Truth::LongRun(50.0))],
+    },
+    // A pipe of a fifth of pipe-small's length: its waves outlive the run.
+    System {
+        preset: "pipe-small",
+        overrides: &["domain.sides=[0.648, 0.088]", "particles.radius_spread=0.0", "run.time=4"],
+        truths: &[("flow", Truth::TooShort), ("contacts", Truth::TooShort)],
+    },
+    // A tenth of its length.
+    System {
+        preset: "pipe-small",
+        overrides: &["domain.sides=[0.324, 0.088]", "particles.radius_spread=0.0", "run.time=20"],
+        truths: &[
+            ("flow", Truth::LongRun(50.0)),
+            ("contacts", Truth::LongRun(50.0)),
+            ("gravity_work", Truth::LongRun(50.0)),
+        ],
     },
 ];
 
 const SEEDS: u64 = 200;
+/// The first of them, none of those by which anything was chosen.
+const FIRST_SEED: u64 = 1000;
+/// The part of the runs that have a mean, at least.
+const LEAST: f64 = 0.4;
+/// The part of the runs that may have a mean where there is none, and where runs are too short for it.
+const NEVER: f64 = 0.01;
+const SELDOM: f64 = 0.1;
 /// Runs in a join.
 const JOINED: [usize; 4] = [2, 3, 4, 8];
+
+/// Whether a share is that of 92 to 98 %, within two standard errors of a share of so many independent ones.
+fn is_as_claimed(share: f64, count: f64) -> bool {
+    let beyond = |limit: f64| 2.0 * (limit * (1.0 - limit) / count).sqrt();
+    (0.92 - beyond(0.92)..=0.98 + beyond(0.98)).contains(&share)
+}
+
+/// So many seeds of runs.
+fn seeds(count: u64) -> impl rayon::iter::IndexedParallelIterator<Item = u64> {
+    (FIRST_SEED..FIRST_SEED + count).into_par_iter()
+}
 
 impl System {
     /// The averages of a run so many times as long.
@@ -156,7 +200,8 @@ fn held(outcomes: impl Iterator<Item = Outcome>, truth: f64) -> (Vec<Estimate>, 
     (found, share)
 }
 
-/// Bars hold the truth in 92 to 98 of 100 runs, and so do those of 2, 3, 4 and 8 runs joined, whatever the method. Hardly a run of a system that changes for ever has a mean.
+/// Bars hold the truth in 92 to 98 of 100 runs, and so do those of 2, 3, 4 and 8 runs joined, whatever the method. Hardly a run of a system that changes for ever,
+/// or one that its waves outlive, has a mean.
 #[test]
 #[ignore = "long: cargo test --release --test averages -- --ignored"]
 fn bars_of_95_percent_hold_the_truth_of_real_systems() {
@@ -176,16 +221,19 @@ fn bars_of_95_percent_hold_the_truth_of_real_systems() {
             over(&|it| it.bar) / (1.96 * over(&|it| (it.mean - truth).powi(2)).sqrt()),
             over(&|it| it.independent_samples)
         );
-        if !(0.92..=0.98).contains(&share) || count < 0.5 * SEEDS as f64 {
+        if !is_as_claimed(share, count) || count < LEAST * SEEDS as f64 {
             wrong.push((name, share, count));
         }
     };
     for system in &SYSTEMS {
-        let runs: Vec<Averages> = (0..SEEDS).into_par_iter().map(|seed| system.averages(seed, 1.0)).collect();
-        let long = system.truths.iter().find_map(|(_, truth)| match truth {
-            Truth::LongRun(times) => Some(system.averages(SEEDS, *times)),
+        let needs_long = system.truths.iter().find_map(|(_, truth)| match truth {
+            Truth::LongRun(times) => Some(*times),
             _ => None,
         });
+        let (runs, long) = rayon::join(
+            || -> Vec<Averages> { seeds(SEEDS).map(|seed| system.averages(seed, 1.0)).collect() },
+            || needs_long.map(|times| system.averages(FIRST_SEED + SEEDS, times)),
+        );
         for &(quantity, truth) in system.truths {
             let name = format!("{} {quantity}", system.preset);
             let truth = match truth {
@@ -200,10 +248,13 @@ fn bars_of_95_percent_hold_the_truth_of_real_systems() {
                     let (found, _) = held(runs.iter().map(|run| outcome(run, quantity)), 0.0);
                     found.iter().map(|it| it.mean).sum::<f64>() / found.len() as f64
                 }
-                Truth::Never => {
+                Truth::Never | Truth::TooShort => {
+                    let most = if matches!(truth, Truth::Never) { NEVER } else { SELDOM };
                     let (found, _) = held(runs.iter().map(|run| outcome(run, quantity)), 0.0);
-                    println!("{name}: {} of {SEEDS} have a mean, where there is none", found.len());
-                    assert!(found.len() <= 2, "{name}: {}", found.len());
+                    println!("{name}: {} of {SEEDS} have a mean, where none is known", found.len());
+                    if found.len() as f64 > most * SEEDS as f64 {
+                        wrong.push((name, f64::NAN, found.len() as f64));
+                    }
                     continue;
                 }
             };
@@ -224,7 +275,7 @@ fn bars_of_95_percent_hold_the_truth_of_real_systems() {
     }
     for (count, [held, all]) in JOINED.into_iter().zip(joins) {
         println!("{count} joined, all systems: {:.3} of {all} hold the truth", held / all);
-        if !(0.92..=0.98).contains(&(held / all)) {
+        if !is_as_claimed(held / all, all / count as f64) {
             wrong.push((format!("{count} joined"), held / all, all));
         }
     }
@@ -240,7 +291,7 @@ fn joined_bars_hold_the_mean_over_energies() {
         overrides: &["particles.count=48", "run.events=5000", "run.thermo_every=0.1"],
         truths: &[],
     };
-    let runs: Vec<Averages> = (0..4 * SEEDS).into_par_iter().map(|seed| system.averages(seed, 1.0)).collect();
+    let runs: Vec<Averages> = seeds(4 * SEEDS).map(|seed| system.averages(seed, 1.0)).collect();
     let (found, _) = held(runs.iter().map(|run| outcome(run, "collision_rate")), 0.0);
     let truth = found.iter().map(|it| it.mean).sum::<f64>() / found.len() as f64;
     for count in JOINED {
@@ -251,7 +302,7 @@ fn joined_bars_hold_the_mean_over_energies() {
         });
         let (found, share) = held(joins, truth);
         println!("{count} joined: {share:.3} of {} hold {truth:.4}", found.len());
-        assert!((0.92..=0.98).contains(&share), "{count}: {share}");
+        assert!(is_as_claimed(share, found.len() as f64), "{count}: {share}");
     }
 }
 
@@ -302,7 +353,7 @@ fn until_holds_the_truth_as_often_as_it_says() {
         let free =
             [&free[..], &["--set", "run.time=100000", "--set", "run.snapshot_every=0", "--set", &target]]
                 .concat();
-        let held = (1..=SEEDS).into_par_iter().filter(|seed| {
+        let held = seeds(SEEDS).filter(|seed| {
             let (out, seed) = (format!("{seed}"), format!("particles.seed={seed}"));
             let own = ["--set", &seed, "--overwrite", "--out", &out];
             ends_with(&stripmine(folder.path(), &[&free[..], &own].concat()), 0, &[]);
@@ -312,6 +363,6 @@ fn until_holds_the_truth_as_often_as_it_says() {
         });
         let share = held.count() as f64 / SEEDS as f64;
         println!("until {error}: {share:.3} hold");
-        assert!((0.92..=0.98).contains(&share), "{error}: {share}");
+        assert!(is_as_claimed(share, SEEDS as f64), "{error}: {share}");
     }
 }

@@ -39,7 +39,7 @@ impl Known {
         let of_trials = t_squared(seen);
         // The time that was seen is the square over the bar's own.
         let span = self.square / (self.bar * self.bar);
-        // The waves that a bar is made of are a whole number, and grow with the root of the time.
+        // The waves that a bar is made of are a whole number, and grow at least with the root of the time.
         let level = |waves: usize| {
             let waves = waves as f64;
             WaveLevel {

@@ -10,8 +10,11 @@ const LATEST: f64 = 0.75;
 const LEAST_LEFT: f64 = 0.375;
 /// A shorter series for a shorter transient has this part of the values.
 const FINER: usize = 8;
-/// The part that is cut off differs from the rest by more than this many standard errors of the difference.
-const DIFFERENT: f64 = 2.0;
+/// A transient is seen where the beginning differs from the rest by more than this many standard errors of the difference: of
+/// a thousand series without one, two are cut.
+const DIFFERENT: f64 = 4.0;
+/// What is left of a transient that is seen agrees with the rest within this many.
+const AGREEING: f64 = 2.0;
 
 /// The number of values at the beginning of a series that do not count; none where the transient lasts almost as long as the series.
 ///
@@ -21,7 +24,9 @@ const DIFFERENT: f64 = 2.0;
 /// the mean: as much again is cut off, which squares what is left of an exponential.
 pub(super) fn equilibrated(series: &[f64]) -> Option<usize> {
     let cut = least_error(series);
-    if cut == 0 || !differ(&series[..cut], &series[cut..]) {
+    // A transient that is shorter than the cut differs more in a part of it.
+    let mut beginnings = std::iter::successors(Some(cut), |it| Some(it / 2)).take_while(|&it| it > 0);
+    if !beginnings.any(|it| differ(&series[..it], &series[cut..], DIFFERENT)) {
         return Some(0);
     }
     // A transient of a few rows is within one batch: a shorter series has shorter ones.
@@ -30,7 +35,7 @@ pub(super) fn equilibrated(series: &[f64]) -> Option<usize> {
     while beginning.len() > BATCHES {
         beginning = &beginning[..beginning.len() / FINER];
         let shorter = 2 * least_error(beginning);
-        if shorter == 0 || shorter >= cut || differ(&series[shorter..cut], &series[cut..]) {
+        if shorter == 0 || shorter >= cut || differ(&series[shorter..cut], &series[cut..], AGREEING) {
             break;
         }
         start = shorter;
@@ -75,16 +80,16 @@ impl Squares {
     }
 }
 
-/// Tests for a first part whose mean differs from that of the rest. A part shorter than the correlation time varies as a single value does.
+/// Tests for a first part whose mean differs from that of the rest by so many standard errors. A part shorter than the correlation time varies as a single value does.
 /// No stretch of the rest as long may have such a mean: rare events are no transient.
-fn differ(first: &[f64], rest: &[f64]) -> bool {
+fn differ(first: &[f64], rest: &[f64], errors: f64) -> bool {
     let WaveError { mean: expected, standard_error, samples, .. } = WaveError::of(rest);
     let square = standard_error * standard_error;
     let of_first = (square * rest.len() as f64 / first.len() as f64).min(square * samples);
     let off = mean(first) - expected;
     let farthest =
         rest.chunks_exact(first.len()).map(|it| (mean(it) - expected) * off.signum()).fold(0.0, f64::max);
-    off.abs() > farthest.max(DIFFERENT * (of_first + square).sqrt())
+    off.abs() > farthest.max(errors * (of_first + square).sqrt())
 }
 
 /// The number of values of a batch, and the means of all whole batches.
@@ -97,6 +102,7 @@ pub(super) fn batches(series: &[f64]) -> (usize, Vec<f64>) {
 mod tests {
     use super::*;
     use crate::averages::noise::Noise;
+    use crate::averages::{Outcome, estimated};
 
     /// A step of ten values, far above noise of known size: these are cut off, and as many again.
     #[test]
@@ -133,8 +139,11 @@ mod tests {
     }
 
     #[test]
-    fn a_transient_as_long_as_the_series_has_no_end() {
-        let decay: Vec<f64> = (0..200).map(|at| libm::exp(-f64::from(at) / 150.0)).collect();
-        assert_eq!(equilibrated(&decay), None);
+    fn a_transient_as_long_as_the_series_has_no_mean() {
+        for duration in [30.0, 75.0, 150.0] {
+            let decay: Vec<f64> = (0..200).map(|at| libm::exp(-f64::from(at) / duration)).collect();
+            let outcome = estimated(&decay, 0.0, 1.0);
+            assert!(!matches!(outcome, Outcome::Mean(_)), "{duration}: {outcome:?}");
+        }
     }
 }

@@ -105,8 +105,8 @@ pub fn of_independent(values: &[f64]) -> Option<[f64; 2]> {
 /// The mean of values one after the other in time, with the half width of its interval of 95 %: they may be correlated, and are taken to have
 /// left their start behind; none of fewer than two.
 pub fn of_correlated(values: &[f64]) -> Option<[f64; 2]> {
-    let error = (values.len() > 1).then(|| WaveError::of(values))?;
-    Some([error.mean, bar(error.without_doubt(), error.waves as f64)])
+    let error = (values.len() > 1).then(|| WaveError::of_any(values))?;
+    Some([error.mean, bar(error.standard_error, error.waves as f64)])
 }
 
 /// The outcome of a series of values `spacing` apart, the first at `from` + `spacing` (time).
@@ -155,9 +155,9 @@ pub fn estimated(series: &[f64], from: f64, spacing: f64) -> Outcome {
 impl Estimate {
     fn of(error: &WaveError, kept: &[f64], equilibrated_at: f64, spacing: f64) -> Estimate {
         let n = kept.len() as f64;
-        let carried = PER_CARRIER * carriers(kept);
+        let fewest = error.resolved.min(PER_CARRIER * carriers(kept));
         let independent_samples =
-            if carried < FEWEST_SAMPLES { error.samples.min(carried) } else { error.samples };
+            if fewest < FEWEST_SAMPLES { error.samples.min(fewest) } else { error.samples };
         let inefficiency = n / error.samples;
         Estimate {
             mean: error.mean,
@@ -199,16 +199,16 @@ mod tests {
     /// Name, series, true mean, the least share of them that has a mean.
     const SERIES: [(&str, Series, f64, f64); 11] = [
         ("independent", |seed| Noise::new(seed).series(300, 0.0), 0.0, 0.97),
-        ("100 samples", |seed| Noise::new(seed).series(1900, 0.9), 0.0, 0.97),
-        ("40 samples", |seed| Noise::new(seed).series(760, 0.9), 0.0, 0.8),
+        ("100 samples", |seed| Noise::new(seed).series(1900, 0.9), 0.0, 0.95),
+        ("40 samples", |seed| Noise::new(seed).series(760, 0.9), 0.0, 0.6),
         ("alternating", |seed| difference(&Noise::new(seed).series(401, 0.0), 0.5), 0.0, 0.97),
-        ("noise on a slow part", |seed| sum(seed, 2000, 0.3), 0.0, 0.97),
+        ("noise on a slow part", |seed| sum(seed, 2000, 0.3), 0.0, 0.7),
         ("slow transient", |seed| Noise::new(seed).relaxing(1000, 0.5, 10.0, 60.0), 0.0, 0.9),
-        ("transient", |seed| Noise::new(seed).relaxing(1000, 0.9, 10.0, 30.0), 0.0, 0.85),
-        ("small transient", |seed| Noise::new(seed).relaxing(1000, 0.5, 1.0, 50.0), 0.0, 0.9),
+        ("transient", |seed| Noise::new(seed).relaxing(1000, 0.9, 10.0, 30.0), 0.0, 0.6),
+        ("small transient", |seed| Noise::new(seed).relaxing(1000, 0.5, 1.0, 50.0), 0.0, 0.85),
         ("transient of a row", |seed| Noise::new(seed).relaxing(2000, 0.3, 5e4, 0.2), 0.0, 0.95),
         ("rise of two rows", |seed| Noise::new(seed).relaxing(300, 0.3, -4.0, 2.0), 0.0, 0.9),
-        ("skewed", |seed| energies(seed, 1000), 0.5, 0.9),
+        ("skewed", |seed| energies(seed, 1000), 0.5, 0.85),
     ];
 
     fn difference(series: &[f64], part: f64) -> Vec<f64> {
@@ -288,15 +288,56 @@ mod tests {
         }
     }
 
-    /// Of ten and of a hundred values that are known to be stationary, the bar holds the truth as often as it says.
+    /// Of values that are known to be stationary, the bar holds the truth as often as it says, down to a few independent samples; that of
+    /// a few values holds it more often.
     #[test]
     fn bars_of_stationary_values_hold_the_truth() {
-        for (length, memory) in [(10, 0.0), (100, 0.0), (100, 0.5), (400, 0.9)] {
+        for (length, memory, most) in [
+            (10, 0.0, 1.0),
+            (20, 0.0, 0.99),
+            (20, 0.5, 0.98),
+            (20, 0.8, 0.98),
+            (40, 0.9, 0.98),
+            (100, 0.0, 0.98),
+            (100, 0.95, 0.98),
+            (400, 0.9, 0.98),
+        ] {
             let found =
                 (0..1000).map(|seed| of_correlated(&Noise::new(seed).series(length, memory)).unwrap());
             let held = share(found.filter(|[mean, bar]| mean.abs() <= *bar).count(), 1000);
             println!("{length} values, {memory}: {held}");
-            assert!((0.92..=0.98).contains(&held), "{length} values, {memory}: {held}");
+            assert!((0.92..=most).contains(&held), "{length} values, {memory}: {held}");
+        }
+    }
+
+    /// Something slow beneath fast noise: a run of five of its samples seldom has a mean, however many samples of the noise there are.
+    #[test]
+    fn noise_hides_no_slow_change() {
+        for (slow_samples, most) in [(1.0, 0.1), (5.0, 0.06), (10.0, 0.12)] {
+            let memory = (1000.0 / slow_samples - 1.0) / (1000.0 / slow_samples + 1.0);
+            let series = |seed| {
+                let slow = Noise::new(seed + 1_000_000).series(1000, memory).into_iter();
+                slow.zip(Noise::new(seed).series(1000, 0.0))
+                    .map(|(a, b)| 0.3_f64.sqrt() * a + 0.7_f64.sqrt() * b)
+            };
+            let outcomes = (0..400).map(|seed| estimated(&series(seed).collect::<Vec<_>>(), 0.0, 1.0));
+            let means = outcomes.filter(|outcome| matches!(outcome, Outcome::Mean(_))).count();
+            println!("{slow_samples} slow samples: {means} of 400 have a mean");
+            assert!(share(means, 400) <= most, "{slow_samples}: {means}");
+        }
+    }
+
+    /// Of stationary series, long past their start, at most one in two hundred has a transient cut off.
+    #[test]
+    fn chance_is_no_transient() {
+        for memory in [0.0, 0.5, 0.9] {
+            let cuts = (0..1000).filter(|&seed| {
+                matches!(estimated(&Noise::new(seed).series(1000, memory), 0.0, 1.0),
+                    Outcome::Mean(estimate) if estimate.equilibrated_at > 0.0)
+            });
+            let cuts = cuts.count();
+            println!("memory {memory}: {cuts} of 1000 are cut");
+            assert!(cuts <= 5, "{memory}: {cuts}");
         }
     }
 

@@ -8,14 +8,19 @@ const SAME: f64 = 1e-9;
 /// A number is conserved where runs take it no farther from its first value than this part of what lies between the runs.
 const CONSERVED: f64 = 0.1;
 
+/// Runs of one ensemble from which on what lies between them tells the error: with fewer, Student's t of one or two degrees of freedom
+/// would make bars several times as long.
+const ENOUGH_RUNS: usize = 4;
 /// Standard deviations of χ²/(R − 1) above 1 that are chance: one of a hundred joins of runs of one ensemble is beyond.
 const CHANCE: f64 = 3.0;
 
 /// Joins the averages of runs that observe the same quantities.
 ///
 /// Runs of a closed system differ for good, as by the energy of their starts: each is one independent sample, and Student's t of R runs has
-/// R − 1 degrees of freedom. Runs that differ in no conserved number are of one ensemble: their mean has the error of theirs,
+/// R − 1 degrees of freedom. Runs that differ in no conserved number are of one ensemble and count by their time. The error of four or more is
+/// that of what lies between them. Two or three have the errors of each,
 /// and where they differ by more than chance explains, the error grows by √(χ²/(R − 1)) (Birge, Phys. Rev. 40, 207 (1932)).
+/// Where most runs are too short for a mean of their own, nothing tells whether they are past their transients: their join is too short.
 pub fn joined(runs: &[Averages]) -> Averages {
     let Some(first) = runs.first() else {
         return Averages { bar: BAR, rows: 0, span: 0.0, runs: 0, quantities: vec![] };
@@ -67,18 +72,31 @@ fn joined_outcome(outcomes: &[Outcome], spans: &[f64], is_one_ensemble: bool) ->
     if estimates.is_empty() && values.iter().all(|[mean, _]| (mean - values[0][0]).abs() <= SAME * largest) {
         return Outcome::Constant { mean: values[0][0] };
     }
+    let short = outcomes.iter().filter_map(|outcome| match *outcome {
+        Outcome::TooShort { enough_at, .. } => Some(enough_at),
+        _ => None,
+    });
+    let short: Vec<f64> = short.collect();
     let have_errors = outcomes.iter().all(|outcome| matches!(outcome, Outcome::Mean(_)));
     // Runs of one ensemble count by their time; a run that is one sample counts as much as any other.
     let by_time = is_one_ensemble && have_errors;
     let values: Vec<[f64; 2]> =
         values.into_iter().map(|[mean, span]| [mean, if by_time { span } else { 1.0 }]).collect();
-    let error = if by_time { Error::within(&estimates) } else { Error::between(&values) };
+    let independent_samples: f64 = estimates.iter().map(|it| it.independent_samples).sum();
+    let is_within = by_time && values.len() < ENOUGH_RUNS;
+    let mut error = if is_within { Error::within(&estimates) } else { Error::between(&values) };
+    if by_time {
+        error.samples = independent_samples;
+    }
     let span = parts.iter().map(|part| part.1).sum();
     let estimate = error.estimate(&values, span, &estimates);
-    let independent_samples: f64 = estimates.iter().map(|it| it.independent_samples).sum();
     if !estimates.is_empty() && independent_samples < FEWEST_SAMPLES {
         let longer = LIKELY_ENOUGH / independent_samples;
         let enough_at = estimate.equilibrated_at + longer * estimate.span / values.len() as f64;
+        return Outcome::TooShort { independent_samples, enough_at, estimate: Some(estimate) };
+    }
+    if 2 * short.len() > outcomes.len() {
+        let enough_at = short.into_iter().fold(0.0, f64::max);
         return Outcome::TooShort { independent_samples, enough_at, estimate: Some(estimate) };
     }
     Outcome::Mean(estimate)
@@ -114,11 +132,14 @@ fn weighted(values: &[[f64; 2]]) -> f64 {
 }
 
 impl Error {
-    /// Of what lies between runs of equal weight.
+    /// Of what lies between runs: as many count as would have the same error with equal weights, (Σw)²/Σw².
     fn between(values: &[[f64; 2]]) -> Error {
-        let (runs, mean) = (values.len() as f64, weighted(values));
-        let squares: f64 = values.iter().map(|[it, _]| (it - mean).powi(2)).sum();
-        Error { standard_error: (squares / runs / (runs - 1.0)).sqrt(), freedoms: runs - 1.0, samples: runs }
+        let (all, mean) = (values.iter().map(|[_, weight]| weight).sum::<f64>(), weighted(values));
+        let weights = || values.iter().map(|[it, weight]| (it - mean, weight / all));
+        let runs = 1.0 / weights().map(|(_, weight)| weight * weight).sum::<f64>();
+        let squares: f64 = weights().map(|(off, weight)| (weight * off).powi(2)).sum();
+        let freedoms = (runs - 1.0).max(1.0);
+        Error { standard_error: (squares * runs / freedoms).sqrt(), freedoms, samples: runs }
     }
 
     /// Of the errors of the runs.
@@ -176,7 +197,7 @@ mod tests {
     /// Runs of one ensemble, and runs with an energy of their own, which moves their means by three of their bars.
     #[test]
     fn joined_bars_hold_the_truth_as_often_as_they_say() {
-        for (runs, own) in [(2, 0.0), (3, 0.0), (8, 0.0), (2, 0.4), (4, 0.4), (8, 0.4)] {
+        for (runs, own) in [(2, 0.0), (3, 0.0), (4, 0.0), (8, 0.0), (2, 0.4), (4, 0.4), (8, 0.4)] {
             let held = (0..300).map(|seed| {
                 let means = Noise::new(1_000_000 + seed).series(runs, 0.0);
                 let runs = means.into_iter().zip(0_u64..).map(|(energy, run)| {
@@ -232,6 +253,31 @@ mod tests {
             let other = Outcome::Changing { first: 0.0, last: 1.0 };
             assert_eq!([join(&[a, other, gravest], true), join(&[gravest, other, a], true)], [gravest; 2]);
         }
+    }
+
+    /// By hand: means 1, 2, 3, 6 over equal times have the mean 3 and the standard error √(14/12), of three degrees of freedom, whatever the
+    /// errors of each; over times of 1, 1, 1, 3 the mean 4, and three runs' worth of weight.
+    #[test]
+    fn four_runs_of_one_ensemble_have_the_error_of_their_spread() {
+        let Outcome::Mean(some) = estimated(&Noise::new(1).series(1000, 0.5), 0.0, 1.0) else { panic!() };
+        let run = |mean, span| Outcome::Mean(Estimate { mean, span, ..some });
+        let joined = mean(join(&[run(1.0, 9.0), run(2.0, 9.0), run(3.0, 9.0), run(6.0, 9.0)], true));
+        assert!((joined.mean - 3.0).abs() < 1e-12 && (joined.freedoms - 3.0).abs() < 1e-12, "{joined:?}");
+        assert!((joined.standard_error - (14.0_f64 / 12.0).sqrt()).abs() < 1e-12, "{joined:?}");
+        assert!((joined.independent_samples / some.independent_samples - 4.0).abs() < 1e-12, "{joined:?}");
+        let joined = mean(join(&[run(1.0, 1.0), run(2.0, 1.0), run(3.0, 1.0), run(6.0, 3.0)], true));
+        assert!((joined.mean - 4.0).abs() < 1e-12 && (joined.freedoms - 2.0).abs() < 1e-12, "{joined:?}");
+    }
+
+    /// One of two runs may be too short, but not two of three.
+    #[test]
+    fn a_join_of_runs_most_of_which_are_too_short_is_too_short() {
+        let long = estimated(&Noise::new(1).series(1000, 0.5), 0.0, 1.0);
+        let short = estimated(&Noise::new(3).series(60, 0.9), 0.0, 1.0);
+        let Outcome::TooShort { enough_at, .. } = short else { panic!("{short:?}") };
+        assert!(matches!(join(&[long, short], true), Outcome::Mean(_)));
+        let Outcome::TooShort { enough_at: found, .. } = join(&[short, long, short], true) else { panic!() };
+        assert_eq!(found, enough_at);
     }
 
     /// Energies that differ make runs of a closed system independent samples; momenta of rounding do not.

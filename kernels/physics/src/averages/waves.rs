@@ -5,15 +5,19 @@ use std::f64::consts::PI;
 
 /// The number of waves for the shortest series that has a mean.
 const FEWEST: usize = 6;
+/// The same where no number of samples decides whether there is a mean: more would miss the correlations of a series of a few samples.
+const FEWEST_OF_ANY: usize = 2;
 /// The number of waves for a long series. More would make bars 5 % shorter, and miss correlations that last for a hundredth of the series.
 pub const MOST: usize = 16;
-/// Waves for the root of the number of independent samples: slower than the correlation time where there are 20 samples or more.
-const PER_ROOT: f64 = 1.2;
+/// The slowest waves, among which independent samples are counted: noise faster than these hides no slow change.
+const BAND: usize = 64;
+/// Waves for each independent sample in the band: all of them are slower than the correlation time, also beneath faster noise.
+const PER_SAMPLE: f64 = 0.25;
 /// The error is no smaller than that of this many times as many waves. It has less noise, and rarely lies below by chance.
 const WIDER: usize = 2;
-/// Independent samples at which the square of the error is taken twice: where there seem to be few samples, there often are fewer.
-/// Of series with ten samples, 4 % seem to have twenty then, and 16 % without.
-const DOUBTFUL: f64 = 15.0;
+/// Independent samples in the band at which the square of the error is taken twice: where there seem to be few samples, there often are
+/// fewer. Of series with ten samples, 1 % seem to have twenty then.
+const DOUBTFUL: f64 = 20.0;
 
 /// The mean of a stationary series and its error.
 ///
@@ -32,6 +36,8 @@ pub(super) struct WaveError {
     pub(super) waves: usize,
     /// Independent values with the same variance whose mean would have the same error.
     pub(super) samples: f64,
+    /// The same for the slowest waves alone: never more than these, and few where something slow lies beneath fast noise.
+    pub(super) resolved: f64,
     /// The same as they seem to be, without the doubt of a small number.
     pub(super) seeming: f64,
     /// Square of the slowest wave over the mean square of the others.
@@ -41,38 +47,45 @@ pub(super) struct WaveError {
 impl WaveError {
     /// Of at least two values.
     pub(super) fn of(series: &[f64]) -> WaveError {
+        WaveError::by(FEWEST, series)
+    }
+
+    /// Of at least two values that have a mean however few samples they are: its error is without the doubt of a small number.
+    pub(super) fn of_any(series: &[f64]) -> WaveError {
+        let error = WaveError::by(FEWEST_OF_ANY, series);
+        WaveError { standard_error: error.standard_error * (error.resolved / error.seeming).sqrt(), ..error }
+    }
+
+    fn by(fewest: usize, series: &[f64]) -> WaveError {
         let n = series.len() as f64;
         let mean = mean(series);
-        let variance = series.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / n;
-        let squares = squares(series, (WIDER * MOST).min(series.len() - 1));
+        let variance = series.iter().map(|value| (value - mean).powi(2)).sum::<f64>();
+        let band = squares(series, BAND.min(series.len() - 1));
+        let squares = &band[..(WIDER * MOST).min(band.len())];
         let over = |waves: usize| {
             let waves = &squares[..waves.min(squares.len())];
             waves.iter().sum::<f64>() / waves.len() as f64
         };
-        let samples = |square: f64| if square > 0.0 { n * variance / square } else { n };
-        let mut waves = FEWEST.min(squares.len());
-        while waves < MOST.min(squares.len())
-            && (waves + 1) as f64 <= PER_ROOT * samples(over(waves + 1)).sqrt()
+        let in_band = band.iter().sum::<f64>();
+        let resolved = |square: f64| if square > 0.0 { in_band / square } else { n };
+        let mut waves = fewest.min(squares.len());
+        while waves < MOST.min(squares.len()) && (waves + 1) as f64 <= PER_SAMPLE * resolved(over(waves + 1))
         {
             waves += 1;
         }
         let square = over(waves).max(over(WIDER * waves));
-        let seeming = samples(square);
-        let square = square * (1.0 + (DOUBTFUL / seeming).powi(2));
+        let seeming = resolved(square);
+        let square = square * (1.0 + (DOUBTFUL / seeming).powi(4));
         let others = (waves as f64 * over(waves) - squares[0]) / (waves as f64 - 1.0);
         WaveError {
             mean,
             standard_error: (square / n).sqrt(),
             waves,
-            samples: samples(square),
+            samples: if square > 0.0 { variance / square } else { n },
+            resolved: resolved(square),
             seeming,
             slowest: squares[0] / others,
         }
-    }
-
-    /// Standard error where no number of samples decides whether there is a mean.
-    pub(super) fn without_doubt(&self) -> f64 {
-        self.standard_error * (self.samples / self.seeming).sqrt()
     }
 
     /// Tests for drift: the slowest wave is larger than the others by more than chance explains, at a given probability.
