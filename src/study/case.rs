@@ -151,6 +151,7 @@ mod tests {
                 time: 0.0,
                 step: 0,
                 seed: None,
+                has_raised_ids: false,
             };
             write(&frame, &mut fs::File::create(&start).unwrap()).unwrap();
         };
