@@ -6,6 +6,8 @@
 #[path = "../promises/files.rs"]
 mod files;
 mod free_flight;
+#[path = "../promises/short.rs"]
+mod short;
 #[path = "../promises/table.rs"]
 mod table;
 #[path = "../promises/ways.rs"]

@@ -17,7 +17,7 @@ const SCENES: &[(&str, &[&str])] = &[
     ("plummer", &["particles.count=20", "run.steps=20"]),
 ];
 
-const NUMBERS: [&str; 7] = ["0", "-1", "1e-300", "1e300", "9e18", "nan", "inf"];
+const NUMBERS: [&str; 6] = ["0", "-1", "1e-300", "1e300", "nan", "inf"];
 
 /// Most collisions, rows, snapshots and checkpoints of a run that ends, with room for estimates of the start.
 const MOST: f64 = 1e18;
@@ -108,7 +108,7 @@ fn runs_without_an_end_are_refused_with_the_bound() {
             "hard-disks",
             &["particles.mass=9e180", "run.events=100000"],
             [
-                "`run.thermo_every` = 1 makes about",
+                "`run.thermo_every` = 5 makes about",
                 "rows in the time that `run.events` = 100000 takes",
                 "or at least",
             ],

@@ -2,6 +2,7 @@
 
 mod few;
 mod files;
+mod short;
 mod table;
 mod ways;
 

@@ -4,6 +4,7 @@
 //! as many frames and rows as the scene says, ends with the final state, and is the same bytes each time; so is the summary, but for times.
 
 use super::files::{GsdFrame, Places, TextFrame, dcd, extended_xyz, gsd, lammps_dump, table};
+use super::short::{end_of, moments, shortened};
 use super::ways::ways;
 use rand::RngExt;
 use serde_json::Value;
@@ -16,10 +17,9 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread;
 use stripmine::provenance::built;
 use stripmine_kernels::noise::{Purpose as Of, Stream};
-use stripmine_physics::method::{Clock, Entry, Every, Methods, Prepared, Purpose, Schedule, Until, load};
+use stripmine_physics::method::{Entry, Every, Methods, Prepared, Schedule, load};
 use stripmine_physics::particles::Particles;
 use stripmine_physics::run::{Ending, Existing, Job, run};
-use stripmine_physics::scene::Kind;
 
 /// How much of the table is held.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -30,9 +30,6 @@ pub enum Extent {
     Full,
 }
 
-/// Runs of more particles are made of this many.
-const MANY: usize = 500;
-const FEWER: usize = 200;
 /// Cases at a time: most of the time goes by until files are on the disk.
 const AT_A_TIME: usize = 6;
 
@@ -122,60 +119,6 @@ fn cases(methods: Methods, entry: &'static Entry, extent: Extent) -> Vec<Case> {
         }
     }
     cases
-}
-
-/// What makes a preset short: fewer particles, a part of its length, all files, rows and frames that are due at several moments, of
-/// which the end is none for frames.
-fn shortened(methods: Methods, entry: &'static Entry, preset: &str) -> Vec<String> {
-    let prepared = |overrides: &[String]| load(preset, overrides, methods).map(|(prepared, _)| prepared);
-    let whole = prepared(&[]).expect("a preset is a scene");
-    let mut overrides: Vec<String> = entry
-        .vocabulary
-        .keys
-        .section("output")
-        .filter(|key| key.kind == Kind::Switch)
-        .map(|key| format!("output.{}=true", key.name))
-        // Some files are not of every scene.
-        .filter(|asked| prepared(std::slice::from_ref(asked)).is_ok())
-        .collect();
-    let fewer = [overrides.clone(), vec![format!("particles.count={FEWER}")]].concat();
-    if whole.particles().len() > MANY && prepared(&fewer).is_ok() {
-        overrides = fewer;
-    }
-    overrides.push(match whole.schedule.until {
-        Until::Steps(steps) => format!("run.steps={}", steps.min(60)),
-        Until::Events(events) => format!("run.events={}", events / 100),
-        Until::Time(time) => format!("run.time={:?}", time / 8.0),
-    });
-    let short = prepared(&overrides).expect("it is a scene that is short");
-    let (clock, ..) = end_of(&short);
-    let every = |parts: f64| match short.schedule.rows {
-        Every::Time(_) => format!("{:?}", clock.time / parts),
-        _ => format!("{}", (clock.steps as f64 / parts) as u64),
-    };
-    overrides.extend([
-        format!("run.thermo_every={}", every(11.0)),
-        format!("run.snapshot_every={}", every(7.3)),
-        format!("run.checkpoint_every={}", every(4.1)),
-    ]);
-    overrides
-}
-
-/// How a scene ends that nothing is written of: when, with which particles, and their positions alone.
-fn end_of(prepared: &Prepared) -> (Clock, Particles, Vec<[f32; 3]>) {
-    let mut simulation = prepared.start(Purpose::Run).expect("it starts");
-    simulation.advance(&[prepared.schedule.until], &AtomicBool::new(false)).expect("it does not break");
-    (simulation.clock(), simulation.particles(), simulation.positions())
-}
-
-/// The moments at which something is due up to the end, that of the start among them.
-fn moments(every: Every, end: &Clock) -> Vec<f64> {
-    let (every, end) = match every {
-        Every::Time(every) => (every, end.time),
-        Every::Steps(every) => (every as f64, end.steps as f64),
-        Every::Never | Every::Seconds(_) => return vec![0.0],
-    };
-    (0..).map(|times| f64::from(times) * every).take_while(|moment| *moment <= end).collect()
 }
 
 fn places(particles: &Particles) -> Places {

@@ -11,6 +11,7 @@ mod functions;
 mod goal;
 mod growing;
 mod identity;
+mod on_request;
 mod pace;
 mod recorder;
 mod structured;

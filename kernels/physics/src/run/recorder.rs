@@ -1,12 +1,13 @@
 //! The folder of a run: what is written when.
 
 use super::finished::{LONGEST_SCENE, rows_of};
-use super::folder::{DATA, DCD, DUMP, EVENTS, GSD, RunFolder, SCENE, SUMMARY, THERMO, TRAJECTORY};
+use super::folder::{DATA, GSD, RunFolder, SCENE, SUMMARY, THERMO, TRAJECTORY};
 use super::goal::{Goal, Known};
 use super::growing::{Growing, Kept, logged_of};
 use super::identity::{BITS, Identity, same_scene};
+use super::on_request::on_request;
 use super::pace::Pace;
-use super::structured::{Structured, chosen};
+use super::structured::Structured;
 use super::table::TableReader;
 use super::{Existing, Job, RunError, Summary};
 use crate::averages::{Averages, Rows};
@@ -17,7 +18,7 @@ use crate::io::extxyz::Frame;
 use crate::io::gsd::LoggedFrame;
 use crate::io::{FileError, lammps, regular_file};
 use crate::method::{
-    Clock, Every, Failure, FailureKind, Prepared, Quantity, Schedule, Simulation, Snapshot, Until, is_sound,
+    Clock, Every, Failure, FailureKind, Quantity, Schedule, Simulation, Snapshot, Until, is_sound,
 };
 use crate::quoted;
 use crate::scene::Output;
@@ -427,20 +428,6 @@ fn overflow(at: Clock, quantity: &'static str, value: f64) -> Failure {
     let remedy = "the units make masses, speeds or stiffness too large for double precision; choose units in which they are \
                   nearer to 1";
     Failure::new(FailureKind::OVERFLOW, what, remedy).at(at).with([(quantity, value)])
-}
-
-/// The files that a scene asks for beyond what every run writes.
-fn on_request(prepared: &Prepared) -> Vec<&'static str> {
-    let output = &prepared.output;
-    let asked = [
-        (output.lammps_dump, DUMP),
-        (output.dcd, DCD),
-        (output.gsd, GSD),
-        (output.lammps_data, DATA),
-        (prepared.event_columns.is_some(), EVENTS),
-    ];
-    let structure = chosen(output).map(|observable| observable.file);
-    asked.into_iter().filter_map(|(asked, name)| asked.then_some(name)).chain(structure).collect()
 }
 
 /// Refuses another scene than that of a run which has no checkpoint yet.

@@ -17,8 +17,9 @@ const SIZES: usize = 4;
 const ANGLES: usize = 256;
 /// Samples of each bin.
 const SAMPLES: usize = 1 << 14;
-/// Edge of the cells of the grid over the smallest radius; cells at most.
-const EDGE: f64 = 0.08;
+/// Edge of the cells of the grid over the radius, a power of two: rims of walls at multiples of a radius from a side lie between cells. Cells
+/// at most.
+const EDGE: f64 = 0.0625;
 const MOST_CELLS: f64 = 4e6;
 /// A sequence that fills a square evenly: powers of the inverse of the root of x³ = x + 1.
 const EVEN: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];

@@ -34,7 +34,10 @@ pub static OBSERVABLES: [Observable; 16] = [
                  and Stoyan 1994)",
         seen: Seen::Once {
             over: Over::Axis(pairs::distances),
-            of: pairs::correlation,
+            of: |it, values, weights| match &it.heights {
+                Some(heights) => pairs::correlation_over(&it.distances, &heights.pairs, values, weights),
+                None => pairs::correlation(&it.discs, &it.distances, &it.chances, values),
+            },
             further: 0,
             asks: Asks::Distances,
         },

@@ -2,7 +2,6 @@
 
 use super::cells::{AT_ONCE, Cells};
 use super::discs::Discs;
-use super::look::Look;
 use super::setting::Setting;
 use crate::particles::Particle;
 use rayon::iter::{
@@ -130,17 +129,16 @@ pub fn pair_counts_of_all(setting: &Setting, discs: &[Particle]) -> Vec<u64> {
     counts
 }
 
-/// g(r) in each bin: pairs over those that an ideal gas has on average.
-pub(super) fn correlation(look: &Look, values: &mut [f64], weights: &mut [f64]) {
-    let Look { discs, distances: found, chances, heights, .. } = look;
-    if let Some(heights) = heights {
-        // A mean over moments is all pairs over all those of the ideal gases.
-        let bins = values.iter_mut().zip(weights).zip(&found.counts).zip(&heights.pairs);
-        for (((value, weight), &count), &pairs) in bins {
-            (*value, *weight) = if pairs > 0.0 { (count as f64 / pairs, pairs) } else { (0.0, 0.0) };
-        }
-        return;
+/// g(r) in each bin: pairs over those of an ideal gas of this moment. A mean over moments is all pairs over all those of the ideal gases.
+pub(super) fn correlation_over(found: &Distances, pairs: &[f64], values: &mut [f64], weights: &mut [f64]) {
+    let bins = values.iter_mut().zip(weights).zip(&found.counts).zip(pairs);
+    for (((value, weight), &count), &pairs) in bins {
+        (*value, *weight) = if pairs > 0.0 { (count as f64 / pairs, pairs) } else { (0.0, 0.0) };
     }
+}
+
+/// g(r) in each bin: pairs over those that an ideal gas has on average, of which each pair has a `chance`.
+pub(super) fn correlation(discs: &Discs, found: &Distances, chances: &[f64], values: &mut [f64]) {
     let discs = discs.x.len() as f64;
     let pairs = 0.5 * discs * (discs - 1.0);
     for ((value, &count), &chance) in values.iter_mut().zip(&found.counts).zip(chances) {

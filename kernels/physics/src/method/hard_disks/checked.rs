@@ -2,7 +2,6 @@
 
 use super::compress::compress;
 use super::fast;
-use super::foreseen::endless;
 use super::idle::never;
 use super::keys::{ENGINE, EVENTS, FLOOR_AMPLITUDE, MASK, MASKS};
 use super::options::EngineChoice;
@@ -85,7 +84,7 @@ pub(super) fn prepare(values: Values) -> Result<Prepared, SceneErrors> {
     }
     let particles = Arc::new(particles);
     let checked = Checked { scene, domain, particles, mask, warnings, choices };
-    SceneErrors::none_of(endless(&values, &checked).into_iter().collect())?;
+    SceneErrors::none_of(checked.endless(&values).into_iter().collect())?;
     Ok(checked.prepared())
 }
 

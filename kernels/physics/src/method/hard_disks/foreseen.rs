@@ -86,55 +86,57 @@ fn rate(checked: &Checked) -> f64 {
     (enskog(checked, speed) + at_sides.sum::<f64>()) * checked.particles.len() as f64
 }
 
-/// A run without an end: more collisions than can be counted, or more rows, snapshots or checkpoints than can be written.
-pub(super) fn endless(values: &Values, checked: &Checked) -> Option<SceneError> {
-    let (run, rate) = (&checked.scene.run, rate(checked));
-    let number = |value: f64| significant(value, 3);
-    let duration = match run.until {
-        Until::Time(time) => {
-            if time * rate > MOST_EVENTS as f64 {
-                let message = format!(
-                    "`{}` = {} takes about {} collisions, at the speeds that discs, gravity and sides give",
-                    TIME.path(),
-                    number(time),
-                    number(time * rate)
-                );
-                let error = values.spot(&TIME).error(Reason::Range, message);
-                return Some(error.expecting(format!(
-                    "a time of at most {}, for {} collisions",
-                    number(MOST_EVENTS as f64 / rate),
-                    number(MOST_EVENTS as f64)
-                )));
+impl Checked {
+    /// A run without an end: more collisions than can be counted, or more rows, snapshots or checkpoints than can be written.
+    pub(super) fn endless(&self, values: &Values) -> Option<SceneError> {
+        let (run, rate) = (&self.scene.run, rate(self));
+        let number = |value: f64| significant(value, 3);
+        let duration = match run.until {
+            Until::Time(time) => {
+                if time * rate > MOST_EVENTS as f64 {
+                    let message = format!(
+                        "`{}` = {} takes about {} collisions, at the speeds that discs, gravity and sides give",
+                        TIME.path(),
+                        number(time),
+                        number(time * rate)
+                    );
+                    let error = values.spot(&TIME).error(Reason::Range, message);
+                    return Some(error.expecting(format!(
+                        "a time of at most {}, for {} collisions",
+                        number(MOST_EVENTS as f64 / rate),
+                        number(MOST_EVENTS as f64)
+                    )));
+                }
+                time
             }
-            time
-        }
-        Until::Events(events) => events as f64 / rate,
-        Until::Steps(_) => return None,
-    };
-    let schedule = run.schedule();
-    let written = [
-        (&THERMO_EVERY, schedule.rows, "rows"),
-        (&SNAPSHOT_EVERY, schedule.snapshots, "snapshots"),
-        (&CHECKPOINT_EVERY, schedule.checkpoints, "checkpoints"),
-    ];
-    written.into_iter().find_map(|(key, every, what)| {
-        let Every::Time(every) = every else { return None };
-        let too_many = duration / every > MOST_WRITTEN;
-        too_many.then(|| {
-            let length = match run.until {
-                Until::Events(events) => format!("the time that `{}` = {events} takes", EVENTS.path()),
-                _ => format!("`{}` = {}", TIME.path(), number(duration)),
-            };
-            let message = format!(
-                "`{}` = {} makes about {} {what} in {length}",
-                key.path(),
-                number(every),
-                number(duration / every)
-            );
-            let error = values.spot(key).error(Reason::Range, message);
-            error.expecting(format!("0 for none, or at least {}", number(duration / MOST_WRITTEN)))
+            Until::Events(events) => events as f64 / rate,
+            Until::Steps(_) => return None,
+        };
+        let schedule = run.schedule();
+        let written = [
+            (&THERMO_EVERY, schedule.rows, "rows"),
+            (&SNAPSHOT_EVERY, schedule.snapshots, "snapshots"),
+            (&CHECKPOINT_EVERY, schedule.checkpoints, "checkpoints"),
+        ];
+        written.into_iter().find_map(|(key, every, what)| {
+            let Every::Time(every) = every else { return None };
+            let too_many = duration / every > MOST_WRITTEN;
+            too_many.then(|| {
+                let length = match run.until {
+                    Until::Events(events) => format!("the time that `{}` = {events} takes", EVENTS.path()),
+                    _ => format!("`{}` = {}", TIME.path(), number(duration)),
+                };
+                let message = format!(
+                    "`{}` = {} makes about {} {what} in {length}",
+                    key.path(),
+                    number(every),
+                    number(duration / every)
+                );
+                let error = values.spot(key).error(Reason::Range, message);
+                error.expecting(format!("0 for none, or at least {}", number(duration / MOST_WRITTEN)))
+            })
         })
-    })
+    }
 }
 
 #[cfg(test)]

@@ -31,15 +31,23 @@ fn pass(arena: &Arena, a: &Disc, b: &Disc) -> bool {
     let time = a.time.max(b.time);
     let [dx, dy] = arena.domain.displacement(a.at(&arena.space, time), b.at(&arena.space, time));
     let period = |axis: usize| if arena.domain.is_periodic(axis) { arena.domain.length(axis) } else { 0.0 };
-    let lines = common_measure((period(0) * v).abs(), (period(1) * u).abs());
+    let across = [(period(0) * v).abs(), (period(1) * u).abs()];
+    if !across.iter().all(|length| length.is_finite()) {
+        // Too fast or too far for a number: they may meet.
+        return false;
+    }
+    let lines = common_measure(across[0], across[1]);
     let off = (dx * v - dy * u).abs();
     let off = if lines > 0.0 { (off % lines).min(lines - off % lines) } else { off };
     off > (a.radius + b.radius) * u.hypot(v) * ROUNDED_UP
 }
 
 /// The largest number of which both are multiples: 0 of two zeros. The remainder of two numbers is exact.
-fn common_measure(a: f64, b: f64) -> f64 {
-    if b == 0.0 { a } else { common_measure(b, a % b) }
+fn common_measure(mut a: f64, mut b: f64) -> f64 {
+    while b > 0.0 {
+        (a, b) = (b, a % b);
+    }
+    a
 }
 
 #[cfg(test)]
