@@ -158,10 +158,14 @@ pub(super) fn begin(ranks: &dyn Ranks, same: &str) -> Result<(), Failure> {
     }
 }
 
+/// How long others are waited for before this is said, and how much longer before this process ends (s).
+#[cfg(feature = "mpi")]
+const PATIENCE: [u64; 2] = [20, 280];
+
 /// What a process does that waits for others to join: the first two say so, for one of them may be missing itself; all end in the end.
 #[cfg(feature = "mpi")]
 fn waiting(Launched { rank, count, .. }: Launched) -> Vec<(std::time::Duration, joining::Act)> {
-    let [notice, end] = joining::PATIENCE;
+    let [notice, end] = PATIENCE;
     let words = move |seconds: u64| {
         format!("rank {rank} waits for others of {count} processes, which have not joined for {seconds} s")
     };
@@ -183,7 +187,9 @@ fn waiting(Launched { rank, count, .. }: Launched) -> Vec<(std::time::Duration, 
         std::process::exit(failure.exit_code().into());
     };
     let seconds = std::time::Duration::from_secs;
-    vec![(seconds(notice), Box::new(warns)), (seconds(end), Box::new(ends))]
+    let acts: [(std::time::Duration, joining::Act); 2] =
+        [(seconds(notice), Box::new(warns)), (seconds(end), Box::new(ends))];
+    acts.into()
 }
 
 #[cfg(not(feature = "mpi"))]

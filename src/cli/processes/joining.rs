@@ -4,9 +4,6 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::Duration;
 
-/// How long others are waited for before this is said, and how much longer before this process ends (s).
-pub(super) const PATIENCE: [u64; 2] = [20, 280];
-
 /// What is done after a time of waiting.
 pub(super) type Act = Box<dyn FnOnce() + Send>;
 
