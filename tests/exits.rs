@@ -352,3 +352,45 @@ fn launchers_are_asked_for_what_starts_something() {
     command.current_dir(folder.path()).args(run).args(["--out", "alone"]).env("SLURM_NTASKS", "8");
     assert!(command.env("SLURM_PROCID", "0").output().unwrap().status.success());
 }
+
+/// A number of threads in the environment that cannot be is refused with the variable; without a number, or with one on the command line, it does
+/// not matter.
+#[test]
+fn threads_of_the_environment_have_a_bound() {
+    let folder = tempfile::tempdir().unwrap();
+    for (given, more, code) in [
+        ("", &[][..], 0),
+        ("0", &[], 0),
+        ("2", &[], 0),
+        ("1025", &[], 2),
+        ("18446744073709551615", &[], 2),
+        ("-1", &[], 2),
+        ("many", &[], 2),
+        ("many", &["--threads", "1"], 0),
+    ] {
+        let mut command = Command::cargo_bin("stripmine").unwrap();
+        command.current_dir(folder.path()).args(["table"]).args(more).env("RAYON_NUM_THREADS", given);
+        let output = command.output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(code), "{given} {more:?}: {said}");
+        assert!(
+            code == 0 || said.contains("RAYON_NUM_THREADS is") && said.contains("from 1 to 1024"),
+            "{said}"
+        );
+    }
+}
+
+/// Runs with several seeds that end before their time leave no summary of the runs that they write over.
+#[test]
+fn a_summary_of_seeds_goes_with_its_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let begin = ["run", "dense-gas", "--seeds", "2", "--out", "all", "--quiet", "--set", "run.steps=400"];
+    let summary = folder.path().join("all/seeds.json");
+    let whole = stripmine(folder.path(), &begin);
+    assert!(whole.status.success() && summary.is_file(), "{}", String::from_utf8_lossy(&whole.stderr));
+    // Discs so soft that they pass into each other.
+    let broken = ["--overwrite", "--set", "law.stiffness=1e-3"];
+    let output = stripmine(folder.path(), &[&begin[..], &broken].concat());
+    assert_eq!(output.status.code(), Some(4), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(folder.path().join("all/seed-1").is_dir() && !summary.exists());
+}

@@ -2,8 +2,8 @@
 
 use assert_cmd::Command;
 use std::path::{Path, PathBuf};
-use stripmine_physics::method::METHODS;
 use stripmine_physics::method::lattice_md::{Document, ENTRY, GearValues, Scene, Scheme};
+use stripmine_physics::method::{METHODS, load};
 use stripmine_physics::particles;
 use stripmine_physics::scene::{Kind, Reason, Start};
 
@@ -415,5 +415,56 @@ fn resolved_scenes_are_scenes() {
         let (again, _) = stripmine_physics::method::load(file, &[], METHODS)
             .unwrap_or_else(|errors| panic!("{}: {errors}", preset.name));
         assert_eq!(again.scene, prepared.scene, "{}", preset.name);
+    }
+}
+
+/// A grain that flies, or falls, out of an open side before the end of the run is warned of. By hand: from x = 3 at speed 1 to 12, and from y = 4
+/// by gt²/2 to 0.
+#[test]
+fn open_sides_that_hold_nothing_back_are_warned_of() {
+    let strip = "domain.periodic=[true, false]";
+    let falls = "domain.gravity=[0.0, -0.1]";
+    for (time, more, is_warned) in [
+        ("8.9", &[][..], false),
+        ("9.1", &[], true),
+        ("9.1", &[strip], false),
+        ("8.9", &[strip, falls], false),
+        ("9.0", &[strip, falls], true),
+        ("9.1", &["particles.wall_positions=[[6.0, 0.5]]"], false),
+    ] {
+        let time = format!("run.time={time}");
+        let mut arguments = vec!["scene", "check", "two-discs", "--set", &time];
+        more.iter().for_each(|set| arguments.extend(["--set", set]));
+        let output = stripmine(&arguments);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{arguments:?}: {said}");
+        assert_eq!(
+            said.contains("domain.periodic: sides that are not periodic hold nothing back"),
+            is_warned,
+            "{said}"
+        );
+    }
+}
+
+/// Sentences keep their digits in any unit of length: discs of 1.25 nm in a box of 40 nm × 30 nm, in metres.
+#[test]
+fn facts_keep_their_digits_in_any_unit_of_length() {
+    let small = [
+        "particles.generate=random",
+        "particles.count=4",
+        "particles.radius=1.25e-9",
+        "domain.sides=[4e-8, 3e-8]",
+    ];
+    for (preset, expected) in [
+        ("hard-disks", &[("radii", "1.25e-9 to 1.25e-9"), ("box", "4e-8 × 3e-8")][..]),
+        ("langevin-free", &[("box", "4e-8 × 3e-8")]),
+    ] {
+        let (prepared, _) =
+            load(preset, &small.map(str::to_owned), METHODS).unwrap_or_else(|why| panic!("{preset}: {why}"));
+        let facts: Vec<&(&str, String)> =
+            prepared.facts.iter().filter_map(|fact| fact.words.as_ref()).collect();
+        for (label, words) in expected {
+            assert!(facts.iter().any(|fact| fact.0 == *label && fact.1 == *words), "{label}: {facts:?}");
+        }
     }
 }
