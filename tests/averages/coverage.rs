@@ -155,7 +155,7 @@ fn is_as_claimed(share: f64, count: f64) -> bool {
 }
 
 /// So many seeds of runs.
-fn seeds(count: u64) -> impl rayon::iter::IndexedParallelIterator<Item = u64> {
+fn seeds(count: u64) -> impl ParallelIterator<Item = u64> {
     (FIRST_SEED..FIRST_SEED + count).into_par_iter()
 }
 
