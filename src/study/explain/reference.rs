@@ -178,8 +178,7 @@ fn changes(sample: &Sample) -> bool {
     match sample.outcome {
         Outcome::Changing { .. } => true,
         _ => {
-            has_died_out
-                || sample.known().is_some_and(|known| known.mean.abs() + known.bar < DEAD * largest)
+            has_died_out || sample.known().is_some_and(|known| known.mean.abs() + known.bar < DEAD * largest)
         }
     }
 }
