@@ -157,7 +157,7 @@ mod tests {
         };
         written(gas.particles());
         let text = format!(
-            "format = 2\n[method]\nkind = \"hard-disks\"\n[domain]\nsides = {:?}\n[particles]\nfile = \"start.xyz\"\n[run]\ntime = 1.0\n",
+            "format = 2\nunits = \"reduced\"\n[method]\nkind = \"hard-disks\"\n[domain]\nsides = {:?}\n[particles]\nfile = \"start.xyz\"\n[run]\ntime = 1.0\n",
             gas.domain.lengths()
         );
         fs::write(&scene, &text).unwrap();

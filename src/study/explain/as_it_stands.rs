@@ -9,12 +9,15 @@ use crate::study::Case;
 /// What the decision is about that leaves the scene as it stands.
 pub(super) const AS_IT_STANDS: &str = "the scene";
 
+/// Errors are alike that differ by rounding alone.
+const ROUNDING: f64 = 1e-9;
+
 impl Plan {
     /// The plan; or the scene as it stands, where its error is as small and it takes no longer.
     #[must_use]
     pub(super) fn or_as_it_stands(self, case: &Case, findings: &Findings) -> Plan {
         let is_better = |own: &super::recommended::Own| {
-            own.seconds <= self.seconds.likely && own.error.most <= self.expected.most
+            own.seconds <= self.seconds.likely && own.error.most <= self.expected.most * (1.0 + ROUNDING)
         };
         let Some(own) = self.own.clone().filter(is_better) else { return self };
         let of_own = findings.ways.iter().find(|way| way.label == case.own.label());

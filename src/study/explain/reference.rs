@@ -172,9 +172,14 @@ fn changes(sample: &Sample) -> bool {
         return false;
     }
     let largest = sample.series.iter().fold(0.0_f64, |largest, [_, value]| largest.max(value.abs()));
+    // Too little of what has died out may be left for a mean.
+    let last = &sample.series[sample.series.len() * 3 / 4..];
+    let has_died_out = !last.is_empty() && last.iter().all(|[_, value]| value.abs() < DEAD * largest);
     match sample.outcome {
         Outcome::Changing { .. } => true,
-        _ => sample.known().is_some_and(|known| known.mean.abs() + known.bar < DEAD * largest),
+        _ => {
+            has_died_out || sample.known().is_some_and(|known| known.mean.abs() + known.bar < DEAD * largest)
+        }
     }
 }
 

@@ -168,7 +168,8 @@ fn charged(phase: Phase, amounts: &Amounts) -> Amounts {
 mod tests {
     use super::*;
 
-    /// Runs that scatter by a factor of a thousand, as on a busy machine: what is fitted stays within the scatter of what was measured.
+    /// Runs that scatter by a factor of a thousand, as on a busy machine: what is fitted stays within the square of
+    /// that scatter, and does not grow with the rounds.
     #[test]
     fn scattered_runs_do_not_drive_units_and_slowdowns_apart() {
         let done = |size: usize, run: usize| {
@@ -178,7 +179,7 @@ mod tests {
         };
         let of = |size| (0..5).map(|run| done(size, run)).collect();
         let (_, slower) = fitted(&[(0..6).map(of).collect()]);
-        assert!(slower.iter().all(|it| (1e-4..1e4).contains(it)), "{slower:?}");
+        assert!(slower.iter().all(|it| (1e-6..1e6).contains(it)), "{slower:?}");
     }
 
     /// Two precisions, of which the second takes twice as long; of a thousand discs there is one run alone, of ten thousand none.
