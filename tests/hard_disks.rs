@@ -399,6 +399,10 @@ fn a_thermal_wall_has_a_seed() {
         rows(&out)
     };
     assert_eq!(one("default", &[]), seeds[0]);
+    // Joins tell runs apart by it.
+    assert!(
+        fs::read_to_string(folder.path().join("default/scene.toml")).unwrap().contains("\nnoise_seed = 1\n")
+    );
     assert_eq!(one("two", &["--set", "law.noise_seed=2"]), seeds[1]);
     // The written scene says the seed, and gives the same run.
     let written = out.join("seed-3").join("scene.toml");

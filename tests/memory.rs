@@ -285,6 +285,29 @@ fn no_limit_of_memory_aborts_a_verb() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
+/// Measurements and comparisons ask for memory too, before they take it: these do not fit into 300 MiB, with some 700 bytes a disc
+/// and, to compare, two runs at once.
+#[test]
+fn every_verb_that_simulates_asks_for_memory() {
+    let folder = tempfile::tempdir().unwrap();
+    for words in [
+        "bench lattice --particles 500000 --steps 1 --repeats 1 --threads 2",
+        "bench lattice --particles 500000 --steps 1 --repeats 1 --threads 1,2",
+        "compare dense-gas --set particles.count=200000 --set run.steps=2 --against machine.engine=programs",
+        "run bench --set particles.count=500000 --set run.steps=2 --out out",
+        // The stacks of 63 more threads.
+        "run dense-gas --ranks 8 --threads 8 --set run.steps=2 --out out",
+    ] {
+        let script = format!("ulimit -v {} && exec \"$0\" {words}", 300 * 1024);
+        let mut command = Command::new("sh");
+        command.args(["-c", &script, env!("CARGO_BIN_EXE_stripmine")]).current_dir(folder.path());
+        let output = command.output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(3), "{words}: {said}");
+        assert!(said.contains("bytes of memory") && said.contains("(ulimit -v)"), "{words}: {said}");
+    }
+}
+
 /// Bytes of the process while it refuses: a tenth of a gigabyte is far below what it was asked for.
 #[test]
 fn what_does_not_fit_is_refused_before_it_is_made() {

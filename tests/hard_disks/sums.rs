@@ -101,6 +101,8 @@ fn a_single_disc_has_a_temperature_where_something_is_thermal() {
     let found = average(&summary, "temperature");
     let [mean, bar] = ["mean", "bar"].map(|name| found[name].as_f64().unwrap_or(f64::NAN));
     assert!((mean - 2.0).abs() < 2.0 * bar && bar < 0.4, "{found}");
+    // By hand at the start: (1 + 0.09)/2, though the box is periodic along x.
+    assert_eq!(column(&folder.path().join("hot"), "temperature")[0], 0.545);
     assert!(column(&folder.path().join("hot"), "compressibility").iter().all(|&z| z == 1.0));
     let scene =
         listed(folder.path(), "sides = [10.0, 10.0]", "[[2.0, 2.0]]", "[[1.0, 0.3]]", "[run]\ntime = 20.0");
@@ -183,8 +185,8 @@ fn work_is_what_collisions_take() {
 #[test]
 fn overlaps_of_the_last_digit_are_taken() {
     let folder = tempfile::tempdir().unwrap();
-    let begin = |by: f64| {
-        let positions = format!("[[2.0, 2.0], [{:?}, 2.0], [9.5, 9.5]]", 3.0 - by);
+    let begin_at = |by: f64, beyond: f64| {
+        let positions = format!("[[2.0, 2.0], [{:?}, 2.0], [9.5, {:?}]]", 3.0 - by, 9.5 + beyond);
         let domain = "sides = [10.0, 10.0]\nperiodic = [true, false]";
         listed(
             folder.path(),
@@ -194,7 +196,12 @@ fn overlaps_of_the_last_digit_are_taken() {
             "[run]\nevents = 50",
         )
     };
+    let begin = |by: f64| begin_at(by, 0.0);
     let check = |scene: &str| stripmine(&["scene", "check", scene]);
+    // Beyond a closed side by 4e-9 of a radius of 1/2.
+    let checked = check(&begin_at(0.0, 4e-9));
+    let text = said(&checked) + &String::from_utf8_lossy(&checked.stdout);
+    assert!(checked.status.success() && text.contains("in 1 places, by up to 8e-9 of their radii"), "{text}");
     let scene = begin(8e-9);
     let checked = check(&scene);
     let text = said(&checked) + &String::from_utf8_lossy(&checked.stdout);

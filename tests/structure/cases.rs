@@ -84,10 +84,10 @@ fn large_discs_have_all_their_neighbours() {
         }
         assert!(summed(folder.path(), "ring", "coordination")["doubt"].is_null());
     }
-    // A disc alone has no order, which is said and not 0.
+    // A disc alone and at rest has no order and no velocities, which is said and not 0.
     let name = scene(folder.path(), "alone.toml", &listed([9.0; 2], &[0.5], &[[4.0, 4.0]]));
-    run(folder.path(), &name, "alone", &[&structure(&["psi6", "g(r)", "density(x)"])], &[]);
-    for name in ["psi6", "g(r)"] {
+    run(folder.path(), &name, "alone", &[&structure(&["psi6", "g(r)", "density(x)", "velocities"])], &[]);
+    for name in ["psi6", "g(r)", "velocities"] {
         let said = summed(folder.path(), "alone", name);
         assert!(said["headlines"].as_array().unwrap().is_empty(), "{said}");
         assert!(said["doubt"].as_str().unwrap().starts_with("there was nothing to be seen at"), "{said}");
@@ -96,6 +96,26 @@ fn large_discs_have_all_their_neighbours() {
     let density: Vec<[f64; 3]> = rows(folder.path(), "alone", "density(x)");
     assert_eq!(density.iter().filter(|[_, density, bar]| *density > 0.0 && *bar == 0.0).count(), 1);
     assert_eq!(density.iter().filter(|[_, density, bar]| *density == 0.0 && bar.is_nan()).count(), 99);
+}
+
+/// Pairs 1.11 apart on a square lattice of 2.79: by hand a disc has one other at 1.11 and four at 2.79, so that the second peak is higher, by
+/// 4/2.79 to 1/1.11. The first one is meant.
+#[test]
+fn the_first_peak_is_not_the_highest_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let places = (0..32).map(|disc| {
+        let [column, row] = [disc / 2 % 4, disc / 8].map(|at| 1.0 + 2.79 * f64::from(at));
+        [column + 1.11 * f64::from(disc % 2), row]
+    });
+    let text = listed([11.16; 2], &[0.5; 32], &places.collect::<Vec<_>>());
+    let name = scene(folder.path(), "pairs.toml", &text);
+    run(folder.path(), &name, "pairs", &[&structure(&["g(r)"])], &[]);
+    let g: Vec<[f64; 3]> = rows(folder.path(), "pairs", "g(r)");
+    let at = |r: f64| g.iter().find(|row| (row[0] - r).abs() < 1e-9).unwrap()[1];
+    assert!((at(2.79) / at(1.11) - 4.0 * 1.11 / 2.79).abs() < 1e-9, "{} {}", at(2.79), at(1.11));
+    let [place, _] = headline(folder.path(), "pairs", "g(r)", "place of the first peak");
+    let [height, _] = headline(folder.path(), "pairs", "g(r)", "height of the first peak");
+    assert!((place - 1.11).abs() < 1e-9 && (height / at(1.11) - 1.0).abs() < 1e-12, "{place} {height}");
 }
 
 /// A gas between walls that are discs has g = 1, in channels of two widths in boxes of two heights.
