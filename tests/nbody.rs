@@ -286,3 +286,22 @@ fn the_step_is_held_against_its_limit() {
         }
     }
 }
+
+/// Two bodies so light that they fly straight, from ±1 at speed 1 in steps of a half: after six steps they are at ±4, and on the way at every
+/// multiple of a half, wherever a sweep may keep the entries that are no bodies.
+#[test]
+fn light_bodies_fly_straight() {
+    let folder = tempfile::tempdir().unwrap();
+    let bodies = "particles.bodies=[[1e-60, 1, 0, 0, 1, 0, 0], [1e-60, -1, 0, 0, -1, 0, 0]]";
+    for (engine, kind) in
+        [("fast", "leapfrog"), ("fast", "hermite-4"), ("programs", "leapfrog"), ("reference", "leapfrog")]
+    {
+        let [engine_key, kind_key] = [format!("machine.engine={engine}"), format!("integrator.kind={kind}")];
+        let sets =
+            ["particles.generate=list", bodies, "integrator.dt=0.5", "run.steps=6", &engine_key, &kind_key];
+        let out = folder.path().join(format!("{engine}-{kind}"));
+        run("figure-eight", &out, &sets, &[]);
+        let places: Vec<f64> = last_frame(&out).iter().map(|numbers| numbers[0]).collect();
+        assert_eq!(places, [4.0, -4.0], "{engine} {kind}");
+    }
+}
