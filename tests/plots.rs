@@ -190,7 +190,10 @@ fn a_chart_has_the_mean_of_the_summary_and_its_transient() {
     let folder = tempfile::tempdir().unwrap();
     let run = folder.path().join("dense");
     let (run, plots) = (run.to_str().unwrap(), folder.path().join("pictures"));
-    assert!(stripmine(&["run", "langevin-dense", "--quiet", "--out", run]).status.success());
+    let hot = ["--set", "particles.temperature=20.0"];
+    assert!(
+        stripmine(&[&["run", "langevin-dense", "--quiet", "--out", run], &hot[..]].concat()).status.success()
+    );
     let plotted = stripmine(&["plot", run, "--columns", "potential,msd", "--out", plots.to_str().unwrap()]);
     assert!(plotted.status.success(), "{}", String::from_utf8_lossy(&plotted.stderr));
     let summary = fs::read_to_string(folder.path().join("dense/summary.json")).unwrap();
