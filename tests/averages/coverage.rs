@@ -324,6 +324,9 @@ fn joined_bars_hold_the_mean_over_energies() {
     }
 }
 
+/// Runs whose scatter tells how long a target takes, to 11 % (one standard error).
+const RUNS: u32 = 160;
+
 /// Runs that end by `until` end within 30 % of the time that the target takes, which the scatter over their seeds tells.
 #[test]
 #[ignore = "long: cargo test --release --test averages -- --ignored"]
@@ -335,7 +338,7 @@ fn until_ends_where_the_target_is_reached() {
     let fluid = [&fluid[..], &["--set", "run.thermo_every=20", "--set", "run.time=100000"]].concat();
     for (scene, quantity, percent) in [(discs, "compressibility", 1.0), (fluid, "potential", -0.5)] {
         let target = format!("run.until={{ quantity = \"{quantity}\", error = \"{}%\" }}", f64::abs(percent));
-        let runs: Vec<[f64; 2]> = (1..=40)
+        let runs: Vec<[f64; 2]> = (1..=RUNS)
             .into_par_iter()
             .map(|seed: u32| {
                 let (out, seed) = (format!("{quantity}-{seed}"), format!("particles.seed={seed}"));
