@@ -228,7 +228,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// A value for each quantity that the method observes, by name: the columns of `thermo.csv`.
+    /// A value for each quantity that the method observes, by name: the columns of `thermo.csv`. `compressibility` and `collision_rate` of hard discs are means since the start.
     fn observe<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let seen = self.look(py, |State { running, broken, .. }| {
             // The state of a failed step is seen as it is.

@@ -146,7 +146,10 @@ class Simulation:
         """
 
     def observe(self) -> dict[str, float]:
-        """A value for each quantity that the method observes, energies among them; the columns of `thermo.csv`. Units: `units`."""
+        """A value for each quantity that the method observes, energies among them; the columns of `thermo.csv`. Units: `units`.
+
+        `compressibility` and `collision_rate` of hard discs are means since the start; rows have them since the row before.
+        """
 
     @property
     def units(self) -> dict[str, str]:
