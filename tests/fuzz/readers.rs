@@ -58,7 +58,8 @@ fn frames_are_read_or_refused() {
             let mut written = Vec::new();
             extxyz::write(&frame, &mut written).unwrap();
             let again = Frames::new(Cursor::new(written), "again.xyz").next().unwrap().unwrap();
-            assert_eq!(again, frame);
+            // Ids that were raised are written as they are now.
+            assert_eq!(again, extxyz::Frame { has_raised_ids: false, ..frame });
         }
     });
 }

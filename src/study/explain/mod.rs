@@ -143,7 +143,7 @@ pub enum ExplainError {
 /// The longest that trials may be asked to take (s).
 const LONGEST: f64 = 3600.0;
 
-/// How to make trials long enough.
+/// Advice that makes trials long enough.
 fn longer_trials(enough: Option<f64>) -> String {
     match enough.map(f64::ceil) {
         Some(seconds) if seconds <= LONGEST => {

@@ -251,7 +251,7 @@ fn stride(
     }
 }
 
-/// What a unit of time costs.
+/// Cost of a unit of time.
 #[derive(Clone, Debug)]
 pub struct UnitCost {
     /// Wall seconds, by the fastest of some stretches.

@@ -13,7 +13,7 @@ const FINER: usize = 8;
 /// A transient is seen where the beginning differs from the rest by more than this many standard errors of the difference: of
 /// a thousand series without one, two are cut.
 const DIFFERENT: f64 = 4.0;
-/// What is left of a transient that is seen agrees with the rest within this many.
+/// Standard errors within which the rest of a transient that is seen agrees with the series.
 const AGREEING: f64 = 2.0;
 
 /// The number of values at the beginning of a series that do not count; none where the transient lasts almost as long as the series.

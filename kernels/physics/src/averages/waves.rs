@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 /// The number of waves for the shortest series that has a mean.
 const FEWEST: usize = 6;
-/// The same where no number of samples decides whether there is a mean: more would miss the correlations of a series of a few samples.
+/// Number of waves where every series has a mean: more would miss the correlations of a few samples.
 const FEWEST_OF_ANY: usize = 2;
 /// The number of waves for a long series. More would make bars 5 % shorter, and miss correlations that last for a hundredth of the series.
 pub const MOST: usize = 16;
@@ -36,9 +36,9 @@ pub(super) struct WaveError {
     pub(super) waves: usize,
     /// Independent values with the same variance whose mean would have the same error.
     pub(super) samples: f64,
-    /// The same for the slowest waves alone: never more than these, and few where something slow lies beneath fast noise.
+    /// Independent values by the slowest waves alone: few where a slow change lies beneath fast noise.
     pub(super) resolved: f64,
-    /// The same as they seem to be, without the doubt of a small number.
+    /// Independent values by the slowest waves, without the allowance for a small number.
     pub(super) seeming: f64,
     /// Square of the slowest wave over the mean square of the others.
     slowest: f64,

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
 use stripmine_kernels::isa::OpCounts;
 
-/// What a check has found along a run.
+/// Finding of a check along a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RunWarning {
     /// The name of the check.

@@ -374,7 +374,7 @@ fn peak_near(block: &[f64], place: usize) -> usize {
     first + peak(&block[first..(place + AROUND + 1).min(block.len())])
 }
 
-/// What sums of shares may be off by.
+/// Rounding of sums of shares.
 const ROUNDING: f64 = 1e-9;
 
 /// Whether there is a peak at all.
@@ -388,7 +388,7 @@ fn judge_peak(whole: &Whole<'_>) -> Verdict {
     }
 }
 
-/// Whether discs were above the highest slice.
+/// Discs were above the highest slice.
 fn judge_heights(whole: &Whole<'_>) -> Verdict {
     let slice = whole.setting.domain.area() / whole.over.len() as f64;
     let seen = whole.means.iter().map(|[mean, _]| mean * slice).sum::<f64>() / whole.setting.discs as f64;

@@ -65,6 +65,6 @@ pub struct Frame {
     pub step: u64,
     /// Seed of the random numbers that made the scene.
     pub seed: Option<u64>,
-    /// Whether the file has ids from 0, each of which was raised by one.
+    /// Ids of the file begin at 0, and each was raised by one.
     pub has_raised_ids: bool,
 }

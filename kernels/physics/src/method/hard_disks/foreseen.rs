@@ -1,4 +1,4 @@
-//! What a run of hard discs is foreseen to take: collisions in a time, and what is written in it.
+//! Forecast of a run of hard discs: collisions in a time, and rows and frames written in it.
 
 use super::checked::Checked;
 use super::keys::{CHECKPOINT_EVERY, EVENTS, MOST_EVENTS, SNAPSHOT_EVERY, THERMO_EVERY, TIME};
@@ -27,7 +27,7 @@ pub(super) fn nanoseconds_of_a_collision(checked: &Checked) -> f64 {
     of_a_collision(checked.packing_fraction(), checked.scene.engine)
 }
 
-/// The same at a packing fraction: between two of those that are known in proportion, beyond them as at the nearest.
+/// Value at a packing fraction: interpolated between known ones, that of the nearest beyond them.
 fn of_a_collision(fraction: f64, engine: EngineChoice) -> f64 {
     let way = usize::from(engine == EngineChoice::Reference);
     let [(first, lowest), .., (_, highest)] = COLLISION;
