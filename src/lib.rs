@@ -16,10 +16,13 @@
 //! # Ok::<(), stripmine::report::figure::FigureError>(())
 //! ```
 
+pub mod claims;
 pub mod cli;
 pub mod console;
+pub mod frame;
 pub mod laboratory;
 pub mod model;
+pub mod pages;
 pub mod provenance;
 pub mod report;
 pub mod results;

@@ -2,7 +2,8 @@
 
 use super::run_folder;
 use crate::console::{Common, Failure, print, print_json, warn};
-use crate::report::{Cell, Rows, Table, csv, terminal};
+use crate::frame::{Frame, csv};
+use crate::report::{Cell, Rows, Table, terminal};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use serde::Serialize;
@@ -62,7 +63,7 @@ impl AverageVerb {
         let table = table(&averages);
         if self.csv {
             let mut bytes = vec![];
-            csv::write(&table, &mut bytes).map_err(Failure::writing("CSV"))?;
+            csv::write(&Frame::from(&table), &mut bytes).map_err(Failure::writing("CSV"))?;
             return print(&String::from_utf8_lossy(&bytes));
         }
         print(&terminal::render(&table))?;

@@ -182,7 +182,13 @@ impl WorkPrecisionVerb {
         let data = precision(case, &target, seconds, signals::asked(), &show).map_err(own)?;
         let again =
             format!("stripmine chart {} {} --of {}", place.name, case.arguments(), target.quantity.name);
-        written(common, &folder, &precision_page::made(place.name, &[(stem, data)], again)?, start)
+        written(
+            common,
+            &folder,
+            place.name,
+            &precision_page::made(place.name, &[(stem, data)], again)?,
+            start,
+        )
     }
 }
 
@@ -222,25 +228,25 @@ impl HistoryVerb {
         let records = history::read(&self.file)?;
         let folder = Folder::open(&out, &[history_section::NAME], true)?;
         let made = history_section::made(&records, common.command.clone())?;
-        written(common, &folder, &made, Instant::now())
+        written(common, &folder, history_section::NAME, &made, Instant::now())
     }
 }
 
 /// Writes what a study made, and says it.
-fn written(common: &Common, folder: &Folder, made: &Made, begun: Instant) -> Result<(), Failure> {
+fn written(common: &Common, folder: &Folder, name: &str, made: &Made, begun: Instant) -> Result<(), Failure> {
     let provenance = Provenance::here(common.command.clone(), begun.elapsed().as_secs_f64());
-    let path = signals::whole(|| {
-        let path = folder.write(made, &provenance)?;
-        folder.write_page(&[made.section.name.as_str()]).map(|()| path)
+    let (path, section) = signals::whole(|| {
+        let written = folder.write(name, made, &provenance)?;
+        folder.write_page(&[name]).map(|()| written)
     })?;
     clear_progress();
     if !common.quiet {
         say(format_args!("written: {}", quoted::path(&path)));
     }
     if common.json {
-        return print_json(&made.data);
+        return print_json(&made.json());
     }
-    print(&(made.section.paragraphs().collect::<Vec<_>>().join("\n\n") + "\n"))
+    print(&(section.paragraphs().collect::<Vec<_>>().join("\n\n") + "\n"))
 }
 
 /// Where a study's results go.
@@ -301,6 +307,6 @@ impl Place<'_> {
         let show = |share: f64| bar.set_position((1e3 * share) as u64);
         let again = format!("stripmine chart {} {}", self.name, subject.arguments());
         let made = make(&journal, &show, stem, again)?;
-        folder.map_or(Ok(()), |folder| written(common, &folder, &made, start))
+        folder.map_or(Ok(()), |folder| written(common, &folder, self.name, &made, start))
     }
 }

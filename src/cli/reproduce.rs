@@ -70,7 +70,7 @@ impl Reproduce {
     fn make(&self, ranks: Option<&dyn Ranks>, common: &Common, methods: Methods) -> Result<(), Failure> {
         let effort = self.effort();
         let mut all: Vec<&'static Item> = items_of(methods).collect();
-        all.sort_by_key(|item| item.chapter);
+        all.sort_by_key(|item| item.chapter());
         let on_page: Vec<&str> = all.iter().map(|item| item.name).collect();
         let (asked, others): (Vec<_>, Vec<_>) = all.into_iter().partition(|item| self.asks(item));
         let names: Vec<&str> = asked.iter().map(|item| item.name).collect();
@@ -100,7 +100,7 @@ impl Reproduce {
             None => job.make(&items)?,
             Some(ranks) => {
                 let (of_host, everywhere): (Vec<_>, Vec<_>) =
-                    items.into_iter().partition(|item| item.chapter == Chapter::Host);
+                    items.into_iter().partition(|item| item.chapter() == Chapter::Host);
                 let dealt = dealt_out(everywhere, ranks.count(), |item| item.seconds(effort));
                 let mut outcomes = job.make_together(ranks, &dealt)?;
                 outcomes.extend(job.make(&of_host)?);
@@ -202,11 +202,11 @@ impl Job<'_> {
         let seconds = start.elapsed().as_secs_f64();
         // Finished items are on the disk, and on the page, before the next one starts, and before a signal ends it all.
         let provenance = Provenance::here(self.common.command.clone(), seconds);
-        let folder = signals::whole(|| {
-            let path = self.folder.write(&made, &provenance)?;
-            self.on_page.as_ref().map_or(Ok(()), |items| self.folder.write_page(items)).map(|()| path)
+        let (folder, section) = signals::whole(|| {
+            let written = self.folder.write(item.name, &made, &provenance)?;
+            self.on_page.as_ref().map_or(Ok(()), |items| self.folder.write_page(items)).map(|()| written)
         })?;
-        let verdict = made.section.verdict.word().to_owned();
+        let verdict = section.outcome();
         let outcome = Outcome { item: item.name.to_owned(), verdict, seconds, folder };
         self.say(&outcome);
         Ok(outcome)

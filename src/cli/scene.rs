@@ -1,10 +1,10 @@
 //! `stripmine scene`: presets, keys, and the check of a scene.
 
 use crate::console::{Common, Failure, print, print_json, warn};
+use crate::frame::{Rows, Table};
 use crate::laboratory::programs::Programs;
 use crate::model::machine::MachineModel;
 use crate::model::machines;
-use crate::report::table::{Rows, Table};
 use crate::report::terminal;
 use crate::study::StudyError;
 use clap::{Args, Subcommand};

@@ -1,19 +1,18 @@
 //! Reports: finished data as tables, figures and pages. Each export is one small file; none of them runs physics.
 
-pub mod csv;
 pub mod figure;
 pub mod html;
 pub mod markdown;
 pub mod page;
 pub mod section;
-pub mod table;
+pub mod tally;
 pub mod terminal;
 
 use crate::provenance::Provenance;
 use stripmine_physics::number::counted;
 
+pub use crate::frame::{Cell, Rows, Table};
 pub use section::{Chapter, Section, Verdict};
-pub use table::{Cell, Rows, Table};
 
 /// Who made the items, and where: a sentence for each machine, with how many each program has made there, the most first.
 fn origins(sections: &[Section]) -> Vec<String> {

@@ -1,6 +1,9 @@
 //! The page of a reproduction in Markdown, as a repository's site shows it.
 
-use super::{Chapter, Section, Verdict, markdown};
+use super::section::JudgedClaim;
+use super::tally::Tally;
+use super::{Chapter, Section, markdown};
+use crate::claims::Verdict;
 use std::fmt::Write;
 
 /// What stands near the beginning of every such page and of no other.
@@ -15,22 +18,21 @@ const CAPTION: usize = 110;
 
 /// The page. Pictures and data lie in a folder for each item, which bears its name. `left_out` names items that the folder has,
 /// but of another version of the program.
-pub fn render(sections: &[Section], left_out: &[String]) -> String {
+pub fn render(sections: &[Section], left_out: &[String], tally: &Tally) -> String {
     let mut page = format!(
         "# What came out\n\n{MARK} With charts to hover over and films: [index.html](index.html), one file, to be opened from a copy.\n\n",
     );
-    for verdict in Verdict::ALL {
-        let _ = writeln!(page, "- **{}**: {}.", verdict.word(), verdict.meaning());
-    }
+    page.push_str(&claims(tally));
     for chapter in Chapter::ALL {
         let of_chapter: Vec<&Section> =
             sections.iter().filter(|section| section.chapter == chapter).collect();
         if of_chapter.is_empty() {
             continue;
         }
-        let _ = write!(page, "\n**{}**\n\n| item | verdict |\n|---|---|\n", chapter.title());
-        for Section { title, verdict, .. } in of_chapter {
-            let _ = writeln!(page, "| [{title}](#{}) | {} |", anchor(title), verdict.word());
+        let _ = write!(page, "\n**{}**\n\n| item | claims |\n|---|---|\n", chapter.title());
+        for section in of_chapter {
+            let title = &section.title;
+            let _ = writeln!(page, "| [{title}](#{}) | {} |", anchor(title), section.outcome());
         }
     }
     for made in super::origins(sections) {
@@ -55,12 +57,36 @@ pub fn render(sections: &[Section], left_out: &[String]) -> String {
     page
 }
 
+/// How many claims of each source have which verdict, and those that failed.
+fn claims(tally: &Tally) -> String {
+    if tally.is_empty() {
+        return String::new();
+    }
+    let mut text = "**Claims by source and verdict**\n\n| source |".to_owned();
+    for verdict in Verdict::ALL {
+        let _ = write!(text, " {} |", verdict.words());
+    }
+    let _ = writeln!(text, "\n|---|{}", "--:|".repeat(Verdict::ALL.len()));
+    for (source, counts) in tally.rows() {
+        let counts = counts.map(|count| count.to_string()).join(" | ");
+        let _ = writeln!(text, "| {source} | {counts} |");
+    }
+    let _ =
+        write!(text, "\n**Not reproduced**\n\n| claim | source | expected | value |\n|---|---|---|---|\n");
+    for ((_, title), claim) in tally.failed() {
+        let JudgedClaim { text: words, place, expected, value, .. } = claim;
+        let _ =
+            writeln!(text, "| [{words}](#{}) | {} | {expected} | {value} |", anchor(title), place.join(", "));
+    }
+    text
+}
+
 /// The answer, the picture and the table of conclusions, then what was asked. All further words, pictures and tables stand on the page
 /// with charts.
 fn item(section: &Section) -> String {
-    let Section { name, title, question, expected, verdict, again, .. } = section;
+    let Section { name, title, question, expected, again, .. } = section;
     let folder = section.folder();
-    let mut text = format!("\n## {title}\n\n**{}**: {}\n\n", verdict.word(), section.answer);
+    let mut text = format!("\n## {title}\n\n**{}**: {}\n\n", section.outcome(), section.answer);
     if let Some(figure) = section.figures.first() {
         let caption = beginning(&figure.caption, CAPTION);
         let _ = write!(text, "![{}]({folder}/{}.svg)\n\n{caption}\n\n", figure.title, figure.name);

@@ -2,6 +2,7 @@
 
 use super::Table;
 use super::figure::Figure;
+use crate::claims::{self, Judged};
 use crate::provenance::Provenance;
 use crate::statistics::Claim;
 use serde::{Deserialize, Serialize};
@@ -39,6 +40,9 @@ pub struct Section {
     pub seeds: Vec<u64>,
     /// Whether anything in it depends on the host (times), and is therefore not the same everywhere.
     pub depends_on_host: bool,
+    /// Claims of sources and aims of ours that it answers.
+    #[serde(default)]
+    pub claims: Vec<JudgedClaim>,
     /// How and where it was made; known once it is written. No author of a section says it.
     #[serde(skip)]
     pub provenance: Option<Provenance>,
@@ -65,6 +69,7 @@ impl Section {
             film: None,
             seeds: vec![],
             depends_on_host: false,
+            claims: vec![],
             provenance: None,
         }
     }
@@ -138,6 +143,22 @@ impl Section {
     pub fn folder(&self) -> String {
         let [everywhere, here] = Section::folders(&self.name);
         if self.depends_on_host { here } else { everywhere }
+    }
+
+    /// How its claims came out, in a few words.
+    pub fn outcome(&self) -> String {
+        let counts = self.counts().map(|(verdict, count)| format!("{count} {}", verdict.words()));
+        let counts: Vec<String> = counts.collect();
+        if counts.is_empty() { "no claim".to_owned() } else { counts.join(", ") }
+    }
+
+    /// The verdicts of its claims, with how many have each.
+    pub fn counts(&self) -> impl Iterator<Item = (claims::Verdict, usize)> {
+        let count = |verdict: claims::Verdict| {
+            self.claims.iter().filter(|claim| claim.verdict == verdict.words()).count()
+        };
+        let counts = claims::Verdict::ALL.into_iter().map(move |verdict| (verdict, count(verdict)));
+        counts.filter(|(_, count)| *count > 0)
     }
 
     /// The answer and what else there is to know, a paragraph each.
@@ -263,6 +284,42 @@ impl Verdict {
             Verdict::AimMissed => "our own aim, which the item states, is missed",
             Verdict::Measured => "no source and no aim: a measurement",
             Verdict::Computed => "no source and no aim: a count, or what a model says",
+        }
+    }
+}
+
+/// A claim with its verdict, for a reader.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct JudgedClaim {
+    /// Name.
+    pub id: String,
+    /// Source and place in it.
+    pub place: [String; 2],
+    /// Statement.
+    pub text: String,
+    /// Expectation.
+    pub expected: String,
+    /// Value of the result.
+    pub value: String,
+    /// Verdict.
+    pub verdict: String,
+    /// Reference and note.
+    pub notes: Vec<String>,
+}
+
+impl From<&Judged<'_>> for JudgedClaim {
+    fn from(judged: &Judged<'_>) -> JudgedClaim {
+        let Judged { claim, verdict, value, is_too_new } = judged;
+        let late =
+            is_too_new.then(|| format!("The limit of {} is newer than the result.", claim.limit.since));
+        JudgedClaim {
+            id: claim.id.clone(),
+            place: [claim.source.name().to_owned(), claim.place.clone()],
+            text: claim.text.clone(),
+            expected: judged.expected(),
+            value: value.clone(),
+            verdict: verdict.words().to_owned(),
+            notes: [claim.reference.clone(), claim.note.clone(), late].into_iter().flatten().collect(),
         }
     }
 }

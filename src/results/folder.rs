@@ -5,10 +5,14 @@
 
 use super::Made;
 use super::journal::is_journal;
+use super::made::{self, LONGEST, SECTION, bytes_of, files_of};
+use crate::claims;
 use crate::console::{Failure, to_json};
+use crate::pages::Page;
 use crate::provenance::{Provenance, built};
-use crate::report::figure::{self, Figure, svg};
-use crate::report::{Section, csv, html, page};
+use crate::report::figure::Figure;
+use crate::report::tally::Tally;
+use crate::report::{Section, html, page};
 use serde::{Deserialize, Serialize};
 use std::fs::{self, File};
 use std::io::{ErrorKind, Read, Write};
@@ -22,8 +26,6 @@ use stripmine_physics::quoted;
 use stripmine_physics::reported::{Class, Reported};
 use tempfile::TempDir;
 
-/// What a page needs of an item that is not its data.
-const SECTION: &str = "section.json";
 /// Where an item comes from, and its files; the one file of an item that differs from run to run.
 const PROVENANCE: &str = "provenance.json";
 /// Keeps other processes out.
@@ -34,8 +36,6 @@ const HOST: &str = "host";
 const PAGES: [(&str, &str); 2] = [("README.md", page::MARK), ("index.html", html::MARK)];
 /// Where in a page its mark is looked for (bytes from the beginning).
 const START: u64 = 1000;
-/// Longer than any file of an item that is read again (bytes).
-const LONGEST: u64 = 1 << 30;
 
 /// Why results are not written.
 #[derive(Debug, thiserror::Error)]
@@ -138,13 +138,18 @@ impl Folder {
         Folder { path: path.to_owned(), _lock: None }
     }
 
-    /// Writes an item's files: all of them, or, where that fails, none.
+    /// Writes an item's files: all of them, or, where that fails, none. Returns their folder and the section that the page shows.
     ///
     /// # Errors
     /// If what is there is not ours, or the system does not let the files be written.
-    pub fn write(&self, made: &Made, provenance: &Provenance) -> Result<PathBuf, Failure> {
-        let files = files_of(made)?;
-        let folder = self.path.join(made.section.folder());
+    pub fn write(
+        &self,
+        name: &str,
+        made: &Made,
+        provenance: &Provenance,
+    ) -> Result<(PathBuf, Section), Failure> {
+        let (section, files) = files_of(name, made, &provenance.date)?;
+        let folder = self.path.join(section.folder());
         let own = own_files(&folder)?;
         let mut listed = vec![PROVENANCE];
         listed.extend(files.iter().map(|(name, _)| name.as_str()));
@@ -160,7 +165,7 @@ impl Folder {
         self.exchange(&part, &folder, own.as_deref())?;
         // It has another name now.
         let _ = part.keep();
-        Ok(folder)
+        Ok((folder, section))
     }
 
     /// Puts a new folder in the place of an item's, whose files are `own`.
@@ -209,7 +214,9 @@ impl Folder {
             let file = self.path.join(section.folder()).join(format!("{}.svg", figure.name));
             String::from_utf8(regular_file::read(&file, LONGEST).unwrap_or_default()).unwrap_or_default()
         };
-        let texts = [page::render(&sections, &left_out), html::render(&sections, &left_out, &drawn)];
+        let tally = Tally::of(&sections, &claims::all()?);
+        let texts =
+            [page::render(&sections, &left_out, &tally), html::render(&sections, &left_out, &tally, &drawn)];
         for ((name, mark), text) in PAGES.into_iter().zip(texts) {
             let path = self.path.join(name);
             own_page(&path, mark)?;
@@ -221,13 +228,39 @@ impl Folder {
     /// The item's section, if the folder has it.
     fn read(&self, name: &str) -> Result<Known, Failure> {
         let Some(folder) = self.item(name) else { return Ok(Known::Absent) };
-        let section = serde_json::from_slice::<Section>(&read(&folder.join(SECTION))?);
-        Ok(match (section, self.provenance(name)?) {
-            (Ok(section), Some(provenance)) => {
-                Known::There(Box::new(Section { provenance: Some(provenance), ..section }))
+        let Some(provenance) = self.provenance(name)? else { return Ok(Known::OfAnotherVersion) };
+        let section = match Page::of(name)? {
+            Some(page) => match made::read(&folder, &page)? {
+                Some(made) => Some(self.renewed(name, &folder, &made, &provenance)?),
+                None => None,
+            },
+            None if folder.join(SECTION).exists() => {
+                let section = serde_json::from_slice::<Section>(&bytes_of(&folder.join(SECTION))?).ok();
+                section.map(|section| made::judged(section, &folder, &provenance.date)).transpose()?
             }
-            _ => Known::OfAnotherVersion,
-        })
+            None => None,
+        };
+        let there = |section| Known::There(Box::new(Section { provenance: Some(provenance), ..section }));
+        Ok(section.map_or(Known::OfAnotherVersion, there))
+    }
+
+    /// The section of an item whose data are there, by its template of today. Files that the template changes are written again; the
+    /// record of where the data come from stays.
+    fn renewed(
+        &self,
+        name: &str,
+        folder: &Path,
+        made: &Made,
+        provenance: &Provenance,
+    ) -> Result<Section, Failure> {
+        let (section, files) = files_of(name, made, &provenance.date)?;
+        let is_there = |(name, bytes): &(String, Vec<u8>)| {
+            regular_file::read(&folder.join(name), LONGEST).is_ok_and(|there| there == *bytes)
+        };
+        if !files.iter().all(is_there) {
+            self.write(name, made, provenance)?;
+        }
+        Ok(section)
     }
 
     /// How the folder's item of this name was made; none if it has no such item that this version of the program can read.
@@ -236,19 +269,14 @@ impl Folder {
     /// If it cannot be read.
     pub fn provenance(&self, name: &str) -> Result<Option<Provenance>, Failure> {
         let Some(folder) = self.item(name) else { return Ok(None) };
-        Ok(serde_json::from_slice(&read(&folder.join(PROVENANCE))?).ok())
+        Ok(serde_json::from_slice(&bytes_of(&folder.join(PROVENANCE))?).ok())
     }
 
     /// The folder of an item that is there.
     fn item(&self, name: &str) -> Option<PathBuf> {
         let folders = Section::folders(name).map(|folder| self.path.join(folder));
-        folders.into_iter().find(|folder| folder.join(SECTION).exists())
+        folders.into_iter().find(|folder| folder.join(PROVENANCE).exists())
     }
-}
-
-fn read(path: &Path) -> Result<Vec<u8>, Failure> {
-    let bytes = regular_file::read(path, LONGEST).map_err(FileError::at(path, "reading"));
-    Ok(bytes.map_err(FolderError::from)?)
 }
 
 /// What a folder has of an item.
@@ -259,38 +287,6 @@ enum Known {
     OfAnotherVersion,
     /// Nothing.
     Absent,
-}
-
-/// The files of an item but its provenance, name and contents.
-fn files_of(made: &Made) -> Result<Vec<(String, Vec<u8>)>, Failure> {
-    let Made { section, data, tables, files } = made;
-    let mut all = Vec::new();
-    if !data.is_null() {
-        all.push(("data.json".to_owned(), compact(data)?.into_bytes()));
-    }
-    let of_figures = section.figures.iter().filter_map(figure::data);
-    let tables: Vec<_> = section.tables.iter().chain(tables).cloned().chain(of_figures).collect();
-    for table in &tables {
-        let mut bytes = Vec::new();
-        csv::write(table, &mut bytes).map_err(Failure::writing("CSV"))?;
-        all.push((format!("{}.csv", table.name), bytes));
-    }
-    if !tables.is_empty() {
-        let package = csv::package(&section.name, &section.title, &tables);
-        all.push(("datapackage.json".to_owned(), compact(&package)?.into_bytes()));
-    }
-    for figure in &section.figures {
-        all.push((format!("{}.svg", figure.name), svg(figure)?.into_bytes()));
-    }
-    all.extend(files.iter().map(|(name, text)| (name.clone(), text.clone().into_bytes())));
-    all.push((SECTION.to_owned(), compact(section)?.into_bytes()));
-    Ok(all)
-}
-
-/// JSON without blanks: datasets are for programs.
-fn compact(data: &impl Serialize) -> Result<String, Failure> {
-    let text = serde_json::to_string(data).map_err(|cause| Failure::writing("JSON")(cause.into()))?;
-    Ok(text + "\n")
 }
 
 /// Names of all entries of a folder, sorted; none if it is not there.
@@ -390,7 +386,7 @@ fn judge(path: &Path) -> Result<(), FolderError> {
         names.retain(|name| name != HOST);
     }
     let items = names.iter().map(|name| path.join(name)).chain(of_host.iter().map(|name| host.join(name)));
-    let is_item = |folder: PathBuf| is_file(&folder.join(SECTION)) && own_files(&folder).is_ok();
+    let is_item = |folder: PathBuf| is_file(&folder.join(PROVENANCE)) && own_files(&folder).is_ok();
     let (page, mark) = PAGES[0];
     let ours = names.is_empty()
         || is_journal(path)

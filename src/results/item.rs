@@ -2,6 +2,7 @@
 
 use super::{Effort, Made};
 use crate::console;
+use crate::pages::{Cost, Page};
 use crate::report::Chapter;
 
 /// Where the share of a piece of work that is done is heard.
@@ -10,36 +11,24 @@ pub type Progress<'p> = &'p (dyn Fn(f64) + Sync);
 /// What makes an item.
 type Make = fn(Effort, Progress<'_>) -> Result<Made, console::Failure>;
 
-/// A table or figure of the report.
+/// An item of the report.
 #[derive(Debug)]
 pub struct Item {
-    /// The name on the command line.
+    /// Name on the command line, and of its template.
     pub name: &'static str,
-    /// Its chapter of the report.
-    pub chapter: Chapter,
-    /// What it shows.
-    pub doc: &'static str,
-    cost: Cost,
+    made: Option<(Chapter, &'static str, Cost)>,
     make: Make,
-}
-
-/// What an item takes on the two cores of the report's host.
-#[derive(Debug)]
-struct Cost {
-    /// Seconds of a quick look; none where the item is made in full only.
-    quick: Option<f64>,
-    /// Seconds in full.
-    full: f64,
-    /// Seconds where `--all` asks for more of the item.
-    all: Option<f64>,
-    /// MiB of memory in full, at most.
-    memory: u64,
 }
 
 /// MiB that most items stay below.
 const USUAL_MEMORY: u64 = 256;
 
 impl Item {
+    /// An item whose template says title, chapter and cost.
+    pub const fn of(name: &'static str, make: Make) -> Item {
+        Item { name, made: None, make }
+    }
+
     /// An item that is made in full only, in about so many seconds.
     pub const fn full(
         name: &'static str,
@@ -49,7 +38,7 @@ impl Item {
         doc: &'static str,
     ) -> Item {
         let cost = Cost { quick: None, full: seconds, all: None, memory: USUAL_MEMORY };
-        Item { name, chapter, doc, cost, make }
+        Item { name, made: Some((chapter, doc, cost)), make }
     }
 
     /// An item that `--quick` makes too, with the seconds that it takes: quick, in full. Data that are the same on every host are the
@@ -62,41 +51,71 @@ impl Item {
         doc: &'static str,
     ) -> Item {
         let cost = Cost { quick: Some(quick), full, all: None, memory: USUAL_MEMORY };
-        Item { name, chapter, doc, cost, make }
+        Item { name, made: Some((chapter, doc, cost)), make }
     }
 
     /// The item with more of it by `--all`, in about so many seconds.
-    pub const fn with_more(self, seconds: f64) -> Item {
-        Item { cost: Cost { all: Some(seconds), ..self.cost }, ..self }
+    pub const fn with_more(mut self, seconds: f64) -> Item {
+        if let Some((_, _, cost)) = &mut self.made {
+            cost.all = Some(seconds);
+        }
+        self
     }
 
     /// The item with the memory that it takes in full, where this is more than usual.
-    pub const fn with_memory(self, mebibytes: u64) -> Item {
-        Item { cost: Cost { memory: mebibytes, ..self.cost }, ..self }
+    pub const fn with_memory(mut self, mebibytes: u64) -> Item {
+        if let Some((_, _, cost)) = &mut self.made {
+            cost.memory = mebibytes;
+        }
+        self
+    }
+
+    /// Chapter of the report, and title.
+    pub fn heading(&self) -> (Chapter, String) {
+        let page = || Page::of(self.name).ok().flatten();
+        match self.made {
+            Some((chapter, doc, _)) => (chapter, doc.to_owned()),
+            None => {
+                page().map_or((Chapter::Beyond, String::new()), |it| (it.chapter(), it.title().to_owned()))
+            }
+        }
+    }
+
+    /// Chapter of the report.
+    pub fn chapter(&self) -> Chapter {
+        self.heading().0
+    }
+
+    /// Stated cost.
+    fn cost(&self) -> Cost {
+        let none = Cost { quick: None, full: 0.0, all: None, memory: USUAL_MEMORY };
+        let page = || Page::of(self.name).ok().flatten().map_or(none, |it| it.cost());
+        self.made.map_or_else(page, |(_, _, cost)| cost)
     }
 
     /// Returns whether `--quick` makes it.
-    pub const fn is_quick(&self) -> bool {
-        self.cost.quick.is_some()
+    pub fn is_quick(&self) -> bool {
+        self.cost().quick.is_some()
     }
 
     /// Returns whether `reproduce` makes it without `--all`.
     pub fn is_default(&self) -> bool {
-        self.chapter == Chapter::Sources
+        self.chapter() == Chapter::Sources
     }
 
     /// Seconds that it takes about.
     pub fn seconds(&self, effort: Effort) -> f64 {
+        let cost = self.cost();
         match effort {
-            Effort::Quick => self.cost.quick.unwrap_or(self.cost.full),
-            Effort::Full => self.cost.full,
-            Effort::All => self.cost.all.unwrap_or(self.cost.full),
+            Effort::Quick => cost.quick.unwrap_or(cost.full),
+            Effort::Full => cost.full,
+            Effort::All => cost.all.unwrap_or(cost.full),
         }
     }
 
     /// MiB of memory that it takes in full, at most.
-    pub const fn memory(&self) -> u64 {
-        self.cost.memory
+    pub fn memory(&self) -> u64 {
+        self.cost().memory
     }
 
     /// Makes it.
@@ -105,9 +124,11 @@ impl Item {
     /// Those of its study.
     pub fn make(&self, effort: Effort, progress: Progress<'_>) -> Result<Made, console::Failure> {
         let mut made = (self.make)(effort, progress)?;
-        made.section.chapter = self.chapter;
-        if effort == Effort::All && self.cost.all.is_some() {
-            made.section.again = format!("stripmine reproduce --all --only {}", self.name);
+        if let Some(section) = &mut made.section {
+            section.chapter = self.chapter();
+            if effort == Effort::All && self.cost().all.is_some() {
+                section.again = format!("stripmine reproduce --all --only {}", self.name);
+            }
         }
         Ok(made)
     }

@@ -4,6 +4,7 @@ mod folder;
 mod item;
 mod journal;
 mod journal_error;
+mod made;
 mod meter;
 mod own_files;
 mod team;
@@ -17,7 +18,10 @@ pub(crate) use own_files::OwnFiles;
 pub use team::Team;
 
 use crate::console::Failure;
-use crate::report::{Section, Table};
+use crate::frame::{Frame, Table};
+use crate::report::Section;
+use crate::report::figure::Picture;
+use crate::report::section::Film;
 use serde::Serialize;
 
 /// How much is done.
@@ -32,18 +36,59 @@ pub enum Effort {
 }
 
 /// A finished item.
+#[derive(Default)]
 pub struct Made {
-    /// What is shown of it.
-    pub section: Section,
-    /// The dataset.
+    /// Section of an item that has no template.
+    pub section: Option<Section>,
+    /// Dataset of an item that has no template.
     pub data: serde_json::Value,
-    /// Tables for programs that the page does not show.
+    /// Tables for programs that the page does not show, of an item that has no template.
     pub tables: Vec<Table>,
+    /// Frames.
+    pub frames: Vec<Frame>,
+    /// Pictures that are no charts of frames, by name.
+    pub pictures: Vec<(String, Picture)>,
+    /// Film.
+    pub film: Option<Film>,
     /// Further files: name and contents.
     pub files: Vec<(String, String)>,
+    /// Seeds of the random numbers.
+    pub seeds: Vec<u64>,
 }
 
 impl Made {
+    /// An item whose page is a template.
+    pub fn of(frames: impl IntoIterator<Item = Frame>) -> Made {
+        Made { frames: frames.into_iter().collect(), ..Made::default() }
+    }
+
+    /// The data for programs: each frame by its name, as a list of rows.
+    pub fn json(&self) -> serde_json::Value {
+        match self.data.is_null() {
+            true => self.frames.iter().map(|frame| (frame.name.clone(), frame.json())).collect(),
+            false => self.data.clone(),
+        }
+    }
+
+    /// Adds a picture that is no chart of a frame.
+    #[must_use]
+    pub fn with_picture(mut self, name: &str, picture: Picture) -> Made {
+        self.pictures.push((name.to_owned(), picture));
+        self
+    }
+
+    /// Adds a film.
+    #[must_use]
+    pub fn with_film(self, film: Film) -> Made {
+        Made { film: Some(film), ..self }
+    }
+
+    /// Adds the seeds of the random numbers.
+    #[must_use]
+    pub fn with_seeds(self, seeds: impl IntoIterator<Item = u64>) -> Made {
+        Made { seeds: seeds.into_iter().collect(), ..self }
+    }
+
     /// Of a section and its dataset.
     ///
     /// # Errors
@@ -54,7 +99,7 @@ impl Made {
         serde_json::to_vec(&section)
             .and_then(|text| serde_json::from_slice::<Section>(&text))
             .map_err(|cause| Failure::writing("JSON")(cause.into()))?;
-        Ok(Made { section, data, tables: vec![], files: vec![] })
+        Ok(Made { section: Some(section), data, ..Made::default() })
     }
 
     /// An item of several scenes, each with a name, under which its data stands.

@@ -1,8 +1,8 @@
 //! The observables of a run: `thermo.csv` as charts, and a line for each in the terminal.
 
 use super::means::Means;
+use crate::frame::{Rows, Table};
 use crate::report::figure::{Axis, Chart, Figure, Series, Style};
-use crate::report::table::{Rows, Table};
 use crate::statistics::quantile;
 use std::collections::BTreeMap;
 use std::path::Path;

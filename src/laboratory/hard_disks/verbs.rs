@@ -64,7 +64,7 @@ impl SoftHardVerb {
         let answer = section.paragraphs().collect::<Vec<_>>().join(" ");
         let made = Made::new(section, &data)?;
         let provenance = Provenance::here(common.command.clone(), start.elapsed().as_secs_f64());
-        let folder = signals::whole(|| folder.write(&made, &provenance))?;
+        let (folder, _) = signals::whole(|| folder.write("soft-hard", &made, &provenance))?;
         clear_progress();
         if !common.quiet {
             say(format_args!("written: {}", folder.display()));

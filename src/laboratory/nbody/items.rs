@@ -5,20 +5,14 @@ use super::study::{collapse, energy, rates};
 use crate::console::Failure;
 use crate::laboratory::programs;
 use crate::laboratory::running::prepared;
-use crate::report::Chapter::{Beyond, Host, Sources};
+use crate::report::Chapter::{Beyond, Host};
 use crate::results::{Effort, Item, Made, Progress};
 use stripmine_physics::method::nbody::keys::COUNT;
 use stripmine_physics::scene::Overrides;
 
 /// Every item, in the order of its chapter.
 pub(super) const ITEMS: &[Item] = &[
-    Item::full(
-        "nbody-energy",
-        Sources,
-        4.0,
-        orbits,
-        "Bodies: energy error of every integrator over cost, and where orbits are lost",
-    ),
+    Item::of("nbody-energy", energy::made),
     Item::quick(
         "nbody-rates",
         Host,
@@ -35,11 +29,6 @@ pub(super) const ITEMS: &[Item] = &[
         "Bodies: all pairs by cyclic shifts, counted and charged by clocks",
     ),
 ];
-
-fn orbits(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
-    let data = energy::energies(progress)?;
-    Made::new(sections::energy::section(&data), &data)
-}
 
 fn speed(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let effort = match effort {

@@ -8,6 +8,7 @@ pub(super) fn check(figure: &Figure) -> Result<(), FigureError> {
         Picture::Chart(chart) => check_chart(chart),
         Picture::Map(map) => check_map(map),
         Picture::Drawing(drawing) => check_drawing(drawing),
+        Picture::Drawn { .. } => Ok(()),
     }
     .map_err(|fault| fault.of(&figure.name))
 }

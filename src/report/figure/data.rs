@@ -11,7 +11,7 @@ pub fn data(figure: &Figure) -> Option<Table> {
     let (columns, rows) = match &figure.picture {
         Picture::Chart(chart) => points(chart),
         Picture::Map(map) => cells(map),
-        Picture::Drawing(_) => return None,
+        Picture::Drawing(_) | Picture::Drawn { .. } => return None,
     };
     Some(Table { name: data_name(figure), title: figure.title.clone(), columns, rows, notes: vec![] })
 }
@@ -23,7 +23,12 @@ fn data_name(figure: &Figure) -> String {
 
 /// The file with a figure's data, without its folder; none where there are no data.
 pub fn data_file(figure: &Figure) -> Option<String> {
-    (!matches!(figure.picture, Picture::Drawing(_))).then(|| format!("{}.csv", data_name(figure)))
+    let has_data = match figure.picture {
+        Picture::Drawing(_) => false,
+        Picture::Drawn { has_data, .. } => has_data,
+        Picture::Chart(_) | Picture::Map(_) => true,
+    };
+    has_data.then(|| format!("{}.csv", data_name(figure)))
 }
 
 fn number(value: f64) -> Cell {
@@ -72,7 +77,7 @@ mod tests {
             let rows = match &figure.picture {
                 Picture::Chart(chart) => chart.series.iter().map(|series| series.points.len()).sum(),
                 Picture::Map(map) => map.rows.len(),
-                Picture::Drawing(_) => unreachable!("a drawing has no data"),
+                Picture::Drawing(_) | Picture::Drawn { .. } => unreachable!("a drawing has no data"),
             };
             assert_eq!(table.rows.len(), rows, "{}", figure.name);
         }

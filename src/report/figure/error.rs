@@ -16,6 +16,9 @@ pub struct FigureError {
 /// What is wrong with a figure.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Fault {
+    /// A picture that was drawn before, of which nothing but its lines is known.
+    #[error("it was drawn before and has no scene")]
+    Drawn,
     /// A number that has no place.
     #[error("{place} is {value}, which is not finite")]
     NotFinite {

@@ -27,6 +27,13 @@ pub enum Picture {
     Map(Map),
     /// Things where they are.
     Drawing(Drawing),
+    /// A picture that was drawn before, as SVG, and whether a file has its data.
+    Drawn {
+        /// The picture.
+        svg: String,
+        /// Whether a file has its data.
+        has_data: bool,
+    },
 }
 
 impl Picture {

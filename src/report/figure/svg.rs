@@ -5,7 +5,7 @@
 //! where numbers lie on it: a reader of the picture finds the values there.
 
 use super::xml::{escaped, tenths};
-use super::{Fault, Figure, FigureError, draw, style};
+use super::{Fault, Figure, FigureError, Picture, draw, style};
 use kuva::render::color::Color;
 use kuva::render::render::{PathData, Primitive, Scene, TextAnchor};
 use std::fmt::Write;
@@ -15,6 +15,9 @@ use std::fmt::Write;
 /// # Errors
 /// When the figure cannot be drawn.
 pub fn svg(figure: &Figure) -> Result<String, FigureError> {
+    if let Picture::Drawn { svg, .. } = &figure.picture {
+        return Ok(svg.clone());
+    }
     written(figure, &draw::scene(figure)?)
 }
 

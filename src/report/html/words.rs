@@ -1,12 +1,22 @@
 //! Verdicts and sentences in HTML.
 
-use crate::report::Verdict;
+use crate::claims::Verdict;
+use crate::report::Section;
 use maud::{Markup, html};
 
-/// A verdict as colour, sign and word.
+/// A verdict as colour, sign and words.
 pub(super) fn badge(verdict: Verdict) -> Markup {
     html! {
-        span class={ "badge " (kind(verdict)) } { (sign(verdict)) " " (verdict.word()) }
+        span class={ "badge " (kind(verdict)) } { (sign(verdict)) " " (verdict.words()) }
+    }
+}
+
+/// The verdicts of a section's claims, with how many have each.
+pub(super) fn badges(section: &Section) -> Markup {
+    html! {
+        @for (verdict, count) in section.counts() {
+            span class={ "badge " (kind(verdict)) } { (sign(verdict)) " " (count) " " (verdict.words()) } " "
+        }
     }
 }
 
@@ -14,13 +24,10 @@ pub(super) fn badge(verdict: Verdict) -> Markup {
 pub(super) fn kind(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Reproduced => "reproduced",
-        Verdict::Partly => "partly",
         Verdict::NotReproduced => "not-reproduced",
         Verdict::Undecided => "undecided",
-        Verdict::AimMet => "aim-met",
-        Verdict::AimMissed => "aim-missed",
-        Verdict::Measured => "measured",
-        Verdict::Computed => "computed",
+        Verdict::Contradiction => "contradiction",
+        Verdict::NotTested => "not-tested",
     }
 }
 
@@ -28,13 +35,10 @@ pub(super) fn kind(verdict: Verdict) -> &'static str {
 pub(super) fn sign(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Reproduced => "✓",
-        Verdict::Partly => "◐",
         Verdict::NotReproduced => "✗",
         Verdict::Undecided => "?",
-        Verdict::AimMet => "▲",
-        Verdict::AimMissed => "△",
-        Verdict::Measured => "○",
-        Verdict::Computed => "□",
+        Verdict::Contradiction => "⇄",
+        Verdict::NotTested => "○",
     }
 }
 

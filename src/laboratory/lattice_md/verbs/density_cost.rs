@@ -45,8 +45,9 @@ impl DensityCostVerb {
         let show = |from: f64, share: f64| bar.set_position((1e3 * (from + 0.5 * share)) as u64);
         let write = |section: Section, data: &serde_json::Value, start: Instant| -> Result<(), Failure> {
             let provenance = Provenance::here(common.command.clone(), start.elapsed().as_secs_f64());
+            let name = section.name.clone();
             let made = Made::new(section, data)?;
-            let folder = signals::whole(|| folder.write(&made, &provenance))?;
+            let (folder, _) = signals::whole(|| folder.write(&name, &made, &provenance))?;
             if !common.quiet {
                 say(format_args!("written: {}", folder.display()));
             }

@@ -108,7 +108,7 @@ impl ValidateModel {
                 made = made.with_file("host.toml", model.to_toml());
             }
             let provenance = Provenance::here(common.command.clone(), start.elapsed().as_secs_f64());
-            let folder = signals::whole(|| folder.write(&made, &provenance))?;
+            let (folder, _) = signals::whole(|| folder.write("validation", &made, &provenance))?;
             if !common.quiet {
                 say(format_args!("written: {}", folder.display()));
             }

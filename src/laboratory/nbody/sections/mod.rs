@@ -1,5 +1,4 @@
 //! What the studies say, as items of the report.
 
 pub mod collapse;
-pub mod energy;
 pub mod rates;

@@ -1,9 +1,10 @@
 //! What integrators do to the energy of an orbit: the error over the step and the cost, and where the orbit is lost.
 
+use crate::console::Failure;
+use crate::frame::{Cell, Frame, Rows};
 use crate::laboratory::running::Running;
-use crate::results::{Meter, Progress};
+use crate::results::{Effort, Made, Meter, Progress};
 use crate::study::StudyError;
-use serde::Serialize;
 use stripmine_physics::method::nbody::keys::{DAMPING, ECCENTRICITY, INTEGRATOR};
 use stripmine_physics::method::nbody::schemes::SchemeName;
 use stripmine_physics::method::nbody::starts::ORBIT;
@@ -13,18 +14,20 @@ use stripmine_physics::words::Words;
 /// Orbits that are followed.
 const ORBITS: u64 = 100;
 /// Steps of an orbit in the table of errors.
-pub const STEPS: [u64; 4] = [64, 256, 1024, 4096];
+const STEPS: [u64; 4] = [64, 256, 1024, 4096];
 /// Eccentricities at which it is looked for where orbits are lost.
 const ECCENTRICITIES: [f64; 5] = [0.0, 0.3, 0.5, 0.7, 0.9];
 /// An orbit is lost where the energy is off by more than this part of itself, or positive.
 const LOST: f64 = 0.5;
 /// Looks at an orbit, at most.
 const LOOKS: u64 = 256;
+/// Errors below this are rounding.
+const ROUNDING: f64 = 1e-12;
 /// Most steps of an orbit that are tried.
 const MOST: u64 = 16_384;
 
-/// The largest |ΔE/E| that other programs have measured, for the steps of an orbit of the table; the last of Gear's is rounding.
-pub const KNOWN: [(SchemeName, [f64; 4]); 6] = [
+/// The largest |ΔE/E| by other programs, by steps of an orbit; the last of Gear's is rounding.
+const KNOWN: [(SchemeName, [f64; 4]); 6] = [
     (SchemeName::DampedEuler, [0.23, 3.9e-2, 8.9e-3, 2.2e-3]),
     (SchemeName::Leapfrog, [2.7e-2, 1.6e-3, 1.0e-4, 6.4e-6]),
     (SchemeName::Yoshida4, [1.7e-3, 7.5e-6, 3.0e-8, 1.2e-10]),
@@ -34,62 +37,22 @@ pub const KNOWN: [(SchemeName, [f64; 4]); 6] = [
 ];
 
 /// An orbit by a scheme.
-#[derive(Clone, Debug, Serialize)]
-pub struct Orbit {
-    /// The integrator.
-    pub scheme: &'static str,
-    /// Steps of an orbit.
-    pub steps: u64,
+struct Orbit {
+    scheme: SchemeName,
+    steps: u64,
     /// Evaluations of the forces an orbit.
-    pub evaluations: f64,
+    evaluations: f64,
     /// The largest |ΔE/E|; none where the orbit was lost.
-    pub error: Option<f64>,
-    /// What other programs have.
-    pub known: Option<f64>,
+    error: Option<f64>,
     /// The largest momentum and change of the angular momentum on the way.
-    pub drift: [f64; 2],
+    drift: [f64; 2],
 }
 
-/// Where an orbit is lost.
-#[derive(Clone, Debug, Serialize)]
-pub struct Edge {
-    /// The integrator.
-    pub scheme: &'static str,
-    /// Eccentricity.
-    pub eccentricity: f64,
-    /// Fewest steps of an orbit that keep it for the number of orbits; none where the most that are tried do not.
-    pub steps: Option<u64>,
-}
-
-/// The source's scheme with damping.
-#[derive(Clone, Debug, Serialize)]
-pub struct Damped {
-    /// Steps of an orbit.
-    pub steps: u64,
-    /// What velocities are multiplied by.
-    pub damping: f64,
-    /// The energy after ten orbits over that of the start; none where bodies are at no finite place before.
-    pub energy: Option<f64>,
-}
-
-/// What came out.
-#[derive(Clone, Debug, Serialize)]
-pub struct Energies {
-    /// Orbits followed.
-    pub orbits: u64,
-    /// Errors.
-    pub errors: Vec<Orbit>,
-    /// Where orbits are lost.
-    pub edges: Vec<Edge>,
-    /// What damping does.
-    pub damped: Vec<Damped>,
-}
-
-impl Orbit {
-    /// How its error compares with what is known; none where that is rounding.
-    pub fn off(&self) -> Option<f64> {
-        Some(self.error? / self.known.filter(|known| known.is_finite())?)
-    }
+/// Fewest steps of an orbit that keep it; none where the most that are tried do not.
+struct Edge {
+    scheme: SchemeName,
+    eccentricity: f64,
+    steps: Option<u64>,
 }
 
 fn overrides(scheme: SchemeName, steps: u64, eccentricity: f64) -> Overrides {
@@ -101,20 +64,83 @@ fn overrides(scheme: SchemeName, steps: u64, eccentricity: f64) -> Overrides {
 ///
 /// # Errors
 /// [`StudyError`] if a scene is refused.
-pub fn energies(progress: Progress<'_>) -> Result<Energies, StudyError> {
+pub fn made(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     let schemes: Vec<SchemeName> = SchemeName::ALL.iter().map(|(scheme, _)| *scheme).collect();
     let orbits: Vec<(SchemeName, u64)> =
         STEPS.iter().flat_map(|&steps| schemes.iter().rev().map(move |&scheme| (scheme, steps))).collect();
     // These two lose every orbit.
-    let kept =
-        schemes.iter().filter(|scheme| !matches!(scheme, SchemeName::Euler | SchemeName::EulerWithHalf));
+    let kept = schemes
+        .iter()
+        .rev()
+        .filter(|scheme| !matches!(scheme, SchemeName::Euler | SchemeName::EulerWithHalf));
     let edges: Vec<(SchemeName, f64)> =
         kept.flat_map(|&scheme| ECCENTRICITIES.map(|eccentricity| (scheme, eccentricity))).collect();
     let meter = Meter::new((orbits.len() + edges.len()) as f64, progress);
-    let errors = meter.each_from_last(&orbits, |&(scheme, steps)| orbit(scheme, steps))?;
+    let orbits = meter.each_from_last(&orbits, |&(scheme, steps)| orbit(scheme, steps))?;
     let edges = meter.each(&edges, |&(scheme, eccentricity)| edge(scheme, eccentricity))?;
-    let damped = STEPS.into_iter().map(|steps| damped_orbit(steps, 0.9999)).collect::<Result<_, _>>()?;
-    Ok(Energies { orbits: ORBITS, errors, edges, damped })
+    let damped = STEPS.into_iter().map(|steps| damped_orbit(steps, 0.9999)).collect::<Result<Vec<_>, _>>()?;
+    Ok(Made::of([
+        errors(&orbits, schemes.iter().rev().copied()),
+        Rows::of(&orbits)
+            .text("scheme", |it| it.scheme.word())
+            .count("steps of an orbit", |it| it.steps)
+            .number("evaluations of the forces an orbit", 2, |it| it.evaluations)
+            .short("largest |ΔE/E|", |it| it.error)
+            .short("known", |it| known(it.scheme, it.steps).filter(|known| known.is_finite()))
+            .short("largest momentum", |it| it.drift[0])
+            .short("largest change of the angular momentum", |it| it.drift[1])
+            .frame("orbits", "Energy error and drift of momenta along 100 orbits"),
+        Rows::of(&edges)
+            .text("scheme", |it| it.scheme.word())
+            .number("eccentricity", 1, |it| it.eccentricity)
+            .cell("steps of an orbit", |it| it.steps)
+            .frame("edges", "Fewest steps that keep an orbit for 100 turns"),
+        Rows::of(&damped)
+            .count("steps of an orbit", |(steps, ..)| *steps)
+            .number("friction −ln(damping)/dt", 4, |(steps, damping, _)| {
+                -damping.ln() * *steps as f64 / ORBIT
+            })
+            .cell("energy over that of the start", |(.., energy)| {
+                energy.map_or(Cell::from("lost"), |energy| Cell::Number(energy, 3))
+            })
+            .frame("damped", "The source's scheme with a damping of 0.9999, after ten orbits"),
+    ]))
+}
+
+/// The largest |ΔE/E| by another program.
+fn known(scheme: SchemeName, steps: u64) -> Option<f64> {
+    let column = STEPS.iter().position(|&known| known == steps)?;
+    let (_, errors) = KNOWN.iter().find(|(known, _)| *known == scheme)?;
+    Some(errors[column])
+}
+
+/// Errors by scheme and steps, with the order between the two shortest steps whose errors are no rounding.
+fn errors(orbits: &[Orbit], schemes: impl Iterator<Item = SchemeName>) -> Frame {
+    let of = |scheme: SchemeName, steps: u64| {
+        orbits.iter().find(|it| it.scheme == scheme && it.steps == steps).and_then(|it| it.error)
+    };
+    let order = |scheme: SchemeName| {
+        let errors = STEPS.iter().filter_map(|&steps| of(scheme, steps));
+        let errors: Vec<f64> = errors.filter(|error| (ROUNDING..0.5).contains(error)).collect();
+        match errors.as_slice() {
+            [.., a, b] => Cell::Number((a / b).log2() / 2.0, 2),
+            _ => Cell::Nothing,
+        }
+    };
+    let mut rows = Rows::of(schemes).text("scheme", |scheme| scheme.word());
+    for steps in STEPS {
+        rows = rows
+            .cell(format!("{steps} steps"), |&scheme| {
+                of(scheme, steps).map_or(Cell::from("lost"), Cell::Short)
+            })
+            .cell("known", |&scheme| match known(scheme, steps) {
+                Some(known) if known.is_finite() => Cell::Short(known),
+                Some(_) => Cell::from("rounding"),
+                None => Cell::Nothing,
+            });
+    }
+    rows.cell("order", |&scheme| order(scheme))
+        .frame("errors", "Largest |ΔE/E| along 100 orbits, by steps of an orbit")
 }
 
 /// The energy now. Published errors are relative to the energy itself, which an orbit's is far from losing.
@@ -142,16 +168,7 @@ fn orbit(scheme: SchemeName, steps: u64) -> Result<Orbit, StudyError> {
     }
     // Two bodies: work is four for an evaluation.
     let evaluations = (running.simulation.work() - before) / 4.0 / ORBITS as f64;
-    let column = STEPS.iter().position(|&known| known == steps);
-    let row = KNOWN.iter().find(|(known, _)| *known == scheme);
-    Ok(Orbit {
-        scheme: scheme.word(),
-        steps,
-        evaluations,
-        error: done.is_ok().then_some(largest),
-        known: row.zip(column).map(|((_, errors), column)| errors[column]),
-        drift,
-    })
+    Ok(Orbit { scheme, steps, evaluations, error: done.is_ok().then_some(largest), drift })
 }
 
 /// Whether an orbit is kept.
@@ -174,7 +191,7 @@ fn edge(scheme: SchemeName, eccentricity: f64) -> Result<Edge, StudyError> {
     let (mut low, mut high) = (4, 8);
     while !keeps(scheme, high, eccentricity)? {
         if high >= MOST {
-            return Ok(Edge { scheme: scheme.word(), eccentricity, steps: None });
+            return Ok(Edge { scheme, eccentricity, steps: None });
         }
         (low, high) = (high, 2 * high);
     }
@@ -185,14 +202,15 @@ fn edge(scheme: SchemeName, eccentricity: f64) -> Result<Edge, StudyError> {
             false => low = middle,
         }
     }
-    Ok(Edge { scheme: scheme.word(), eccentricity, steps: Some(high) })
+    Ok(Edge { scheme, eccentricity, steps: Some(high) })
 }
 
-fn damped_orbit(steps: u64, damping: f64) -> Result<Damped, StudyError> {
+/// Steps of an orbit, damping, and the energy after ten orbits over that of the start; none where bodies are at no finite place before.
+fn damped_orbit(steps: u64, damping: f64) -> Result<(u64, f64, Option<f64>), StudyError> {
     let overrides = overrides(SchemeName::DampedEuler, steps, 0.5).set(&DAMPING, damping);
     let mut running = Running::timed("kepler", &overrides)?;
     let start = energy(&running)?;
     let done = running.steps(10 * steps);
     let ratio = 1.0 + (energy(&running)? / start - 1.0);
-    Ok(Damped { steps, damping, energy: done.is_ok().then_some(ratio) })
+    Ok((steps, damping, done.is_ok().then_some(ratio)))
 }

@@ -15,7 +15,7 @@ mod series;
 mod words;
 
 use super::check::check;
-use super::{Figure, FigureError, Picture};
+use super::{Fault, Figure, FigureError, Picture};
 use kuva::render::render::Scene;
 
 /// A figure as a scene.
@@ -28,6 +28,7 @@ pub fn scene(figure: &Figure) -> Result<Scene, FigureError> {
         Picture::Chart(picture) => chart::scene(&figure.title, picture),
         Picture::Map(picture) => map::scene(&figure.title, picture),
         Picture::Drawing(picture) => Ok(drawing::scene(&figure.title, picture)),
+        Picture::Drawn { .. } => Err(Fault::Drawn),
     }
     .map_err(|fault| fault.of(&figure.name))
 }

@@ -1,5 +1,6 @@
-//! A table, before it is known where it will be read.
+//! Tables for reading: cells under headings.
 
+use super::{Digits, Value};
 use serde::{Deserialize, Serialize};
 use stripmine_physics::number::{in_tens, significant};
 
@@ -58,6 +59,29 @@ impl Cell {
     /// Whether it is set flush right.
     pub fn is_number(&self) -> bool {
         !matches!(self, Cell::Text(_))
+    }
+}
+
+impl Cell {
+    /// Puts the parts of a frame's columns of one heading together: number, count, error, lowest, highest, words.
+    pub(super) fn of(parts: [Option<Value>; 6], digits: Option<Digits>) -> Cell {
+        let decimals = match digits {
+            Some(Digits::Decimals(decimals)) => decimals,
+            _ => 0,
+        };
+        match parts {
+            [Some(Value::Number(value)), _, Some(Value::Number(error)), ..] => {
+                Cell::WithError { value, error, decimals }
+            }
+            [Some(Value::Number(value)), ..] if digits == Some(Digits::Short) => Cell::Short(value),
+            [Some(Value::Number(value)), ..] => Cell::Number(value, decimals),
+            [_, Some(Value::Count(count)), ..] => Cell::Count(count),
+            [_, _, _, Some(Value::Number(lowest)), Some(Value::Number(highest)), _] => {
+                Cell::Range([lowest, highest], decimals)
+            }
+            [.., Some(Value::Words(words))] => Cell::Text(words),
+            _ => Cell::Nothing,
+        }
     }
 }
 
@@ -145,69 +169,6 @@ impl Table {
     }
 }
 
-/// A table while its columns are added. Each is its heading, and what its cell is of an item; an item is a row.
-#[derive(Debug)]
-pub struct Rows<T> {
-    columns: Vec<String>,
-    rows: Vec<(T, Vec<Cell>)>,
-}
-
-impl<T> Rows<T> {
-    /// A row for each item, without columns so far.
-    pub fn of(items: impl IntoIterator<Item = T>) -> Rows<T> {
-        Rows { columns: vec![], rows: items.into_iter().map(|item| (item, vec![])).collect() }
-    }
-
-    /// A column of words.
-    pub fn text<W: Into<String>>(self, heading: impl Into<String>, of: impl Fn(&T) -> W) -> Rows<T> {
-        self.cell(heading, |item| Cell::Text(of(item).into()))
-    }
-
-    /// A column of counts.
-    pub fn count<C: TryInto<u64>>(self, heading: impl Into<String>, of: impl Fn(&T) -> C) -> Rows<T> {
-        self.cell(heading, |item| of(item).try_into().map_or(Cell::Nothing, Cell::Count))
-    }
-
-    /// A column of numbers with a number of decimals; an item may have none.
-    pub fn number<N: Into<Option<f64>>>(
-        self,
-        heading: impl Into<String>,
-        decimals: usize,
-        of: impl Fn(&T) -> N,
-    ) -> Rows<T> {
-        self.cell(heading, |item| of(item).into().map_or(Cell::Nothing, |it| Cell::Number(it, decimals)))
-    }
-
-    /// A column of numbers of any size, shown with two digits; an item may have none.
-    pub fn short<N: Into<Option<f64>>>(self, heading: impl Into<String>, of: impl Fn(&T) -> N) -> Rows<T> {
-        self.cell(heading, |item| of(item).into().map_or(Cell::Nothing, Cell::Short))
-    }
-
-    /// A column of any cells.
-    pub fn cell<C: Into<Cell>>(self, heading: impl Into<String>, of: impl Fn(&T) -> C) -> Rows<T> {
-        self.cells([heading], |item| [of(item)])
-    }
-
-    /// Several columns, whose number the data have.
-    pub fn cells<C: Into<Cell>, R: IntoIterator<Item = C>>(
-        mut self,
-        headings: impl IntoIterator<Item = impl Into<String>>,
-        of: impl Fn(&T) -> R,
-    ) -> Rows<T> {
-        self.columns.extend(headings.into_iter().map(Into::into));
-        for (item, cells) in &mut self.rows {
-            cells.extend(of(item).into_iter().map(Into::into));
-        }
-        self
-    }
-
-    /// The table.
-    pub fn table(self, name: impl Into<String>, title: impl Into<String>) -> Table {
-        let rows = self.rows.into_iter().map(|(_, cells)| cells).collect();
-        Table { name: name.into(), title: title.into(), columns: self.columns, rows, notes: vec![] }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -224,26 +185,5 @@ mod tests {
             [4.2e-4, 0.031, 12.0].map(|it| Cell::Short(it).for_reading()),
             ["4.2·10⁻⁴", "0.031", "12"]
         );
-    }
-
-    #[test]
-    fn a_column_is_its_heading_and_its_cells() {
-        let items = [("a", 1usize, Some(0.5)), ("b", 2, None)];
-        let table = Rows::of(&items)
-            .text("name", |(name, ..)| *name)
-            .count("times", |(_, times, _)| *times)
-            .number("share", 2, |(.., share)| *share)
-            .cells([1, 2].map(|power| format!("to {power}")), |(_, times, _)| {
-                [1, 2].map(|power| times.pow(power) as u64)
-            })
-            .table("items", "Items")
-            .note("none");
-        assert_eq!(table.columns, ["name", "times", "share", "to 1", "to 2"]);
-        let first = [Cell::from("a"), Cell::Count(1), Cell::Number(0.5, 2), Cell::Count(1), Cell::Count(1)];
-        assert_eq!(table.rows[0], first);
-        assert_eq!(table.rows[1][2..], [Cell::Nothing, Cell::Count(2), Cell::Count(4)]);
-        assert_eq!(table.notes, ["none"]);
-        // Without rows the headings stay.
-        assert_eq!(Rows::of([0u64; 0]).count("n", |n| *n).table("", "").columns, ["n"]);
     }
 }

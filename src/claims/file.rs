@@ -1,0 +1,247 @@
+//! Files of claims.
+
+use serde::Deserialize;
+use std::ops::Range;
+use stripmine_physics::reported::{Class, Reported};
+use toml::Spanned;
+
+/// Source of a claim.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
+pub enum Source {
+    /// Buchholtz and Pöschel 1993: the lattice on a vector machine.
+    BP93,
+    /// Isobe 1999: event-driven hard discs.
+    ISO99,
+    /// Nazeri 2017: Langevin dynamics with sectors.
+    LAN17,
+    /// Play with Particles: all-pairs softened gravity.
+    PWP,
+    /// Theory, and published results of other programs.
+    #[serde(rename = "literature")]
+    Literature,
+    /// Aims of our own.
+    Stripmine,
+}
+
+impl Source {
+    /// All of them, in the order of the report.
+    pub const ALL: [Source; 6] =
+        [Source::BP93, Source::ISO99, Source::LAN17, Source::PWP, Source::Literature, Source::Stripmine];
+
+    /// Its name.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Source::BP93 => "BP93",
+            Source::ISO99 => "ISO99",
+            Source::LAN17 => "LAN17",
+            Source::PWP => "PWP",
+            Source::Literature => "literature",
+            Source::Stripmine => "Stripmine",
+        }
+    }
+
+    /// Its file of claims.
+    pub fn file(self) -> String {
+        format!("{}.toml", self.name().to_lowercase())
+    }
+}
+
+/// A claim.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Claim {
+    /// Name: small letters, digits and dashes.
+    pub id: String,
+    /// Source.
+    pub source: Source,
+    /// Place in the source.
+    pub place: String,
+    /// Item of the report under which it stands; none where no item answers it.
+    pub item: Option<String>,
+    /// Statement.
+    pub text: String,
+    /// Expression over the item's frames that answers it.
+    pub value: Option<String>,
+    /// Expression of the value's 95 % half-width.
+    pub error: Option<String>,
+    /// Limit; its keys stand beside the others.
+    pub limit: Limit,
+    /// Origin of the expected value: paper and table, program with version and command, or a formula.
+    pub reference: Option<String>,
+    /// Sentence that a reader needs.
+    pub note: Option<String>,
+    /// Verdict where no value is judged.
+    pub verdict: Option<Unjudged>,
+    /// Earlier limits, the newest first.
+    #[serde(default)]
+    pub before: Vec<Limit>,
+    /// File and line.
+    #[serde(skip)]
+    pub at: (String, usize),
+}
+
+/// Limit that decides a claim.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Limit {
+    /// Day on which it was set: year-month-day.
+    pub since: String,
+    /// Expected value.
+    pub expected: Option<Expected>,
+    /// Relation of the value to the expected one.
+    pub relation: Option<Relation>,
+    /// Tolerance in the unit of the value.
+    pub tolerance: Option<f64>,
+    /// Tolerance as a share of the expected value.
+    pub relative: Option<f64>,
+}
+
+/// Keys of a [`Limit`].
+const LIMIT: [&str; 5] = ["since", "expected", "relation", "tolerance", "relative"];
+
+/// Expected value.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(untagged)]
+pub enum Expected {
+    /// Statement that is true or false.
+    Truth(bool),
+    /// Number.
+    Number(f64),
+    /// Words.
+    Words(String),
+    /// Numbers: one for each value, or the ends of a range.
+    Numbers(Vec<f64>),
+}
+
+/// Relation of a value to the expected one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Relation {
+    /// Equal within the tolerance.
+    Equals,
+    /// Not smaller, but for the tolerance.
+    AtLeast,
+    /// Not larger, but for the tolerance.
+    AtMost,
+    /// Between two numbers.
+    Between,
+}
+
+/// Verdict of a claim without a value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+pub enum Unjudged {
+    /// No study answers it yet.
+    #[serde(rename = "not tested yet")]
+    NotTested,
+    /// The source says two things that exclude each other.
+    #[serde(rename = "source contradicts itself")]
+    Contradiction,
+}
+
+/// A file of claims that cannot be understood.
+#[derive(Debug, thiserror::Error)]
+#[error("claims/{file} line {line}: {cause}")]
+pub struct ClaimError {
+    file: String,
+    line: usize,
+    cause: String,
+}
+
+impl Reported for ClaimError {
+    fn class(&self) -> Class {
+        Class::Usage
+    }
+}
+
+impl Claim {
+    /// Refuses the claim, with its place.
+    pub(super) fn refused(&self, cause: impl Into<String>) -> ClaimError {
+        let (file, line) = self.at.clone();
+        ClaimError { file, line, cause: cause.into() }
+    }
+
+    fn check(&self) -> Result<(), ClaimError> {
+        let Limit { expected, relation, tolerance, relative, .. } = &self.limit;
+        let has_tolerance = tolerance.is_some() || relative.is_some();
+        let cause = match (&self.value, self.verdict) {
+            (Some(_), Some(_)) => "a claim with a value has no verdict of its own",
+            (None, None) => {
+                "a claim without a value needs a verdict: `not tested yet` or `source contradicts itself`"
+            }
+            (Some(_), None) if self.item.is_none() => "a claim with a value needs the item that has it",
+            (_, _) if has_tolerance && relation.is_none() => "a tolerance needs a relation",
+            (Some(_), None) if expected.is_none() || relation.is_none() => {
+                "a value needs `expected` and `relation`"
+            }
+            (Some(_), None) if self.reference.is_none() && !matches!(expected, Some(Expected::Truth(_))) => {
+                "an expected number needs a `reference`: paper and table, program and version, or the formula"
+            }
+            _ if tolerance.is_some() && relative.is_some() => "give `tolerance` or `relative`, not both",
+            _ => return Ok(()),
+        };
+        Err(self.refused(cause))
+    }
+}
+
+/// Claims of a file.
+pub(super) fn read(file: &str, text: &str) -> Result<Vec<Claim>, ClaimError> {
+    #[derive(Deserialize)]
+    #[serde(deny_unknown_fields)]
+    struct File {
+        #[serde(default)]
+        claim: Vec<Spanned<toml::Table>>,
+    }
+    let line = |span: Range<usize>| text[..span.start.min(text.len())].lines().count().max(1);
+    let wrong = |cause: &toml::de::Error, line| ClaimError {
+        file: file.to_owned(),
+        line,
+        cause: cause.message().to_owned(),
+    };
+    let all: File = toml::from_str(text).map_err(|cause| wrong(&cause, cause.span().map_or(1, line)))?;
+    let claim = |it: Spanned<toml::Table>| {
+        // The span of a table begins at its head.
+        let at = line(it.span()) + usize::from(text[..it.span().start].ends_with('\n'));
+        let (limit, mut rest): (toml::Table, toml::Table) =
+            it.into_inner().into_iter().partition(|(key, _)| LIMIT.contains(&key.as_str()));
+        rest.insert("limit".to_owned(), toml::Value::Table(limit));
+        let mut claim: Claim = rest.try_into().map_err(|cause| wrong(&cause, at))?;
+        claim.at = (file.to_owned(), at);
+        claim.check()?;
+        Ok(claim)
+    };
+    all.claim.into_iter().map(claim).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GOOD: &str = "[[claim]]\nid = \"a\"\nsource = \"BP93\"\nplace = \"section 3\"\nitem = \"table\"\ntext = \"t\"\n\
+                        value = \"x\"\nexpected = 59\nrelation = \"equals\"\nreference = \"table 1\"\nsince = \"2026-11-26\"\n";
+
+    #[test]
+    fn claims_have_lines() {
+        let claims =
+            read("bp93.toml", &format!("# head\n\n{GOOD}\n{}", GOOD.replace("\"a\"", "\"b\""))).unwrap();
+        assert_eq!(claims.iter().map(|claim| claim.at.1).collect::<Vec<_>>(), [3, 15]);
+        assert_eq!(claims[1].limit.expected, Some(Expected::Number(59.0)));
+    }
+
+    #[test]
+    fn claims_that_cannot_be_judged_are_refused_with_their_line() {
+        for (from, to, named) in [
+            ("item =", "itme =", "itme"),
+            ("relation = \"equals\"", "relation = \"equal\"", "at-least"),
+            ("relation = \"equals\"", "tolerance = 0.1", "a tolerance needs a relation"),
+            ("expected = 59\n", "", "`expected` and `relation`"),
+            ("value = \"x\"\n", "", "needs a verdict"),
+            ("item = \"table\"\n", "", "needs the item"),
+            ("reference = \"table 1\"\n", "", "needs a `reference`"),
+            ("since = \"2026-11-26\"\n", "", "since"),
+            ("\"BP93\"", "\"BP94\"", "BP93"),
+        ] {
+            let said = read("bp93.toml", &format!("\n{}", GOOD.replace(from, to))).unwrap_err().to_string();
+            assert!(said.starts_with("claims/bp93.toml line 2: ") && said.contains(named), "{to}: {said}");
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! Claims of the sources and aims of ours as data: a text, the value of a result that answers it, and what is expected.
+//!
+//! Each source has a file in the folder `claims`. The verdict of a claim follows from its value, the value's error, what is expected and
+//! the tolerance: no sentence of a page decides it.
+
+mod file;
+mod verdict;
+
+pub use file::{Claim, ClaimError, Expected, Limit, Source};
+pub use verdict::{Judged, Verdict};
+
+use crate::frame::{Expressions, Scope};
+use rust_embed::RustEmbed;
+
+/// The files of claims: read from the source tree by a development build, part of the program in a release.
+#[derive(RustEmbed)]
+#[folder = "claims"]
+struct Files;
+
+/// Every claim, source by source, in the order of the files.
+///
+/// # Errors
+/// [`ClaimError`] with the file and the line of what cannot be understood.
+pub fn all() -> Result<Vec<Claim>, ClaimError> {
+    let mut claims = vec![];
+    for source in Source::ALL {
+        let name = source.file();
+        let text =
+            Files::get(&name).map_or(String::new(), |it| String::from_utf8_lossy(&it.data).into_owned());
+        claims.extend(file::read(&name, &text)?);
+    }
+    for (at, claim) in claims.iter().enumerate() {
+        if claims[..at].iter().any(|other| other.id == claim.id) {
+            return Err(claim.refused(format!("the id `{}` occurs twice", claim.id)));
+        }
+    }
+    Ok(claims)
+}
+
+/// Judges the claims of an item by its frames, which were made on a day (year-month-day).
+///
+/// # Errors
+/// [`ClaimError`] if an expression names a table or a column that is not there.
+pub fn judge<'c>(
+    claims: &'c [Claim],
+    item: &str,
+    scope: &Scope,
+    date: &str,
+) -> Result<Vec<Judged<'c>>, ClaimError> {
+    let expressions = Expressions::new();
+    let own = claims.iter().filter(|claim| claim.item.as_deref() == Some(item));
+    own.map(|claim| verdict::judge(claim, &expressions, scope, date)).collect()
+}

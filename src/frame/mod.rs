@@ -1,0 +1,15 @@
+//! Results as tables with typed columns. Files for programs, tables and charts of a page, and the values of claims all come from a
+//! [`Frame`].
+
+mod columns;
+mod convert;
+pub mod csv;
+mod expression;
+mod names;
+mod rows;
+mod table;
+
+pub use columns::{Column, Digits, Frame, Role, Value};
+pub use expression::{Expressions, Scope};
+pub use rows::Rows;
+pub use table::{Cell, Table};

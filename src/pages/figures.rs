@@ -1,0 +1,247 @@
+//! Figures of a page: charts and maps by expressions over the columns of frames, and pictures that a study drew.
+
+use super::{Filling, PageError, Shown, Text};
+use crate::frame::Frame;
+use crate::report::figure::{Axis, Band, Chart, Figure, Map, Picture, Point, Series, Style};
+use minijinja::value::{Value, ValueKind};
+use serde::Deserialize;
+use std::sync::Arc;
+use toml::Spanned;
+
+/// A figure of the page.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FigureSpec {
+    name: Text,
+    title: Text,
+    caption: Option<Text>,
+    /// Axes of a chart or a map; none of a picture that the study drew.
+    x: Option<AxisSpec>,
+    y: Option<AxisSpec>,
+    #[serde(default)]
+    series: Vec<SeriesSpec>,
+    #[serde(default)]
+    band: Vec<BandSpec>,
+    map: Option<MapSpec>,
+}
+
+impl FigureSpec {
+    /// Name of its file, without the ending.
+    pub(super) fn name(&self) -> &str {
+        self.name.get_ref()
+    }
+
+    /// Whether the study draws it.
+    pub(super) fn is_drawn(&self) -> bool {
+        self.x.is_none() || self.y.is_none()
+    }
+}
+
+/// An axis.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct AxisSpec {
+    label: Text,
+    unit: Option<String>,
+    #[serde(default)]
+    log: bool,
+    limits: Option<[f64; 2]>,
+}
+
+/// Points of a chart: an expression over the cells of a row gives each coordinate.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SeriesSpec {
+    from: Text,
+    x: Text,
+    y: Text,
+    /// Half-width of the interval of y.
+    error: Option<Text>,
+    /// Ends of the interval of y.
+    spread: Option<[Text; 2]>,
+    /// Name in the legend: one series.
+    name: Option<Text>,
+    /// Name in the legend by row: a series for each.
+    by: Option<Text>,
+    /// Rows that are drawn.
+    only: Option<Text>,
+    style: Style,
+    /// Colour of the first series; the next one that is free where it is left out.
+    hue: Option<usize>,
+    /// Whether points are put in the order of x.
+    #[serde(default)]
+    sorted: bool,
+}
+
+/// A part of the plane that means something.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct BandSpec {
+    label: Text,
+    /// Ends on the horizontal axis: numbers or expressions.
+    x: Option<Spanned<[End; 2]>>,
+    /// Ends on the vertical axis.
+    y: Option<Spanned<[End; 2]>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(untagged)]
+enum End {
+    Number(f64),
+    Expression(String),
+}
+
+/// A map of a frame with a row for each cell.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MapSpec {
+    from: Text,
+    x: Text,
+    y: Text,
+    value: Text,
+    /// Quantity that the colour shows.
+    shade: AxisSpec,
+}
+
+/// The figure of a page.
+pub(super) fn figure(spec: &FigureSpec, fill: &Filling<'_>, shown: &Shown<'_>) -> Result<Figure, PageError> {
+    let title = fill.text(&spec.title)?;
+    let caption = spec.caption.as_ref().map_or(Ok(String::new()), |caption| fill.text(caption))?;
+    let name = spec.name();
+    let picture = match (&spec.x, &spec.y) {
+        (Some(x), Some(y)) => {
+            let axes = [axis(x, fill)?, axis(y, fill)?];
+            match &spec.map {
+                Some(map) => Picture::Map(mapped(map, axes, fill)?),
+                None => Picture::Chart(chart(spec, axes, fill)?),
+            }
+        }
+        _ => {
+            let drawn = shown.pictures.iter().find(|(known, _)| known == name);
+            let names =
+                || shown.pictures.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", ");
+            let missing = || format!("the study drew no picture `{name}`; it drew {}", names());
+            drawn.ok_or_else(|| fill.refused(spec.name.span().start, missing()))?.1.clone()
+        }
+    };
+    Ok(picture.figure(name, title).caption(caption))
+}
+
+fn axis(spec: &AxisSpec, fill: &Filling<'_>) -> Result<Axis, PageError> {
+    let (label, unit) = (fill.text(&spec.label)?, spec.unit.as_deref());
+    let axis = if spec.log { Axis::logarithmic(&label, unit) } else { Axis::linear(&label, unit) };
+    Ok(Axis { limits: spec.limits, ..axis })
+}
+
+fn chart(spec: &FigureSpec, [x, y]: [Axis; 2], fill: &Filling<'_>) -> Result<Chart, PageError> {
+    let mut chart = Chart::of(x, y);
+    for spec in &spec.series {
+        let next = chart.series.iter().map(|it| it.hue + 1).max().unwrap_or(0);
+        chart = chart.with(series(spec, next, fill)?);
+    }
+    for spec in &spec.band {
+        let label = fill.text(&spec.label)?;
+        let ends = |ends: &Spanned<[End; 2]>| {
+            let end = |end: &End| match end {
+                End::Number(number) => Ok(*number),
+                End::Expression(text) => {
+                    let value = fill.expressions.value(text, fill.scope);
+                    let number = value.and_then(|value| number(&value).map(|it| it.unwrap_or(f64::NAN)));
+                    number.map_err(|cause| fill.refused(ends.span().start, cause))
+                }
+            };
+            let [low, high] = ends.get_ref();
+            Ok::<_, PageError>([end(low)?, end(high)?])
+        };
+        if let Some(x) = &spec.x {
+            chart = chart.band(Band::of_x(&label, ends(x)?));
+        }
+        if let Some(y) = &spec.y {
+            chart = chart.band(Band::of_y(&label, ends(y)?));
+        }
+    }
+    Ok(chart)
+}
+
+fn series(spec: &SeriesSpec, next: usize, fill: &Filling<'_>) -> Result<Vec<Series>, PageError> {
+    let frame = fill.frame(&spec.from)?;
+    let rows = Rows { frame, fill };
+    let fixed = spec.name.as_ref().map_or(Ok(String::new()), |name| fill.text(name))?;
+    let mut all: Vec<Series> = vec![];
+    for row in 0..frame.rows.len() {
+        if let Some(only) = &spec.only
+            && !rows.value(only, row)?.is_true()
+        {
+            continue;
+        }
+        let (Some(x), Some(y)) = (rows.number(&spec.x, row)?, rows.number(&spec.y, row)?) else { continue };
+        let mut point = Point::at(x, y);
+        if let Some(error) = &spec.error
+            && let Some(error) = rows.number(error, row)?
+        {
+            point.spread = Some([y - error, y + error]);
+        }
+        if let Some([low, high]) = &spec.spread {
+            point.spread = rows.number(low, row)?.zip(rows.number(high, row)?).map(|(low, high)| [low, high]);
+        }
+        let name =
+            spec.by.as_ref().map_or(Ok(fixed.clone()), |by| rows.value(by, row).map(|it| it.to_string()))?;
+        let hue = spec.hue.unwrap_or(next) + all.len();
+        match all.iter_mut().find(|series| series.name == name) {
+            Some(series) => series.points.push(point),
+            None => all.push(Series::new(name, spec.style, hue, [point])),
+        }
+    }
+    if spec.sorted {
+        all.iter_mut().for_each(|series| series.points.sort_by(|a, b| a.x.total_cmp(&b.x)));
+    }
+    Ok(all)
+}
+
+/// Cells in the order of their places; a place without a row is empty.
+fn mapped(spec: &MapSpec, [x, y]: [Axis; 2], fill: &Filling<'_>) -> Result<Map, PageError> {
+    let frame = fill.frame(&spec.from)?;
+    let rows = Rows { frame, fill };
+    let mut cells = vec![];
+    for row in 0..frame.rows.len() {
+        if let (Some(x), Some(y)) = (rows.number(&spec.x, row)?, rows.number(&spec.y, row)?) {
+            cells.push(([x, y], rows.number(&spec.value, row)?.unwrap_or(f64::NAN)));
+        }
+    }
+    let places = |axis: usize| {
+        let mut all: Vec<f64> = cells.iter().map(|(place, _)| place[axis]).collect();
+        all.sort_by(f64::total_cmp);
+        all.dedup();
+        all
+    };
+    let [across, up] = [places(0), places(1)];
+    let at = |x: f64, y: f64| cells.iter().find(|(place, _)| *place == [x, y]).map_or(f64::NAN, |it| it.1);
+    let rows = up.iter().map(|y| across.iter().map(|x| at(*x, *y)).collect()).collect();
+    Ok(Map { x, y, value: axis(&spec.shade, fill)?, rows })
+}
+
+/// Rows of a frame, whose cells expressions name.
+struct Rows<'r> {
+    frame: &'r Arc<Frame>,
+    fill: &'r Filling<'r>,
+}
+
+impl Rows<'_> {
+    fn value(&self, text: &Text, row: usize) -> Result<Value, PageError> {
+        let value = self.fill.expressions.of_row(text.get_ref(), self.frame, row);
+        value.map_err(|cause| self.fill.refused(text.span().start, cause))
+    }
+
+    fn number(&self, text: &Text, row: usize) -> Result<Option<f64>, PageError> {
+        let value = self.value(text, row)?;
+        number(&value).map_err(|cause| self.fill.refused(text.span().start, cause))
+    }
+}
+
+/// A number; none of a cell without content.
+fn number(value: &Value) -> Result<Option<f64>, String> {
+    match value.kind() {
+        ValueKind::None => Ok(None),
+        _ => f64::try_from(value.clone()).map(Some).map_err(|_| format!("`{value}` is no number")),
+    }
+}

@@ -1,0 +1,326 @@
+//! Pages of items: the words, tables and charts of each are a template in the folder `pages`, filled from the item's frames.
+//!
+//! A template has two parts. Between lines of `+++` stands TOML: title, question, what is expected, tables by the name of their frame,
+//! figures by expressions over its columns. Below stand the paragraphs; the first is the answer. Every text may hold expressions in
+//! double braces.
+
+mod figures;
+
+use crate::claims::{self, Claim, ClaimError};
+use crate::frame::{Expressions, Frame, Scope, Table};
+use crate::report::figure::Picture;
+use crate::report::section::Film;
+use crate::report::{Chapter, Section};
+use figures::FigureSpec;
+use rust_embed::RustEmbed;
+use serde::Deserialize;
+use stripmine_physics::reported::{Class, Reported};
+use toml::Spanned;
+
+/// The templates: read from the source tree by a development build, part of the program in a release.
+#[derive(RustEmbed)]
+#[folder = "pages"]
+struct Files;
+
+/// Line that begins and ends the first part of a template.
+const FENCE: &str = "+++\n";
+
+/// A text that may hold expressions, with its place in the file.
+type Text = Spanned<String>;
+
+/// A page that cannot be made.
+#[derive(Debug, thiserror::Error)]
+pub enum PageError {
+    /// The template.
+    #[error("pages/{name}.md line {line}: {cause}")]
+    Template {
+        /// Item.
+        name: String,
+        /// Line of the file.
+        line: usize,
+        /// Cause, with the names that exist.
+        cause: String,
+    },
+    /// A claim of the item.
+    #[error(transparent)]
+    Claim(#[from] ClaimError),
+}
+
+impl Reported for PageError {
+    fn class(&self) -> Class {
+        Class::Usage
+    }
+}
+
+/// A template.
+#[derive(Debug)]
+pub struct Page {
+    name: String,
+    header: Header,
+    /// Whole file.
+    text: String,
+    /// Where the paragraphs begin in it.
+    body: usize,
+}
+
+/// First part of a template.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Header {
+    title: String,
+    chapter: Chapter,
+    cost: Cost,
+    question: Text,
+    expected: Option<Text>,
+    /// Whether the results depend on the host.
+    #[serde(default)]
+    host: bool,
+    #[serde(default)]
+    figure: Vec<FigureSpec>,
+    #[serde(default)]
+    table: Vec<TableSpec>,
+    excerpt: Option<Excerpt>,
+    /// Further files of the item.
+    #[serde(default)]
+    files: Vec<String>,
+    film: Option<FilmSpec>,
+}
+
+/// Time and memory that an item takes on the two cores of the report's host.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Cost {
+    /// Seconds of the quick size; none where the item is made in full only.
+    pub quick: Option<f64>,
+    /// Seconds in full.
+    pub full: f64,
+    /// Seconds where `--all` asks for more of the item.
+    pub all: Option<f64>,
+    /// MiB of memory in full, at most.
+    #[serde(default = "usual_memory")]
+    pub memory: u64,
+}
+
+/// MiB that most items stay below.
+fn usual_memory() -> u64 {
+    256
+}
+
+/// A table of the page.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct TableSpec {
+    from: Text,
+    title: Option<Text>,
+    /// Columns that are shown; all of them where none are named.
+    columns: Option<Spanned<Vec<String>>>,
+    #[serde(default)]
+    notes: Vec<Text>,
+}
+
+/// Lines of a file of the item.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Excerpt {
+    file: Text,
+    caption: Text,
+    /// First line, from 1.
+    #[serde(default = "first")]
+    from: usize,
+    lines: usize,
+}
+
+/// Words beside the item's film.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FilmSpec {
+    title: Text,
+}
+
+fn first() -> usize {
+    1
+}
+
+/// Data of an item that its page shows.
+pub struct Shown<'d> {
+    /// Frames.
+    pub frames: &'d [Frame],
+    /// Pictures that are no charts of frames, by name.
+    pub pictures: &'d [(String, Picture)],
+    /// Film.
+    pub film: Option<&'d Film>,
+    /// Further files: name and contents.
+    pub files: &'d [(String, String)],
+    /// Seeds of the random numbers.
+    pub seeds: &'d [u64],
+}
+
+impl Page {
+    /// The template of an item, if there is one. A development build reads its file.
+    ///
+    /// # Errors
+    /// [`PageError`] with the line that cannot be understood.
+    pub fn of(name: &str) -> Result<Option<Page>, PageError> {
+        let Some(file) = Files::get(&format!("{name}.md")) else { return Ok(None) };
+        Page::read(name, String::from_utf8_lossy(&file.data).into_owned()).map(Some)
+    }
+
+    fn read(name: &str, text: String) -> Result<Page, PageError> {
+        let wrong = |at: usize, cause: &str| PageError::Template {
+            name: name.to_owned(),
+            line: line(&text, at),
+            cause: cause.to_owned(),
+        };
+        let header = text.strip_prefix(FENCE).ok_or_else(|| wrong(0, "the first line is not `+++`"))?;
+        let end = header.find(&format!("\n{FENCE}")).ok_or_else(|| wrong(0, "no second line of `+++`"))? + 1;
+        // The blank head keeps places as they are in the file.
+        let padded = format!("   \n{}", &header[..end]);
+        let parsed = toml::from_str(&padded);
+        let header: Header =
+            parsed.map_err(|cause| wrong(cause.span().map_or(0, |span| span.start), cause.message()))?;
+        let body = FENCE.len() + end + FENCE.len();
+        Ok(Page { name: name.to_owned(), header, text, body })
+    }
+
+    /// Whether the results depend on the host.
+    pub fn depends_on_host(&self) -> bool {
+        self.header.host
+    }
+
+    /// Title.
+    pub fn title(&self) -> &str {
+        &self.header.title
+    }
+
+    /// Names of the pictures that the study draws.
+    pub fn drawn(&self) -> Vec<&str> {
+        self.header.figure.iter().filter(|it| it.is_drawn()).map(FigureSpec::name).collect()
+    }
+
+    /// Names of files that the page quotes or links.
+    pub fn files(&self) -> Vec<&str> {
+        let quoted = self.header.excerpt.iter().map(|it| it.file.get_ref());
+        quoted.chain(&self.header.files).map(String::as_str).collect()
+    }
+
+    /// Chapter of the report.
+    pub fn chapter(&self) -> Chapter {
+        self.header.chapter
+    }
+
+    /// Stated cost.
+    pub fn cost(&self) -> Cost {
+        self.header.cost
+    }
+
+    /// The item as a section of the report, with its claims judged as of the day on which the data were made.
+    ///
+    /// # Errors
+    /// [`PageError`] if the template or a claim names a table or a column that is not there.
+    pub fn section(&self, shown: &Shown<'_>, claims: &[Claim], date: &str) -> Result<Section, PageError> {
+        let scope = Scope::of(shown.frames.iter().cloned());
+        let fill = Filling { page: self, scope: &scope, expressions: Expressions::new() };
+        let Header { title, chapter, question, expected, host, figure, table, excerpt, film, .. } =
+            &self.header;
+        let body = fill.at(&self.text[self.body..], self.body)?;
+        let mut paragraphs = body.split("\n\n").map(one_line).filter(|paragraph| !paragraph.is_empty());
+        let mut section = Section::new(&self.name, title)
+            .asks(fill.text(question)?)
+            .expects(expected.as_ref().map_or(Ok(String::new()), |expected| fill.text(expected))?)
+            .answers(paragraphs.next().unwrap_or_default())
+            .details(paragraphs)
+            .seeds(shown.seeds.iter().copied());
+        (section.depends_on_host, section.chapter) = (*host, *chapter);
+        for spec in figure {
+            section.figures.push(figures::figure(spec, &fill, shown)?);
+        }
+        for spec in table {
+            section.tables.push(fill.table(spec)?);
+        }
+        if let Some(excerpt) = excerpt {
+            section.excerpt = Some((fill.text(&excerpt.caption)?, fill.lines(excerpt, shown.files)?));
+        }
+        if let (Some(spec), Some(film)) = (film, shown.film) {
+            section.film = Some(Film { title: fill.text(&spec.title)?, ..film.clone() });
+        }
+        let judged = claims::judge(claims, &self.name, &scope, date)?;
+        section.claims = judged.iter().map(Into::into).collect();
+        Ok(section)
+    }
+}
+
+/// A template that is filled from frames.
+struct Filling<'p> {
+    page: &'p Page,
+    scope: &'p Scope,
+    expressions: Expressions,
+}
+
+impl Filling<'_> {
+    /// Refuses what stands at a place of the file.
+    fn refused(&self, at: usize, cause: impl Into<String>) -> PageError {
+        let (name, line) = (self.page.name.clone(), line(&self.page.text, at));
+        PageError::Template { name, line, cause: cause.into() }
+    }
+
+    /// A text of the file with its expressions filled in.
+    fn at(&self, text: &str, at: usize) -> Result<String, PageError> {
+        self.expressions.text(text, self.scope).map_err(|(down, cause)| {
+            let line = line(&self.page.text, at) + down - 1;
+            PageError::Template { name: self.page.name.clone(), line, cause }
+        })
+    }
+
+    fn text(&self, text: &Text) -> Result<String, PageError> {
+        self.at(text.get_ref(), text.span().start).map(|text| one_line(&text))
+    }
+
+    fn frame(&self, name: &Text) -> Result<&std::sync::Arc<Frame>, PageError> {
+        self.scope.frame(name.get_ref()).map_err(|cause| self.refused(name.span().start, cause))
+    }
+
+    fn table(&self, spec: &TableSpec) -> Result<Table, PageError> {
+        let frame = self.frame(&spec.from)?;
+        let mut table = Table::from(&**frame);
+        if let Some(columns) = &spec.columns {
+            let wrong = |cause| self.refused(columns.span().start, cause);
+            let places = columns.get_ref().iter().map(|column| {
+                let heading = &frame.columns[frame.position(column).map_err(wrong)?].doc;
+                Ok(table.columns.iter().position(|it| it == heading).unwrap_or_default())
+            });
+            let places = places.collect::<Result<Vec<usize>, PageError>>()?;
+            table.columns = places.iter().map(|at| table.columns[*at].clone()).collect();
+            for row in &mut table.rows {
+                *row = places.iter().map(|at| row[*at].clone()).collect();
+            }
+        }
+        if let Some(title) = &spec.title {
+            table.title = self.text(title)?;
+        }
+        let notes = spec.notes.iter().map(|note| self.text(note)).collect::<Result<Vec<_>, _>>()?;
+        Ok(table.notes(notes))
+    }
+
+    fn lines(&self, excerpt: &Excerpt, files: &[(String, String)]) -> Result<String, PageError> {
+        let name = excerpt.file.get_ref();
+        let file = files.iter().find(|(known, _)| known == name);
+        let names = || files.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", ");
+        let missing = || format!("the item has no file `{name}`; it has {}", names());
+        let (_, text) = file.ok_or_else(|| self.refused(excerpt.file.span().start, missing()))?;
+        let lines: Vec<&str> = text.lines().skip(excerpt.from - 1).take(excerpt.lines).collect();
+        Ok(lines.join("\n"))
+    }
+}
+
+/// Line of a place, from 1.
+fn line(text: &str, at: usize) -> usize {
+    text.bytes().take(at).filter(|byte| *byte == b'\n').count() + 1
+}
+
+/// Words in one line, as paragraphs are read.
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,92 @@
+//! Templates are filled from frames, and name what they lack.
+
+use super::*;
+use crate::frame::Rows;
+
+const TEMPLATE: &str = r#"+++
+title = "Errors"
+chapter = "host"
+cost = { full = 1.0 }
+question = "How large in {{ errors|length }} runs?"
+expected = "Small."
+
+[[figure]]
+name = "over-steps"
+title = "Error over steps"
+caption = "Worst {{ errors.column('error')|max|digits(2) }}."
+x = { label = "steps", log = true }
+y = { label = "error", unit = "J" }
+series = [{ from = "errors", x = "steps", y = "error", error = "error / 2", by = "scheme", style = "Joined", sorted = true }]
+band = [{ label = "small", y = [0, "errors.at(scheme='a', steps=1).error"] }]
+
+[[table]]
+from = "errors"
+columns = ["error", "scheme"]
+notes = ["All {{ errors|length }}."]
++++
+The first error is {{ errors[0].error|fixed(2) }}.
+
+More
+words.
+"#;
+
+fn frames() -> [Frame; 1] {
+    let frame = Rows::of([("a", 2u64, 0.5), ("b", 4, 0.25), ("a", 1, 1.0)])
+        .text("scheme", |it| it.0)
+        .count("steps", |it| it.1)
+        .number("error", 2, |it| it.2)
+        .frame("errors", "Errors");
+    [frame]
+}
+
+fn filled(template: &str) -> Result<Section, String> {
+    let frames = frames();
+    let shown = Shown { frames: &frames, pictures: &[], film: None, files: &[], seeds: &[1] };
+    let page = Page::read("x", template.to_owned()).map_err(|cause| cause.to_string())?;
+    page.section(&shown, &[], "2026-11-26").map_err(|cause| cause.to_string())
+}
+
+#[test]
+fn a_page_is_filled_from_frames() {
+    let section = filled(TEMPLATE).unwrap();
+    assert_eq!(section.question, "How large in 3 runs?");
+    assert_eq!([section.answer.as_str(), &section.details[0]], ["The first error is 0.50.", "More words."]);
+    let figure = &section.figures[0];
+    assert_eq!(figure.caption, "Worst 1.");
+    let Picture::Chart(chart) = &figure.picture else { panic!("{figure:?}") };
+    let [a, b] = chart.series.as_slice() else { panic!("{chart:?}") };
+    assert_eq!((a.name.as_str(), a.hue, b.name.as_str(), b.hue), ("a", 0, "b", 1));
+    assert_eq!(a.points.iter().map(|it| it.x).collect::<Vec<_>>(), [1.0, 2.0]);
+    assert_eq!(a.points[1].spread, Some([0.25, 0.75]));
+    assert_eq!(chart.bands[0].ends, [0.0, 1.0]);
+    let table = &section.tables[0];
+    assert_eq!(table.columns, ["error", "scheme"]);
+    assert_eq!(table.notes, ["All 3."]);
+}
+
+#[test]
+fn a_template_with_a_fault_names_the_line_and_what_exists() {
+    for (from, to, line, named) in [
+        ("errors[0].error", "errors[0].eror", 22, "it has scheme, steps, error"),
+        ("errors|length }} runs", "erors|length }} runs", 5, "errors"),
+        ("y = \"error\"", "y = \"eror\"", 14, "it has scheme, steps, error"),
+        ("from = \"errors\"\ncol", "from = \"error\"\ncol", 18, "there are errors"),
+        ("columns = [\"error\"", "columns = [\"err\"", 19, "it has scheme, steps, error"),
+        ("style = \"Joined\"", "style = \"line up\"", 14, "Joined"),
+        ("question", "qestion", 5, "qestion"),
+        ("x = { label = \"steps\", log = true }\n", "", 9, "drew no picture `over-steps`"),
+    ] {
+        let said = filled(&TEMPLATE.replacen(from, to, 1)).unwrap_err();
+        assert!(said.starts_with(&format!("pages/x.md line {line}: ")), "{from}: {said}");
+        assert!(said.contains(named), "{from}: {said}");
+    }
+}
+
+/// Every template of the folder can be read.
+#[test]
+fn templates_are_understood() {
+    for file in Files::iter() {
+        let name = file.strip_suffix(".md").unwrap();
+        Page::of(name).unwrap().unwrap();
+    }
+}

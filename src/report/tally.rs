@@ -1,0 +1,50 @@
+//! Claims of all items, counted by source and verdict.
+
+use super::Section;
+use super::section::JudgedClaim;
+use crate::claims::{Claim, Judged, Source, Verdict};
+
+/// Claims that a report judges.
+#[derive(Debug, Default)]
+pub struct Tally {
+    /// Claims by item; no item answers those of the last entry.
+    claims: Vec<(Option<(String, String)>, JudgedClaim)>,
+}
+
+impl Tally {
+    /// Of the items of a report, and the claims that no item answers.
+    pub fn of(sections: &[Section], all: &[Claim]) -> Tally {
+        let judged = sections.iter().flat_map(|section| {
+            let item = (section.name.clone(), section.title.clone());
+            section.claims.iter().map(move |claim| (Some(item.clone()), claim.clone()))
+        });
+        let open = all.iter().filter(|claim| claim.item.is_none());
+        Tally { claims: judged.chain(open.map(|claim| (None, (&Judged::unjudged(claim)).into()))).collect() }
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.claims.is_empty()
+    }
+
+    /// A row for each source that has claims, and one for all: the name, and how many claims have which verdict.
+    pub fn rows(&self) -> Vec<(&'static str, [usize; 5])> {
+        let count = |source: Option<&str>| {
+            Verdict::ALL.map(|verdict| {
+                let is_of = |claim: &JudgedClaim| source.is_none_or(|source| claim.place[0] == source);
+                let own = self.claims.iter().map(|(_, claim)| claim);
+                own.filter(|claim| is_of(claim) && claim.verdict == verdict.words()).count()
+            })
+        };
+        let sources = Source::ALL.map(|source| (source.name(), count(Some(source.name()))));
+        let there = sources.into_iter().filter(|(_, counts)| counts.iter().sum::<usize>() > 0);
+        there.chain([("all", count(None))]).collect()
+    }
+
+    /// Claims that failed: the item's name and title, and the claim.
+    pub fn failed(&self) -> impl Iterator<Item = (&(String, String), &JudgedClaim)> {
+        let failed = |claim: &JudgedClaim| claim.verdict == Verdict::NotReproduced.words();
+        let of_items = self.claims.iter().filter_map(|(item, claim)| Some((item.as_ref()?, claim)));
+        of_items.filter(move |(_, claim)| failed(claim))
+    }
+}

@@ -1,0 +1,136 @@
+//! The files of an item: written from what a study made, and read back into the same.
+
+use super::Made;
+use crate::claims;
+use crate::console::Failure;
+use crate::frame::csv::{self, Package};
+use crate::frame::{Frame, Scope};
+use crate::pages::{Page, Shown};
+use crate::report::Section;
+use crate::report::figure::{self, Picture, svg};
+use serde::Serialize;
+use std::path::Path;
+use stripmine_physics::io::regular_file;
+use stripmine_physics::quoted;
+
+/// Section of an item without a template.
+pub(super) const SECTION: &str = "section.json";
+/// Longer than any file of an item that is read again (bytes).
+pub(super) const LONGEST: u64 = 1 << 30;
+/// Columns, types, units and meanings of an item's tables.
+const PACKAGE: &str = "datapackage.json";
+/// Frames of an item's film.
+const FILM: &str = "film.json";
+/// Ending of the name of a table with the data of a figure.
+const OF_FIGURE: &str = ".data";
+
+/// A file: its name and contents.
+type File = (String, Vec<u8>);
+
+/// The section of an item, and its files but `provenance.json`; `date` is the day on which the data were made.
+pub(super) fn files_of(name: &str, made: &Made, date: &str) -> Result<(Section, Vec<File>), Failure> {
+    let section = match (&made.section, Page::of(name)?) {
+        (Some(section), _) => section.clone(),
+        (None, Some(page)) => {
+            let Made { frames, pictures, film, files, seeds, .. } = made;
+            let shown = Shown { frames, pictures, film: film.as_ref(), files, seeds };
+            page.section(&shown, &claims::all()?, date)?
+        }
+        (None, None) => Section::new(name, name),
+    };
+    let mut all = vec![];
+    if !made.data.is_null() {
+        all.push(("data.json".to_owned(), compact(&made.data)?.into_bytes()));
+    }
+    let of_figures = section.figures.iter().filter_map(figure::data).map(|table| Frame::from(&table));
+    let shown = section.tables.iter().chain(&made.tables);
+    let of_page = shown.filter(|_| made.section.is_some()).map(Frame::from);
+    let frames: Vec<Frame> = made.frames.iter().cloned().chain(of_page).chain(of_figures).collect();
+    for frame in &frames {
+        let mut bytes = vec![];
+        csv::write(frame, &mut bytes).map_err(Failure::writing("CSV"))?;
+        all.push((format!("{}.csv", frame.name), bytes));
+    }
+    if !frames.is_empty() || made.section.is_none() {
+        let package = Package::of(&section.name, &section.title, &made.seeds, &frames);
+        all.push((PACKAGE.to_owned(), compact(&package)?.into_bytes()));
+    }
+    for figure in &section.figures {
+        all.push((format!("{}.svg", figure.name), svg(figure)?.into_bytes()));
+    }
+    if let Some(film) = &made.film {
+        all.push((FILM.to_owned(), compact(film)?.into_bytes()));
+    }
+    all.extend(made.files.iter().map(|(name, text)| (name.clone(), text.clone().into_bytes())));
+    if made.section.is_some() {
+        all.push((SECTION.to_owned(), compact(&section)?.into_bytes()));
+    }
+    Ok((section, all))
+}
+
+/// An item as its folder has it, for a template; nothing if another version of the program wrote it.
+pub(super) fn read(folder: &Path, page: &Page) -> Result<Option<Made>, Failure> {
+    if !folder.join(PACKAGE).exists() || folder.join(SECTION).exists() {
+        return Ok(None);
+    }
+    let text =
+        |name: &str| Ok::<_, Failure>(String::from_utf8_lossy(&bytes_of(&folder.join(name))?).into_owned());
+    let Ok(package) = serde_json::from_str::<Package>(&text(PACKAGE)?) else { return Ok(None) };
+    let mut made = Made { seeds: package.seeds, ..Made::default() };
+    let drawn = page.drawn();
+    let has_picture = |table: &str| table.strip_suffix(OF_FIGURE).is_some_and(|it| drawn.contains(&it));
+    for resource in package.resources {
+        let name = resource.path.trim_end_matches(".csv").to_owned();
+        // The template makes the data of its charts again.
+        if name.ends_with(OF_FIGURE) && !has_picture(&name) {
+            continue;
+        }
+        let bytes = bytes_of(&folder.join(&resource.path))?;
+        let Ok(frame) = csv::read(resource, &bytes) else { return Ok(None) };
+        made.frames.push(frame);
+    }
+    for name in drawn {
+        let file = format!("{name}.svg");
+        if folder.join(&file).exists() {
+            let has_data = made.frames.iter().any(|frame| frame.name == format!("{name}{OF_FIGURE}"));
+            made.pictures.push((name.to_owned(), Picture::Drawn { svg: text(&file)?, has_data }));
+        }
+    }
+    if folder.join(FILM).exists() {
+        made.film = serde_json::from_str(&text(FILM)?).ok();
+    }
+    for name in page.files() {
+        if folder.join(name).exists() {
+            made.files.push((name.to_owned(), text(name)?));
+        }
+    }
+    Ok(Some(made))
+}
+
+/// A section that was written without a template, with its claims judged by the tables of its folder.
+pub(super) fn judged(section: Section, folder: &Path, date: &str) -> Result<Section, Failure> {
+    let mut frames = vec![];
+    if folder.join(PACKAGE).exists() {
+        let package = serde_json::from_slice::<Package>(&bytes_of(&folder.join(PACKAGE))?);
+        for resource in package.map(|it| it.resources).unwrap_or_default() {
+            let bytes = bytes_of(&folder.join(&resource.path))?;
+            frames.extend(csv::read(resource, &bytes));
+        }
+    }
+    let (all, scope) = (claims::all()?, Scope::of(frames));
+    let judged = claims::judge(&all, &section.name, &scope, date)?;
+    let claims = judged.iter().map(Into::into).collect();
+    Ok(Section { claims, ..section })
+}
+
+/// The bytes of a file.
+pub(super) fn bytes_of(path: &Path) -> Result<Vec<u8>, Failure> {
+    let what = || format!("reading {}", quoted::path(path));
+    regular_file::read(path, LONGEST).map_err(|cause| Failure::InputOutput { what: what(), cause })
+}
+
+/// JSON without blanks: datasets are for programs.
+fn compact(data: &impl Serialize) -> Result<String, Failure> {
+    let text = serde_json::to_string(data).map_err(|cause| Failure::writing("JSON")(cause.into()))?;
+    Ok(text + "\n")
+}
