@@ -4,7 +4,7 @@ use super::{items_of, processes};
 use crate::console::{Common, Failure, SHARES, bar, clear_progress, print_json, say};
 use crate::provenance::{Provenance, built};
 use crate::report::Chapter;
-use crate::results::{Effort, Folder, Item};
+use crate::results::{Folder, Item, Lab, Size};
 use clap::Args;
 use indicatif::ProgressBar;
 use serde::{Deserialize, Serialize};
@@ -46,7 +46,7 @@ struct Outcome {
 
 /// Where items go, and how.
 struct Job<'j> {
-    effort: Effort,
+    effort: Size,
     common: &'j Common,
     folder: &'j Folder,
     /// The items of the page; none where another process writes it.
@@ -84,9 +84,9 @@ impl Reproduce {
                 counted(items.len(), "item", "items"),
                 lasting(expected)
             ));
-            if effort == Effort::Full && self.only.is_empty() {
-                let more = others.iter().map(|item| item.seconds(Effort::All)).sum::<f64>()
-                    + items.iter().map(|item| item.seconds(Effort::All) - item.seconds(effort)).sum::<f64>();
+            if effort == Size::Full && self.only.is_empty() {
+                let more = others.iter().map(|item| item.seconds(Size::All)).sum::<f64>()
+                    + items.iter().map(|item| item.seconds(Size::All) - item.seconds(effort)).sum::<f64>();
                 say(format_args!(
                     "{} beyond the sources and of this host, and longer series, about {} more: --all",
                     counted(others.len(), "item", "items"),
@@ -141,11 +141,11 @@ impl Reproduce {
         }
     }
 
-    fn effort(&self) -> Effort {
+    fn effort(&self) -> Size {
         match (self.quick, self.all) {
-            (true, _) => Effort::Quick,
-            (false, true) => Effort::All,
-            (false, false) => Effort::Full,
+            (true, _) => Size::Quick,
+            (false, true) => Size::All,
+            (false, false) => Size::Full,
         }
     }
 
@@ -197,7 +197,8 @@ impl Job<'_> {
         let (share, before) = (item.seconds(self.effort), self.before.get());
         self.bar.set_message(format!("{}, about {}", item.name, lasting(share)));
         let (start, bar) = (Instant::now(), &self.bar);
-        let made = item.make(self.effort, &|part| bar.set_position(ticks(before + part * share)))?;
+        let lab = Lab { progress: &|part| bar.set_position(ticks(before + part * share)) };
+        let made = item.make(&lab, self.effort)?;
         self.before.set(before + share);
         let seconds = start.elapsed().as_secs_f64();
         // Finished items are on the disk, and on the page, before the next one starts, and before a signal ends it all.
@@ -298,7 +299,7 @@ mod tests {
     fn the_default_items_take_five_minutes_and_two_gigabytes() {
         let default: Vec<&Item> = items_of(METHODS).filter(|item| item.is_default()).collect();
         assert!(default.len() >= 19, "{} items", default.len());
-        let seconds: f64 = default.iter().map(|item| item.seconds(Effort::Full)).sum();
+        let seconds: f64 = default.iter().map(|item| item.seconds(Size::Full)).sum();
         assert!(seconds <= 300.0, "{seconds} s");
         for item in default {
             assert!(item.memory() <= 2000, "{}: {} MiB", item.name, item.memory());
@@ -312,7 +313,7 @@ mod tests {
         for item in items_of(METHODS) {
             let Some(made) = folder.provenance(item.name).unwrap() else { continue };
             let near = |stated: f64| made.seconds < 1.5 * stated + 1.0 && stated < 1.5 * made.seconds + 1.0;
-            let stated = [Effort::Full, Effort::All].map(|effort| item.seconds(effort));
+            let stated = [Size::Full, Size::All].map(|effort| item.seconds(effort));
             assert!(
                 stated.into_iter().any(near),
                 "{}: {stated:?} s, and took {:.0} s",

@@ -1,6 +1,6 @@
 //! What can be reproduced: a table or figure of a source, or of our own, by its name.
 
-use super::{Effort, Made};
+use super::{Lab, Made, Size};
 use crate::console;
 use crate::pages::{Cost, Page};
 use crate::report::Chapter;
@@ -9,7 +9,7 @@ use crate::report::Chapter;
 pub type Progress<'p> = &'p (dyn Fn(f64) + Sync);
 
 /// What makes an item.
-type Make = fn(Effort, Progress<'_>) -> Result<Made, console::Failure>;
+type Make = fn(&Lab<'_>, Size) -> Result<Made, console::Failure>;
 
 /// An item of the report.
 #[derive(Debug)]
@@ -104,12 +104,12 @@ impl Item {
     }
 
     /// Seconds that it takes about.
-    pub fn seconds(&self, effort: Effort) -> f64 {
+    pub fn seconds(&self, size: Size) -> f64 {
         let cost = self.cost();
-        match effort {
-            Effort::Quick => cost.quick.unwrap_or(cost.full),
-            Effort::Full => cost.full,
-            Effort::All => cost.all.unwrap_or(cost.full),
+        match size {
+            Size::Quick => cost.quick.unwrap_or(cost.full),
+            Size::Full => cost.full,
+            Size::All => cost.all.unwrap_or(cost.full),
         }
     }
 
@@ -122,11 +122,11 @@ impl Item {
     ///
     /// # Errors
     /// Those of its study.
-    pub fn make(&self, effort: Effort, progress: Progress<'_>) -> Result<Made, console::Failure> {
-        let mut made = (self.make)(effort, progress)?;
+    pub fn make(&self, lab: &Lab<'_>, size: Size) -> Result<Made, console::Failure> {
+        let mut made = (self.make)(lab, size)?;
         if let Some(section) = &mut made.section {
             section.chapter = self.chapter();
-            if effort == Effort::All && self.cost().all.is_some() {
+            if size == Size::All && self.cost().all.is_some() {
                 section.again = format!("stripmine reproduce --all --only {}", self.name);
             }
         }

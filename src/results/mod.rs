@@ -24,9 +24,15 @@ use crate::report::figure::Picture;
 use crate::report::section::Film;
 use serde::Serialize;
 
-/// How much is done.
+/// Surroundings of a study.
+pub struct Lab<'p> {
+    /// Hears the share of the work that is done.
+    pub progress: Progress<'p>,
+}
+
+/// Size of a study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Effort {
+pub enum Size {
     /// Under a minute in all.
     Quick,
     /// As much as the sources show, in five minutes.

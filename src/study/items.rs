@@ -8,7 +8,7 @@ use super::work_precision::{self, work_precision};
 use super::{Subject, stability::section as map_section, work_precision::section as diagram_section};
 use crate::console::Failure;
 use crate::report::Chapter;
-use crate::results::{Effort, Item, Journal, Made, Progress};
+use crate::results::{Item, Journal, Lab, Made, Size};
 use stripmine_physics::method::METHODS;
 
 /// Every item, in the order of its chapter.
@@ -51,35 +51,37 @@ pub const ITEMS: &[Item] = &[
 ];
 
 /// Plans, judged.
-fn plans_judged(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+fn plans_judged(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
+    let progress = lab.progress;
     // One scene of each method, where time is short.
     let (scenes, effort) = match effort {
-        Effort::Quick => {
+        Size::Quick => {
             (SCENES.iter().step_by(11).copied().collect(), regret::Effort { plan: 0.6, best: 1.2 })
         }
-        Effort::Full | Effort::All => (SCENES.to_vec(), regret::Effort { plan: SECONDS[0], best: 30.0 }),
+        Size::Full | Size::All => (SCENES.to_vec(), regret::Effort { plan: SECONDS[0], best: 30.0 }),
     };
     let judged = regret::judged(&scenes, effort, progress)?;
     plans::made(&judged, effort, format!("stripmine reproduce --only {}", plans::NAME))
 }
 
 /// What was recorded.
-fn over_time(_: Effort, _: Progress<'_>) -> Result<Made, Failure> {
+fn over_time(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     history::made(&shipped()?, format!("stripmine reproduce --only {}", history::NAME))
 }
 
 /// What the scripts of the rivals measured.
-fn beside_others(_: Effort, _: Progress<'_>) -> Result<Made, Failure> {
+fn beside_others(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     rivals::made()
 }
 
 /// The scenes that methods state for it.
-fn speed_against_accuracy(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+fn speed_against_accuracy(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
+    let progress = lab.progress;
     // Of each method the first scene alone, where time is short.
-    let most = if effort == Effort::Quick { 1 } else { usize::MAX };
+    let most = if effort == Size::Quick { 1 } else { usize::MAX };
     let (budget, repeats, phases) = match effort {
-        Effort::Quick => (0.7, 1, 4),
-        Effort::Full | Effort::All => (12.0, 3, 16),
+        Size::Quick => (0.7, 1, 4),
+        Size::Full | Size::All => (12.0, 3, 16),
     };
     let effort = work_precision::Effort { budget, repeats, phases, machine: None };
     let shown: Vec<_> = METHODS
@@ -98,11 +100,12 @@ fn speed_against_accuracy(effort: Effort, progress: Progress<'_>) -> Result<Made
 }
 
 /// The maps that methods state for it.
-fn where_it_works(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
-    let most = if effort == Effort::Quick { 1 } else { usize::MAX };
+fn where_it_works(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
+    let progress = lab.progress;
+    let most = if effort == Size::Quick { 1 } else { usize::MAX };
     let effort = match effort {
-        Effort::Quick => stability::Effort { budget: 6.0, size: 6, seeds: 1, tolerance: 0.2 },
-        Effort::Full | Effort::All => stability::Effort { budget: 16.0, size: 16, seeds: 2, tolerance: 0.05 },
+        Size::Quick => stability::Effort { budget: 6.0, size: 6, seeds: 1, tolerance: 0.2 },
+        Size::Full | Size::All => stability::Effort { budget: 16.0, size: 16, seeds: 2, tolerance: 0.05 },
     };
     let mapped: Vec<_> = METHODS
         .iter()

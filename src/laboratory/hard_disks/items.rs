@@ -6,7 +6,7 @@ use super::study::{atmosphere, collapse, complexity, cooling, fluid, masks, prec
 use super::verbs::question;
 use crate::console::Failure;
 use crate::report::Chapter::{Beyond, Host, Sources};
-use crate::results::{Effort, Item, Made, Progress};
+use crate::results::{Item, Lab, Made, Size};
 use crate::study::rivals::rivals;
 
 /// Every item, in the order of its chapter.
@@ -68,23 +68,24 @@ pub(super) const ITEMS: &[Item] = &[
     Item::quick("soft-hard", Beyond, [2.0, 10.0], limit, "Soft discs of growing stiffness against hard ones"),
 ];
 
-fn pressure(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+fn pressure(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+    let progress = lab.progress;
     let data = fluid::fluids(&fluid::Effort { discs: 10_000, collisions: 10_000_000 }, progress)?;
     Made::new(sections::fluid::section(&data), &data)
 }
 
-fn melting(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+fn melting(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+    let progress = lab.progress;
     let data = structure::structures(4096, progress)?;
     Made::new(sections::structure::section(&data), &data)
 }
 
-fn speed(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+fn speed(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
+    let progress = lab.progress;
     let packing_fractions = vec![0.10, 0.30, 0.50, 0.65, 0.70];
     let effort = match effort {
-        Effort::Quick => {
-            rates::Effort { discs: vec![2500], packing_fractions, rounds: 1, collisions: 50_000 }
-        }
-        Effort::Full | Effort::All => {
+        Size::Quick => rates::Effort { discs: vec![2500], packing_fractions, rounds: 1, collisions: 50_000 },
+        Size::Full | Size::All => {
             rates::Effort { discs: vec![2500, 250_000], packing_fractions, rounds: 3, collisions: 100_000 }
         }
     };
@@ -92,32 +93,34 @@ fn speed(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     Made::new(sections::rates::section(&data, &rivals()?), &data)
 }
 
-fn comparison(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+fn comparison(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
+    let progress = lab.progress;
     let (densities, turns): (&[f64], _) = match effort {
-        Effort::Quick => (&[0.10, 0.50], (1, 3000)),
-        Effort::Full | Effort::All => (&[0.02, 0.10, 0.30, 0.50, 0.70], (3, 10_000)),
+        Size::Quick => (&[0.10, 0.50], (1, 3000)),
+        Size::Full | Size::All => (&[0.02, 0.10, 0.30, 0.50, 0.70], (3, 10_000)),
     };
     let data = masks::masks(2500, densities, turns, progress)?;
     Made::new(sections::masks::section(&data), &data)
 }
 
-fn growth(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+fn growth(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
+    let progress = lab.progress;
     let effort = match effort {
-        Effort::Quick => complexity::Effort {
+        Size::Quick => complexity::Effort {
             discs: vec![1000, 10_000],
             packing_fractions: vec![0.50],
             rounds: 1,
             collisions: 20_000,
             most_by_reference: 10_000,
         },
-        Effort::Full => complexity::Effort {
+        Size::Full => complexity::Effort {
             discs: vec![1000, 10_000, 100_000, 1_000_000],
             packing_fractions: vec![0.30, 0.70],
             rounds: 3,
             collisions: 200_000,
             most_by_reference: 100_000,
         },
-        Effort::All => complexity::Effort {
+        Size::All => complexity::Effort {
             discs: vec![1000, 10_000, 100_000, 1_000_000, 10_000_000],
             packing_fractions: vec![0.30, 0.70],
             rounds: 3,
@@ -129,33 +132,38 @@ fn growth(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     Made::new(sections::complexity::section(&data), &data)
 }
 
-fn haff(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+fn haff(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+    let progress = lab.progress;
     let data = cooling::cooling(10_000, 12.0, progress)?;
     Made::new(sections::cooling::section(&data), &data)
 }
 
-fn collapses(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+fn collapses(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+    let progress = lab.progress;
     let data = collapse::collapses(progress)?;
     Made::new(sections::collapse::section(&data), &data)
 }
 
-fn error(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+fn error(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+    let progress = lab.progress;
     let effort = precision::Effort { discs: vec![100, 1000, 10_000], collisions: 1_000_000 };
     let data = precision::precision(&effort, progress)?;
     Made::new(sections::precision::section(&data), &data)
 }
 
-fn open_system(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+fn open_system(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+    let progress = lab.progress;
     let data = atmosphere::atmosphere(600, progress)?;
     Made::new(sections::atmosphere::section(&data), &data)
 }
 
-fn limit(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+fn limit(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
+    let progress = lab.progress;
     let question = match effort {
-        Effort::Quick => {
+        Size::Quick => {
             Question { discs: 200, stiffnesses: vec![1e3, 1e4, 1e5], seeds: 2, time: 4.0, ..question() }
         }
-        Effort::Full | Effort::All => question(),
+        Size::Full | Size::All => question(),
     };
     let data = soft_hard(&question, progress)?;
     Made::new(sections::soft_hard::section(&data, "stripmine reproduce --only soft-hard".into()), &data)

@@ -6,7 +6,7 @@ use crate::console::Failure;
 use crate::laboratory::programs;
 use crate::laboratory::running::prepared;
 use crate::report::Chapter::{Beyond, Sources};
-use crate::results::{Effort, Item, Made, Progress};
+use crate::results::{Item, Lab, Made, Size};
 use stripmine_physics::method::langevin::keys::LAW;
 use stripmine_physics::method::langevin::options::PairLaw;
 use stripmine_physics::scene::Overrides;
@@ -44,32 +44,37 @@ pub(super) const ITEMS: &[Item] = &[
     ),
 ];
 
-fn lost(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+fn lost(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+    let progress = lab.progress;
     let data = losses::losses(40_000, progress)?;
     Made::new(sections::losses::section(&data), &data)
 }
 
-fn cost(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+fn cost(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
+    let progress = lab.progress;
     let effort = match effort {
-        Effort::Quick => sectors::Effort { fewest: 100, seconds: 0.05, rounds: 1 },
-        Effort::Full | Effort::All => sectors::Effort { fewest: 3, seconds: 0.06, rounds: 3 },
+        Size::Quick => sectors::Effort { fewest: 100, seconds: 0.05, rounds: 1 },
+        Size::Full | Size::All => sectors::Effort { fewest: 3, seconds: 0.06, rounds: 3 },
     };
     let data = sectors::sectors(&effort, progress)?;
     Made::new(sections::sectors::section(&data), &data)
 }
 
-fn displaced(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+fn displaced(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+    let progress = lab.progress;
     let data = diffusion::diffusion(progress)?;
     Made::new(sections::diffusion::section(&data), &data)
 }
 
-fn errors(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
-    let time = if effort == Effort::Quick { 80.0 } else { 640.0 };
+fn errors(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
+    let progress = lab.progress;
+    let time = if effort == Size::Quick { 80.0 } else { 640.0 };
     let data = accuracy::accuracy(time, progress)?;
     Made::new(sections::accuracy::section(&data), &data)
 }
 
-fn counted(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+fn counted(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+    let progress = lab.progress;
     let repulsive = Overrides::new().set(&LAW, PairLaw::Wca);
     let scenes = [
         ("langevin-dense, WCA", prepared("langevin-dense", &repulsive)?),

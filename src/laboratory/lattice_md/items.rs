@@ -14,7 +14,7 @@ use crate::model::host::{HostModel, default_model};
 use crate::model::machines;
 use crate::report::Chapter::{Beyond, Host, Sources};
 use crate::report::Section;
-use crate::results::{Effort, Item, Made, Meter, Progress};
+use crate::results::{Item, Lab, Made, Meter, Progress, Size};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::Serialize;
 use std::sync::OnceLock;
@@ -127,12 +127,12 @@ pub(super) const ITEMS: &[Item] = &[
     Item::full("waves", Sources, 20.0, waves, "Density waves over dissipation, and controls without"),
 ];
 
-fn table(_: Effort, _: Progress<'_>) -> Result<Made, Failure> {
+fn table(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let data = efficiency_table::efficiency_table(&Question::default(), &machines::preset("paper")?)?;
     made(sections::efficiency_table::section(&data), &data)
 }
 
-fn ladder(_: Effort, _: Progress<'_>) -> Result<Made, Failure> {
+fn ladder(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let ladders: Vec<_> = ["cray-y-mp-el", "cray-1", "cray-c90", "sx-aurora"]
         .into_iter()
         .map(|name| Ok(ladder::ladder(&Question::default(), &machines::preset(name)?)?))
@@ -140,42 +140,43 @@ fn ladder(_: Effort, _: Progress<'_>) -> Result<Made, Failure> {
     made(sections::ladder::section(&ladders), &ladders)
 }
 
-fn listing(_: Effort, _: Progress<'_>) -> Result<Made, Failure> {
+fn listing(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     listings()
 }
 
-fn mask(_: Effort, _: Progress<'_>) -> Result<Made, Failure> {
+fn mask(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     made(sections::mask::section(), &())
 }
 
-fn misprints(_: Effort, _: Progress<'_>) -> Result<Made, Failure> {
+fn misprints(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let data = misprints::misprints();
     made(sections::misprints::section(&data), &data)
 }
 
-fn cost(_: Effort, _: Progress<'_>) -> Result<Made, Failure> {
+fn cost(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let data = density_cost::density_cost(&machines::preset("paper")?)?;
     made(sections::density_cost::section(&data), &data)
 }
 
-fn useful_work(_: Effort, _: Progress<'_>) -> Result<Made, Failure> {
+fn useful_work(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let data = useful_work::useful_work()?;
     made(sections::useful_work::section(&data), &data)
 }
 
-fn printed(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+fn printed(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
+    let progress = lab.progress;
     // Short vectors for the line, up to the first cache; long ones for where it breaks.
     let short = [25, 49, 100, 170, 290, 500, 1000, 10_000, 100_000];
     let long = [2000, 5000, 30_000, 300_000, 1_000_000, 3_000_000];
     let effort = match effort {
-        Effort::Quick => printed_cost::Effort {
+        Size::Quick => printed_cost::Effort {
             cells: short.to_vec(),
             occupancies: vec![1.0],
             samples: 8,
             particles: 1000,
             rounds: Bound::of(3),
         },
-        Effort::Full | Effort::All => printed_cost::Effort {
+        Size::Full | Size::All => printed_cost::Effort {
             cells: [&short[..], &long].concat(),
             occupancies: vec![0.05, 0.1, 0.5, 1.0],
             samples: 24,
@@ -187,26 +188,29 @@ fn printed(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     made(sections::printed_cost::section(&data), &data)
 }
 
-fn measured(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+fn measured(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
+    let progress = lab.progress;
     let data = measured_cost::measured_cost(&measured_effort(effort), progress)?;
     made(sections::measured_cost::section(&data), &data)
 }
 
-fn crossover(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+fn crossover(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
+    let progress = lab.progress;
     let data = crossover::crossover(&crossover_effort(effort), progress)?;
     made(sections::crossover::section(&data), &data)
 }
 
-fn bands(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+fn bands(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
+    let progress = lab.progress;
     let effort = match effort {
-        Effort::Quick => bands::Effort {
+        Size::Quick => bands::Effort {
             discs: vec![1000, 20_000],
             packing_fraction: 0.8,
             disc_steps: 1_000_000,
             repeats: 2,
             ranks: vec![2, 4],
         },
-        Effort::Full | Effort::All => bands::Effort {
+        Size::Full | Size::All => bands::Effort {
             discs: vec![1000, 10_000, 100_000, 1_000_000],
             packing_fraction: 0.8,
             disc_steps: 10_000_000,
@@ -218,37 +222,43 @@ fn bands(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     made(sections::bands::section(&data), &data)
 }
 
-fn threads(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+fn threads(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
+    let progress = lab.progress;
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let data = threads::threads(cores, &threads_effort(effort), progress)?;
     made(sections::threads::section(&data), &data)
 }
 
-fn identity(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+fn identity(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+    let progress = lab.progress;
     let data = identity::identity(progress)?;
     made(sections::identity::section(&data), &data)
 }
 
-fn precision(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+fn precision(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+    let progress = lab.progress;
     let data = precision::precision(progress)?;
     made(sections::precision::section(&data), &data)
 }
 
-fn pipe_small(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+fn pipe_small(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+    let progress = lab.progress;
     let title = "Density waves in a short pipe (figures 5 and 6)";
     let question = "Do grains that fall through two fifths of the pipe form density waves?";
     let showing = Showing { name: "pipe-small", title, question, asks_ways: false, from: 0.0, snapshots: 0 };
     pipes(showing, ("pipe-small", Overrides::new()), &[1], progress)
 }
 
-fn pipe(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+fn pipe(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+    let progress = lab.progress;
     let title = "Density waves in the whole pipe (figures 5 and 6)";
     let question = "Do grains that fall through the source's whole pipe form density waves?";
     let showing = Showing { name: "pipe", title, question, asks_ways: false, from: 10.0, snapshots: 14 };
     pipes(showing, ("pipe", Overrides::new()), &[1, 2], progress)
 }
 
-fn pipe_thin(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+fn pipe_thin(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+    let progress = lab.progress;
     let title = "Density waves in a thinner filling";
     let question = "Do the waves run both ways where the pipe is filled less?";
     let showing = Showing { name: "pipe-thin", title, question, asks_ways: true, from: 0.0, snapshots: 0 };
@@ -256,7 +266,8 @@ fn pipe_thin(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
     pipes(showing, ("pipe", thin), &[1, 2], progress)
 }
 
-fn waves(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+fn waves(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+    let progress = lab.progress;
     let seeds = [1, 2, 3, 4, 5, 6];
     let data = damping::damping(&seeds, progress)?;
     made(sections::damping::section(&data), &data)
@@ -267,7 +278,8 @@ fn made(section: Section, data: &impl Serialize) -> Result<Made, Failure> {
 }
 
 /// The shipped host model on few cases, or, in full, a fresh calibration and more of them.
-fn validation(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+fn validation(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
+    let progress = lab.progress;
     let runs = |particles, occupancies, rounds| model_validation::Effort {
         particles,
         occupancies,
@@ -275,11 +287,11 @@ fn validation(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
         particle_steps: 10_000,
     };
     match effort {
-        Effort::Quick => {
+        Size::Quick => {
             let (host, runs) = (default_model()?, runs(vec![300], vec![0.2], Bound::of(2)));
             validated(&host, Calibrated::Shipped, &runs, &progress)
         }
-        Effort::Full | Effort::All => {
+        Size::Full | Size::All => {
             let host = this_host(&|share| progress(0.5 * share))?;
             let runs = runs(vec![150, 4000], vec![0.072, 0.24], bound(6, VALIDATION));
             validated(host, Calibrated::Now, &runs, &|share| progress(0.5 + 0.5 * share))
@@ -320,27 +332,28 @@ fn bound(most: usize, seconds: u64) -> Bound {
 }
 
 /// The machine of the source, the CRAY of the application, and this host, beside what is measured here.
-fn atlas(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+fn atlas(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
+    let progress = lab.progress;
     let machines = [machines::preset("paper")?, machines::preset("cray-y-mp-el")?];
     let host = this_host(&|_| {})?;
     let (measured, rounds): (&[usize], Bound) = match effort {
-        Effort::Quick => (&[300], Bound::of(2)),
-        Effort::Full | Effort::All => (&[100, 300, 1000, 3000, 10_000], bound(6, ATLAS)),
+        Size::Quick => (&[300], Bound::of(2)),
+        Size::Full | Size::All => (&[100, 300, 1000, 3000, 10_000], bound(6, ATLAS)),
     };
     let data = break_even::atlas(&machines, (host, Calibrated::Now), measured, rounds, progress)?;
     made(sections::break_even::section(&data, "stripmine reproduce --only atlas"), &data)
 }
 
-fn measured_effort(effort: Effort) -> measured_cost::Effort {
+fn measured_effort(effort: Size) -> measured_cost::Effort {
     match effort {
-        Effort::Quick => measured_cost::Effort {
+        Size::Quick => measured_cost::Effort {
             particles: vec![100, 1000],
             occupancies: vec![0.1, 0.2],
             equilibration: 50,
             element_steps: 200_000,
             repeats: 3,
         },
-        Effort::Full | Effort::All => measured_cost::Effort {
+        Size::Full | Size::All => measured_cost::Effort {
             particles: vec![100, 300, 1000, 3000, 10_000],
             occupancies: vec![0.01, 0.03, 0.1, 0.2, 0.25],
             equilibration: 100,
@@ -350,16 +363,16 @@ fn measured_effort(effort: Effort) -> measured_cost::Effort {
     }
 }
 
-fn crossover_effort(effort: Effort) -> crossover::Effort {
+fn crossover_effort(effort: Size) -> crossover::Effort {
     match effort {
-        Effort::Quick => crossover::Effort {
+        Size::Quick => crossover::Effort {
             precisions: vec!["f64"],
             particles: vec![4000],
             packing_fractions: vec![0.84, 0.3, 0.1],
             steps: 60,
             repeats: 2,
         },
-        Effort::Full | Effort::All => crossover::Effort {
+        Size::Full | Size::All => crossover::Effort {
             precisions: vec!["f64", "mixed", "f32"],
             particles: vec![10_000, 100_000],
             packing_fractions: vec![0.84, 0.8, 0.6, 0.3, 0.1, 0.03],
@@ -369,15 +382,15 @@ fn crossover_effort(effort: Effort) -> crossover::Effort {
     }
 }
 
-fn threads_effort(effort: Effort) -> threads::Effort {
+fn threads_effort(effort: Size) -> threads::Effort {
     match effort {
-        Effort::Quick => threads::Effort {
+        Size::Quick => threads::Effort {
             particles: vec![20_000],
             packing_fractions: vec![0.84],
             rounds: 3,
             particle_steps: 1_000_000,
         },
-        Effort::Full | Effort::All => threads::Effort {
+        Size::Full | Size::All => threads::Effort {
             particles: vec![10_000, 100_000, 300_000],
             packing_fractions: vec![0.84, 0.3],
             rounds: 5,

@@ -6,7 +6,7 @@ use crate::console::Failure;
 use crate::laboratory::programs;
 use crate::laboratory::running::prepared;
 use crate::report::Chapter::{Beyond, Host};
-use crate::results::{Effort, Item, Made, Progress};
+use crate::results::{Item, Lab, Made, Size};
 use stripmine_physics::method::nbody::keys::COUNT;
 use stripmine_physics::scene::Overrides;
 
@@ -30,23 +30,24 @@ pub(super) const ITEMS: &[Item] = &[
     ),
 ];
 
-fn speed(effort: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+fn speed(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
+    let progress = lab.progress;
     let effort = match effort {
-        Effort::Quick => rates::Effort { bodies: vec![1024], seconds: 0.05, rounds: 1 },
-        Effort::Full | Effort::All => {
-            rates::Effort { bodies: vec![1024, 4096, 16_384], seconds: 0.1, rounds: 3 }
-        }
+        Size::Quick => rates::Effort { bodies: vec![1024], seconds: 0.05, rounds: 1 },
+        Size::Full | Size::All => rates::Effort { bodies: vec![1024, 4096, 16_384], seconds: 0.1, rounds: 3 },
     };
     let data = rates::rates(&effort, progress)?;
     Made::new(sections::rates::section(&data), &data)
 }
 
-fn fall(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+fn fall(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+    let progress = lab.progress;
     let data = collapse::collapses(progress)?;
     Made::new(sections::collapse::section(&data), &data)
 }
 
-fn counted(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+fn counted(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+    let progress = lab.progress;
     let scene = |count: u64| prepared("plummer", &Overrides::new().set(&COUNT, count));
     let scenes = [("plummer, N = 1024", scene(1024)?), ("plummer, N = 16", scene(16)?)];
     progress(1.0);

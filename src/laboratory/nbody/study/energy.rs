@@ -3,7 +3,7 @@
 use crate::console::Failure;
 use crate::frame::{Cell, Frame, Rows};
 use crate::laboratory::running::Running;
-use crate::results::{Effort, Made, Meter, Progress};
+use crate::results::{Lab, Made, Meter, Size};
 use crate::study::StudyError;
 use stripmine_physics::method::nbody::keys::{DAMPING, ECCENTRICITY, INTEGRATOR};
 use stripmine_physics::method::nbody::schemes::SchemeName;
@@ -64,7 +64,8 @@ fn overrides(scheme: SchemeName, steps: u64, eccentricity: f64) -> Overrides {
 ///
 /// # Errors
 /// [`StudyError`] if a scene is refused.
-pub fn made(_: Effort, progress: Progress<'_>) -> Result<Made, Failure> {
+pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+    let progress = lab.progress;
     let schemes: Vec<SchemeName> = SchemeName::ALL.iter().map(|(scheme, _)| *scheme).collect();
     let orbits: Vec<(SchemeName, u64)> =
         STEPS.iter().flat_map(|&steps| schemes.iter().rev().map(move |&scheme| (scheme, steps))).collect();
