@@ -10,6 +10,9 @@ use std::path::Path;
 pub struct Machine {
     /// The processor's name and the platform.
     pub processor: String,
+    /// Family, model and stepping of the processor; none where the system does not say.
+    #[serde(default)]
+    pub model: Option<String>,
     /// Processors that the system shows.
     pub cores: usize,
     /// The clock of the first of them when it was asked (MHz).
@@ -35,6 +38,7 @@ impl Machine {
         let first = Path::new("/sys/devices/system/cpu/cpu0");
         Machine {
             processor: stripmine_physics::origin::host(),
+            model: model(&field),
             cores: std::thread::available_parallelism().map_or(1, usize::from),
             clock: field("cpu MHz").and_then(|clock| clock.parse().ok()),
             caches: (0..8).filter_map(|index| cache(&first.join(format!("cache/index{index}")))).collect(),
@@ -54,7 +58,11 @@ impl Machine {
 
 impl fmt::Display for Machine {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}, {} cores", self.processor, self.cores)?;
+        write!(f, "{}", self.processor)?;
+        if let Some(model) = &self.model {
+            write!(f, ", {model}")?;
+        }
+        write!(f, ", {} cores", self.cores)?;
         if let Some(clock) = self.clock {
             write!(f, ", {:.2} GHz", clock / 1e3)?;
         }
@@ -70,6 +78,13 @@ impl fmt::Display for Machine {
         }
         write!(f, "; {}", self.compiler)
     }
+}
+
+/// Family, model and stepping, as `/proc/cpuinfo` has them.
+fn model(field: &dyn Fn(&str) -> Option<String>) -> Option<String> {
+    let [family, model, stepping] =
+        [field("cpu family")?, field("model\t").or_else(|| field("model "))?, field("stepping")?];
+    Some(format!("family {family} model {model} stepping {stepping}"))
 }
 
 /// A cache as the kernel describes it: level, kind, size.
@@ -95,6 +110,7 @@ mod tests {
     fn a_machine_is_described_as_far_as_it_is_known() {
         let machine = Machine {
             processor: "A, linux x86_64".into(),
+            model: Some("family 25 model 17 stepping 1".into()),
             cores: 2,
             clock: Some(2595.124),
             caches: vec!["L1d 32K".into(), "L2 1024K".into()],
@@ -105,9 +121,10 @@ mod tests {
         let said = machine.to_string();
         assert_eq!(
             said,
-            "A, linux x86_64, 2 cores, 2.60 GHz, L1d 32K, L2 1024K, clock not set by this system, virtual machine; rustc 1.90.0"
+            "A, linux x86_64, family 25 model 17 stepping 1, 2 cores, 2.60 GHz, L1d 32K, L2 1024K, clock not set by this system, virtual machine; rustc 1.90.0"
         );
         let unknown = Machine {
+            model: None,
             clock: None,
             caches: vec![],
             is_virtual: None,

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use std::ffi::OsString;
 use std::path::Path;
 use stripmine_kernels::InstructionSet;
+use stripmine_physics::number::counted;
 use stripmine_physics::origin::{Origin, today};
 use stripmine_physics::quoted;
 
@@ -38,6 +39,51 @@ pub struct Provenance {
     pub seconds: f64,
     /// When it was made: the day, in universal time, as year-month-day.
     pub date: String,
+    /// Processes that measured its times; one where it has none.
+    #[serde(default = "one")]
+    pub processes: usize,
+    /// Code that it depends on; none of results of earlier versions.
+    #[serde(default)]
+    pub code: Option<Fingerprints>,
+    /// Measurements that it repeats.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub repeated: Vec<Measurement>,
+}
+
+fn one() -> usize {
+    1
+}
+
+/// Fingerprints of the code that results depend on, crate by crate.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Fingerprints {
+    /// Kernels.
+    pub kernels: String,
+    /// Physics, without files, records and processes.
+    pub physics: String,
+}
+
+impl Fingerprints {
+    /// Of this program.
+    pub fn here() -> Fingerprints {
+        Fingerprints {
+            kernels: env!("STRIPMINE_KERNELS").to_owned(),
+            physics: env!("STRIPMINE_PHYSICS").to_owned(),
+        }
+    }
+}
+
+/// A measurement that was made before, and is repeated by a report.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Measurement {
+    /// Day: year-month-day.
+    pub date: String,
+    /// Commit of our source.
+    pub commit: String,
+    /// Command that measured.
+    pub command: String,
+    /// Processor.
+    pub host: String,
 }
 
 impl Provenance {
@@ -51,7 +97,20 @@ impl Provenance {
             instruction_set: InstructionSet::best().name().to_owned(),
             seconds,
             date: today(),
+            processes: 1,
+            code: Some(Fingerprints::here()),
+            repeated: vec![],
         }
+    }
+
+    /// Returns whether kernels or physics have changed since it was made.
+    pub fn is_stale(&self) -> bool {
+        self.code != Some(Fingerprints::here())
+    }
+
+    /// The day on which its results were measured: of results that are repeated, the last.
+    pub fn measured_on(&self) -> &str {
+        self.repeated.iter().map(|it| it.date.as_str()).max().unwrap_or(&self.date)
     }
 
     /// Whether the same command of the same program, from a source that is in a commit or was released, made it on the same host.
@@ -74,10 +133,17 @@ impl Provenance {
 
     /// When, how long, by which command and commit, in a sentence.
     pub fn sentence(&self) -> String {
-        let Provenance { origin, command, threads, seconds, date, .. } = self;
+        let Provenance { origin, command, threads, seconds, date, repeated, processes, .. } = self;
+        if !repeated.is_empty() {
+            let one = |it: &Measurement| {
+                format!("on {} by `{}`, source commit {}, {}", it.date, it.command, it.commit, it.host)
+            };
+            return format!("Measured {}.", repeated.iter().map(one).collect::<Vec<_>>().join("; "));
+        }
         let state = if origin.dirty { " with changes" } else { "" };
         format!(
-            "Made on {date} in {seconds:.1} s with {threads} threads by `{command}`, source commit {}{state}.",
+            "Made on {date} in {seconds:.1} s with {threads} threads in {} by `{command}`, source commit {}{state}.",
+            counted(processes, "process", "processes"),
             origin.commit
         )
     }

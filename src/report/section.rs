@@ -149,7 +149,13 @@ impl Section {
     pub fn outcome(&self) -> String {
         let counts = self.counts().map(|(verdict, count)| format!("{count} {}", verdict.words()));
         let counts: Vec<String> = counts.collect();
-        if counts.is_empty() { "no claim".to_owned() } else { counts.join(", ") }
+        let counts = if counts.is_empty() { "no claim".to_owned() } else { counts.join(", ") };
+        if self.is_stale() { format!("{counts}; stale") } else { counts }
+    }
+
+    /// Returns whether kernels or physics have changed since its results were made.
+    pub fn is_stale(&self) -> bool {
+        self.provenance.as_ref().is_some_and(Provenance::is_stale)
     }
 
     /// The verdicts of its claims, with how many have each.

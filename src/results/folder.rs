@@ -148,13 +148,18 @@ impl Folder {
         made: &Made,
         provenance: &Provenance,
     ) -> Result<(PathBuf, Section), Failure> {
-        let (section, files) = files_of(name, made, &provenance.date)?;
+        let mut provenance = provenance.clone();
+        provenance.processes = made.processes.unwrap_or(provenance.processes);
+        if !made.repeated.is_empty() {
+            provenance.repeated.clone_from(&made.repeated);
+        }
+        let (section, files) = files_of(name, made, provenance.measured_on())?;
         let folder = self.path.join(section.folder());
         let own = own_files(&folder)?;
         let mut listed = vec![PROVENANCE];
         listed.extend(files.iter().map(|(name, _)| name.as_str()));
         // The list first: whatever becomes of this process, what is here is known as ours.
-        let list = to_json(&Listed { provenance, files: listed })? + "\n";
+        let list = to_json(&Listed { provenance: &provenance, files: listed })? + "\n";
         let part = self.temporary_folder()?;
         let all = std::iter::once((PROVENANCE, list.as_bytes()))
             .chain(files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())));
@@ -236,7 +241,7 @@ impl Folder {
             },
             None if folder.join(SECTION).exists() => {
                 let section = serde_json::from_slice::<Section>(&bytes_of(&folder.join(SECTION))?).ok();
-                section.map(|section| made::judged(section, &folder, &provenance.date)).transpose()?
+                section.map(|section| made::judged(section, &folder, provenance.measured_on())).transpose()?
             }
             None => None,
         };
@@ -253,7 +258,7 @@ impl Folder {
         made: &Made,
         provenance: &Provenance,
     ) -> Result<Section, Failure> {
-        let (section, files) = files_of(name, made, &provenance.date)?;
+        let (section, files) = files_of(name, made, provenance.measured_on())?;
         let is_there = |(name, bytes): &(String, Vec<u8>)| {
             regular_file::read(&folder.join(name), LONGEST).is_ok_and(|there| there == *bytes)
         };

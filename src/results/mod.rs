@@ -19,6 +19,7 @@ pub use team::Team;
 
 use crate::console::Failure;
 use crate::frame::{Frame, Table};
+use crate::provenance::Measurement;
 use crate::report::Section;
 use crate::report::figure::Picture;
 use crate::report::section::Film;
@@ -60,6 +61,10 @@ pub struct Made {
     pub files: Vec<(String, String)>,
     /// Seeds of the random numbers.
     pub seeds: Vec<u64>,
+    /// Processes that measured times; none where the record has them.
+    pub processes: Option<usize>,
+    /// Measurements that it repeats.
+    pub repeated: Vec<Measurement>,
 }
 
 impl Made {

@@ -2,7 +2,7 @@
 
 use super::explain::{SCENES, SECONDS, regret, section as plans};
 use super::history::{section as history, shipped};
-use super::rivals::section as rivals;
+use super::rivals;
 use super::stability::{self, Over, stability};
 use super::work_precision::{self, work_precision};
 use super::{Subject, stability::section as map_section, work_precision::section as diagram_section};
@@ -41,13 +41,7 @@ pub const ITEMS: &[Item] = &[
         over_time,
         "Rates that `bench --record` measured, over time and host",
     ),
-    Item::quick(
-        rivals::NAME,
-        Chapter::Host,
-        [0.1, 0.1],
-        beside_others,
-        "LAMMPS, the crate particular and EDMD on the same systems, as measured last",
-    ),
+    Item::of("rivals", rivals::made),
 ];
 
 /// Plans, judged.
@@ -67,11 +61,6 @@ fn plans_judged(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
 /// What was recorded.
 fn over_time(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     history::made(&shipped()?, format!("stripmine reproduce --only {}", history::NAME))
-}
-
-/// What the scripts of the rivals measured.
-fn beside_others(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    rivals::made()
 }
 
 /// The scenes that methods state for it.

@@ -7,7 +7,6 @@ use super::verbs::question;
 use crate::console::Failure;
 use crate::report::Chapter::{Beyond, Host, Sources};
 use crate::results::{Item, Lab, Made, Size};
-use crate::study::rivals::rivals;
 
 /// Every item, in the order of its chapter.
 pub(super) const ITEMS: &[Item] = &[
@@ -90,7 +89,7 @@ fn speed(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
         }
     };
     let data = rates::rates(&effort, progress)?;
-    Made::new(sections::rates::section(&data, &rivals()?), &data)
+    Made::new(sections::rates::section(&data), &data)
 }
 
 fn comparison(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {

@@ -2,7 +2,7 @@
 
 use super::film;
 use super::inline::Inline;
-use super::words::{badge, prose};
+use super::words::{badge, badges, prose};
 use crate::claims::Verdict;
 use crate::report::figure::{Figure, data_file};
 use crate::report::section::Film;
@@ -26,7 +26,7 @@ pub fn render(section: &Section, pictures: &[Inline]) -> Markup {
     html! {
         section id=(name) aria-labelledby={ (name) "-title" } {
             h2 id={ (name) "-title" } { a href={ "#" (name) } { (section.title) } }
-            p.answer { (prose(&section.answer)) }
+            p.answer { (badges(section)) (prose(&section.answer)) }
             (claims(section))
             @if let Some((each, picture)) = figures.next() {
                 (figure(section, each, picture))

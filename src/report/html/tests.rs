@@ -75,6 +75,7 @@ fn section(name: &str) -> Section {
             command: "some command".into(),
             machine: Machine {
                 processor: HOSTILE.into(),
+                model: Some(HOSTILE.into()),
                 cores: 2,
                 clock: None,
                 caches: vec![HOSTILE.into()],
@@ -86,6 +87,9 @@ fn section(name: &str) -> Section {
             instruction_set: "scalar".into(),
             seconds: 1.5,
             date: "2026-11-24".into(),
+            processes: 3,
+            code: None,
+            repeated: vec![],
         }),
     }
 }

@@ -17,6 +17,9 @@ pub(super) fn badges(section: &Section) -> Markup {
         @for (verdict, count) in section.counts() {
             span class={ "badge " (kind(verdict)) } { (sign(verdict)) " " (count) " " (verdict.words()) } " "
         }
+        @if section.is_stale() {
+            span.badge.not-tested title="Kernels or physics have changed since these results were made." { "stale" }
+        }
     }
 }
 

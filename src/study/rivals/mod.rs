@@ -3,10 +3,12 @@
 //! They cannot be had everywhere, so scripts in `tests/rivals/` measure them; what the scripts wrote last is shipped in
 //! `measured/`, with date, host and commit.
 
-pub mod section;
-
 use crate::console::Failure;
-use serde::{Deserialize, Serialize};
+use crate::frame::{Frame, Rows};
+use crate::provenance::Measurement;
+use crate::results::{Lab, Made, Size};
+use crate::statistics::median;
+use serde::Deserialize;
 
 /// What the scripts wrote: a name, the contests, and where they come from.
 const MEASURED: [(&str, &str, &str); 4] = [
@@ -29,91 +31,78 @@ const MEASURED: [(&str, &str, &str); 4] = [
 ];
 
 /// Contests with another program.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Rival {
-    /// The program.
-    pub rival: String,
-    /// Its version.
-    pub version: String,
-    /// Which build it is.
-    pub build: String,
+#[derive(Clone, Debug, Deserialize)]
+struct Rival {
+    rival: String,
+    version: String,
+    build: String,
     /// Instructions that ours used.
-    pub instruction_set: String,
-    /// The unit of the rates.
-    pub unit: String,
-    /// The contests.
-    pub contests: Vec<Contest>,
-    /// What both must agree in.
-    pub same: Vec<Same>,
-    /// What both take of the machine's memory, where it was measured.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub memory: Vec<Memory>,
-    /// Where they come from; beside the contests in a file of its own.
-    #[serde(skip_deserializing)]
-    pub source: Source,
+    instruction_set: String,
+    /// Unit of the rates.
+    unit: String,
+    contests: Vec<Contest>,
+    /// Quantities in which both must agree.
+    same: Vec<Same>,
+    /// The most memory that both programs had at once, where it was measured.
+    #[serde(default)]
+    memory: Vec<Memory>,
+    /// Beside the contests in a file of its own.
+    #[serde(skip)]
+    source: Measurement,
 }
 
 /// A system, ours and theirs in turns.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Contest {
-    /// What is simulated.
-    pub system: String,
-    /// How many particles.
-    pub particles: u64,
-    /// Our way: search, precision, integrator.
-    pub way: String,
-    /// Our rates, a number for each round.
-    pub ours: Vec<f64>,
-    /// Theirs.
-    pub theirs: Vec<f64>,
+#[derive(Clone, Debug, Deserialize)]
+struct Contest {
+    system: String,
+    particles: u64,
+    /// Search, precision and integrator of ours.
+    way: String,
+    /// Rates, a number for each round.
+    ours: Vec<f64>,
+    theirs: Vec<f64>,
     /// Ours over theirs in each round.
-    pub ratios: Vec<f64>,
+    ratios: Vec<f64>,
 }
 
 /// A quantity that both programs computed.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Same {
-    /// Which.
-    pub what: String,
-    /// Ours.
-    pub ours: f64,
-    /// Theirs.
-    pub theirs: f64,
-    /// By how much they may differ.
-    pub within: f64,
+#[derive(Clone, Debug, Deserialize)]
+struct Same {
+    what: String,
+    ours: f64,
+    theirs: f64,
+    within: f64,
 }
 
 /// The most memory that both programs had at once, in bytes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Memory {
-    /// What is simulated.
-    pub system: String,
-    /// How many particles.
-    pub particles: u64,
-    /// Ours.
-    pub ours: u64,
-    /// Theirs.
-    pub theirs: u64,
+#[derive(Clone, Debug, Deserialize)]
+struct Memory {
+    system: String,
+    particles: u64,
+    ours: u64,
+    theirs: u64,
 }
 
-/// Where contests come from.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Source {
-    /// The day.
-    pub date: String,
-    /// Commit of our source.
-    pub commit: String,
-    /// The command that measured.
-    pub command: String,
-    /// The processor.
-    pub host: String,
+impl Contest {
+    fn ratio(&self) -> f64 {
+        median(self.ratios.iter().copied())
+    }
+
+    fn lowest(&self) -> f64 {
+        self.ratios.iter().copied().fold(f64::NAN, f64::min)
+    }
+
+    fn highest(&self) -> f64 {
+        self.ratios.iter().copied().fold(f64::NAN, f64::max)
+    }
+
+    fn packing_fraction(&self) -> Option<f64> {
+        self.system.split("packing fraction ").nth(1)?.parse().ok()
+    }
 }
 
 /// All contests.
-///
-/// # Errors
-/// If a shipped file is not what the scripts write.
-pub fn rivals() -> Result<Vec<Rival>, Failure> {
+fn rivals() -> Result<Vec<Rival>, Failure> {
     let read = |(script, contests, source): &(&str, &str, &str)| {
         let wrong =
             |cause: serde_json::Error| Failure::writing(format!("contests of {script}"))(cause.into());
@@ -121,6 +110,99 @@ pub fn rivals() -> Result<Vec<Rival>, Failure> {
         Ok(Rival { source: serde_json::from_str(source).map_err(wrong)?, ..rival })
     };
     MEASURED.iter().map(read).collect()
+}
+
+/// The contests as the scripts measured them.
+///
+/// # Errors
+/// If a shipped file is not what the scripts write.
+pub fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+    let all = rivals()?;
+    let repeated = all.iter().map(|rival| rival.source.clone()).collect();
+    Ok(Made {
+        repeated,
+        ..Made::of([contests(&all), fastest(&all), same(&all), memory(&all), programs(&all)])
+    })
+}
+
+fn contests(all: &[Rival]) -> Frame {
+    let middle = |rates: &[f64]| median(rates.iter().copied());
+    Rows::of(all.iter().flat_map(|rival| rival.contests.iter().map(move |it| (rival, it))))
+        .text("beside", |(rival, _)| &rival.rival)
+        .text("system", |(_, it)| &it.system)
+        .count("particles", |(_, it)| it.particles)
+        .text("our way", |(_, it)| &it.way)
+        .number("ours", 2, |(_, it)| middle(&it.ours))
+        .number("theirs", 2, |(_, it)| middle(&it.theirs))
+        .number("ratio", 2, |(_, it)| it.ratio())
+        .number("lowest", 2, |(_, it)| it.lowest())
+        .number("highest", 2, |(_, it)| it.highest())
+        .frame("contests", "Rates of both, medians over the rounds")
+}
+
+/// The fastest of our configurations in each precision, one for each system and size.
+fn fastest(all: &[Rival]) -> Frame {
+    let mut best: Vec<(&Rival, &str, &Contest)> = vec![];
+    for rival in all {
+        for precision in ["f64", "f32"] {
+            for it in rival.contests.iter().filter(|it| it.way.contains(precision)) {
+                let alike = |known: &&mut (&Rival, &str, &Contest)| {
+                    (&known.0.rival, known.1, &known.2.system, known.2.particles)
+                        == (&rival.rival, precision, &it.system, it.particles)
+                };
+                match best.iter_mut().find(alike) {
+                    Some(known) if known.2.ratio() < it.ratio() => known.2 = it,
+                    Some(_) => {}
+                    None => best.push((rival, precision, it)),
+                }
+            }
+        }
+    }
+    Rows::of(best)
+        .text("beside", |(rival, ..)| &rival.rival)
+        .text("kind", |(.., it)| it.system.split(',').next().unwrap_or_default())
+        .text("system", |(.., it)| &it.system)
+        .number("packing fraction", 2, |(.., it)| it.packing_fraction())
+        .text("precision", |(_, precision, _)| *precision)
+        .count("particles", |(.., it)| it.particles)
+        .text("our configuration", |(.., it)| &it.way)
+        .number("ratio", 2, |(.., it)| it.ratio())
+        .number("lowest", 2, |(.., it)| it.lowest())
+        .number("highest", 2, |(.., it)| it.highest())
+        .frame("fastest", "Our rate over theirs, by the fastest of our configurations")
+}
+
+fn same(all: &[Rival]) -> Frame {
+    Rows::of(all.iter().flat_map(|rival| rival.same.iter().map(move |it| (rival, it))))
+        .text("beside", |(rival, _)| &rival.rival)
+        .text("quantity", |(_, it)| &it.what)
+        .number("ours", 6, |(_, it)| it.ours)
+        .number("theirs", 6, |(_, it)| it.theirs)
+        .short("may differ by", |(_, it)| it.within)
+        .frame("same-physics", "Quantities that both programs compute")
+}
+
+fn memory(all: &[Rival]) -> Frame {
+    Rows::of(all.iter().flat_map(|rival| rival.memory.iter().map(move |it| (rival, it))))
+        .text("beside", |(rival, _)| &rival.rival)
+        .text("system", |(_, it)| &it.system)
+        .count("particles", |(_, it)| it.particles)
+        .number("ours (MB)", 0, |(_, it)| 1e-6 * it.ours as f64)
+        .number("theirs (MB)", 0, |(_, it)| 1e-6 * it.theirs as f64)
+        .frame("memory", "The most memory that both programs had at once")
+}
+
+fn programs(all: &[Rival]) -> Frame {
+    Rows::of(all)
+        .text("program", |it| &it.rival)
+        .text("version", |it| &it.version)
+        .text("build", |it| &it.build)
+        .text("our instructions", |it| &it.instruction_set)
+        .text("unit of the rates", |it| &it.unit)
+        .text("host", |it| &it.source.host)
+        .text("measured on", |it| &it.source.date)
+        .text("our commit", |it| &it.source.commit)
+        .frame("programs", "Programs, their builds, and when they were measured")
 }
 
 #[cfg(test)]
@@ -137,7 +219,7 @@ mod tests {
             for same in &rival.same {
                 assert!((same.ours - same.theirs).abs() <= same.within, "{}: {same:?}", rival.rival);
             }
-            let Source { date, commit, command, host } = &rival.source;
+            let Measurement { date, commit, command, host } = &rival.source;
             assert!(!date.is_empty() && !host.is_empty() && command.contains("tests/rivals/"), "{rival:?}");
             assert!(!commit.contains("dirty"), "{} was measured with a changed source", rival.rival);
         }

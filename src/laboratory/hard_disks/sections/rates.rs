@@ -3,22 +3,12 @@
 use crate::laboratory::hard_disks::study::rates::{ENGINES, Rate, Rates};
 use crate::report::figure::{Axis, Chart, Figure, Series, Style};
 use crate::report::{Cell, Rows, Section, Table, Verdict};
-use crate::statistics::median;
-use crate::study::rivals::Rival;
-use crate::study::rivals::section::defeats;
 
-/// Million collisions an hour of the source's program, by the number of discs: the best over the densities; and its memory in MB, where
-/// it is said.
-const SOURCE: [(f64, f64, Option<f64>); 2] = [(2500.0, 460.0, None), (2_500_000.0, 210.0, Some(250.0))];
+/// Million collisions an hour of the source's program, by the number of discs: the best over the densities.
+const SOURCE: [(f64, f64); 2] = [(2500.0, 460.0), (2_500_000.0, 210.0)];
 
-/// What the source says of about as many discs.
-fn of_source(discs: f64) -> Option<(f64, Option<f64>)> {
-    let known = SOURCE.iter().find(|(known, ..)| (discs / known - 1.0).abs() < 0.1);
-    known.map(|&(_, rate, memory)| (rate, memory))
-}
-
-/// What came out, and other programs on the same discs.
-pub fn section(data: &Rates, rivals: &[Rival]) -> Section {
+/// What came out.
+pub fn section(data: &Rates) -> Section {
     let best = |engine: &str| {
         let all = data.rates.iter().filter(|rate| rate.engine == engine).map(Rate::median);
         1e-6 * all.fold(0.0, f64::max)
@@ -35,22 +25,17 @@ pub fn section(data: &Rates, rivals: &[Rival]) -> Section {
         .expects("ISO99: 0.128 million a second with 2500 discs and 0.058 million with 2 500 000, on an Alpha of 600 MHz. Our aim: at least 5.5 \
                   million with 2500 discs at ν ≥ 0.5, and 1 million by the source's way.")
         .answers(format!(
-            "One thread, {}: at best {:.2} million collisions a second by lists of each disc's own, {:.2} million the source's way.{}",
+            "One thread, {}: at best {:.2} million collisions a second by lists of each disc's own, {:.2} million the source's way.",
             data.instruction_set,
             best(ENGINES[0]),
             best(ENGINES[1]),
-            rivals.iter().filter(|rival| is_of_hard_discs(rival)).filter_map(defeats).map(|it| format!(" {}.", it.0)).collect::<String>()
         ))
         .verdict(Verdict::aim(aimed(ENGINES[0]) >= 5.5 && aimed(ENGINES[1]) >= 1.0))
         .details(["Both engines find the same collisions, to the bit."])
         .figures([figure(data)])
-        .tables([table(data), beside(rivals)])
+        .tables([table(data)])
         .seeds([1])
         .depends_on_host()
-}
-
-fn is_of_hard_discs(rival: &Rival) -> bool {
-    rival.contests.iter().any(|it| it.system.starts_with("hard discs"))
 }
 
 fn sizes(data: &Rates) -> Vec<usize> {
@@ -97,8 +82,10 @@ fn figure(data: &Rates) -> Figure {
 }
 
 fn table(data: &Rates) -> Table {
-    let over_source =
-        |fast: &Rate| of_source(fast.discs as f64).map(|(rate, _)| 3600e-6 * fast.median() / rate);
+    let over_source = |fast: &Rate| {
+        let known = SOURCE.iter().find(|(known, _)| (fast.discs as f64 / known - 1.0).abs() < 0.1);
+        known.map(|(_, rate)| 3600e-6 * fast.median() / rate)
+    };
     Rows::of(data.rates.chunks_exact(ENGINES.len()).map(|pair| [&pair[0], &pair[1]]))
         .number("discs", 0, |[fast, _]| fast.discs as f64)
         .number("ν", 2, |[fast, _]| fast.packing_fraction)
@@ -111,32 +98,4 @@ fn table(data: &Rates) -> Table {
         .number("memory, the source's way (MB)", 0, |[_, reference]| 1e-6 * reference.bytes as f64)
         .table("rates", "Million collisions a second of processor time")
         .note("Memory as `scene check` foresees it for a run.")
-}
-
-/// Other programs beside the fast engine, and the source's own figures.
-fn beside(rivals: &[Rival]) -> Table {
-    let contests = rivals.iter().flat_map(|rival| {
-        let ours = rival.contests.iter().filter(|it| it.system.starts_with("hard discs"));
-        ours.map(move |it| {
-            let memory = rival.memory.iter().find(|m| (&m.system, m.particles) == (&it.system, it.particles));
-            (rival, it, memory)
-        })
-    });
-    let middle = |rates: &[f64]| median(rates.iter().copied());
-    Rows::of(contests)
-        .text("beside", |(rival, ..)| &rival.rival)
-        .text("system", |(_, it, _)| &it.system)
-        .count("discs", |(_, it, _)| it.particles)
-        .number("fast (million/h)", 0, |(_, it, _)| 3600.0 * middle(&it.ours))
-        .number("theirs (million/h)", 0, |(_, it, _)| 3600.0 * middle(&it.theirs))
-        .number("fast over theirs", 2, |(_, it, _)| middle(&it.ratios))
-        .number("ISO99 at best (million/h)", 0, |(_, it, _)| of_source(it.particles as f64).map(|(rate, _)| rate))
-        .number("memory, fast (MB)", 0, |(.., memory)| memory.map(|it| 1e-6 * it.ours as f64))
-        .number("memory, theirs (MB)", 0, |(.., memory)| memory.map(|it| 1e-6 * it.theirs as f64))
-        .number("memory, ISO99 (MB)", 0, |(_, it, _)| of_source(it.particles as f64).and_then(|(_, memory)| memory))
-        .table("beside", "Beside other programs: million collisions an hour")
-        .note(
-            "As tests/rivals/edmd.py measured last (item rivals). Memory is the most that lay in the machine at once. ISO99's figures are \
-             of an Alpha of 600 MHz, the best over the densities.",
-        )
 }
