@@ -8,6 +8,7 @@ use super::journal::is_journal;
 use super::made::{self, LONGEST, SECTION, bytes_of, files_of};
 use crate::claims;
 use crate::console::{Failure, to_json};
+use crate::frame::Scope;
 use crate::pages::Page;
 use crate::provenance::{Provenance, built};
 use crate::report::figure::Figure;
@@ -275,6 +276,25 @@ impl Folder {
     pub fn provenance(&self, name: &str) -> Result<Option<Provenance>, Failure> {
         let Some(folder) = self.item(name) else { return Ok(None) };
         Ok(serde_json::from_slice(&bytes_of(&folder.join(PROVENANCE))?).ok())
+    }
+
+    /// The tables of an item, for expressions; none if the folder does not have it.
+    ///
+    /// # Errors
+    /// If they cannot be read.
+    pub fn scope(&self, name: &str) -> Result<Option<Scope>, Failure> {
+        self.item(name).map(|folder| made::scope(&folder)).transpose()
+    }
+
+    /// An item as its page shows it; none if the folder does not have it, or another version of the program wrote it.
+    ///
+    /// # Errors
+    /// If it cannot be read, or its page or a claim names what is not there.
+    pub fn section(&self, name: &str) -> Result<Option<Section>, Failure> {
+        match self.read(name)? {
+            Known::There(section) => Ok(Some(*section)),
+            Known::OfAnotherVersion | Known::Absent => Ok(None),
+        }
     }
 
     /// The folder of an item that is there.

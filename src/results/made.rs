@@ -109,6 +109,14 @@ pub(super) fn read(folder: &Path, page: &Page) -> Result<Option<Made>, Failure> 
 
 /// A section that was written without a template, with its claims judged by the tables of its folder.
 pub(super) fn judged(section: Section, folder: &Path, date: &str) -> Result<Section, Failure> {
+    let (all, scope) = (claims::all()?, scope(folder)?);
+    let judged = claims::judge(&all, &section.name, &scope, date)?;
+    let claims = judged.iter().map(Into::into).collect();
+    Ok(Section { claims, ..section })
+}
+
+/// The tables of an item's folder, for expressions.
+pub(super) fn scope(folder: &Path) -> Result<Scope, Failure> {
     let mut frames = vec![];
     if folder.join(PACKAGE).exists() {
         let package = serde_json::from_slice::<Package>(&bytes_of(&folder.join(PACKAGE))?);
@@ -117,10 +125,7 @@ pub(super) fn judged(section: Section, folder: &Path, date: &str) -> Result<Sect
             frames.extend(csv::read(resource, &bytes));
         }
     }
-    let (all, scope) = (claims::all()?, Scope::of(frames));
-    let judged = claims::judge(&all, &section.name, &scope, date)?;
-    let claims = judged.iter().map(Into::into).collect();
-    Ok(Section { claims, ..section })
+    Ok(Scope::of(frames))
 }
 
 /// The bytes of a file.
