@@ -1,5 +1,6 @@
 //! What ARCHITECTURE.md says of the code is true: crates, rooms, arrows, walls; and every path that the documents name exists.
 
+mod budgets;
 mod code;
 mod documents;
 mod graph;
