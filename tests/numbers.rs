@@ -50,7 +50,9 @@ fn numbers_in_documents_are_those_of_the_report() {
     let mut wrong = vec![];
     for path in documents() {
         let (_, faults) = faults(&fs::read_to_string(&path).unwrap(), &folder);
-        wrong.extend(faults.iter().map(|it| format!("{}, {it}", path.strip_prefix(root()).unwrap().display())));
+        wrong.extend(
+            faults.iter().map(|it| format!("{}, {it}", path.strip_prefix(root()).unwrap().display())),
+        );
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }

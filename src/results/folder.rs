@@ -235,11 +235,12 @@ impl Folder {
     fn read(&self, name: &str) -> Result<Known, Failure> {
         let Some(folder) = self.item(name) else { return Ok(Known::Absent) };
         let Some(provenance) = self.provenance(name)? else { return Ok(Known::OfAnotherVersion) };
-        let section = match Page::of(name)? {
-            Some(page) => match made::read(&folder, &page)? {
-                Some(made) => Some(self.renewed(name, &folder, &made, &provenance)?),
-                None => None,
-            },
+        let of_template = match Page::of(name)? {
+            Some(page) => made::read(&folder, &page)?,
+            None => None,
+        };
+        let section = match of_template {
+            Some(made) => Some(self.renewed(name, &folder, &made, &provenance)?),
             None if folder.join(SECTION).exists() => {
                 let section = serde_json::from_slice::<Section>(&bytes_of(&folder.join(SECTION))?).ok();
                 section.map(|section| made::judged(section, &folder, provenance.measured_on())).transpose()?

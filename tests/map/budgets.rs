@@ -46,8 +46,12 @@ fn rooms_keep_to_their_budgets() {
     let budgets: Budgets = toml::from_str(&text("tests/map/budgets.toml")).unwrap();
     let mut over = vec![];
     for Room { path, lines: budget, raised } in &budgets.room {
-        assert!(raised.iter().all(|raise| raise.reason.split(' ').count() > 3), "{path}: a raise needs a reason");
-        let (count, budget) = (lines(&root().join(path)), budget + raised.iter().map(|it| it.by).sum::<usize>());
+        assert!(
+            raised.iter().all(|raise| raise.reason.split(' ').count() > 3),
+            "{path}: a raise needs a reason"
+        );
+        let (count, budget) =
+            (lines(&root().join(path)), budget + raised.iter().map(|it| it.by).sum::<usize>());
         if count > budget {
             over.push(format!("{path} has {count} lines, and {budget} are its budget"));
         }

@@ -2,6 +2,9 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use stripmine::report::Section;
+use stripmine::report::figure::Picture;
+use stripmine::results::Folder;
 
 /// Words of question, expectation and answer of an item at most: all else is folded.
 const WORDS: usize = 120;
@@ -14,19 +17,13 @@ fn reports() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("reports")
 }
 
-/// Every section of the report: its name, what all read, and what is folded.
-fn sections() -> Vec<(String, [String; 2])> {
-    let folders = [reports(), reports().join("host")];
-    let items = folders.iter().flat_map(|folder| fs::read_dir(folder).unwrap());
-    let files = items.map(|item| item.unwrap().path().join("section.json")).filter(|file| file.exists());
-    let section = |file: PathBuf| {
-        let section: serde_json::Value = serde_json::from_slice(&fs::read(file).unwrap()).unwrap();
-        let text = |name: &str| section[name].as_str().unwrap().to_owned();
-        let details = section["details"].as_array().unwrap().iter().filter_map(|it| it.as_str());
-        let read = ["question", "expected", "answer"].map(text).join(" ");
-        (text("name"), [read, details.collect::<Vec<_>>().join(" ")])
-    };
-    files.map(section).collect()
+/// Every section of the report, as its page shows it.
+fn sections() -> Vec<Section> {
+    let folder = Folder::of_another(&reports());
+    let items =
+        [reports(), reports().join("host")].into_iter().flat_map(|folder| fs::read_dir(folder).unwrap());
+    let names = items.map(|item| item.unwrap()).filter(|item| item.path().join("provenance.json").exists());
+    names.filter_map(|item| folder.section(item.file_name().to_str().unwrap()).unwrap()).collect()
 }
 
 #[test]
@@ -34,8 +31,9 @@ fn an_item_is_read_in_a_minute() {
     let sections = sections();
     assert!(sections.len() > 30);
     let items = sections.len();
-    for (name, [read, _]) in sections {
-        let words = read.split_whitespace().count();
+    for Section { name, question, expected, answer, .. } in sections {
+        let words =
+            [question, expected, answer].iter().map(|it| it.split_whitespace().count()).sum::<usize>();
         assert!(words <= WORDS, "{name}: {words} words");
     }
     for (page, most) in PAGES {
@@ -69,9 +67,11 @@ fn numbers_in_sentences_are_for_readers() {
     assert_eq!(clumsy("0.7142857142857143 ns"), Some("0.7142857142857143".into()));
     assert_eq!(clumsy("in 1 layers, in 2 layers"), Some("1 layers,".into()));
     assert_eq!(clumsy("in 1 layer of 0.25 m"), None);
-    for (name, texts) in sections() {
-        for text in texts {
-            assert_eq!(clumsy(&text), None, "{name}");
+    for section in sections() {
+        for text in
+            [&section.question, &section.expected].into_iter().map(String::as_str).chain(section.paragraphs())
+        {
+            assert_eq!(clumsy(text), None, "{}", section.name);
         }
     }
 }
@@ -81,18 +81,12 @@ const ENTRIES: usize = 7;
 
 #[test]
 fn legends_are_short() {
-    let folders = [reports(), reports().join("host")];
-    let items = folders.iter().flat_map(|folder| fs::read_dir(folder).unwrap());
-    for file in items.map(|item| item.unwrap().path().join("section.json")).filter(|file| file.exists()) {
-        let section: serde_json::Value = serde_json::from_slice(&fs::read(&file).unwrap()).unwrap();
-        for figure in section["figures"].as_array().unwrap() {
-            let chart = &figure["picture"]["Chart"];
-            let named = |list: &str, name: &str| {
-                let all = chart[list].as_array().into_iter().flatten();
-                all.filter(|it| it[name].as_str().is_some_and(|name| !name.is_empty())).count()
-            };
-            let entries = named("series", "name") + named("bands", "label");
-            assert!(entries <= ENTRIES, "{} {}: {entries}", section["name"], figure["name"]);
+    for section in sections() {
+        for figure in &section.figures {
+            let Picture::Chart(chart) = &figure.picture else { continue };
+            let names = chart.series.iter().map(|it| &it.name).chain(chart.bands.iter().map(|it| &it.label));
+            let entries = names.filter(|name| !name.is_empty()).count();
+            assert!(entries <= ENTRIES, "{} {}: {entries}", section.name, figure.name);
         }
     }
 }
