@@ -11,9 +11,7 @@ use crate::study::explain::{Target, precision, precision_page};
 use crate::study::history::{self, section as history_section};
 use crate::study::stability::{self, Over, stability};
 use crate::study::work_precision::{self, work_precision};
-use crate::study::{
-    Case, StudyError, Subject, stability::section as map_section, work_precision::section as diagram_section,
-};
+use crate::study::{Case, StudyError, Subject, work_precision::section as diagram_section};
 use clap::{Args, Subcommand};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -212,10 +210,10 @@ impl StabilityVerb {
             self.tolerance,
             self.budget
         );
-        let place = Place { name: map_section::NAME, scene: &self.scene, out: self.out.as_deref() };
-        place.study(common, &subject, &options, |journal, progress, stem, again| {
+        let place = Place { name: "stability", scene: &self.scene, out: self.out.as_deref() };
+        place.study(common, &subject, &options, |journal, progress, stem, _| {
             let data = stability(&subject, over, &effort, journal, progress)?;
-            map_section::made(&[(stem, data)], format!("{again} {options}"))
+            Ok(stability::made(&[(stem, data)]))
         })
     }
 }

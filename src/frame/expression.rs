@@ -12,14 +12,23 @@ use stripmine_physics::number::{counted, in_tens, range, significant, with_bar};
 #[derive(Clone, Debug)]
 pub struct Scope(Arc<Names>);
 
-#[derive(Debug)]
-struct Names(BTreeMap<String, Arc<Frame>>);
+/// Frames by name, and the element that a figure is repeated for.
+#[derive(Clone, Debug)]
+struct Names(BTreeMap<String, Arc<Frame>>, Option<Value>);
+
+/// Name of the element that a figure is repeated for.
+const EACH: &str = "it";
 
 impl Scope {
     /// Frames by their names, with `_` for `-` and `.`.
     pub fn of(frames: impl IntoIterator<Item = Frame>) -> Scope {
         let named = |frame: Frame| (frame.name.replace(['-', '.'], "_"), Arc::new(frame));
-        Scope(Arc::new(Names(frames.into_iter().map(named).collect())))
+        Scope(Arc::new(Names(frames.into_iter().map(named).collect(), None)))
+    }
+
+    /// The same frames, and an element that expressions call `it`.
+    pub fn with_it(&self, it: &Value) -> Scope {
+        Scope(Arc::new(Names(self.0.0.clone(), Some(it.clone()))))
     }
 
     /// The frame of a name.
@@ -45,13 +54,16 @@ impl Names {
 impl Object for Names {
     fn get_value(self: &Arc<Self>, key: &Value) -> Option<Value> {
         let name = key.as_str()?;
+        if name == EACH {
+            return self.1.clone();
+        }
         self.0.get(name).map(|frame| Value::from_dyn_object(Arc::clone(frame)))
     }
 }
 
-/// A row of a frame.
+/// A row of a frame, and the element that a figure is repeated for.
 #[derive(Debug)]
-struct Row(Arc<Frame>, usize);
+struct Row(Arc<Frame>, usize, Option<Value>);
 
 impl Row {
     fn cell(&self, column: &str) -> Result<Value, Error> {
@@ -75,7 +87,10 @@ fn failure(cause: String) -> Error {
 
 impl Object for Row {
     fn get_value(self: &Arc<Self>, key: &Value) -> Option<Value> {
-        Some(self.cell(key.as_str()?).unwrap_or_else(Value::from))
+        match (key.as_str()?, &self.2) {
+            (EACH, Some(it)) => Some(it.clone()),
+            (column, _) => Some(self.cell(column).unwrap_or_else(Value::from)),
+        }
     }
 }
 
@@ -88,7 +103,7 @@ impl Object for Frame {
     fn get_value(self: &Arc<Self>, key: &Value) -> Option<Value> {
         if let Some(column) = key.as_str() {
             return match self.rows.len() {
-                1 => Some(Row(Arc::clone(self), 0).cell(column).unwrap_or_else(Value::from)),
+                1 => Some(Row(Arc::clone(self), 0, None).cell(column).unwrap_or_else(Value::from)),
                 rows => Some(Value::from(failure(format!(
                     "table `{}` has {rows} rows: `{column}` needs `.at(…)` or `.column('…')`",
                     self.name
@@ -96,7 +111,7 @@ impl Object for Frame {
             };
         }
         let row = key.as_usize().filter(|row| *row < self.rows.len())?;
-        Some(Value::from_object(Row(Arc::clone(self), row)))
+        Some(Value::from_object(Row(Arc::clone(self), row, None)))
     }
 
     fn enumerate(self: &Arc<Self>) -> Enumerator {
@@ -118,7 +133,7 @@ impl Object for Frame {
                         let rows = rows.iter().map(|row| self.rows[*row].clone()).collect();
                         Ok(Value::from_object(Frame { rows, ..Frame::clone(self) }))
                     }
-                    (_, [row]) => Ok(Value::from_object(Row(Arc::clone(self), *row))),
+                    (_, [row]) => Ok(Value::from_object(Row(Arc::clone(self), *row, None))),
                     (_, rows) => {
                         let wanted: Vec<String> = wanted
                             .args()
@@ -206,9 +221,15 @@ impl Expressions {
     ///
     /// # Errors
     /// A sentence that names a column that is not there, and those that are.
-    pub fn of_row(&self, expression: &str, frame: &Arc<Frame>, row: usize) -> Result<Value, String> {
+    pub fn of_row(
+        &self,
+        expression: &str,
+        scope: &Scope,
+        frame: &Arc<Frame>,
+        row: usize,
+    ) -> Result<Value, String> {
         let compiled = self.0.compile_expression(expression).map_err(|cause| cause.to_string())?;
-        let value = compiled.eval(Value::from_object(Row(Arc::clone(frame), row)));
+        let value = compiled.eval(Value::from_object(Row(Arc::clone(frame), row, scope.0.1.clone())));
         value.map_err(|cause| cause.detail().map_or_else(|| cause.to_string(), str::to_owned))
     }
 

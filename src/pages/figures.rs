@@ -13,6 +13,10 @@ use toml::Spanned;
 #[serde(deny_unknown_fields)]
 pub(super) struct FigureSpec {
     name: Text,
+    /// List of elements, for each of which there is such a figure; expressions call the element `it`.
+    each: Option<Text>,
+    /// Whether there is such a figure; always where it is left out.
+    when: Option<Text>,
     title: Text,
     caption: Option<Text>,
     /// Axes of a chart or a map; none of a picture that the study drew.
@@ -42,10 +46,24 @@ impl FigureSpec {
 #[serde(deny_unknown_fields)]
 struct AxisSpec {
     label: Text,
-    unit: Option<String>,
+    unit: Option<Text>,
     #[serde(default)]
-    log: bool,
+    log: Truth,
     limits: Option<[f64; 2]>,
+}
+
+/// A truth, or an expression of one.
+#[derive(Debug, Deserialize)]
+#[serde(untagged)]
+enum Truth {
+    Fixed(bool),
+    Expression(String),
+}
+
+impl Default for Truth {
+    fn default() -> Truth {
+        Truth::Fixed(false)
+    }
 }
 
 /// Points of a chart: an expression over the cells of a row gives each coordinate.
@@ -103,11 +121,34 @@ struct MapSpec {
     shade: AxisSpec,
 }
 
+/// The figures that a page describes at once: one, or one for each element of a list.
+pub(super) fn figures(
+    spec: &FigureSpec,
+    fill: &Filling<'_>,
+    shown: &Shown<'_>,
+) -> Result<Vec<Figure>, PageError> {
+    if let Some(when) = &spec.when {
+        let value = fill.expressions.value(when.get_ref(), fill.scope);
+        if !value.map_err(|cause| fill.refused(when.span().start, cause))?.is_true() {
+            return Ok(vec![]);
+        }
+    }
+    let Some(each) = &spec.each else { return Ok(vec![figure(spec, fill, shown)?]) };
+    let refused = |cause: String| fill.refused(each.span().start, cause);
+    let all = fill.expressions.value(each.get_ref(), fill.scope).map_err(refused)?;
+    let all = all.try_iter().map_err(|cause| refused(cause.to_string()))?;
+    let one = |it: Value| {
+        let scope = fill.scope.with_it(&it);
+        figure(spec, &Filling { scope: &scope, ..*fill }, shown)
+    };
+    all.map(one).collect()
+}
+
 /// The figure of a page.
-pub(super) fn figure(spec: &FigureSpec, fill: &Filling<'_>, shown: &Shown<'_>) -> Result<Figure, PageError> {
+fn figure(spec: &FigureSpec, fill: &Filling<'_>, shown: &Shown<'_>) -> Result<Figure, PageError> {
     let title = fill.text(&spec.title)?;
     let caption = spec.caption.as_ref().map_or(Ok(String::new()), |caption| fill.text(caption))?;
-    let name = spec.name();
+    let name = fill.text(&spec.name)?;
     let picture = match (&spec.x, &spec.y) {
         (Some(x), Some(y)) => {
             let axes = [axis(x, fill)?, axis(y, fill)?];
@@ -117,7 +158,7 @@ pub(super) fn figure(spec: &FigureSpec, fill: &Filling<'_>, shown: &Shown<'_>) -
             }
         }
         _ => {
-            let drawn = shown.pictures.iter().find(|(known, _)| known == name);
+            let drawn = shown.pictures.iter().find(|(known, _)| *known == name);
             let names =
                 || shown.pictures.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", ");
             let missing = || format!("the study drew no picture `{name}`; it drew {}", names());
@@ -128,8 +169,17 @@ pub(super) fn figure(spec: &FigureSpec, fill: &Filling<'_>, shown: &Shown<'_>) -
 }
 
 fn axis(spec: &AxisSpec, fill: &Filling<'_>) -> Result<Axis, PageError> {
-    let (label, unit) = (fill.text(&spec.label)?, spec.unit.as_deref());
-    let axis = if spec.log { Axis::logarithmic(&label, unit) } else { Axis::linear(&label, unit) };
+    let label = fill.text(&spec.label)?;
+    let unit = spec.unit.as_ref().map(|unit| fill.text(unit)).transpose()?.filter(|unit| !unit.is_empty());
+    let is_logarithmic = match &spec.log {
+        Truth::Fixed(truth) => *truth,
+        Truth::Expression(text) => {
+            let value = fill.expressions.value(text, fill.scope);
+            value.map_err(|cause| fill.refused(spec.label.span().start, cause))?.is_true()
+        }
+    };
+    let unit = unit.as_deref();
+    let axis = if is_logarithmic { Axis::logarithmic(&label, unit) } else { Axis::linear(&label, unit) };
     Ok(Axis { limits: spec.limits, ..axis })
 }
 
@@ -228,7 +278,7 @@ struct Rows<'r> {
 
 impl Rows<'_> {
     fn value(&self, text: &Text, row: usize) -> Result<Value, PageError> {
-        let value = self.fill.expressions.of_row(text.get_ref(), self.frame, row);
+        let value = self.fill.expressions.of_row(text.get_ref(), self.fill.scope, self.frame, row);
         value.map_err(|cause| self.fill.refused(text.span().start, cause))
     }
 

@@ -219,7 +219,8 @@ impl Page {
     /// [`PageError`] if the template or a claim names a table or a column that is not there.
     pub fn section(&self, shown: &Shown<'_>, claims: &[Claim], date: &str) -> Result<Section, PageError> {
         let scope = Scope::of(shown.frames.iter().cloned());
-        let fill = Filling { page: self, scope: &scope, expressions: Expressions::new() };
+        let expressions = Expressions::new();
+        let fill = Filling { page: self, scope: &scope, expressions: &expressions };
         let Header { title, chapter, question, expected, host, figure, table, excerpt, film, .. } =
             &self.header;
         let body = fill.at(&self.text[self.body..], self.body)?;
@@ -232,7 +233,7 @@ impl Page {
             .seeds(shown.seeds.iter().copied());
         (section.depends_on_host, section.chapter) = (*host, *chapter);
         for spec in figure {
-            section.figures.push(figures::figure(spec, &fill, shown)?);
+            section.figures.extend(figures::figures(spec, &fill, shown)?);
         }
         for spec in table {
             section.tables.push(fill.table(spec)?);
@@ -250,10 +251,11 @@ impl Page {
 }
 
 /// A template that is filled from frames.
+#[derive(Clone, Copy)]
 struct Filling<'p> {
     page: &'p Page,
     scope: &'p Scope,
-    expressions: Expressions,
+    expressions: &'p Expressions,
 }
 
 impl Filling<'_> {

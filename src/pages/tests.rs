@@ -64,6 +64,20 @@ fn a_page_is_filled_from_frames() {
     assert_eq!(table.notes, ["All 3."]);
 }
 
+/// A figure for each element of a list, which its texts and expressions call `it`.
+#[test]
+fn a_figure_is_repeated() {
+    let each = "name = \"over-steps-{{ it }}\"\neach = \"['a', 'b']\"";
+    let template = TEMPLATE.replace("name = \"over-steps\"", each);
+    let template = template.replace("x = \"steps\"", "only = \"scheme == it\", x = \"steps\"");
+    let section = filled(&template.replace("log = true", "log = \"it == 'b'\"")).unwrap();
+    let [a, b] = section.figures.as_slice() else { panic!("{:?}", section.figures) };
+    assert_eq!([&a.name, &b.name], ["over-steps-a", "over-steps-b"]);
+    let [Picture::Chart(a), Picture::Chart(b)] = [&a.picture, &b.picture] else { panic!("no charts") };
+    assert_eq!((a.series.len(), a.series[0].points.len(), b.series[0].points.len()), (1, 2, 1));
+    assert_ne!(a.x.scale, b.x.scale);
+}
+
 #[test]
 fn a_template_with_a_fault_names_the_line_and_what_exists() {
     for (from, to, line, named) in [

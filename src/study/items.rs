@@ -5,7 +5,7 @@ use super::history::{section as history, shipped};
 use super::rivals;
 use super::stability::{self, Over, stability};
 use super::work_precision::{self, work_precision};
-use super::{Subject, stability::section as map_section, work_precision::section as diagram_section};
+use super::{Subject, work_precision::section as diagram_section};
 use crate::console::Failure;
 use crate::report::Chapter;
 use crate::results::{Item, Journal, Lab, Made, Size};
@@ -20,13 +20,7 @@ pub const ITEMS: &[Item] = &[
         speed_against_accuracy,
         "Speed against accuracy of four scenes: which integrator, step and precision for which wish",
     ),
-    Item::quick(
-        map_section::NAME,
-        Chapter::Beyond,
-        [8.0, 53.0],
-        where_it_works,
-        "Where the method works: maps over the step and a second parameter, beside theory",
-    ),
+    Item::of("stability", where_it_works),
     Item::quick(
         plans::NAME,
         Chapter::Host,
@@ -114,5 +108,5 @@ fn where_it_works(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
         let share = |part: f64| progress((at as f64 + part) / all);
         maps.push((name, stability(&subject, over, &effort, &Journal::none(), &share)?));
     }
-    map_section::made(&maps, format!("stripmine reproduce --only {}", map_section::NAME))
+    Ok(stability::made(&maps))
 }

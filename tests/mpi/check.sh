@@ -103,7 +103,7 @@ echo "seeds: the same runs on 1 and 3 ranks"
 study=(two-discs --over stiffness --size 4 --seeds 1 --budget 30 --quiet --threads 1)
 "$stripmine" chart stability "${study[@]}" --out map-one >/dev/null
 mpi -n 3 "$stripmine" chart stability "${study[@]}" --out map-three >/dev/null || bad "a map"
-cmp map-one/host/stability/data.json map-three/host/stability/data.json || bad "the map of three processes"
+cmp map-one/host/stability/cells.csv map-three/host/stability/cells.csv || bad "the map of three processes"
 items=(--only table --only mask --only misprints --quick --quiet --threads 1)
 "$stripmine" reproduce "${items[@]}" --out items-one >/dev/null
 mpi -n 3 "$stripmine" reproduce "${items[@]}" --out items-three >/dev/null || bad "items"

@@ -4,11 +4,10 @@ use super::boundary::Edge;
 use super::outcome::{Cell, Class, Foreseen};
 use crate::statistics::median;
 use crate::study::Subject;
-use serde::Serialize;
 use stripmine_physics::method::{Beyond, Parameter};
 
 /// The dataset.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
 pub struct Stability {
     /// The scene, as it is named on a command line.
     pub scene: String,
@@ -47,7 +46,7 @@ pub struct Stability {
 }
 
 /// What is varied.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
 pub struct Varied {
     /// Its name.
     pub name: &'static str,
@@ -68,7 +67,7 @@ impl Varied {
 }
 
 /// The edges at a value, for each seed.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
 pub struct Boundary {
     /// Up to which step runs are right.
     pub works: Vec<Edge>,
@@ -85,7 +84,7 @@ pub fn over_seeds(edges: &[Edge]) -> Option<[f64; 3]> {
 }
 
 /// A limit that theory gives.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
 pub struct Limit {
     /// What it is called.
     pub name: &'static str,
@@ -98,7 +97,7 @@ pub struct Limit {
 }
 
 /// The edges of an integrator.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
 pub struct SchemeLimit {
     /// Its name.
     pub scheme: String,
@@ -111,7 +110,7 @@ pub struct SchemeLimit {
 }
 
 /// How many places of a class there are, and what was said of them.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Said {
     /// Places.
     pub all: usize,

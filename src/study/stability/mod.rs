@@ -6,16 +6,16 @@
 //! what became of it.
 
 mod boundary;
-pub mod conclusions;
 mod dataset;
 mod extent;
+mod frames;
 mod outcome;
 mod reference;
-pub mod section;
 mod survey;
 
 pub use boundary::Edge;
 pub use dataset::{Boundary, Limit, Said, SchemeLimit, Stability, Varied, over_seeds};
+pub use frames::made;
 pub use outcome::{Cell, Class, Foreseen};
 
 use super::choice::Choice;

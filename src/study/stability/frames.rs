@@ -1,0 +1,304 @@
+//! Maps as frames.
+
+use super::boundary::Edge;
+use super::dataset::{Boundary, SchemeLimit, Stability, over_seeds};
+use super::outcome::{Cell as Place, Class, Foreseen};
+use crate::frame::{Cell, Frame, Rows};
+use crate::results::Made;
+use crate::statistics::median;
+
+type Maps = [(String, Stability)];
+
+/// Edges over seeds that are farther apart than this many tolerances differ.
+const APART: f64 = 2.0;
+
+/// The frames of maps, each with a name for its rows.
+pub fn made(maps: &Maps) -> Made {
+    let seeds = maps.first().map_or(vec![], |(_, data)| data.seeds.clone());
+    let frames = [
+        of_maps(maps),
+        schemes(maps),
+        pairs(maps),
+        said(maps),
+        cells(maps),
+        fates(maps),
+        boundaries(maps),
+        edges(maps),
+        lines(maps),
+        unjudged(maps),
+    ];
+    Made::of(frames).with_seeds(seeds)
+}
+
+/// The edge of what works over the step beyond which theory says that errors grow: middle, lowest and highest over the values.
+fn of_theory(data: &Stability) -> Option<[f64; 3]> {
+    let at = data.values.iter().zip(&data.boundaries);
+    let ratio = |(&value, boundary): (&f64, &Boundary)| {
+        Some(over_seeds(&boundary.works)?[0] / data.unstable_beyond(value)?.0)
+    };
+    let mut ratios: Vec<f64> = at.filter_map(ratio).collect();
+    ratios.sort_by(f64::total_cmp);
+    Some([median(ratios.iter().copied()), *ratios.first()?, *ratios.last()?])
+}
+
+/// A row for each map: its axes, how many places there are of which kind, and how edges compare with theory and over seeds.
+fn of_maps(maps: &Maps) -> Frame {
+    let count = |of: fn(&Stability) -> usize| move |(_, data): &&(String, Stability)| of(data);
+    let theory =
+        |which: usize| move |(_, data): &&(String, Stability)| of_theory(data).map(|ratios| ratios[which]);
+    let spreads = |data: &Stability| {
+        let spreads = data.boundaries.iter().filter_map(|boundary| {
+            let [_, low, high] = over_seeds(&boundary.works)?;
+            Some(high / low - 1.0)
+        });
+        spreads.collect::<Vec<f64>>()
+    };
+    let own = |data: &Stability| {
+        data.schemes.iter().find(|scheme| data.way.split(' ').any(|part| part == scheme.scheme)).cloned()
+    };
+    let number = |(name, _): &&(String, Stability)| {
+        let with_theory = maps.iter().filter(|(_, data)| of_theory(data).is_some());
+        with_theory.map(|(name, _)| name).position(|known| known == name).map(|at| at as u64 + 1)
+    };
+    Rows::of(maps)
+        .text("scene", |(name, _)| name)
+        .cell("number", number)
+        .text("configuration", |(_, data)| &data.way)
+        .text("own integrator", |(_, data)| own(data).map_or(String::new(), |it| it.scheme))
+        .number("own step", 6, |(_, data)| data.step)
+        .text("unit of time", |(_, data)| data.time_unit.clone().unwrap_or_default())
+        .number("time of a run", 3, |(_, data)| data.duration)
+        .text("parameter", |(_, data)| data.parameter.name)
+        .text("parameter in words", |(_, data)| data.parameter.label)
+        .text("unit of the parameter", |(_, data)| data.parameter.unit.clone().unwrap_or_default())
+        .count("logarithmic", |(_, data)| u64::from(data.parameter.is_logarithmic))
+        .count("values", |(_, data)| data.values.len())
+        .count("steps", |(_, data)| data.steps.len())
+        .count("seeds", |(_, data)| data.seeds.len())
+        .number("tolerance of an edge", 3, |(_, data)| data.tolerance)
+        .count("places", count(|data| data.cells().count()))
+        .count("right", count(|data| data.said(|class| class == Class::Works).all))
+        .count("right and refused", count(|data| data.said(|class| class == Class::Works).refused))
+        .count(
+            "right and warned of",
+            count(|data| {
+                let said = data.said(|class| class == Class::Works);
+                said.all - said.unsaid() - said.refused
+            }),
+        )
+        .count("wrong", count(|data| data.said(Class::is_unseen).all))
+        .count("wrong and refused", count(|data| data.said(Class::is_unseen).refused))
+        .count("wrong and warned of before", count(|data| data.said(Class::is_unseen).warned_before))
+        .count("wrong and caught by the run", count(|data| data.said(Class::is_unseen).warned_by_run))
+        .count("wrong and silent", count(|data| data.said(Class::is_unseen).unsaid()))
+        .number("edge over theory", 3, theory(0))
+        .number("edge over theory, lowest", 3, theory(1))
+        .number("edge over theory, highest", 3, theory(2))
+        .count("edges with seeds", |(_, data)| spreads(data).len())
+        .count("edges that agree over seeds", |(_, data)| {
+            spreads(data).iter().filter(|spread| **spread <= APART * data.tolerance).count()
+        })
+        .number("spread over seeds", 3, |(_, data)| median(spreads(data).into_iter()))
+        .text("left out", |(_, data)| data.left_out.clone().unwrap_or_default())
+        .frame("maps", "Maps: axes, places by kind, and edges beside theory")
+}
+
+/// Edges as multiples of the scene's own step: the middle, the lowest and the highest over the seeds.
+fn multiples(data: &Stability, edges: &[Edge]) -> [Cell; 3] {
+    let numbers = over_seeds(edges).map(|steps| steps.map(|step| Cell::Number(step / data.step, 2)));
+    numbers.unwrap_or([const { Cell::Nothing }; 3])
+}
+
+/// Where there is no such edge.
+fn beyond(edges: &[Edge]) -> Option<&'static str> {
+    match edges {
+        _ if over_seeds(edges).is_some() => None,
+        [Edge::Above, ..] if edges.iter().all(|edge| *edge == Edge::Above) => Some("above the map"),
+        [Edge::Below, ..] if edges.iter().all(|edge| *edge == Edge::Below) => Some("below the map"),
+        _ => Some("not in every seed"),
+    }
+}
+
+fn schemes(maps: &Maps) -> Frame {
+    let schemes =
+        maps.iter().flat_map(|(name, data)| data.schemes.iter().map(move |scheme| (name, data, scheme)));
+    Rows::of(schemes)
+        .text("scene", |(name, ..)| *name)
+        .text("integrator", |(.., scheme)| &scheme.scheme)
+        .cells(["works up to (own steps)", "lowest seed", "highest seed"], |(_, data, scheme)| {
+            multiples(data, &scheme.edges.works)
+        })
+        .cell("edge of works", |(.., scheme)| beyond(&scheme.edges.works))
+        .cell("ends up to (own steps)", |(_, data, scheme)| multiples(data, &scheme.edges.ends)[0].clone())
+        .cell("edge of ends", |(.., scheme)| beyond(&scheme.edges.ends))
+        .number("theory: errors grow beyond (own steps)", 2, |(_, data, scheme)| {
+            scheme.theory.map(|(step, _)| step / data.step)
+        })
+        .cell("by", |(.., scheme)| scheme.theory.map(|(_, what)| what))
+        .cell("what comes first beyond", |(.., scheme)| scheme.first.map(Class::name))
+        .frame("integrators", "The largest step of each integrator, at the scene's own values")
+}
+
+fn said(maps: &Maps) -> Frame {
+    let classes = maps
+        .iter()
+        .flat_map(|(name, data)| Class::ALL.map(|class| (name, class, data.said(|it| it == class))));
+    let counted = classes.filter(|(_, class, said)| said.all > 0 && *class != Class::Refused);
+    Rows::of(counted)
+        .text("scene", |(name, ..)| *name)
+        .text("what becomes of it", |(_, class, _)| class.name())
+        .number("places", 0, |(.., said)| said.all as f64)
+        .number("refused before", 0, |(.., said)| said.refused as f64)
+        .number("warned of before", 0, |(.., said)| said.warned_before as f64)
+        .number("warned of by the run", 0, |(.., said)| said.warned_by_run as f64)
+        .number("nothing said", 0, |(_, class, said)| class.ends().then(|| said.unsaid() as f64))
+        .frame("said", "What the program says of it")
+}
+
+/// Every place of every map.
+fn cells(maps: &Maps) -> Frame {
+    let cells = maps.iter().flat_map(|(name, data)| {
+        let rows = data.values.iter().zip(&data.map);
+        rows.flat_map(move |(value, cells)| {
+            data.steps.iter().zip(cells).map(move |(step, cell)| (name, data, value, step, cell))
+        })
+    });
+    let foreseen = |foreseen: Foreseen| match foreseen {
+        Foreseen::Nothing => "nothing",
+        Foreseen::Warned => "warned",
+        Foreseen::Refused => "refused",
+    };
+    Rows::of(cells)
+        .text("scene", |(name, ..)| *name)
+        .text("parameter", |(_, data, ..)| data.parameter.name)
+        .number("value", 6, |(_, _, value, ..)| **value)
+        .number("step", 6, |(.., step, _)| **step)
+        .text("class", |(.., cell)| cell.class.name())
+        .text("foreseen", |(.., cell)| foreseen(cell.foreseen))
+        .text("warned_by_run", |(.., cell)| cell.warned.join(" "))
+        .text("what", |(.., cell)| &cell.what)
+        .frame("cells", "Every place")
+}
+
+/// Every edge of every seed.
+fn boundaries(maps: &Maps) -> Frame {
+    let edges = maps.iter().flat_map(|(name, data)| {
+        let boundaries = data.values.iter().zip(&data.boundaries);
+        boundaries.flat_map(move |(value, boundary)| {
+            let kinds = [("works", &boundary.works), ("ends", &boundary.ends)];
+            kinds.into_iter().flat_map(move |(kind, edges)| {
+                data.seeds.iter().zip(edges).map(move |(seed, edge)| (name, data, value, kind, seed, edge))
+            })
+        })
+    });
+    let does = |data: &Stability, edge: &Edge| match edge {
+        Edge::Below => None,
+        Edge::Between([low, _]) => Some(*low),
+        Edge::Above => Some(data.steps[data.steps.len() - 1]),
+    };
+    let does_not = |data: &Stability, edge: &Edge| match edge {
+        Edge::Below => Some(data.steps[0]),
+        Edge::Between([_, high]) => Some(*high),
+        Edge::Above => None,
+    };
+    Rows::of(edges)
+        .text("scene", |(name, ..)| *name)
+        .text("parameter", |(_, data, ..)| data.parameter.name)
+        .number("value", 6, |(_, _, value, ..)| **value)
+        .text("edge", |(.., kind, _, _)| *kind)
+        .number("seed", 0, |(.., seed, _)| **seed as f64)
+        .number("largest_step_that_does", 6, |(_, data, .., edge)| does(data, edge))
+        .number("smallest_step_that_does_not", 6, |(_, data, .., edge)| does_not(data, edge))
+        .frame("edges", "Every edge")
+}
+
+/// The longest step of each integrator that works over the step beyond which theory says that its errors grow, at the scene's own
+/// values.
+fn pairs(maps: &Maps) -> Frame {
+    let pairs = maps.iter().flat_map(|(name, data)| {
+        let of = |scheme: &SchemeLimit| Some(over_seeds(&scheme.edges.works)?[0] / scheme.theory?.0);
+        data.schemes.iter().filter_map(move |scheme| Some((name, &scheme.scheme, of(scheme)?)))
+    });
+    Rows::of(pairs)
+        .text("scene", |(name, ..)| *name)
+        .text("integrator", |(_, scheme, _)| *scheme)
+        .number("edge over theory", 3, |(.., ratio)| *ratio)
+        .frame("pairs", "Longest step that works over the step beyond which theory says that errors grow")
+}
+
+/// Fate of a place, for the reader of a map.
+fn fate(cell: &Place) -> Option<&'static str> {
+    match cell.class {
+        Class::Works => Some("works"),
+        Class::Refused => None,
+        class if class.is_unseen() && cell.is_said() => Some("wrong, and the program says so"),
+        class if class.is_unseen() => Some("wrong, and nothing is said"),
+        _ => Some("stopped by the program"),
+    }
+}
+
+fn fates(maps: &Maps) -> Frame {
+    let places = maps.iter().flat_map(|(name, data)| {
+        data.values.iter().zip(&data.map).flat_map(move |(value, cells)| {
+            let with_steps = data.steps.iter().zip(cells);
+            with_steps.filter_map(move |(step, cell)| Some((name, *value, *step, fate(cell)?)))
+        })
+    });
+    Rows::of(places)
+        .text("scene", |(name, ..)| *name)
+        .number("value", 6, |(_, value, ..)| *value)
+        .number("step", 6, |(.., step, _)| *step)
+        .text("fate", |(.., fate)| *fate)
+        .frame("fates", "Fate of every place that a scene can have")
+}
+
+/// The edge of what works over the seeds, and the step of theory, at every value.
+fn edges(maps: &Maps) -> Frame {
+    let at = maps.iter().flat_map(|(name, data)| {
+        data.values.iter().zip(&data.boundaries).map(move |(value, boundary)| {
+            let [low, high] = [data.steps[0], data.steps[data.steps.len() - 1]];
+            let theory = data.unstable_beyond(*value).filter(|(step, _)| (low..=high).contains(step));
+            (name, *value, over_seeds(&boundary.works), theory)
+        })
+    });
+    Rows::of(at)
+        .text("scene", |(name, ..)| *name)
+        .number("value", 6, |(_, value, ..)| *value)
+        .number("works up to", 6, |(.., edge, _)| edge.map(|edge| edge[0]))
+        .number("lowest seed", 6, |(.., edge, _)| edge.map(|edge| edge[1]))
+        .number("highest seed", 6, |(.., edge, _)| edge.map(|edge| edge[2]))
+        .number("theory", 6, |(.., theory)| theory.map(|(step, _)| step))
+        .text("by", |(.., theory)| theory.map_or("", |(_, name)| name))
+        .frame("edges-over-seeds", "The edge of what works over the seeds, and the step of theory")
+}
+
+/// Straight lines of the maps, by their ends: the scene's own step, and values of the parameter that theory names.
+fn lines(maps: &Maps) -> Frame {
+    let ends = |(name, data): &(String, Stability)| {
+        let [low, high] = [data.steps[0], data.steps[data.steps.len() - 1]];
+        let [first, last] = [data.values[0], data.values[data.values.len() - 1]];
+        let own =
+            [first, last].map(|value| (name.clone(), "the scene's own step".to_owned(), value, data.step));
+        let marks = data
+            .marks
+            .iter()
+            .flat_map(|(at, what)| [low, high].map(|step| (name.clone(), what.clone(), *at, step)));
+        own.into_iter().chain(marks).collect::<Vec<_>>()
+    };
+    Rows::of(maps.iter().flat_map(ends))
+        .text("scene", |(name, ..)| name.clone())
+        .text("line", |(_, line, ..)| line.clone())
+        .number("value", 6, |(.., value, _)| *value)
+        .number("step", 6, |(.., step)| *step)
+        .frame("lines", "The scene's own step, and values that theory names")
+}
+
+/// Values at which nothing is known of what is right.
+fn unjudged(maps: &Maps) -> Frame {
+    let all = maps.iter().flat_map(|(name, data)| data.unjudged.iter().map(move |it| (name, it)));
+    Rows::of(all)
+        .text("scene", |(name, _)| *name)
+        .number("value", 6, |(_, (value, _))| *value)
+        .text("reason", |(_, (_, why))| why)
+        .frame("unjudged", "Values at which the runs with the smallest step break, too")
+}
