@@ -63,12 +63,35 @@ def drift_kick_drift(state, dt):
     return x + 0.5 * dt * u, y + 0.5 * dt * v, u, v
 
 
-def yoshida_4(state, dt):
-    """Three leapfrogs (Yoshida 1990, Phys. Lett. A 150, 262)."""
-    outer = 1.0 / (2.0 - 2.0 ** (1.0 / 3.0))
-    for share in (outer, 1.0 - 2.0 * outer, outer):
+def composed(state, dt, shares):
+    """Leapfrogs of the shares from the middle outwards, on both sides (Yoshida 1990, Phys. Lett. A 150, 262)."""
+    middle = 1.0 - 2.0 * sum(shares)
+    for share in (*reversed(shares), middle, *shares):
         state = kick_drift_kick(state, share * dt)
     return state
+
+
+def yoshida_4(state, dt):
+    return composed(state, dt, (1.0 / (2.0 - 2.0 ** (1.0 / 3.0)),))
+
+
+def yoshida_6(state, dt):
+    """Solution A of Yoshida's table 1."""
+    return composed(state, dt, (-1.17767998417887, 0.235573213359357, 0.784513610477560))
+
+
+def yoshida_8(state, dt):
+    """Solution D of Yoshida's table 2."""
+    shares = (
+        0.102799849391985,
+        -1.96061023297549,
+        1.93813913762276,
+        -0.158240635368243,
+        -1.44485223686048,
+        0.253693336566229,
+        0.914844246229740,
+    )
+    return composed(state, dt, shares)
 
 
 def runge_kutta_4(state, dt):
@@ -176,7 +199,7 @@ def rebound_error(steps):
 
 
 def main():
-    schemes = [damped_euler, kick_drift_kick, yoshida_4, runge_kutta_4, hermite_4, gear_6]
+    schemes = [damped_euler, kick_drift_kick, yoshida_4, yoshida_6, yoshida_8, runge_kutta_4, hermite_4, gear_6]
     if "--rebound" in sys.argv[1:]:
         import rebound
 
