@@ -126,7 +126,7 @@ fn table(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
 }
 
 fn ladder(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let ladders: Vec<_> = ["cray-y-mp-el", "cray-1", "cray-c90", "sx-aurora"]
+    let ladders: Vec<_> = ["cray-y-mp-el", "cray-1", "sx-aurora"]
         .into_iter()
         .map(|name| Ok(ladder::ladder(&Question::default(), &machines::preset(name)?)?))
         .collect::<Result<_, Failure>>()?;
