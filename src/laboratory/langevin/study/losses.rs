@@ -20,6 +20,8 @@ pub const INTERACTIONS: u64 = 43_676;
 const FINER: [f64; 5] = [0.03, 0.005, 0.004, 0.003, 0.002];
 /// The integrators compared.
 pub const SCHEMES: [SchemeKind; 2] = [SchemeKind::Stochastic, SchemeKind::Baoab];
+/// One of this number of particles, at the same density, is taken for other ε and kT, and its losses are counted for all.
+const PART: u64 = 8;
 /// The boundary is known to this part of itself.
 const TOLERANCE: f64 = 0.05;
 
@@ -131,8 +133,8 @@ fn chosen(particles: u64, dt: f64, strength: f64, temperature: f64) -> Overrides
 fn choice(particles: u64, strength: f64, temperature: f64) -> Result<Choice, StudyError> {
     let mut counts = [0; 4];
     for (count, (dt, _)) in counts.iter_mut().zip(SOURCE) {
-        let scene = chosen(particles, dt, strength, temperature).set(&INTEGRATOR, SCHEMES[0]);
-        *count = lost(particles, &scene.set(&MOST_LOST, particles))?;
+        let scene = chosen(particles / PART, dt, strength, temperature).set(&INTEGRATOR, SCHEMES[0]);
+        *count = PART * lost(particles / PART, &scene.set(&MOST_LOST, particles))?;
     }
     Ok(Choice { strength, temperature, lost: counts })
 }
