@@ -1,7 +1,10 @@
 //! The machines that come with the program.
 
+use super::file::ModelFileError;
 use super::machine::MachineModel;
-use super::machine_file::MachineError;
+use stripmine_physics::quoted::quoted;
+use stripmine_physics::reported::{Class, FilePlace, Reported};
+use stripmine_physics::words::suggestion;
 
 macro_rules! embedded {
     ($($name:literal),* $(,)?) => {
@@ -11,6 +14,46 @@ macro_rules! embedded {
 
 /// The machines that come with the program: name and text of the file.
 const PRESETS: &[(&str, &str)] = embedded!["paper", "cray-1", "cyber-205", "cray-y-mp-el", "sx-aurora"];
+
+/// Why there is no such machine.
+#[derive(Debug, thiserror::Error)]
+pub enum MachineError {
+    /// No preset has the name asked for, and it does not look like that of a file.
+    #[error(
+        "unknown machine `{}`; known are {}, and machine files by their path, which ends in .toml{}",
+        quoted(name),
+        known.join(", "),
+        suggestion(name, known.iter().copied())
+    )]
+    Unknown {
+        /// The name asked for.
+        name: String,
+        /// All names that would have done.
+        known: Vec<&'static str>,
+    },
+    /// A file that cannot be used.
+    #[error(transparent)]
+    File(#[from] ModelFileError),
+}
+
+impl Reported for MachineError {
+    fn class(&self) -> Class {
+        match self {
+            MachineError::Unknown { .. } => Class::Usage,
+            MachineError::File(error) => error.class(),
+        }
+    }
+
+    fn place(&self) -> Option<FilePlace> {
+        let MachineError::File(error) = self else { return None };
+        error.place()
+    }
+
+    fn remedy(&self) -> Option<String> {
+        matches!(self, MachineError::Unknown { .. })
+            .then(|| "take one of the known machines, or write a file".to_owned())
+    }
+}
 
 /// The names of the presets, the paper's own machine first.
 pub fn names() -> impl Iterator<Item = &'static str> {
@@ -25,7 +68,7 @@ pub fn find(name: &str) -> Result<MachineModel, MachineError> {
     if !name.ends_with(".toml") {
         return preset(name);
     }
-    MachineModel::load(name)
+    Ok(MachineModel::load(name)?)
 }
 
 /// The preset called `name`.

@@ -7,6 +7,7 @@
 //! a table can show what each of them adds.
 
 pub mod clock;
+pub mod file;
 pub mod host;
 pub mod machine;
 pub mod machine_file;
