@@ -5,12 +5,10 @@ use super::run::{MOST_RANKS, threads_of_ranks};
 use crate::console::{Common, Failure, clear_progress, count, print, print_json, progress};
 use crate::provenance::built;
 use crate::report::{Cell, Rows, Table, terminal};
-use crate::study::history::{self, Record};
 use crate::study::scaling::{self, OfThreads, Scaling, scaling};
 use clap::{Arg, ArgAction, ArgMatches, Args, value_parser};
 use serde_json::Value;
 use std::collections::BTreeSet;
-use std::path::PathBuf;
 use stripmine_physics::method::throughput::{Measurement, MeasurementError, Throughput, throughput};
 use stripmine_physics::method::{Bench, BenchOption, Entry, Methods, Purpose, Takes};
 use stripmine_physics::number::{counted, significant};
@@ -25,9 +23,6 @@ pub(super) struct BenchVerb {
     /// Steps, or collisions, of each repeat; about a second's worth by default
     #[arg(long, visible_alias = "collisions", value_parser = count)]
     steps: Option<u64>,
-    /// Appends the measurement to this file as a line with date, commit and machine; `chart history` draws it
-    #[arg(long, value_name = "FILE")]
-    record: Option<PathBuf>,
     /// Ranks that share the particles, each with as many threads; several numbers, such as 1,2, in turn
     #[arg(long, value_delimiter = ',', value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_RANKS)))]
     ranks: Vec<u16>,
@@ -111,12 +106,7 @@ impl BenchVerb {
             return Err(Failure::NoSuchOption { bench: "bench", option: "what" });
         };
         let given = self.overrides(bench, matches, methods)?;
-        // Before anything takes its time.
-        self.record.as_deref().map_or(Ok(()), history::admits)?;
         let is_of_several = common.threads.len() > 1 || self.ranks.len() > 1;
-        if is_of_several && self.record.is_some() {
-            return Err(Failure::RecordOfSeveral);
-        }
         let threads =
             common.threads.iter().copied().max().map_or_else(rayon::current_num_threads, usize::from);
         threads_of_ranks(self.ranks.iter().copied().max().unwrap_or(1), threads)?;
@@ -151,9 +141,6 @@ impl BenchVerb {
         let result = ranks::over(crew, || throughput(self.measurement(entry, bench, given)?, show));
         clear_progress();
         let result = result.map_err(|error| refused(error, given))?;
-        if let Some(file) = &self.record {
-            history::append(file, &Record::of(&result, &common.command))?;
-        }
         if common.json { print_json(&result) } else { print(&(terminal::fitted(&text(&result)) + "\n")) }
     }
 

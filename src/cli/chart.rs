@@ -8,7 +8,6 @@ use crate::results::Made;
 use crate::results::Progress;
 use crate::results::{Folder, Journal, Team};
 use crate::study::explain::{Target, precision, precision_page};
-use crate::study::history::{self, section as history_section};
 use crate::study::stability::{self, Over, stability};
 use crate::study::work_precision::{self, work_precision};
 use crate::study::{Case, StudyError, Subject, work_precision::section as diagram_section};
@@ -48,7 +47,6 @@ pub(super) struct ChartVerb {
 enum Study {
     WorkPrecision(WorkPrecisionVerb),
     Stability(StabilityVerb),
-    History(HistoryVerb),
 }
 
 /// The error of a scene over its cost, for every way to run it and every step; which way for which wish
@@ -112,16 +110,6 @@ struct StabilityVerb {
     out: Option<PathBuf>,
 }
 
-/// Rates over time and host, of a file of `bench --record`
-#[derive(Args)]
-struct HistoryVerb {
-    /// The file
-    file: PathBuf,
-    /// Folder for data, tables and figures; the file's name with `.history` by default
-    #[arg(long)]
-    out: Option<PathBuf>,
-}
-
 /// A part of a step within which edges can be found.
 fn part(text: &str) -> Result<f64, String> {
     let is_one = |part: &f64| (1e-6..=1.0).contains(part);
@@ -136,8 +124,6 @@ impl ChartVerb {
         match &self.what {
             Study::WorkPrecision(verb) => verb.run(common, methods),
             Study::Stability(verb) => verb.run(common, methods),
-            Study::History(verb) if processes::rank(common.crew) == 0 => verb.run(common),
-            Study::History(_) => Ok(()),
         }
     }
 }
@@ -215,18 +201,6 @@ impl StabilityVerb {
             let data = stability(&subject, over, &effort, journal, progress)?;
             Ok(stability::made(&[(stem, data)]))
         })
-    }
-}
-
-impl HistoryVerb {
-    fn run(&self, common: &Common) -> Result<(), Failure> {
-        let stem = self.file.file_stem().unwrap_or_default().to_string_lossy();
-        let out =
-            self.out.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}.{}", history_section::NAME)));
-        let records = history::read(&self.file)?;
-        let folder = Folder::open(&out, &[history_section::NAME], true)?;
-        let made = history_section::made(&records, common.command.clone())?;
-        written(common, &folder, history_section::NAME, &made, Instant::now())
     }
 }
 

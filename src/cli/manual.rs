@@ -86,10 +86,7 @@ const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
     ("chart", &[("stripmine chart soft-hard", "when soft discs are as good as hard ones")]),
     (
         "table",
-        &[(
-            "stripmine table --ladder --machine cray-c90",
-            "what strip-mining, chaining and memory ports add",
-        )],
+        &[("stripmine table --ladder --machine cray-1", "what strip-mining, chaining and memory ports add")],
     ),
     (
         "listing",

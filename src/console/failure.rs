@@ -53,11 +53,6 @@ pub enum Failure {
         "RAYON_NUM_THREADS is {0}; expected a whole number from 1 to {MOST_THREADS}: correct it, or give --threads"
     )]
     ThreadsOfEnvironment(String),
-    /// A record of several measurements: exit code 2.
-    #[error(
-        "--record takes one measurement, and several numbers of --threads or --ranks are several; record them one after the other"
-    )]
-    RecordOfSeveral,
     /// Several numbers of threads for a verb that takes one: exit code 2.
     #[error("several numbers of threads are for bench; {0} takes one")]
     SeveralThreads(String),
@@ -186,7 +181,6 @@ impl Failure {
             | Failure::SeveralThreads(_)
             | Failure::ManyThreads { .. }
             | Failure::ThreadsOfEnvironment(_)
-            | Failure::RecordOfSeveral
             | Failure::UnknownVerb { .. } => Class::Usage,
             Failure::Reported(error) => error.class(),
             Failure::OfRank { class, .. } => return *class,

@@ -98,9 +98,9 @@ impl Programs {
 }
 
 /// Machines whose clock periods an item shows.
-const MACHINES: [&str; 3] = ["cray-y-mp-el", "cray-c90", "sx-aurora"];
+const MACHINES: [&str; 2] = ["cray-y-mp-el", "sx-aurora"];
 /// Lines of a listing that an item shows.
-const LINES: usize = 40;
+const LINES: usize = 5;
 
 /// Milliseconds as a person reads them.
 fn milliseconds(clocks: Option<&Clocks>) -> String {

@@ -1,7 +1,10 @@
 //! The machines that come with the program.
 
+use super::file::ModelFileError;
 use super::machine::MachineModel;
-use super::machine_file::MachineError;
+use stripmine_physics::quoted::quoted;
+use stripmine_physics::reported::{Class, FilePlace, Reported};
+use stripmine_physics::words::suggestion;
 
 macro_rules! embedded {
     ($($name:literal),* $(,)?) => {
@@ -10,18 +13,47 @@ macro_rules! embedded {
 }
 
 /// The machines that come with the program: name and text of the file.
-const PRESETS: &[(&str, &str)] = embedded![
-    "paper",
-    "cray-1",
-    "cyber-205",
-    "cray-x-mp",
-    "cray-y-mp",
-    "nec-sx-3",
-    "cray-c90",
-    "cray-y-mp-el",
-    "cray-j90",
-    "sx-aurora",
-];
+const PRESETS: &[(&str, &str)] = embedded!["paper", "cray-1", "cyber-205", "cray-y-mp-el", "sx-aurora"];
+
+/// Why there is no such machine.
+#[derive(Debug, thiserror::Error)]
+pub enum MachineError {
+    /// No preset has the name asked for, and it does not look like that of a file.
+    #[error(
+        "unknown machine `{}`; known are {}, and machine files by their path, which ends in .toml{}",
+        quoted(name),
+        known.join(", "),
+        suggestion(name, known.iter().copied())
+    )]
+    Unknown {
+        /// The name asked for.
+        name: String,
+        /// All names that would have done.
+        known: Vec<&'static str>,
+    },
+    /// A file that cannot be used.
+    #[error(transparent)]
+    File(#[from] ModelFileError),
+}
+
+impl Reported for MachineError {
+    fn class(&self) -> Class {
+        match self {
+            MachineError::Unknown { .. } => Class::Usage,
+            MachineError::File(error) => error.class(),
+        }
+    }
+
+    fn place(&self) -> Option<FilePlace> {
+        let MachineError::File(error) = self else { return None };
+        error.place()
+    }
+
+    fn remedy(&self) -> Option<String> {
+        matches!(self, MachineError::Unknown { .. })
+            .then(|| "take one of the known machines, or write a file".to_owned())
+    }
+}
 
 /// The names of the presets, the paper's own machine first.
 pub fn names() -> impl Iterator<Item = &'static str> {
@@ -36,7 +68,7 @@ pub fn find(name: &str) -> Result<MachineModel, MachineError> {
     if !name.ends_with(".toml") {
         return preset(name);
     }
-    MachineModel::load(name)
+    Ok(MachineModel::load(name)?)
 }
 
 /// The preset called `name`.
@@ -100,8 +132,8 @@ mod tests {
         let error = preset("cray-3").unwrap_err();
         assert_eq!(
             error.to_string(),
-            "unknown machine `cray-3`; known are paper, cray-1, cyber-205, cray-x-mp, cray-y-mp, nec-sx-3, \
-             cray-c90, cray-y-mp-el, cray-j90, sx-aurora, and machine files by their path, which ends in .toml\n  \
+            "unknown machine `cray-3`; known are paper, cray-1, cyber-205, cray-y-mp-el, sx-aurora, and machine \
+             files by their path, which ends in .toml\n  \
              help: did you mean cray-1?"
         );
     }

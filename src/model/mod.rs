@@ -4,13 +4,13 @@
 //! does about operations it lacks; a [`machine_file`] is how that is written down. A [`clock`] turns the
 //! counts of a run into clock periods on such a machine. The clocks form a ladder over the same counts:
 //! the formula of BP93 section 3 is its first vector rung, and every refinement is one rung more, so that
-//! a table can show what each of them adds. A [`network`] is one more machine: what a step costs whose discs are dealt out to ranks.
+//! a table can show what each of them adds.
 
 pub mod clock;
+pub mod file;
 pub mod host;
 pub mod machine;
 pub mod machine_file;
 pub mod machines;
-pub mod network;
 pub mod quantity;
 pub mod units;

@@ -1,7 +1,6 @@
 //! What `reproduce` makes of studies.
 
 use super::explain::{SCENES, SECONDS, regret, section as plans};
-use super::history::{section as history, shipped};
 use super::rivals;
 use super::stability::{self, Over, stability};
 use super::work_precision::{self, work_precision};
@@ -28,13 +27,6 @@ pub const ITEMS: &[Item] = &[
         plans_judged,
         "Plans of `explain` for forty scenes, beside the best that is known",
     ),
-    Item::quick(
-        history::NAME,
-        Chapter::Host,
-        [0.1, 0.1],
-        over_time,
-        "Rates that `bench --record` measured, over time and host",
-    ),
     Item::of("rivals", rivals::made),
 ];
 
@@ -50,11 +42,6 @@ fn plans_judged(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
     };
     let judged = regret::judged(&scenes, effort, progress)?;
     plans::made(&judged, effort, format!("stripmine reproduce --only {}", plans::NAME))
-}
-
-/// What was recorded.
-fn over_time(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    history::made(&shipped()?, format!("stripmine reproduce --only {}", history::NAME))
 }
 
 /// The scenes that methods state for it.

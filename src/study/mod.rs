@@ -8,7 +8,6 @@ mod encounters;
 mod error;
 pub mod explain;
 mod growth;
-pub mod history;
 mod items;
 mod observables;
 mod observed;

@@ -6,8 +6,8 @@ use super::study::efficiency_table::Question;
 use super::study::model_validation::{self, Calibrated, model_validation};
 use super::study::rounds::Bound;
 use super::study::{
-    bands, break_even, crossover, damping, density_cost, efficiency_table, host_ladder, identity, ladder,
-    listing, measured_cost, misprints, pipe_flow, precision, printed_cost, threads, useful_work,
+    break_even, crossover, damping, density_cost, efficiency_table, host_ladder, identity, ladder, listing,
+    measured_cost, misprints, pipe_flow, precision, printed_cost, threads, useful_work,
 };
 use crate::console::Failure;
 use crate::model::host::{HostModel, default_model};
@@ -89,13 +89,6 @@ pub(super) const ITEMS: &[Item] = &[
         "What more threads give, and what the machine has to give",
     ),
     Item::quick(
-        "bands",
-        Host,
-        [2.0, 18.0],
-        bands,
-        "Beyond one machine: from how many discs on ranks pay, by the model of a network",
-    ),
-    Item::quick(
         "identity",
         Sources,
         [1.0, 1.0],
@@ -133,7 +126,7 @@ fn table(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
 }
 
 fn ladder(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let ladders: Vec<_> = ["cray-y-mp-el", "cray-1", "cray-c90", "sx-aurora"]
+    let ladders: Vec<_> = ["cray-y-mp-el", "cray-1", "sx-aurora"]
         .into_iter()
         .map(|name| Ok(ladder::ladder(&Question::default(), &machines::preset(name)?)?))
         .collect::<Result<_, Failure>>()?;
@@ -198,28 +191,6 @@ fn crossover(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
     let progress = lab.progress;
     let data = crossover::crossover(&crossover_effort(effort), progress)?;
     made(sections::crossover::section(&data), &data)
-}
-
-fn bands(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
-    let progress = lab.progress;
-    let effort = match effort {
-        Size::Quick => bands::Effort {
-            discs: vec![1000, 20_000],
-            packing_fraction: 0.8,
-            disc_steps: 1_000_000,
-            repeats: 2,
-            ranks: vec![2, 4],
-        },
-        Size::Full | Size::All => bands::Effort {
-            discs: vec![1000, 10_000, 100_000, 1_000_000],
-            packing_fraction: 0.8,
-            disc_steps: 10_000_000,
-            repeats: 4,
-            ranks: vec![2, 4, 8],
-        },
-    };
-    let data = bands::bands(&effort, progress)?;
-    made(sections::bands::section(&data), &data)
 }
 
 fn threads(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {

@@ -71,7 +71,7 @@ fn a_missing_operation_is_charged_by_its_expansion() {
 
 #[test]
 fn empty_vectors_and_empty_counts_cost_nothing() {
-    let machine = preset("cray-x-mp").unwrap();
+    let machine = preset("cray-1").unwrap();
     for &clock in Clock::ALL {
         assert_eq!(clock.clocks(&machine, &counts_of(Op::SquareRoot, 5), 0), 0.0);
         assert_eq!(clock.clocks(&machine, &Work::default(), 1_000), 0.0);

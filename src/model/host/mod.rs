@@ -9,7 +9,7 @@ mod model;
 mod out_of_range;
 mod rates;
 
-pub use file::{FORMAT, HostFileError, default_model};
+pub use file::{FORMAT, default_model};
 pub use lane::{LaneCosts, class_counts, starts};
 pub use levels::{Around, Level};
 pub use model::{HostModel, Measured};

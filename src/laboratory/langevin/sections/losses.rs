@@ -1,7 +1,6 @@
 //! Particles lost over the step.
 
-use super::readings;
-use crate::laboratory::langevin::study::losses::{Boundary, LossTable, Row, SCHEMES};
+use crate::laboratory::langevin::study::losses::{Boundary, INTERACTIONS, LossTable, Row, SCHEMES, SOURCE};
 use crate::report::figure::{Axis, Chart, Figure, Series, Style};
 use crate::report::{Cell, Rows, Section, Table, Verdict};
 use stripmine_physics::number::range;
@@ -10,13 +9,18 @@ use stripmine_physics::words::Words;
 /// Counts within this factor of the source's are its.
 const ALIKE: f64 = 1.5;
 
+/// How many times as many or as few a count is as the source's.
+fn off(lost: u64, source: u64) -> f64 {
+    let ratio = lost.max(1) as f64 / source.max(1) as f64;
+    ratio.max(1.0 / ratio)
+}
+
 /// The row whose losses are farthest from the source's, and how many times as many or as few they are; none where the source has none.
 fn farthest(data: &LossTable) -> Option<(&Row, f64)> {
-    let ratios = data.rows.iter().filter_map(|row| {
-        let source = row.source.filter(|lost| *lost > 0)? as f64;
-        let ratio = row.lost[0].max(1) as f64 / source;
-        Some((row, ratio.max(1.0 / ratio)))
-    });
+    let ratios = data
+        .rows
+        .iter()
+        .filter_map(|row| Some((row, off(row.lost[0], row.source.filter(|lost| *lost > 0)?))));
     ratios.max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
@@ -42,6 +46,25 @@ fn beside_the_source(data: &LossTable) -> String {
     }
 }
 
+/// How near the source's counts the choices of ε and kT come.
+fn of_choices(data: &LossTable) -> String {
+    let worst = |lost: [u64; 4]| {
+        lost.into_iter().zip(SOURCE).map(|(lost, (_, source))| off(lost, source)).fold(1.0, f64::max)
+    };
+    let Some(nearest) = data.choices.iter().min_by(|a, b| worst(a.lost).total_cmp(&worst(b.lost))) else {
+        return String::new();
+    };
+    let (number, times) = (data.choices.len(), worst(nearest.lost));
+    match times > ALIKE {
+        true => format!(
+            " No choice of ε and kT tried ({number}) gives the source's counts: the nearest is {times:.0} times off."
+        ),
+        false => {
+            format!(" ε = {} and kT = {} give the source's counts.", nearest.strength, nearest.temperature)
+        }
+    }
+}
+
 /// What came out.
 pub fn section(data: &LossTable) -> Section {
     let falls = data.rows.windows(2).all(|pair| pair[0].lost[0] >= pair[1].lost[0]);
@@ -51,9 +74,9 @@ pub fn section(data: &LossTable) -> Section {
         .asks("When are particles lost?")
         .expects("LAN17: of 40 000, 19 200 in 100 steps of 1, 6393 of 0.1, 754 of 0.01, none of 0.001; none below √(2 m r_c/F).")
         .answers(format!(
-            "{} {}{} The bound {}: the longest safe step is {} of it.",
+            "{}{}{} The bound {}: the longest safe step is {} of it.",
             beside_the_source(data),
-            readings::nearest(&data.readings),
+            of_choices(data),
             if falls { "" } else { " The losses do not grow with the step." },
             if least >= 1.0 { "suffices" } else { "does not suffice" },
             range([least, most], 2),
@@ -64,14 +87,14 @@ pub fn section(data: &LossTable) -> Section {
             farthest(data).is_none_or(|(_, ratio)| ratio <= ALIKE),
             least >= 1.0,
         ]))
-        .details([readings::what_cannot_be()])
+        .details([format!(
+            "The columns of LAN17 contradict its N, L and σ: the particles that are left after steps of 1 are nearer than σ \
+             to {} others in 100 steps at random places, where it counts {} interactions.",
+            Cell::Count(data.least_interactions as u64).for_reading(),
+            Cell::Count(INTERACTIONS).for_reading()
+        )])
         .figures([losses(data), boundaries(data)])
-        .tables([
-            loss_table(data),
-            readings::counts(&data.readings),
-            readings::interactions(),
-            boundary_table(data),
-        ])
+        .tables([loss_table(data), boundary_table(data)])
         .seeds([1])
 }
 
@@ -135,6 +158,7 @@ fn boundary_table(data: &LossTable) -> Table {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::laboratory::langevin::study::losses::Choice;
 
     /// The losses of the source's steps, the longest first, and a longest step beside a bound of 1.
     fn section_of(lost: [u64; 4], dt: f64) -> Section {
@@ -142,7 +166,14 @@ mod tests {
         let rows = rows.map(|((dt, source), lost)| Row { dt, lost: [lost; 2], source: Some(source) });
         let boundary = Boundary { strength: 1.0, temperature: 1.0, dt, bounds: [1.0, 1.0] };
         let boundaries = vec![boundary];
-        section(&LossTable { particles: 40_000, rows: rows.collect(), boundaries, readings: vec![] })
+        let choice = Choice { strength: 0.1, temperature: 1.0, lost: lost.map(|lost| lost / 2) };
+        section(&LossTable {
+            particles: 40_000,
+            rows: rows.collect(),
+            boundaries,
+            least_interactions: 135_917.0,
+            choices: vec![choice],
+        })
     }
 
     #[test]
@@ -153,6 +184,11 @@ mod tests {
             "At a step of 0.01 26\u{202f}331 particles are lost where the source loses 754, 35 times as many";
         assert!(
             ours.answer.starts_with(begin) && ours.answer.contains("does not suffice"),
+            "{}",
+            ours.answer
+        );
+        assert!(
+            ours.answer.contains("(1) gives the source's counts: the nearest is 17 times off"),
             "{}",
             ours.answer
         );

@@ -3,7 +3,6 @@
 pub mod accuracy;
 pub mod diffusion;
 pub mod losses;
-mod readings;
 pub mod sectors;
 
 use super::study::Mean;

@@ -3,7 +3,6 @@
 pub mod accuracy;
 pub mod diffusion;
 pub mod losses;
-pub mod readings;
 pub mod sectors;
 
 pub use crate::statistics::Mean;

@@ -1,6 +1,5 @@
 //! The sections of the report that are this method's: a study's dataset as text, tables and figures. None runs physics.
 
-pub mod bands;
 pub mod break_even;
 pub mod calibration;
 pub mod crossover;

@@ -1,6 +1,5 @@
 //! The studies of this method: one file per question a user asks, each a function from parameters to a dataset.
 
-pub mod bands;
 pub mod break_even;
 pub mod calibration;
 pub mod crossover;
