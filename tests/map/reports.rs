@@ -3,7 +3,6 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use stripmine::report::Section;
-use stripmine::report::figure::Picture;
 use stripmine::results::Folder;
 
 /// Words of question, expectation and answer of an item at most: all else is folded.
@@ -83,10 +82,8 @@ const ENTRIES: usize = 7;
 fn legends_are_short() {
     for section in sections() {
         for figure in &section.figures {
-            let Picture::Chart(chart) = &figure.picture else { continue };
-            let names = chart.series.iter().map(|it| &it.name).chain(chart.bands.iter().map(|it| &it.label));
-            let entries = names.filter(|name| !name.is_empty()).count();
-            assert!(entries <= ENTRIES, "{} {}: {entries}", section.name, figure.name);
+            let entries = figure.legend();
+            assert!(entries.len() <= ENTRIES, "{}: {entries:?}", section.name);
         }
     }
 }

@@ -2,26 +2,24 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A chart. A point that an axis cannot show (zero or less on a logarithmic one, not finite) must not be in it.
+/// A chart. Each point must have a place on both axes: a finite one, and above zero on a logarithmic axis.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Chart {
-    /// The horizontal axis.
-    pub x: Axis,
-    /// The vertical axis.
-    pub y: Axis,
-    /// What is drawn, in the order of the legend.
-    pub series: Vec<Series>,
-    /// Parts of the plane that mean something.
-    pub bands: Vec<Band>,
+    pub(crate) x: Axis,
+    pub(crate) y: Axis,
+    /// In the order of the legend.
+    pub(crate) series: Vec<Series>,
+    /// Marked parts of the plane.
+    pub(crate) bands: Vec<Band>,
 }
 
 impl Chart {
-    /// A chart over two axes, with nothing on it so far.
+    /// Makes an empty chart over two axes.
     pub fn of(x: Axis, y: Axis) -> Chart {
         Chart { x, y, series: vec![], bands: vec![] }
     }
 
-    /// With a series more.
+    /// Adds a series.
     pub fn series(
         self,
         name: impl Into<String>,
@@ -32,81 +30,78 @@ impl Chart {
         self.with([Series::new(name, style, hue, points)])
     }
 
-    /// With further series.
-    pub fn with(mut self, series: impl IntoIterator<Item = Series>) -> Chart {
+    /// Adds further series.
+    pub(crate) fn with(mut self, series: impl IntoIterator<Item = Series>) -> Chart {
         self.series.extend(series);
         self
     }
 
-    /// With a part of the plane that means something.
+    /// Marks a part of the plane.
     pub fn band(mut self, band: Band) -> Chart {
         self.bands.push(band);
         self
     }
 }
 
-/// An axis.
+/// An axis. It is fitted to its data where it has no limits.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Axis {
-    /// The quantity.
-    pub label: String,
-    /// Its unit; none for counts and ratios.
-    pub unit: Option<String>,
-    /// How numbers lie on it.
-    pub scale: Scale,
-    /// Its ends; none to take them from the data.
-    pub limits: Option<[f64; 2]>,
+    pub(crate) label: String,
+    pub(crate) unit: Option<String>,
+    pub(crate) scale: Scale,
+    pub(crate) limits: Option<[f64; 2]>,
 }
 
 impl Axis {
-    /// A linear axis that fits its data.
+    /// Makes a linear axis. Counts and ratios have no unit.
     pub fn linear(label: &str, unit: Option<&str>) -> Axis {
         Axis { label: label.to_owned(), unit: unit.map(str::to_owned), scale: Scale::Linear, limits: None }
     }
 
-    /// A logarithmic axis that fits its data.
+    /// Makes a logarithmic axis.
     pub fn logarithmic(label: &str, unit: Option<&str>) -> Axis {
         Axis { scale: Scale::Logarithmic, ..Axis::linear(label, unit) }
     }
 
-    /// With these ends, whatever its data.
+    /// Makes an axis of names: number 0 stands for the first.
+    pub fn names(label: &str, names: impl IntoIterator<Item = impl Into<String>>) -> Axis {
+        Axis { scale: Scale::Names(names.into_iter().map(Into::into).collect()), ..Axis::linear(label, None) }
+    }
+
+    /// Sets the limits.
     pub fn between(self, ends: [f64; 2]) -> Axis {
         Axis { limits: Some(ends), ..self }
     }
 
-    /// Label and unit as one text.
-    pub fn heading(&self) -> String {
-        match &self.unit {
-            Some(unit) => format!("{} ({unit})", self.label),
-            None => self.label.clone(),
-        }
+    /// Returns label and unit as one text.
+    pub(crate) fn heading(&self) -> String {
+        self.unit.iter().fold(self.label.clone(), |label, unit| format!("{label} ({unit})"))
     }
 }
 
-/// How numbers lie on an axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Scale {
-    /// Equal differences.
+/// Positions of numbers on an axis.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) enum Scale {
     Linear,
-    /// Equal ratios, decades marked.
     Logarithmic,
+    /// Names at the numbers 0, 1, 2 and so on.
+    Names(Vec<String>),
 }
 
 /// A named set of points.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Series {
-    /// Its name in the legend.
+pub(crate) struct Series {
+    /// Empty for no entry in the legend.
     pub name: String,
-    /// How it is drawn.
     pub style: Style,
-    /// Which colour of the palette; series that belong together share one.
+    /// Index of a colour in the palette; series that belong together share one.
     pub hue: usize,
-    /// The points, by increasing x where they are joined.
+    /// By increasing x where they are joined.
     pub points: Vec<Point>,
 }
 
 impl Series {
-    /// A series of points.
+    /// Makes a series of points.
     pub fn new(
         name: impl Into<String>,
         style: Style,
@@ -116,7 +111,7 @@ impl Series {
         Series { name: name.into(), style, hue, points: points.into_iter().map(Into::into).collect() }
     }
 
-    /// A series for each name that points bear, in the order in which names occur.
+    /// Makes a series for each name that points bear, in the order in which names occur.
     pub fn by_name(
         style: Style,
         points: impl IntoIterator<Item = (impl Into<String>, impl Into<Point>)>,
@@ -133,36 +128,33 @@ impl Series {
     }
 }
 
-/// How a series is drawn.
+/// Look of a series.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Style {
-    /// A line: what a model says.
+    /// A line, for a model.
     Line,
-    /// A dashed line: a rival, or what cannot be reached.
+    /// A dashed line, for a rival or a limit.
     Dashed,
-    /// Points alone: what was measured.
+    /// Points alone, for measurements.
     Points,
     /// Points joined by a line.
     Joined,
     /// Steps of a histogram: each point is the middle of a bin.
     Steps,
-    /// A dashed line within the ground between the ends of the spreads: a mean with its error.
+    /// A dashed line on a ground between the ends of the spreads: a mean with its error.
     Ribbon,
 }
 
-/// A point of a series.
+/// A point of a series. Its spread is the lowest and highest observed or credible value of y.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Point {
-    /// On the horizontal axis.
-    pub x: f64,
-    /// On the vertical axis.
-    pub y: f64,
-    /// Lowest and highest value of y that was seen or is believable.
-    pub spread: Option<[f64; 2]>,
+    pub(crate) x: f64,
+    pub(crate) y: f64,
+    pub(crate) spread: Option<[f64; 2]>,
 }
 
 impl Point {
-    /// A point without spread.
+    /// Makes a point without spread.
     pub fn at(x: f64, y: f64) -> Point {
         Point { x, y, spread: None }
     }
@@ -174,43 +166,55 @@ impl From<(f64, f64)> for Point {
     }
 }
 
-/// With its spread.
 impl From<(f64, f64, [f64; 2])> for Point {
     fn from((x, y, spread): (f64, f64, [f64; 2])) -> Point {
         Point { x, y, spread: Some(spread) }
     }
 }
 
-/// A part of the plane that means something.
+/// A marked part of the plane: between two values, or a line at one value.
+///
+/// Bands between values of x are grey, such as densities that no configuration has; those between values of y are a light ground, such as
+/// errors that are small enough.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Band {
-    /// What it means.
-    pub label: String,
-    /// Where it begins and ends.
-    pub ends: [f64; 2],
-    /// Between two values of x it is hatched, such as densities that no configuration has; between two values of y it is a
-    /// light ground, such as errors that are small enough.
-    pub along: Along,
+    pub(crate) label: String,
+    /// Equal ones make a line.
+    pub(crate) ends: [f64; 2],
+    pub(crate) along: Along,
 }
 
 impl Band {
-    /// Between two values of x.
+    /// Marks the plane between two values of x.
     pub fn of_x(label: &str, ends: [f64; 2]) -> Band {
         Band { label: label.to_owned(), ends, along: Along::X }
     }
 
-    /// Between two values of y.
+    /// Marks the plane between two values of y.
     pub fn of_y(label: &str, ends: [f64; 2]) -> Band {
-        Band { label: label.to_owned(), ends, along: Along::Y }
+        Band { along: Along::Y, ..Band::of_x(label, ends) }
+    }
+
+    /// Marks one value of x by a line, with the label above the plane.
+    pub fn at_x(label: &str, x: f64) -> Band {
+        Band::of_x(label, [x, x])
+    }
+
+    /// Marks one value of y by a line.
+    pub fn at_y(label: &str, y: f64) -> Band {
+        Band::of_y(label, [y, y])
+    }
+
+    /// Reports if it is a line.
+    pub(super) fn is_line(&self) -> bool {
+        self.ends[0] == self.ends[1]
     }
 }
 
-/// An axis.
+/// One of two axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Along {
-    /// The horizontal one.
+pub(crate) enum Along {
     X,
-    /// The vertical one.
     Y,
 }
 

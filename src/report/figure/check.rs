@@ -1,146 +1,164 @@
-//! Whether a figure can be drawn.
+//! Faults of figures, found before they are drawn.
 
-use super::{Axis, Chart, Drawing, Fault, Figure, FigureError, Map, Picture, Scale, Shape, Tint};
+use super::{Axis, Chart, Drawing, Map, Picture, Scale, Shape, Tint};
+use stripmine_physics::number::significant;
+use stripmine_physics::reported::{Class, Reported};
 
-/// Finds the first fault of a figure.
-pub(super) fn check(figure: &Figure) -> Result<(), FigureError> {
-    match &figure.picture {
+/// A figure that cannot be drawn.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("figure `{figure}`: {problem}")]
+pub struct FigureError {
+    /// Name of the figure.
+    pub figure: String,
+    /// Place, value and reason.
+    pub problem: String,
+}
+
+impl Reported for FigureError {
+    // A picture that cannot be drawn is a mistake of the program.
+    fn class(&self) -> Class {
+        Class::InputOutput
+    }
+}
+
+/// Least width and largest side of a drawing (pixels).
+const SIDES: [f64; 2] = [100.0, 50_000.0];
+/// Limit of a shape's size and its distance from the corner of the window (pixels): renderers count in small whole numbers.
+const FARTHEST: f64 = 1e6;
+
+/// Finds the first fault of a picture.
+pub fn check(picture: &Picture) -> Result<(), String> {
+    match picture {
         Picture::Chart(chart) => check_chart(chart),
+        Picture::Panels(panels) => {
+            let first = &panels.first().ok_or("there is nothing in it")?.1;
+            match panels.iter().find(|(_, chart)| chart.x != first.x || chart.y != first.y) {
+                Some((name, _)) => Err(format!("panel `{name}` has other axes than the first panel")),
+                None => panels.iter().try_for_each(|(_, chart)| check_chart(chart)),
+            }
+        }
         Picture::Map(map) => check_map(map),
         Picture::Drawing(drawing) => check_drawing(drawing),
         Picture::Drawn { .. } => Ok(()),
     }
-    .map_err(|fault| fault.of(&figure.name))
 }
 
-fn check_chart(chart: &Chart) -> Result<(), Fault> {
-    check_axis(&chart.x)?;
-    check_axis(&chart.y)?;
-    for series in &chart.series {
+fn check_chart(Chart { x, y, series, bands }: &Chart) -> Result<(), String> {
+    [x, y].into_iter().try_for_each(check_axis)?;
+    for series in series {
         let place = |i: usize, what: &str| format!("{what} of point {i} of `{}`", series.name);
         for (i, point) in series.points.iter().enumerate() {
-            showable(&chart.x, point.x, || place(i, "x"))?;
-            showable(&chart.y, point.y, || place(i, "y"))?;
-            for end in point.spread.into_iter().flatten() {
-                showable(&chart.y, end, || place(i, "the spread"))?;
-            }
+            showable(x, point.x, || place(i, "x"))?;
+            showable(y, point.y, || place(i, "y"))?;
+            point.spread.iter().flatten().try_for_each(|end| showable(y, *end, || place(i, "the spread")))?;
         }
     }
-    for band in &chart.bands {
-        if band.ends[0].partial_cmp(&band.ends[1]) != Some(std::cmp::Ordering::Less) {
-            return Err(Fault::NotAnInterval {
-                place: format!("the band `{}`", band.label),
-                ends: band.ends,
-            });
-        }
+    if let Some(band) = bands.iter().find(|band| !matches!(band.ends, [low, high] if low <= high)) {
+        return Err(no_interval(&format!("the band `{}`", band.label), band.ends));
     }
-    if chart.series.iter().all(|series| series.points.is_empty()) {
-        return Err(Fault::Empty);
-    }
-    Ok(())
+    has(series.iter().any(|series| !series.points.is_empty()))
 }
 
-fn check_map(map: &Map) -> Result<(), Fault> {
-    for axis in [&map.x, &map.y] {
-        if axis.limits.is_none() {
-            return Err(Fault::NoLimits { axis: axis.label.clone() });
+fn check_map(map: &Map) -> Result<(), String> {
+    let columns = map.rows.first().map_or(0, Vec::len);
+    has(columns > 0)?;
+    for (axis, cells) in [(&map.x, columns), (&map.y, map.rows.len())] {
+        let Axis { label, scale, limits, .. } = axis;
+        match scale {
+            Scale::Names(names) if names.len() != cells => {
+                return Err(format!("the axis `{label}` has {} names for {cells} cells", names.len()));
+            }
+            Scale::Linear | Scale::Logarithmic if limits.is_none() => {
+                return Err(format!("the axis `{label}` of a map needs limits"));
+            }
+            _ => check_axis(axis)?,
         }
     }
-    for axis in [&map.x, &map.y, &map.value] {
-        check_axis(axis)?;
-    }
-    let expected = map.rows.first().map_or(0, Vec::len);
-    if expected == 0 {
-        return Err(Fault::Empty);
-    }
+    check_axis(&map.value)?;
     for (j, row) in map.rows.iter().enumerate() {
-        if row.len() != expected {
-            return Err(Fault::UnevenRows { row: j, expected, found: row.len() });
+        if row.len() != columns {
+            return Err(format!("row {j} has {} values, the rows before it {columns}", row.len()));
         }
-        for (i, &value) in row.iter().enumerate() {
+        for (i, &value) in row.iter().enumerate().filter(|(_, value)| !value.is_nan()) {
             showable(&map.value, value, || format!("the value at row {j}, column {i}"))?;
         }
     }
     Ok(())
 }
 
-fn check_drawing(drawing: &Drawing) -> Result<(), Fault> {
-    let [[left, low], [right, high]] = drawing.window;
+fn check_drawing(Drawing { window, width, shapes, shades, .. }: &Drawing) -> Result<(), String> {
+    let [[left, low], [right, high]] = *window;
     interval("the window's width", [left, right])?;
     interval("the window's height", [low, high])?;
-    let height = drawing.width * (high - low) / (right - left);
-    if !(drawing.width >= LEAST_WIDTH && drawing.width.max(height) <= LARGEST_SIDE) {
-        return Err(Fault::Size { width: drawing.width, height });
+    let height = width * (high - low) / (right - left);
+    if !(*width >= SIDES[0] && width.max(height) <= SIDES[1]) {
+        let [width, height] = [*width, height].map(|side| significant(side, 6));
+        return Err(format!("a picture of {width} by {height} pixels cannot be drawn"));
     }
-    if let Some((lowest, highest, what)) = &drawing.shades {
+    if let Some((lowest, highest, what)) = shades {
         interval(&format!("the shade `{what}`"), [*lowest, *highest])?;
     }
-    if drawing.shapes.is_empty() {
-        return Err(Fault::Empty);
-    }
-    let scale = drawing.width / (right - left);
-    for (i, shape) in drawing.shapes.iter().enumerate() {
+    for (i, shape) in shapes.iter().enumerate() {
         let place = || format!("a number of shape {i}");
         if let Shape::Disc { tint: Tint::Shade(shade), .. }
         | Shape::Rectangle { tint: Tint::Shade(shade), .. } = shape
         {
             finite(*shade, place)?;
         }
-        for value in lengths(shape) {
+        let numbers = match shape {
+            Shape::Disc { centre: [x, y], radius, .. } => [x, y, radius, radius],
+            Shape::Rectangle { corners: [[a, b], [c, d]], .. } | Shape::Line { ends: [[a, b], [c, d]] } => {
+                [a, b, c, d]
+            }
+            Shape::Text { centre: [x, y], height, .. } => [x, y, height, height],
+        };
+        for &value in numbers {
             finite(value, place)?;
-            let pixels = scale * value.abs().min((value - left).abs()).min((value - low).abs());
+            let pixels =
+                width / (right - left) * value.abs().min((value - left).abs()).min((value - low).abs());
             if pixels > FARTHEST || pixels.is_nan() {
-                return Err(Fault::TooFar { place: place(), value, pixels });
+                let [value, pixels] = [significant(value, 6), significant(pixels, 2)];
+                return Err(format!("{} is {value}, which is {pixels} pixels on the picture", place()));
             }
         }
     }
-    Ok(())
+    has(!shapes.is_empty())
 }
 
-/// The least width of a drawing (pixels): a word must find its place.
-const LEAST_WIDTH: f64 = 100.0;
-/// The farthest that a shape may lie from the corner of its window, and the longest that it may be (pixels): the
-/// libraries that draw count in small whole numbers.
-const FARTHEST: f64 = 1e6;
-/// The largest side of a drawing (pixels).
-const LARGEST_SIDE: f64 = 50_000.0;
-
-/// Coordinates and sizes.
-fn lengths(shape: &Shape) -> Vec<f64> {
-    match shape {
-        Shape::Disc { centre: [x, y], radius, .. } => vec![*x, *y, *radius],
-        Shape::Rectangle { corners: [[a, b], [c, d]], .. } | Shape::Line { ends: [[a, b], [c, d]] } => {
-            vec![*a, *b, *c, *d]
-        }
-        Shape::Text { centre: [x, y], height, .. } => vec![*x, *y, *height],
-    }
-}
-
-fn check_axis(axis: &Axis) -> Result<(), Fault> {
+fn check_axis(axis: &Axis) -> Result<(), String> {
     let Some(limits) = axis.limits else { return Ok(()) };
     let place = format!("the axis `{}`", axis.label);
-    for end in limits {
-        showable(axis, end, || format!("an end of {place}"))?;
-    }
+    limits.into_iter().try_for_each(|end| showable(axis, end, || format!("an end of {place}")))?;
     interval(&place, limits)
 }
 
-fn interval(place: &str, ends: [f64; 2]) -> Result<(), Fault> {
+fn has(something: bool) -> Result<(), String> {
+    if something { Ok(()) } else { Err("there is nothing in it".to_owned()) }
+}
+
+fn interval(place: &str, ends: [f64; 2]) -> Result<(), String> {
     let length = ends[1] - ends[0];
-    if length > 0.0 && length.is_finite() {
-        return Ok(());
-    }
-    Err(Fault::NotAnInterval { place: place.to_owned(), ends })
+    if length > 0.0 && length.is_finite() { Ok(()) } else { Err(no_interval(place, ends)) }
 }
 
-fn showable(axis: &Axis, value: f64, place: impl Fn() -> String) -> Result<(), Fault> {
+/// Describes ends that are no interval.
+pub fn no_interval(place: &str, ends: [f64; 2]) -> String {
+    let [low, high] = ends.map(|end| significant(end, 6));
+    format!("{place} goes from {low} to {high}, which is not upwards or too far")
+}
+
+fn showable(axis: &Axis, value: f64, place: impl Fn() -> String) -> Result<(), String> {
     finite(value, &place)?;
-    if axis.scale == Scale::Logarithmic && value <= 0.0 {
-        return Err(Fault::NotPositive { place: place(), value });
-    }
-    Ok(())
+    let problem = match &axis.scale {
+        Scale::Logarithmic if value <= 0.0 => "its axis is logarithmic".to_owned(),
+        Scale::Names(all) if value < -0.5 || value > all.len() as f64 - 0.5 => {
+            format!("its axis has {} names", all.len())
+        }
+        _ => return Ok(()),
+    };
+    Err(format!("{} is {}, but {problem}", place(), significant(value, 6)))
 }
 
-fn finite(value: f64, place: impl Fn() -> String) -> Result<(), Fault> {
-    if value.is_finite() { Ok(()) } else { Err(Fault::NotFinite { place: place(), value }) }
+fn finite(value: f64, place: impl Fn() -> String) -> Result<(), String> {
+    if value.is_finite() { Ok(()) } else { Err(format!("{} is {value}, which is not finite", place())) }
 }

@@ -1,32 +1,40 @@
 //! The numbers of a figure as a table, for programs.
 
-use super::{Chart, Figure, Map, Picture};
+use super::{Axis, Chart, Figure, Map, Picture, Scale};
 use crate::report::{Cell, Table};
 
-/// What a chart or a map shows, in a table called as the figure's data; none of a drawing, whose shapes are not data.
+/// Returns the table of a chart or a map, named after the figure; none for a drawing, whose shapes are not data, and for a picture that
+/// was drawn before.
 ///
-/// A chart gives a row for each point: its series, x, y, and the ends of its spread. A map gives a row for each of its rows from
-/// the bottom: where the middle of the row lies, and its values under the middles of the columns.
+/// A chart gives a row for each point: its series, x, y, and the ends of its spread; panels have their name before it. A map gives a
+/// row for each of its rows from the bottom: the middle of the row, and its values under the middles of the columns.
 pub fn data(figure: &Figure) -> Option<Table> {
     let (columns, rows) = match &figure.picture {
-        Picture::Chart(chart) => points(chart),
+        Picture::Chart(chart) => (headings(chart), points(chart)),
+        Picture::Panels(panels) => {
+            let columns = panels.first().map(|(_, chart)| headings(chart)).unwrap_or_default();
+            let row = |name: &str, row: Vec<Cell>| [vec![Cell::Text(name.to_owned())], row].concat();
+            let of = |(name, chart): &(String, Chart)| {
+                points(chart).into_iter().map(|it| row(name, it)).collect::<Vec<_>>()
+            };
+            ([vec!["panel".to_owned()], columns].concat(), panels.iter().flat_map(of).collect())
+        }
         Picture::Map(map) => cells(map),
         Picture::Drawing(_) | Picture::Drawn { .. } => return None,
     };
     Some(Table { name: data_name(figure), title: figure.title.clone(), columns, rows, notes: vec![] })
 }
 
-/// What the table of a figure's data is called.
 fn data_name(figure: &Figure) -> String {
     format!("{}.data", figure.name)
 }
 
-/// The file with a figure's data, without its folder; none where there are no data.
+/// Returns the name of the file with a figure's data, without its folder; none if it has no data.
 pub fn data_file(figure: &Figure) -> Option<String> {
-    let has_data = match figure.picture {
+    let has_data = match &figure.picture {
         Picture::Drawing(_) => false,
-        Picture::Drawn { has_data, .. } => has_data,
-        Picture::Chart(_) | Picture::Map(_) => true,
+        Picture::Drawn { has_data, .. } => *has_data,
+        _ => true,
     };
     has_data.then(|| format!("{}.csv", data_name(figure)))
 }
@@ -35,27 +43,46 @@ fn number(value: f64) -> Cell {
     if value.is_finite() { Cell::Number(value, 6) } else { Cell::Nothing }
 }
 
-fn points(Chart { x, y, series, .. }: &Chart) -> (Vec<String>, Vec<Vec<Cell>>) {
-    let columns = ["series".to_owned(), x.heading(), y.heading(), "lowest".to_owned(), "highest".to_owned()];
+/// Returns a number of an axis, or the name that it stands for.
+fn place(axis: &Axis, value: f64) -> Cell {
+    match &axis.scale {
+        Scale::Names(names) => names.get(value.round() as usize).cloned().map_or(Cell::Nothing, Cell::Text),
+        _ => number(value),
+    }
+}
+
+fn headings(Chart { x, y, .. }: &Chart) -> Vec<String> {
+    ["series".to_owned(), x.heading(), y.heading(), "lowest".to_owned(), "highest".to_owned()].to_vec()
+}
+
+fn points(Chart { x, y, series, .. }: &Chart) -> Vec<Vec<Cell>> {
     let rows = series.iter().flat_map(|series| {
         series.points.iter().map(|point| {
             let [low, high] = point.spread.map_or([Cell::Nothing, Cell::Nothing], |ends| ends.map(number));
-            vec![Cell::Text(series.name.clone()), number(point.x), number(point.y), low, high]
+            vec![Cell::Text(series.name.clone()), place(x, point.x), place(y, point.y), low, high]
         })
     });
-    (columns.to_vec(), rows.collect())
+    rows.collect()
 }
 
 fn cells(Map { x, y, value, rows }: &Map) -> (Vec<String>, Vec<Vec<Cell>>) {
-    let middle = |limits: Option<[f64; 2]>, at: usize, count: usize| {
-        let [low, high] = limits.unwrap_or([0.0, count as f64]);
-        low + (high - low) * (at as f64 + 0.5) / count as f64
+    let middle = |axis: &Axis, at: usize, count: usize| {
+        let [low, high] = axis.limits.unwrap_or([0.0, count as f64]);
+        let part = (at as f64 + 0.5) / count as f64;
+        match axis.scale {
+            Scale::Linear => low + (high - low) * (at as f64 + 0.5) / count as f64,
+            Scale::Logarithmic => low * libm::pow(high / low, part),
+            Scale::Names(_) => at as f64,
+        }
     };
     let across = rows.first().map_or(0, Vec::len);
     let corner = format!("{} by {} down, {} across", value.heading(), y.heading(), x.heading());
-    let columns = (0..across).map(|column| middle(x.limits, column, across).to_string());
+    let columns = (0..across).map(|at| match &x.scale {
+        Scale::Names(names) => names[at].clone(),
+        _ => middle(x, at, across).to_string(),
+    });
     let lines = rows.iter().enumerate().map(|(row, values)| {
-        let middle = number(middle(y.limits, row, rows.len()));
+        let middle = place(y, middle(y, row, rows.len()));
         std::iter::once(middle).chain(values.iter().copied().map(number)).collect()
     });
     (std::iter::once(corner).chain(columns).collect(), lines.collect())
@@ -74,10 +101,12 @@ mod tests {
             let Some(table) = table else { continue };
             assert_eq!(data_file(&figure), Some(format!("{}.csv", table.name)));
             assert!(table.rows.iter().all(|row| row.len() == table.columns.len()), "{}", figure.name);
+            let points = |chart: &Chart| chart.series.iter().map(|series| series.points.len()).sum::<usize>();
             let rows = match &figure.picture {
-                Picture::Chart(chart) => chart.series.iter().map(|series| series.points.len()).sum(),
+                Picture::Chart(chart) => points(chart),
+                Picture::Panels(panels) => panels.iter().map(|(_, chart)| points(chart)).sum(),
                 Picture::Map(map) => map.rows.len(),
-                Picture::Drawing(_) | Picture::Drawn { .. } => unreachable!("a drawing has no data"),
+                Picture::Drawing(_) | Picture::Drawn { .. } => unreachable!("it has no data"),
             };
             assert_eq!(table.rows.len(), rows, "{}", figure.name);
         }
@@ -85,18 +114,33 @@ mod tests {
 
     #[test]
     fn a_map_names_the_middles_of_its_cells() {
-        let axis = |label| super::super::Axis {
-            limits: Some([0.0, 4.0]),
-            ..super::super::Axis::linear(label, Some("m"))
-        };
-        let map = Map {
-            x: axis("x"),
-            y: axis("y"),
-            value: axis("depth"),
-            rows: vec![vec![1.0, 2.0], vec![3.0, f64::NAN]],
-        };
+        let axis = |label| Axis::linear(label, Some("m")).between([0.0, 4.0]);
+        let rows = vec![vec![1.0, 2.0], vec![3.0, f64::NAN]];
+        let map = Map { x: axis("x"), y: axis("y"), value: axis("depth"), rows };
         let (columns, rows) = cells(&map);
         assert_eq!(columns, ["depth (m) by y (m) down, x (m) across", "1", "3"]);
         assert_eq!(rows[1], [Cell::Number(3.0, 6), Cell::Number(3.0, 6), Cell::Nothing]);
+        let (x, y) =
+            (Axis::names("search", ["lists", "lattice"]), Axis::logarithmic("n", None).between([1.0, 1e4]));
+        let (columns, rows) = cells(&Map { x, y, ..map });
+        assert_eq!(columns[1..], ["lists", "lattice"]);
+        assert_eq!(rows[1][0], Cell::Number(1000.0, 6));
+    }
+
+    #[test]
+    fn panels_and_names_are_columns_of_words() {
+        let words = |figure: &Figure, row: usize| data(figure).unwrap().rows[row][..3].to_vec();
+        let row = words(&samples::panels(), 0);
+        assert!(matches!(&row[0], Cell::Text(panel) if panel == "5×5"), "{row:?}");
+        let row = words(&samples::names(), 1);
+        assert!(matches!(&row[1], Cell::Text(name) if name == "dense-gas"), "{row:?}");
+    }
+
+    #[test]
+    fn a_picture_from_a_file_is_as_it_is() {
+        let drawn = |has_data| Picture::Drawn { svg: "<svg/>".into(), has_data }.figure("old", "Old");
+        assert_eq!(super::super::svg(&drawn(true)).unwrap(), "<svg/>");
+        assert_eq!(data_file(&drawn(true)), Some("old.data.csv".into()));
+        assert!(data_file(&drawn(false)).is_none() && data(&drawn(true)).is_none());
     }
 }

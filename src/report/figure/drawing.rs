@@ -1,79 +1,233 @@
-//! Things where they are: discs, cells, words.
+//! Drawings: shapes at their places, with a scale bar, gravity and shades below them.
 
-use serde::{Deserialize, Serialize};
+use super::axis::Span;
+use super::style::{self, Colour, LINE};
+use super::writer::{END, MIDDLE, Svg, at, stroke, tenths};
+use super::{Drawing, Guide, Scale, Shape, Tint, font, map};
+use std::collections::BTreeMap;
+use stripmine_physics::number::significant;
 
-/// A drawing in its own coordinates: x to the right, y upwards.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Drawing {
-    /// Lower left and upper right corner of what is shown.
-    pub window: [[f64; 2]; 2],
-    /// Width of the picture (pixels); its height follows from the window.
-    pub width: f64,
-    /// What is drawn, from back to front. Not kept with a section: the picture is, and nothing more is known of it.
-    #[serde(skip)]
-    pub shapes: Vec<Shape>,
-    /// What the shades mean: lowest and highest value and the quantity with its unit; none where shade means nothing.
-    pub shades: Option<(f64, f64, String)>,
-    /// What stands below it of places: a bar of a round length, and gravity; none where the coordinates mean nothing.
-    #[serde(default)]
-    pub guide: Option<Guide>,
+/// Width of a disc's outline, in radii; and its bounds in pixels.
+const RIM: f64 = 0.08;
+const RIMS: [f64; 2] = [0.4, 1.2];
+/// Discs of no more than this radius have no outline (pixels).
+const SMALL: f64 = 2.4;
+/// Height of the rows in which dots are sorted (tenths of a pixel).
+const ROW: i64 = 120;
+
+/// Draws shapes. Words and lines grow with a wide drawing: it is shown at a smaller scale.
+pub fn draw(title: &str, drawing: &Drawing) -> Svg {
+    let zoom = (drawing.width / style::ZOOMED).max(1.0);
+    let margin = style::MARGIN * zoom;
+    let [[left, low], [right, high]] = drawing.window;
+    let width = drawing.width - 2.0 * margin;
+    let scale = width / (right - left);
+    let height = (high - low) * scale;
+    let mut svg = Svg::new(title, drawing.width, zoom);
+    let top = svg.size[1];
+    let is_signed = drawing.shades.as_ref().is_some_and(|&(low, high, _)| style::is_signed([low, high]));
+    let view = View { drawing, corner: [margin, top + height], scale, zoom, is_signed };
+    // Outlines at the edges are seen whole.
+    let (corner, size) =
+        ([margin, top].map(|it| it - 0.5 * LINE * zoom), [width, height].map(|it| it + LINE * zoom));
+    svg.window(corner, size);
+    view.shapes(&mut svg);
+    svg.add("</svg>");
+    svg.size[1] = top + height + margin;
+    if let Some(guide) = &drawing.guide {
+        view.guide(&mut svg, guide);
+    }
+    if let Some((lowest, highest, what)) = &drawing.shades {
+        let (heading, ends) = (what.clone(), [*lowest, *highest]);
+        svg.size[1] -= 0.5 * margin;
+        map::bar(&mut svg, &Span { heading, scale: Scale::Linear, ends }, zoom);
+    }
+    svg
 }
 
-/// How long things are, and which way they fall.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Guide {
-    /// The unit of the drawing's coordinates.
-    pub unit: String,
-    /// Which way gravity pulls, in the drawing's coordinates; none without it.
-    pub gravity: Option<[f64; 2]>,
+/// A drawing on its picture.
+struct View<'a> {
+    drawing: &'a Drawing,
+    /// Place of the window's lower left corner.
+    corner: [f64; 2],
+    /// Pixels to a unit of the drawing.
+    scale: f64,
+    zoom: f64,
+    /// Set if shades show a sign.
+    is_signed: bool,
 }
 
-/// Something drawn.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Shape {
-    /// A disc.
-    Disc {
-        /// Its centre.
-        centre: [f64; 2],
-        /// Its radius.
-        radius: f64,
-        /// Its filling.
-        tint: Tint,
-    },
-    /// A box along the axes.
-    Rectangle {
-        /// Lower left and upper right corner.
-        corners: [[f64; 2]; 2],
-        /// Its filling.
-        tint: Tint,
-        /// Whether its outline is drawn.
-        outlined: bool,
-    },
-    /// A straight line.
-    Line {
-        /// Its ends.
-        ends: [[f64; 2]; 2],
-    },
-    /// Words, centred on a point.
-    Text {
-        /// Where.
-        centre: [f64; 2],
-        /// Height of a capital letter, in the drawing's coordinates.
-        height: f64,
-        /// The words.
-        words: String,
-    },
+impl View<'_> {
+    /// Adds the shapes from back to front; filled discs that follow each other are drawn together, and so are lines.
+    fn shapes(&self, svg: &mut Svg) {
+        let kind = |shape: &Shape| match shape {
+            Shape::Disc { tint, .. } if *tint != Tint::Clear => 1,
+            Shape::Line { .. } => 2,
+            _ => 0,
+        };
+        let mut before = 0;
+        for alike in self.drawing.shapes.chunk_by(|a, b| kind(a) != 0 && kind(a) == kind(b)) {
+            match kind(&alike[0]) {
+                1 => self.dots(svg, alike),
+                2 => svg.path(&self.ink(), &alike.iter().map(|it| self.line(it)).collect::<String>()),
+                _ => self.shape(svg, &alike[0], &self.drawing.shapes[..before]),
+            }
+            before += alike.len();
+        }
+    }
+
+    fn ink(&self) -> String {
+        stroke(style::INK, LINE * self.zoom)
+    }
+
+    fn line(&self, shape: &Shape) -> String {
+        let Shape::Line { ends } = shape else { return String::new() };
+        let [[x1, y1], [x2, y2]] = ends.map(|end| self.place(end).map(tenths));
+        format!("M{x1} {y1}L{x2} {y2}")
+    }
+
+    fn shape(&self, svg: &mut Svg, shape: &Shape, below: &[Shape]) {
+        match shape {
+            Shape::Disc { centre, radius, .. } => {
+                let ([x, y], radius) = (self.place(*centre).map(tenths), radius.abs() * self.scale);
+                let (r, stroke) = (tenths(radius), stroke(style::INK, self.rim(radius)));
+                svg.add(format_args!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\" fill=\"none\"{stroke}/>"));
+            }
+            Shape::Rectangle { corners, tint, outlined } => {
+                let [[left, bottom], [right, top]] = corners.map(|corner| self.place(corner));
+                let place = at([left, top], [right - left, bottom - top]);
+                let fill = self.colour(*tint).map_or("none".to_owned(), |colour| colour.to_string());
+                let stroke = if *outlined { self.ink() } else { String::new() };
+                svg.add(format_args!("<rect{place} fill=\"{fill}\"{stroke}/>"));
+            }
+            Shape::Text { centre, height, words } => {
+                let ground = below.iter().rev().filter(|shape| covers(shape, *centre));
+                let ground = ground.filter_map(|shape| self.filling(shape)).next().unwrap_or(style::PAPER);
+                let ([x, y], height) = (self.place(*centre), height.abs() * self.scale);
+                let look = format!("{MIDDLE} fill=\"{}\"", style::ink_on(ground));
+                if height > 0.0 {
+                    svg.words([x, y + 0.5 * height], height / font::CAPITAL, &look, words);
+                }
+            }
+            Shape::Line { .. } => {}
+        }
+    }
+
+    /// Adds filled discs; which of them is in front makes no difference. Those of one colour and size are the round ends of the shortest
+    /// lines of that width, a sixth of the bytes of circles; outlines are larger discs behind all of them.
+    fn dots(&self, svg: &mut Svg, discs: &[Shape]) {
+        // Middles (tenths of a pixel) by layer, colour and diameter; outlines first.
+        let mut alike: BTreeMap<(bool, Colour, i64), Vec<[i64; 2]>> = BTreeMap::new();
+        let tenths = |pixels: f64| (10.0 * pixels).round() as i64;
+        for shape in discs {
+            let Shape::Disc { centre, radius, tint } = shape else { continue };
+            let (Some(fill), radius) = (self.colour(*tint), radius.abs() * self.scale) else { continue };
+            let middle = self.place(*centre).map(tenths);
+            let mut dot = |is_front, colour, diameter: f64| {
+                alike.entry((is_front, colour, tenths(diameter))).or_default().push(middle);
+            };
+            // An outline would hide a disc of a few pixels.
+            let rim = if radius > SMALL * self.zoom { self.rim(radius) } else { 0.0 };
+            if rim > 0.0 {
+                dot(false, style::INK, 2.0 * radius + rim);
+            }
+            dot(true, fill, 2.0 * radius - rim);
+        }
+        svg.add("<g transform=\"scale(.1)\" stroke-linecap=\"round\">");
+        for ((_, colour, diameter), mut middles) in alike {
+            // Near ones follow each other, which makes the steps between them short.
+            middles.sort_by_key(|[x, y]| (y.div_euclid(ROW), *x));
+            let (mut d, mut at) = (String::new(), [0, 0]);
+            for [x, y] in middles {
+                let start = if d.is_empty() { 'M' } else { 'm' };
+                // Some viewers show nothing of a line without a length.
+                d += &format!("{start}{} {}h1", x - at[0], y - at[1]);
+                at = [x + 1, y];
+            }
+            svg.path(&stroke(colour, diameter as f64), &d);
+        }
+        svg.add("</g>");
+    }
+
+    /// Adds a bar of a round length and the direction of gravity below the window.
+    fn guide(&self, svg: &mut Svg, guide: &Guide) {
+        let (zoom, size, margin) = (self.zoom, style::LABEL * self.zoom, self.corner[0]);
+        let middle = svg.size[1] + 0.5 * size;
+        let (base, right) = (middle + 0.5 * size * font::CAPITAL, self.drawing.width - margin);
+        let mut d = String::new();
+        let mut line = |[x1, y1]: [f64; 2], [x2, y2]: [f64; 2]| {
+            d += &format!("M{} {}L{} {}", tenths(x1), tenths(y1), tenths(x2), tenths(y2));
+        };
+        if let Some([x, y]) = guide.gravity {
+            let centre = margin + font::width("gravity", size) + 24.0 * zoom;
+            // The arrow in steps along gravity and across it; downwards places grow.
+            let [x, y] = [x, -y].map(|part| part / x.hypot(y) * zoom);
+            let place = |along, across| [centre + along * x - across * y, middle + along * y + across * x];
+            line(place(-14.0, 0.0), place(14.0, 0.0));
+            [-1.0, 1.0].into_iter().for_each(|side| line(place(14.0, 0.0), place(6.5, 4.5 * side)));
+            svg.words([margin, base], size, "", "gravity");
+        }
+        let length = round(0.25 * (right - margin) / self.scale);
+        let left = right - length * self.scale;
+        line([left, middle], [right, middle]);
+        [left, right].into_iter().for_each(|x| line([x, middle - 6.0 * zoom], [x, middle + 6.0 * zoom]));
+        svg.path(&format!(" fill=\"none\"{}", self.ink()), &d);
+        let words = format!("{} {}", significant(length, 3), guide.unit);
+        svg.words([left - 8.0 * zoom, base], size, END, words.trim_end());
+        svg.size[1] = middle + 0.5 * size + margin;
+    }
+
+    fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let [[left, low], _] = self.drawing.window;
+        [self.corner[0] + (x - left) * self.scale, self.corner[1] - (y - low) * self.scale]
+    }
+
+    fn rim(&self, radius: f64) -> f64 {
+        let [least, most] = RIMS.map(|width| width * self.zoom);
+        (RIM * radius).clamp(least, most)
+    }
+
+    fn colour(&self, tint: Tint) -> Option<Colour> {
+        match tint {
+            Tint::Clear => None,
+            Tint::Still => Some(style::STILL),
+            Tint::Hue(index) => Some(style::hue(index)),
+            Tint::Shade(part) => Some(style::shade(style::level(part, self.is_signed))),
+        }
+    }
+
+    fn filling(&self, shape: &Shape) -> Option<Colour> {
+        match shape {
+            Shape::Disc { tint, .. } | Shape::Rectangle { tint, .. } => self.colour(*tint),
+            _ => None,
+        }
+    }
 }
 
-/// A filling.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Tint {
-    /// None.
-    Clear,
-    /// A light grey: what does not move.
-    Still,
-    /// A colour of the palette.
-    Hue(usize),
-    /// A place between the lowest (0) and the highest shade (1).
-    Shade(f64),
+/// Returns the largest of 1, 2 and 5 times a power of ten that is not above a number.
+fn round(most: f64) -> f64 {
+    let power = libm::pow(10.0, libm::log10(most).floor());
+    [5.0, 2.0, 1.0].into_iter().map(|factor| factor * power).find(|it| *it <= most).unwrap_or(power)
+}
+
+fn covers(shape: &Shape, [x, y]: [f64; 2]) -> bool {
+    match shape {
+        Shape::Disc { centre, radius, .. } => (x - centre[0]).hypot(y - centre[1]) <= *radius,
+        Shape::Rectangle { corners: [[left, low], [right, high]], .. } => {
+            (*left..=*right).contains(&x) && (*low..=*high).contains(&y)
+        }
+        _ => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::round;
+
+    #[test]
+    fn bars_have_round_lengths() {
+        for (most, length) in [(1.0, 1.0), (0.3, 0.2), (7.3, 5.0), (49.0, 20.0), (0.0199, 0.01)] {
+            assert!((round(most) - length).abs() < 1e-12, "{most}");
+        }
+    }
 }

@@ -1,17 +1,139 @@
-//! A number for each place of a grid, as a colour.
+//! Heat maps, and the bar that says what shades mean.
 
-use super::Axis;
-use serde::{Deserialize, Serialize};
+use super::axis::Span;
+use super::plane::{self, Plane};
+use super::style;
+use super::writer::{MIDDLE, Svg, at, escaped, stroke, tenths};
+use super::{Axis, Map, Scale, font};
+use std::collections::BTreeSet;
+use stripmine_physics::number::{in_tens, significant};
 
-/// A map, such as the density over place and time.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Map {
-    /// The horizontal axis; its limits are the outer edges of the first and last column, and must be given.
-    pub x: Axis,
-    /// The vertical axis; its limits are the outer edges of the first and last row, and must be given.
-    pub y: Axis,
-    /// What the colour says.
-    pub value: Axis,
-    /// `rows[j][i]`: the value at row j (from the bottom) and column i. All rows are equally long.
-    pub rows: Vec<Vec<f64>>,
+/// Most length of a colour bar, and its thickness (pixels).
+const BAR: f64 = 440.0;
+const THICKNESS: f64 = 16.0;
+/// Digits of a value in its cell.
+const DIGITS: usize = 2;
+
+/// Draws a map.
+pub fn draw(title: &str, map: &Map) -> Result<Svg, String> {
+    let [x, y] = [&map.x, &map.y].map(|axis| Span::new(axis, std::iter::empty()));
+    let (x, y) = (x?, y?);
+    let shades = shades(&map.value, map.rows.iter().flatten().copied().filter(|value| !value.is_nan()))?;
+    let mut svg = Svg::new(title, style::WIDTH, 1.0);
+    let planes = plane::draw(&mut svg, &x, &y, &[("", vec![])]);
+    let plane = &planes[0];
+    let heading = format!(" data-value=\"{}\"", escaped(&shades.heading));
+    plane.fill(&mut svg, &heading, |svg| cells(svg, map, &shades, plane));
+    numbers(&mut svg, map, &shades, plane);
+    bar(&mut svg, &shades, 1.0);
+    Ok(svg)
+}
+
+/// Returns the axis of the shades: exactly the values of the map where it has no limits.
+fn shades(axis: &Axis, values: impl Iterator<Item = f64> + Clone) -> Result<Span, String> {
+    let [low, high] = [f64::min, f64::max].map(|it| values.clone().reduce(it).unwrap_or(f64::NAN));
+    let is_exact = axis.limits.is_none() && low < high;
+    if is_exact { Span::new(&axis.clone().between([low, high]), values) } else { Span::new(axis, values) }
+}
+
+/// Reports if shades show a sign.
+fn is_signed(shades: &Span) -> bool {
+    shades.scale == Scale::Linear && style::is_signed(shades.ends)
+}
+
+fn level(shades: &Span, value: f64) -> u8 {
+    style::level(shades.part(value), is_signed(shades))
+}
+
+/// Adds the cells of a map. Those of one colour are one path, neighbours in a row one line of it, as wide as a cell is high; in units of
+/// cells. A line goes on under cells of higher levels, which are painted after it: a fifth fewer lines. No edge is softened, which would
+/// show as a seam.
+fn cells(svg: &mut Svg, map: &Map, shades: &Span, plane: &Plane) {
+    // Rows from above; 1 is the lowest level, 0 no value.
+    let level = |&value: &f64| if value.is_nan() { 0 } else { 1 + u32::from(level(shades, value)) };
+    let rows: Vec<Vec<u32>> = map.rows.iter().rev().map(|row| row.iter().map(level).collect()).collect();
+    let [across, down] = [plane.size[0] / rows[0].len() as f64, plane.size[1] / rows.len() as f64];
+    // Lines run along the middle of their row.
+    let [x, y] = [plane.corner[0], plane.corner[1] + 0.5 * down];
+    svg.add(format_args!(
+        "<g transform=\"translate({x:.2} {y:.2}) scale({across:.6} {down:.6})\" shape-rendering=\"crispEdges\">"
+    ));
+    let present: BTreeSet<u32> = rows.iter().flatten().copied().filter(|&level| level > 0).collect();
+    for level in present {
+        let (mut d, mut at) = (String::new(), [0, 0]);
+        for (j, row) in (0..).zip(&rows) {
+            let mut i = 0;
+            // Between cells of lower levels, from the first cell of this level to the last.
+            for free in row.split(|&other| other < level) {
+                let ends =
+                    [free.iter().position(|&it| it == level), free.iter().rposition(|&it| it == level)];
+                if let [Some(first), Some(last)] = ends.map(|end| end.map(|end| i + end as i64)) {
+                    let start = if d.is_empty() { 'M' } else { 'm' };
+                    d += &format!("{start}{} {}h{}", first - at[0], j - at[1], last + 1 - first);
+                    at = [last + 1, j];
+                }
+                i += free.len() as i64 + 1;
+            }
+        }
+        let level = (level - 1) as u8;
+        let part = f64::from(level % style::SHADES) / f64::from(style::SHADES - 1);
+        let look = stroke(style::shade(level), 1.0);
+        svg.named(&in_tens(shades.value(part), 3), |svg| svg.path(&look, &d));
+    }
+    svg.add("</g>");
+}
+
+/// Adds the values of a map whose cells have room for them.
+fn numbers(svg: &mut Svg, map: &Map, shades: &Span, plane: &Plane) {
+    let text = |value: &f64| {
+        if value.is_nan() { String::new() } else { in_tens(*value, DIGITS).replace('-', "−") }
+    };
+    let words: Vec<Vec<String>> = map.rows.iter().map(|row| row.iter().map(text).collect()).collect();
+    let [across, up] = [plane.size[0] / words[0].len() as f64, plane.size[1] / words.len() as f64];
+    let size = style::LABEL;
+    if up < size * style::LINE_SPACING || font::widest(words.iter().flatten(), size) > 0.9 * across {
+        return;
+    }
+    for (j, row) in words.iter().enumerate() {
+        for (i, words) in row.iter().enumerate().filter(|(_, words)| !words.is_empty()) {
+            let colour = style::ink_on(style::shade(level(shades, map.rows[j][i])));
+            let right = plane.corner[0] + across * (i as f64 + 0.5);
+            let down = plane.corner[1] + plane.size[1] - up * (j as f64 + 0.5);
+            let look = format!("{MIDDLE} fill=\"{colour}\" pointer-events=\"none\"");
+            svg.words([right, down + 0.5 * size * font::CAPITAL], size, &look, words);
+        }
+    }
+}
+
+/// Adds a bar with all shades below a picture: its marks, or its ends and its middle where it is short, and its heading.
+pub fn bar(svg: &mut Svg, shades: &Span, zoom: f64) {
+    let [picture, top] = svg.size;
+    let (size, margin, is_signed) = (style::LABEL * zoom, style::MARGIN * zoom, is_signed(shades));
+    // Numbers at the bar's ends stand out.
+    let width = (picture - 5.0 * margin).min(BAR * zoom);
+    let (left, top, height) = (0.5 * (picture - width), top + margin, THICKNESS * zoom);
+    let stop = |part| (part, style::shade(style::level(part, is_signed)));
+    let stops = (0..=16).map(|stop| f64::from(stop) / 16.0).map(stop);
+    let stops = stops.map(|(part, shade)| format!("<stop offset=\"{part}\" stop-color=\"{shade}\"/>"));
+    let stops: String = stops.collect();
+    let name = format!("shades{}", u8::from(is_signed));
+    svg.define(format!("<linearGradient id=\"{name}\">{stops}</linearGradient>"));
+    let place = at([left, top], [width, height]);
+    svg.add(format_args!("<rect{place} fill=\"url(#{name})\"{}/>", stroke(style::INK, style::LINE * zoom)));
+    let mut marks = shades.marks(width, |label| font::width(label, size) + 2.0 * size);
+    marks.retain(|(_, label)| !label.is_empty());
+    if marks.len() < 3 {
+        let number = |part| significant(shades.value(part), 3).replace('-', "−");
+        marks = [0.0, 0.5, 1.0].map(|part| (part, number(part))).to_vec();
+    }
+    let (bottom, mut d) = (top + height, String::new());
+    for (part, label) in marks {
+        let x = left + part * width;
+        d += &format!("M{} {}v{}", tenths(x), tenths(bottom), tenths(5.0 * zoom));
+        svg.words([x, bottom + 7.0 * zoom + size * font::CAPITAL], size, MIDDLE, &label);
+    }
+    svg.path(&stroke(style::INK, style::LINE * zoom), &d);
+    let lines = font::wrap(&shades.heading, size, picture - 2.0 * margin);
+    let below = bottom + 7.0 * zoom + size * 1.3;
+    svg.size[1] = svg.block(&lines, [0.5 * picture, below], size, MIDDLE) + margin;
 }

@@ -1,27 +1,28 @@
-//! Pictures of finished data, before it is known where they will be seen.
+//! Figures: charts, heat maps and drawings as data, written as SVG and PNG.
 
+mod axis;
 mod chart;
 mod check;
 mod data;
-mod draw;
 mod drawing;
-mod error;
 mod font;
-mod look;
 mod map;
+mod output;
 mod picture;
-mod png;
+mod plane;
+mod plot;
 #[cfg(test)]
 mod samples;
+mod series;
 pub mod style;
-mod svg;
-mod xml;
+#[cfg(test)]
+mod tests;
+mod writer;
 
-pub use chart::{Along, Axis, Band, Chart, Point, Scale, Series, Style};
+pub(crate) use chart::{Along, Scale, Series};
+pub use chart::{Axis, Band, Chart, Point, Style};
+pub use check::FigureError;
 pub use data::{data, data_file};
-pub use drawing::{Drawing, Guide, Shape, Tint};
-pub use error::{Fault, FigureError};
-pub use map::Map;
-pub use picture::{Figure, Picture};
-pub use png::png;
-pub use svg::svg;
+pub use output::{png, svg};
+pub use picture::{Drawing, Figure, Map, Picture};
+pub(crate) use picture::{Guide, Shape, Tint};

@@ -1,58 +1,148 @@
-//! A picture, and what stands beside it.
+//! Pictures and the words beside them.
 
-use super::chart::Chart;
-use super::drawing::Drawing;
-use super::map::Map;
+use super::chart::{Axis, Chart};
 use serde::{Deserialize, Serialize};
 
-/// A picture with a name for files.
+/// A picture with a name for files, one line that says what it shows, and further notes for the reader.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Figure {
-    /// A name for files, in lower case.
-    pub name: String,
-    /// What it shows, in one line.
-    pub title: String,
-    /// What a reader must also know.
-    pub caption: String,
-    /// What is drawn.
-    pub picture: Picture,
+    pub(crate) name: String,
+    pub(crate) title: String,
+    pub(crate) caption: String,
+    pub(crate) picture: Picture,
 }
 
-/// What is drawn.
+/// The content of a figure.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Picture {
     /// Curves and points over two axes.
     Chart(Chart),
+    /// Small multiples: charts beside each other, each with its name, on the same axes and with one legend.
+    Panels(Vec<(String, Chart)>),
     /// A number for each place of a grid, as a colour.
     Map(Map),
-    /// Things where they are.
+    /// Discs, cells and words at their places.
     Drawing(Drawing),
-    /// A picture that was drawn before, as SVG, and whether a file has its data.
+    /// A picture that was drawn before and is read from its file.
     Drawn {
-        /// The picture.
+        /// The file's text.
         svg: String,
-        /// Whether a file has its data.
+        /// Set if a table of its data lies beside the file.
         has_data: bool,
     },
 }
 
 impl Picture {
-    /// As a figure without a caption.
+    /// Returns the figure of this picture, without a caption.
     pub fn figure(self, name: impl Into<String>, title: impl Into<String>) -> Figure {
         Figure { name: name.into(), title: title.into(), caption: String::new(), picture: self }
     }
 }
 
 impl Chart {
-    /// As a figure without a caption.
+    /// Returns the figure of this chart, without a caption.
     pub fn figure(self, name: impl Into<String>, title: impl Into<String>) -> Figure {
         Picture::Chart(self).figure(name, title)
     }
 }
 
 impl Figure {
-    /// With what a reader must also know.
+    /// Sets the caption.
     pub fn caption(self, caption: impl Into<String>) -> Figure {
         Figure { caption: caption.into(), ..self }
     }
+
+    /// Names in the legend of a chart.
+    pub fn legend(&self) -> Vec<&str> {
+        let charts: Vec<&Chart> = match &self.picture {
+            Picture::Chart(chart) => vec![chart],
+            Picture::Panels(panels) => panels.iter().map(|(_, chart)| chart).collect(),
+            Picture::Map(_) | Picture::Drawing(_) | Picture::Drawn { .. } => vec![],
+        };
+        let mut names: Vec<&str> = vec![];
+        for chart in charts {
+            let all = chart.series.iter().map(|it| &it.name).chain(chart.bands.iter().map(|it| &it.label));
+            let new = all.map(String::as_str).filter(|name| !name.is_empty());
+            for name in new {
+                if !names.contains(&name) {
+                    names.push(name);
+                }
+            }
+        }
+        names
+    }
+}
+
+/// A heat map, such as the density over place and time.
+///
+/// The limits of its axes are the outer edges of the outermost cells; an axis of names needs none.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Map {
+    pub(crate) x: Axis,
+    pub(crate) y: Axis,
+    /// The quantity that colours show.
+    pub(crate) value: Axis,
+    /// `rows[j][i]`: the value at row j (from the bottom) and column i. All rows are equally long. NaN leaves a cell empty.
+    pub(crate) rows: Vec<Vec<f64>>,
+}
+
+/// A drawing in its own coordinates: x to the right, y upwards.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Drawing {
+    /// Lower left and upper right corner of the visible part.
+    pub(crate) window: [[f64; 2]; 2],
+    /// Width of the picture (pixels); its height follows from the window.
+    pub(crate) width: f64,
+    /// Shapes from back to front. They are not stored with a section: its picture is.
+    #[serde(skip)]
+    pub(crate) shapes: Vec<Shape>,
+    /// Lowest and highest value of the shades, and their quantity with its unit; none where shades mean nothing.
+    pub(crate) shades: Option<(f64, f64, String)>,
+    /// Scale bar and gravity below the drawing; none where the coordinates mean nothing.
+    #[serde(default)]
+    pub(crate) guide: Option<Guide>,
+}
+
+/// Unit and direction of gravity in a drawing's coordinates.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Guide {
+    pub unit: String,
+    pub gravity: Option<[f64; 2]>,
+}
+
+/// A shape of a drawing.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Shape {
+    Disc {
+        centre: [f64; 2],
+        radius: f64,
+        tint: Tint,
+    },
+    /// A box from its lower left to its upper right corner.
+    Rectangle {
+        corners: [[f64; 2]; 2],
+        tint: Tint,
+        outlined: bool,
+    },
+    Line {
+        ends: [[f64; 2]; 2],
+    },
+    /// Words with capitals of a height, in the drawing's coordinates.
+    Text {
+        centre: [f64; 2],
+        height: f64,
+        words: String,
+    },
+}
+
+/// A filling.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Tint {
+    Clear,
+    /// Light grey, for parts that do not move.
+    Still,
+    /// Index of a colour in the palette.
+    Hue(usize),
+    /// A part of the way from the lowest (0) to the highest shade (1).
+    Shade(f64),
 }

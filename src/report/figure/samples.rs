@@ -1,10 +1,21 @@
 //! A figure of each kind, for the tests of everything that draws.
 
-use super::{Axis, Band, Chart, Drawing, Figure, Guide, Map, Picture, Series, Shape, Style, Tint};
+use super::{Axis, Band, Chart, Drawing, Figure, Guide, Map, Picture, Point, Series, Shape, Style, Tint};
 
 /// All of them.
 pub fn all() -> Vec<Figure> {
-    vec![logarithmic(), linear(), map(), mask(), pipe(), long_pipe()]
+    vec![
+        logarithmic(),
+        linear(),
+        map(),
+        mask(),
+        pipe(),
+        long_pipe(),
+        panels(),
+        names(),
+        named_rows(),
+        few_cells(),
+    ]
 }
 
 fn figure(name: &str, title: &str, picture: Picture) -> Figure {
@@ -73,6 +84,71 @@ pub fn map() -> Figure {
         rows: (0..80).map(|j| (0..120).map(|i| value(i, j)).collect()).collect(),
     };
     figure("map", "Grains bunch up: density over place and time", Picture::Map(picture))
+}
+
+/// Two charts on one pair of axes, with lines that mark places.
+pub fn panels() -> Figure {
+    let chart = |factor: f64| {
+        let curve = |power: f64| {
+            (0..=40)
+                .map(move |i| 10f64.powf(1.0 + f64::from(i) * 0.1))
+                .map(move |x| (x, factor * x.powf(power)))
+        };
+        Chart::of(Axis::logarithmic("discs", None), Axis::logarithmic("Time of a collision", Some("µs")))
+            .series("list and queue", Style::Joined, 0, curve(0.1).step_by(5))
+            .series("grid and tournament", Style::Joined, 1, curve(0.3).step_by(5))
+            .series("n log n", Style::Dashed, 6, curve(0.2))
+            .band(Band::at_x("L1", 300.0))
+            .band(Band::at_x("L2", 9000.0))
+            .band(Band::at_x("L3", 11000.0))
+            .band(Band::at_y("as it stands", 3.0))
+    };
+    let all = [("5×5", 1.0), ("7×7", 2.0), ("round, 24 places", 0.4)]
+        .map(|(name, factor)| (name.to_owned(), chart(factor)));
+    figure("panels", "Time of a collision by mask", Picture::Panels(all.to_vec()))
+}
+
+/// Points that belong to names.
+pub fn names() -> Figure {
+    let maps = [
+        "two-discs",
+        "dense-gas",
+        "pipe-small",
+        "shaken-box",
+        "langevin-strength",
+        "langevin-friction",
+        "kepler",
+    ];
+    let points = (0..7).map(|i| (f64::from(i), 1.0 + 0.2 * f64::from(i % 3), [0.7, 1.9]));
+    let chart =
+        Chart::of(Axis::names("map", maps), Axis::linear("edge of what works over the step of theory", None))
+            .series("measured", Style::Points, 0, points)
+            .band(Band::at_y("theory", 1.0));
+    figure("names", "Edge over theory", Picture::Chart(chart))
+}
+
+/// Points that belong to names on the vertical axis.
+pub fn named_rows() -> Figure {
+    let Picture::Chart(Chart { x, y, mut series, .. }) = names().picture else { unreachable!() };
+    for point in &mut series[0].points {
+        *point = Point::at(point.y, point.x);
+    }
+    let chart = Chart { x: y, y: x, series, bands: vec![Band::at_x("theory", 1.0)] };
+    figure("named-rows", "Edge over theory", Picture::Chart(chart))
+}
+
+/// Few cells, with values in them and one without.
+pub fn few_cells() -> Figure {
+    let rows = (0..5).map(|j| {
+        (0..6).map(|i| if i + j == 9 { f64::NAN } else { 1.03 * f64::from(1 + i * j * j) }).collect()
+    });
+    let map = Map {
+        x: Axis::names("search", ["lists", "lattice", "sectors", "fast", "faithful", "pairs"]),
+        y: Axis::logarithmic("number of particles", None).between([31.6, 3.16e6]),
+        value: Axis::logarithmic("Time over that of the cheapest", None),
+        rows: rows.collect(),
+    };
+    figure("few-cells", "Time lost by the wrong choice", Picture::Map(map))
 }
 
 /// A neighbourhood with numbers in its cells.

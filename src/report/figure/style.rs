@@ -1,54 +1,59 @@
-//! The house style: one look for every picture. Series differ by hue, marker and dash at once, so that they stay
-//! apart for every kind of colour vision and in grey print.
+//! House style, one for every picture. Series differ by hue, marker and dash at once, so that they stay apart for every kind
+//! of colour vision and in grey print.
 
+use super::chart::{Series, Style};
 use std::fmt;
 
-/// A colour: red, green, blue.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Colour(pub u8, pub u8, pub u8);
+/// A colour, as `0xrrggbb`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Colour(pub u32);
 
 impl Colour {
-    /// How light it looks, from 0 (black) to 255 (white).
+    /// Returns the shares of red, green and blue.
+    pub fn channels(self) -> [u8; 3] {
+        let [_, channels @ ..] = self.0.to_be_bytes();
+        channels
+    }
+
+    /// Returns the perceived lightness, from 0 (black) to 255 (white).
     pub fn lightness(self) -> f64 {
-        0.299 * f64::from(self.0) + 0.587 * f64::from(self.1) + 0.114 * f64::from(self.2)
+        let [red, green, blue] = self.channels().map(f64::from);
+        0.299 * red + 0.587 * green + 0.114 * blue
     }
 }
 
 impl fmt::Display for Colour {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "#{:02x}{:02x}{:02x}", self.0, self.1, self.2)
+        write!(f, "#{:06x}", self.0)
     }
 }
 
 /// The paper.
-pub const PAPER: Colour = Colour(255, 255, 255);
+pub const PAPER: Colour = Colour(0xffffff);
 /// Axes, words and outlines.
-pub const INK: Colour = Colour(26, 26, 26);
+pub const INK: Colour = Colour(0x1a1a1a);
 /// Lines of the grid.
-pub const GRID: Colour = Colour(226, 226, 226);
-/// Hatching.
-pub const HATCHING: Colour = Colour(120, 120, 120);
+pub const GRID: Colour = Colour(0xe2e2e2);
+/// Lines that mark a place on an axis.
+pub const MARK: Colour = Colour(0x787878);
 /// Light grounds, one upon another.
-pub const GROUNDS: [Colour; 2] = [Colour(236, 242, 247), Colour(212, 227, 239)];
-/// What does not move.
-pub const STILL: Colour = Colour(208, 208, 208);
+pub const GROUNDS: [Colour; 2] = [Colour(0xecf2f7), Colour(0xd4e3ef)];
+/// Parts that do not move.
+pub const STILL: Colour = Colour(0xd0d0d0);
 
-/// The last of the palette.
-const BLACK: Colour = Colour(0, 0, 0);
-
-/// What stands on dark paper for colours that were chosen for white.
+/// Pairs of a colour on white paper and its replacement on dark paper.
 const DARK: [(Colour, Colour); 8] = [
-    (PAPER, Colour(24, 24, 26)),
-    (INK, Colour(228, 228, 226)),
-    (BLACK, Colour(255, 255, 255)),
-    (GRID, Colour(61, 61, 63)),
-    (HATCHING, Colour(154, 154, 154)),
-    (GROUNDS[0], Colour(32, 38, 44)),
-    (GROUNDS[1], Colour(42, 58, 71)),
-    (STILL, Colour(84, 84, 86)),
+    (PAPER, Colour(0x18181a)),
+    (INK, Colour(0xe4e4e2)),
+    (Colour(0x000000), Colour(0xffffff)),
+    (GRID, Colour(0x3d3d3f)),
+    (MARK, Colour(0x9a9a9a)),
+    (GROUNDS[0], Colour(0x20262c)),
+    (GROUNDS[1], Colour(0x2a3a47)),
+    (STILL, Colour(0x545456)),
 ];
 
-/// Rules of a style sheet for dark paper: below elements that `within` selects, or everywhere if it is empty.
+/// Returns rules of a style sheet for dark paper: below elements that `within` selects, or everywhere if it is empty.
 pub fn dark_rules(within: &str) -> String {
     let rule = |attribute: &str, (light, dark): &(Colour, Colour)| {
         format!("{within}[{attribute}=\"{light}\"]{{{attribute}:{dark}}}")
@@ -56,156 +61,133 @@ pub fn dark_rules(within: &str) -> String {
     DARK.iter().flat_map(|pair| ["fill", "stroke"].map(|attribute| rule(attribute, pair))).collect()
 }
 
-/// Okabe and Ito's colours for every kind of colour vision, those that show best on white first. Their yellow is
-/// left out: on white it cannot be seen.
-const HUES: [Colour; 7] = [
-    Colour(0, 114, 178),
-    Colour(213, 94, 0),
-    Colour(0, 158, 115),
-    Colour(204, 121, 167),
-    Colour(230, 159, 0),
-    Colour(86, 180, 233),
-    BLACK,
+/// Returns the colour of words on a ground. On grounds that are the same on dark paper it has no replacement there.
+pub(super) fn ink_on(ground: Colour) -> Colour {
+    match ground {
+        PAPER | STILL => INK,
+        _ if ground.lightness() < 130.0 => Colour(0xfffffe),
+        _ => Colour(0x1a1a1b),
+    }
+}
+
+/// Okabe and Ito's colours for every kind of colour vision, those that show best on white first. Their yellow is left out: it cannot be
+/// seen on white.
+const HUES: [u32; 7] = [0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7, 0xe69f00, 0x56b4e9, 0x000000];
+
+/// Returns a colour of the palette; beyond its end it begins again.
+pub fn hue(index: usize) -> Colour {
+    Colour(HUES[index % HUES.len()])
+}
+
+/// Outlines of equal visual size about the origin: disc, square, triangle, diamond, cross, wedge, plus, star. There are more
+/// than hues, so that series beyond the palette's end still differ.
+pub(super) const MARKERS: [&str; 8] = [
+    "M-4.5 0a4.5 4.5 0 1 0 9 0a4.5 4.5 0 1 0 -9 0z",
+    "M-4-4h8v8h-8z",
+    "M0-5.4l5.1 8.8h-10.2z",
+    "M0-5.6l5.6 5.6-5.6 5.6-5.6-5.6z",
+    "M-2.6-5.3l2.6 2.7 2.6-2.7 2.7 2.7-2.7 2.6 2.7 2.6-2.7 2.7-2.6-2.7-2.6 2.7-2.7-2.7 2.7-2.6-2.7-2.6z",
+    "M0 5.4l-5.1-8.8h10.2z",
+    "M-1.9-5.6h3.8v3.7h3.7v3.8h-3.7v3.7h-3.8v-3.7h-3.7v-3.8h3.7z",
+    "M0-6.3l1.6 4.1 4.4 .3-3.4 2.8 1.1 4.2-3.7-2.4-3.7 2.4 1.1-4.2-3.4-2.8 4.4-.3z",
 ];
 
-/// A colour of the palette; beyond its end it begins again.
-pub fn hue(index: usize) -> Colour {
-    HUES[index % HUES.len()]
+/// Dashes of lines, the first unbroken, and of dashed lines.
+const LONG_DASHES: [&str; 5] = ["", "15 3", "15 3 2.5 3", "15 3 2.5 3 2.5 3", "24 3"];
+const SHORT_DASHES: [&str; 5] = ["6 4", "7 3 2 3", "3 2.5", "7 3 2 3 2 3", "10 4"];
+
+/// The look of a series: its colour, the index of its marker, the dashes and gaps of its line (pixels), empty for an unbroken one, and
+/// if its markers are outlines.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Look {
+    pub style: Style,
+    pub colour: Colour,
+    pub marker: usize,
+    pub dash: &'static str,
+    pub is_hollow: bool,
 }
 
-/// The shape of a marker.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Marker {
-    /// A circle.
-    Disc,
-    /// A square.
-    Square,
-    /// A triangle that points up.
-    Triangle,
-    /// A square on its corner.
-    Diamond,
-    /// A diagonal cross.
-    Cross,
-    /// A triangle that points down.
-    Wedge,
-    /// An upright cross.
-    Plus,
-    /// A star with five points.
-    Star,
+/// Reports if points of a style have markers.
+pub(super) fn has_markers(style: Style) -> bool {
+    matches!(style, Style::Points | Style::Joined)
 }
 
-/// The marker that goes with a hue. There are more markers than hues, so that beyond the palette's end series still
-/// differ.
-pub fn marker(hue: usize) -> Marker {
-    use Marker::*;
-    [Disc, Square, Triangle, Diamond, Cross, Wedge, Plus, Star][hue % 8]
+/// Returns a different look for each of some series: lines of one hue differ by their dashes, markers of one hue are full,
+/// hollow, and then of another shape.
+pub(super) fn looks(all: &[&Series]) -> Vec<Look> {
+    let look = |(i, series): (usize, &&Series)| {
+        let is_alike = |other: &&&Series| {
+            other.style == series.style || has_markers(other.style) && has_markers(series.style)
+        };
+        let twins = all[..i].iter().filter(|other| other.hue == series.hue).filter(|it| is_alike(it)).count();
+        let is_same = |other: &&&Series| other.style == series.style && hue(other.hue) == hue(series.hue);
+        let before = all[..i].iter().filter(is_same).count();
+        let dash = match series.style {
+            Style::Line => LONG_DASHES[(series.hue + twins) % 5],
+            Style::Dashed => SHORT_DASHES[(series.hue + twins) % 5],
+            Style::Joined | Style::Steps => LONG_DASHES[before % 5],
+            Style::Ribbon => SHORT_DASHES[before % 5],
+            Style::Points => "",
+        };
+        let marker = (series.hue + twins / 2) % MARKERS.len();
+        Look { style: series.style, colour: hue(series.hue), marker, dash, is_hollow: twins % 2 == 1 }
+    };
+    all.iter().enumerate().map(look).collect()
 }
 
-/// The dashes of a line that goes with a hue: long ones, the first unbroken.
-pub fn line_dash(hue: usize) -> &'static [f64] {
-    const LINES: [&[f64]; 5] =
-        [&[], &[20.0, 4.0], &[20.0, 4.0, 3.0, 4.0], &[20.0, 4.0, 3.0, 4.0, 3.0, 4.0], &[34.0, 4.0]];
-    LINES[hue % LINES.len()]
-}
-
-/// The dashes of a dashed line that goes with a hue: short ones.
-pub fn short_dash(hue: usize) -> &'static [f64] {
-    const DASHES: [&[f64]; 5] =
-        [&[8.0, 5.0], &[9.0, 4.0, 2.5, 4.0], &[4.0, 3.5], &[9.0, 4.0, 2.5, 4.0, 2.5, 4.0], &[13.0, 5.0]];
-    DASHES[hue % DASHES.len()]
-}
-
-/// How many shades there are of one map of colours. Levels from 0 on are those of magnitudes, the next as many those of signed
-/// quantities.
+/// Shades of one scale. Levels from 0 on are those of magnitudes, the next as many those of signed quantities.
 pub const SHADES: u8 = 128;
 
-/// Whether shades between these ends show a sign: then 0 is in the middle, and has a colour of its own.
+/// Reports if shades between these ends show a sign: 0 is in the middle and has a colour of its own.
 pub fn is_signed([low, high]: [f64; 2]) -> bool {
     low < 0.0 && low == -high
 }
 
-/// The levels of a map of colours.
+/// Returns the levels of a scale.
 pub fn levels(signed: bool) -> std::ops::RangeInclusive<u8> {
     if signed { SHADES..=2 * (SHADES - 1) + 1 } else { 0..=SHADES - 1 }
 }
 
-/// The colour of a level: of a magnitude from dark to bright, of a signed quantity from blue over grey to orange.
-pub fn shade(level: u8) -> Colour {
-    if level < SHADES { magnitude(level) } else { signed(level - SHADES) }
-}
-
-/// Blue for less than 0, orange for more, grey for 0, which is to be seen on white.
-fn signed(level: u8) -> Colour {
-    between(level, &[[0, 56, 130], [62, 148, 214], [196, 196, 196], [235, 150, 66], [150, 56, 0]])
-}
-
 /// Viridis, whose equal steps look equal, in colour and in grey.
-fn magnitude(level: u8) -> Colour {
-    const STOPS: [[u8; 3]; 17] = [
-        [68, 1, 84],
-        [72, 24, 106],
-        [71, 45, 123],
-        [66, 64, 134],
-        [59, 82, 139],
-        [51, 99, 141],
-        [44, 114, 142],
-        [38, 130, 142],
-        [33, 145, 140],
-        [31, 160, 136],
-        [40, 174, 128],
-        [63, 188, 115],
-        [94, 201, 98],
-        [132, 212, 75],
-        [173, 220, 48],
-        [216, 226, 25],
-        [253, 231, 37],
-    ];
-    between(level, &STOPS)
-}
+const MAGNITUDE: [u32; 17] = [
+    0x440154, 0x48186a, 0x472d7b, 0x424086, 0x3b528b, 0x33638d, 0x2c728e, 0x26828e, 0x21918c, 0x1fa088,
+    0x28ae80, 0x3fbc73, 0x5ec962, 0x84d44b, 0xaddc30, 0xd8e219, 0xfde725,
+];
+/// Blue below 0, orange above; 0 is a grey that shows on white.
+const SIGNED: [u32; 5] = [0x003882, 0x3e94d6, 0xc4c4c4, 0xeb9642, 0x963800];
 
-fn between(level: u8, stops: &[[u8; 3]]) -> Colour {
+/// Returns the colour of a level: of a magnitude from dark to bright, of a signed quantity from blue over grey to orange.
+pub fn shade(level: u8) -> Colour {
+    let (level, stops) = if level < SHADES { (level, &MAGNITUDE[..]) } else { (level - SHADES, &SIGNED[..]) };
     let place = f64::from(level.min(SHADES - 1)) / f64::from(SHADES - 1) * (stops.len() - 1) as f64;
     let below = (place as usize).min(stops.len() - 2);
+    let [low, high] = [stops[below], stops[below + 1]].map(|stop| Colour(stop).channels().map(f64::from));
     let part = place - below as f64;
-    let [red, green, blue] = std::array::from_fn(|i| {
-        let [low, high] = [stops[below][i], stops[below + 1][i]].map(f64::from);
-        (low + part * (high - low)).round() as u8
-    });
-    Colour(red, green, blue)
+    let channel = |i: usize| (low[i] + part * (high[i] - low[i])).round() as u32;
+    Colour(channel(0) << 16 | channel(1) << 8 | channel(2))
 }
 
-/// The level of a place between the lowest (0) and the highest (1).
-pub fn level(place: f64, signed: bool) -> u8 {
-    levels(signed).start() + (place.clamp(0.0, 1.0) * f64::from(SHADES - 1)).round() as u8
+/// Returns the level of a part of the way from the lowest (0) to the highest value (1).
+pub fn level(part: f64, signed: bool) -> u8 {
+    levels(signed).start() + (part.clamp(0.0, 1.0) * f64::from(SHADES - 1)).round() as u8
 }
 
-/// Width of a picture with axes (pixels); it grows when a name in its legend needs more.
-pub const WIDTH: f64 = 900.0;
-/// Height between the axes' ends (pixels); it grows when the legend needs more.
-pub const PLOT_HEIGHT: f64 = 430.0;
-/// The least width between the axes' ends (pixels).
-pub const PLOT_WIDTH: f64 = 460.0;
+/// Width of a picture with axes and height between the ends of an axis (pixels): letters can be read on a screen of 420 pixels.
+pub(super) const WIDTH: f64 = 560.0;
+pub(super) const PLOT_HEIGHT: f64 = 320.0;
+/// Width of a drawing from which on its letters and lines grow with it (pixels).
+pub(super) const ZOOMED: f64 = 720.0;
 /// Blank paper about everything (pixels).
-pub const MARGIN: f64 = 16.0;
-/// Size of a title's letters (pixels).
-pub const TITLE: f64 = 22.0;
-/// Size of the letters of an axis' heading (pixels).
-pub const HEADING: f64 = 19.0;
-/// Size of the letters of numbers and legends (pixels).
-pub const LABEL: f64 = 17.0;
-/// From one line of words to the next, in sizes of their letters.
-pub const LINE_SPACING: f64 = 1.25;
-/// Width of a curve (pixels).
-pub const CURVE: f64 = 2.4;
-/// Width of an axis (pixels).
-pub const AXIS: f64 = 1.3;
-/// Radius of a marker (pixels).
-pub const MARKER: f64 = 5.5;
-/// Dots of a PNG to a pixel.
-pub const DOTS: f64 = 2.0;
-
-/// Families a viewer of an SVG may take the letters from. Places are reckoned with the first, which is the widest.
-pub const FONTS: &str = "DejaVu Sans, Verdana, Arial, Helvetica, sans-serif";
+pub(super) const MARGIN: f64 = 14.0;
+/// Sizes of the letters of titles and of all others (pixels), and the distance of their lines in these sizes.
+pub(super) const TITLE: f64 = 18.0;
+pub(super) const LABEL: f64 = 15.0;
+pub(super) const LINE_SPACING: f64 = 1.25;
+/// Widths of curves, and of axes and outlines (pixels).
+pub(super) const CURVE: f64 = 2.0;
+pub(super) const LINE: f64 = 1.2;
+/// Families that a viewer of an SVG may take the letters from. Widths are those of the first, which is the widest.
+pub(super) const FONTS: &str = "DejaVu Sans, Verdana, Arial, Helvetica, sans-serif";
 
 #[cfg(test)]
 mod tests {
@@ -216,12 +198,41 @@ mod tests {
         for i in 0..HUES.len() {
             for j in 0..i {
                 assert_ne!(hue(i), hue(j));
-                assert_ne!(marker(i), marker(j));
             }
-            assert_ne!(line_dash(i), line_dash(i + 1));
-            assert_ne!(short_dash(i), short_dash(i + 1));
+            assert!(!MARKERS[..i].contains(&MARKERS[i]));
+            assert_ne!(LONG_DASHES[i % 5], LONG_DASHES[(i + 1) % 5]);
+            assert_ne!(SHORT_DASHES[i % 5], SHORT_DASHES[(i + 1) % 5]);
             assert!(hue(i).lightness() < 180.0, "{i} cannot be seen on white");
         }
+    }
+
+    fn looks_of(series: impl IntoIterator<Item = (Style, usize)>) -> Vec<Look> {
+        let none: [(f64, f64); 0] = [];
+        let all: Vec<Series> =
+            series.into_iter().map(|(style, hue)| Series::new("", style, hue, none)).collect();
+        looks(&all.iter().collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn no_two_lines_have_one_colour_and_dash() {
+        for style in [Style::Line, Style::Dashed, Style::Joined, Style::Steps, Style::Ribbon] {
+            let looks = looks_of((0..14).map(|hue| (style, hue)));
+            for (i, look) in looks.iter().enumerate() {
+                let same =
+                    looks[..i].iter().any(|other| (other.colour, other.dash) == (look.colour, look.dash));
+                assert!(!same, "{style:?}, series {i}");
+            }
+        }
+    }
+
+    #[test]
+    fn series_of_one_hue_differ() {
+        let all = [Style::Joined, Style::Points, Style::Points, Style::Line, Style::Line, Style::Dashed];
+        let looks = looks_of(all.map(|style| (style, 3)));
+        for (i, look) in looks.iter().enumerate() {
+            assert!(looks[..i].iter().all(|other| other != look), "{look:?}");
+        }
+        assert_eq!((looks[1].marker, looks[1].is_hollow), (looks[0].marker, true));
     }
 
     #[test]
@@ -236,8 +247,10 @@ mod tests {
     #[test]
     fn signs_are_told_apart_and_zero_is_grey() {
         let [low, middle, high] = [0.0, 0.5, 1.0].map(|place| shade(level(place, true)));
-        assert!(low.2 > low.0 + 60 && high.0 > high.2 + 60);
-        assert!(middle.0.abs_diff(middle.2) < 12 && middle.lightness() < 215.0, "{middle}");
+        let ([low_red, _, low_blue], [high_red, _, high_blue]) = (low.channels(), high.channels());
+        assert!(low_blue > low_red + 60 && high_red > high_blue + 60);
+        let [red, _, blue] = middle.channels();
+        assert!(red.abs_diff(blue) < 12 && middle.lightness() < 215.0, "{middle}");
         assert!(is_signed([-2.0, 2.0]) && !is_signed([-1.0, 2.0]) && !is_signed([0.0, 0.0]));
         assert_eq!(level(1.0, true), *levels(true).end());
     }

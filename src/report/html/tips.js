@@ -17,15 +17,17 @@ const clamp = (number, low, high) => Math.max(Math.min(number, high), low);
 function axisOf(text) {
   const [scale, ...rest] = text.split(" ");
   const [from, to, low, high] = rest.slice(0, 4).map(Number);
-  return { log: scale === "log", from, to, low, high, heading: rest.slice(4).join(" ") };
+  const [heading, ...names] = scale === "names" ? rest.slice(4).join(" ").split("|") : [rest.slice(4).join(" ")];
+  return { log: scale === "log", from, to, low, high, heading, names };
 }
 
-/** The value at a place of an axis, with the digits that a hundredth of a pixel tells. */
-function valueAt({ log, from, to, low, high }, place) {
+/** The value at a place of an axis, with the digits that a hundredth of a pixel tells; or the name there. */
+function valueAt({ log, from, to, low, high, names }, place) {
   const at = (pixels) => {
     const part = (pixels - from) / (to - from);
     return log ? low * (high / low) ** part : low + part * (high - low);
   };
+  if (names.length) return names[Math.round(at(place))] ?? "";
   const [value, step] = [at(place), Math.abs(at(place + 0.01) - at(place))];
   return Math.abs(value) < step ? "0" : readable(value, clamp(Math.floor(Math.log10(Math.abs(value) / step)), 2, 5));
 }

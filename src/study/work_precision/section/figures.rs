@@ -32,7 +32,7 @@ pub fn of(name: &str, data: &WorkPrecision) -> Vec<Figure> {
     // A chart without a point is no chart.
     let is_drawn = |figure: &Figure| match &figure.picture {
         Picture::Chart(chart) => chart.series.iter().any(|series| !series.points.is_empty()),
-        Picture::Map(_) | Picture::Drawing(_) | Picture::Drawn { .. } => true,
+        _ => true,
     };
     figures.into_iter().flatten().filter(is_drawn).collect()
 }

@@ -1,0 +1,249 @@
+//! Axes: their ends, the positions of numbers and their marks.
+
+use super::check::no_interval;
+use super::writer::escaped;
+use super::{Axis, Scale};
+use libm::{log10, pow};
+use stripmine_physics::number::ten_to;
+
+/// Part of an axis that stays free at each of its ends where they are taken from the data.
+const FREE: f64 = 0.04;
+/// An axis of more decades has no marks between them.
+const MOST_DECADES: i32 = 5;
+/// An axis of fewer decades is marked like a linear one.
+const FEWEST_DECADES: f64 = 0.7;
+/// Distances of decades with labels, from many labels to few. At 0, numbers between decades have labels too.
+const STRIDES: [i32; 9] = [0, 1, 2, 3, 5, 10, 20, 50, 100];
+/// Numbers of labels that steps of 1, 2 or 5 times a power of ten give at most.
+const PARTS: [f64; 6] = [10.0, 5.0, 2.0, 1.0, 0.5, 0.2];
+
+/// An axis with its ends.
+#[derive(Clone, Debug)]
+pub struct Span {
+    /// Quantity and unit.
+    pub heading: String,
+    /// Positions of numbers.
+    pub scale: Scale,
+    /// First and last number.
+    pub ends: [f64; 2],
+}
+
+/// A mark of an axis: its place as a part of the axis, and its label, empty for a small mark.
+pub type Mark = (f64, String);
+
+impl Span {
+    /// Fits an axis to values, or takes the ends that it has.
+    pub fn new(axis: &Axis, values: impl Iterator<Item = f64>) -> Result<Span, String> {
+        let ends = match (&axis.scale, axis.limits) {
+            (Scale::Names(names), _) => [-0.5, names.len() as f64 - 0.5],
+            (_, Some(limits)) => limits,
+            _ => fitting(axis, values)?,
+        };
+        Ok(Span { heading: axis.heading(), scale: axis.scale.clone(), ends })
+    }
+
+    fn is_logarithmic(&self) -> bool {
+        self.scale == Scale::Logarithmic
+    }
+
+    /// Ends of the axis in the numbers that have equal differences at equal distances.
+    fn even_ends(&self) -> [f64; 2] {
+        if self.is_logarithmic() { self.ends.map(log10) } else { self.ends }
+    }
+
+    /// Returns the place of a value as a part of the axis. Values without a place on a logarithmic axis lie infinitely far below it.
+    pub fn part(&self, value: f64) -> f64 {
+        let [low, high] = self.even_ends();
+        ((if self.is_logarithmic() { log10(value.max(0.0)) } else { value }) - low) / (high - low)
+    }
+
+    /// Returns the value at a part of the axis.
+    pub fn value(&self, part: f64) -> f64 {
+        let [low, high] = self.even_ends();
+        let value = low + part * (high - low);
+        if self.is_logarithmic() { pow(10.0, value) } else { value }
+    }
+
+    /// Describes the axis between two places of a picture for scripts: scale, places of its ends, ends, heading and names.
+    pub fn described(&self, from: f64, to: f64) -> String {
+        let (scale, names) = match &self.scale {
+            Scale::Linear => ("linear", String::new()),
+            Scale::Logarithmic => ("log", String::new()),
+            Scale::Names(names) => ("names", names.iter().map(|name| format!("|{name}")).collect()),
+        };
+        let [low, high] = self.ends;
+        escaped(&format!("{scale} {from:.2} {to:.2} {low:.6e} {high:.6e} {}{names}", self.heading))
+    }
+
+    /// Returns the marks of the axis with as many labels as its length allows. `room` is the length that a label needs.
+    pub fn marks(&self, length: f64, room: impl Fn(&str) -> f64) -> Vec<Mark> {
+        if let Scale::Names(names) = &self.scale {
+            return (0..).zip(names).map(|(i, name)| (self.part(f64::from(i)), name.clone())).collect();
+        }
+        let decades = log10(self.ends[1]) - log10(self.ends[0]);
+        let strides = STRIDES
+            .iter()
+            .filter(|_| self.is_logarithmic() && decades > FEWEST_DECADES)
+            .map(|&stride| self.of_decades(stride));
+        let steps = PARTS.iter().map(|&parts| self.of_steps(parts));
+        let fits = |marks: &Vec<Mark>| {
+            let labelled: Vec<_> = marks.iter().filter(|mark| !mark.1.is_empty()).collect();
+            let apart = |a: &Mark, b: &Mark| (b.0 - a.0) * length >= 0.5 * (room(&a.1) + room(&b.1));
+            labelled.len() > 1 && labelled.windows(2).all(|pair| apart(pair[0], pair[1]))
+        };
+        let inside = |mut marks: Vec<Mark>| {
+            marks.retain(|(part, _)| (-1e-9..=1.0 + 1e-9).contains(part));
+            marks
+        };
+        strides.chain(steps).map(inside).find(fits).unwrap_or_default()
+    }
+
+    /// Marks at 1 to 9 times powers of ten, which are spelled out only where all of them are short.
+    fn of_decades(&self, stride: i32) -> Vec<Mark> {
+        let [low, high] = self.ends.map(exponent);
+        let mut marks = vec![];
+        for raised in low..=high {
+            for factor in 1..=if high - low > MOST_DECADES { 1 } else { 9 } {
+                let value = f64::from(factor) * pow(10.0, f64::from(raised));
+                let is_labelled = match stride {
+                    0 => [1, 2, 5].contains(&factor),
+                    _ => factor == 1 && raised % stride == 0,
+                };
+                let label = match factor {
+                    _ if !is_labelled => String::new(),
+                    _ if low >= -3 && high <= 4 => plain(value),
+                    1 => ten_to(raised),
+                    _ => format!("{factor}×{}", ten_to(raised)),
+                };
+                marks.push((self.part(value), label));
+            }
+        }
+        marks
+    }
+
+    /// Marks at multiples of the power of ten in the axis' length over 1, 2 or 5 and the like, with small marks between them.
+    fn of_steps(&self, parts: f64) -> Vec<Mark> {
+        let unit = pow(10.0, log10(self.ends[1] - self.ends[0]).floor()) / parts;
+        let small = if [5.0, 0.5].contains(&parts) { 4.0 } else { 5.0 };
+        let [first, last] = self.ends.map(|end| end / unit * small);
+        // An axis may be too short for numbers to tell its ends apart.
+        let most = if last - first < 1000.0 { usize::MAX } else { 0 };
+        let all = (first - 1e-9).ceil() as i64..=(last + 1e-9).floor() as i64;
+        let mark = |i: f64| {
+            let value = i * unit / small;
+            (self.part(value), if i % small == 0.0 { self.even_label(value) } else { String::new() })
+        };
+        all.take(most).map(|i| mark(i as f64)).collect()
+    }
+
+    /// Numbers are spelled out where that is short, otherwise all have the same power of ten.
+    fn even_label(&self, number: f64) -> String {
+        let largest = self.ends[0].abs().max(self.ends[1].abs());
+        let common = if (1e-3..1e6).contains(&largest) { 0 } else { exponent(largest) };
+        match common {
+            0 => plain(number),
+            _ if number == 0.0 => "0".to_owned(),
+            _ => format!("{}×{}", plain(number / pow(10.0, f64::from(common))), ten_to(common)),
+        }
+    }
+}
+
+/// Returns the ends of the data, and a little more.
+fn fitting(axis: &Axis, values: impl Iterator<Item = f64>) -> Result<[f64; 2], String> {
+    let is_logarithmic = axis.scale == Scale::Logarithmic;
+    let [low, high] = values
+        .map(|value| if is_logarithmic { log10(value) } else { value })
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)]);
+    let length = high - low;
+    if !length.is_finite() {
+        return Err(no_interval(&format!("the axis `{}`", axis.label), [low, high]));
+    }
+    let free = match is_logarithmic {
+        // A distance that the numbers can tell apart.
+        _ if length > 1e-12 * low.abs().max(high.abs()) => FREE * length,
+        true => log10(2.0),
+        false if low == 0.0 => 1.0,
+        false => 0.1 * low.abs(),
+    };
+    Ok(match [low - free, high + free] {
+        ends if is_logarithmic => ends.map(|end| pow(10.0, end)),
+        // A quantity that is positive keeps a positive axis.
+        [below, above] => [if low > 0.0 { below.max(0.0) } else { below }, above],
+    })
+}
+
+/// Returns the decade of a number; one that is a power of ten but for its last digits lies at its beginning.
+fn exponent(number: f64) -> i32 {
+    (log10(number.abs()) + 1e-9).floor() as i32
+}
+
+/// Returns a number in full, without the noise of its last digits.
+fn plain(number: f64) -> String {
+    let rounded: f64 = format!("{number:.9e}").parse().unwrap_or(number);
+    rounded.to_string().replace('-', "−")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn axis(scale: Scale, limits: Option<[f64; 2]>) -> Axis {
+        Axis { scale, limits, ..Axis::linear("time", Some("s")) }
+    }
+
+    /// The labels of an axis with room for about six.
+    fn labels(scale: Scale, limits: [f64; 2]) -> Vec<String> {
+        let span = Span::new(&axis(scale, Some(limits)), std::iter::empty()).unwrap();
+        let marks = span.marks(6.0, |_| 1.0);
+        assert!(marks.iter().all(|mark| (-1e-9..=1.0 + 1e-9).contains(&mark.0)));
+        marks.into_iter().map(|mark| mark.1).filter(|label| !label.is_empty()).collect()
+    }
+
+    #[test]
+    fn ends_leave_some_room() {
+        let of = |scale, values: &[f64]| fitting(&axis(scale, None), values.iter().copied()).unwrap();
+        assert_eq!(of(Scale::Linear, &[0.0, 100.0]), [-4.0, 104.0]);
+        assert_eq!(of(Scale::Linear, &[1.0, 101.0]), [0.0, 105.0]);
+        assert_eq!(of(Scale::Linear, &[0.0]), [-1.0, 1.0]);
+        assert_eq!(of(Scale::Linear, &[-20.0, -20.0]), [-22.0, -18.0]);
+        let [low, high] = of(Scale::Logarithmic, &[1e-14, 1.0]).map(f64::log10);
+        assert!((low + 14.56).abs() < 1e-9 && (high - 0.56).abs() < 1e-9);
+        assert!(fitting(&axis(Scale::Linear, None), [-1e308, 1e308].into_iter()).is_err());
+    }
+
+    #[test]
+    fn numbers_on_an_axis_are_short_and_round() {
+        let linear = |limits| labels(Scale::Linear, limits);
+        assert_eq!(linear([0.0, 1.0]), ["0", "0.2", "0.4", "0.6", "0.8", "1"]);
+        assert_eq!(linear([-12.0, 12.0]), ["−10", "−5", "0", "5", "10"]);
+        assert_eq!(linear([0.0, 2.5e-9]), ["0", "0.5×10⁻⁹", "1×10⁻⁹", "1.5×10⁻⁹", "2×10⁻⁹", "2.5×10⁻⁹"]);
+        assert_eq!(linear([0.0, 4e6]), ["0", "1×10⁶", "2×10⁶", "3×10⁶", "4×10⁶"]);
+        let logarithmic = |limits| labels(Scale::Logarithmic, limits);
+        assert_eq!(logarithmic([0.01, 1e3]), ["0.01", "0.1", "1", "10", "100", "1000"]);
+        assert_eq!(logarithmic([1e-5, 1.0]), ["10⁻⁵", "10⁻⁴", "10⁻³", "10⁻²", "10⁻¹", "1"]);
+        assert_eq!(logarithmic([1e6, 5e7]), ["10⁶", "2×10⁶", "5×10⁶", "10⁷", "2×10⁷", "5×10⁷"]);
+        assert_eq!(logarithmic([1.0, 20.0]), ["1", "2", "5", "10", "20"]);
+        // Of many decades every third has a label.
+        assert_eq!(logarithmic([1e-16, 1.0]), ["10⁻¹⁵", "10⁻¹²", "10⁻⁹", "10⁻⁶", "10⁻³", "1"]);
+    }
+
+    #[test]
+    fn ends_that_numbers_hardly_tell_apart_have_no_marks() {
+        for limits in [[0.0, 5e-324], [1e300, 1.000_000_000_000_001e300], [-1e308, 1e-308]] {
+            assert!(labels(Scale::Linear, limits).len() < 9, "{limits:?}");
+        }
+    }
+
+    #[test]
+    fn few_decades_are_marked_as_on_a_linear_axis() {
+        assert_eq!(labels(Scale::Logarithmic, [1.0, 1.8]), ["1", "1.2", "1.4", "1.6", "1.8"]);
+    }
+
+    #[test]
+    fn there_are_small_marks_between_numbers() {
+        let span = Span::new(&axis(Scale::Linear, Some([0.0, 1.0])), std::iter::empty()).unwrap();
+        assert_eq!(span.marks(6.0, |_| 1.0).len(), 21);
+        let span = Span::new(&axis(Scale::Logarithmic, Some([1.0, 1000.0])), std::iter::empty()).unwrap();
+        assert_eq!(span.marks(3.0, |_| 1.0).len(), 28);
+    }
+}

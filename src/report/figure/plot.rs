@@ -1,0 +1,157 @@
+//! Charts, one or several beside each other.
+
+use super::axis::Span;
+use super::plane::{self, Head, Plane};
+use super::style::{self, Colour, Look};
+use super::writer::{Svg, at};
+use super::{Along, Axis, Band, Chart, Scale, Series, font, series};
+
+/// Width of a line that marks a value (pixels).
+const LINE: f64 = 1.6;
+/// Width of a sample, and the distances from it to its words and from them to the next sample (pixels).
+const LENGTH: f64 = 40.0;
+const TO_WORDS: f64 = 8.0;
+const BESIDE: f64 = 18.0;
+/// Distance of entries from each other, and of the first from the picture above (pixels).
+const BETWEEN: f64 = 9.0;
+
+/// Draws charts with the axes of the first and one legend.
+pub fn draw(title: &str, panels: &[(&str, &Chart)]) -> Result<Svg, String> {
+    let charts = || panels.iter().map(|panel| panel.1);
+    let points = || charts().flat_map(|chart| &chart.series).flat_map(|series| &series.points);
+    let edges = |along: Along, axis: &Axis| {
+        let least = if axis.scale == Scale::Logarithmic { 0.0 } else { f64::NEG_INFINITY };
+        let of = charts().flat_map(|chart| &chart.bands).filter(move |band| band.along == along);
+        of.flat_map(|band| band.ends).filter(move |&end| end.is_finite() && end > least)
+    };
+    let [x, y] = panels.first().map(|(_, chart)| [&chart.x, &chart.y]).ok_or("there are no panels")?;
+    let heights = points().flat_map(|point| point.spread.into_iter().flatten().chain([point.y]));
+    let y = Span::new(y, heights.chain(edges(Along::Y, y)))?;
+    let x = Span::new(x, points().map(|point| point.x).chain(edges(Along::X, x)))?;
+
+    // A series of several panels has one look, and one entry in the legend.
+    let (mut all, mut of_panels) = (Vec::<&Series>::new(), vec![]);
+    for chart in charts() {
+        let before = all.len();
+        let is_same = |a: &Series, b: &Series| (&a.name, a.style, a.hue) == (&b.name, b.style, b.hue);
+        let seen = chart.series.iter().filter(|series| !series.points.is_empty()).map(|series| {
+            let index = all[..before].iter().position(|it| is_same(it, series)).unwrap_or(all.len());
+            all.extend((index == all.len()).then_some(series));
+            (index, series)
+        });
+        of_panels.push(seen.collect::<Vec<_>>());
+    }
+    let looks = style::looks(&all);
+    let mut svg = Svg::new(title, style::WIDTH, 1.0);
+    let heads: Vec<Head> = panels.iter().map(|(name, chart)| (*name, labels(chart, &x))).collect();
+    let planes = plane::draw(&mut svg, &x, &y, &heads);
+    for ((plane, chart), seen) in planes.iter().zip(charts()).zip(&of_panels) {
+        plane.fill(&mut svg, "", |svg| {
+            bands(chart).for_each(|(band, colour)| area(svg, plane, band, colour));
+            // Grounds below, then curves, markers on top, whichever series they belong to.
+            for add in [series::ground, series::curve, series::points] {
+                seen.iter().for_each(|&(index, series)| add(svg, plane, &looks[index], series));
+            }
+        });
+    }
+    let of_series = all.iter().zip(looks).map(|(series, look)| (&series.name, Sample::Series(look)));
+    let mut entries: Vec<(&String, Sample)> = of_series.collect();
+    for (band, colour) in charts().flat_map(bands) {
+        let has_label = band.is_line() && band.along == Along::X;
+        if !has_label && !entries.iter().any(|(words, _)| **words == band.label) {
+            entries.push((
+                &band.label,
+                Sample::Ground(colour, if band.is_line() { LINE } else { series::GROUND }),
+            ));
+        }
+    }
+    entries.retain(|(words, _)| !words.is_empty());
+    legend(&mut svg, &entries);
+    svg.size[1] += style::MARGIN;
+    Ok(svg)
+}
+
+/// Returns the labels of a chart's vertical lines, with their places, from the left.
+fn labels<'a>(chart: &'a Chart, x: &Span) -> Vec<(f64, &'a str)> {
+    let lines = chart.bands.iter().filter(|band| band.along == Along::X && band.is_line());
+    let placed = lines.map(|band| (x.part(band.ends[0]), band.label.as_str()));
+    let mut labels: Vec<_> = placed.filter(|(part, _)| (0.0..=1.0).contains(part)).collect();
+    labels.sort_by(|a, b| a.0.total_cmp(&b.0));
+    labels
+}
+
+/// Returns the bands of a chart with their colours: of those along y, one upon another, the first is the lightest.
+fn bands(chart: &Chart) -> impl Iterator<Item = (&Band, Colour)> {
+    let mut before = 0;
+    chart.bands.iter().map(move |band| match band.along {
+        _ if band.is_line() => (band, style::MARK),
+        Along::X => (band, style::STILL),
+        Along::Y => {
+            before += 1;
+            (band, style::GROUNDS[(before - 1).min(style::GROUNDS.len() - 1)])
+        }
+    })
+}
+
+/// Adds the visible part of a band, with its meaning.
+fn area(svg: &mut Svg, plane: &Plane, band: &Band, colour: Colour) {
+    let axis = if band.along == Along::X { &plane.x } else { &plane.y };
+    let ([left, top], [width, height]) = (plane.corner, plane.size);
+    let length = if band.along == Along::X { width } else { height };
+    let mut ends = band.ends.map(|end| axis.part(end) * length);
+    if band.is_line() {
+        ends = [ends[0] - 0.5 * LINE, ends[0] + 0.5 * LINE];
+    }
+    let [from, to] = ends.map(|end| end.clamp(0.0, length));
+    let (corner, size) = match band.along {
+        Along::X => ([left + from, top], [to - from, height]),
+        Along::Y => ([left, top + height - to], [width, to - from]),
+    };
+    if from < to {
+        svg.named(&band.label, |svg| svg.add(format_args!("<rect{} fill=\"{colour}\"/>", at(corner, size))));
+    }
+}
+
+/// Look of a sample.
+enum Sample {
+    /// A curve or markers.
+    Series(Look),
+    /// A ground of a height (pixels).
+    Ground(Colour, f64),
+}
+
+/// Adds a legend below a picture, in as many columns as have room for the words.
+fn legend(svg: &mut Svg, entries: &[(&String, Sample)]) {
+    let width = svg.size[0] - 2.0 * style::MARGIN + BESIDE;
+    let wrapped = |columns: usize| {
+        let most = width / columns as f64 - LENGTH - TO_WORDS - BESIDE;
+        let all = entries.iter().map(|entry| font::wrap(entry.0, style::LABEL, most)).collect::<Vec<_>>();
+        let most_lines = [1, 9, 2, 1, 1][columns];
+        let has_room =
+            |lines: &Vec<String>| lines.len() <= most_lines && font::widest(lines, style::LABEL) <= most;
+        (columns == 1 || all.iter().all(has_room)).then_some((columns, all))
+    };
+    let Some((columns, all)) = (1..=4).rev().find_map(wrapped) else { return };
+    let mut words = vec![];
+    svg.size[1] += BETWEEN;
+    for (row, entries) in all.chunks(columns).zip(entries.chunks(columns)) {
+        let top = svg.size[1] + BETWEEN;
+        let height = row.iter().map(|lines| font::height(lines.len(), style::LABEL)).fold(0.0, f64::max);
+        for (i, (lines, entry)) in row.iter().zip(entries).enumerate() {
+            let left = style::MARGIN + width / columns as f64 * i as f64;
+            let middle = top + 0.5 * style::LABEL * font::CAPITAL;
+            match &entry.1 {
+                Sample::Series(look) => series::sample(svg, look, [left, middle], LENGTH),
+                Sample::Ground(colour, height) => {
+                    let place = at([left, middle - 0.5 * height], [LENGTH, *height]);
+                    svg.add(format_args!("<rect{place} fill=\"{colour}\"/>"));
+                }
+            }
+            words.push((lines, [left + LENGTH + TO_WORDS, top]));
+        }
+        svg.size[1] = top + height;
+    }
+    for (lines, at) in words {
+        svg.block(lines, at, style::LABEL, "");
+    }
+}

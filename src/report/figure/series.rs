@@ -1,0 +1,128 @@
+//! Series on a plane: curves, error bars, markers; and their samples in a legend.
+
+use super::plane::Plane;
+use super::style::{CURVE, Look, MARKERS, PAPER, has_markers};
+use super::writer::{Svg, bends, stroke, tenths, through};
+use super::{Point, Series, Style};
+
+/// Half the width of the ends of an error bar (pixels). A script of the page knows it.
+const CAP: f64 = 4.5;
+/// Height of a ground's sample in a legend (pixels).
+pub const GROUND: f64 = 15.0;
+
+/// Adds the ground between the ends of the spreads of a ribbon.
+pub fn ground(svg: &mut Svg, plane: &Plane, look: &Look, series: &Series) {
+    let end = |which: usize| {
+        let ends = series.points.iter().filter_map(move |it| Some((it.x, it.spread?[which])));
+        ends.map(|(x, y)| plane.place(x, y))
+    };
+    if look.style == Style::Ribbon {
+        let outline: Vec<_> = end(0).chain(end(1).collect::<Vec<_>>().into_iter().rev()).collect();
+        light(svg, look, &through(&outline));
+    }
+}
+
+/// Adds the curve of a series, if it has one. It bears the series' name where no markers do.
+pub fn curve(svg: &mut Svg, plane: &Plane, look: &Look, series: &Series) {
+    if look.style == Style::Points || series.points.len() < 2 {
+        return;
+    }
+    let mut places: Vec<_> = series.points.iter().map(|it| plane.place(it.x, it.y)).collect();
+    if look.style == Style::Steps {
+        places = steps(&places);
+    }
+    let d = through(&bends(&places));
+    if has_markers(look.style) {
+        line(svg, look, "", &d);
+    } else {
+        svg.named(&series.name, |svg| line(svg, look, "", &d));
+    }
+}
+
+/// Adds the error bars and markers of a series, with its name. A single point has a marker in any case, and no marker is cut.
+pub fn points(svg: &mut Svg, plane: &Plane, look: &Look, series: &Series) {
+    let mut bars = String::new();
+    for Point { x, spread, .. } in series.points.iter().filter(|_| look.style != Style::Ribbon) {
+        if let Some([low, high]) = spread.map(|ends| ends.map(|end| plane.place(*x, end))) {
+            let (left, cap) = (low[0] - CAP, 2.0 * CAP);
+            bars += &format!("M{left:.2} {:.2}h{cap}m-{CAP} 0V{:.2}m-{CAP} 0h{cap}", low[1], high[1]);
+        }
+    }
+    let is_inside =
+        |it: &&Point| [plane.x.part(it.x), plane.y.part(it.y)].iter().all(|part| (0.0..=1.0).contains(part));
+    let marked = series.points.iter().filter(|_| has_markers(look.style) || series.points.len() == 1);
+    let places: Vec<_> = marked.filter(is_inside).map(|it| plane.place(it.x, it.y)).collect();
+    if bars.is_empty() && places.is_empty() {
+        return;
+    }
+    svg.named(&series.name, |svg| {
+        if !bars.is_empty() {
+            svg.path(&stroke(look.colour, 0.7 * CURVE), &bars);
+        }
+        if !places.is_empty() {
+            let marker = marker(svg, look);
+            let d = through(&places);
+            svg.add(format_args!("<g style=\"marker:url(#{marker})\">\n<path d=\"{d}\"/>\n</g>"));
+        }
+    });
+}
+
+/// Adds a sample for a legend, from a place to the right.
+pub fn sample(svg: &mut Svg, look: &Look, [left, y]: [f64; 2], length: f64) {
+    let [x, y, half, right] = [left, y, 0.5 * length, left + length].map(tenths);
+    let d = format!("M{x} {y}h{half}h{half}");
+    if look.style == Style::Ribbon {
+        light(svg, look, &format!("M{x} {y}m0-{0}H{right}v{GROUND}H{x}", 0.5 * GROUND));
+    }
+    let marker = if has_markers(look.style) { marker(svg, look) } else { String::new() };
+    let markers = if marker.is_empty() { marker } else { format!(" style=\"marker-mid:url(#{marker})\"") };
+    if look.style == Style::Points { svg.path(&markers, &d) } else { line(svg, look, &markers, &d) }
+}
+
+fn light(svg: &mut Svg, look: &Look, outline: &str) {
+    svg.path(&format!(" fill=\"{}\" fill-opacity=\"0.25\"", look.colour), &format!("{outline}z"));
+}
+
+fn line(svg: &mut Svg, look: &Look, more: &str, d: &str) {
+    let stroke = stroke(look.colour, if look.style == Style::Joined { 0.6 * CURVE } else { CURVE });
+    let dash = format!(" stroke-dasharray=\"{}\"", look.dash);
+    svg.path(&format!("{stroke}{}{more}", if look.dash.is_empty() { "" } else { &dash }), d);
+}
+
+/// Defines the marker of a look and returns its name, which says how it looks: pictures on one page share it. Full and hollow ones have a
+/// rim, so that markers upon each other can be counted.
+fn marker(svg: &mut Svg, look: &Look) -> String {
+    let Look { colour, marker, is_hollow, .. } = *look;
+    let (fill, rim, width) = if is_hollow { (PAPER, colour, 1.6) } else { (colour, PAPER, 0.7) };
+    let hollow = if is_hollow { "-hollow" } else { "" };
+    let name = format!("m{marker}-{}{hollow}", colour.to_string().trim_start_matches('#'));
+    svg.define(format!(
+        "<marker id=\"{name}\" markerUnits=\"userSpaceOnUse\" overflow=\"visible\"><path fill=\"{fill}\"{} d=\"{}\"/></marker>",
+        stroke(rim, width), MARKERS[marker]
+    ));
+    name
+}
+
+/// Returns the outline of a histogram whose bins have these middles: each bin reaches halfway to its neighbours, the outermost are as
+/// wide on the outside as on the inside.
+fn steps(middles: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let mut edges: Vec<f64> = middles.windows(2).map(|pair| 0.5 * (pair[0][0] + pair[1][0])).collect();
+    let [first, last] = [0, middles.len() - 1].map(|i| middles[i][0]);
+    let ends = [2.0 * first - edges.first().unwrap_or(&first), 2.0 * last - edges.last().unwrap_or(&last)];
+    edges.insert(0, ends[0]);
+    edges.push(ends[1]);
+    let bin = |(&[_, y], ends): (&[f64; 2], &[f64])| [[ends[0], y], [ends[1], y]];
+    middles.iter().zip(edges.windows(2)).flat_map(bin).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bins_reach_halfway_to_their_neighbours() {
+        let outline = steps(&[[0.0, 1.0], [2.0, 3.0], [4.0, 2.0]]);
+        assert_eq!(outline, [[-1.0, 1.0], [1.0, 1.0], [1.0, 3.0], [3.0, 3.0], [3.0, 2.0], [5.0, 2.0]]);
+        assert_eq!(steps(&[[1.0, 2.0]]), [[1.0, 2.0], [1.0, 2.0]]);
+    }
+}

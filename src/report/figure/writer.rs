@@ -1,0 +1,244 @@
+//! A picture as SVG text: small enough to stand in a page, and equal from run to run. Lines of one look share a path, words of one look
+//! a group, and numbers end where nothing more can be seen.
+//!
+//! A `<title>` names each series, band and cell, and the plane between the axes states in `data-x` and `data-y` where numbers lie on
+//! it: a script finds the values there.
+
+use super::picture::Figure;
+use super::{font, style};
+use std::collections::BTreeSet;
+use std::fmt::{Display, Write};
+
+/// Limit of distances from the corner (pixels): readers count in small numbers.
+const FARTHEST: f64 = 1e6;
+/// Smallest visible bend of a line (pixels).
+const SEEN: f64 = 0.05;
+
+/// Attributes of words that are centred on their place, or end there.
+pub const MIDDLE: &str = " text-anchor=\"middle\"";
+pub const END: &str = " text-anchor=\"end\"";
+
+/// A picture in the making.
+pub struct Svg {
+    /// Width and height (pixels).
+    pub size: [f64; 2],
+    definitions: BTreeSet<String>,
+    body: String,
+    /// Look of the words whose group is open, empty without one.
+    lettering: String,
+}
+
+impl Svg {
+    /// Begins a picture of a width with a title, its letters enlarged. The height is that of the title so far.
+    pub fn new(title: &str, width: f64, zoom: f64) -> Svg {
+        let (size, margin) = (style::TITLE * zoom, style::MARGIN * zoom);
+        let lines = font::wrap(title, size, width - 2.0 * margin);
+        let width = width.max(font::widest(&lines, size) + 2.0 * margin);
+        let height =
+            margin + if lines.is_empty() { 0.0 } else { font::height(lines.len(), size) + 0.5 * margin };
+        let (definitions, body, lettering) = (BTreeSet::new(), String::new(), String::new());
+        let mut svg = Svg { size: [width, height], definitions, body, lettering };
+        svg.block(&lines, [margin, margin], size, "");
+        svg
+    }
+
+    /// Adds an element, or the start or the end of a group.
+    pub fn add(&mut self, element: impl Display) {
+        let end = if self.lettering.is_empty() { "" } else { "</g>\n" };
+        let _ = writeln!(self.body, "{end}{element}");
+        self.lettering.clear();
+    }
+
+    /// Adds a path with attributes.
+    pub fn path(&mut self, look: &str, d: &str) {
+        self.add(format_args!("<path{look} d=\"{d}\"/>"));
+    }
+
+    /// Begins a window, which cuts off what reaches beyond it.
+    pub fn window(&mut self, corner: [f64; 2], size: [f64; 2]) {
+        let view = [corner, size].map(|it| it.map(tenths).join(" ")).join(" ");
+        self.add(format_args!("<svg{} viewBox=\"{view}\">", at(corner, size)));
+    }
+
+    /// Adds a definition, which has the same name in every picture.
+    pub fn define(&mut self, definition: String) {
+        self.definitions.insert(definition);
+    }
+
+    /// Adds elements with a name for readers that point at them.
+    pub fn named(&mut self, name: &str, add: impl FnOnce(&mut Svg)) {
+        self.add(format_args!("<g><title>{}</title>", escaped(name)));
+        add(self);
+        self.add("</g>");
+    }
+
+    /// Adds a line of words on a place of its base line. `look` are further attributes.
+    pub fn words(&mut self, at: [f64; 2], size: f64, look: &str, words: &str) {
+        self.turned(at, 0, size, look, words);
+    }
+
+    /// Adds a line of words that is turned about its place (degrees).
+    pub fn turned(&mut self, at: [f64; 2], angle: i32, size: f64, look: &str, words: &str) {
+        let look = format!(" font-size=\"{}\"{look}", tenths(size));
+        if look != self.lettering {
+            self.add(format_args!("<g{look}>"));
+            self.lettering = look;
+        }
+        let [x, y] = at.map(tenths);
+        let turned =
+            if angle == 0 { String::new() } else { format!(" transform=\"rotate({angle} {x} {y})\"") };
+        let _ = writeln!(self.body, "<text x=\"{x}\" y=\"{y}\"{turned}>{}</text>", escaped(words));
+    }
+
+    /// Adds lines below each other; `top` is the upper edge of the first one's capitals. Returns the lower edge of the last.
+    pub fn block(&mut self, lines: &[String], [x, top]: [f64; 2], size: f64, look: &str) -> f64 {
+        for (i, line) in lines.iter().enumerate() {
+            let base = top + size * (font::CAPITAL + i as f64 * style::LINE_SPACING);
+            self.words([x, base], size, look, line);
+        }
+        top + font::height(lines.len(), size)
+    }
+
+    /// Returns the text of a figure's picture.
+    pub fn finish(mut self, figure: &Figure) -> String {
+        if !self.lettering.is_empty() {
+            self.body.push_str("</g>\n");
+        }
+        let [width, height] = self.size.map(f64::ceil);
+        let [title, caption] = [&figure.title, &figure.caption].map(|words| escaped(words));
+        let (fonts, ink, paper, dark) = (style::FONTS, style::INK, style::PAPER, style::dark_rules(""));
+        let mut definitions = self.definitions.into_iter().collect::<Vec<_>>().join("\n");
+        if !definitions.is_empty() {
+            definitions = format!("<defs>\n{definitions}\n</defs>\n");
+        }
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
+             role=\"img\" font-family=\"{fonts}\" fill=\"{ink}\" stroke-linejoin=\"round\">\n\
+             <style>@media (prefers-color-scheme:dark){{{dark}}}</style>\n<title>{title}</title>\n<desc>{caption}</desc>\n\
+             {definitions}<rect width=\"{width}\" height=\"{height}\" fill=\"{paper}\"/>\n{}</svg>\n",
+            self.body
+        )
+    }
+}
+
+/// Returns the attributes of a line.
+pub fn stroke(colour: style::Colour, width: f64) -> String {
+    let width = if width == 1.0 { String::new() } else { format!(" stroke-width=\"{}\"", tenths(width)) };
+    format!(" stroke=\"{colour}\"{width}")
+}
+
+/// Returns the attributes of a box: its left and upper edge, its width and its height.
+pub fn at(corner: [f64; 2], size: [f64; 2]) -> String {
+    let ([x, y], [width, height]) = (corner.map(tenths), size.map(tenths));
+    format!(" x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\"")
+}
+
+/// Returns words with the signs of XML spelled out; letters that XML does not allow become blanks.
+pub fn escaped(words: &str) -> String {
+    let is_barred = |letter: char| letter.is_control() || ['\u{fffe}', '\u{ffff}'].contains(&letter);
+    let words = words.replace(is_barred, " ").replace('&', "&amp;");
+    words.replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+/// Returns a length to a tenth of a pixel.
+pub fn tenths(pixels: f64) -> String {
+    hundredths((pixels * 10.0).round() as i64 * 10)
+}
+
+/// Returns a number of hundredths without needless zeros.
+fn hundredths(number: i64) -> String {
+    let text = format!("{:.2}", number as f64 / 100.0);
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    match (text.strip_prefix("0."), text.strip_prefix("-0.")) {
+        (Some(part), _) => format!(".{part}"),
+        (_, Some(part)) => format!("-.{part}"),
+        _ => text.to_owned(),
+    }
+}
+
+/// Returns a path through places, to a hundredth of a pixel: a script of the page reads values back. A single place is a line of length
+/// 0, for programs draw no markers on less.
+pub fn through(places: &[[f64; 2]]) -> String {
+    let whole = |pixels: f64| (pixels.clamp(-FARTHEST, FARTHEST) * 100.0).round() as i64;
+    let mut path = String::new();
+    let mut before = [0; 2];
+    for (i, place) in places.iter().enumerate() {
+        let here = place.map(whole);
+        let [right, down] = [0, 1].map(|side| hundredths(here[side] - before[side]));
+        // After the first place, each is a step from the one before it.
+        path.push_str(["M", "l", " "][i.min(2)]);
+        let between = if down.starts_with('-') { "" } else { " " };
+        let _ = write!(path, "{right}{between}{down}");
+        before = here;
+    }
+    if places.len() == 1 {
+        path.push_str("l0 0");
+    }
+    path
+}
+
+/// Returns the places of a line without those that its straight pieces pass within [`SEEN`].
+pub fn bends(places: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let [first, .., last] = places else { return places.to_vec() };
+    let [right, down] = [last[0] - first[0], last[1] - first[1]];
+    let length = right.hypot(down);
+    // Distance of a place from the piece between both ends; from one of them where they coincide.
+    let off = |[x, y]: [f64; 2]| {
+        let [x, y] = [x - first[0], y - first[1]];
+        if length > 0.0 { (right * y - down * x).abs() / length } else { x.hypot(y) }
+    };
+    let within = &places[1..places.len() - 1];
+    let farthest = (1..).zip(within).max_by(|a, b| off(*a.1).total_cmp(&off(*b.1)));
+    match farthest {
+        Some((at, &place)) if off(place) > SEEN || off(place).is_nan() => {
+            let mut all = bends(&places[..=at]);
+            all.pop();
+            all.extend(bends(&places[at..]));
+            all
+        }
+        _ => vec![*first, *last],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{samples, svg};
+    use super::*;
+
+    #[test]
+    fn the_same_figure_gives_the_same_bytes() {
+        for figure in samples::all() {
+            assert_eq!(svg(&figure).unwrap(), svg(&figure.clone()).unwrap());
+        }
+    }
+
+    #[test]
+    fn words_cannot_break_out() {
+        let mut figure = samples::linear();
+        figure.title = "</text><script>1 & 2\u{1}".into();
+        let text = svg(&figure).unwrap();
+        assert!(!text.contains("<script>") && text.contains("&lt;script&gt;1 &amp; 2"));
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        let written = [50.120000000000005, 0.0, -0.26, 500.0, 0.04].map(tenths);
+        assert_eq!(written, ["50.1", "0", "-.3", "500", "0"]);
+    }
+
+    #[test]
+    fn lines_keep_their_bends() {
+        let straight: Vec<[f64; 2]> = (0..9).map(|i| [f64::from(i), 2.0 * f64::from(i)]).collect();
+        assert_eq!(bends(&straight), [[0.0, 0.0], [8.0, 16.0]]);
+        let bent = [&straight[..], &[[9.0, 0.0], [10.0, -16.0]]].concat();
+        assert_eq!(bends(&bent), [[0.0, 0.0], [8.0, 16.0], [10.0, -16.0]]);
+        assert_eq!(bends(&[[1.0, 1.0], [5.0, 5.0], [1.0, 1.0]]).len(), 3);
+    }
+
+    #[test]
+    fn paths_go_from_place_to_place() {
+        assert_eq!(through(&[[1.0, 2.0], [1.5, 1.0], [3.004, 1.25]]), "M1 2l.5-1 1.5 .25");
+        assert_eq!(through(&[[1.0, 2.0]]), "M1 2l0 0");
+        assert!(through(&[[1e300, 0.0]]).starts_with("M1000000 0"));
+    }
+}
