@@ -8,7 +8,7 @@ mod figures;
 
 use crate::claims::{self, Claim, ClaimError};
 use crate::frame::{Expressions, Frame, Scope, Table};
-use crate::report::figure::Picture;
+use crate::report::figure::{Picture, data as figure_data};
 use crate::report::section::Film;
 use crate::report::{Chapter, Section};
 use figures::FigureSpec;
@@ -244,6 +244,9 @@ impl Page {
         if let (Some(spec), Some(film)) = (film, shown.film) {
             section.film = Some(Film { title: fill.text(&spec.title)?, ..film.clone() });
         }
+        // Claims may speak of the points of a chart, too.
+        let of_charts = section.figures.iter().filter_map(figure_data).map(|table| Frame::from(&table));
+        let scope = Scope::of(shown.frames.iter().cloned().chain(of_charts));
         let judged = claims::judge(claims, &self.name, &scope, date)?;
         section.claims = judged.iter().map(Into::into).collect();
         Ok(section)
