@@ -81,9 +81,9 @@ fn every_preset_with_contacts_on_a_lattice_is_counted() {
         let of = |more: &[&str]| json(&[&["scene", "programs", preset, "--json"], more].concat());
         let (own, on_lattice) = (of(&[]), of(&["--set", "search.by=lattice"]));
         let parts: Vec<&str> =
-            own["counted"].as_array().unwrap().iter().map(|it| it["part"].as_str().unwrap()).collect();
+            own["operations"].as_array().unwrap().iter().map(|it| it["part"].as_str().unwrap()).collect();
         assert!(parts.contains(&"predictor") && parts.contains(&"forces"), "{preset}: {parts:?}");
-        assert_eq!(own["counted"], on_lattice["counted"], "{preset}");
+        assert_eq!(own["operations"], on_lattice["operations"], "{preset}");
         assert!(on_lattice["note"].is_null());
         let checked = json(&["scene", "check", preset, "--json"]);
         let is_by_lattice = checked["choices"].as_array().unwrap().iter().all(|choice| {

@@ -2,7 +2,7 @@
 
 use crate::console::{Common, Failure, print, print_json, warn};
 use crate::frame::{Rows, Table};
-use crate::laboratory::programs::Programs;
+use crate::laboratory::programs::counted;
 use crate::model::machine::MachineModel;
 use crate::model::machines;
 use crate::report::terminal;
@@ -177,11 +177,15 @@ fn programs(
         return Err(StudyError::NoPrograms(name.to_owned()).into());
     }
     if !listing {
-        let counted = Programs::of(name, &programs, note, std::slice::from_ref(machine));
-        return match common.json {
-            true => print_json(&counted),
-            false => print(&counted.tables().iter().map(terminal::render).collect::<Vec<_>>().join("\n")),
-        };
+        let frames = counted(name, &programs, std::slice::from_ref(machine));
+        if common.json {
+            let mut data = Map::from_iter(frames.iter().map(|frame| (frame.name.clone(), frame.json())));
+            data.extend([("scene".to_owned(), json!(name)), ("note".to_owned(), json!(note))]);
+            return print_json(&data);
+        }
+        let [operations, clocks] = frames.each_ref().map(Table::from);
+        let tables = [operations.notes(note), clocks];
+        return print(&tables.each_ref().map(terminal::render).join("\n"));
     }
     let of = |it: &VectorProgram| Listing {
         part: it.part,

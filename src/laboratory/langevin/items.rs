@@ -1,11 +1,11 @@
-//! What can be reproduced of this method: each item a study and its section of the report.
+//! Items of this method: each a study, with its page in the folder `pages`.
 
 use super::sections;
 use super::study::{accuracy, diffusion, losses, sectors};
 use crate::console::Failure;
 use crate::laboratory::programs;
 use crate::laboratory::running::prepared;
-use crate::report::Chapter::{Beyond, Sources};
+use crate::report::Chapter::Sources;
 use crate::results::{Item, Lab, Made, Size};
 use stripmine_physics::method::langevin::keys::LAW;
 use stripmine_physics::method::langevin::options::PairLaw;
@@ -13,7 +13,7 @@ use stripmine_physics::scene::Overrides;
 
 /// Every item, in the order of its chapter.
 pub(super) const ITEMS: &[Item] = &[
-    Item::full("langevin-losses", Sources, 20.0, lost, "Langevin: particles lost over the step"),
+    Item::of("langevin-losses", losses::made),
     Item::quick(
         "langevin-sectors",
         Sources,
@@ -21,34 +21,10 @@ pub(super) const ITEMS: &[Item] = &[
         cost,
         "Langevin: wall time over the number of sectors, and where it goes",
     ),
-    Item::full(
-        "langevin-diffusion",
-        Sources,
-        13.0,
-        displaced,
-        "Langevin: mean square displacement, velocities, temperature",
-    ),
-    Item::full(
-        "langevin-accuracy",
-        Beyond,
-        57.0,
-        errors,
-        "Langevin: the error of the step in a Lennard-Jones fluid",
-    ),
-    Item::quick(
-        "langevin-programs",
-        Beyond,
-        [0.1, 0.1],
-        counted,
-        "Langevin: the law as whole-array operations, counted and charged by clocks",
-    ),
+    Item::of("langevin-diffusion", diffusion::made),
+    Item::of("langevin-accuracy", accuracy::made),
+    Item::of("langevin-programs", counted),
 ];
-
-fn lost(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let progress = lab.progress;
-    let data = losses::losses(40_000, progress)?;
-    Made::new(sections::losses::section(&data), &data)
-}
 
 fn cost(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
     let progress = lab.progress;
@@ -60,34 +36,11 @@ fn cost(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
     Made::new(sections::sectors::section(&data), &data)
 }
 
-fn displaced(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let progress = lab.progress;
-    let data = diffusion::diffusion(progress)?;
-    Made::new(sections::diffusion::section(&data), &data)
-}
-
-fn errors(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
-    let progress = lab.progress;
-    let time = if effort == Size::Quick { 80.0 } else { 640.0 };
-    let data = accuracy::accuracy(time, progress)?;
-    Made::new(sections::accuracy::section(&data), &data)
-}
-
-fn counted(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let progress = lab.progress;
+fn counted(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+    let scene = |overrides: &[String]| prepared("langevin-dense", overrides);
     let repulsive = Overrides::new().set(&LAW, PairLaw::Wca);
-    let scenes = [
-        ("langevin-dense, WCA", prepared("langevin-dense", &repulsive)?),
-        ("langevin-dense, cut off at 2.5", prepared("langevin-dense", &[])?),
-    ];
-    progress(1.0);
-    programs::made(
-        ("langevin-programs", "Langevin: the pair law on the vector machine"),
-        (
-            "What does the law of the pairs cost on the vector machine of BP93?",
-            "The source runs on sectors. On the lattice of BP93 its law is whole-array operations at every place of a mask: 24 for the \
-         repulsion, 120 up to 2.5 diameters.",
-        ),
-        &scenes,
-    )
+    programs::made(&[
+        ("langevin-dense, WCA", scene(&repulsive)?),
+        ("langevin-dense, cut off at 2.5", scene(&[])?),
+    ])
 }

@@ -1,11 +1,11 @@
-//! What can be reproduced of this method: each item a study and its section of the report.
+//! Items of this method: each a study, with its page in the folder `pages`.
 
 use super::sections;
 use super::study::{collapse, energy, rates};
 use crate::console::Failure;
 use crate::laboratory::programs;
 use crate::laboratory::running::prepared;
-use crate::report::Chapter::{Beyond, Host};
+use crate::report::Chapter::Host;
 use crate::results::{Item, Lab, Made, Size};
 use stripmine_physics::method::nbody::keys::COUNT;
 use stripmine_physics::scene::Overrides;
@@ -20,14 +20,8 @@ pub(super) const ITEMS: &[Item] = &[
         speed,
         "Bodies: interactions a second and how exact forces are",
     ),
-    Item::full("nbody-collapse", Beyond, 20.0, fall, "Bodies: a cold sphere collapses, with a film"),
-    Item::quick(
-        "nbody-programs",
-        Beyond,
-        [0.1, 0.1],
-        counted,
-        "Bodies: all pairs by cyclic shifts, counted and charged by clocks",
-    ),
+    Item::of("nbody-collapse", collapse::made),
+    Item::of("nbody-programs", counted),
 ];
 
 fn speed(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
@@ -40,24 +34,7 @@ fn speed(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
     Made::new(sections::rates::section(&data), &data)
 }
 
-fn fall(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let progress = lab.progress;
-    let data = collapse::collapses(progress)?;
-    Made::new(sections::collapse::section(&data), &data)
-}
-
-fn counted(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let progress = lab.progress;
+fn counted(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let scene = |count: u64| prepared("plummer", &Overrides::new().set(&COUNT, count));
-    let scenes = [("plummer, N = 1024", scene(1024)?), ("plummer, N = 16", scene(16)?)];
-    progress(1.0);
-    programs::made(
-        ("nbody-programs", "Bodies: all pairs by cyclic shifts on the vector machine"),
-        (
-            "What do the forces between all pairs cost as vector operations?",
-            "PWP: every body meets the one that is s places behind it, for s = 1 to N − 1: whole-array operations on shifted vectors. 16 shifts \
-         make a program.",
-        ),
-        &scenes,
-    )
+    programs::made(&[("plummer, N = 1024", scene(1024)?), ("plummer, N = 16", scene(16)?)])
 }

@@ -1,10 +1,12 @@
-//! The error of the step: energy, pressure and temperatures of a Lennard-Jones fluid over dt, by both integrators.
+//! Error of the step: energy, pressure and temperatures of a Lennard-Jones fluid over dt, by both integrators.
 
-use super::{Mean, PARTS};
+use super::PARTS;
+use crate::console::Failure;
+use crate::frame::{Cell, Rows};
 use crate::laboratory::running::Running;
-use crate::results::{Meter, Progress};
+use crate::results::{Lab, Made, Meter, Size};
+use crate::statistics::{Mean, student};
 use crate::study::StudyError;
-use serde::Serialize;
 use std::time::Instant;
 use stripmine_physics::domain::Domain;
 use stripmine_physics::method::langevin::keys::INTEGRATOR;
@@ -15,85 +17,136 @@ use stripmine_physics::words::Words;
 
 /// Steps (time), nearly up to the one at which particles are lost, 0.025.
 const STEPS: [f64; 6] = [0.005, 0.01, 0.015, 0.0175, 0.02, 0.0225];
-/// The integrators.
 const SCHEMES: [SchemeKind; 2] = [SchemeKind::Stochastic, SchemeKind::Baoab];
-/// Looks in a unit of time.
-const LOOKS: f64 = 4.0;
-/// The cut-off of the pairs, in diameters; a diameter, ε, the masses and kT are 1.
+/// Time that is measured over.
+const TIME: f64 = 640.0;
+/// Samples in a unit of time.
+const SAMPLES: f64 = 4.0;
+/// Cut-off of the pairs, in diameters; a diameter, ε, the masses and kT are 1.
 const REACH: f64 = 2.5;
+/// Errors beyond their half-widths that an order is fitted through, at least, and the widest interval of an order.
+const LEAST: usize = 3;
+const ORDER_WITHIN: f64 = 0.5;
 
 /// A fluid at a step.
-#[derive(Clone, Debug, Serialize)]
-pub struct Fluid {
-    /// The integrator.
-    pub scheme: &'static str,
-    /// Step (time).
-    pub dt: f64,
+struct Fluid {
+    scheme: SchemeKind,
+    dt: f64,
     /// Energy of the pairs over the particles (energy).
-    pub potential: Mean,
+    potential: Mean,
     /// Pressure (force/length).
-    pub pressure: Mean,
-    /// Kinetic energy a particle and dimension, over that of the bath, as it is observed: by baoab after the bath.
-    pub temperature: Mean,
+    pressure: Mean,
+    /// Kinetic energy a particle and dimension over that of the bath, as it is observed: by baoab after the bath.
+    temperature: Mean,
     /// The same of the velocities at the end of the step.
-    pub at_end: Mean,
-    /// What is observed less that, look by look: by baoab what the last half of the kick cools.
-    pub cooling: Mean,
-    /// ⟨F²⟩/⟨∇²U⟩, which is kT where places are Boltzmann's.
-    pub configurational: Mean,
+    at_end: Mean,
+    /// Their difference sample by sample: by baoab the cooling of the last half of the kick.
+    cooling: Mean,
+    /// ⟨F²⟩/⟨∇²U⟩, which is kT where positions are Boltzmann's.
+    configurational: Mean,
     /// ⟨∇²U⟩ a particle and dimension (energy/length²).
-    pub curvature: Mean,
+    curvature: Mean,
     /// Wall seconds for a unit of time.
-    pub cost: f64,
-    /// Whether it came to its end; particles were lost otherwise.
-    pub is_whole: bool,
+    cost: f64,
+    /// Whether no particle was lost.
+    is_whole: bool,
 }
 
 impl Fluid {
-    /// By how much theory has the end of the step colder: dt² kT⟨∇²U⟩/(4 m) by baoab, nothing by the source's scheme, whose velocities
-    /// have kT there (exactly in a harmonic trap).
-    pub fn foreseen(&self) -> Mean {
-        let factor = if self.scheme == SchemeKind::Baoab.word() { 0.25 * self.dt * self.dt } else { 0.0 };
+    /// Cooling by theory: dt² kT⟨∇²U⟩/(4 m) by baoab, none by the source's scheme, whose velocities have kT at the end of the step
+    /// (exactly in a harmonic trap).
+    fn foreseen(&self) -> Mean {
+        let factor = if self.scheme == SchemeKind::Baoab { 0.25 * self.dt * self.dt } else { 0.0 };
         Mean { value: factor * self.curvature.value, bar: factor * self.curvature.bar }
+    }
+
+    /// Standard errors between the cooling and that by theory; none by the source's scheme.
+    fn off_theory(&self) -> Option<f64> {
+        let error = self.cooling.bar.hypot(self.foreseen().bar) / student(0.95, PARTS - 1);
+        (self.foreseen().value > 0.0).then(|| (self.cooling.value - self.foreseen().value) / error)
+    }
+
+    /// Error of the energy, whose limit is known to its own half-width.
+    fn error(&self, limit: Mean) -> Mean {
+        Mean { value: self.potential.value - limit.value, bar: self.potential.bar.hypot(limit.bar) }
     }
 }
 
-/// What came out.
-#[derive(Clone, Debug, Serialize)]
-pub struct Accuracy {
-    /// Particles.
-    pub particles: usize,
-    /// The time that is measured over.
-    pub time: f64,
-    /// The fluids.
-    pub fluids: Vec<Fluid>,
-    /// Energy over the particles in the limit of short steps, by a fit of the BAOAB energies with dt² (energy).
-    pub limit: Mean,
-}
-
-/// Measures every step over a time.
+/// Measures every step.
 ///
 /// # Errors
 /// [`StudyError`] if a scene is refused.
-pub fn accuracy(time: f64, progress: Progress<'_>) -> Result<Accuracy, StudyError> {
+pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let cases: Vec<(SchemeKind, f64)> =
         STEPS.iter().flat_map(|&dt| SCHEMES.map(|scheme| (scheme, dt))).collect();
-    let meter = Meter::new(cases.len() as f64, progress);
-    let fluids = meter.each(&cases, |&(scheme, dt)| fluid(scheme, dt, time))?;
-    let particles = Running::timed("langevin-dense", &[])?.simulation.particles().len();
+    let meter = Meter::new(cases.len() as f64, lab.progress);
+    let fluids = meter.each(&cases, |&(scheme, dt)| fluid(scheme, dt))?;
     let limit = limit(&fluids);
-    Ok(Accuracy { particles, time, fluids, limit })
+    let orders = SCHEMES.map(|scheme| order(&fluids, scheme, limit));
+    let cell = |Mean { value, bar }: Mean| Cell::with_error(value, Some(bar), 4);
+    Ok(Made::of([
+        Rows::of(&fluids)
+            .text("scheme", |it| it.scheme.word())
+            .number("dt", 4, |it| it.dt)
+            .number("energy", 4, |it| it.potential.value)
+            .number("± (95 %)", 4, |it| it.potential.bar)
+            .number("pressure", 4, |it| it.pressure.value)
+            .number("± (95 %)", 4, |it| it.pressure.bar)
+            .number("temperature", 4, |it| it.temperature.value)
+            .number("± (95 %)", 4, |it| it.temperature.bar)
+            .number("at the end of the step", 4, |it| it.at_end.value)
+            .number("by theory", 4, |it| 1.0 - it.foreseen().value)
+            .number("colder by", 4, |it| it.cooling.value)
+            .number("± (95 %)", 4, |it| it.cooling.bar)
+            .number("by theory", 4, |it| it.foreseen().value)
+            .number("standard errors off", 1, |it| it.off_theory())
+            .number("⟨F²⟩/⟨∇²U⟩", 3, |it| it.configurational.value)
+            .number("± (95 %)", 3, |it| it.configurational.bar)
+            .number("⟨∇²U⟩/2", 1, |it| it.curvature.value)
+            .number("ms a unit of time", 1, |it| 1e3 * it.cost)
+            .frame("accuracy", "Energy of the pairs a particle, pressure and temperatures"),
+        Rows::of(fluids.iter().filter(|it| it.is_whole))
+            .text("scheme", |it| it.scheme.word())
+            .number("dt", 4, |it| it.dt)
+            .number("wall time of a unit of time (s)", 4, |it| it.cost)
+            .cell("error of the energy", |it| cell(it.error(limit)))
+            .cell("temperature", |it| cell(it.temperature))
+            .cell("at the end of the step", |it| cell(it.at_end))
+            .cell("by theory", |it| cell(Mean { value: 1.0 - it.foreseen().value, ..it.foreseen() }))
+            .cell("⟨F²⟩/⟨∇²U⟩", |it| cell(it.configurational))
+            .frame("errors", "Error of the energy, and temperatures, of runs that lost no particle"),
+        Rows::of([()])
+            .number("energy at short steps", 4, |()| limit.value)
+            .number("± (95 %)", 4, |()| limit.bar)
+            .number("order of stochastic", 1, |()| orders[0].map(|it| it.value))
+            .number("± (95 %)", 1, |()| orders[0].map(|it| it.bar))
+            .number("order of BAOAB", 1, |()| orders[1].map(|it| it.value))
+            .number("± (95 %)", 1, |()| orders[1].map(|it| it.bar))
+            .frame("summary", "Limit of short steps, and orders of the errors"),
+    ])
+    .with_seeds([1]))
 }
 
-/// The energy at dt = 0, by a line over dt².
+/// Energy at dt = 0 by a line over dt² through the energies of BAOAB.
 fn limit(fluids: &[Fluid]) -> Mean {
-    let of = fluids.iter().filter(|fluid| fluid.scheme == SchemeKind::Baoab.word() && fluid.is_whole);
+    let of = fluids.iter().filter(|fluid| fluid.scheme == SchemeKind::Baoab && fluid.is_whole);
     let points: Vec<(f64, Mean)> = of.map(|fluid| (fluid.dt.powi(2), fluid.potential)).collect();
     line(&points)[0]
 }
 
-/// Height at 0 and slope of the straight line through points that are known to their bars, of at least two places.
-pub fn line(points: &[(f64, Mean)]) -> [Mean; 2] {
+/// Power of the step with which a scheme's error falls; none where fewer than three errors are larger than their half-widths, or where
+/// the power is hardly known.
+fn order(fluids: &[Fluid], scheme: SchemeKind, limit: Mean) -> Option<Mean> {
+    let of = fluids.iter().filter(|it| it.scheme == scheme && it.is_whole);
+    let seen = of.map(|it| (it.dt, it.error(limit))).filter(|(_, error)| error.value.abs() > error.bar);
+    let logarithm = |Mean { value, bar }: Mean| Mean { value: value.abs().ln(), bar: bar / value.abs() };
+    let points: Vec<(f64, Mean)> = seen.map(|(dt, error)| (dt.ln(), logarithm(error))).collect();
+    let [_, slope] = (points.len() >= LEAST).then(|| line(&points))?;
+    (slope.bar < ORDER_WITHIN).then_some(slope)
+}
+
+/// Height at 0 and slope of the straight line through at least two points that are known to their half-widths.
+fn line(points: &[(f64, Mean)]) -> [Mean; 2] {
     let (mut w, mut wx, mut wy, mut wxx, mut wxy) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for &(x, Mean { value: y, bar }) in points {
         let weight = bar.powi(-2);
@@ -105,26 +158,27 @@ pub fn line(points: &[(f64, Mean)]) -> [Mean; 2] {
     [height, Mean { value: (w * wxy - wx * wy) / determinant, bar: (w / determinant).sqrt() }]
 }
 
-fn fluid(scheme: SchemeKind, dt: f64, time: f64) -> Result<Fluid, StudyError> {
+fn fluid(scheme: SchemeKind, dt: f64) -> Result<Fluid, StudyError> {
     let overrides = Overrides::new().set(&INTEGRATOR, scheme).set(&DT, dt);
     let mut running = Running::begin("langevin-dense", &overrides)?;
     let count = running.simulation.particles().len() as f64;
     // The mesh melts within some units of time.
     let mut done = running.steps((50.0 / dt) as u64);
-    let (looks, between) = ((LOOKS * time / PARTS as f64) as usize, (1.0 / (LOOKS * dt)).round() as u64);
+    let (samples, between) =
+        ((SAMPLES * TIME / PARTS as f64) as usize, (1.0 / (SAMPLES * dt)).round() as u64);
     let mut parts: [Vec<f64>; 7] = Default::default();
     let mut cost = 0.0;
     for _ in 0..PARTS {
         let mut sums = [0.0; 5];
-        for _ in 0..looks {
+        for _ in 0..samples {
             let begun = Instant::now();
             done = done.and_then(|()| running.steps(between));
-            cost += begun.elapsed().as_secs_f64() / (between as f64 * dt * (PARTS * looks) as f64);
+            cost += begun.elapsed().as_secs_f64() / (between as f64 * dt * (PARTS * samples) as f64);
             let [potential, pressure, temperature] =
                 running.observed(["potential", "pressure", "temperature"])?;
             let at_end = kinetic(&running.simulation.particles());
             let seen = [potential / count, pressure, temperature, at_end, temperature - at_end];
-            sums.iter_mut().zip(seen).for_each(|(sum, seen)| *sum += seen / looks as f64);
+            sums.iter_mut().zip(seen).for_each(|(sum, seen)| *sum += seen / samples as f64);
         }
         let [square, curvature] = forces(&running.simulation.particles(), &running.domain);
         let means = sums.into_iter().chain([square / curvature, curvature]);
@@ -132,7 +186,7 @@ fn fluid(scheme: SchemeKind, dt: f64, time: f64) -> Result<Fluid, StudyError> {
     }
     let [potential, pressure, temperature, at_end, cooling, configurational, curvature] =
         parts.map(|parts| Mean::of_course(&parts));
-    let (scheme, is_whole) = (scheme.word(), done.is_ok());
+    let is_whole = done.is_ok();
     Ok(Fluid {
         scheme,
         dt,
@@ -185,6 +239,41 @@ mod tests {
     use super::*;
     use crate::laboratory::running::prepared;
     use stripmine_physics::scene::COUNT;
+
+    /// Fluids whose energies err as `factor` dt² by BAOAB, known to `bar`, and whose velocities at the end of the step are colder than by
+    /// theory by `off`.
+    fn fluids(factor: f64, bar: f64, off: f64) -> Vec<Fluid> {
+        let mean = |value: f64| Mean { value, bar };
+        let fluid = |dt: f64| Fluid {
+            scheme: SchemeKind::Baoab,
+            dt,
+            potential: mean(-1.0 + factor * dt * dt),
+            pressure: mean(1.0),
+            temperature: mean(1.0),
+            at_end: mean(1.0),
+            cooling: mean(100.0 * dt * dt + off),
+            configurational: mean(1.0),
+            curvature: mean(400.0),
+            cost: 1.0,
+            is_whole: true,
+        };
+        [0.0025, 0.005, 0.01, 0.02].map(fluid).into()
+    }
+
+    #[test]
+    fn an_order_that_is_lost_in_the_scatter_is_none() {
+        let known = fluids(100.0, 1e-5, 0.0);
+        let Mean { value, bar } = order(&known, SchemeKind::Baoab, limit(&known)).unwrap();
+        assert!((value - 2.0).abs() < 0.05 && bar < 0.05, "{value} {bar}");
+        let lost = fluids(1.0, 1e-3, 0.0);
+        assert!(order(&lost, SchemeKind::Baoab, limit(&lost)).is_none());
+    }
+
+    #[test]
+    fn the_temperature_at_the_end_of_the_step_is_compared_with_theory() {
+        let off = |off: f64| fluids(100.0, 1e-5, off)[3].off_theory().unwrap();
+        assert!(off(0.0).abs() < 1e-9 && off(0.001) > 3.0, "{} {}", off(0.0), off(0.001));
+    }
 
     /// Height and slope of an exact line, and the bars of two points of one bar.
     #[test]

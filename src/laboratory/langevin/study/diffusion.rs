@@ -1,100 +1,175 @@
 //! Mean square displacement and velocities of particles in a bath, beside exact results.
 
-use super::{Mean, PARTS};
+use super::PARTS;
+use crate::console::Failure;
+use crate::frame::{Cell, Rows};
 use crate::laboratory::running::Running;
-use crate::results::{Meter, Progress};
-use crate::statistics::kolmogorov_smirnov;
+use crate::results::{Lab, Made, Meter, Size};
+use crate::statistics::{Mean, kolmogorov_smirnov};
 use crate::study::StudyError;
-use serde::Serialize;
+use std::f64::consts::PI;
 use stripmine_physics::method::langevin::keys::{INTEGRATOR, LAW};
 use stripmine_physics::method::langevin::options::{PairLaw, SchemeKind};
 use stripmine_physics::particles::Particle;
 use stripmine_physics::scene::{COUNT, DT, Overrides, SIDES};
 use stripmine_physics::words::Words;
 
-/// The systems of the source's figures 3 to 6: particles and side (length).
-pub const SYSTEMS: [(u64, f64); 4] = [(1000, 50.0), (1000, 100.0), (1000, 1000.0), (40_000, 100.0)];
-/// The step of runs with pairs (time), their duration, and looks at them for each factor of ten.
+/// Systems of LAN17's figures 3 to 6: particles and side (length).
+const SYSTEMS: [(u64, f64); 4] = [(1000, 50.0), (1000, 100.0), (1000, 1000.0), (40_000, 100.0)];
+/// σ of the source (length).
+const DIAMETER: f64 = 0.1;
+/// Step of runs with pairs (time), their duration, and samples in each factor of ten.
 const STEP: f64 = 0.001;
 const DURATION: f64 = 30.0;
-const LOOKS: f64 = 8.0;
-/// Steps at which the bath's temperature is looked at, over m/γ.
+const SAMPLES: f64 = 8.0;
+/// Steps at which the temperature of free particles is measured, over m/γ.
 const STEPS: [f64; 6] = [0.01, 0.03, 0.1, 0.3, 0.6, 1.0];
+/// Half-width of 95 % over a standard error.
+const WIDTH: f64 = 1.96;
 
 /// ⟨r²⟩ from a thermal start, with D = kT/γ and τ = m/γ of 1.
-pub fn exact(time: f64) -> f64 {
+fn exact(time: f64) -> f64 {
     4.0 * (time - 1.0 + (-time).exp())
 }
 
-/// A system with pairs, followed.
-#[derive(Clone, Debug, Serialize)]
-pub struct Followed {
-    /// Particles.
-    pub particles: u64,
-    /// Side of the box (length).
-    pub side: f64,
-    /// Times.
-    pub times: Vec<f64>,
+/// A system, followed.
+struct Followed {
+    particles: u64,
+    side: f64,
+    has_pairs: bool,
+    times: Vec<f64>,
     /// ⟨r²⟩ by positions as if there were no sides, and by those inside the box (length²).
-    pub square: Vec<[f64; 2]>,
-    /// The probability by Kolmogorov and Smirnov that the velocities at the end are Maxwell's, and the temperature.
-    pub maxwell: [f64; 2],
+    square: Vec<[f64; 2]>,
+    /// Probability by Kolmogorov and Smirnov that the velocities at the end are Maxwell's.
+    maxwell: f64,
+    /// Mean square of the velocities' components at the end.
+    temperature: f64,
 }
 
-/// Temperature of free particles by a scheme.
-#[derive(Clone, Debug, Serialize)]
-pub struct Heated {
-    /// The integrator.
-    pub scheme: &'static str,
-    /// Step over m/γ.
-    pub dt: f64,
-    /// Temperature over that of the bath.
-    pub temperature: Mean,
-    /// The probability that the velocities at the end are those of the bath.
-    pub maxwell: f64,
+impl Followed {
+    fn name(&self) -> String {
+        let pairs = if self.has_pairs { "" } else { ", no pairs" };
+        format!("N = {}, L = {}{pairs}", self.particles, self.side)
+    }
+
+    /// ⟨r²⟩ over the exact one without pairs, of the last sample at most at a time.
+    fn over_exact(&self, time: f64) -> f64 {
+        let within = self.times.iter().filter(|it| **it <= time * (1.0 + 1e-9)).count();
+        self.square[within - 1][0] / exact(self.times[within - 1])
+    }
+
+    /// Enskog's value of it at a time: discs of diameter σ that collide have the friction 2 n σ χ √(π m kT) beside γ, with χ their
+    /// distribution function at contact (Henderson); kT = m = γ = 1.
+    fn by_enskog(&self, time: f64) -> f64 {
+        let density = self.particles as f64 / (self.side * self.side);
+        let packing = 0.25 * PI * density * DIAMETER * DIAMETER;
+        let contact = (1.0 - 7.0 / 16.0 * packing) / (1.0 - packing).powi(2);
+        let friction = 1.0 + 2.0 * density * DIAMETER * contact * PI.sqrt();
+        exact(friction * time) / (friction * friction) / exact(time)
+    }
+
+    fn end(&self) -> f64 {
+        self.times.last().copied().unwrap_or_default()
+    }
+
+    /// Standard error of a mean square over itself: that of a Gaussian vector of the plane scatters as itself.
+    fn standard_error(&self) -> f64 {
+        (self.particles as f64).sqrt().recip()
+    }
+
+    fn variance(&self) -> Cell {
+        Cell::with_error(self.temperature, Some(WIDTH * self.standard_error() * self.temperature), 4)
+    }
 }
 
-/// What came out.
-#[derive(Clone, Debug, Serialize)]
-pub struct Diffusion {
-    /// The systems with pairs.
-    pub systems: Vec<Followed>,
-    /// The same number of particles without pairs: the first system.
-    pub free: Followed,
-    /// Temperatures over the step.
-    pub heated: Vec<Heated>,
+/// Temperature of free particles over that of the bath, by a scheme and a step over m/γ.
+struct Heated {
+    scheme: SchemeKind,
+    dt: f64,
+    temperature: Mean,
+    maxwell: f64,
 }
 
 /// Follows every system.
 ///
 /// # Errors
 /// [`StudyError`] if a scene breaks.
-pub fn diffusion(progress: Progress<'_>) -> Result<Diffusion, StudyError> {
+pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let schemes = [SchemeKind::Stochastic, SchemeKind::AsPrinted, SchemeKind::Baoab];
     let cases: Vec<(SchemeKind, f64)> =
         schemes.into_iter().flat_map(|scheme| STEPS.map(|dt| (scheme, dt))).collect();
-    let meter = Meter::new((SYSTEMS.len() + 1 + cases.len()) as f64, progress);
-    let systems =
-        meter.each_from_last(&SYSTEMS, |&(particles, side)| followed(particles, side, PairLaw::Wca))?;
-    let free = followed(SYSTEMS[0].0, SYSTEMS[0].1, PairLaw::None)?;
+    let meter = Meter::new((SYSTEMS.len() + 1 + cases.len()) as f64, lab.progress);
+    let mut systems = meter.each_from_last(&SYSTEMS, |&(particles, side)| followed(particles, side, true))?;
+    systems.push(followed(SYSTEMS[0].0, SYSTEMS[0].1, false)?);
     meter.add(1.0);
     let heated = meter.each(&cases, |&(scheme, dt)| heated(scheme, dt))?;
-    Ok(Diffusion { systems, free, heated })
+    let [thin, dense, free] = [2, 3, 4].map(|at| &systems[at]);
+    let off = thin.times.iter().map(|time| (thin.over_exact(*time) - 1.0).abs() / thin.standard_error());
+    let heating = heated.iter().filter(|it| it.scheme != SchemeKind::AsPrinted);
+    let heating = heating.map(|it| ((it.temperature.value - 1.0) / it.temperature.bar).abs());
+    let samples = systems.iter().flat_map(|it| (0..it.times.len()).map(move |at| (it, at)));
+    Ok(Made::of([
+        Rows::of(&systems)
+            .text("system", |it| it.name())
+            .number("over exact at 0.1", 3, |it| it.over_exact(0.1))
+            .number("at 1", 3, |it| it.over_exact(1.0))
+            .number("at the end", 3, |it| it.over_exact(f64::INFINITY))
+            .number("by Enskog", 3, |it| it.has_pairs.then(|| it.by_enskog(it.end())))
+            .number("relative standard error", 3, |it| it.standard_error())
+            .number("time", 2, |it| it.end())
+            .number("⟨r²⟩", 3, |it| it.square[it.times.len() - 1][0])
+            .number("⟨r²⟩ wrapped", 3, |it| it.square[it.times.len() - 1][1])
+            .number("temperature", 4, |it| it.temperature)
+            .number("p of Maxwell", 3, |it| it.maxwell)
+            .frame("displacements", "Displacements over those without pairs, and velocities at the end"),
+        Rows::of(samples)
+            .text("system", |(it, _)| it.name())
+            .number("time", 3, |(it, at)| it.times[*at])
+            .number("mean square displacement", 4, |(it, at)| it.square[*at][0])
+            .number("by wrapped positions", 4, |(it, at)| it.square[*at][1])
+            .number("without pairs, exact", 4, |(it, at)| exact(it.times[*at]))
+            .cell("over the exact one", |(it, at)| {
+                let ratio = it.square[*at][0] / exact(it.times[*at]);
+                Cell::with_error(ratio, Some(WIDTH * it.standard_error() * ratio), 3)
+            })
+            .number("by Enskog", 3, |(it, at)| it.has_pairs.then(|| it.by_enskog(it.times[*at])))
+            .frame("over-time", "Mean square displacement over the time"),
+        Rows::of(&heated)
+            .text("scheme", |it| it.scheme.word())
+            .number("step over m/γ", 2, |it| it.dt)
+            .cell("temperature over that of the bath", |it| {
+                Cell::with_error(it.temperature.value, Some(it.temperature.bar), 4)
+            })
+            .number("p of Maxwell", 3, |it| it.maxwell)
+            .frame("heating", "Temperature of free particles"),
+        Rows::of((0..=60).map(|at| 10f64.powf(-2.0 + f64::from(at) / 30.0)))
+            .number("step over m/γ", 3, |dt| *dt)
+            .number("temperature over that of the bath", 4, |dt| 1.0 / (1.0 - 0.5 * dt))
+            .frame("theory", "Temperature by 1/(1 − γ dt/2m)"),
+        Rows::of([()])
+            .cell("velocity variance with pairs", |()| dense.variance())
+            .cell("velocity variance without pairs", |()| free.variance())
+            .number("p of Maxwell with pairs", 3, |()| dense.maxwell)
+            .number("p of Maxwell without pairs", 3, |()| free.maxwell)
+            .number("standard errors off, thinnest system", 1, |()| off.clone().fold(0.0, f64::max))
+            .number("temperature off (half-widths)", 1, |()| heating.clone().fold(0.0, f64::max))
+            .frame("summary", "Velocities with and without pairs, and largest differences from theory"),
+    ])
+    .with_seeds([1]))
 }
 
-fn followed(particles: u64, side: f64, law: PairLaw) -> Result<Followed, StudyError> {
+fn followed(particles: u64, side: f64, has_pairs: bool) -> Result<Followed, StudyError> {
+    let law = if has_pairs { PairLaw::Wca } else { PairLaw::None };
     let overrides =
         Overrides::new().set(&COUNT, particles).set(&SIDES, [side; 2]).set(&LAW, law).set(&DT, STEP);
     let mut running = Running::begin("langevin-report", &overrides)?;
     let start = running.simulation.particles();
     let (mut times, mut square) = (vec![], vec![]);
-    let mut look = 0.0;
-    loop {
-        let time = 0.01 * 10f64.powf(look / LOOKS);
+    for sample in 0.. {
+        let time = 0.01 * 10f64.powf(f64::from(sample) / SAMPLES);
         if time > DURATION {
             break;
         }
-        look += 1.0;
         let wanted = (time / STEP).round() as u64;
         running.steps(wanted.saturating_sub(running.simulation.clock().steps))?;
         let now = running.simulation.particles();
@@ -106,16 +181,11 @@ fn followed(particles: u64, side: f64, law: PairLaw) -> Result<Followed, StudyEr
         times.push(running.simulation.clock().time);
         square.push([running.observed(["msd"])?[0], inside]);
     }
-    Ok(Followed {
-        particles,
-        side,
-        times,
-        square,
-        maxwell: [maxwell(&running), running.observed(["temperature"])?[0]],
-    })
+    let [temperature] = running.observed(["temperature"])?;
+    Ok(Followed { particles, side, has_pairs, times, square, maxwell: maxwell(&running), temperature })
 }
 
-/// The probability that the components of the velocities are those of a bath of kT = m = 1.
+/// Probability that the components of the velocities are those of a bath of kT = m = 1.
 fn maxwell(running: &Running) -> f64 {
     let particles = running.simulation.particles();
     let components = particles.all().iter().flat_map(Particle::planar_velocity);
@@ -125,7 +195,7 @@ fn maxwell(running: &Running) -> f64 {
 fn heated(scheme: SchemeKind, dt: f64) -> Result<Heated, StudyError> {
     let overrides = Overrides::new().set(&COUNT, 4000_u64).set(&INTEGRATOR, scheme).set(&DT, dt);
     let mut running = Running::begin("langevin-free", &overrides)?;
-    // Looks five times m/γ apart.
+    // Samples five times m/γ apart.
     let between = (5.0 / dt).ceil() as u64;
     let mut temperatures = vec![];
     running.steps(2 * between)?;
@@ -133,10 +203,22 @@ fn heated(scheme: SchemeKind, dt: f64) -> Result<Heated, StudyError> {
         running.steps(between)?;
         temperatures.push(running.observed(["temperature"])?[0]);
     }
-    Ok(Heated {
-        scheme: scheme.word(),
-        dt,
-        temperature: Mean::of_course(&temperatures),
-        maxwell: maxwell(&running),
-    })
+    Ok(Heated { scheme, dt, temperature: Mean::of_course(&temperatures), maxwell: maxwell(&running) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Enskog: four discs of diameter 0.1 in a unit of area collide so often that they diffuse at about 0.4 of kT/γ; thin ones do not.
+    #[test]
+    fn collisions_slow_dense_systems_down() {
+        let [dense, thin] = [(40_000, 100.0), (1000, 1000.0)].map(|(particles, side)| {
+            let (times, square) = (vec![20.0], vec![[1.0; 2]]);
+            let system =
+                Followed { particles, side, has_pairs: true, times, square, maxwell: 0.5, temperature: 1.0 };
+            system.by_enskog(20.0)
+        });
+        assert!((dense - 0.411).abs() < 0.005 && thin > 0.999, "{dense}, {thin}");
+    }
 }

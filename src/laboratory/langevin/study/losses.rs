@@ -1,85 +1,106 @@
 //! Particles that a long step throws out of the box: how many over the step, and from which step on.
 
+use crate::console::Failure;
+use crate::frame::Rows;
 use crate::laboratory::running::{Running, prepared};
-use crate::results::{Meter, Progress};
+use crate::results::{Lab, Made, Meter, Size};
 use crate::study::StudyError;
-use serde::Serialize;
 use std::f64::consts::PI;
 use stripmine_physics::method::langevin::keys::{BATH_TEMPERATURE, INTEGRATOR, MOST_LOST, STRENGTH};
 use stripmine_physics::method::langevin::options::SchemeKind;
 use stripmine_physics::method::observed::UnknownName;
+use stripmine_physics::near::Near;
+use stripmine_physics::particles::Particle;
 use stripmine_physics::scene::{COUNT, DT, Overrides, SIDES, TEMPERATURE};
 
-/// LAN17's table: step, particles lost in [`STEPS`] steps.
-pub const SOURCE: [(f64, u64); 4] = [(1.0, 19_200), (0.1, 6393), (0.01, 754), (0.001, 0)];
-/// Steps of every run, as in the source.
-pub const STEPS: u64 = 100;
-/// LAN17's interactions in steps of 1.
-pub const INTERACTIONS: u64 = 43_676;
+/// LAN17's table: step, particles lost and interactions in [`STEPS`] steps.
+const SOURCE: [(f64, u64, u64); 4] =
+    [(1.0, 19_200, 43_676), (0.1, 6393, 98_164), (0.01, 754, 91_054), (0.001, 0, 84_520)];
+/// Its particles, density (1/length²), σ (length) and steps.
+const PARTICLES: u64 = 40_000;
+const DENSITY: f64 = 4.0;
+const DIAMETER: f64 = 0.1;
+const STEPS: u64 = 100;
 /// Steps between the source's.
 const FINER: [f64; 5] = [0.03, 0.005, 0.004, 0.003, 0.002];
-/// The integrators compared.
-pub const SCHEMES: [SchemeKind; 2] = [SchemeKind::Stochastic, SchemeKind::Baoab];
-/// One of this number of particles, at the same density, is taken for other ε and kT, and its losses are counted for all.
+/// Strengths ε and temperatures kT (energy).
+const STRENGTHS: [f64; 4] = [0.1, 1.0, 10.0, 100.0];
+const TEMPERATURES: [f64; 3] = [0.1, 1.0, 10.0];
+/// One particle in so many, at the same density, is taken for other ε and kT, and its losses are counted for all.
 const PART: u64 = 8;
-/// The boundary is known to this part of itself.
+/// The longest step is known to this part of itself.
 const TOLERANCE: f64 = 0.05;
 
-/// Losses at a step.
-#[derive(Clone, Debug, Serialize)]
-pub struct Row {
-    /// The step (time).
-    pub dt: f64,
-    /// Lost by the integrators.
-    pub lost: [u64; 2],
-    /// Lost in the source, where it says.
-    pub source: Option<u64>,
+/// Longest step without a loss, the source's bound, and the limit by the hardest collisions (time).
+struct Boundary {
+    dt: f64,
+    bounds: [f64; 2],
 }
 
-/// The longest step without a loss, for a pair potential and a temperature.
-#[derive(Clone, Debug, Serialize)]
-pub struct Boundary {
-    /// ε (energy).
-    pub strength: f64,
-    /// kT (energy).
-    pub temperature: f64,
-    /// The step (time).
-    pub dt: f64,
-    /// The source's bound, and the limit by the hardest collisions (time).
-    pub bounds: [f64; 2],
-}
-
-/// Losses at the source's steps for a pair potential and a temperature.
-#[derive(Clone, Debug, Serialize)]
-pub struct Choice {
-    /// ε (energy).
-    pub strength: f64,
-    /// kT (energy).
-    pub temperature: f64,
-    /// Lost by the stochastic integrator at each step of [`SOURCE`].
-    pub lost: [u64; 4],
-}
-
-/// What came out.
-#[derive(Clone, Debug, Serialize)]
-pub struct LossTable {
-    /// Particles at the start.
-    pub particles: u64,
-    /// Losses over the step.
-    pub rows: Vec<Row>,
-    /// Boundaries.
-    pub boundaries: Vec<Boundary>,
-    /// Pairs nearer than σ, seen from each of the two, that the particles left in the source at steps of 1 make at random places in its 100 steps: at
-    /// least its interactions, which are fewer.
-    pub least_interactions: f64,
-    /// Losses for other ε and kT.
-    pub choices: Vec<Choice>,
+/// Counts losses and interactions, and searches for the longest steps without a loss.
+///
+/// # Errors
+/// [`StudyError`] if a scene is refused.
+pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+    let mut steps: Vec<f64> = SOURCE.iter().map(|(dt, ..)| *dt).chain(FINER).collect();
+    steps.sort_by(|a, b| b.total_cmp(a));
+    let choices: Vec<[f64; 2]> =
+        STRENGTHS.iter().flat_map(|&strength| TEMPERATURES.map(|kt| [strength, kt])).collect();
+    let meter = Meter::new((steps.len() + SOURCE.len() + 2 * choices.len()) as f64, lab.progress);
+    let of_step = |dt: f64| overrides(PARTICLES, dt).set(&MOST_LOST, PARTICLES);
+    let lost_by = |dt: f64, scheme: SchemeKind| lost(PARTICLES, &of_step(dt).set(&INTEGRATOR, scheme));
+    let losses = meter.each(&steps, |&dt| {
+        Ok::<_, StudyError>((dt, lost_by(dt, SchemeKind::Stochastic)?, lost_by(dt, SchemeKind::Baoab)?))
+    })?;
+    let met = meter.each(&SOURCE, |&(dt, ..)| interactions(&of_step(dt)))?;
+    let boundaries = meter.each(&choices, |&choice| boundary(choice))?;
+    let chosen = meter.each(&choices, |&choice| lost_by_choice(choice))?;
+    Ok(Made::of([
+        Rows::of(losses)
+            .number("dt", 3, |(dt, ..)| *dt)
+            .count("stochastic", |(_, stochastic, _)| *stochastic)
+            .count("baoab", |(.., baoab)| *baoab)
+            .cell("source", |(dt, ..)| SOURCE.iter().find(|it| it.0 == *dt).map(|(_, lost, _)| *lost))
+            .frame("losses", format!("Particles lost in {STEPS} steps, of {PARTICLES}")),
+        Rows::of(SOURCE.iter().zip(met))
+            .number("dt", 3, |((dt, ..), _)| *dt)
+            .count("interactions", |(_, met)| *met)
+            .count("source", |((.., source), _)| *source)
+            .number("of the source's particles left, at random places", 0, |((_, lost, _), _)| {
+                at_random(PARTICLES - lost)
+            })
+            .frame(
+                "interactions",
+                format!("Pairs nearer than σ, counted from each of the two, over {STEPS} steps"),
+            ),
+        Rows::of(choices.iter().zip(&boundaries))
+            .number("ε", 1, |(choice, _)| choice[0])
+            .number("kT", 1, |(choice, _)| choice[1])
+            .number("longest step", 5, |(_, it)| it.dt)
+            .number("source's bound", 5, |(_, it)| it.bounds[0])
+            .number("of it", 3, |(_, it)| it.dt / it.bounds[0])
+            .number("by hardest collisions", 5, |(_, it)| it.bounds[1])
+            .number("of it", 3, |(_, it)| it.dt / it.bounds[1])
+            .frame("boundaries", format!("Longest step without a loss in {STEPS} steps, BAOAB, to 5 %")),
+        Rows::of(choices.iter().zip(&chosen))
+            .number("ε", 1, |(choice, _)| choice[0])
+            .number("kT", 1, |(choice, _)| choice[1])
+            .cells(SOURCE.map(|(dt, ..)| format!("lost, dt = {dt}")), |(_, lost)| **lost)
+            .number("times off the source, at most", 1, |(_, lost)| times_off(**lost))
+            .frame("choices", format!("Particles lost for other ε and kT, of {PARTICLES}")),
+    ])
+    .with_seeds([1]))
 }
 
 fn overrides(particles: u64, dt: f64) -> Overrides {
-    let side = (particles as f64 / 4.0).sqrt();
-    let scene = Overrides::new().set(&COUNT, particles).set(&SIDES, [side; 2]);
-    scene.set(&DT, dt)
+    let side = (particles as f64 / DENSITY).sqrt();
+    Overrides::new().set(&COUNT, particles).set(&SIDES, [side; 2]).set(&DT, dt)
+}
+
+/// The scene at a step with an ε and a kT.
+fn chosen(particles: u64, dt: f64, [strength, temperature]: [f64; 2]) -> Overrides {
+    let scene = overrides(particles, dt).set(&STRENGTH, strength);
+    scene.set(&BATH_TEMPERATURE, temperature).set(&TEMPERATURE, temperature)
 }
 
 /// Particles lost in the source's number of steps; all of them where none is left.
@@ -91,57 +112,51 @@ fn lost(particles: u64, overrides: &Overrides) -> Result<u64, StudyError> {
     })
 }
 
-/// Counts losses and looks for boundaries, of as many particles.
-///
-/// # Errors
-/// [`StudyError`] if a scene is refused.
-pub fn losses(particles: u64, progress: Progress<'_>) -> Result<LossTable, StudyError> {
-    let mut steps: Vec<f64> = SOURCE.iter().map(|(dt, _)| *dt).chain(FINER).collect();
-    steps.sort_by(|a, b| b.total_cmp(a));
-    let places: Vec<(f64, f64)> = [0.1, 1.0, 10.0, 100.0]
-        .into_iter()
-        .flat_map(|strength| [0.1, 1.0, 10.0].map(|kt| (strength, kt)))
-        .collect();
-    let all = steps.len() + 2 * places.len();
-    let meter = Meter::new(all as f64, progress);
-    let rows = meter.each(&steps, |&dt| {
-        let mut counts = [0; 2];
-        for (count, scheme) in counts.iter_mut().zip(SCHEMES) {
-            let scene = overrides(particles, dt).set(&INTEGRATOR, scheme).set(&MOST_LOST, particles);
-            *count = lost(particles, &scene)?;
-        }
-        let source = SOURCE.iter().find(|(there, _)| *there == dt).map(|(_, lost)| *lost);
-        Ok::<_, StudyError>(Row { dt, lost: counts, source })
-    })?;
-    let boundaries =
-        meter.each(&places, |&(strength, temperature)| boundary(particles, strength, temperature))?;
-    let choices = meter.each(&places, |&(strength, temperature)| choice(particles, strength, temperature))?;
-    Ok(LossTable { particles, rows, boundaries, least_interactions: least_interactions(particles), choices })
-}
-
-fn least_interactions(particles: u64) -> f64 {
-    let (left, density, diameter) = ((particles - SOURCE[0].1) as f64, 4.0, 0.1_f64);
-    STEPS as f64 * left.powi(2) / (particles as f64 / density) * PI * diameter.powi(2)
-}
-
-/// The scene at a step with an ε and a kT.
-fn chosen(particles: u64, dt: f64, strength: f64, temperature: f64) -> Overrides {
-    let scene = overrides(particles, dt).set(&STRENGTH, strength);
-    scene.set(&BATH_TEMPERATURE, temperature).set(&TEMPERATURE, temperature)
-}
-
-fn choice(particles: u64, strength: f64, temperature: f64) -> Result<Choice, StudyError> {
+/// Losses at the steps of [`SOURCE`] by the source's scheme.
+fn lost_by_choice(choice: [f64; 2]) -> Result<[u64; 4], StudyError> {
     let mut counts = [0; 4];
-    for (count, (dt, _)) in counts.iter_mut().zip(SOURCE) {
-        let scene = chosen(particles / PART, dt, strength, temperature).set(&INTEGRATOR, SCHEMES[0]);
-        *count = PART * lost(particles / PART, &scene.set(&MOST_LOST, particles))?;
+    for (count, (dt, ..)) in counts.iter_mut().zip(SOURCE) {
+        let scene = chosen(PARTICLES / PART, dt, choice).set(&INTEGRATOR, SchemeKind::Stochastic);
+        *count = PART * lost(PARTICLES / PART, &scene.set(&MOST_LOST, PARTICLES))?;
     }
-    Ok(Choice { strength, temperature, lost: counts })
+    Ok(counts)
 }
 
-fn boundary(particles: u64, strength: f64, temperature: f64) -> Result<Boundary, StudyError> {
-    let overrides = |dt: f64| chosen(particles, dt, strength, temperature);
-    let limits = prepared("langevin-report", &overrides(0.001))?.step_limits;
+/// Largest factor between some losses and the source's.
+fn times_off(lost: [u64; 4]) -> f64 {
+    let ratios = lost.iter().zip(SOURCE).map(|(lost, (_, source, _))| {
+        let ratio = (*lost).max(1) as f64 / source.max(1) as f64;
+        ratio.max(1.0 / ratio)
+    });
+    ratios.fold(1.0, f64::max)
+}
+
+/// Pairs nearer than σ from each of the two, summed over the steps of a run by the source's scheme.
+fn interactions(overrides: &Overrides) -> Result<u64, StudyError> {
+    let mut running =
+        Running::timed("langevin-report", &overrides.clone().set(&INTEGRATOR, SchemeKind::Stochastic))?;
+    let (domain, mut met) = (running.domain, 0);
+    for _ in 0..STEPS {
+        running.steps(1)?;
+        let particles = running.simulation.particles();
+        let places = particles.all().iter().map(Particle::place);
+        let near = Near::among(domain, places.clone(), DIAMETER);
+        let others = places.flat_map(|place| near.of(place).map(move |(_, other)| (place, other)));
+        // Each place is found by itself, too.
+        met += others.filter(|(place, other)| domain.distance(*place, *other) < DIAMETER).count();
+        met -= particles.len();
+    }
+    Ok(met as u64)
+}
+
+/// Interactions of some particles at random places in the source's box.
+fn at_random(particles: u64) -> f64 {
+    let area = PARTICLES as f64 / DENSITY;
+    STEPS as f64 * (particles as f64).powi(2) / area * PI * DIAMETER.powi(2)
+}
+
+fn boundary(choice: [f64; 2]) -> Result<Boundary, StudyError> {
+    let limits = prepared("langevin-report", &chosen(PARTICLES, 0.001, choice))?.step_limits;
     let step = |name: &str| {
         let unknown = || UnknownName::new("limit of the step", name, limits.iter().map(|limit| limit.name));
         limits.iter().find(|limit| limit.name == name).map(|limit| limit.step).ok_or_else(unknown)
@@ -151,10 +166,28 @@ fn boundary(particles: u64, strength: f64, temperature: f64) -> Result<Boundary,
     while high / low > 1.0 + TOLERANCE {
         let middle = (low * high).sqrt();
         // The first loss ends it.
-        match lost(particles, &overrides(middle).set(&MOST_LOST, 0_u64))? {
+        match lost(PARTICLES, &chosen(PARTICLES, middle, choice).set(&MOST_LOST, 0_u64))? {
             0 => low = middle,
             _ => high = middle,
         }
     }
-    Ok(Boundary { strength, temperature, dt: (low * high).sqrt(), bounds })
+    Ok(Boundary { dt: (low * high).sqrt(), bounds })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn losses_are_compared_by_the_largest_factor() {
+        assert_eq!(times_off([19_200, 6393, 754, 0]), 1.0);
+        assert!((times_off([37_111, 34_738, 26_331, 0]) - 26_331.0 / 754.0).abs() < 1e-9);
+        assert!((times_off([19_000, 6400, 20, 0]) - 37.7).abs() < 1e-9);
+    }
+
+    /// The 20,800 particles that are left in the source would interact three times as often as it says.
+    #[test]
+    fn pairs_at_random_places_are_counted_from_both() {
+        assert!((at_random(20_800) - 135_917.9).abs() < 0.1, "{}", at_random(20_800));
+    }
 }

@@ -1,11 +1,9 @@
-//! What is measured of particles in a bath beside a run: each study a file, its section of the report in `sections`.
+//! Studies of particles in a bath.
 
 pub mod accuracy;
 pub mod diffusion;
 pub mod losses;
 pub mod sectors;
 
-pub use crate::statistics::Mean;
-
 /// Parts of a run, each a measurement; their scatter gives the error.
-pub const PARTS: usize = 20;
+const PARTS: usize = 20;

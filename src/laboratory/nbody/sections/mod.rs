@@ -1,4 +1,3 @@
 //! What the studies say, as items of the report.
 
-pub mod collapse;
 pub mod rates;

@@ -1,101 +1,214 @@
 //! A cold sphere that falls in on itself.
 
+use crate::console::Failure;
+use crate::frame::{Cell, Rows};
 use crate::laboratory::running::Running;
-use crate::results::{Meter, Progress};
+use crate::report::figure::{Drawing, Guide, Picture, Shape, Tint};
+use crate::report::section::{Film, Frame};
+use crate::results::{Lab, Made, Meter, Size};
+use crate::statistics::{Mean, quantile};
 use crate::study::StudyError;
-use serde::Serialize;
+use std::f64::consts::{PI, SQRT_2};
 use stripmine_physics::method::nbody::keys::{COUNT, SEED};
 use stripmine_physics::particles::{Particle, Particles};
 use stripmine_physics::scene::Overrides;
 
-/// Bodies.
-pub const BODIES: usize = 2048;
-/// Looks, and steps between them.
-const LOOKS: u64 = 320;
-const BETWEEN: u64 = 8;
-/// From this time on the bodies that are bound are looked at: they have swung several times.
-pub const LATE: f64 = 6.0;
-/// Bodies that are shown.
+/// Bodies of a sphere, and how many of them are drawn and filmed.
+const BODIES: usize = 2048;
 const SHOWN: usize = 700;
+const FILMED: usize = 300;
 /// Seeds of the start.
-pub const SEEDS: [u64; 4] = [1, 2, 3, 4];
+const SEEDS: [u64; 4] = [1, 2, 3, 4];
+/// Samples, and steps between them.
+const SAMPLES: u64 = 320;
+const BETWEEN: u64 = 8;
+/// Bound bodies are sought from this time on, when they have swung several times.
+const LATE: f64 = 6.0;
+/// Free fall of a uniform sphere of radius and mass 1.
+const FREE_FALL: f64 = PI / (2.0 * SQRT_2);
+/// Drawings by name and time.
+const DRAWN: [(&str, f64); 3] = [("bodies-0-0", 0.0), ("bodies-1-1", FREE_FALL), ("bodies-3-0", 3.0)];
+/// Half the side of the film's window, and the time at which the film ends.
+const WINDOW: f64 = 1.5;
+const FILM_END: f64 = 4.0;
+/// Share of the bodies within a drawing.
+const SEEN: f64 = 0.9;
+/// Speed of the darkest shade.
+const FASTEST: f64 = 3.0;
+/// Radius of a body in the film.
+const RADIUS: f64 = 0.015;
 
-/// The sphere at a moment.
-#[derive(Clone, Debug, Serialize)]
-pub struct Moment {
-    /// The time.
-    pub time: f64,
+/// The sphere at a moment; speeds of the first bodies with their positions along x and y.
+struct Moment {
+    time: f64,
     /// Kinetic over potential energy.
-    pub virial_ratio: f64,
-    /// Radius of half of the mass.
-    pub half_mass_radius: f64,
-    /// ΔE/E.
-    pub energy_error: f64,
-    /// Magnitude of the momentum.
-    pub momentum: f64,
-    /// Positions along x and y and the speed of the first bodies.
-    #[serde(skip)]
-    pub bodies: Vec<([f64; 2], f64)>,
+    virial_ratio: f64,
+    half_mass_radius: f64,
+    energy_error: f64,
+    momentum: f64,
+    bodies: Vec<([f64; 2], f64)>,
 }
 
-/// The bodies that are still bound.
-#[derive(Clone, Debug, Serialize)]
-pub struct Bound {
-    /// The time.
-    pub time: f64,
-    /// The part of all bodies that they are.
-    pub share: f64,
+/// The bodies that are bound at a moment.
+struct Bound {
+    time: f64,
+    share: f64,
     /// Their kinetic over their potential energy, about their own mean motion.
-    pub virial_ratio: f64,
+    virial_ratio: f64,
     /// Their kinetic energy over Σ r·F, Clausius' virial, which is the potential energy where nothing is softened.
-    pub clausius_ratio: f64,
+    clausius_ratio: f64,
 }
 
-/// A sphere.
-#[derive(Clone, Debug, Serialize)]
-pub struct Collapse {
-    /// Seed of its start.
-    pub seed: u64,
-    /// Bound bodies at late moments.
-    pub bound: Vec<Bound>,
-    /// Moments, from the start on.
-    pub moments: Vec<Moment>,
+struct Sphere {
+    seed: u64,
+    bound: Vec<Bound>,
+    moments: Vec<Moment>,
+}
+
+impl Sphere {
+    /// The moment at which half of the mass is nearest to the centre.
+    fn closest(&self) -> [f64; 2] {
+        let moments = self.moments.iter().map(|it| [it.time, it.half_mass_radius]);
+        moments.min_by(|a, b| a[1].total_cmp(&b[1])).unwrap_or([f64::NAN; 2])
+    }
+
+    /// Mean over the late moments.
+    fn late(&self, of: fn(&Bound) -> f64) -> f64 {
+        self.bound.iter().map(of).sum::<f64>() / self.bound.len() as f64
+    }
 }
 
 /// Follows a sphere of each seed.
 ///
 /// # Errors
 /// [`StudyError`] if a scene breaks.
-pub fn collapses(progress: Progress<'_>) -> Result<Vec<Collapse>, StudyError> {
-    let meter = Meter::new(SEEDS.len() as f64, progress);
-    meter.each(&SEEDS, |&seed| collapse(seed))
+pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+    let all = Meter::new(SEEDS.len() as f64, lab.progress).each(&SEEDS, |&seed| sphere(seed))?;
+    let mean = |of: &dyn Fn(&Sphere) -> f64, decimals: usize| {
+        let Mean { value, bar } = Mean::of(&all.iter().map(of).collect::<Vec<_>>());
+        Cell::with_error(value, Some(bar), decimals)
+    };
+    let largest = |of: fn(&Moment) -> f64| all.iter().flat_map(|it| &it.moments).map(of).fold(0.0, f64::max);
+    let over_seeds = |at: usize, of: fn(&Moment) -> f64| {
+        all.iter().map(|it| of(&it.moments[at])).sum::<f64>() / all.len() as f64
+    };
+    let bound = all.iter().flat_map(|sphere| sphere.bound.iter().map(|it| (sphere.seed, it)));
+    let made = Made::of([
+        Rows::of(&all)
+            .count("seed", |it| it.seed)
+            .number("end of the fall", 3, |it| it.closest()[0])
+            .number("radius of half the mass there", 4, |it| it.closest()[1])
+            .number("stays bound (%)", 1, |it| 100.0 * it.late(|it| it.share))
+            .number("virial ratio, Σ r·F", 3, |it| it.late(|it| it.clausius_ratio))
+            .number("with the potential energy", 3, |it| it.late(|it| it.virial_ratio))
+            .frame(
+                "spheres",
+                format!("Spheres of {BODIES} bodies; late means are over times from {LATE} on"),
+            ),
+        Rows::of(0..all[0].moments.len())
+            .number("time", 2, |at| all[0].moments[*at].time)
+            .number("virial ratio", 3, |at| over_seeds(*at, |it| it.virial_ratio))
+            .number("radius of half the mass", 3, |at| over_seeds(*at, |it| it.half_mass_radius))
+            .frame(
+                "moments",
+                "All bodies: kinetic over potential energy, and radius of half the mass, means over seeds",
+            ),
+        Rows::of(bound)
+            .count("seed", |(seed, _)| *seed)
+            .number("time", 2, |(_, it)| it.time)
+            .number("stays bound (%)", 1, |(_, it)| 100.0 * it.share)
+            .number("virial ratio, Σ r·F", 3, |(_, it)| it.clausius_ratio)
+            .number("with the potential energy", 3, |(_, it)| it.virial_ratio)
+            .frame("bound", "Bodies that stay bound, at late moments"),
+        Rows::of([()])
+            .cell("end of the fall", |()| mean(&|it| it.closest()[0], 3))
+            .number("free fall", 3, |()| FREE_FALL)
+            .cell("radius of half the mass there", |()| mean(&|it| it.closest()[1], 4))
+            .cell("stays bound (%)", |()| mean(&|it| 100.0 * it.late(|it| it.share), 1))
+            .cell("virial ratio, Σ r·F", |()| mean(&|it| it.late(|it| it.clausius_ratio), 4))
+            .cell("with the potential energy", |()| mean(&|it| it.late(|it| it.virial_ratio), 4))
+            .short("largest energy error", |()| largest(|it| it.energy_error.abs()))
+            .short("largest momentum", |()| largest(|it| it.momentum))
+            .frame("summary", "Means over the seeds, and the largest errors"),
+    ]);
+    let made = DRAWN.iter().fold(made.with_film(film(&all[0])).with_seeds(SEEDS), |made, (name, time)| {
+        made.with_picture(name, Picture::Drawing(drawing(&all[0].moments, *time)))
+    });
+    Ok(made)
 }
 
-fn collapse(seed: u64) -> Result<Collapse, StudyError> {
+/// Bodies at the moment nearest to a time, within a window that holds most of them.
+fn drawing(moments: &[Moment], time: f64) -> Drawing {
+    let nearest = moments.iter().min_by(|a, b| (a.time - time).abs().total_cmp(&(b.time - time).abs()));
+    let bodies = nearest.map_or(&[][..], |it| &it.bodies);
+    let mut far: Vec<f64> = bodies.iter().map(|([x, y], _)| x.abs().max(y.abs())).collect();
+    far.sort_by(f64::total_cmp);
+    let half = 1.05 * quantile(&far, SEEN).unwrap_or(WINDOW);
+    let inside = bodies.iter().filter(|(centre, _)| centre.iter().all(|x| x.abs() < half));
+    let shapes = inside.map(|&(centre, speed)| Shape::Disc {
+        centre,
+        radius: RADIUS * half / WINDOW,
+        tint: Tint::Shade((speed / FASTEST).min(1.0)),
+    });
+    Drawing {
+        window: [[-half; 2], [half; 2]],
+        width: 420.0,
+        shapes: shapes.collect(),
+        shades: Some((0.0, FASTEST, "speed (√(GM/R))".into())),
+        guide: Some(Guide { unit: "R".into(), gravity: None }),
+    }
+}
+
+/// Every other moment; bodies beyond the window stay at its rim.
+fn film(sphere: &Sphere) -> Film {
+    let frames = sphere.moments.iter().filter(|it| it.time <= FILM_END).step_by(2).map(|it| Frame {
+        time: it.time,
+        discs: it
+            .bodies
+            .iter()
+            .take(FILMED)
+            .map(|&(centre, speed)| (centre.map(|x| x.clamp(-WINDOW, WINDOW)), speed.min(FASTEST)))
+            .collect(),
+    });
+    Film {
+        title: String::new(),
+        units: ["R", "√(R³/GM)"].map(str::to_owned),
+        window: [[-WINDOW; 2], [WINDOW; 2]],
+        sides: vec![],
+        falls: false,
+        radii: vec![RADIUS; FILMED],
+        fixed: vec![],
+        frames: frames.collect(),
+        shade: "speed (√(GM/R))".into(),
+        shades: [0.0, FASTEST],
+    }
+}
+
+fn sphere(seed: u64) -> Result<Sphere, StudyError> {
     let mut running =
         Running::timed("cold-collapse", &Overrides::new().set(&COUNT, BODIES).set(&SEED, seed))?;
     let (mut moments, mut late) = (vec![], vec![]);
-    for look in 0..=LOOKS {
-        if look > 0 {
+    for sample in 0..=SAMPLES {
+        if sample > 0 {
             running.steps(BETWEEN)?;
         }
         let names = ["time", "virial_ratio", "half_mass_radius", "energy_error", "momentum"];
         let [time, virial_ratio, half_mass_radius, energy_error, momentum] = running.observed(names)?;
         let particles = running.simulation.particles();
-        let seen = particles.all().iter().take(SHOWN).map(|body| {
+        let bodies = particles.all().iter().take(SHOWN).map(|body| {
             let [x, y, _] = body.position;
             ([x, y], body.velocity.iter().map(|v| v * v).sum::<f64>().sqrt())
         });
-        let bodies = seen.collect();
-        if time > LATE && look.is_multiple_of(8) {
+        let bodies = bodies.collect();
+        if time > LATE && sample.is_multiple_of(8) {
             late.push(bound(time, &particles));
         }
         moments.push(Moment { time, virial_ratio, half_mass_radius, energy_error, momentum, bodies });
     }
-    Ok(Collapse { seed, bound: late, moments })
+    Ok(Sphere { seed, bound: late, moments })
 }
 
-/// The bodies that stay when those whose energy is positive are taken away, again and again.
+/// Removes bodies of positive energy until none is left.
 fn bound(time: f64, particles: &Particles) -> Bound {
     // As the preset has it.
     const SOFTENING: f64 = 0.03;
