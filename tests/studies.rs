@@ -2,6 +2,7 @@
 
 use serde_json::Value;
 use std::fs;
+use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 #[cfg(unix)]
@@ -289,4 +290,47 @@ fn no_way_is_recommended_that_something_speaks_against() {
             assert!(!objected(&runs[place.as_u64().unwrap() as usize]), "{measure}");
         }
     }
+}
+
+/// A case as the program sends it to a process of its own that measures.
+fn case(events: u64, discs: u64) -> Value {
+    let overrides = [format!("particles.count={discs}")];
+    let amount = [0, events];
+    let scene = serde_json::json!({
+        "preset": "hard-disks", "overrides": overrides, "in_events": true, "amount": amount, "seconds": 0.0
+    });
+    serde_json::json!({ "work": { "Scene": scene }, "threads": null })
+}
+
+/// A measuring process prints a line for each case, and ends at the first that fails, with the exit code of its failure.
+#[test]
+fn a_process_measures_the_cases_of_its_input() {
+    let mut child = command(&["measure-cases", "--quiet"]);
+    let pipes = child.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = pipes.spawn().unwrap();
+    let mut asked = child.stdin.take().unwrap();
+    let cases = serde_json::json!([case(100, 20), case(200, 20), case(100, 0)]);
+    writeln!(asked, "{cases}").unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(3), "{}", said(&output));
+    let lines = String::from_utf8(output.stdout.clone()).unwrap();
+    let works: Vec<f64> = lines
+        .lines()
+        .map(|line| serde_json::from_str::<Value>(line).unwrap()["work"].as_f64().unwrap())
+        .collect();
+    assert_eq!(works, [100.0, 200.0]);
+    assert!(said(&output).starts_with("error: "), "{}", said(&output));
+}
+
+/// A measuring process ends at once where the program that asked is gone.
+#[test]
+fn a_measuring_process_ends_with_its_program() {
+    let mut child = command(&["measure-cases", "--quiet"]);
+    let mut child =
+        child.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    writeln!(child.stdin.as_mut().unwrap(), "{}", serde_json::json!([case(1 << 50, 1000)])).unwrap();
+    assert!(child.try_wait().unwrap().is_none());
+    drop(child.stdin.take());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!((output.status.code(), output.stdout.len()), (Some(130), 0), "{}", said(&output));
 }

@@ -18,6 +18,7 @@ mod scene;
 use crate::console::Verb;
 use crate::console::{Common, Failure, MOST_THREADS, clear_progress, print_answer, tell};
 use crate::laboratory::laboratories;
+use crate::laboratory::rates::{VERB, serve};
 use crate::provenance::command_line;
 use crate::results::Item;
 use crate::study;
@@ -56,6 +57,9 @@ enum GeneralVerb {
     Explain(Box<explain::ExplainVerb>),
     Completions(completions::Completions),
     Man(man::ManVerb),
+    /// Measures the cases that standard input names, for a study of this program
+    #[command(name = VERB, hide = true)]
+    Measure,
 }
 
 /// The verbs of methods.
@@ -253,5 +257,9 @@ fn carried_out(matches: &ArgMatches, command: &str, crew: Crew, methods: Methods
         GeneralVerb::Explain(verb) => verb.run(&common, methods),
         GeneralVerb::Completions(verb) => verb.run(methods),
         GeneralVerb::Man(verb) => verb.run(methods),
+        GeneralVerb::Measure => {
+            let works: Vec<_> = laboratories(methods).flat_map(|laboratory| laboratory.works).collect();
+            serve(&works)
+        }
     }
 }

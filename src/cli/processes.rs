@@ -9,6 +9,7 @@ mod joining;
 #[cfg(feature = "mpi")]
 use crate::console::warn;
 use crate::console::{Failure, tell};
+use crate::laboratory::rates::VERB as MEASURE;
 use crate::study::StudyError;
 use agreement::{Part, Verdict, agreed};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -30,8 +31,8 @@ const LAUNCHERS: [Launcher; 3] = [
     Launcher { size: "SLURM_NTASKS", rank: "PMIX_RANK" },
 ];
 
-/// Verbs that start no simulation. Each process carries them out on its own, whatever launcher has set its variables.
-const ALONE: [&str; 5] = ["scene", "average", "plot", "completions", "man"];
+/// Verbs that start no simulation together. Each process carries them out on its own, whatever launcher has set its variables.
+const ALONE: [&str; 6] = ["scene", "average", "plot", "completions", "man", MEASURE];
 
 /// A process among those that a launcher has started.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -215,7 +216,11 @@ pub(super) fn gone(gone: Gone) -> Failure {
 
 /// The failure of another rank, with its exit code and words.
 pub(super) fn of_rank(rank: usize, code: u8, said: &str) -> Failure {
-    Failure::OfRank { rank, class: Class::of_exit_code(code), said: said.to_owned() }
+    Failure::OfProcess {
+        process: format!("rank {rank}"),
+        class: Class::of_exit_code(code),
+        said: said.to_owned(),
+    }
 }
 
 /// Which of several processes this is.

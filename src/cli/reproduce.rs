@@ -197,7 +197,8 @@ impl Job<'_> {
         let (share, before) = (item.seconds(self.effort), self.before.get());
         self.bar.set_message(format!("{}, about {}", item.name, lasting(share)));
         let (start, bar) = (Instant::now(), &self.bar);
-        let lab = Lab { progress: &|part| bar.set_position(ticks(before + part * share)) };
+        let progress = |part| bar.set_position(ticks(before + part * share));
+        let lab = Lab { progress: &progress, program: std::env::current_exe().ok() };
         let made = item.make(&lab, self.effort)?;
         self.before.set(before + share);
         let seconds = start.elapsed().as_secs_f64();

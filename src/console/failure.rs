@@ -65,10 +65,10 @@ pub enum Failure {
         verbs: Vec<String>,
     },
     /// Another of several processes failed: the exit code is that of its class.
-    #[error("rank {rank}: {said}")]
-    OfRank {
-        /// The process.
-        rank: usize,
+    #[error("{process}: {said}")]
+    OfProcess {
+        /// Name of the process, or its task.
+        process: String,
         /// The class of its failure; none where a signal ended it.
         class: Option<Class>,
         /// Its words.
@@ -172,7 +172,7 @@ impl Failure {
     }
 
     /// The class; none where a signal ended the verb.
-    fn class(&self) -> Option<Class> {
+    pub(crate) fn class(&self) -> Option<Class> {
         Some(match self {
             Failure::Arguments(_)
             | Failure::Options(_)
@@ -183,7 +183,7 @@ impl Failure {
             | Failure::ThreadsOfEnvironment(_)
             | Failure::UnknownVerb { .. } => Class::Usage,
             Failure::Reported(error) => error.class(),
-            Failure::OfRank { class, .. } => return *class,
+            Failure::OfProcess { class, .. } => return *class,
             Failure::Threads(_) | Failure::StandardOutput(_) | Failure::InputOutput { .. } => {
                 Class::InputOutput
             }

@@ -78,9 +78,9 @@ impl From<&Frame> for Table {
 /// Columns that cells of one heading need.
 fn roles<'c, I: Iterator<Item = &'c Cell>>(cells: impl Fn() -> I) -> Vec<Role> {
     let has = |is_so: fn(&Cell) -> bool| cells().any(is_so);
-    let ranges = has(|cell| matches!(cell, Cell::Range(..)));
+    let ranges = has(|cell| matches!(cell, Cell::Range(..) | Cell::Spread { .. }));
     let errors = has(|cell| matches!(cell, Cell::WithError { .. }));
-    let numbers = has(|cell| matches!(cell, Cell::Number(..) | Cell::Short(_)));
+    let numbers = has(|cell| matches!(cell, Cell::Number(..) | Cell::Short(_) | Cell::Spread { .. }));
     let counts = has(|cell| matches!(cell, Cell::Count(_)));
     let words = has(|cell| matches!(cell, Cell::Text(words) if !words.is_empty()));
     let all = [
@@ -97,9 +97,10 @@ fn roles<'c, I: Iterator<Item = &'c Cell>>(cells: impl Fn() -> I) -> Vec<Role> {
 /// Digits that cells show; the most where they differ.
 fn digits<'c, I: Iterator<Item = &'c Cell>>(cells: impl Fn() -> I) -> Option<Digits> {
     let decimals = cells().filter_map(|cell| match cell {
-        Cell::Number(_, decimals) | Cell::WithError { decimals, .. } | Cell::Range(_, decimals) => {
-            Some(*decimals)
-        }
+        Cell::Number(_, decimals)
+        | Cell::WithError { decimals, .. }
+        | Cell::Range(_, decimals)
+        | Cell::Spread { decimals, .. } => Some(*decimals),
         _ => None,
     });
     let short = || cells().any(|cell| matches!(cell, Cell::Short(_))).then_some(Digits::Short);
@@ -112,10 +113,10 @@ fn part(cell: &Cell, role: Role) -> Value {
         (Cell::Count(count), Role::Count) => Value::Count(*count),
         (Cell::Count(count), Role::Number) => Value::Number(*count as f64),
         (Cell::Number(value, _) | Cell::Short(value), Role::Number) => Value::number(*value),
-        (Cell::WithError { value, .. }, Role::Number) => Value::number(*value),
+        (Cell::WithError { value, .. } | Cell::Spread { value, .. }, Role::Number) => Value::number(*value),
         (Cell::WithError { error, .. }, Role::Error) => Value::number(*error),
-        (Cell::Range([lowest, _], _), Role::Lowest) => Value::number(*lowest),
-        (Cell::Range([_, highest], _), Role::Highest) => Value::number(*highest),
+        (Cell::Range([it, _], _) | Cell::Spread { range: [it, _], .. }, Role::Lowest) => Value::number(*it),
+        (Cell::Range([_, it], _) | Cell::Spread { range: [_, it], .. }, Role::Highest) => Value::number(*it),
         _ => Value::Nothing,
     }
 }

@@ -242,8 +242,10 @@ mod tests {
             [Cell::from("-lost"), Cell::Nothing, Cell::Nothing],
             [Cell::from("+x"), Cell::with_error(-3.0, Some(0.5), 2), Cell::Range([-1.0, 2.5], 0)],
         ];
+        let spread = Cell::Spread { value: 1.7, range: [1.3, 2.0], decimals: 1 };
         let frame = Rows::of(&cells)
             .cells(["energy (J)", "Fano", "seeds"], |row| (*row).clone())
+            .cell("rate (1/s)", |_| spread.clone())
             .count("n", |_| 3u64)
             .short("tiny", |_| 1.5e-9)
             .frame("t", "Title");
@@ -254,10 +256,10 @@ mod tests {
         let again = read(package.resources.remove(0), &bytes).unwrap();
         assert_eq!(again, frame);
         let table = crate::frame::Table::from(&again);
-        assert_eq!(table.columns, ["energy (J)", "Fano", "seeds", "n", "tiny"]);
+        assert_eq!(table.columns, ["energy (J)", "Fano", "seeds", "rate (1/s)", "n", "tiny"]);
         assert_eq!(table.rows[0][..3], cells[0]);
         assert_eq!(table.rows[1][..3], cells[1]);
-        assert_eq!(table.rows[2][3..], [Cell::Count(3), Cell::Short(1.5e-9)]);
+        assert_eq!(table.rows[2][3..], [spread, Cell::Count(3), Cell::Short(1.5e-9)]);
     }
 
     #[test]

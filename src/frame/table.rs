@@ -26,6 +26,15 @@ pub enum Cell {
     },
     /// The lowest and the highest of several numbers, and the number of decimals that are shown.
     Range([f64; 2], usize),
+    /// The median of several numbers, with their range.
+    Spread {
+        /// The median.
+        value: f64,
+        /// The lowest and the highest.
+        range: [f64; 2],
+        /// Decimals of all.
+        decimals: usize,
+    },
     /// Nothing: the source has no such entry.
     Nothing,
 }
@@ -52,6 +61,10 @@ impl Cell {
             Cell::Range([lowest, highest], decimals) => {
                 format!("{} to {}", decimal(*lowest, *decimals), decimal(*highest, *decimals))
             }
+            Cell::Spread { value, range, decimals } => {
+                let range = Cell::Range(*range, *decimals).for_reading();
+                format!("{} ({range})", decimal(*value, *decimals))
+            }
             Cell::Nothing => "–".to_owned(),
         }
     }
@@ -73,6 +86,14 @@ impl Cell {
             [Some(Value::Number(value)), _, Some(Value::Number(error)), ..] => {
                 Cell::WithError { value, error, decimals }
             }
+            [
+                Some(Value::Number(value)),
+                _,
+                _,
+                Some(Value::Number(lowest)),
+                Some(Value::Number(highest)),
+                _,
+            ] => Cell::Spread { value, range: [lowest, highest], decimals },
             [Some(Value::Number(value)), ..] if digits == Some(Digits::Short) => Cell::Short(value),
             [Some(Value::Number(value)), ..] => Cell::Number(value, decimals),
             [_, Some(Value::Count(count)), ..] => Cell::Count(count),
@@ -181,6 +202,8 @@ mod tests {
         let with_error = Cell::WithError { value: 1234.56, error: 0.26, decimals: 1 };
         assert_eq!(with_error.for_reading(), "1\u{202f}234.6 ± 0.3");
         assert_eq!(Cell::Range([0.18, 0.43], 2).for_reading(), "0.18 to 0.43");
+        let spread = Cell::Spread { value: 1.71, range: [1.28, 2.02], decimals: 1 };
+        assert_eq!(spread.for_reading(), "1.7 (1.3 to 2.0)");
         assert_eq!(
             [4.2e-4, 0.031, 12.0].map(|it| Cell::Short(it).for_reading()),
             ["4.2·10⁻⁴", "0.031", "12"]

@@ -6,6 +6,7 @@ pub mod langevin;
 pub mod lattice_md;
 pub mod nbody;
 pub mod programs;
+pub mod rates;
 mod running;
 
 use crate::console::Verb;
@@ -23,6 +24,8 @@ pub struct Laboratory {
     pub verbs: &'static [Verb],
     /// Studies of its own, as verbs below `chart`.
     pub charts: &'static [Verb],
+    /// Work that its studies time and that is no run of a scene.
+    pub works: &'static [rates::Own],
 }
 
 /// Of every method that is studied.

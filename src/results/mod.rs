@@ -24,11 +24,21 @@ use crate::report::Section;
 use crate::report::figure::Picture;
 use crate::report::section::Film;
 use serde::Serialize;
+use std::path::PathBuf;
 
 /// Surroundings of a study.
 pub struct Lab<'p> {
     /// Hears the share of the work that is done.
     pub progress: Progress<'p>,
+    /// Program that measures in processes of its own; none where this process measures.
+    pub program: Option<PathBuf>,
+}
+
+impl<'p> Lab<'p> {
+    /// Surroundings in which everything happens in this process.
+    pub fn here(progress: Progress<'p>) -> Lab<'p> {
+        Lab { progress, program: None }
+    }
 }
 
 /// Size of a study.

@@ -11,4 +11,4 @@ use verbs::CHARTS;
 
 /// Items, verbs and charts.
 pub(super) static LABORATORY: Laboratory =
-    Laboratory { method: "hard-disks", items: ITEMS, verbs: &[], charts: CHARTS };
+    Laboratory { method: "hard-disks", items: ITEMS, verbs: &[], charts: CHARTS, works: &[] };

@@ -9,4 +9,4 @@ use items::ITEMS;
 
 /// Items, verbs and charts.
 pub(super) static LABORATORY: Laboratory =
-    Laboratory { method: "langevin", items: ITEMS, verbs: &[], charts: &[] };
+    Laboratory { method: "langevin", items: ITEMS, verbs: &[], charts: &[], works: &[] };

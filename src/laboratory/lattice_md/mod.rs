@@ -26,4 +26,4 @@ use verbs::{CHARTS, VERBS};
 
 /// Items, verbs and charts.
 pub(super) static LABORATORY: Laboratory =
-    Laboratory { method: "lattice-md", items: ITEMS, verbs: VERBS, charts: CHARTS };
+    Laboratory { method: "lattice-md", items: ITEMS, verbs: VERBS, charts: CHARTS, works: &[] };

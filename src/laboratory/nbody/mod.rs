@@ -9,4 +9,4 @@ use items::ITEMS;
 
 /// Items, verbs and charts.
 pub(super) static LABORATORY: Laboratory =
-    Laboratory { method: "nbody", items: ITEMS, verbs: &[], charts: &[] };
+    Laboratory { method: "nbody", items: ITEMS, verbs: &[], charts: &[], works: &[] };

@@ -1,0 +1,455 @@
+//! Throughput over a grid of cases, with its spread over separate processes.
+//!
+//! Rates of one engine on one day differ by half from process to process: memory pages and neighbours on the machine stay as they are while a
+//! process lasts. Each round over the cases is therefore a process of its own, with an order of its own. The median of the processes counts, and
+//! the range stands beside it.
+
+mod process;
+
+pub use process::{VERB, serve};
+
+use super::running::{Running, on_threads};
+use crate::console::Failure;
+use crate::frame::{Cell, Frame, Rows};
+use crate::results::Lab;
+use crate::statistics::median;
+use crate::study::StudyError;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::io;
+use std::time::Instant;
+use stripmine_physics::method;
+use stripmine_physics::reported::Class;
+use stripmine_physics::scene::Overrides;
+
+/// Processes that measure every case, one after the other.
+pub const PROCESSES: usize = 3;
+
+/// Work that is no run of a scene: its name, and the function that measures it.
+#[derive(Debug)]
+pub struct Own {
+    /// Name by which the measuring process finds it.
+    pub name: &'static str,
+    /// Measures the work that some parameters describe.
+    pub measure: fn(&serde_json::Value) -> Result<Reading, StudyError>,
+}
+
+/// One case of a grid.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Case {
+    #[serde(skip)]
+    labels: Vec<(String, Cell)>,
+    work: Work,
+    /// Threads, where wall time counts.
+    threads: Option<usize>,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+enum Work {
+    Scene {
+        preset: String,
+        overrides: Vec<String>,
+        in_events: bool,
+        /// Steps or events before the clock starts, and at least after.
+        amount: [u64; 2],
+        /// Measured seconds, at least.
+        seconds: f64,
+    },
+    Own {
+        name: String,
+        parameters: serde_json::Value,
+        #[serde(skip)]
+        own: Option<&'static Own>,
+    },
+}
+
+impl Case {
+    /// A scene that is timed over some steps, after others that are not.
+    pub fn steps(preset: &str, overrides: &Overrides, warm_up: u64, steps: u64) -> Case {
+        Case::scene(preset, overrides, false, [warm_up, steps])
+    }
+
+    /// A scene that is timed over some events, after others that are not.
+    pub fn events(preset: &str, overrides: &Overrides, warm_up: u64, events: u64) -> Case {
+        Case::scene(preset, overrides, true, [warm_up, events])
+    }
+
+    fn scene(preset: &str, overrides: &Overrides, in_events: bool, amount: [u64; 2]) -> Case {
+        let (preset, overrides) = (preset.to_owned(), overrides.to_vec());
+        Case {
+            labels: vec![],
+            work: Work::Scene { preset, overrides, in_events, amount, seconds: 0.0 },
+            threads: None,
+        }
+    }
+
+    /// Work of another kind.
+    pub fn own(own: &'static Own, parameters: serde_json::Value) -> Case {
+        let work = Work::Own { name: own.name.to_owned(), parameters, own: Some(own) };
+        Case { labels: vec![], work, threads: None }
+    }
+
+    /// Adds a value by which the case differs from the others: a column of the frame, and a part of its name.
+    #[must_use]
+    pub fn label(mut self, heading: &str, value: impl Into<Cell>) -> Case {
+        self.labels.push((heading.to_owned(), value.into()));
+        self
+    }
+
+    /// The case with more steps or events, until they have taken at least so many seconds.
+    #[must_use]
+    pub fn for_seconds(mut self, least: f64) -> Case {
+        if let Work::Scene { seconds, .. } = &mut self.work {
+            *seconds = least;
+        }
+        self
+    }
+
+    /// The case on a number of threads, timed by the clock on the wall. A case without is timed by the processor, on one thread.
+    #[must_use]
+    pub fn on_threads(self, threads: usize) -> Case {
+        Case { threads: Some(threads), ..self }
+    }
+
+    fn name(&self) -> String {
+        let label = |(heading, value): &(String, Cell)| format!("{heading} = {}", value.for_reading());
+        self.labels.iter().map(label).collect::<Vec<_>>().join(", ")
+    }
+
+    fn measure(&self, all: &[&Own]) -> Result<Reading, Failure> {
+        let threads = self.threads.unwrap_or(1);
+        let measured = match &self.work {
+            Work::Own { name, parameters, own } => {
+                let known = || all.iter().find(|it| it.name == name).copied();
+                let unknown = || io::Error::other(format!("no work is called {name}"));
+                let own = own.or_else(known).ok_or_else(unknown).map_err(Failure::writing("cases"))?;
+                on_threads(threads, || (own.measure)(parameters))
+            }
+            Work::Scene { preset, overrides, in_events, amount, seconds } => on_threads(threads, || {
+                let mut running = Running::timed(preset, overrides)?;
+                let mut advance = |running: &mut Running, amount: u64| match in_events {
+                    true => running.events(amount),
+                    false => running.steps(amount),
+                };
+                let clock = if self.threads.is_some() { wall } else { processor };
+                timed(&mut running, *amount, *seconds, &mut advance, clock)
+            }),
+        };
+        Ok(measured?)
+    }
+}
+
+fn wall() -> Box<dyn Fn() -> f64> {
+    let begun = Instant::now();
+    Box::new(move || begun.elapsed().as_secs_f64())
+}
+
+fn processor() -> Box<dyn Fn() -> f64> {
+    let begun = cpu_time::ProcessTime::now();
+    Box::new(move || begun.elapsed().as_secs_f64())
+}
+
+/// Times a scene that runs: at least so much, and for at least so many seconds.
+fn timed(
+    running: &mut Running,
+    [warm_up, least]: [u64; 2],
+    seconds: f64,
+    advance: &mut dyn FnMut(&mut Running, u64) -> Result<(), method::Failure>,
+    clock: fn() -> Box<dyn Fn() -> f64>,
+) -> Result<Reading, StudyError> {
+    advance(running, warm_up)?;
+    running.simulation.reset_phases();
+    let counts = |running: &Running| running.simulation.event_operations();
+    let (work, before) = (running.simulation.work(), counts(running));
+    let elapsed = clock();
+    advance(running, least)?;
+    let mut done = least;
+    while elapsed() < seconds {
+        // As much as the rate so far asks for; the first steps may be slow.
+        let more = (done as f64 * (seconds / elapsed() - 1.0)).ceil().clamp(1.0, 4.0 * done as f64) as u64;
+        advance(running, more)?;
+        done += more;
+    }
+    let seconds = elapsed();
+    let owned = |(name, value): (&str, f64)| (name.to_owned(), value);
+    let after = counts(running).into_iter().zip(before);
+    Ok(Reading {
+        work: running.simulation.work() - work,
+        seconds,
+        parts: running.simulation.phases().into_iter().map(owned).collect(),
+        counts: after.map(|((name, after), (_, before))| owned((name, (after - before) as f64))).collect(),
+    })
+}
+
+/// One process's measurement of a case.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct Reading {
+    /// Work done: particle-steps, events, interactions.
+    pub work: f64,
+    /// Seconds that it took.
+    pub seconds: f64,
+    /// Seconds of its parts, by name.
+    pub parts: BTreeMap<String, f64>,
+    /// Operations that were counted, by name.
+    pub counts: BTreeMap<String, f64>,
+}
+
+/// A figure over several processes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spread {
+    /// Median process.
+    pub median: f64,
+    /// Lowest and highest process.
+    pub range: [f64; 2],
+}
+
+impl Spread {
+    fn of(values: impl Iterator<Item = f64>) -> Spread {
+        let values: Vec<f64> = values.collect();
+        let least = |sign: f64| sign * values.iter().map(|value| sign * value).fold(f64::INFINITY, f64::min);
+        Spread { median: median(values.iter().copied()), range: [1.0, -1.0].map(least) }
+    }
+
+    /// The figure in a cell, in a unit that is so many times smaller.
+    pub fn cell(self, scale: f64, decimals: usize) -> Cell {
+        Cell::Spread { value: scale * self.median, range: self.range.map(|value| scale * value), decimals }
+    }
+}
+
+/// A case as all processes measured it.
+#[derive(Clone, Debug)]
+pub struct Measured {
+    labels: Vec<(String, Cell)>,
+    /// Reading of each process.
+    pub readings: Vec<Reading>,
+}
+
+impl Measured {
+    fn each(&self, of: impl Fn(&Reading) -> f64) -> Spread {
+        Spread::of(self.readings.iter().map(of))
+    }
+
+    /// Work in a second.
+    pub fn rate(&self) -> Spread {
+        self.each(|it| it.work / it.seconds)
+    }
+
+    /// Seconds that a unit of work takes.
+    pub fn cost(&self) -> Spread {
+        self.each(|it| it.seconds / it.work)
+    }
+
+    /// Seconds that a part takes for a unit of work.
+    pub fn part(&self, name: &str) -> Spread {
+        self.each(|it| it.parts.get(name).copied().unwrap_or(0.0) / it.work)
+    }
+
+    /// Operations of a kind for a unit of work.
+    pub fn count(&self, name: &str) -> f64 {
+        self.each(|it| it.counts.get(name).copied().unwrap_or(0.0) / it.work).median
+    }
+
+    /// Rate over that of another case, process by process.
+    pub fn over(&self, other: &Measured) -> Spread {
+        let rate = |it: &Reading| it.work / it.seconds;
+        Spread::of(self.readings.iter().zip(&other.readings).map(|(own, other)| rate(own) / rate(other)))
+    }
+}
+
+/// The rates of cases in the order of these, as a frame with their labels; every case has the labels of the first.
+pub fn frame(
+    measured: &[Measured],
+    (name, title): (&str, &str),
+    (heading, scale, decimals): (&str, f64, usize),
+) -> Frame {
+    let headings = measured.first().map_or(vec![], |it| it.labels.iter().map(|(it, _)| it.clone()).collect());
+    Rows::of(measured)
+        .cells(headings, |it| it.labels.iter().map(|(_, value)| value.clone()).collect::<Vec<_>>())
+        .cell(heading, |it| it.rate().cell(scale, decimals))
+        .count("processes", |it| it.readings.len())
+        .frame(name, title)
+}
+
+/// Measures cases in [`PROCESSES`] processes, one after the other.
+///
+/// # Errors
+/// [`Failure`] of a case, with the case's name.
+pub fn rates(lab: &Lab<'_>, cases: &[Case]) -> Result<Vec<Measured>, Failure> {
+    rounds(cases, lab.progress, |cases, heard| match &lab.program {
+        Some(program) => process::measure(program, cases, heard),
+        None => cases.iter().try_for_each(|case| {
+            let reading = case.measure(&[]).map_err(|failure| (failure.class(), failure.words()))?;
+            heard(reading);
+            Ok(())
+        }),
+    })
+}
+
+/// Class and words of a failure; no class where a signal ended a process.
+type Failed = (Option<Class>, String);
+
+/// Makes the rounds; `round` measures some cases in their order, and tells each reading.
+fn rounds(
+    cases: &[Case],
+    progress: &dyn Fn(f64),
+    mut round: impl FnMut(&[&Case], &mut dyn FnMut(Reading)) -> Result<(), Failed>,
+) -> Result<Vec<Measured>, Failure> {
+    let labelled = |case: &Case| Measured { labels: case.labels.clone(), readings: vec![] };
+    let mut all: Vec<Measured> = cases.iter().map(labelled).collect();
+    let rounds = if cases.is_empty() { 0 } else { PROCESSES };
+    for number in 0..rounds {
+        let order = order(cases.len(), number);
+        let in_order: Vec<&Case> = order.iter().map(|&at| &cases[at]).collect();
+        let mut heard = 0;
+        let outcome = round(&in_order, &mut |reading| {
+            if let Some(&at) = order.get(heard) {
+                all[at].readings.push(reading);
+                heard += 1;
+                progress((number * cases.len() + heard) as f64 / (rounds * cases.len()) as f64);
+            }
+        });
+        outcome.map_err(|(class, said)| {
+            let process = in_order.get(heard).map_or_else(String::new, |case| case.name());
+            Failure::OfProcess { process: format!("measuring {process}"), class, said }
+        })?;
+    }
+    Ok(all)
+}
+
+/// Order of the cases in a round: each begins elsewhere, and every second one runs backwards.
+fn order(cases: usize, round: usize) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..cases).collect();
+    order.rotate_left(round * cases / PROCESSES);
+    if round % 2 == 1 {
+        order.reverse();
+    }
+    order
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::Value;
+    use std::cell::RefCell;
+    use stripmine_physics::scene::{COUNT, PACKING_FRACTION};
+
+    fn reading(seconds: f64) -> Reading {
+        Reading { work: 12.0, seconds, ..Reading::default() }
+    }
+
+    fn cases(count: u64) -> Vec<Case> {
+        let case = |at| Case::steps("bench", &Overrides::new(), 0, 1).label("case", at);
+        (0..count).map(case).collect()
+    }
+
+    /// Every round visits every case, in an order of its own; rows are in the order of the cases, whichever was measured first.
+    #[test]
+    fn rows_are_in_the_order_of_the_cases() {
+        for count in [0, 1, 2, 5, 7] {
+            let (orders, shares) = (RefCell::new(vec![]), RefCell::new(vec![]));
+            let progress = |share| shares.borrow_mut().push(share);
+            // Times by the case and the round.
+            let all = rounds(&cases(count), &progress, |cases, heard| {
+                let number = orders.borrow().len() as f64;
+                let at = |case: &Case| match case.labels[0].1 {
+                    Cell::Count(at) => at,
+                    _ => 0,
+                };
+                cases.iter().for_each(|case| heard(reading((at(case) + 1) as f64 + 0.25 * number)));
+                orders.borrow_mut().push(cases.iter().map(|case| at(case)).collect::<Vec<_>>());
+                Ok(())
+            });
+            let all = all.unwrap();
+            let frame = frame(&all, ("rates", "Rates"), ("rate (1/s)", 1.0, 2));
+            let names: Vec<&str> = frame.columns.iter().map(|it| it.name.as_str()).collect();
+            if count > 0 {
+                assert_eq!(names, ["case", "rate", "rate_lowest", "rate_highest", "processes"]);
+            }
+            for (at, row) in frame.rows.iter().enumerate() {
+                let [slow, middle, fast] = [0.5, 0.25, 0.0].map(|more| 12.0 / ((at + 1) as f64 + more));
+                let rates = [middle, slow, fast].map(Value::Number);
+                assert_eq!(row[0], Value::Count(at as u64));
+                assert_eq!(row[1..4], rates);
+                assert_eq!(row[4], Value::Count(PROCESSES as u64));
+            }
+            for order in orders.borrow().iter() {
+                let mut sorted = order.clone();
+                sorted.sort_unstable();
+                assert_eq!(sorted, (0..count).collect::<Vec<_>>());
+            }
+            assert_eq!(orders.borrow().len(), if count > 0 { PROCESSES } else { 0 });
+            if count > 2 {
+                let firsts: std::collections::BTreeSet<u64> =
+                    orders.borrow().iter().map(|order| order[0]).collect();
+                assert_eq!(firsts.len(), PROCESSES, "{:?}", orders.borrow());
+            }
+            assert!(shares.borrow().is_sorted() && shares.borrow().last().is_none_or(|share| *share == 1.0));
+        }
+    }
+
+    /// The case that fails is named, with the class and words of the process.
+    #[test]
+    fn a_failure_names_its_case() {
+        let failed = |cases: &[&Case], heard: &mut dyn FnMut(Reading)| {
+            assert_eq!(cases.len(), 3);
+            heard(reading(1.0));
+            Err((Some(Class::Precondition), "disc 3 left the box".to_owned()))
+        };
+        let failure = rounds(&cases(3), &|_| (), failed).unwrap_err();
+        assert_eq!(failure.exit_code(), Class::Precondition.exit_code());
+        assert_eq!(failure.words(), "measuring case = 1: disc 3 left the box");
+    }
+
+    /// Two cases of one scene count the same work and operations, whatever their times; events go on until the clock is satisfied.
+    #[test]
+    fn readings_count_what_was_done() {
+        let discs = Overrides::new().set(&COUNT, 64_u64).set(&PACKING_FRACTION, 0.3);
+        let events = |name: &str| Case::events("hard-disks", &discs, 50, 200).label("name", name);
+        let steps = Case::steps("bench", &discs, 2, 3).label("name", "steps").on_threads(2);
+        let lab = Lab::here(&|_| ());
+        let all = rates(&lab, &[events("a"), events("b"), steps]).unwrap();
+        let works = |at: usize| all[at].readings.iter().map(|it| it.work).collect::<Vec<_>>();
+        assert_eq!([works(0), works(1)], [[200.0; PROCESSES]; 2]);
+        assert_eq!(all[0].readings[0].counts, all[1].readings[2].counts);
+        assert!(all[0].count("predictions") > 1.0);
+        assert!(all[2].readings[0].parts.contains_key("forces") && works(2)[0] >= 3.0 * 64.0);
+        assert!(all[2].part("forces").median <= all[2].cost().range[1]);
+        let [low, high] = all[0].over(&all[0]).range;
+        assert_eq!((low, high), (1.0, 1.0));
+    }
+
+    /// A clock that a test turns: work goes on until the seconds are reached.
+    #[test]
+    fn work_goes_on_until_its_seconds_are_reached() {
+        thread_local!(static NOW: std::cell::Cell<f64> = const { std::cell::Cell::new(0.0) });
+        let clock: fn() -> Box<dyn Fn() -> f64> = || Box::new(|| NOW.get());
+        let discs = Overrides::new().set(&COUNT, 16_u64);
+        let mut running = Running::timed("hard-disks", &discs).unwrap();
+        let mut amounts = vec![];
+        let found = timed(
+            &mut running,
+            [7, 10],
+            30.0,
+            &mut |running, amount| {
+                if !amounts.is_empty() {
+                    NOW.set(NOW.get() + amount as f64);
+                }
+                amounts.push(amount);
+                running.events(amount)
+            },
+            clock,
+        );
+        assert_eq!(amounts, [7, 10, 20]);
+        let found = found.unwrap();
+        assert_eq!((found.work, found.seconds), (30.0, 30.0));
+    }
+
+    #[test]
+    fn a_scene_that_is_refused_names_its_case() {
+        let none = Overrides::new().set(&COUNT, 0_u64);
+        let case = Case::steps("bench", &none, 0, 1).label("discs", 0);
+        let failure = rates(&Lab::here(&|_| ()), &[case]).unwrap_err();
+        assert_eq!(failure.exit_code(), Class::Input.exit_code());
+        assert!(failure.words().starts_with("measuring discs = 0: "), "{}", failure.words());
+    }
+}

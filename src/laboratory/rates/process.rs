@@ -1,0 +1,134 @@
+//! One round of measurements in a process of its own: the program calls itself, and the two speak through pipes, a line of JSON for each
+//! reading.
+
+use super::{Case, Failed, Own, Reading};
+use crate::console::{Failure, print};
+use std::io::{self, BufRead, BufReader, Read, Write};
+use std::path::Path;
+use std::process::{Command, ExitStatus, Stdio};
+use std::thread;
+use stripmine_physics::reported::Class;
+use stripmine_physics::signals::INTERRUPTED;
+
+/// Verb of the measuring process.
+pub const VERB: &str = "measure-cases";
+
+/// Measures some cases in a new process of the program, in their order.
+pub(super) fn measure(program: &Path, cases: &[&Case], heard: &mut dyn FnMut(Reading)) -> Result<(), Failed> {
+    let mut command = Command::new(program);
+    command.args([VERB, "--quiet"]);
+    answered(&mut command, cases, heard)
+}
+
+/// Asks a command for the readings of some cases.
+fn answered(command: &mut Command, cases: &[&Case], heard: &mut dyn FnMut(Reading)) -> Result<(), Failed> {
+    let failed = |cause: io::Error| (Some(Class::InputOutput), format!("the measuring process: {cause}"));
+    let piped = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = piped.spawn().map_err(failed)?;
+    let errors = child.stderr.take();
+    let words = thread::spawn(move || {
+        let mut words = vec![];
+        // Words that cannot be read are missing; the exit code says the rest.
+        drop(errors.map(|mut errors| errors.read_to_end(&mut words)));
+        String::from_utf8_lossy(&words).into_owned()
+    });
+    // The process ends where this pipe does: it is held until the process has ended by itself, or this one is gone.
+    let mut asked = child.stdin.take();
+    let line = serde_json::to_string(cases).map_err(|cause| failed(cause.into()))? + "\n";
+    if let Some(asked) = &mut asked {
+        // A process that is gone says why in its own words.
+        drop(asked.write_all(line.as_bytes()).and_then(|()| asked.flush()));
+    }
+    let mut readings = 0;
+    for line in child.stdout.take().into_iter().flat_map(|answers| BufReader::new(answers).lines()) {
+        let reading = line.and_then(|line| Ok(serde_json::from_str::<Reading>(&line)?)).map_err(failed)?;
+        heard(reading);
+        readings += 1;
+    }
+    let status = child.wait().map_err(failed)?;
+    drop(asked);
+    let words = words.join().unwrap_or_default();
+    match status.success() && readings == cases.len() {
+        true => Ok(()),
+        false => Err(failure(status, &words)),
+    }
+}
+
+/// The failure of a process, by its end and its words.
+fn failure(status: ExitStatus, words: &str) -> Failed {
+    let code = status.code().and_then(|code| u8::try_from(code).ok());
+    let class = match code {
+        Some(INTERRUPTED) => None,
+        code => Some(code.and_then(Class::of_exit_code).unwrap_or(Class::InputOutput)),
+    };
+    let words = words.trim();
+    let said = words.strip_prefix("error: ").unwrap_or(words);
+    let said = if said.is_empty() {
+        format!("the measuring process ended early ({status})")
+    } else {
+        said.to_owned()
+    };
+    (class, said)
+}
+
+/// Measures the cases that standard input names, and prints a line for each.
+///
+/// # Errors
+/// [`Failure`] of a case; standard input that names no cases.
+pub fn serve(all: &[&Own]) -> Result<(), Failure> {
+    let mut line = String::new();
+    let read = io::stdin().lock().read_line(&mut line);
+    let cases = read.and_then(|_| Ok(serde_json::from_str::<Vec<Case>>(&line)?));
+    let cases = cases.map_err(Failure::writing("cases on standard input"))?;
+    thread::spawn(|| {
+        // The process that asked holds the other end as long as it waits.
+        drop(io::copy(&mut io::stdin().lock(), &mut io::sink()));
+        std::process::exit(INTERRUPTED.into());
+    });
+    for case in cases {
+        let reading = case.measure(all)?;
+        print(
+            &(serde_json::to_string(&reading).map_err(|cause| Failure::writing("JSON")(cause.into()))?
+                + "\n"),
+        )?;
+    }
+    Ok(())
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+    use stripmine_physics::scene::Overrides;
+
+    fn shell(script: &str) -> (Result<(), Failed>, Vec<f64>) {
+        let case = Case::steps("bench", &Overrides::new(), 0, 1);
+        let (mut command, mut heard) = (Command::new("sh"), vec![]);
+        let outcome = answered(command.args(["-c", script]), &[&case; 2], &mut |it| heard.push(it.work));
+        (outcome, heard)
+    }
+
+    /// A line is a reading; class and words of a process that fails are handed on.
+    #[test]
+    fn a_process_is_heard_and_its_failure_is_handed_on() {
+        let one = r#"read cases; echo '{"work": 3.0, "seconds": 1.0, "parts": {}, "counts": {}}'; "#;
+        assert_eq!(shell(&format!("{one}{one}")), (Ok(()), vec![3.0, 3.0]));
+        let failing = |end: &str| {
+            let (outcome, heard) = shell(&format!("{one}{end}"));
+            assert_eq!(heard, [3.0]);
+            outcome.unwrap_err()
+        };
+        let class = |class: Class| Some(class);
+        assert_eq!(failing("echo 'error: no' >&2; exit 4"), (class(Class::Precondition), "no".to_owned()));
+        assert_eq!(failing("exit 130").0, None);
+        let (killed, said) = failing("kill -9 $$");
+        assert!(killed == class(Class::InputOutput) && said.contains("signal"), "{said}");
+        assert!(failing("exit 0").1.contains("ended early"));
+        assert_eq!(failing("echo words").0, class(Class::InputOutput));
+    }
+
+    #[test]
+    fn a_program_that_is_not_there_is_an_error() {
+        let (class, said) = measure(Path::new("/no/such/program"), &[], &mut |_| ()).unwrap_err();
+        assert!(class == Some(Class::InputOutput) && said.starts_with("the measuring process: "), "{said}");
+    }
+}
