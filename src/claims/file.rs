@@ -183,8 +183,11 @@ impl Claim {
     }
 }
 
-/// Claims of a file.
-pub(super) fn read(file: &str, text: &str) -> Result<Vec<Claim>, ClaimError> {
+/// Claims of a file's text.
+///
+/// # Errors
+/// [`ClaimError`] with the line of what cannot be understood.
+pub fn read(file: &str, text: &str) -> Result<Vec<Claim>, ClaimError> {
     #[derive(Deserialize)]
     #[serde(deny_unknown_fields)]
     struct File {

@@ -6,7 +6,7 @@
 mod file;
 mod verdict;
 
-pub use file::{Claim, ClaimError, Expected, Limit, Source};
+pub use file::{Claim, ClaimError, Expected, Limit, Source, read};
 pub use verdict::{Judged, Verdict};
 
 use crate::frame::{Expressions, Scope};

@@ -1,0 +1,76 @@
+//! Claims of the sources against the committed report: each is judged by what is committed, and no limit is newer than its result.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::process::Command;
+use stripmine::claims::{self, Claim};
+use stripmine::results::Folder;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn judged(claim: &Claim) -> Option<(&str, &Claim)> {
+    claim.value.as_ref()?;
+    Some((claim.item.as_deref()?, claim))
+}
+
+/// The names of tables and columns in claims exist in the committed report.
+#[test]
+fn every_claim_is_judged_by_the_committed_report() {
+    let (all, folder) = (claims::all().unwrap(), Folder::of_another(&root().join("reports")));
+    assert!(all.len() >= 90, "{} claims", all.len());
+    let items: BTreeSet<&str> = all.iter().filter_map(judged).map(|(item, _)| item).collect();
+    let mut wrong = vec![];
+    for item in items {
+        let scope = folder.scope(item).unwrap().unwrap_or_else(|| panic!("the report has no item {item}"));
+        for claim in all.iter().filter(|claim| judged(claim).is_some_and(|(own, _)| own == item)) {
+            if let Err(cause) = claims::judge(std::slice::from_ref(claim), item, &scope, "9999-12-31") {
+                wrong.push(format!("{}: {cause}", claim.id));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Limits are set before the result that they judge: by the dates of both, and, where git has the commit of the result, by the claims
+/// of that commit.
+#[test]
+fn no_limit_is_newer_than_its_result() {
+    let (all, folder) = (claims::all().unwrap(), Folder::of_another(&root().join("reports")));
+    let mut newer = vec![];
+    for (item, claim) in all.iter().filter_map(judged) {
+        let Some(provenance) = folder.provenance(item).unwrap() else { continue };
+        let measured = provenance.measured_on();
+        if claim.limit.since.as_str() > measured {
+            newer.push(format!("{}: limit of {}, result of {measured}", claim.id, claim.limit.since));
+        }
+        if provenance.repeated.is_empty() {
+            let of_then = then(&provenance.origin.commit, &claim.source.file());
+            let known = of_then.iter().flatten().find(|it| it.id == claim.id);
+            if of_then.is_some() && known.is_none_or(|known| known.limit != claim.limit) {
+                newer.push(format!("{}: its limit is not in commit {}", claim.id, provenance.origin.commit));
+            }
+        }
+    }
+    assert!(newer.is_empty(), "{}", newer.join("\n"));
+}
+
+/// The claims of a file at a commit; none where git does not have it.
+fn then(commit: &str, file: &str) -> Option<Vec<Claim>> {
+    let path = format!("{commit}:claims/{file}");
+    let shown = Command::new("git").arg("-C").arg(root()).args(["show", &path]).output().ok()?;
+    let text = String::from_utf8(shown.stdout).ok().filter(|_| shown.status.success())?;
+    claims::read(file, &text).ok()
+}
+
+/// A claim that was changed keeps its earlier limit: its text in the file grows, and nothing of it is edited.
+#[test]
+fn a_changed_limit_keeps_the_one_before() {
+    for claim in claims::all().unwrap() {
+        let mut days: Vec<&str> = claim.before.iter().map(|limit| limit.since.as_str()).collect();
+        days.insert(0, &claim.limit.since);
+        assert!(days.is_sorted_by(|a, b| a >= b), "{}: {days:?}", claim.id);
+        assert!(claim.before.iter().all(|limit| *limit != claim.limit), "{}", claim.id);
+    }
+}
