@@ -1,5 +1,7 @@
-//! Numbers in documents are cells of the committed report: `<!-- n: ITEM: EXPRESSION -->NUMBER<!-- / -->`.
+//! Numbers in documents are cells of the committed report: `<!-- n: NAME -->NUMBER<!-- / -->`, and at the end of the document, in a
+//! comment that begins with `numbers:`, a line `NAME = ITEM: EXPRESSION` for each.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use stripmine::frame::Expressions;
@@ -7,6 +9,7 @@ use stripmine::results::Folder;
 
 const BEGIN: &str = "<!-- n: ";
 const END: &str = "<!-- / -->";
+const DEFINITIONS: &str = "<!-- numbers:";
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -21,56 +24,99 @@ fn documents() -> Vec<PathBuf> {
     all
 }
 
-/// Faults of a text, each with its line: numbers that are not those of their cells, and cells that are gone.
-fn faults(text: &str, folder: &Folder) -> (usize, Vec<String>) {
-    let (expressions, mut held, mut faults) = (Expressions::new(), 0, vec![]);
-    for (at, _) in text.match_indices(BEGIN) {
-        let line = text[..at].matches('\n').count() + 1;
-        let mut check = || {
-            let rest = &text[at + BEGIN.len()..];
-            let (head, rest) = rest.split_once(" -->").ok_or("the comment has no end")?;
-            let (shown, _) = rest.split_once(END).ok_or(format!("no `{END}` follows"))?;
-            let (item, expression) = head.split_once(": ").ok_or("no `ITEM: EXPRESSION`")?;
+/// The numbers that a text defines: name, item and expression.
+fn definitions(text: &str) -> BTreeMap<&str, (&str, &str)> {
+    let Some((_, block)) = text.split_once(DEFINITIONS) else { return BTreeMap::new() };
+    let lines = block.split("-->").next().unwrap_or_default().lines().skip(1);
+    let define = |line: &'_ str| -> Option<(usize, usize)> {
+        let equals = line.find(" = ")?;
+        Some((equals, equals + 3 + line[equals + 3..].find(": ")?))
+    };
+    lines
+        .filter_map(|line| {
+            define(line).map(|(name, item)| (&line[..name], (&line[name + 3..item], &line[item + 2..])))
+        })
+        .collect()
+}
+
+/// Checks the numbers of a text. Returns the text with the numbers of the report, how many there are, and faults with their lines:
+/// numbers that are not those of their cells, and cells that are gone.
+fn checked(text: &str, folder: &Folder) -> (String, usize, Vec<String>) {
+    let (expressions, known) = (Expressions::new(), definitions(text));
+    let (mut renewed, mut held, mut faults, mut rest) = (String::new(), 0, vec![], text);
+    while let Some((before, after)) = rest.split_once(BEGIN) {
+        renewed += before;
+        let line = text[..text.len() - after.len()].matches('\n').count() + 1;
+        let value = || {
+            let (name, after) = after.split_once(" -->").ok_or("the comment has no end")?;
+            let (shown, after) = after.split_once(END).ok_or(format!("no `{END}` follows"))?;
+            let names = || known.keys().copied().collect::<Vec<_>>().join(", ");
+            let (item, expression) =
+                known.get(name).ok_or_else(|| format!("`{name}` is not defined; there are {}", names()))?;
             let scope = folder.scope(item).map_err(|cause| cause.to_string())?;
             let scope = scope.ok_or(format!("the report has no item `{item}`"))?;
             let value = expressions.text(&format!("{{{{ {expression} }}}}"), &scope).map_err(|(_, it)| it)?;
-            held += 1;
-            if value == shown { Ok(()) } else { Err(format!("{shown} is {value}, by {item}: {expression}")) }
+            Ok::<_, String>((name, shown, value, after))
         };
-        if let Err(cause) = check() {
-            faults.push(format!("line {line}: {cause}"));
+        rest = after;
+        match value() {
+            Err(cause) => {
+                faults.push(format!("line {line}: {cause}"));
+                renewed += BEGIN;
+            }
+            Ok((name, shown, value, after)) => {
+                held += 1;
+                if value != shown {
+                    faults.push(format!("line {line}: {shown} is {value}, by {name}"));
+                }
+                renewed += &format!("{BEGIN}{name} -->{value}{END}");
+                rest = after;
+            }
         }
     }
-    (held, faults)
+    (renewed + rest, held, faults)
 }
 
+/// With `BLESS=1` the documents get the numbers of the report.
 #[test]
 fn numbers_in_documents_are_those_of_the_report() {
     let folder = Folder::of_another(&root().join("reports"));
-    let mut wrong = vec![];
+    let (mut wrong, mut all) = (vec![], 0);
     for path in documents() {
-        let (_, faults) = faults(&fs::read_to_string(&path).unwrap(), &folder);
+        let text = fs::read_to_string(&path).unwrap();
+        let (renewed, held, faults) = checked(&text, &folder);
+        if std::env::var_os("BLESS").is_some() && renewed != text {
+            fs::write(&path, renewed).unwrap();
+        }
+        all += held;
         wrong.extend(
             faults.iter().map(|it| format!("{}, {it}", path.strip_prefix(root()).unwrap().display())),
         );
     }
-    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(wrong.is_empty(), "{}\nBLESS=1 cargo test --test numbers writes them", wrong.join("\n"));
+    assert!(all >= 60, "{all} numbers");
 }
 
 /// Faults name the line, and what exists.
 #[test]
 fn a_number_whose_cell_is_gone_is_a_fault() {
     let folder = Folder::of_another(&root().join("reports"));
-    let said = |text: &str| faults(text, &folder).1.join("; ");
-    let with = |head: &str, number: &str| format!("a\nb <!-- n: {head} -->{number}<!-- / -->.");
-    assert_eq!(said(&with("mask: reach[0].mask", "5×5")), "");
-    for (text, named) in [
-        (with("mask: reach[0].mask", "7×7"), "line 2: 7×7 is 5×5, by mask: reach[0].mask"),
-        (with("mask: reach[0].masks", "1"), "it has mask, "),
-        (with("mask: gone[0].mask", "1"), "reach"),
-        (with("mosk: reach[0].mask", "1"), "the report has no item `mosk`"),
-        ("<!-- n: mask: reach[0].mask -->1".to_owned(), "line 1: no `<!-- / -->` follows"),
+    let of = |name: &str, number: &str, definition: &str| {
+        let text = format!("a\nb {BEGIN}{name} -->{number}{END}.\n{DEFINITIONS}\n{definition}\n-->\n");
+        checked(&text, &folder).2.join("; ")
+    };
+    let mask = "m = mask: reach[0].mask";
+    assert_eq!(of("m", "5×5", mask), "");
+    for (name, number, definition, named) in [
+        ("m", "7×7", mask, "line 2: 7×7 is 5×5, by m"),
+        ("n", "5×5", mask, "`n` is not defined; there are m"),
+        ("m", "1", "m = mask: reach[0].masks", "it has mask, "),
+        ("m", "1", "m = mask: gone[0].mask", "reach"),
+        ("m", "1", "m = mosk: reach[0].mask", "the report has no item `mosk`"),
     ] {
-        assert!(said(&text).contains(named), "{}", said(&text));
+        let said = of(name, number, definition);
+        assert!(said.contains(named), "{said}");
     }
+    let cut = checked(&format!("{BEGIN}m -->5×5"), &folder).2.join("; ");
+    assert!(cut.contains("line 1: no `<!-- / -->` follows"), "{cut}");
 }

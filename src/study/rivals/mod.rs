@@ -121,7 +121,7 @@ pub fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let repeated = all.iter().map(|rival| rival.source.clone()).collect();
     Ok(Made {
         repeated,
-        ..Made::of([contests(&all), fastest(&all), same(&all), memory(&all), programs(&all)])
+        ..Made::of([contests(&all), fastest(&all), same(&all), memory(&all), programs(&all), summary(&all)])
     })
 }
 
@@ -190,6 +190,14 @@ fn memory(all: &[Rival]) -> Frame {
         .number("ours (MB)", 0, |(_, it)| 1e-6 * it.ours as f64)
         .number("theirs (MB)", 0, |(_, it)| 1e-6 * it.theirs as f64)
         .frame("memory", "The most memory that both programs had at once")
+}
+
+fn summary(all: &[Rival]) -> Frame {
+    let same = all.iter().flat_map(|rival| &rival.same);
+    let differ = same.filter(|it| (it.ours - it.theirs).abs() > it.within).count();
+    Rows::of([differ])
+        .count("quantities that differ", |differ| *differ)
+        .frame("summary", "Quantities in which both programs must agree and do not")
 }
 
 fn programs(all: &[Rival]) -> Frame {
