@@ -1,6 +1,6 @@
 //! What `reproduce` makes of studies.
 
-use super::explain::{SCENES, SECONDS, regret, section as plans};
+use super::explain::{SCENES, SECONDS, judged, regret};
 use super::rivals;
 use super::stability::{self, Over, stability};
 use super::work_precision::{self, work_precision};
@@ -20,13 +20,7 @@ pub const ITEMS: &[Item] = &[
         "Speed against accuracy of four scenes: which integrator, step and precision for which wish",
     ),
     Item::of("stability", where_it_works),
-    Item::quick(
-        plans::NAME,
-        Chapter::Host,
-        [6.0, 850.0],
-        plans_judged,
-        "Plans of `explain` for forty scenes, beside the best that is known",
-    ),
+    Item::of("plans", plans_judged),
     Item::of("rivals", rivals::made),
 ];
 
@@ -40,8 +34,8 @@ fn plans_judged(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
         }
         Size::Full | Size::All => (SCENES.to_vec(), regret::Effort { plan: SECONDS[0], best: 30.0 }),
     };
-    let judged = regret::judged(&scenes, effort, progress)?;
-    plans::made(&judged, effort, format!("stripmine reproduce --only {}", plans::NAME))
+    let all = regret::judged(&scenes, effort, progress)?;
+    Ok(judged::made(&all, effort))
 }
 
 /// The scenes that methods state for it.

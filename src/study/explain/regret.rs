@@ -12,7 +12,6 @@ use super::{Target, in_unit};
 use crate::results::{Meter, Progress};
 use crate::study::{Case, StudyError, first_line};
 use rayon::ThreadPoolBuilder;
-use serde::Serialize;
 use std::sync::atomic::AtomicBool;
 use std::thread;
 use stripmine_physics::averages::Outcome;
@@ -36,7 +35,7 @@ pub struct Asked {
 }
 
 /// Seconds of trials: those of a plan, and those of the best that is known.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug)]
 pub struct Effort {
     /// Of a plan.
     pub plan: f64,
@@ -45,7 +44,7 @@ pub struct Effort {
 }
 
 /// What became of a plan.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
 pub struct Judged {
     /// The scene.
     pub scene: String,
