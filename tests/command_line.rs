@@ -19,19 +19,21 @@ fn json(arguments: &[&str]) -> Value {
 #[test]
 fn the_table_holds_the_printed_counts_and_the_paper_clock() {
     let table = json(&["table", "--particles", "2000", "--occupancy", "0.25", "--json"]);
-    let source: Vec<u64> =
-        table["source"].as_array().unwrap().iter().map(|row| row["nop"].as_u64().unwrap()).collect();
-    assert_eq!(source, [59, 12, 1656, 54]);
-    let (np, lmax) = (table["particles"].as_f64().unwrap(), table["cells"].as_f64().unwrap());
-    assert_eq!(table["source_clocks"].as_f64().unwrap(), 125.0 * (np + 20.0) + 1656.0 * (lmax + 20.0));
-    for text in ["printed", "ours"] {
+    let rows = |name: &str| table[name].as_array().unwrap();
+    let printed = |row: &Value| row["printed_in_1993"].as_u64();
+    let source: Vec<u64> = rows("efficiency_table").iter().filter_map(printed).collect();
+    assert_eq!(source, [59, 12, 1656, 54, 1781]);
+    let step = rows("efficiency_table").last().unwrap();
+    let [np, lmax] = ["particles", "lmax"].map(|name| rows("summary")[0][name].as_f64().unwrap());
+    assert_eq!(step["clocks_printed"].as_f64().unwrap(), 125.0 * (np + 20.0) + 1656.0 * (lmax + 20.0));
+    for (text, sum) in [("printed", "clocks_printed_text"), ("ours", "clocks_ours")] {
         let mut counted = 0.0;
-        for row in table[text]["parts"].as_array().unwrap() {
-            let clocks = row["counted"].as_f64().unwrap() * (row["n"].as_f64().unwrap() + 20.0);
+        for row in rows("vector_lengths").iter().filter(|row| row["text"] == text) {
+            let clocks = row["nop"].as_f64().unwrap() * (row["n"].as_f64().unwrap() + 20.0);
             assert_eq!(row["clocks"].as_f64().unwrap(), clocks);
             counted += clocks;
         }
-        assert_eq!(table[text]["clocks"].as_f64().unwrap(), counted);
+        assert_eq!(step[sum].as_f64().unwrap(), counted);
     }
 }
 
@@ -40,12 +42,12 @@ fn the_table_holds_the_printed_counts_and_the_paper_clock() {
 fn listings_and_table_count_the_same() {
     let table = json(&["table", "--json"]);
     let parts = ["predictor", "box", "index", "halo", "lattice", "forces", "corrector"];
-    for (at, text) in ["printed", "ours"].into_iter().enumerate() {
-        for (i, part) in parts.into_iter().enumerate() {
+    for text in ["printed", "ours"] {
+        for part in parts {
             let listing = String::from_utf8(stripmine(&["listing", part, "--text", text]).stdout).unwrap();
             let instructions = listing.lines().filter(|line| !line.starts_with(';')).count() as u64;
-            let rows = table["classes"].as_array().unwrap();
-            let counted: u64 = rows.iter().map(|row| row["parts"][i][at].as_u64().unwrap()).sum();
+            let rows = table["operation_classes"].as_array().unwrap();
+            let counted: u64 = rows.iter().map(|row| row[format!("{part}_{text}")].as_u64().unwrap()).sum();
             assert_eq!(instructions, counted, "{part} {text}");
         }
     }
@@ -105,7 +107,7 @@ fn simpler_scenes_cost_less() {
     let table = json(&["table", "--json"]);
     let savings = table["savings"].as_array().unwrap();
     let relative =
-        |name: &str| savings.iter().find(|row| row["variant"] == name).unwrap()["relative"].as_f64().unwrap();
+        |name: &str| savings.iter().find(|row| row["scene"] == name).unwrap()["relative"].as_f64().unwrap();
     assert_eq!(relative("as asked"), 1.0);
     assert!(relative("without friction") < 0.7);
     assert!(relative("with equal discs") < 0.95);
@@ -157,7 +159,7 @@ fn reproduce_writes_the_same_twice() {
         out
     });
     for (item, file) in
-        [("table", "efficiency_table.csv"), ("mask", "mask_5x5.svg"), ("misprints", "data.json")]
+        [("table", "efficiency_table.csv"), ("mask", "mask_5x5.svg"), ("misprints", "misprints.csv")]
     {
         let [a, b] = [&first, &second].map(|out| contents(&out.join(item)));
         assert!(a.contains_key(file), "{item}/{file}");

@@ -1,56 +1,35 @@
 //! What can be reproduced of this method: each item a study and its section of the report.
 
-use super::sections::{self, pipe_flow::Showing};
+use super::sections;
 use super::study::calibration;
 use super::study::efficiency_table::Question;
 use super::study::model_validation::{self, Calibrated, model_validation};
 use super::study::rounds::Bound;
 use super::study::{
-    break_even, crossover, damping, density_cost, efficiency_table, host_ladder, identity, ladder, listing,
-    measured_cost, misprints, pipe_flow, precision, printed_cost, threads, useful_work,
+    break_even, crossover, damping, density_cost, efficiency_table, host_ladder, identity, ladder,
+    listing, mask, measured_cost, misprints, pipe_flow, precision, printed_cost, threads, useful_work,
 };
 use crate::console::Failure;
 use crate::model::host::{HostModel, default_model};
 use crate::model::machines;
-use crate::report::Chapter::{Beyond, Host, Sources};
+use crate::report::Chapter::{Host, Sources};
 use crate::report::Section;
-use crate::results::{Item, Lab, Made, Meter, Progress, Size};
-use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
+use crate::results::{Item, Lab, Made, Progress, Size};
 use serde::Serialize;
 use std::sync::OnceLock;
 use std::time::Duration;
 use stripmine_kernels::InstructionSet;
-use stripmine_physics::method::lattice_md::Part;
 use stripmine_physics::origin;
-use stripmine_physics::scene::{Overrides, PACKING_FRACTION, STEPS};
 
 /// Every item, in the order of its chapter.
 pub(super) const ITEMS: &[Item] = &[
-    Item::quick("table", Sources, [0.1, 0.2], table, "BP93's efficiency table"),
-    Item::quick(
-        "ladder",
-        Beyond,
-        [0.1, 0.1],
-        ladder,
-        "What each refinement of the clock adds, machine by machine",
-    ),
-    Item::quick("listing", Sources, [0.1, 0.1], listing, "The vector instructions of every part"),
-    Item::quick("mask", Sources, [0.1, 0.1], mask, "BP93, figure 2: the mask"),
-    Item::quick("misprints", Sources, [0.1, 0.1], misprints, "What the misprints of the contact law do"),
-    Item::quick(
-        "cost",
-        Sources,
-        [0.5, 0.5],
-        cost,
-        "BP93, figures 3 and 4: cost over particles and density, by the model",
-    ),
-    Item::quick(
-        "useful-work",
-        Beyond,
-        [0.3, 0.3],
-        useful_work,
-        "Operations that act on real contacts, over the density",
-    ),
+    Item::of("table", efficiency_table::made),
+    Item::of("ladder", ladder::made),
+    Item::of("listing", listing::made),
+    Item::of("mask", mask::made),
+    Item::of("misprints", misprints::made),
+    Item::of("cost", density_cost::made),
+    Item::of("useful-work", useful_work::made),
     Item::quick(
         "printed",
         Sources,
@@ -88,73 +67,13 @@ pub(super) const ITEMS: &[Item] = &[
         threads,
         "What more threads give, and what the machine has to give",
     ),
-    Item::quick(
-        "identity",
-        Sources,
-        [1.0, 1.0],
-        identity,
-        "Lattice and neighbour lists: the same to the bit",
-    ),
-    Item::full(
-        "precision",
-        Beyond,
-        23.0,
-        precision,
-        "What single and mixed precision cost: forces, energy, trajectories",
-    ),
-    Item::quick(
-        "pipe-small",
-        Sources,
-        [1.0, 1.0],
-        pipe_small,
-        "BP93, figures 5 and 6, in two fifths of the pipe",
-    ),
-    Item::full("pipe", Sources, 15.0, pipe, "BP93, figures 5 and 6, in the whole pipe"),
-    Item::full(
-        "pipe-thin",
-        Sources,
-        13.0,
-        pipe_thin,
-        "The whole pipe with fewer grains: do waves run both ways?",
-    ),
-    Item::full("waves", Sources, 20.0, waves, "Density waves over dissipation, and controls without"),
+    Item::of("identity", identity::made),
+    Item::of("precision", precision::made),
+    Item::of("pipe-small", pipe_flow::short),
+    Item::of("pipe", pipe_flow::whole),
+    Item::of("pipe-thin", pipe_flow::thin),
+    Item::of("waves", damping::made),
 ];
-
-fn table(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let data = efficiency_table::efficiency_table(&Question::default(), &machines::preset("paper")?)?;
-    made(sections::efficiency_table::section(&data), &data)
-}
-
-fn ladder(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let ladders: Vec<_> = ["cray-y-mp-el", "cray-1", "sx-aurora"]
-        .into_iter()
-        .map(|name| Ok(ladder::ladder(&Question::default(), &machines::preset(name)?)?))
-        .collect::<Result<_, Failure>>()?;
-    made(sections::ladder::section(&ladders), &ladders)
-}
-
-fn listing(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    listings()
-}
-
-fn mask(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    made(sections::mask::section(), &())
-}
-
-fn misprints(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let data = misprints::misprints();
-    made(sections::misprints::section(&data), &data)
-}
-
-fn cost(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let data = density_cost::density_cost(&machines::preset("paper")?)?;
-    made(sections::density_cost::section(&data), &data)
-}
-
-fn useful_work(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let data = useful_work::useful_work()?;
-    made(sections::useful_work::section(&data), &data)
-}
 
 fn printed(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
     let progress = lab.progress;
@@ -198,50 +117,6 @@ fn threads(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let data = threads::threads(cores, &threads_effort(effort), progress)?;
     made(sections::threads::section(&data), &data)
-}
-
-fn identity(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let progress = lab.progress;
-    let data = identity::identity(progress)?;
-    made(sections::identity::section(&data), &data)
-}
-
-fn precision(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let progress = lab.progress;
-    let data = precision::precision(progress)?;
-    made(sections::precision::section(&data), &data)
-}
-
-fn pipe_small(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let progress = lab.progress;
-    let title = "Density waves in a short pipe (figures 5 and 6)";
-    let question = "Do grains that fall through two fifths of the pipe form density waves?";
-    let showing = Showing { name: "pipe-small", title, question, asks_ways: false, from: 0.0, snapshots: 0 };
-    pipes(showing, ("pipe-small", Overrides::new()), &[1], progress)
-}
-
-fn pipe(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let progress = lab.progress;
-    let title = "Density waves in the whole pipe (figures 5 and 6)";
-    let question = "Do grains that fall through the source's whole pipe form density waves?";
-    let showing = Showing { name: "pipe", title, question, asks_ways: false, from: 10.0, snapshots: 14 };
-    pipes(showing, ("pipe", Overrides::new()), &[1, 2], progress)
-}
-
-fn pipe_thin(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let progress = lab.progress;
-    let title = "Density waves in a thinner filling";
-    let question = "Do the waves run both ways where the pipe is filled less?";
-    let showing = Showing { name: "pipe-thin", title, question, asks_ways: true, from: 0.0, snapshots: 0 };
-    let thin = Overrides::new().set(&PACKING_FRACTION, 0.35);
-    pipes(showing, ("pipe", thin), &[1, 2], progress)
-}
-
-fn waves(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let progress = lab.progress;
-    let seeds = [1, 2, 3, 4, 5, 6];
-    let data = damping::damping(&seeds, progress)?;
-    made(sections::damping::section(&data), &data)
 }
 
 fn made(section: Section, data: &impl Serialize) -> Result<Made, Failure> {
@@ -368,55 +243,4 @@ fn threads_effort(effort: Size) -> threads::Effort {
             particle_steps: 4_000_000,
         },
     }
-}
-
-/// Runs of a scene with overrides and a control without waves, side by side; the first keeps its frames if snapshots are shown.
-fn pipes(
-    showing: Showing,
-    (scene, overrides): (&'static str, Overrides),
-    seeds: &[u64],
-    progress: Progress<'_>,
-) -> Result<Made, Failure> {
-    let of = |overrides: &Overrides, seed: u64, keep_frames: bool| pipe_flow::Question {
-        scene,
-        overrides: overrides.clone(),
-        seed,
-        keep_frames,
-    };
-    let control = pipe_flow::elastic(&overrides).set(&STEPS, CONTROL);
-    let mut questions: Vec<_> =
-        seeds.iter().map(|&seed| of(&overrides, seed, seed == seeds[0] && showing.snapshots > 0)).collect();
-    questions.push(of(&control, seeds[0], false));
-    let meter = Meter::new(questions.len() as f64, progress);
-    let flows = questions.par_iter().map(|question| {
-        let mut before = 0.0;
-        pipe_flow::pipe_flow(question, |share| meter.add(share - std::mem::replace(&mut before, share)))
-    });
-    let mut flows: Vec<pipe_flow::PipeFlow> = flows.collect::<Result<_, _>>()?;
-    let control = flows.pop().into_iter().collect::<Vec<_>>();
-    let section = sections::pipe_flow::section(showing, &flows, &control[0]);
-    made(section, &serde_json::json!({ "runs": flows, "control": control[0] }))
-}
-
-/// Steps of the control: 2 s.
-const CONTROL: u64 = 40_000;
-
-/// The source's own text first, as a reader wants it; then ours.
-fn listings() -> Result<Made, Failure> {
-    let ours = Question::default();
-    let printed = Question { choice: ours.choice.printed(), ..ours.clone() };
-    let mut parts = vec![];
-    for (name, question) in [("printed_", &printed), ("", &ours)] {
-        for &part in Part::ALL {
-            let listings = listing::listings(part, question)?;
-            let (text, instructions) = (listing::text(&listings), listing::instructions(&listings));
-            if instructions > 0 {
-                let part = format!("{name}{}", part.name());
-                parts.push(sections::listing::PartListing { part, text, instructions });
-            }
-        }
-    }
-    let mut made = made(sections::listing::section(&parts), &())?;
-    made.files = parts.into_iter().map(|part| (format!("{}.txt", part.part), part.text)).collect();
-    Ok(made)
 }

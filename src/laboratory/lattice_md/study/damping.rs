@@ -1,86 +1,77 @@
-//! How much dissipation makes waves? The pipe over γ_N, and controls that must stay even.
+//! Density waves over dissipation: the pipe over γ_N, and a control that must stay even.
 
-use super::StudyError;
-use super::pipe_flow::{PipeFlow, Question, elastic, pipe_flow};
-use crate::results::{Meter, Progress};
+use super::pipe_flow::{Flow, elastic, flow, late};
+use crate::console::Failure;
+use crate::frame::{Cell, Rows};
+use crate::results::{Lab, Made, Meter, Size};
 use crate::statistics::Spread;
-use serde::Serialize;
 use stripmine_physics::method::lattice_md::keys::NORMAL_DAMPING;
 use stripmine_physics::scene::Overrides;
 
-/// One case over its seeds.
-#[derive(Clone, Debug, Serialize)]
-pub struct Case {
-    /// What it is.
-    pub name: String,
-    /// γ_N (1/s).
-    pub normal_damping: f64,
-    /// What differs from `pipe-small`.
-    pub overrides: Overrides,
-    /// Fano factor at the start.
-    pub fano_start: Spread,
-    /// Fano factor over the last half of the run.
-    pub fano: Spread,
-    /// Strongest Fourier mode at the start.
-    pub mode_start: Spread,
-    /// Strongest Fourier mode over the last half of the run.
-    pub mode: Spread,
-    /// Mean velocity along the pipe over the last half of the run (m/s).
-    pub flow: Spread,
-    /// Deepest penetration (fraction of the sum of the radii); 0 where none passed `max_penetration`.
-    pub deepest: Spread,
-}
-
-/// The dataset.
-#[derive(Clone, Debug, Serialize)]
-pub struct Damping {
-    /// Seeds of every case.
-    pub seeds: Vec<u64>,
-    /// The cases: γ_N by increasing value, then the controls.
-    pub cases: Vec<Case>,
-}
-
-impl Damping {
-    /// The cases in which γ_N alone differs from the scene.
-    pub fn scan(&self) -> impl Iterator<Item = &Case> {
-        self.cases.iter().filter(|case| case.overrides.len() <= 1)
-    }
-}
-
 /// γ_N of the scan (1/s).
-pub const SCAN: [f64; 5] = [100.0, 200.0, 400.0, 700.0, 1000.0];
+const SCAN: [f64; 5] = [100.0, 200.0, 400.0, 700.0, 1000.0];
+/// Starts of every case.
+const SEEDS: [u64; 6] = [1, 2, 3, 4, 5, 6];
 
-/// Runs every case with every seed. `progress` gets the share that is done.
+/// A case over its seeds.
+struct Case {
+    name: String,
+    /// γ_N (1/s); none of the control.
+    damping: Option<f64>,
+    /// Fano factor at the start and late, strongest mode at the start and late, late mean velocity (m/s).
+    spreads: [Spread; 5],
+}
+
+/// Runs every case with every seed.
 ///
 /// # Errors
-/// [`StudyError`] if a scene breaks.
-pub fn damping(seeds: &[u64], progress: Progress<'_>) -> Result<Damping, StudyError> {
+/// [`Failure`] if a scene breaks.
+pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let scan = SCAN.map(|damping| {
-        (format!("γ_N = {damping:.0} 1/s"), damping, Overrides::new().set(&NORMAL_DAMPING, damping))
+        let name = format!("γ_N = {damping:.0} 1/s");
+        (name, Some(damping), Overrides::new().set(&NORMAL_DAMPING, damping))
     });
-    let elastic = ("elastic gas without gravity".to_owned(), 0.0, elastic(&Overrides::new()));
-    let cases: Vec<_> = scan.into_iter().chain([elastic]).collect();
-    let runs: Vec<(usize, u64)> =
-        (0..cases.len()).flat_map(|case| seeds.iter().map(move |&seed| (case, seed))).collect();
-    let flows = Meter::new(runs.len() as f64, progress).each(&runs, |&(case, seed)| {
-        let overrides = cases[case].2.clone();
-        pipe_flow(&Question { scene: "pipe-small", overrides, seed, keep_frames: false }, |_| {})
-    })?;
-    let cases =
-        cases.into_iter().zip(flows.chunks(seeds.len())).map(|((name, normal_damping, overrides), flows)| {
-            let over =
-                |figure: &dyn Fn(&PipeFlow) -> f64| Spread::of(&flows.iter().map(figure).collect::<Vec<_>>());
-            Case {
-                name,
-                normal_damping,
-                overrides,
-                fano_start: over(&|flow| flow.fano[0]),
-                fano: over(&|flow| flow.late(&flow.fano).value),
-                mode_start: over(&|flow| flow.strongest_mode[0]),
-                mode: over(&|flow| flow.late(&flow.strongest_mode).value),
-                flow: over(&|flow| flow.late(&flow.flow).value),
-                deepest: over(&|flow| flow.deepest),
-            }
-        });
-    Ok(Damping { seeds: seeds.to_vec(), cases: cases.collect() })
+    let control = ("elastic gas without gravity".to_owned(), None, elastic(&Overrides::new()));
+    let cases: Vec<_> = scan.into_iter().chain([control]).collect();
+    let runs: Vec<(&Overrides, u64)> =
+        cases.iter().flat_map(|(.., overrides)| SEEDS.map(|seed| (overrides, seed))).collect();
+    let flows = Meter::new(runs.len() as f64, lab.progress)
+        .each(&runs, |&(overrides, seed)| flow("pipe-small", overrides, seed, false, |_| {}))?;
+    let cases = cases.iter().zip(flows.chunks(SEEDS.len())).map(|((name, damping, _), flows)| {
+        let over = |of: fn(&Flow) -> f64| Spread::of(&flows.iter().map(of).collect::<Vec<_>>());
+        let spreads = [
+            over(|flow| flow.fano[0]),
+            over(|flow| late(&flow.fano).value),
+            over(|flow| flow.strongest_mode[0]),
+            over(|flow| late(&flow.strongest_mode).value),
+            over(|flow| late(&flow.flow).value),
+        ];
+        Case { name: name.clone(), damping: *damping, spreads }
+    });
+    let cases: Vec<Case> = cases.collect();
+    let with_error = |it: Spread, decimals: usize| Cell::with_error(it.mean, it.error, decimals);
+    // The standard error below the mean reaches to the lowest run at most.
+    let drawn = |it: Spread| {
+        let error = it.error.unwrap_or(0.0);
+        [it.mean, (it.mean - error).max(it.lowest), it.mean + error].map(|value| Cell::Number(value, 3))
+    };
+    let [late, start] =
+        ["late", "start"].map(|name| [name.into(), format!("{name} low"), format!("{name} high")]);
+    Ok(Made::of([
+        Rows::of(&cases)
+            .text("case", |case| &case.name)
+            .cell("Fano at the start", |case| with_error(case.spreads[0], 2))
+            .cell("Fano late", |case| with_error(case.spreads[1], 2))
+            .cell("single seeds", |case| Cell::Range([case.spreads[1].lowest, case.spreads[1].highest], 2))
+            .cell("strongest mode at the start", |case| with_error(case.spreads[2], 3))
+            .cell("strongest mode late", |case| with_error(case.spreads[3], 3))
+            .cell("mean velocity late (m/s)", |case| with_error(case.spreads[4], 3))
+            .frame("cases", "Every case"),
+        Rows::of(cases.iter().filter(|case| case.damping.is_some()))
+            .number("γ_N (1/s)", 0, |case| case.damping)
+            .cells(late, |case| drawn(case.spreads[1]))
+            .cells(start, |case| drawn(case.spreads[0]))
+            .frame("scan", "Fano factors over the damping, with the ends of their standard errors"),
+    ])
+    .with_seeds(SEEDS))
 }

@@ -1,13 +1,19 @@
-//! What does a step cost, over the number of particles and their density, by the source's model? BP93 figures 3 and 4.
+//! Clock periods of a step over the number of particles and their density, by BP93's clock: its figures 3 and 4.
 
 use super::StudyError;
-use super::efficiency_table::{Choice, Question, QuestionError, counting_model, printed_nop, step};
+use super::efficiency_table::{
+    Choice, Question, QuestionError, counting_model, model_of, printed_clocks, step,
+};
+use crate::console::Failure;
+use crate::frame::{Frame, Rows};
 use crate::model::clock::Clock;
 use crate::model::machine::MachineModel;
+use crate::model::machines;
+use crate::results::{Lab, Made, Size};
+use crate::statistics::slope;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
-use serde::Serialize;
 use std::f64::consts::PI;
-use stripmine_kernels::isa::{Op, OpCounts};
+use stripmine_kernels::isa::OpCounts;
 use stripmine_kernels::ledger::{Ledger, Length};
 use stripmine_physics::method::lattice_md::Document;
 use stripmine_physics::method::lattice_md::assemble;
@@ -16,24 +22,21 @@ use stripmine_physics::method::lattice_md::options::By;
 use stripmine_physics::method::lattice_md::{Lengths, Part, ledger, rival_ledger};
 use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
 
-/// The densest that discs can lie on cells as wide as their radius: touching discs in hexagonal order, `1/(2√3)`.
-pub const CEILING: f64 = 0.288_675_134_594_812_9;
+/// Highest ρ of discs on cells as wide as their radius: touching discs in hexagonal order, `1/(2√3)`.
+pub(crate) const CEILING: f64 = 0.288_675_134_594_812_9;
 
 /// LMAX of figure 3.
-pub const LATTICES: [usize; 3] = [1_000, 10_000, 100_000];
+const LATTICES: [usize; 3] = [1_000, 10_000, 100_000];
 
 /// ρ of figure 4; the last two lie above [`CEILING`].
-pub const OCCUPANCIES: [f64; 6] = [0.05, 0.1, 0.2, 0.25, 0.35, 0.5];
+pub(super) const OCCUPANCIES: [f64; 6] = [0.05, 0.1, 0.2, 0.25, 0.35, 0.5];
 
-/// ρ of the lists of figure 3.
-pub const DENSE: f64 = 0.25;
-
-/// What lists hold at a density: measured in a run, because no model knows it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+/// Neighbour lists at a density: measured in a run, because no model knows them.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct ListFigures {
     /// ρ on cells as wide as the radius.
     pub occupancy: f64,
-    /// Candidates that a step looks at, for each disc.
+    /// Candidates that a step tests, for each disc.
     pub candidates: f64,
     /// Candidates in contact, for each disc.
     pub contacts: f64,
@@ -42,70 +45,118 @@ pub struct ListFigures {
 }
 
 /// Clock periods of a step.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Cost {
-    /// NP.
-    pub particles: usize,
-    /// By the source's formula and its NOP; none where the source has no formula.
-    pub printed: Option<f64>,
+struct Cost {
+    particles: usize,
+    /// By BP93's formula and its NOP; BP93 has no formula for lists.
+    printed: Option<f64>,
     /// By the same clock, from the operations counted.
-    pub counted: f64,
+    counted: f64,
 }
 
-/// A curve over NP.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Curve {
-    /// LMAX where it is fixed.
-    pub cells: Option<usize>,
-    /// ρ where it is fixed.
-    pub occupancy: Option<f64>,
-    /// Whether discs can lie that densely on cells as wide as their radius.
-    pub reachable: bool,
-    /// The costs.
-    pub costs: Vec<Cost>,
+/// A curve over NP with LMAX or ρ fixed.
+struct Curve {
+    cells: Option<usize>,
+    occupancy: Option<f64>,
+    costs: Vec<Cost>,
 }
 
-/// The dataset.
-#[derive(Clone, Debug, Serialize)]
-pub struct DensityCost {
-    /// The machine.
-    pub machine: String,
-    /// Operations of a test of one pair while lists are made: the law's own, up to whether there is contact.
-    pub test_operations: u64,
-    /// What lists hold.
-    pub lists: Vec<ListFigures>,
-    /// Figure 3: a step of the vector algorithm over NP, for several LMAX.
-    pub vector: Vec<Curve>,
-    /// Figure 3: a step with scalar neighbour lists, made by trying all pairs.
-    pub list: Curve,
-    /// Figure 4: the vector algorithm over NP, for several ρ.
-    pub densities: Vec<Curve>,
-    /// Figure 4: the lists for the same ρ.
-    pub list_densities: Vec<Curve>,
-}
-
-/// The dataset on a machine.
+/// The curves by the clock of the paper's machine.
 ///
 /// # Errors
 /// [`StudyError`] if a scene breaks whose lists are counted.
-pub fn density_cost(machine: &MachineModel) -> Result<DensityCost, StudyError> {
-    let choice = Question::default().choice;
+pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+    Ok(density_cost(&machines::preset("paper")?)?)
+}
+
+/// The curves by the clock of a machine.
+///
+/// # Errors
+/// [`StudyError`] if a scene breaks whose lists are counted.
+pub(crate) fn density_cost(machine: &MachineModel) -> Result<Made, StudyError> {
     let figures = OCCUPANCIES.into_par_iter().filter(|&occupancy| occupancy < CEILING).map(list_figures);
-    let lists: Vec<ListFigures> = figures.collect::<Result<_, _>>()?;
-    // Counts depend on what is modelled, not on how large the lattice is.
-    let (programs, _) = step(&Question::default())?;
-    let model = Model { machine, choice, lattice: ledger(&programs), rival: rival(choice)? };
-    let vector = LATTICES.map(|cells| model.over_particles(Some(cells), None));
-    let densities = OCCUPANCIES.map(|occupancy| model.over_particles(None, Some(occupancy)));
-    Ok(DensityCost {
-        machine: machine.title().to_owned(),
-        test_operations: model.test().total(),
-        vector: vector.into_iter().collect::<Result<_, _>>()?,
-        list: model.with_lists(&list_figures(DENSE)?),
-        densities: densities.into_iter().collect::<Result<_, _>>()?,
-        list_densities: lists.iter().map(|figures| model.with_lists(figures)).collect(),
-        lists,
+    let figures: Vec<ListFigures> = figures.collect::<Result<_, _>>()?;
+    let model = Model::of(machine)?;
+    let cells = LATTICES.map(|cells| model.over_particles(Some(cells), None)).into_iter();
+    let cells = cells.collect::<Result<Vec<_>, _>>()?;
+    let densities = OCCUPANCIES.map(|occupancy| model.over_particles(None, Some(occupancy))).into_iter();
+    let densities = densities.collect::<Result<Vec<_>, _>>()?;
+    let lists: Vec<Curve> = figures.iter().map(|figures| model.with_lists(figures)).collect();
+    let dense = &lists[lists.len() - 1];
+    let break_even = cells.iter().map(|curve| (curve, dense)).chain(by_density(&densities, &lists));
+    Ok(Made::of([
+        curves(&[("vector", &cells), ("vector", &densities), ("lists", &lists)]),
+        Rows::of(break_even)
+            .cell("LMAX", |(curve, _)| curve.cells.map(|cells| cells as u64))
+            .number("ρ", 2, |(curve, _)| curve.occupancy)
+            .number("NP", 0, |(curve, lists)| crossing(curve, lists))
+            .frame("break_even", "Number of particles from which on a vector step is the shorter one"),
+        Rows::of(&figures)
+            .number("occupancy ρ", 2, |figures| figures.occupancy)
+            .number("candidates a disc", 2, |figures| figures.candidates)
+            .number("contacts a disc", 3, |figures| figures.contacts)
+            .number("steps a list serves", 1, |figures| figures.steps_a_list)
+            .frame("lists", "Candidates and contacts in the lists"),
+        Rows::of([()])
+            .text("machine", |()| machine.title())
+            .count("operations of a test", |()| model.test().total())
+            .number("ceiling", 3, |()| CEILING)
+            .number("break-even power", 2, |()| break_even_power(&densities, &lists))
+            .number("largest ratio of lists by density", 2, |()| spread_by_density(&lists))
+            .frame("summary", "Machine, and how costs depend on the density"),
+    ])
+    .with_seeds([1]))
+}
+
+fn curves(groups: &[(&str, &[Curve])]) -> Frame {
+    let curves = groups.iter().flat_map(|(method, curves)| curves.iter().map(move |curve| (*method, curve)));
+    let rows = curves.flat_map(|(method, curve)| curve.costs.iter().map(move |cost| (method, curve, cost)));
+    Rows::of(rows)
+        .text("method", |(method, ..)| *method)
+        .cell("LMAX", |(_, curve, _)| curve.cells.map(|cells| cells as u64))
+        .number("ρ", 2, |(_, curve, _)| curve.occupancy)
+        .count("NP", |(.., cost)| cost.particles)
+        .number("counted", 0, |(.., cost)| cost.counted)
+        .number("as printed", 0, |(.., cost)| cost.printed)
+        .frame("curves", "Clock periods of a step, on a lattice of LMAX cells or at an occupancy ρ")
+}
+
+/// Curves of the lattice and of lists at the same density.
+fn by_density<'c>(lattice: &'c [Curve], lists: &'c [Curve]) -> impl Iterator<Item = (&'c Curve, &'c Curve)> {
+    let of = |lists: &Curve| lattice.iter().find(|curve| curve.occupancy == lists.occupancy);
+    lists.iter().filter_map(move |lists| Some((of(lists)?, lists)))
+}
+
+/// NP from which on the lattice is cheaper than lists, between two points of the curves.
+fn crossing(lattice: &Curve, lists: &Curve) -> Option<f64> {
+    let ratios: Vec<(f64, f64)> = lattice
+        .costs
+        .iter()
+        .filter_map(|cost| {
+            let rival = lists.costs.iter().find(|rival| rival.particles == cost.particles)?;
+            Some(((cost.particles as f64).ln(), (cost.counted / rival.counted).ln()))
+        })
+        .collect();
+    ratios.windows(2).find(|pair| pair[0].1 > 0.0 && pair[1].1 <= 0.0).map(|pair| {
+        let [(x0, y0), (x1, y1)] = [pair[0], pair[1]];
+        (x0 + (x1 - x0) * y0 / (y0 - y1)).exp()
     })
+}
+
+/// Power of ρ with which the number of particles changes from which on the lattice is cheaper: slope of a line through logarithms.
+fn break_even_power(lattice: &[Curve], lists: &[Curve]) -> Option<f64> {
+    let pairs = by_density(lattice, lists)
+        .filter_map(|(lattice, lists)| Some((lists.occupancy?.ln(), crossing(lattice, lists)?.ln())));
+    let (densities, particles): (Vec<f64>, Vec<f64>) = pairs.unzip();
+    (densities.len() > 1).then(|| slope(&densities, &particles))
+}
+
+/// Largest ratio of the costs of lists of different densities at one number of particles.
+fn spread_by_density(lists: &[Curve]) -> Option<f64> {
+    let ratios = (0..lists.first()?.costs.len()).filter_map(|at| {
+        let costs = || lists.iter().filter_map(move |curve| Some(curve.costs.get(at)?.counted));
+        Some(costs().reduce(f64::max)? / costs().reduce(f64::min)?)
+    });
+    ratios.reduce(f64::max)
 }
 
 /// NP, ρ and the clock periods of a step, on the lattice and with lists, wherever there is a lattice.
@@ -117,9 +168,7 @@ pub(super) fn grid(
     lists: &[ListFigures],
     particles: &[usize],
 ) -> Result<Vec<(usize, f64, [f64; 2])>, StudyError> {
-    let choice = Question::default().choice;
-    let (programs, _) = step(&Question::default())?;
-    let model = Model { machine, choice, lattice: ledger(&programs), rival: rival(choice)? };
+    let model = Model::of(machine)?;
     let mut costs = vec![];
     for figures in lists {
         for &particles in particles {
@@ -137,18 +186,7 @@ fn particles() -> impl Iterator<Item = usize> {
     (5..=25).map(|fifth| 10f64.powf(f64::from(fifth) / 5.0).round() as usize)
 }
 
-fn rival(choice: Choice) -> Result<Ledger, QuestionError> {
-    let Question { particles, occupancy, .. } = Question::default();
-    let cells = (particles as f64 / occupancy) as usize;
-    let model = counting_model(cells, choice).map_err(|cause| QuestionError::Shape {
-        particles,
-        occupancy,
-        cause,
-    })?;
-    Ok(rival_ledger(&model))
-}
-
-/// What is counted, and the machine whose clock charges it.
+/// Counted operations, and the machine whose clock charges them.
 struct Model<'m> {
     machine: &'m MachineModel,
     choice: Choice,
@@ -157,14 +195,19 @@ struct Model<'m> {
 }
 
 impl Model<'_> {
+    /// Counts, which depend on what is modelled and not on the size of the lattice.
+    fn of(machine: &MachineModel) -> Result<Model<'_>, QuestionError> {
+        let question = Question::default();
+        let (programs, rival) = (step(&question)?.0, rival_ledger(&model_of(&question)?));
+        Ok(Model { machine, choice: question.choice, lattice: ledger(&programs), rival })
+    }
+
     /// A curve of the vector algorithm, with LMAX or ρ fixed.
     fn over_particles(&self, cells: Option<usize>, occupancy: Option<f64>) -> Result<Curve, StudyError> {
         let mut costs = vec![];
         for particles in particles() {
-            let cells = match (cells, occupancy) {
-                (Some(cells), _) => cells,
-                (None, occupancy) => (particles as f64 / occupancy.unwrap_or(1.0)).ceil() as usize,
-            };
+            let of_density = || (particles as f64 / occupancy.unwrap_or(1.0)).ceil() as usize;
+            let cells = cells.unwrap_or_else(of_density);
             let least = if occupancy.is_some() { 25 } else { 0 };
             if cells < least || particles as f64 > CEILING.max(occupancy.unwrap_or(0.0)) * cells as f64 + 1.0
             {
@@ -172,12 +215,7 @@ impl Model<'_> {
             }
             costs.push(self.step(particles, cells)?);
         }
-        Ok(Curve {
-            cells,
-            occupancy,
-            reachable: occupancy.is_none_or(|occupancy| occupancy < CEILING),
-            costs,
-        })
+        Ok(Curve { cells, occupancy, costs })
     }
 
     fn step(&self, particles: usize, cells: usize) -> Result<Cost, StudyError> {
@@ -194,18 +232,16 @@ impl Model<'_> {
             .parts()
             .into_iter()
             .map(|(_, length, counts)| clocks(&counts, lengths.range(length).len() as u64));
-        let printed = Part::ALL.iter().filter_map(|&part| {
-            let mut counts = OpCounts::default();
-            (0..printed_nop(part)?).for_each(|_| counts.record(Op::Add));
-            Some(clocks(&counts, if part == Part::Forces { cells } else { particles } as u64))
-        });
+        let printed = Part::ALL
+            .iter()
+            .filter_map(|&part| printed_clocks(part, self.machine, particles as u64, cells as u64));
         Ok(Cost { particles, printed: Some(printed.sum()), counted: counted.sum() })
     }
 
     /// A curve of the scalar rival.
     fn with_lists(&self, figures: &ListFigures) -> Curve {
         let costs = particles().map(|particles| self.list_cost(particles, figures)).collect();
-        Curve { cells: None, occupancy: Some(figures.occupancy), reachable: true, costs }
+        Curve { cells: None, occupancy: Some(figures.occupancy), costs }
     }
 
     /// The scalar rival: every operation costs the whole depth of the pipeline. The Index belongs to the lattice and is
@@ -239,7 +275,7 @@ impl Model<'_> {
     }
 }
 
-/// Looks into the lists of a warm gas of about a thousand discs.
+/// Lists of a warm gas of about a thousand discs.
 pub(super) fn list_figures(occupancy: f64) -> Result<ListFigures, StudyError> {
     const EQUILIBRATION: u64 = 200;
     const STEPS: u64 = 1000;
@@ -262,4 +298,30 @@ pub(super) fn list_figures(occupancy: f64) -> Result<ListFigures, StudyError> {
         contacts: sums[1] as f64 / discs,
         steps_a_list: STEPS as f64 / made.max(1) as f64,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn curve(occupancy: f64, cost: impl Fn(f64) -> f64) -> Curve {
+        let costs = [10_usize, 100, 1000, 10_000, 100_000].map(|particles| {
+            let counted = cost(particles as f64);
+            Cost { particles, printed: None, counted }
+        });
+        Curve { cells: None, occupancy: Some(occupancy), costs: costs.into() }
+    }
+
+    /// A lattice whose step takes NP/ρ, and lists that take NP² times a power of ρ.
+    #[test]
+    fn powers_of_the_density_come_out() {
+        let densities = [0.05, 0.1, 0.2];
+        let lattice = densities.map(|rho| curve(rho, move |np| 50.0 * np / rho));
+        for (power, expected, spread) in [(0, -1.0, 1.0), (1, -2.0, 4.0)] {
+            let lists = densities.map(|rho| curve(rho, move |np| np * np * (10.0 * rho).powi(power)));
+            let found = break_even_power(&lattice, &lists).unwrap();
+            assert!((found - expected).abs() < 1e-9, "{found}");
+            assert!((spread_by_density(&lists).unwrap() - spread).abs() < 1e-9);
+        }
+    }
 }

@@ -1,97 +1,73 @@
-//! Does the lattice give what neighbour lists give? BP93 section 4: "no differences in the results".
+//! Lattice and neighbour lists, step by step: BP93, section 5, "no differences in the results".
 
 use super::StudyError;
-use crate::results::{Meter, Progress};
-use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
-use serde::Serialize;
+use crate::console::Failure;
+use crate::frame::Rows;
+use crate::results::{Lab, Made, Meter, Size};
 use stripmine_physics::method::lattice_md::Document;
 use stripmine_physics::method::lattice_md::assemble;
 use stripmine_physics::method::lattice_md::keys::{EXECUTION, NORMAL_DAMPING, SEARCH};
 use stripmine_physics::method::lattice_md::options::By;
+use stripmine_physics::particles::Particles;
 use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
 
-/// A scene that both methods ran.
-#[derive(Clone, Debug, Serialize)]
-pub struct Pair {
-    /// What it is.
-    pub name: &'static str,
-    /// The scene.
-    pub scene: &'static str,
-    /// What differs from it.
-    pub overrides: Overrides,
-    /// Discs that move.
-    pub grains: usize,
-    /// The states that were compared.
-    pub states: Vec<State>,
-}
-
-/// A state of both runs.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct State {
-    /// The step.
-    pub step: u64,
-    /// CRC-32 of the lattice's state.
-    pub lattice: String,
-    /// CRC-32 of the lists' state.
-    pub lists: String,
-    /// Largest difference of a position (length).
-    pub farthest: f64,
-}
-
-/// The dataset.
-#[derive(Clone, Debug, Serialize)]
-pub struct Identity {
-    /// Every scene.
-    pub pairs: Vec<Pair>,
-}
-
-impl Identity {
-    /// Whether every state that was compared is the same to the bit.
-    pub fn holds(&self) -> bool {
-        self.pairs.iter().flat_map(|pair| &pair.states).all(|state| state.lattice == state.lists)
-    }
+/// A scene that both methods run.
+struct Scene {
+    name: &'static str,
+    preset: &'static str,
+    overrides: Overrides,
+    steps: u64,
 }
 
 /// Steps between two comparisons.
 const STRIDE: u64 = 1000;
 
-/// Runs each scene with both methods. `progress` gets the share that is done.
+/// Runs each scene with both methods.
 ///
 /// # Errors
 /// [`StudyError`] if a scene breaks.
-pub fn identity(progress: Progress<'_>) -> Result<Identity, StudyError> {
+pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let few = Overrides::new().set(&COUNT, 400_u64);
     let dense = few.clone().set(&PACKING_FRACTION, 0.84).set(&NORMAL_DAMPING, 0.5);
-    let scenes: [(&str, &str, Overrides, u64); 3] = [
+    let scenes = [
         ("dense gas with friction", "bench", dense, 2000),
         ("density waves", "pipe-small", Overrides::new(), 4000),
         ("elastic gas", "dense-gas", few, 2000),
-    ];
-    let meter = Meter::new(scenes.iter().map(|scene| scene.3 as f64).sum(), progress);
-    let pairs = scenes.par_iter().map(|(name, scene, overrides, steps)| {
-        let start = |search: By| {
-            let overrides = overrides.clone().set(&SEARCH, search).set(&EXECUTION, "chained");
-            Ok::<_, StudyError>(assemble(&Document::load(scene, &overrides)?.check()?)?)
-        };
-        let (mut lattice, mut lists) = (start(By::Lattice)?, start(By::NeighborList)?);
-        let mut states = vec![];
-        for step in 1..=*steps {
-            lattice.step()?;
-            lists.step()?;
-            if step % STRIDE == 0 {
-                let (a, b) = (lattice.particles(), lists.particles());
-                let apart = a
-                    .all()
-                    .iter()
-                    .zip(b.all())
-                    .map(|(a, b)| (a.position[0] - b.position[0]).hypot(a.position[1] - b.position[1]));
-                let farthest = apart.fold(0.0, f64::max);
-                states.push(State { step, lattice: a.checksum(), lists: b.checksum(), farthest });
-                meter.add(STRIDE as f64);
-            }
+    ]
+    .map(|(name, preset, overrides, steps)| Scene { name, preset, overrides, steps });
+    let states = Meter::new(scenes.len() as f64, lab.progress).each(&scenes, compared)?;
+    let rows =
+        scenes.iter().zip(&states).flat_map(|(scene, states)| states.iter().map(move |it| (scene.name, it)));
+    Ok(Made::of([Rows::of(rows)
+        .text("scene", |(name, _)| *name)
+        .count("grains", |(_, (_, [lattice, _]))| lattice.grain_count())
+        .count("step", |(_, (step, _))| *step)
+        .text("lattice, CRC-32", |(_, (_, [lattice, _]))| format!("0x{}", lattice.checksum()))
+        .text("lists, CRC-32", |(_, (_, [_, lists]))| format!("0x{}", lists.checksum()))
+        .number("farthest apart (length)", 1, |(_, (_, [lattice, lists]))| {
+            let apart = lattice.all().iter().zip(lists.all());
+            let apart =
+                apart.map(|(a, b)| (a.position[0] - b.position[0]).hypot(a.position[1] - b.position[1]));
+            apart.fold(0.0, f64::max)
+        })
+        .frame("states", "States compared")])
+    .with_seeds([1]))
+}
+
+/// Steps, and the particles by the lattice and by lists.
+fn compared(scene: &Scene) -> Result<Vec<(u64, [Particles; 2])>, StudyError> {
+    let start = |search: By| {
+        let overrides = scene.overrides.clone().set(&SEARCH, search).set(&EXECUTION, "chained");
+        Ok::<_, StudyError>(assemble(&Document::load(scene.preset, &overrides)?.check()?)?)
+    };
+    let (mut lattice, mut lists) = (start(By::Lattice)?, start(By::NeighborList)?);
+    let mut states = vec![];
+    for step in 1..=scene.steps {
+        lattice.step()?;
+        lists.step()?;
+        if step % STRIDE == 0 {
+            states.push((step, [lattice.particles(), lists.particles()]));
         }
-        let grains = lattice.particles().grain_count();
-        Ok(Pair { name, scene, overrides: overrides.clone(), grains, states })
-    });
-    Ok(Identity { pairs: pairs.collect::<Result<_, StudyError>>()? })
+    }
+    Ok(states)
 }

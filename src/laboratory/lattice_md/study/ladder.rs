@@ -1,154 +1,165 @@
-//! What does each refinement of the clock add? One step, charged by every rung of the ladder.
+//! Clock periods of one step by every clock, from the trivial one to chaining and memory ports.
 
-use super::efficiency_table::{Choice, Question, QuestionError, step};
+use super::efficiency_table::{Question, QuestionError, step};
+use crate::console::Failure;
+use crate::frame::{Frame, Rows};
 use crate::model::clock::{Clock, Memory, Work, convoys};
 use crate::model::machine::MachineModel;
-use serde::Serialize;
+use crate::model::machines;
+use crate::results::{Lab, Made, Size};
 use stripmine_physics::method::lattice_md::Part;
 
-/// The dataset.
-#[derive(Clone, Debug, Serialize)]
-pub struct Ladder {
-    /// NP.
-    pub particles: usize,
-    /// LMAX.
-    pub cells: usize,
-    /// What is modelled.
-    pub choice: Choice,
-    /// The machine.
-    pub machine: String,
-    /// Its clock period (ns).
-    pub clock_period_ns: f64,
-    /// Numbers of the machine that are assumed.
-    pub assumed: Vec<String>,
-    /// Of the clock periods of the last rung, the share that depends on start-ups whose values are assumed.
-    pub assumed_share: f64,
-    /// The parts of the step, in their order.
-    pub parts: Vec<&'static str>,
-    /// A row for each clock.
-    pub rungs: Vec<Rung>,
-    /// Convoys of the last rung in each part.
-    pub convoys: Vec<Convoys>,
+/// Machines of the report.
+const MACHINES: [&str; 3] = ["cray-y-mp-el", "cray-1", "sx-aurora"];
+
+/// The default question on every machine of the report.
+///
+/// # Errors
+/// [`Failure`] if there is no such machine.
+pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+    let machines = MACHINES.map(machines::preset).into_iter().collect::<Result<Vec<_>, _>>()?;
+    let ladders = machines.iter().map(|machine| Ladder::of(&Question::default(), machine));
+    let ladders = ladders.collect::<Result<Vec<_>, _>>()?;
+    let rungs = ladders.iter().zip(1..).map(|(it, at)| it.rungs(format!("ladder_{at}")));
+    let meanings = Rows::of(Clock::ALL)
+        .text("clock", |clock| clock.name())
+        .text("meaning", |clock| clock.meaning())
+        .frame("clocks", "What each clock charges");
+    Ok(Made::of(rungs.chain([summary(&ladders), meanings])))
 }
 
-/// A step by one clock.
-#[derive(Clone, Debug, Serialize)]
-pub struct Rung {
-    /// The clock.
-    pub clock: &'static str,
-    /// What it takes into account.
-    pub meaning: &'static str,
-    /// Clock periods of each part.
-    pub parts: Vec<f64>,
-    /// Clock periods of the step.
-    pub clocks: f64,
-    /// Relative to the rung before; none for the first.
-    pub relative: Option<f64>,
-    /// Seconds of the step.
-    pub seconds: f64,
-}
-
-/// How the instructions of a part come together.
-#[derive(Clone, Debug, Serialize)]
-pub struct Convoys {
-    /// The part.
-    pub part: &'static str,
-    /// Instructions, those of expansions each for itself.
-    pub instructions: usize,
-    /// Convoys with memory never busy.
-    pub chained: usize,
-    /// Convoys with the machine's memory ports.
-    pub with_ports: usize,
-}
-
-/// Charges the step of a question by every clock.
+/// The frames of one machine: rungs, convoys, summary.
 ///
 /// # Errors
 /// [`QuestionError`] if no such lattice exists.
-pub fn ladder(question: &Question, machine: &MachineModel) -> Result<Ladder, QuestionError> {
-    let (programs, lengths) = step(question)?;
-    let works: Vec<(Part, Work, u64)> = programs
-        .iter()
-        .map(|step| (step.part, Work::of(step.program.as_ref()), lengths.range(step.length).len() as u64))
-        .collect();
-    let there: Vec<Part> =
-        Part::ALL.iter().copied().filter(|part| works.iter().any(|(of, ..)| of == part)).collect();
-    let of_part = |part: Part| works.iter().filter(move |(of, ..)| *of == part);
-    let clocks = |clock: Clock, machine: &MachineModel, part: Part| -> f64 {
-        of_part(part).map(|(_, work, n)| clock.clocks(machine, work, *n)).sum()
-    };
-    let period = machine.clock_period_ns().value;
-    let mut rungs: Vec<Rung> = vec![];
-    for &clock in Clock::ALL {
-        let parts: Vec<f64> = there.iter().map(|&part| clocks(clock, machine, part)).collect();
-        let sum: f64 = parts.iter().sum();
-        rungs.push(Rung {
-            clock: clock.name(),
-            meaning: clock.meaning(),
-            parts,
-            clocks: sum,
-            relative: rungs.last().map(|before| sum / before.clocks),
-            seconds: sum * period * 1e-9,
+pub(crate) fn ladder(question: &Question, machine: &MachineModel) -> Result<Made, QuestionError> {
+    let ladder = Ladder::of(question, machine)?;
+    Ok(Made::of([ladder.rungs("ladder".into()), ladder.convoys(), summary(&[ladder])]))
+}
+
+/// The programs of a step, and the machine that is charged for them.
+struct Ladder<'m> {
+    works: Vec<(Part, Work, u64)>,
+    discs: usize,
+    cells: usize,
+    machine: &'m MachineModel,
+}
+
+impl Ladder<'_> {
+    fn of<'m>(question: &Question, machine: &'m MachineModel) -> Result<Ladder<'m>, QuestionError> {
+        let (programs, lengths) = step(question)?;
+        let work = programs.iter().map(|step| {
+            (step.part, Work::of(step.program.as_ref()), lengths.range(step.length).len() as u64)
         });
+        Ok(Ladder { works: work.collect(), discs: lengths.discs, cells: lengths.cells, machine })
     }
-    let known = machine.without_assumed_start_ups();
-    let last = |machine: &MachineModel| -> f64 {
-        there.iter().map(|&part| clocks(Clock::Ports, machine, part)).sum()
-    };
-    let convoys = there.iter().map(|&part| {
-        let count = |memory| -> (usize, usize) {
-            let sets = of_part(part).filter_map(|(_, work, _)| work.order());
-            let sets = sets.map(|order| convoys(machine, order, memory));
+
+    fn of_part(&self, part: Part) -> impl Iterator<Item = &(Part, Work, u64)> {
+        self.works.iter().filter(move |(of, ..)| *of == part)
+    }
+
+    /// Parts of the step, in their order.
+    fn parts(&self) -> impl Iterator<Item = Part> {
+        Part::ALL.iter().copied().filter(|part| self.of_part(*part).next().is_some())
+    }
+
+    /// Clock periods of a part.
+    fn clocks(&self, clock: Clock, machine: &MachineModel, part: Part) -> f64 {
+        self.of_part(part).map(|(_, work, n)| clock.clocks(machine, work, *n)).sum()
+    }
+
+    /// Clock periods of the step.
+    fn step(&self, clock: Clock, machine: &MachineModel) -> f64 {
+        self.parts().map(|part| self.clocks(clock, machine, part)).sum()
+    }
+
+    /// Clock periods of a clock over those of the paper's.
+    fn of_paper(&self, clock: Clock) -> f64 {
+        self.step(clock, self.machine) / self.step(Clock::Paper, self.machine)
+    }
+
+    /// Share of the last rung that depends on assumed start-ups.
+    fn assumed_share(&self) -> f64 {
+        let known = self.machine.without_assumed_start_ups();
+        1.0 - self.step(Clock::Ports, &known) / self.step(Clock::Ports, self.machine)
+    }
+
+    fn rungs(&self, name: String) -> Frame {
+        let step = |clock: Clock| self.step(clock, self.machine);
+        let mut rows = Rows::of(Clock::ALL.iter().enumerate()).text("clock", |(_, clock)| clock.name());
+        for part in self.parts() {
+            rows = rows.number(part.name(), 0, |(_, clock)| self.clocks(**clock, self.machine, part));
+        }
+        rows.number("step", 0, |(_, clock)| step(**clock))
+            .number("of the rung before", 3, |(at, clock)| {
+                at.checked_sub(1).map(|before| step(**clock) / step(Clock::ALL[before]))
+            })
+            .number("a disc", 0, |(_, clock)| step(**clock) / self.discs as f64)
+            .number("ms", 3, |(_, clock)| 1e3 * (step(**clock) * self.machine.clock_period_ns().value * 1e-9))
+            .frame(name, format!("Clock periods of one step by every clock: {}", self.machine.title()))
+    }
+
+    fn convoys(&self) -> Frame {
+        // Convoys, and instructions in them.
+        let count = |part: Part, memory| -> (usize, usize) {
+            let orders = self.of_part(part).filter_map(|(_, work, _)| work.order());
+            let sets = orders.map(|order| convoys(self.machine, order, memory));
             sets.fold((0, 0), |(convoys, instructions), set| {
-                (convoys + set.len(), instructions + set.iter().map(|c| c.instructions).sum::<usize>())
+                (convoys + set.len(), instructions + set.iter().map(|it| it.instructions).sum::<usize>())
             })
         };
-        let ((chained, instructions), (with_ports, _)) = (count(Memory::NeverBusy), count(Memory::Ports));
-        Convoys { part: part.name(), instructions, chained, with_ports }
-    });
-    Ok(Ladder {
-        particles: lengths.discs,
-        cells: lengths.cells,
-        choice: question.choice,
-        machine: machine.title().to_owned(),
-        clock_period_ns: period,
-        assumed: machine.assumed(),
-        assumed_share: 1.0 - last(&known) / last(machine),
-        parts: there.iter().map(|part| part.name()).collect(),
-        convoys: convoys.collect(),
-        rungs,
-    })
+        Rows::of(self.parts())
+            .text("part", |part| part.name())
+            .count("instructions", |part| count(*part, Memory::NeverBusy).1)
+            .count("convoys, memory never busy", |part| count(*part, Memory::NeverBusy).0)
+            .count("convoys with memory ports", |part| count(*part, Memory::Ports).0)
+            .frame("convoys", "Convoys: instructions that run at once")
+    }
+}
+
+fn summary(ladders: &[Ladder<'_>]) -> Frame {
+    Rows::of(ladders)
+        .text("machine", |it| it.machine.title())
+        .count("NP", |it| it.discs)
+        .count("LMAX", |it| it.cells)
+        .number("clock period (ns)", 3, |it| it.machine.clock_period_ns().value)
+        .number("chained over the paper's clock", 2, |it| it.of_paper(Clock::Chained))
+        .number("with memory ports over the paper's clock", 2, |it| it.of_paper(Clock::Ports))
+        .number("share of the last rung from assumed start-ups (%)", 1, |it| 100.0 * it.assumed_share())
+        .text("assumed numbers", |it| it.machine.assumed().join(", "))
+        .frame("machines", "Machines, and the last two clocks beside the paper's")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::frame::{Expressions, Scope};
+    use crate::laboratory::lattice_md::study::efficiency_table::efficiency_table;
     use crate::model::machines::{names, preset};
 
     #[test]
-    fn every_machine_has_every_rung_and_chaining_pays_where_there_are_units() {
+    fn every_machine_has_every_rung_and_chaining_pays_with_functional_units() {
         for name in names() {
             let machine = preset(name).unwrap();
-            let ladder = ladder(&Question::default(), &machine).unwrap();
-            assert_eq!(ladder.rungs.len(), Clock::ALL.len());
-            assert!(ladder.rungs.iter().all(|rung| rung.clocks.is_finite() && rung.clocks > 0.0), "{name}");
-            let clocks =
-                |clock: Clock| ladder.rungs.iter().find(|rung| rung.clock == clock.name()).unwrap().clocks;
+            let ladder = Ladder::of(&Question::default(), &machine).unwrap();
+            let clocks = |clock: Clock| ladder.step(clock, &machine);
+            assert!(
+                Clock::ALL.iter().all(|clock| clocks(*clock).is_finite() && clocks(*clock) > 0.0),
+                "{name}"
+            );
             if machine.has_units() && machine.chains() {
                 assert!(clocks(Clock::Chained) < 0.8 * clocks(Clock::Registers), "{name}");
             }
-            assert!((0.0..1.0).contains(&ladder.assumed_share), "{name}: {}", ladder.assumed_share);
+            assert!((0.0..1.0).contains(&ladder.assumed_share()), "{name}: {}", ladder.assumed_share());
         }
     }
 
     #[test]
     fn the_papers_rung_is_the_efficiency_table() {
         let (question, machine) = (Question::default(), preset("cray-1").unwrap());
-        let table =
-            crate::laboratory::lattice_md::study::efficiency_table::efficiency_table(&question, &machine)
-                .unwrap();
-        let ladder = ladder(&question, &machine).unwrap();
-        assert_eq!(ladder.rungs[2].clocks, table.ours.clocks);
-        assert_eq!(ladder.rungs[1].clocks, table.ours.scalar_clocks);
+        let ladder = Ladder::of(&question, &machine).unwrap();
+        let scope = Scope::of(efficiency_table(&question, &machine).unwrap().frames);
+        let of_table = Expressions::new().value("efficiency_table.at(part='step').clocks_ours", &scope);
+        assert_eq!(ladder.step(Clock::Paper, &machine), f64::try_from(of_table.unwrap()).unwrap());
     }
 }

@@ -1,47 +1,56 @@
-//! The vector instructions of a part of the step.
+//! Vector instructions of a step, as text.
 
 use super::efficiency_table::{Question, QuestionError, step};
-use serde::Serialize;
-use stripmine_kernels::backend::Line;
+use crate::console::Failure;
+use crate::frame::{Frame, Rows};
+use crate::results::{Lab, Made, Size};
 use stripmine_physics::method::lattice_md::Part;
 
-/// One program of a part.
-#[derive(Serialize)]
-pub struct ProgramListing {
-    part: &'static str,
-    length: &'static str,
-    n: usize,
-    instructions: Vec<Line>,
-    #[serde(skip)]
-    text: String,
-}
-
-/// The programs of a part for a question.
+/// The programs of a part: their instructions, and the listing.
 ///
 /// # Errors
 /// [`QuestionError`] if there is no such lattice.
-pub fn listings(part: Part, question: &Question) -> Result<Vec<ProgramListing>, QuestionError> {
+pub(crate) fn listing(part: Part, question: &Question) -> Result<(Frame, String), QuestionError> {
     let (programs, lengths) = step(question)?;
-    let of_part = programs.iter().filter(|step| step.part == part).map(|step| ProgramListing {
-        part: part.name(),
-        length: step.length.symbol(),
-        n: lengths.range(step.length).len(),
-        instructions: step.program.lines(),
-        text: step.program.listing(),
-    });
-    Ok(of_part.collect())
+    let (mut rows, mut text) = (vec![], String::new());
+    for step in programs.iter().filter(|step| step.part == part) {
+        let (length, n) = (step.length.symbol(), lengths.range(step.length).len());
+        text +=
+            &format!("; {}: vectors of n = {length} = {n} elements\n{}", part.name(), step.program.listing());
+        rows.extend(step.program.lines().into_iter().map(|line| (length, n, line)));
+    }
+    let frame = Rows::of(rows)
+        .text("n is", |(length, ..)| *length)
+        .count("n", |(_, n, _)| *n)
+        .text("section", |(.., line)| line.section)
+        .text("operation", |(.., line)| line.operation)
+        .text("destination", |(.., line)| line.destination.clone())
+        .text("sources", |(.., line)| line.sources.join(" "))
+        .frame("instructions", part.meaning());
+    Ok((frame, text))
 }
 
-/// Instructions of all programs.
-pub fn instructions(listings: &[ProgramListing]) -> usize {
-    listings.iter().map(|listing| listing.instructions.len()).sum()
-}
-
-/// The listing as text.
-pub fn text(listings: &[ProgramListing]) -> String {
-    let of = |it: &ProgramListing| {
-        let ProgramListing { part, length, n, text, .. } = it;
-        format!("; {part}: vectors of n = {length} = {n} elements\n{text}")
-    };
-    listings.iter().map(of).collect()
+/// Lists both texts, BP93's own first.
+///
+/// # Errors
+/// [`QuestionError`] never for this lattice.
+pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+    let ours = Question::default();
+    let printed = Question { choice: ours.choice.printed(), ..ours.clone() };
+    let (mut rows, mut files) = (vec![], vec![]);
+    for (text, prefix, question) in [("printed", "printed_", &printed), ("ours", "", &ours)] {
+        for part in Part::ALL {
+            let (instructions, listing) = listing(*part, question)?;
+            if !instructions.rows.is_empty() {
+                rows.push((text, part.name(), instructions.rows.len()));
+                files.push((format!("{prefix}{}.txt", part.name()), listing));
+            }
+        }
+    }
+    let frame = Rows::of(rows)
+        .text("text", |(text, ..)| *text)
+        .text("part", |(_, part, _)| *part)
+        .count("instructions", |(.., instructions)| *instructions)
+        .frame("instructions", "Vector instructions of a step");
+    Ok(Made { files, ..Made::of([frame]) })
 }

@@ -10,6 +10,7 @@ pub mod host_ladder;
 pub mod identity;
 pub mod ladder;
 pub mod listing;
+pub mod mask;
 pub mod measured_cost;
 pub mod misprints;
 pub mod model_validation;

@@ -1,57 +1,51 @@
-//! How much of what is counted acts on real contacts? By method and density.
+//! Share of the counted operations that act on real contacts, by method and density.
 
 use super::StudyError;
 use super::density_cost::{CEILING, ListFigures, OCCUPANCIES, list_figures};
-use super::efficiency_table::{Question, counting_model, step};
-use rayon::iter::{IntoParallelIterator, ParallelIterator};
-use serde::Serialize;
+use super::efficiency_table::{Question, model_of, step};
+use crate::console::Failure;
+use crate::frame::Rows;
+use crate::results::{Lab, Made, Size};
+use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use stripmine_kernels::isa::OpClass;
 use stripmine_kernels::ledger::{Ledger, Length};
 use stripmine_physics::method::lattice_md::{Part, ledger, rival_ledger};
-
-/// The share of useful operations at a density.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Share {
-    /// What lists hold there, and with it how many contacts there are: measured in a run.
-    pub figures: ListFigures,
-    /// Of the operations of the lattice's forces, those at a place where there is a contact: the same for the eager, the
-    /// strip-mined and the chained execution, which all meet every place of every cell.
-    pub lattice_forces: f64,
-    /// The same of the whole step.
-    pub lattice_step: f64,
-    /// Of the operations of the lists' forces, those on a pair in contact.
-    pub list_forces: f64,
-    /// The same of the whole step; making the lists not counted.
-    pub list_step: f64,
-}
-
-/// The dataset.
-#[derive(Clone, Debug, Serialize)]
-pub struct UsefulWork {
-    /// By rising density.
-    pub shares: Vec<Share>,
-}
 
 /// Counts; the contacts are those of a warm gas.
 ///
 /// # Errors
 /// [`StudyError`] if a scene breaks whose contacts are counted.
-pub fn useful_work() -> Result<UsefulWork, StudyError> {
+pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let occupancies = [0.01, 0.025].into_iter().chain(OCCUPANCIES);
     let reachable: Vec<f64> = occupancies.filter(|&occupancy| occupancy < CEILING).collect();
-    let figures: Vec<ListFigures> = reachable.into_par_iter().map(list_figures).collect::<Result<_, _>>()?;
-    let shares = figures.into_iter().map(share).collect::<Result<_, _>>()?;
-    Ok(UsefulWork { shares })
+    let figures = reachable.par_iter().map(|&occupancy| list_figures(occupancy));
+    let rows = figures.map(|figures| {
+        let figures = figures?;
+        Ok((figures, shares(figures)?))
+    });
+    let mut table = Rows::of(rows.collect::<Result<Vec<_>, StudyError>>()?)
+        .number("ρ", 3, |(figures, _)| figures.occupancy)
+        .number("contacts a disc, each from both sides", 3, |(figures, _)| figures.contacts)
+        .number("candidates a disc", 2, |(figures, _)| figures.candidates);
+    for (at, name) in
+        ["lattice, forces", "lattice, step", "lists, forces", "lists, step"].into_iter().enumerate()
+    {
+        table = table.number(name, 3, |(_, shares)| 100.0 * shares[at]);
+    }
+    let frame = table.frame("useful_work", "Share of the operations that act on real contacts (%)");
+    Ok(Made::of([frame]).with_seeds([1]))
 }
 
-fn share(figures: ListFigures) -> Result<Share, StudyError> {
+/// Share of operations on contacts: of the lattice's forces and step, of the lists' forces and step. Every execution of the lattice
+/// visits every place of every cell. Making the lists is not counted.
+fn shares(figures: ListFigures) -> Result<[f64; 4], StudyError> {
     let question = Question { occupancy: figures.occupancy, ..Question::default() };
     let (programs, lengths) = step(&question)?;
     let discs = question.particles as f64;
     let contacts = figures.contacts * discs;
     let lattice = ledger(&programs);
-    // Operations of a place of the mask: what is done once a cell is not among them. The law adds to its sums in a section
-    // of the same name as the one that stores them.
+    // Operations of a place of the mask, without those of a cell. The law adds to its sums in a section of the same name as the one
+    // that stores them.
     let places = 24.0;
     let of_places: u64 = lattice
         .entries()
@@ -74,14 +68,7 @@ fn share(figures: ListFigures) -> Result<Share, StudyError> {
             })
             .sum()
     };
-    let model = counting_model(lengths.cells, question.choice).map_err(|cause| {
-        super::efficiency_table::QuestionError::Shape {
-            particles: question.particles,
-            occupancy: question.occupancy,
-            cause,
-        }
-    })?;
-    let lists = rival_ledger(&model);
+    let lists = rival_ledger(&model_of(&question)?);
     let of_pair: u64 = lists
         .entries()
         .iter()
@@ -89,13 +76,10 @@ fn share(figures: ListFigures) -> Result<Share, StudyError> {
         .map(|entry| entry.counts.total())
         .sum();
     let useful_pairs = contacts * of_pair as f64;
-    Ok(Share {
-        figures,
-        lattice_forces: useful / sum(&lattice, true),
-        lattice_step: useful / sum(&lattice, false),
-        list_forces: useful_pairs / sum(&lists, true),
-        list_step: useful_pairs / sum(&lists, false),
-    })
+    let of =
+        |useful: f64, ledger: &Ledger| [true, false].map(|forces_only| useful / sum(ledger, forces_only));
+    let ([a, b], [c, d]) = (of(useful, &lattice), of(useful_pairs, &lists));
+    Ok([a, b, c, d])
 }
 
 #[cfg(test)]
@@ -103,19 +87,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_lattice_of_touching_discs_still_meets_mostly_empty_places() {
+    fn a_lattice_of_touching_discs_visits_mostly_empty_places() {
         let figures = ListFigures { occupancy: 0.25, candidates: 6.0, contacts: 4.0, steps_a_list: 10.0 };
-        let share = share(figures).unwrap();
+        let [lattice_forces, _, list_forces, list_step] = shares(figures).unwrap();
         // Four of 24 places at a quarter of the cells, less what is done once a cell and in the halo.
         let most = 4.0 * 0.25 / 24.0;
-        assert!(share.lattice_forces < most && share.lattice_forces > 0.8 * most, "{share:?}");
-        assert!(share.list_forces > 0.5 && share.list_step < share.list_forces, "{share:?}");
+        assert!(lattice_forces < most && lattice_forces > 0.8 * most, "{lattice_forces}");
+        assert!(list_forces > 0.5 && list_step < list_forces, "{list_forces} {list_step}");
     }
 
     #[test]
     fn without_contacts_nothing_is_useful() {
         let figures = ListFigures { occupancy: 0.05, candidates: 1.0, contacts: 0.0, steps_a_list: 10.0 };
-        let share = share(figures).unwrap();
-        assert_eq!((share.lattice_step, share.list_step), (0.0, 0.0));
+        let [_, lattice_step, _, list_step] = shares(figures).unwrap();
+        assert_eq!([lattice_step, list_step], [0.0, 0.0]);
     }
 }

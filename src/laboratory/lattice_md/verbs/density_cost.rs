@@ -43,32 +43,27 @@ impl DensityCostVerb {
         let again = format!("stripmine chart density-cost --machine {}", self.machine);
         let bar = progress(common, "chart");
         let show = |from: f64, share: f64| bar.set_position((1e3 * (from + 0.5 * share)) as u64);
-        let write = |section: Section, data: &serde_json::Value, start: Instant| -> Result<(), Failure> {
+        let write = |name: &str, made: &Made, start: Instant| -> Result<Section, Failure> {
             let provenance = Provenance::here(common.command.clone(), start.elapsed().as_secs_f64());
-            let name = section.name.clone();
-            let made = Made::new(section, data)?;
-            let (folder, _) = signals::whole(|| folder.write(&name, &made, &provenance))?;
+            let (folder, section) = signals::whole(|| folder.write(name, made, &provenance))?;
             if !common.quiet {
                 say(format_args!("written: {}", folder.display()));
             }
-            Ok(())
+            Ok(section)
         };
         let value = |data: serde_json::Result<serde_json::Value>| {
             data.map_err(|cause| Failure::writing("JSON")(cause.into()))
         };
         let start = Instant::now();
-        let by_model = density_cost(&machine)?;
-        let cost = sections::density_cost::section(&by_model);
-        let mut answers = vec![said(&cost)];
-        let model_data = value(serde_json::to_value(&by_model))?;
-        write(cost, &model_data, start)?;
+        let cost = density_cost(&machine)?;
+        let mut answers = vec![said(&write("cost", &cost, start)?)];
 
         let start = Instant::now();
         let measured = measured_cost(&Effort::chart(), |share| show(0.0, share))?;
         let section = sections::measured_cost::section(&measured);
         answers.push(said(&section));
         let measured_data = value(serde_json::to_value(&measured))?;
-        write(section, &measured_data, start)?;
+        write("measured", &Made::new(section, &measured_data)?, start)?;
 
         let start = Instant::now();
         let atlas = atlas(&[machine], (&host, calibrated), &[100, 1000, 10_000], Bound::of(3), |share| {
@@ -77,11 +72,11 @@ impl DensityCostVerb {
         let section = sections::break_even::section(&atlas, &again);
         answers.push(said(&section));
         let atlas_data = value(serde_json::to_value(&atlas))?;
-        write(section, &atlas_data, start)?;
+        write("atlas", &Made::new(section, &atlas_data)?, start)?;
         clear_progress();
         if common.json {
             let all =
-                serde_json::json!({ "model": model_data, "measured": measured_data, "atlas": atlas_data });
+                serde_json::json!({ "model": cost.json(), "measured": measured_data, "atlas": atlas_data });
             return print_json(&all);
         }
         print(&(answers.join("\n\n") + "\n"))

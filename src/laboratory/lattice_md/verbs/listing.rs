@@ -2,7 +2,8 @@
 
 use super::scene_choice::SceneChoice;
 use crate::console::{Common, Failure, print, print_json};
-use crate::laboratory::lattice_md::study::listing::{listings, text};
+use crate::laboratory::lattice_md::study::listing::listing;
+use crate::results::Made;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use stripmine_physics::method::lattice_md::Part;
@@ -28,7 +29,7 @@ fn part_parser() -> impl TypedValueParser<Value = Part> {
 
 impl ListingVerb {
     pub(super) fn run(&self, common: &Common) -> Result<(), Failure> {
-        let listings = listings(self.part, &self.scene.question())?;
-        if common.json { print_json(&listings) } else { print(&text(&listings)) }
+        let (instructions, text) = listing(self.part, &self.scene.question())?;
+        if common.json { print_json(&Made::of([instructions]).json()) } else { print(&text) }
     }
 }

@@ -7,8 +7,10 @@ mod scene_choice;
 mod table;
 mod validate_model;
 
-use crate::console::Verb;
-use crate::console::{Common, Failure};
+use crate::console::{Common, Failure, Verb, print, print_json};
+use crate::frame::Table;
+use crate::report::terminal;
+use crate::results::Made;
 use calibrate::CalibrateVerb;
 use clap::{Args, FromArgMatches};
 use density_cost::DensityCostVerb;
@@ -45,4 +47,10 @@ fn carried_out<A: Args + FromArgMatches>(
     run: fn(&A, &Common) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     run(&A::from_arg_matches(matches).map_err(Failure::Arguments)?, common)
+}
+
+/// Prints a result: every frame as a table, or all of them as JSON.
+fn print_made(made: &Made, common: &Common) -> Result<(), Failure> {
+    let tables = made.frames.iter().map(|frame| terminal::render(&Table::from(frame)));
+    if common.json { print_json(&made.json()) } else { print(&tables.collect::<Vec<_>>().join("\n")) }
 }

@@ -1,5 +1,6 @@
 //! `stripmine table`: the efficiency table, and the ladder of clocks.
 
+use super::print_made;
 use super::scene_choice::SceneChoice;
 use super::validate_model::host_model;
 use crate::console::{Common, Failure, print, print_json};
@@ -45,20 +46,10 @@ impl TableVerb {
             return print(&terminal::render(&sections::ladder::of_host(&data)));
         }
         let (question, machine) = (self.scene.question(), machines::find(&self.machine)?);
-        let tables = if self.ladder {
-            let data = ladder(&question, &machine)?;
-            if common.json {
-                return print_json(&data);
-            }
-            sections::ladder::tables(&data)
-        } else {
-            let data = efficiency_table(&question, &machine)?;
-            if common.json {
-                return print_json(&data);
-            }
-            sections::efficiency_table::tables(&data)
+        let made = match self.ladder {
+            true => ladder(&question, &machine)?,
+            false => efficiency_table(&question, &machine)?,
         };
-        let drawn: Vec<String> = tables.iter().map(terminal::render).collect();
-        print(&drawn.join("\n"))
+        print_made(&made, common)
     }
 }

@@ -1,260 +1,158 @@
-//! What does a step cost, by the source's count and by ours? BP93 section 3.
+//! Vector operations and clock periods of a step, by BP93's count (section 3) and by those of recorded programs.
 
-pub mod conventions;
+mod conventions;
 mod question;
 
-pub use question::{Choice, Question, QuestionError, counting_model, step};
+pub(crate) use question::{Choice, Question, QuestionError, counting_model, model_of, step};
 
+use crate::console::Failure;
+use crate::frame::{Cell, Frame, Rows};
 use crate::model::clock::{Clock, Work};
 use crate::model::machine::MachineModel;
-use conventions::Conventions;
-use question::model_of;
-use serde::Serialize;
+use crate::model::machines;
+use crate::results::{Lab, Made, Size};
+use conventions::conventions;
 use stripmine_kernels::isa::{Op, OpClass, OpCounts};
 use stripmine_kernels::ledger::{Ledger, Length};
 use stripmine_kernels::mask::Mask;
+use stripmine_kernels::printed::EQUATIONS;
 use stripmine_physics::method::lattice_md::{Lengths, Model, Part, ledger, programs};
 use stripmine_physics::scene::Precision;
 
-/// BP93's count of a part: NOP. The source has no entry for the lattice vectors.
-pub const fn printed_nop(part: Part) -> Option<u64> {
+/// BP93's count of a part: NOP. BP93 has no entry for the lattice vectors, nor for parts that are ours alone.
+pub(crate) const fn printed_nop(part: Part) -> Option<u64> {
     match part {
         Part::Predictor => Some(59),
         Part::Index => Some(12),
-        // The source has no entry for the lattice vectors, nor for what is ours alone.
         Part::Box | Part::Halo | Part::Lattice => None,
         Part::Forces => Some(1656),
         Part::Corrector => Some(54),
     }
 }
 
-/// BP93's vector length of a part.
-fn printed_length(part: Part, lengths: &Lengths) -> u64 {
-    (if part == Part::Forces { lengths.cells } else { lengths.discs }) as u64
+/// Parts of BP93's table.
+pub(crate) const SOURCES_PARTS: [Part; 4] = [Part::Predictor, Part::Index, Part::Forces, Part::Corrector];
+
+/// Clock periods of a part by BP93's formula and its NOP.
+pub(crate) fn printed_clocks(part: Part, machine: &MachineModel, discs: u64, cells: u64) -> Option<f64> {
+    // Operations of no particular kind: sums, which every machine has.
+    let mut counts = OpCounts::default();
+    (0..printed_nop(part)?).for_each(|_| counts.record(Op::Add));
+    Some(Clock::Paper.clocks(machine, &counts.into(), if part == Part::Forces { cells } else { discs }))
 }
 
-/// The dataset.
-#[derive(Clone, Debug, Serialize)]
-pub struct EfficiencyTable {
-    /// NP.
-    pub particles: usize,
-    /// LMAX: cells that discs may live in.
-    pub cells: usize,
-    /// ρ = NP/LMAX as it came out.
-    pub occupancy: f64,
-    /// Elements of each symbolic vector length.
-    pub lengths: Vec<(&'static str, u64)>,
-    /// What is modelled.
-    pub choice: Choice,
-    /// The machine whose clock is asked.
-    pub machine: String,
-    /// Its clock period (ns).
-    pub clock_period_ns: f64,
-    /// Numbers of the machine that are assumed.
-    pub assumed: Vec<String>,
-    /// What the source prints, part by part.
-    pub source: Vec<SourceRow>,
-    /// Clock periods of a step by the source's formula and its NOP; on the machine asked, with one pipeline depth.
-    pub source_clocks: f64,
-    /// The source's own text, counted.
-    pub printed: TextCount,
-    /// The text asked, counted.
-    pub ours: TextCount,
-    /// Ways of counting, and what each makes of the parts.
-    pub conventions: Conventions,
-    /// Where the operations of the printed forces go, for each mask place.
-    pub printed_sections: Vec<SectionRow>,
-    /// The same of the text asked.
-    pub force_sections: Vec<SectionRow>,
-    /// Operations of each class in each part.
-    pub classes: Vec<ClassRow>,
-    /// What simpler scenes save.
-    pub savings: Vec<SavingRow>,
+/// The default question on the machine of the paper.
+///
+/// # Errors
+/// [`QuestionError`] never for this question.
+pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+    Ok(efficiency_table(&Question::default(), &machines::preset("paper")?)?)
 }
 
-/// A part as the source prints it.
-#[derive(Clone, Debug, Serialize)]
-pub struct SourceRow {
-    /// The part.
-    pub part: &'static str,
-    /// NOP.
-    pub nop: u64,
-    /// n.
-    pub n: u64,
-    /// NOP·(n + D).
-    pub clocks: f64,
+/// Programs of a text, counted.
+struct Counted<'m> {
+    ledger: Ledger,
+    lengths: Lengths,
+    machine: &'m MachineModel,
 }
 
-/// What the programs of a text execute in a step.
-#[derive(Clone, Debug, Serialize)]
-pub struct TextCount {
-    /// A row for each part and vector length.
-    pub parts: Vec<PartRow>,
-    /// Clock periods of a step by the source's clock.
-    pub clocks: f64,
-    /// The same operations on a scalar machine.
-    pub scalar_clocks: f64,
-}
-
-impl TextCount {
-    /// Operations of a part, whatever the length of its vectors.
-    pub fn of(&self, part: Part) -> u64 {
-        self.parts.iter().filter(|row| row.part == part.name()).map(|row| row.counted).sum()
+impl Counted<'_> {
+    fn of<'m>(question: &Question, machine: &'m MachineModel) -> Result<Counted<'m>, QuestionError> {
+        let (programs, lengths) = step(question)?;
+        Ok(Counted { ledger: ledger(&programs), lengths, machine })
     }
 
-    /// Clock periods of the parts that the source has.
-    pub fn clocks_of_the_sources_parts(&self) -> f64 {
-        let known = |row: &&PartRow| SOURCES_PARTS.iter().any(|part| part.name() == row.part);
-        self.parts.iter().filter(known).map(|row| row.clocks).sum()
+    fn n(&self, length: Length) -> u64 {
+        self.lengths.range(length).len() as u64
     }
-}
 
-/// The parts of the source's table.
-pub const SOURCES_PARTS: [Part; 4] = [Part::Predictor, Part::Index, Part::Forces, Part::Corrector];
+    /// Parts over vectors of one length each: name, operations, length, clock periods.
+    fn rows(&self) -> impl Iterator<Item = (&'static str, OpCounts, Length, f64)> {
+        self.ledger.parts().into_iter().map(|(part, length, counts)| {
+            let clocks = Clock::Paper.clocks(self.machine, &Work::from(counts.clone()), self.n(length));
+            (part, counts, length, clocks)
+        })
+    }
 
-/// A part of the step over vectors of one length.
-#[derive(Clone, Debug, Serialize)]
-pub struct PartRow {
-    /// The part.
-    pub part: &'static str,
-    /// NOP as counted.
-    pub counted: u64,
-    /// Of these, operations that compute.
-    pub computing: u64,
-    /// Of these, loads, shifted copies, stores, gathers and scatters.
-    pub moving: u64,
-    /// Vector length, as a symbol.
-    pub length: &'static str,
-    /// Vector length.
-    pub n: u64,
-    /// Clock periods.
-    pub clocks: f64,
-}
+    /// Operations and clock periods of a part, or of the step; none of a part that the text lacks.
+    fn sums(&self, part: Option<Part>) -> (Option<u64>, Option<f64>) {
+        let rows = self.rows().filter(|(name, ..)| part.is_none_or(|part| part.name() == *name));
+        let (nop, clocks) =
+            rows.fold((0, 0.0), |(nop, sum), (_, counts, _, clocks)| (nop + counts.total(), sum + clocks));
+        ((nop > 0).then_some(nop), (clocks != 0.0).then_some(clocks))
+    }
 
-/// A section of the force computation.
-#[derive(Clone, Debug, Serialize)]
-pub struct SectionRow {
-    /// The section.
-    pub section: &'static str,
-    /// Operations of a place of the mask.
-    pub in_a_place: u64,
-    /// Of these, shifted copies.
-    pub shifts_in_a_place: u64,
-    /// Operations beside the places, once a cell.
-    pub once: u64,
-    /// Share of all operations of the forces.
-    pub share: f64,
-}
-
-/// A class of operations.
-#[derive(Clone, Debug, Serialize)]
-pub struct ClassRow {
-    /// The class.
-    pub class: &'static str,
-    /// Operations in each part of the step in its order, of the printed text and of the one asked.
-    pub parts: Vec<[u64; 2]>,
-    /// Their sums.
-    pub total: [u64; 2],
-}
-
-/// A variant of the scene.
-#[derive(Clone, Debug, Serialize)]
-pub struct SavingRow {
-    /// What is different.
-    pub variant: &'static str,
-    /// NOP in each part, in the order of the step.
-    pub parts: Vec<u64>,
-    /// Clock periods of a step.
-    pub clocks: f64,
-    /// Clock periods relative to the scene asked.
-    pub relative: f64,
+    /// Clock periods of the step's operations on a scalar machine.
+    fn scalar_clocks(&self) -> f64 {
+        let parts = self.ledger.parts().into_iter();
+        parts
+            .map(|(_, length, counts)| Clock::Scalar.clocks(self.machine, &counts.into(), self.n(length)))
+            .sum()
+    }
 }
 
 /// The efficiency table of a question on a machine.
 ///
 /// # Errors
 /// [`QuestionError`] if no such lattice exists.
-pub fn efficiency_table(
-    question: &Question,
-    machine: &MachineModel,
-) -> Result<EfficiencyTable, QuestionError> {
+pub fn efficiency_table(question: &Question, machine: &MachineModel) -> Result<Made, QuestionError> {
     let source_question = Question { choice: question.choice.printed(), ..question.clone() };
-    let (printed_programs, _) = step(&source_question)?;
-    let (programs, lengths) = step(question)?;
-    let (printed, ours) = (ledger(&printed_programs), ledger(&programs));
-    let source: Vec<SourceRow> = SOURCES_PARTS
-        .iter()
-        .filter_map(|&part| {
-            let (nop, n) = (printed_nop(part)?, printed_length(part, &lengths));
-            let clocks = Clock::Paper.clocks(machine, &any_operations(nop).into(), n);
-            Some(SourceRow { part: part.name(), nop, n, clocks })
-        })
-        .collect();
-    Ok(EfficiencyTable {
-        particles: lengths.discs,
-        cells: lengths.cells,
-        occupancy: lengths.discs as f64 / lengths.cells as f64,
-        lengths: [Length::Grains, Length::Discs, Length::SweptCells, Length::PaddedCells, Length::HaloCells]
-            .map(|length| (length.symbol(), lengths.range(length).len() as u64))
-            .to_vec(),
-        choice: question.choice,
-        machine: machine.title().to_owned(),
-        clock_period_ns: machine.clock_period_ns().value,
-        assumed: machine.assumed(),
-        source_clocks: source.iter().map(|row| row.clocks).sum(),
-        source,
-        conventions: conventions::conventions(&source_question)?,
-        printed_sections: force_sections(&source_question)?,
-        force_sections: force_sections(question)?,
-        classes: classes([&printed, &ours]),
-        printed: text_count(&printed, &lengths, machine),
-        ours: text_count(&ours, &lengths, machine),
-        savings: savings(question, machine)?,
-    })
-}
-
-fn text_count(ledger: &Ledger, lengths: &Lengths, machine: &MachineModel) -> TextCount {
-    let n = |length| lengths.range(length).len() as u64;
-    let parts = ledger.parts().into_iter().map(|(part, length, counts)| PartRow {
-        part,
-        counted: counts.total(),
-        computing: counts.total() - moving(&counts),
-        moving: moving(&counts),
-        length: length.symbol(),
-        n: n(length),
-        clocks: Clock::Paper.clocks(machine, &counts.into(), n(length)),
+    let texts = [Counted::of(&source_question, machine)?, Counted::of(question, machine)?];
+    let [printed, ours] = &texts;
+    let Lengths { discs, cells, .. } = ours.lengths;
+    let (conventions, ways) = conventions(&source_question)?;
+    let printed_clocks = |part| printed_clocks(part, machine, discs as u64, cells as u64);
+    let rows = Part::ALL.iter().map(|&part| {
+        let [(printed, printed_text), (ours, by_ours)] = texts.each_ref().map(|text| text.sums(Some(part)));
+        (part.name(), [printed_nop(part), printed, ours], [printed_clocks(part), printed_text, by_ours])
     });
-    let parts: Vec<PartRow> = parts.collect();
-    TextCount {
-        clocks: parts.iter().map(|row| row.clocks).sum(),
-        scalar_clocks: step_clocks(Clock::Scalar, ledger, lengths, machine),
-        parts,
-    }
-}
-
-/// `nop` operations of no particular kind: sums, which every machine has.
-fn any_operations(nop: u64) -> OpCounts {
-    let mut counts = OpCounts::default();
-    (0..nop).for_each(|_| counts.record(Op::Add));
-    counts
-}
-
-fn moving(counts: &OpCounts) -> u64 {
-    OpClass::ALL.iter().filter(|class| class.moves_data()).map(|&class| counts.of_class(class)).sum()
-}
-
-fn step_clocks(clock: Clock, ledger: &Ledger, lengths: &Lengths, machine: &MachineModel) -> f64 {
-    let parts = ledger.parts();
-    parts
-        .iter()
-        .map(|(_, length, counts)| {
-            clock.clocks(machine, &Work::from(counts.clone()), lengths.range(*length).len() as u64)
+    let [(all_printed, clocks_printed), (all_ours, clocks_ours)] =
+        texts.each_ref().map(|text| text.sums(None));
+    let source: (u64, f64) = SOURCES_PARTS.iter().fold((0, 0.0), |(nop, clocks), &part| {
+        (nop + printed_nop(part).unwrap_or(0), clocks + printed_clocks(part).unwrap_or(0.0))
+    });
+    let step =
+        ("step", [Some(source.0), all_printed, all_ours], [Some(source.1), clocks_printed, clocks_ours]);
+    let rows = rows.filter(|(_, nop, _)| nop.iter().any(Option::is_some)).chain([step]);
+    let mut summary = Rows::of([()])
+        .count("NP", |()| discs)
+        .count("LMAX", |()| cells)
+        .number("occupancy", 4, |()| discs as f64 / cells as f64)
+        .text("machine", |()| machine.title())
+        .number("clock period (ns)", 3, |()| machine.clock_period_ns().value)
+        .number("clocks of the printed text on a scalar machine", 0, |()| printed.scalar_clocks())
+        .number("clocks of the four parts of the printed text", 0, |()| {
+            SOURCES_PARTS.iter().filter_map(|&part| printed.sums(Some(part)).1).sum::<f64>()
         })
-        .sum()
+        .text("assumed numbers", |()| machine.assumed().join(", "));
+    let names = ["ways", "give predictor", "give index", "give a place", "give corrector", "give all four"];
+    for (name, count) in names.into_iter().chain(["most numbers of one way"]).zip(ways) {
+        summary = summary.count(name, |()| count);
+    }
+    Ok(Made::of([
+        Rows::of(rows)
+            .text("part", |(part, ..)| *part)
+            .cells(["printed in 1993", "printed text, counted", "ours, counted"], |(_, nop, _)| *nop)
+            .cells(["clocks printed", "clocks, printed text", "clocks, ours"], |(.., clocks)| {
+                clocks.map(|clocks| clocks.map(|clocks| Cell::Number(clocks, 0)))
+            })
+            .frame("efficiency_table", "Operations and clock periods of one step"),
+        conventions,
+        force_sections(
+            &source_question,
+            "printed_sections",
+            "Printed text: a place of the mask by equation",
+        )?,
+        force_sections(question, "force_sections", "Our text: operations of the forces")?,
+        vector_lengths([("printed", printed), ("ours", ours)]),
+        classes([&printed.ledger, &ours.ledger]),
+        savings(question, machine)?,
+        summary.frame("summary", "Scene, machine, and how many ways of counting give the printed numbers"),
+    ]))
 }
 
-/// What a section does once, and what it does at a place, by the sweeps over all places and over one.
-fn force_sections(question: &Question) -> Result<Vec<SectionRow>, QuestionError> {
+/// Operations of each section once and at a place, by sweeps over all places and over one.
+fn force_sections(question: &Question, name: &str, title: &str) -> Result<Frame, QuestionError> {
     let tally = |model: &Model| -> Vec<(&'static str, OpCounts)> {
         let forces = programs(model, Precision::F64).into_iter().filter(|step| step.part == Part::Forces);
         forces.flat_map(|step| step.program.tally()).collect()
@@ -263,35 +161,63 @@ fn force_sections(question: &Question) -> Result<Vec<SectionRow>, QuestionError>
     let more = (model.mask.offsets().len() - 1) as u64;
     let all = tally(&model);
     let one = tally(&Model { mask: Mask::one_place(), ..model });
-    let total: u64 = all.iter().map(|(_, counts)| counts.total()).sum();
-    let rows = all.iter().map(|(section, counts)| {
+    let shifts = |counts: &OpCounts| counts.of_class(OpClass::Shift);
+    // Section; operations of a place, of these shifts, once a cell, in all.
+    let mut rows: Vec<(&str, [u64; 4])> = vec![];
+    for (section, counts) in &all {
         let of_one = one.iter().find(|(name, _)| name == section).map(|(_, counts)| counts);
         let at_one = |count: fn(&OpCounts) -> u64| of_one.map_or(0, count);
-        let shifts = |counts: &OpCounts| counts.of_class(OpClass::Shift);
         let in_a_place = (counts.total() - at_one(OpCounts::total)) / more;
-        SectionRow {
-            section,
-            in_a_place,
-            shifts_in_a_place: (shifts(counts) - at_one(shifts)) / more,
-            once: at_one(OpCounts::total) - in_a_place,
-            share: counts.total() as f64 / total as f64,
+        let shifts = (shifts(counts) - at_one(shifts)) / more;
+        rows.push((section, [in_a_place, shifts, at_one(OpCounts::total) - in_a_place, counts.total()]));
+    }
+    let sums = [0, 1, 2, 3].map(|at| rows.iter().map(|(_, counts)| counts[at]).sum::<u64>());
+    rows.push(("forces", sums));
+    let equation =
+        |section: &str| EQUATIONS.iter().find(|(known, _)| *known == section).map_or("", |it| it.1);
+    Ok(Rows::of(rows)
+        .text("section", |(section, _)| *section)
+        .text("what it is", |(section, _)| equation(section))
+        .cells(
+            ["operations of a place", "of these shifted copies", "operations once a cell"],
+            |(_, [place, shifts, once, _])| [*place, *shifts, *once],
+        )
+        .number("share of the forces (%)", 1, |(_, counts)| 100.0 * (counts[3] as f64 / sums[3] as f64))
+        .frame(name, title))
+}
+
+fn vector_lengths(texts: [(&'static str, &Counted<'_>); 2]) -> Frame {
+    let rows = texts.into_iter().flat_map(|(name, text)| text.rows().map(move |row| (name, text, row)));
+    let moving = |counts: &OpCounts| counts.filtered(|op| op.class().moves_data()).total();
+    Rows::of(rows)
+        .text("text", |(name, ..)| *name)
+        .text("part", |(.., (part, ..))| *part)
+        .count("NOP", |(.., (_, counts, ..))| counts.total())
+        .count("computing", |(.., (_, counts, ..))| counts.total() - moving(counts))
+        .count("moving data", |(.., (_, counts, ..))| moving(counts))
+        .text("n is", |(.., (_, _, length, _))| length.symbol())
+        .count("n", |(_, text, (_, _, length, _))| text.n(*length))
+        .number("clocks", 0, |(.., (.., clocks))| *clocks)
+        .frame("vector_lengths", "Operations by the length of their vectors")
+}
+
+fn classes(ledgers: [&Ledger; 2]) -> Frame {
+    let of = |part: Part, class: OpClass| ledgers.map(|ledger| ledger.part(part.name()).of_class(class));
+    let total =
+        |class: OpClass| [0, 1].map(|text| Part::ALL.iter().map(|&part| of(part, class)[text]).sum::<u64>());
+    let both = |name: &str| ["printed", "ours"].map(|text| format!("{name}, {text}"));
+    let mut rows = Rows::of(OpClass::ALL.iter().copied().filter(|class| total(*class) != [0, 0]))
+        .text("class", |class| class.name());
+    for &part in Part::ALL {
+        if OpClass::ALL.iter().any(|&class| of(part, class) != [0, 0]) {
+            rows = rows.cells(both(part.name()), |&class| of(part, class));
         }
-    });
-    Ok(rows.collect())
+    }
+    rows.cells(both("step"), |&class| total(class)).frame("operation_classes", "Counted operations by class")
 }
 
-fn classes(ledgers: [&Ledger; 2]) -> Vec<ClassRow> {
-    let rows = OpClass::ALL.iter().map(|&class| {
-        let of = |part: &Part| ledgers.map(|ledger| ledger.part(part.name()).of_class(class));
-        let parts: Vec<[u64; 2]> = Part::ALL.iter().map(of).collect();
-        let total = [0, 1].map(|text| parts.iter().map(|counts| counts[text]).sum());
-        ClassRow { class: class.name(), total, parts }
-    });
-    rows.filter(|row| row.total != [0, 0]).collect()
-}
-
-/// The scene asked, and scenes that need less or more.
-fn savings(question: &Question, machine: &MachineModel) -> Result<Vec<SavingRow>, QuestionError> {
+/// The scene of the question, and scenes that need less or more.
+fn savings(question: &Question, machine: &MachineModel) -> Result<Frame, QuestionError> {
     let asked = question.choice;
     let variants = [
         ("as asked", asked),
@@ -303,20 +229,20 @@ fn savings(question: &Question, machine: &MachineModel) -> Result<Vec<SavingRow>
         ("with positions relative to the cell", Choice { cell_relative: true, ..asked }),
         ("with the 7×7 mask", Choice { mask_half_width: 3, ..asked }),
     ];
-    let mut rows: Vec<SavingRow> = Vec::new();
-    for (variant, choice) in
-        variants.into_iter().filter(|(name, choice)| *name == "as asked" || *choice != asked)
-    {
-        let (programs, lengths) = step(&Question { choice, ..question.clone() })?;
-        let ledger = ledger(&programs);
-        let clocks = step_clocks(Clock::Paper, &ledger, &lengths, machine);
-        let reference = rows.first().map_or(clocks, |row| row.clocks);
-        rows.push(SavingRow {
-            variant,
-            parts: Part::ALL.iter().map(|part| ledger.part(part.name()).total()).collect(),
-            clocks,
-            relative: clocks / reference,
-        });
+    let variants = variants.into_iter().filter(|(name, choice)| *name == "as asked" || *choice != asked);
+    let counted =
+        |(name, choice)| Ok((name, Counted::of(&Question { choice, ..question.clone() }, machine)?));
+    let variants = variants.map(counted).collect::<Result<Vec<_>, QuestionError>>()?;
+    let nop = |counted: &Counted<'_>, part: Part| counted.ledger.part(part.name()).total();
+    let clocks = |counted: &Counted<'_>| counted.sums(None).1.unwrap_or(f64::NAN);
+    let mut rows = Rows::of(&variants).text("scene", |(name, _)| *name);
+    for &part in Part::ALL {
+        if variants.iter().any(|(_, counted)| nop(counted, part) != 0) {
+            rows = rows.count(format!("NOP {}", part.name()), |(_, counted)| nop(counted, part));
+        }
     }
-    Ok(rows)
+    Ok(rows
+        .number("clocks a step", 0, |(_, counted)| clocks(counted))
+        .number("relative", 3, |(_, counted)| clocks(counted) / clocks(&variants[0].1))
+        .frame("savings", "Operations and clock periods of simpler scenes"))
 }

@@ -1,6 +1,5 @@
-//! What a table of efficiency is asked for, and the step that answers it.
+//! Questions that an efficiency table answers: a number of particles, an occupancy, and what is modelled.
 
-use serde::Serialize;
 use stripmine_kernels::law::granular::{Contact, ContactArm, Disc};
 use stripmine_kernels::law::spring::Spring;
 use stripmine_kernels::mask::Mask;
@@ -9,9 +8,8 @@ use stripmine_physics::method::lattice_md::{
     Discs, GearValues, Lengths, Model, ProgramText, Scheme, StepProgram, programs,
 };
 use stripmine_physics::scene::Precision;
-use stripmine_physics::words::Words;
 
-/// What the table is made for.
+/// A scene whose operations are counted.
 #[derive(Clone, Debug)]
 pub struct Question {
     /// NP.
@@ -29,11 +27,10 @@ impl Default for Question {
     }
 }
 
-/// What of the method a scene needs.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+/// Parts of the method that a scene needs.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Choice {
-    /// Whose programs. The source's own have friction, different discs and absolute positions, whatever is said of these.
-    #[serde(serialize_with = "word")]
+    /// Programs of BP93, which have friction, different discs and absolute positions whatever is chosen here, or ours.
     pub text: ProgramText,
     /// Friction, and with it rotation, torque and spin.
     pub friction: bool,
@@ -45,10 +42,6 @@ pub struct Choice {
     pub mask_half_width: u32,
     /// Whether positions are relative to the cell.
     pub cell_relative: bool,
-}
-
-fn word<S: serde::Serializer>(text: &ProgramText, to: S) -> Result<S::Ok, S::Error> {
-    to.serialize_str(text.word())
 }
 
 impl Choice {
@@ -79,7 +72,7 @@ impl Default for Choice {
     }
 }
 
-/// Why there is no table.
+/// A scene that has no table.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum QuestionError {
     /// An occupancy that no lattice has.
@@ -95,7 +88,7 @@ pub enum QuestionError {
         particles: usize,
         /// ρ.
         occupancy: f64,
-        /// Why.
+        /// Cause.
         cause: ShapeError,
     },
 }
@@ -150,7 +143,7 @@ pub fn counting_model(cells: usize, choice: Choice) -> Result<Model, ShapeError>
 ///
 /// # Errors
 /// [`QuestionError`] if no such lattice exists.
-pub(super) fn model_of(question: &Question) -> Result<Model, QuestionError> {
+pub(crate) fn model_of(question: &Question) -> Result<Model, QuestionError> {
     let &Question { particles, occupancy, choice } = question;
     if particles == 0 {
         return Err(QuestionError::NoParticles);

@@ -1,53 +1,28 @@
-//! The contact law with one of its source's misprints: for this study, never for a run.
+//! The contact law with one of BP93's misprints: for this study, never for a run.
 //!
-//! Written out equation by equation and apart from the law that runs
-//! ([`granular`](stripmine_kernels::law::granular)), which so has no place for a mistake on purpose. Without a misprint
-//! the two are one law: `without_a_misprint_this_law_is_ours` in `tests.rs` beside this file.
+//! It is written equation by equation, apart from the law that runs ([`granular`](stripmine_kernels::law::granular)), which has no
+//! place for a mistake on purpose. Without a misprint the two are one law: `without_a_misprint_this_law_is_ours` in `tests.rs`.
 
 use stripmine_kernels::isa::{Predicate, Vector};
 use stripmine_kernels::law::granular::{Contact, ContactArm};
 use stripmine_kernels::law::{Axis, Env, Field, Law, Sum};
 
-/// An equation of BP93's contact law that does not work as it is printed.
-///
-/// The tests named are those of `tests.rs` beside this file.
+/// An equation of BP93's contact law that does not work as printed. A test of `tests.rs` decides each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Misprint {
-    /// (10)–(11), the sums of the forces.
-    ///
-    /// # As printed
-    /// The shear force acts along (n_y, −n_x), while the torque (12) and the slip (13) are made for (−n_y, n_x); we
-    /// take the tangent of (13) throughout. Decided by `printed_10_and_11_break_the_rule_of_angular_momentum`.
+pub(super) enum Misprint {
+    /// (10)–(11): the shear force acts along (n_y, −n_x), while torque (12) and slip (13) are made for (−n_y, n_x), which we take.
     Tangent,
-    /// (14), the normal force.
-    ///
-    /// # As printed
-    /// `k_N ξ^{3/2} + γ_N M_eff (v_i − v_j)`, a vector added to a scalar; even its normal component has the sign that
-    /// feeds energy in. We subtract the normal component. Decided by
-    /// `printed_14_makes_kinetic_energy_grow_in_a_head_on_collision`.
+    /// (14): a vector is added to a scalar, and even its normal component has the sign that feeds energy in. We subtract it.
     NormalDamping,
-    /// (15), the shear force.
-    ///
-    /// # As printed
-    /// `min(−γ_S M_eff v_t, μ|F_N|)`, the smaller of a signed number and the Coulomb bound: a negative force has no
-    /// bound. We bound the magnitude and keep the sign. Decided by `printed_15_bounds_one_side_only`.
+    /// (15): the smaller of a signed number and the Coulomb bound, so that a negative force has no bound. We bound the magnitude.
     CoulombBound,
-    /// (16), the slip.
-    ///
-    /// # As printed
-    /// `(v_i − v_j) + R_i Ω_i − R_j Ω_j`, scalars added to a vector; even with its tangential component the spins have
-    /// signs for which gears slip. We subtract both. Decided by `printed_16_makes_a_gear_pair_slip` and
-    /// `printed_16_makes_energy_grow_in_an_oblique_collision`.
+    /// (16): scalars are added to a vector, and the spins have signs for which gears slip. We subtract both.
     Slip,
 }
 
 impl Misprint {
-    /// Every misprint, in the order of the equations.
-    pub const ALL: [Misprint; 4] =
-        [Misprint::Tangent, Misprint::NormalDamping, Misprint::CoulombBound, Misprint::Slip];
-
     /// The number of the equation in BP93.
-    pub const fn equation(self) -> &'static str {
+    pub(super) const fn equation(self) -> &'static str {
         match self {
             Misprint::Tangent => "(10)–(11)",
             Misprint::NormalDamping => "(14)",
@@ -55,15 +30,30 @@ impl Misprint {
             Misprint::Slip => "(16)",
         }
     }
+
+    /// The equation as printed and as it runs.
+    pub(super) const fn forms(self) -> [&'static str; 2] {
+        match self {
+            Misprint::Tangent => ["F += F_N n + F_S (n_y, −n_x)", "F += F_N n + F_S (−n_y, n_x)"],
+            Misprint::NormalDamping => {
+                ["F_N = k_N ξ^(3/2) + γ_N M_eff (v_i − v_j)", "F_N = k_N ξ^(3/2) − γ_N M_eff (v_i − v_j)·n"]
+            }
+            Misprint::CoulombBound => {
+                ["F_S = min(−γ_S M_eff v_t, μ|F_N|)", "F_S = −sign(v_t) min(γ_S M_eff |v_t|, μ|F_N|)"]
+            }
+            Misprint::Slip => {
+                ["v_t = (v_i − v_j) + R_i Ω_i − R_j Ω_j", "v_t = (v_i − v_j)·s − R_i Ω_i − R_j Ω_j"]
+            }
+        }
+    }
 }
 
 /// BP93 (4)–(17) with at most one equation as printed, for rough discs that may differ.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AsPrinted {
-    /// The parameters.
-    pub contact: Contact,
+pub(super) struct AsPrinted {
+    pub(super) contact: Contact,
     /// The equation that is as printed; none for the law that runs.
-    pub misprint: Option<Misprint>,
+    pub(super) misprint: Option<Misprint>,
 }
 
 impl AsPrinted {

@@ -1,115 +1,55 @@
-//! What does each misprint of BP93's contact law do? Pairs of discs under the law as printed and under the law that runs.
+//! Each misprint of BP93's contact law: pairs of discs under the law as printed and under the law that runs.
 
 mod as_printed;
 #[cfg(test)]
 mod tests;
 
+use crate::console::Failure;
+use crate::frame::Rows;
+use crate::results::{Lab, Made, Size};
 use as_printed::{AsPrinted, Misprint};
-use serde::Serialize;
 use stripmine_kernels::law::Law;
 use stripmine_kernels::law::granular::{Contact, ContactArm, Disc, Granular};
 use stripmine_kernels::law::spring::Spring;
 use stripmine_kernels::noise::{Purpose, Stream};
 use stripmine_kernels::sweep::pair::Pair;
 
-/// What a value must be where the law is right.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Right {
-    /// This number.
+/// A quantity that tells the printed law from the one that runs.
+struct Finding {
+    misprint: Misprint,
+    quantity: &'static str,
+    /// Parameters of the law, and of the pair where it has some.
+    setting: String,
+    right: Right,
+    by_printed: f64,
+    by_ours: f64,
+}
+
+/// Value where the law is right.
+#[derive(Clone, Copy, Debug)]
+enum Right {
     Equal(f64),
-    /// This number or less.
     AtMost(f64),
 }
 
-impl Right {
-    /// By how much a value is wrong; no number is never right.
-    pub fn missed_by(self, value: f64) -> f64 {
-        match self {
-            Right::Equal(right) => (value - right).abs(),
-            Right::AtMost(right) if value <= right => 0.0,
-            Right::AtMost(right) => value - right,
-        }
-    }
+/// Energy, kinetic and elastic, at a moment of the head-on collision: with (14) as printed, with ours, and with ours undamped, by
+/// which the integrator is judged.
+struct Energy {
+    time: f64,
+    printed: f64,
+    ours: f64,
+    undamped: f64,
 }
 
-/// What rounding may do to a value that is right.
-const ROUNDING: f64 = 1e-9;
-/// By how much a value must be wrong at least, to be seen in a table.
-const VISIBLE: f64 = 0.01;
-
-/// One quantity that tells the printed law from the one that runs.
-#[derive(Clone, Debug, Serialize)]
-pub struct Finding {
-    /// The equation's number in the source.
-    pub equation: &'static str,
-    /// As the source prints it.
-    pub printed: &'static str,
-    /// As the law that runs has it.
-    pub ours: &'static str,
-    /// What is looked at.
-    pub quantity: &'static str,
-    /// Under which parameters of the law, and of the pair where it has some.
-    pub setting: String,
-    /// What it must be.
-    pub right: Right,
-    /// What it is with the equation as printed.
-    pub by_printed: f64,
-    /// What it is with ours.
-    pub by_ours: f64,
+/// |F_S| / (μ|F_N|) of a sliding contact with (15) as printed and with ours.
+struct CoulombRatio {
+    slip: f64,
+    printed: f64,
+    ours: f64,
 }
 
-impl Finding {
-    /// Whether the printed form visibly fails.
-    pub fn printed_fails(&self) -> bool {
-        self.right.missed_by(self.by_printed) > VISIBLE
-    }
-
-    /// Whether ours holds, but for rounding.
-    pub fn ours_holds(&self) -> bool {
-        self.right.missed_by(self.by_ours) <= ROUNDING
-    }
-}
-
-/// Energy, kinetic and elastic, at a moment of the head-on collision.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct Energy {
-    /// The moment.
-    pub time: f64,
-    /// With (14) as printed.
-    pub printed: f64,
-    /// With ours.
-    pub ours: f64,
-    /// With ours and no damping: what the integrator keeps.
-    pub undamped: f64,
-}
-
-/// |F_S| / (μ|F_N|) of a sliding contact.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct CoulombRatio {
-    /// Slip velocity v_t.
-    pub slip: f64,
-    /// With (15) as printed.
-    pub printed: f64,
-    /// With ours.
-    pub ours: f64,
-}
-
-/// The dataset. Discs have radius and mass of about 1.
-#[derive(Clone, Debug, Serialize)]
-pub struct Misprints {
-    /// What each misprint does, in the order of the equations.
-    pub findings: Vec<Finding>,
-    /// The head-on collision of (14), by time.
-    pub head_on: Vec<Energy>,
-    /// The sliding contact of (15), by slip.
-    pub sliding: Vec<CoulombRatio>,
-    /// Seed of the random pairs.
-    pub seed: u64,
-}
-
-/// The source's stiffness and friction, damping weak enough for discs of mass 1 to bounce, and its form of the law:
-/// separating discs may pull.
+/// BP93's stiffness and friction, damping weak enough for discs of mass 1 to bounce, and its form of the law: separating discs may
+/// pull.
 const CONTACT: Contact = Contact {
     spring: Spring::Hertz,
     stiffness: 100.0,
@@ -119,9 +59,9 @@ const CONTACT: Contact = Contact {
     cohesionless: false,
     arm: ContactArm::Radius,
 };
-/// Damping so weak that what (14) as printed adds in a collision is a small part of the energy.
+/// Damping so weak that (14) as printed adds a small part of the energy in a collision.
 const HEAD_ON: Contact = Contact { normal_damping: 0.175, shear_damping: 0.0, friction: 0.0, ..CONTACT };
-/// The Coulomb bound is reached in the middle of the slips that are tried.
+/// Slips reach the Coulomb bound in the middle of their range.
 const SLIDING: Contact = Contact { shear_damping: 10.0, ..CONTACT };
 /// Spins change a lot, and nothing else takes energy.
 const OBLIQUE: Contact = Contact { normal_damping: 0.0, shear_damping: 40.0, friction: 5.0, ..CONTACT };
@@ -146,31 +86,42 @@ const PAIRS: usize = 500;
 const SEED: u64 = 1993;
 
 /// Tries every misprint.
-pub fn misprints() -> Misprints {
+///
+/// # Errors
+/// None.
+pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let (head_on, sliding) = (head_on(), sliding());
-    let findings = Misprint::ALL.iter().flat_map(|&misprint| match misprint {
-        Misprint::Tangent => vec![angular_momentum()],
-        Misprint::NormalDamping => vec![head_on_energy(&head_on)],
-        Misprint::CoulombBound => vec![coulomb_bound(&sliding), mirror()],
-        Misprint::Slip => vec![gears(), oblique()],
-    });
-    Misprints { findings: findings.collect(), head_on, sliding, seed: SEED }
+    Ok(Made::of([
+        Rows::of(findings(&head_on, &sliding))
+            .text("equation", |it| it.misprint.equation())
+            .text("as printed", |it| it.misprint.forms()[0])
+            .text("as it runs", |it| it.misprint.forms()[1])
+            .text("what shows it", |it| it.quantity)
+            .text("with", |it| it.setting.clone())
+            .text("right is", |it| if matches!(it.right, Right::Equal(_)) { "equal to" } else { "at most" })
+            .number("right", 3, |it| match it.right {
+                Right::Equal(value) | Right::AtMost(value) => value,
+            })
+            .number("printed gives", 3, |it| it.by_printed)
+            .number("ours gives", 3, |it| it.by_ours)
+            .frame("misprints", "Equations that do not work as printed"),
+        Rows::of(&head_on)
+            .number("time", 3, |it| it.time)
+            .number("printed", 4, |it| it.printed)
+            .number("ours", 4, |it| it.ours)
+            .number("undamped", 6, |it| it.undamped)
+            .frame("head_on", "Energy through the head-on collision of (14)"),
+        Rows::of(&sliding)
+            .number("slip", 2, |it| it.slip)
+            .number("printed", 3, |it| it.printed)
+            .number("ours", 3, |it| it.ours)
+            .frame("sliding", "Shear force over its bound in the sliding contact of (15)"),
+    ])
+    .with_seeds([SEED]))
 }
 
-/// An equation as printed and as it runs.
-const fn forms(misprint: Misprint) -> [&'static str; 2] {
-    match misprint {
-        Misprint::Tangent => ["F += F_N n + F_S (n_y, −n_x)", "F += F_N n + F_S (−n_y, n_x)"],
-        Misprint::NormalDamping => {
-            ["F_N = k_N ξ^(3/2) + γ_N M_eff (v_i − v_j)", "F_N = k_N ξ^(3/2) − γ_N M_eff (v_i − v_j)·n"]
-        }
-        Misprint::CoulombBound => {
-            ["F_S = min(−γ_S M_eff v_t, μ|F_N|)", "F_S = −sign(v_t) min(γ_S M_eff |v_t|, μ|F_N|)"]
-        }
-        Misprint::Slip => {
-            ["v_t = (v_i − v_j) + R_i Ω_i − R_j Ω_j", "v_t = (v_i − v_j)·s − R_i Ω_i − R_j Ω_j"]
-        }
-    }
+fn findings(head_on: &[Energy], sliding: &[CoulombRatio]) -> [Finding; 6] {
+    [angular_momentum(), head_on_energy(head_on), coulomb_bound(sliding), mirror(), gears(), oblique()]
 }
 
 fn finding(
@@ -180,8 +131,7 @@ fn finding(
     right: Right,
     [by_printed, by_ours]: [f64; 2],
 ) -> Finding {
-    let [printed, ours] = forms(misprint);
-    Finding { equation: misprint.equation(), printed, ours, quantity, setting, right, by_printed, by_ours }
+    Finding { misprint, quantity, setting, right, by_printed, by_ours }
 }
 
 fn setting(contact: Contact) -> String {
@@ -223,7 +173,7 @@ fn angular_momentum() -> Finding {
     )
 }
 
-/// Elastic energy of a contact, ⅖ k_N ξ^{5/2}: written here once more, for it judges the laws.
+/// Elastic energy of a contact, ⅖ k_N ξ^{5/2}: written here apart, because it judges the laws.
 fn elastic_energy(pair: &Pair, stiffness: f64) -> f64 {
     let depth = pair.depth().max(0.0);
     0.4 * stiffness * (depth * depth * depth.sqrt())

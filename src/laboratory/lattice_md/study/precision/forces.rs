@@ -1,89 +1,47 @@
 //! Errors of the forces on one configuration, over the size of the box.
 
 use super::gas::{Gas, PACKING_FRACTIONS, place};
+use crate::frame::{Frame, Rows};
 use crate::laboratory::lattice_md::study::StudyError;
-use serde::Serialize;
-use stripmine_kernels::sweep::lattice::Coordinates;
+use stripmine_kernels::sweep::lattice::Coordinates::{self, Absolute, CellRelative};
 use stripmine_physics::method::lattice_md::keys::ENGINE;
 use stripmine_physics::observe::contacts;
 use stripmine_physics::scene::PRECISION;
 
-/// A precision, engine and choice of coordinates that forces are computed with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct Variant {
-    /// Its name in a legend.
-    pub name: &'static str,
-    /// `machine.precision`.
-    pub precision: &'static str,
-    /// `machine.engine`; programs are chained.
-    pub engine: &'static str,
-    /// `machine.coordinates`.
-    pub coordinates: &'static str,
-}
+/// A name, `machine.precision`, `machine.engine` and the origin of positions.
+type Variant = (&'static str, &'static str, &'static str, Coordinates);
 
-/// The variants that are compared with the fast engine in f64.
-pub const VARIANTS: [Variant; 7] = [
-    Variant { name: "mixed, fast", precision: "mixed", engine: "fast", coordinates: "cell-relative" },
-    Variant { name: "f32, fast", precision: "f32", engine: "fast", coordinates: "cell-relative" },
-    Variant {
-        name: "mixed, programs, from the cell",
-        precision: "mixed",
-        engine: "programs",
-        coordinates: "cell-relative",
-    },
-    Variant {
-        name: "f32, programs, from the cell",
-        precision: "f32",
-        engine: "programs",
-        coordinates: "cell-relative",
-    },
-    Variant {
-        name: "mixed, programs, absolute",
-        precision: "mixed",
-        engine: "programs",
-        coordinates: "absolute",
-    },
-    Variant {
-        name: "f32, programs, absolute",
-        precision: "f32",
-        engine: "programs",
-        coordinates: "absolute",
-    },
-    Variant {
-        name: "f64, programs, absolute",
-        precision: "f64",
-        engine: "programs",
-        coordinates: "absolute",
-    },
+/// Variants that are compared with the fast engine in f64; programs are chained.
+const VARIANTS: [Variant; 7] = [
+    ("mixed, fast", "mixed", "fast", CellRelative),
+    ("f32, fast", "f32", "fast", CellRelative),
+    ("mixed, programs, from the cell", "mixed", "programs", CellRelative),
+    ("f32, programs, from the cell", "f32", "programs", CellRelative),
+    ("mixed, programs, absolute", "mixed", "programs", Absolute),
+    ("f32, programs, absolute", "f32", "programs", Absolute),
+    ("f64, programs, absolute", "f64", "programs", Absolute),
 ];
 
 /// Numbers of discs.
-pub const PARTICLES: [usize; 3] = [1000, 10_000, 100_000];
+const PARTICLES: [usize; 3] = [1000, 10_000, 100_000];
 
 /// Errors on one configuration.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ForceError {
-    /// How the forces were computed.
-    pub variant: Variant,
-    /// Packing fraction.
-    pub packing_fraction: f64,
-    /// Discs.
-    pub particles: usize,
-    /// The longer side of the box (length).
-    pub side: f64,
-    /// Contacts a disc.
-    pub contacts: f64,
-    /// Root of the mean square error of a disc's force, over that of the forces.
-    pub rms: f64,
-    /// Largest error of a disc's force, over the root of the mean square of the forces.
-    pub largest: f64,
+struct ForceError {
+    variant: &'static str,
+    packing_fraction: f64,
+    discs: usize,
+    /// Longer side of the box (diameters).
+    side: f64,
+    contacts: f64,
+    /// Root of the mean square error of a disc's force, and the largest error, over the root of the mean square of the forces.
+    errors: [f64; 2],
 }
 
 /// Every variant on every configuration. `progress` gets the share that is done.
 ///
 /// # Errors
 /// [`StudyError`] if a scene breaks.
-pub fn force_errors(progress: impl Fn(f64)) -> Result<Vec<ForceError>, StudyError> {
+pub(super) fn frame(progress: impl Fn(f64)) -> Result<Frame, StudyError> {
     let mut errors = Vec::new();
     let cases = PACKING_FRACTIONS.len() * PARTICLES.len();
     for packing_fraction in PACKING_FRACTIONS {
@@ -92,29 +50,32 @@ pub fn force_errors(progress: impl Fn(f64)) -> Result<Vec<ForceError>, StudyErro
             progress(errors.len() as f64 / (cases * VARIANTS.len()) as f64);
         }
     }
-    Ok(errors)
+    Ok(Rows::of(errors)
+        .number("packing fraction", 2, |error| error.packing_fraction)
+        .count("discs", |error| error.discs)
+        .number("side (diameters)", 0, |error| error.side)
+        .number("contacts a disc", 3, |error| error.contacts)
+        .text("variant", |error| error.variant)
+        .short("rms error", |error| error.errors[0])
+        .short("largest error", |error| error.errors[1])
+        .frame("forces", "Errors of the forces on one configuration"))
 }
 
 fn on_one_configuration(packing_fraction: f64, count: usize) -> Result<Vec<ForceError>, StudyError> {
     let place = place(count, packing_fraction, 1);
     let discs = Gas::equilibrated(&place)?;
-    let computed = |variant: Variant| -> Result<Gas, StudyError> {
-        let Variant { precision, engine, .. } = variant;
+    let computed = |(_, precision, engine, coordinates): Variant| {
         let overrides = place.clone().set(&PRECISION, precision).set(&ENGINE, engine);
-        let coordinates = match variant.coordinates {
-            "absolute" => Coordinates::Absolute,
-            _ => Coordinates::CellRelative,
-        };
         Gas::seen_from(coordinates, &overrides, Some(&discs))
     };
-    let reference = computed(Variant { precision: "f64", ..VARIANTS[0] })?;
+    let reference = computed(("f64, fast", "f64", "fast", CellRelative))?;
     let exact = reference.method.forces();
     let domain = reference.scenery.domain;
     let contacts = contacts(&discs, &domain).len() as f64 / discs.len() as f64;
+    let side = domain.length(0).max(domain.length(1));
     let variants = VARIANTS.into_iter().map(|variant| {
-        let [rms, largest] = errors(&exact, &computed(variant)?.method.forces());
-        let side = domain.length(0).max(domain.length(1));
-        Ok(ForceError { variant, packing_fraction, particles: discs.len(), side, contacts, rms, largest })
+        let errors = errors(&exact, &computed(variant)?.method.forces());
+        Ok(ForceError { variant: variant.0, packing_fraction, discs: discs.len(), side, contacts, errors })
     });
     variants.collect()
 }
@@ -144,7 +105,7 @@ mod tests {
     fn errors_do_not_depend_on_the_box_but_from_its_corner() {
         let [small, large] = [400, 6400].map(|count| on_one_configuration(0.84, count).unwrap());
         let rms = |errors: &[ForceError], name: &str| {
-            errors.iter().find(|error| error.variant.name == name).map(|error| error.rms).unwrap()
+            errors.iter().find(|error| error.variant == name).map(|error| error.errors[0]).unwrap()
         };
         for name in ["mixed, fast", "f32, fast", "mixed, programs, from the cell"] {
             let ratio = rms(&large, name) / rms(&small, name);

@@ -1,4 +1,4 @@
-//! The bench scene as all of these comparisons run it.
+//! The bench scene of these comparisons.
 
 use crate::laboratory::lattice_md::study::StudyError;
 use stripmine_kernels::sweep::lattice::Coordinates;
@@ -12,11 +12,11 @@ use stripmine_physics::particles::Particles;
 use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION, SEED};
 
 /// Packing fractions: nearly a solid, and a gas.
-pub const PACKING_FRACTIONS: [f64; 2] = [0.84, 0.3];
+pub(super) const PACKING_FRACTIONS: [f64; 2] = [0.84, 0.3];
 /// Seeds of what is averaged.
-pub const SEEDS: [u64; 3] = [1, 2, 3];
+pub(super) const SEEDS: [u64; 3] = [1, 2, 3];
 /// Steps in f64 before anything is compared: the start on a lattice has no contacts.
-pub const EQUILIBRATION: u64 = 1000;
+pub(super) const EQUILIBRATION: u64 = 1000;
 
 /// A running bench scene.
 pub(super) struct Gas {
@@ -30,8 +30,8 @@ impl Gas {
         Gas::seen_from(Coordinates::CellRelative, overrides, discs)
     }
 
-    /// The same with positions seen from there, also where a run would be refused because single precision loses motion: what
-    /// that does is the question here.
+    /// The same with positions from the cell or from the corner of the box, also where `scene check` rejects single precision that
+    /// loses motion.
     pub(super) fn seen_from(
         coordinates: Coordinates,
         overrides: &Overrides,

@@ -1,42 +1,27 @@
-//! What do forces, energy and trajectories lose in f32 and in mixed precision?
+//! Forces, energy and trajectories in f32 and in mixed precision.
 //!
-//! All of it on the bench scene. Nothing here depends on the host: an engine gives the same bits everywhere.
+//! All of it runs the bench scene. Nothing depends on the host: an engine gives the same bits everywhere.
 
-pub mod energy;
-pub mod forces;
+mod energy;
+mod forces;
 mod gas;
-pub mod trajectories;
+mod trajectories;
 
-pub use gas::{EQUILIBRATION, PACKING_FRACTIONS, SEEDS};
+use crate::console::Failure;
+use crate::results::{Lab, Made, Size};
+use gas::SEEDS;
 
-use super::StudyError;
-use crate::results::Progress;
-use energy::EnergyCase;
-use forces::ForceError;
-use serde::Serialize;
-use trajectories::Divergence;
-
-/// The dataset.
-#[derive(Clone, Debug, Serialize)]
-pub struct Precisions {
-    /// Errors of the forces on one configuration.
-    pub forces: Vec<ForceError>,
-    /// What the energy of an undamped gas does.
-    pub energies: Vec<EnergyCase>,
-    /// How far trajectories run apart.
-    pub trajectories: Vec<Divergence>,
-}
-
-/// Does all of it. `progress` gets the share that is done.
+/// Errors of forces, energies of undamped gases, and divergence of trajectories.
 ///
 /// # Errors
-/// [`StudyError`] if a scene breaks.
-pub fn precision(progress: Progress<'_>) -> Result<Precisions, StudyError> {
+/// [`Failure`] if a scene breaks.
+pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     // Shares of the time, about.
     let (forces_end, trajectories_end) = (0.3, 0.4);
-    let forces = forces::force_errors(|share| progress(forces_end * share))?;
-    let trajectories = trajectories::divergences()?;
-    progress(trajectories_end);
-    let energies = energy::energies(&|share| progress(trajectories_end + (1.0 - trajectories_end) * share))?;
-    Ok(Precisions { forces, energies, trajectories })
+    let forces = forces::frame(|share| (lab.progress)(forces_end * share))?;
+    let trajectories = trajectories::frames()?;
+    (lab.progress)(trajectories_end);
+    let rest = |share| (lab.progress)(trajectories_end + (1.0 - trajectories_end) * share);
+    let frames = [forces].into_iter().chain(energy::frames(&rest)?).chain(trajectories);
+    Ok(Made::of(frames).with_seeds(SEEDS))
 }

@@ -1,94 +1,99 @@
-//! How fast trajectories of one start run apart when digits differ: collisions multiply every error.
+//! Divergence of trajectories of one start in different precisions: collisions multiply every error.
 
 use super::gas::{Gas, PACKING_FRACTIONS, SEEDS, place};
+use crate::frame::{Cell, Frame, Rows};
 use crate::laboratory::lattice_md::study::StudyError;
 use crate::statistics::{Spread, slope};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
-use serde::Serialize;
 use stripmine_physics::method::lattice_md::keys::{ENGINE, INTEGRATOR};
 use stripmine_physics::method::lattice_md::options::IntegratorKind;
 use stripmine_physics::scene::{self, Overrides, PRECISION};
 
 /// Discs, at least.
-pub const PARTICLES: usize = 400;
-/// Time step (time).
-pub const DT: f64 = 0.005;
+const PARTICLES: usize = 400;
+/// Time step.
+const DT: f64 = 0.005;
 /// Steps of a run.
-pub const STEPS: u64 = 8000;
-/// Steps between two looks.
-pub const LOOK: u64 = 100;
-/// Precision and engine of those that run beside the fast engine in f64.
-pub const RIVALS: [(&str, &str); 3] = [("f64", "programs"), ("mixed", "fast"), ("f32", "fast")];
-/// From this multiple of its first value on a distance grows because trajectories part, not because rounding goes on.
-pub const PARTED: f64 = 10.0;
-/// Up to this distance (length) the growth is exponential: beyond it discs meet other partners.
-pub const LOST: f64 = 0.02;
+const STEPS: u64 = 8000;
+/// Steps between two samples.
+const STRIDE: u64 = 100;
+/// Name, precision and engine of the runs beside the fast engine in f64; programs are chained.
+const RIVALS: [[&str; 3]; 3] =
+    [["f64, programs", "f64", "programs"], ["mixed", "mixed", "fast"], ["f32", "f32", "fast"]];
+/// Multiple of its first value beyond which a distance grows because trajectories part, not because rounding goes on.
+const PARTED: f64 = 10.0;
+/// Distance (diameters) up to which the growth is exponential: beyond it discs collide with other partners.
+const LOST: f64 = 0.02;
 
-/// A trajectory beside that of the fast engine in f64.
-#[derive(Clone, Debug, Serialize)]
-pub struct Divergence {
-    /// Packing fraction.
-    pub packing_fraction: f64,
-    /// Precision.
-    pub precision: &'static str,
-    /// Engine; programs are chained.
-    pub engine: &'static str,
-    /// Times of the looks (time).
-    pub times: Vec<f64>,
-    /// Root of the mean square distance between a disc and its twin, over discs and seeds, at each look (length).
-    pub distance: Vec<f64>,
+/// A variant beside the fast engine in f64.
+struct Divergence {
+    packing_fraction: f64,
+    variant: &'static str,
+    /// Root of the mean square distance between a disc and its twin, over discs and seeds, at each sample (diameters).
+    distance: Vec<f64>,
     /// Rate of the exponential growth from [`PARTED`] on and up to [`LOST`] (1/time).
-    pub rate: Spread,
+    rate: Spread,
 }
 
-/// Every divergence.
+/// Every variant, and its distances over time.
 ///
 /// # Errors
 /// [`StudyError`] if a scene breaks.
-pub fn divergences() -> Result<Vec<Divergence>, StudyError> {
+pub(super) fn frames() -> Result<[Frame; 2], StudyError> {
     let starts: Vec<(f64, u64)> =
         PACKING_FRACTIONS.iter().flat_map(|&fraction| SEEDS.map(|seed| (fraction, seed))).collect();
     let runs = starts.par_iter().map(|&(fraction, seed)| distances(&place(PARTICLES, fraction, seed), STEPS));
     let runs: Vec<[Vec<f64>; RIVALS.len()]> = runs.collect::<Result<_, StudyError>>()?;
-    let times: Vec<f64> = (1..=STEPS / LOOK).map(|look| (look * LOOK) as f64 * DT).collect();
-    let mut divergences = Vec::new();
+    let times: Vec<f64> = (1..=STEPS / STRIDE).map(|sample| (sample * STRIDE) as f64 * DT).collect();
+    let mut all = vec![];
     for (&packing_fraction, runs) in PACKING_FRACTIONS.iter().zip(runs.chunks(SEEDS.len())) {
-        for (rival, (precision, engine)) in RIVALS.into_iter().enumerate() {
-            let mean_square = |look: usize| {
-                runs.iter().map(|run| run[rival][look] * run[rival][look]).sum::<f64>() / runs.len() as f64
+        for (rival, [variant, ..]) in RIVALS.into_iter().enumerate() {
+            let mean_square = |sample: usize| {
+                runs.iter().map(|run| run[rival][sample] * run[rival][sample]).sum::<f64>()
+                    / runs.len() as f64
             };
             let rates: Vec<f64> = runs.iter().map(|run| growth(&times, &run[rival])).collect();
-            divergences.push(Divergence {
-                packing_fraction,
-                precision,
-                engine,
-                distance: (0..times.len()).map(|look| mean_square(look).sqrt()).collect(),
-                rate: Spread::of(&rates),
-                times: times.clone(),
-            });
+            let distance = (0..times.len()).map(|sample| mean_square(sample).sqrt()).collect();
+            all.push(Divergence { packing_fraction, variant, distance, rate: Spread::of(&rates) });
         }
     }
-    Ok(divergences)
+    let lost = |it: &Divergence| Some(times[it.distance.iter().position(|&distance| distance >= LOST)?]);
+    let samples = all.iter().flat_map(|it| it.distance.iter().zip(&times).map(move |sample| (it, sample)));
+    Ok([
+        Rows::of(&all)
+            .number("packing fraction", 2, |it| it.packing_fraction)
+            .text("variant", |it| it.variant)
+            .short(format!("distance after {STRIDE} steps (diameters)"), |it| it.distance[0])
+            .cell("rate of growth (1/time)", |it| Cell::with_error(it.rate.mean, it.rate.error, 3))
+            .number(format!("time until {LOST} diameters"), 1, |it| lost(it))
+            .frame("trajectories", "Divergence of trajectories from those of the fast engine in f64"),
+        Rows::of(samples)
+            .number("packing fraction", 2, |(it, _)| it.packing_fraction)
+            .text("variant", |(it, _)| it.variant)
+            .number("time", 1, |(_, (_, time))| **time)
+            .short("distance (diameters)", |(_, (distance, _))| **distance)
+            .frame("distances", "Distance of a disc from its twin over time"),
+    ])
 }
 
-/// Root of the mean square distance between the discs of each rival and those of the reference, at every look.
+/// Root of the mean square distance between the discs of each variant and those of the reference, at every sample.
 fn distances(place: &Overrides, steps: u64) -> Result<[Vec<f64>; RIVALS.len()], StudyError> {
     let discs = Gas::equilibrated(place)?;
-    let begin = |(precision, engine): (&str, &str)| {
+    let begin = |[_, precision, engine]: [&str; 3]| {
         let overrides = place.clone().set(&INTEGRATOR, IntegratorKind::VelocityVerlet).set(&scene::DT, DT);
         Gas::begin(&overrides.set(&PRECISION, precision).set(&ENGINE, engine), Some(&discs))
     };
-    let mut reference = begin(("f64", "fast"))?;
+    let mut reference = begin(["", "f64", "fast"])?;
     let mut rivals = Vec::new();
     for rival in RIVALS {
         rivals.push(begin(rival)?);
     }
     let mut distances = [const { Vec::new() }; RIVALS.len()];
-    for _ in 0..steps / LOOK {
-        reference.advance(LOOK)?;
+    for _ in 0..steps / STRIDE {
+        reference.advance(STRIDE)?;
         let there = reference.method.particles();
         for (gas, distances) in rivals.iter_mut().zip(&mut distances) {
-            gas.advance(LOOK)?;
+            gas.advance(STRIDE)?;
             let here = gas.method.particles();
             let squares = here.all().iter().zip(there.all()).map(|(a, b)| {
                 let [dx, dy] = gas.scenery.domain.displacement(a.place(), b.place());
@@ -124,12 +129,12 @@ mod tests {
         assert_eq!(growth(&[], &[]), 0.0);
     }
 
-    /// The fewer digits, the sooner the parting; and it starts as small as the digits say.
+    /// Trajectories part the sooner the lower the precision, and begin with an error of its size.
     #[test]
-    fn trajectories_part_in_the_order_of_their_digits() {
+    fn trajectories_part_in_the_order_of_their_precision() {
         let [double, mixed, single] = distances(&place(PARTICLES, 0.84, 1), 200).unwrap();
-        for look in 0..2 {
-            assert!(double[look] < 1e-3 * mixed[look] && mixed[look] < single[look]);
+        for sample in 0..2 {
+            assert!(double[sample] < 1e-3 * mixed[sample] && mixed[sample] < single[sample]);
         }
         assert!(double[0] < 1e-12 && single[0] < 1e-3, "{} {}", double[0], single[0]);
     }

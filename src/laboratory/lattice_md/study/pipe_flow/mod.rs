@@ -1,0 +1,262 @@
+//! Grains that fall through a pipe: BP93, section 4, figures 5 and 6.
+
+mod pictures;
+
+use super::StudyError;
+use crate::console::Failure;
+use crate::frame::{Frame, Rows};
+use crate::results::{Lab, Made, Meter, Size};
+use crate::statistics::Mean;
+use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
+use stripmine_physics::method::lattice_md::Document;
+use stripmine_physics::method::lattice_md::keys::{
+    EXECUTION, FRICTION, NORMAL_DAMPING, SEARCH, SHEAR_DAMPING,
+};
+use stripmine_physics::method::lattice_md::options::By;
+use stripmine_physics::method::lattice_md::{assemble, model};
+use stripmine_physics::observe::waves::{Directions, directions, fano, histogram, strongest_mode};
+use stripmine_physics::observe::{Observation, Scenery};
+use stripmine_physics::particles::Particles;
+use stripmine_physics::scene::{DT, GRAVITY, Overrides, PACKING_FRACTION, SEED, STEPS};
+
+/// Time between two samples (s), as in figure 6.
+const STRIDE: f64 = 0.05;
+/// Bins of the Fano factor, in mean radii.
+const FANO_BIN: f64 = 20.0;
+/// Bins of the map of density, in mean radii.
+const MAP_BIN: f64 = 5.0;
+/// Shortest wavelength of waves, in mean radii.
+const SHORTEST_WAVE: f64 = 80.0;
+/// Steps of the control: 2 s.
+const CONTROL: u64 = 40_000;
+/// Rows of a map that a picture resolves; a line has twice as many points.
+const ROWS: usize = 120;
+
+/// Two fifths of the pipe.
+///
+/// # Errors
+/// [`StudyError`] if the scene breaks.
+pub(crate) fn short(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+    let runs = Runs::of("pipe-small", &Overrides::new(), &[1], false, lab)?;
+    Ok(runs.made())
+}
+
+/// The whole pipe, with snapshots as in figure 6.
+///
+/// # Errors
+/// [`StudyError`] if the scene breaks.
+pub(crate) fn whole(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+    let runs = Runs::of("pipe", &Overrides::new(), &[1, 2], true, lab)?;
+    let (piece, snapshots) = (pictures::piece(&runs.flows[0]), pictures::snapshots(&runs.flows[0]));
+    let made = runs.made().with_picture("figure_5", piece).with_picture("figure_6", snapshots);
+    Ok(made.with_film(pictures::film(&runs.flows[0])))
+}
+
+/// The whole pipe with fewer grains.
+///
+/// # Errors
+/// [`StudyError`] if the scene breaks.
+pub(crate) fn thin(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+    let thin = Overrides::new().set(&PACKING_FRACTION, 0.35);
+    Ok(Runs::of("pipe", &thin, &[1, 2], false, lab)?.made())
+}
+
+/// An elastic gas without gravity in a pipe, a control without waves. Its contacts need the shorter step (s).
+pub(super) fn elastic(pipe: &Overrides) -> Overrides {
+    let gas = pipe.clone().set(&GRAVITY, [0.0; 2]).set(&NORMAL_DAMPING, 0.0).set(&SHEAR_DAMPING, 0.0);
+    gas.set(&FRICTION, 0.0).set(&DT, 5e-5)
+}
+
+/// A run.
+pub(super) struct Flow {
+    seed: u64,
+    grains: usize,
+    /// Length of the pipe (m).
+    length: f64,
+    /// Times of the samples, the start first (s).
+    times: Vec<f64>,
+    /// Variance over mean of the grains in bins of [`FANO_BIN`] radii, at each sample.
+    pub fano: Vec<f64>,
+    /// Strongest Fourier amplitude at wavelengths from [`SHORTEST_WAVE`] radii on, at each sample.
+    pub strongest_mode: Vec<f64>,
+    /// Mean velocity along the pipe at each sample (m/s).
+    pub flow: Vec<f64>,
+    /// Grains in bins of [`MAP_BIN`] radii, at each sample.
+    density: Vec<Vec<u32>>,
+    /// Directions of the waves in the last half of the run: forth is the way grains fall.
+    directions: Directions,
+    /// Deepest penetration beyond the scene's `max_penetration` (fraction of the sum of the radii).
+    deepest: f64,
+    /// CRC-32 of the final state, by id.
+    checksum: String,
+    /// Grains at each sample, if they are to be drawn.
+    frames: Vec<Particles>,
+}
+
+/// Mean over the samples of the last half.
+pub(super) fn late(course: &[f64]) -> Mean {
+    Mean::of_course(&course[course.len() - course.len() / 2..])
+}
+
+/// Runs a pipe. `progress` gets the share that is done.
+///
+/// The run uses neighbour lists: they give the lattice's trajectory to the bit (item `identity`), in a third of the time for so small
+/// a scene.
+///
+/// # Errors
+/// [`StudyError`] if the scene is bad or breaks while running.
+pub(super) fn flow(
+    scene: &str,
+    overrides: &Overrides,
+    seed: u64,
+    keeps_frames: bool,
+    mut progress: impl FnMut(f64),
+) -> Result<Flow, StudyError> {
+    let overrides = overrides.clone().set(&SEED, seed);
+    let overrides = overrides.set(&SEARCH, By::NeighborList).set(&EXECUTION, "chained");
+    let checked = Document::load(scene, &overrides)?.check()?;
+    let mut method = assemble(&checked)?;
+    let scenery = Scenery::of(&model(&checked));
+    let (length, origin) = (checked.domain.length(0), checked.domain.origin[0]);
+    let scene = &checked.scene;
+    let every = (STRIDE / scene.integrator.dt).round() as u64;
+    let radii = checked.particles.grains().iter().map(|grain| grain.radius);
+    let grains = checked.particles.grain_count();
+    let radius = radii.sum::<f64>() / grains as f64;
+    let bins = |width: f64| (length / (width * radius)).round() as usize;
+    let mut flow = Flow {
+        seed,
+        grains,
+        length,
+        times: vec![],
+        fano: vec![],
+        strongest_mode: vec![],
+        flow: vec![],
+        density: vec![],
+        directions: Directions::default(),
+        deepest: 0.0,
+        checksum: String::new(),
+        frames: vec![],
+    };
+    loop {
+        if method.steps().is_multiple_of(every) {
+            let now = method.particles();
+            let along: Vec<f64> = now.grains().iter().map(|grain| grain.position[0] - origin).collect();
+            flow.times.push(method.time());
+            flow.fano.push(fano(&histogram(along.iter().copied(), length, bins(FANO_BIN))));
+            flow.strongest_mode.push(strongest_mode(&along, length, SHORTEST_WAVE * radius));
+            flow.density.push(histogram(along, length, bins(MAP_BIN)));
+            flow.flow.push(Observation::of(method.steps(), method.time(), &now, &scenery).flow);
+            if keeps_frames {
+                flow.frames.push(now);
+            }
+            progress(method.steps() as f64 / scene.run.steps as f64);
+        }
+        if method.steps() >= scene.run.steps {
+            break;
+        }
+        method.step()?;
+    }
+    let late = &flow.density[flow.density.len() / 2..];
+    flow.directions = directions(late, length, SHORTEST_WAVE * radius);
+    flow.deepest = method.totals().deepest;
+    flow.checksum = method.particles().checksum();
+    Ok(flow)
+}
+
+/// Runs that differ by their seed, and the control.
+struct Runs {
+    title: String,
+    flows: Vec<Flow>,
+    control: Flow,
+}
+
+impl Runs {
+    fn of(
+        scene: &str,
+        overrides: &Overrides,
+        seeds: &[u64],
+        draws: bool,
+        lab: &Lab<'_>,
+    ) -> Result<Runs, StudyError> {
+        let control = elastic(overrides).set(&STEPS, CONTROL);
+        let mut cases: Vec<_> =
+            seeds.iter().map(|&seed| (overrides, seed, draws && seed == seeds[0])).collect();
+        cases.push((&control, seeds[0], false));
+        let meter = Meter::new(cases.len() as f64, lab.progress);
+        let flows = cases.par_iter().map(|&(overrides, seed, keeps_frames)| {
+            let mut before = 0.0;
+            let progress = |share| meter.add(share - std::mem::replace(&mut before, share));
+            flow(scene, overrides, seed, keeps_frames, progress)
+        });
+        let mut flows: Vec<Flow> = flows.collect::<Result<_, _>>()?;
+        let control = flows.remove(seeds.len());
+        let title = overrides.iter().map(|text| format!(", {text}")).collect::<String>();
+        Ok(Runs { title: format!("Runs of {scene}{title}"), flows, control })
+    }
+
+    fn made(&self) -> Made {
+        let Runs { title, flows, control } = self;
+        let runs = flows.iter().map(|flow| ("pipe", flow)).chain([("elastic gas, no gravity", control)]);
+        let runs = Rows::of(runs)
+            .text("run", |(name, _)| *name)
+            .count("seed", |(_, flow)| flow.seed)
+            .number("Fano at the start", 2, |(_, flow)| flow.fano[0])
+            .number("Fano late", 2, |(_, flow)| late(&flow.fano).value)
+            .number("± (95 %)", 2, |(_, flow)| late(&flow.fano).bar)
+            .number("mode at the start", 3, |(_, flow)| flow.strongest_mode[0])
+            .number("mode late", 3, |(_, flow)| late(&flow.strongest_mode).value)
+            .number("mean velocity late (m/s)", 3, |(_, flow)| late(&flow.flow).value)
+            .number("± (95 %)", 3, |(_, flow)| late(&flow.flow).bar)
+            .number("spectral power (independent grains: 1)", 2, |(_, flow)| flow.directions.power)
+            .number("power against gravity (%)", 0, |(_, flow)| 100.0 * flow.directions.back)
+            .number("standing (%)", 0, |(_, flow)| 100.0 * flow.directions.standing)
+            .number("with gravity (%)", 0, |(_, flow)| 100.0 * flow.directions.forth)
+            .number("deepest penetration, where beyond the warned", 3, |(_, flow)| {
+                (flow.deepest > 0.0).then_some(flow.deepest)
+            })
+            .text("final state, CRC-32", |(_, flow)| format!("0x{}", flow.checksum))
+            .frame("runs", title);
+        let made = Made::of([runs, self.course(), self.even(), self.summary()]);
+        made.with_picture("density_map", pictures::map(&flows[0])).with_seeds(flows.iter().map(|it| it.seed))
+    }
+
+    /// Fano factors over time.
+    fn course(&self) -> Frame {
+        let samples = self.flows.iter().flat_map(|flow| {
+            let samples = flow.times.iter().zip(&flow.fano).step_by(flow.times.len().div_ceil(2 * ROWS));
+            samples.map(|sample| (flow.seed, sample))
+        });
+        Rows::of(samples)
+            .count("seed", |(seed, _)| *seed)
+            .number("time (s)", 2, |(_, (time, _))| **time)
+            .number("Fano factor", 2, |(_, (_, fano))| **fano)
+            .frame("course", "Variance over mean of the grains in a bin, over time")
+    }
+
+    /// The Fano factor of independent grains, at both ends of time.
+    fn even(&self) -> Frame {
+        let end = self.flows.iter().filter_map(|flow| flow.times.last()).copied().fold(0.0, f64::max);
+        Rows::of([0.0, end])
+            .number("time (s)", 2, |time| *time)
+            .number("Fano factor", 0, |_| 1.0)
+            .frame("even", "Fano factor above which there are waves")
+    }
+
+    fn summary(&self) -> Frame {
+        let Runs { flows, control, .. } = self;
+        let least = |of: &dyn Fn(&Directions) -> f64| {
+            flows.iter().map(|flow| of(&flow.directions)).fold(f64::INFINITY, f64::min)
+        };
+        let beyond_gas = |power: fn(&Directions) -> f64| least(&power) / power(&control.directions);
+        // Waves of the same strength that run against gravity alone also have some power with gravity, because they grow and decay.
+        let one_wave = least(&|it| it.forth / it.of_one_wave[1]);
+        Rows::of([()])
+            .count("grains", |()| flows[0].grains)
+            .number("lasting (s)", 2, |()| flows[0].times.last().copied())
+            .number("against gravity over the gas", 2, |()| beyond_gas(|it| it.power * it.back))
+            .number("with gravity over the gas", 2, |()| beyond_gas(|it| it.power * it.forth))
+            .number("with gravity over one wave", 2, |()| one_wave)
+            .frame("summary", "Least power of waves over the runs, beside a gas without waves and waves against gravity alone")
+    }
+}

@@ -1,0 +1,127 @@
+//! Drawings of a pipe: figures 5 and 6, the density over time, and the film.
+
+use super::{Flow, ROWS};
+use crate::report::figure::{Axis, Drawing, Guide, Map, Picture, Shape, Tint};
+use crate::report::section::{Film, Frame};
+use stripmine_physics::particles::{Kind, Particle, Particles};
+
+/// Time from which on snapshots are drawn (s).
+const FROM: f64 = 10.0;
+/// Snapshots that are drawn.
+const SNAPSHOTS: usize = 14;
+/// Frames of the film.
+const FRAMES: usize = 24;
+/// Rim speeds (m/s) at the ends of the shades.
+const SPIN: f64 = 1.0;
+/// Name of the shades.
+const SHADE: &str = "rim speed ΩR (m/s)";
+
+fn shape(disc: &Particle, offset: [f64; 2], tint: Tint) -> Shape {
+    let [x, y] = disc.place();
+    let tint = if disc.kind == Kind::Wall { Tint::Still } else { tint };
+    Shape::Disc { centre: [x + offset[0], y + offset[1]], radius: disc.radius, tint }
+}
+
+/// Half the height of the pipe with its walls.
+fn half_height(particles: &Particles) -> f64 {
+    particles.all().iter().map(|disc| disc.position[1].abs() + disc.radius).fold(0.0, f64::max)
+}
+
+/// A drawing in metres; gravity acts along the pipe, which is drawn lying.
+fn drawing(window: [[f64; 2]; 2], shapes: Vec<Shape>, shades: Option<(f64, f64, String)>) -> Picture {
+    let guide = Some(Guide { unit: "m".into(), gravity: Some([1.0, 0.0]) });
+    Picture::Drawing(Drawing { window, width: 1200.0, shapes, shades, guide })
+}
+
+/// Figure 5: the densest stretch of the pipe at the end, every disc with its spin.
+pub(super) fn piece(flow: &Flow) -> Picture {
+    let (length, particles) = (flow.length.min(1.2), &flow.frames[flow.frames.len() - 1]);
+    let (half, counts) = (half_height(particles), &flow.density[flow.density.len() - 1]);
+    let width = flow.length / counts.len() as f64;
+    let filled =
+        |start: usize| counts.iter().cycle().skip(start).take((length / width) as usize).sum::<u32>();
+    let start = (0..counts.len()).max_by_key(|&start| (filled(start), std::cmp::Reverse(start))).unwrap_or(0);
+    let left = start as f64 * width;
+    let shapes = particles.all().iter().flat_map(|disc| {
+        let spin = (0.5 + 0.5 * disc.omega * disc.radius / SPIN).clamp(0.0, 1.0);
+        // Discs that leave on the right return on the left.
+        [0.0, flow.length].map(|turn| shape(disc, [turn - left, 0.0], Tint::Shade(spin)))
+    });
+    let inside = |shape: &Shape| match shape {
+        Shape::Disc { centre, radius, .. } => centre[0] > -radius && centre[0] < length + radius,
+        _ => true,
+    };
+    let window = [[0.0, -1.1 * half], [length, 1.1 * half]];
+    drawing(window, shapes.filter(inside).collect(), Some((-SPIN, SPIN, SHADE.into())))
+}
+
+/// Samples from which on snapshots are drawn.
+fn shown(flow: &Flow, most: usize) -> impl Iterator<Item = (f64, &Particles)> {
+    let first = flow.times.partition_point(|&time| time < FROM - 1e-9);
+    flow.times.iter().copied().zip(&flow.frames).skip(first).take(most)
+}
+
+/// Figure 6: the whole pipe, sample after sample, the first at the bottom.
+pub(super) fn snapshots(flow: &Flow) -> Picture {
+    let half = half_height(&flow.frames[0]);
+    let pitch = (2.6 * half).max(flow.length / 32.0);
+    let left = 0.12 * flow.length;
+    let (mut shapes, mut rows) = (vec![], 0.0);
+    for (time, particles) in shown(flow, SNAPSHOTS) {
+        let up = rows * pitch;
+        let words = format!("{time:.2} s");
+        shapes.push(Shape::Text { centre: [-0.5 * left, up], height: 0.45 * pitch, words });
+        for rim in [-half, half] {
+            shapes.push(Shape::Line { ends: [[0.0, up + rim], [flow.length, up + rim]] });
+        }
+        shapes.extend(particles.grains().iter().map(|disc| shape(disc, [0.0, up], Tint::Hue(0))));
+        rows += 1.0;
+    }
+    drawing([[-left, -0.6 * pitch], [1.01 * flow.length, (rows - 0.4) * pitch]], shapes, None)
+}
+
+/// Density over place and time.
+pub(super) fn map(flow: &Flow) -> Picture {
+    let stride = flow.density.len().div_ceil(ROWS);
+    let bins = flow.density[0].len();
+    let mean = flow.grains as f64 / bins as f64;
+    let row = |samples: &[Vec<u32>]| {
+        let sum = |bin: usize| samples.iter().map(|counts| f64::from(counts[bin])).sum::<f64>();
+        (0..bins).map(|bin| rounded(sum(bin) / samples.len() as f64 / mean)).collect()
+    };
+    let rows: Vec<Vec<f64>> = flow.density.chunks(stride).map(row).collect();
+    let end = flow.times[1] * (rows.len() * stride) as f64;
+    Picture::Map(Map {
+        x: Axis::linear("place along the pipe, the way grains fall", Some("m")).between([0.0, flow.length]),
+        y: Axis::linear("time", Some("s")).between([0.0, end]),
+        value: Axis::linear("density, relative to the mean", None),
+        rows,
+    })
+}
+
+/// With four decimals: more are not visible.
+fn rounded(value: f64) -> f64 {
+    (1e4 * value).round() / 1e4
+}
+
+/// The snapshots as a film.
+pub(super) fn film(flow: &Flow) -> Film {
+    let start = &flow.frames[0];
+    let half = half_height(start);
+    let frames = shown(flow, FRAMES).map(|(time, particles)| {
+        let disc = |disc: &Particle| (disc.place().map(rounded), rounded(disc.omega * disc.radius));
+        Frame { time, discs: particles.grains().iter().map(disc).collect() }
+    });
+    Film {
+        title: String::new(),
+        units: ["m", "s"].map(str::to_owned),
+        window: [[0.0, -half], [flow.length, half]],
+        sides: vec![],
+        falls: true,
+        radii: start.grains().iter().map(|disc| disc.radius).collect(),
+        fixed: start.all()[flow.grains..].iter().map(|disc| (disc.place(), disc.radius)).collect(),
+        frames: frames.collect(),
+        shade: SHADE.into(),
+        shades: [-SPIN, SPIN],
+    }
+}
