@@ -75,6 +75,8 @@ struct Header {
     /// Whether the results depend on the host.
     #[serde(default)]
     host: bool,
+    /// Place among the results of the report's first screen.
+    front: Option<u8>,
     #[serde(default)]
     figure: Vec<FigureSpec>,
     #[serde(default)]
@@ -221,7 +223,7 @@ impl Page {
         let scope = Scope::of(shown.frames.iter().cloned());
         let expressions = Expressions::new();
         let fill = Filling { page: self, scope: &scope, expressions: &expressions };
-        let Header { title, chapter, question, expected, host, figure, table, excerpt, film, .. } =
+        let Header { title, chapter, question, expected, host, front, figure, table, excerpt, film, .. } =
             &self.header;
         let body = fill.at(&self.text[self.body..], self.body)?;
         let mut paragraphs = body.split("\n\n").map(one_line).filter(|paragraph| !paragraph.is_empty());
@@ -231,7 +233,7 @@ impl Page {
             .answers(paragraphs.next().unwrap_or_default())
             .details(paragraphs)
             .seeds(shown.seeds.iter().copied());
-        (section.depends_on_host, section.chapter) = (*host, *chapter);
+        (section.depends_on_host, section.chapter, section.front) = (*host, *chapter, *front);
         for spec in figure {
             section.figures.extend(figures::figures(spec, &fill, shown)?);
         }

@@ -38,6 +38,9 @@ pub struct Section {
     pub film: Option<Film>,
     /// Seeds of the random numbers.
     pub seeds: Vec<u64>,
+    /// Place among the results of the page's first screen; none if it is not among them.
+    #[serde(default)]
+    pub front: Option<u8>,
     /// Whether anything in it depends on the host (times), and is therefore not the same everywhere.
     pub depends_on_host: bool,
     /// Claims of sources and aims of ours that it answers.
@@ -68,6 +71,7 @@ impl Section {
             excerpt: None,
             film: None,
             seeds: vec![],
+            front: None,
             depends_on_host: false,
             claims: vec![],
             provenance: None,

@@ -6,8 +6,8 @@ use super::study::efficiency_table::Question;
 use super::study::model_validation::{self, Calibrated, model_validation};
 use super::study::rounds::Bound;
 use super::study::{
-    break_even, crossover, damping, density_cost, efficiency_table, host_ladder, identity, ladder,
-    listing, mask, measured_cost, misprints, pipe_flow, precision, printed_cost, threads, useful_work,
+    break_even, crossover, damping, density_cost, efficiency_table, host_ladder, identity, ladder, listing,
+    mask, measured_cost, misprints, pipe_flow, precision, printed_cost, threads, useful_work,
 };
 use crate::console::Failure;
 use crate::model::host::{HostModel, default_model};

@@ -28,16 +28,27 @@ impl Inline {
         }
     }
 
+    /// The picture of an element of this id once more, as wide as there is room.
+    pub fn again(&self, id: &str, title: &str) -> Markup {
+        let sides: Vec<&str> = self.size.split(' ').skip(2).collect();
+        let [width, height] = [0, 1].map(|at| sides.get(at).copied().unwrap_or("0"));
+        html! {
+            svg viewBox=(self.size) role="img" aria-label=(title) {
+                use href={ "#" (id) } width=(width) height=(height) {}
+            }
+        }
+    }
+
     /// What it uses by name, each in a line.
     pub fn definitions(&self) -> impl Iterator<Item = &str> {
         self.definitions.lines()
     }
 
     /// The picture, which an element of the page describes; `is_read` if the page's script tells values of it.
-    pub fn element(&self, described_by: &str, is_read: bool) -> Markup {
+    pub fn element(&self, id: &str, described_by: &str, is_read: bool) -> Markup {
         let width: f64 = self.size.split(' ').nth(2).and_then(|width| width.parse().ok()).unwrap_or(0.0);
         html! {
-            svg class=[(width >= WIDE).then_some("wide")] viewBox=(self.size) width=(width) role="img" aria-labelledby=(described_by) tabindex=[is_read.then_some(0)] {
+            svg id=(id) class=[(width >= WIDE).then_some("wide")] viewBox=(self.size) width=(width) role="img" aria-labelledby=(described_by) tabindex=[is_read.then_some(0)] {
                 (PreEscaped(&self.body))
             }
         }

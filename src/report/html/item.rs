@@ -131,7 +131,7 @@ fn figure(section: &Section, figure: &Figure, picture: &Inline) -> Markup {
     let (folder, data) = (section.folder(), data_file(figure));
     html! {
         figure id=(id) {
-            div.picture { (picture.element(&caption, data.is_some())) }
+            div.picture { (picture.element(&picture_id(section, figure), &caption, data.is_some())) }
             figcaption id=(caption) {
                 (heading(&figure.title)) " " (prose(&figure.caption)) " "
                 @if let Some(file) = data {
@@ -141,6 +141,11 @@ fn figure(section: &Section, figure: &Figure, picture: &Inline) -> Markup {
             }
         }
     }
+}
+
+/// The id of a figure's picture in the page.
+pub fn picture_id(section: &Section, figure: &Figure) -> String {
+    format!("{}-{}-picture", section.name, figure.name)
 }
 
 /// A title that begins a caption.

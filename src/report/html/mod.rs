@@ -57,7 +57,7 @@ pub fn render(
                     @for marker in markers { (PreEscaped(marker)) }
                 }
                 main {
-                    (summary(sections, tally))
+                    (summary(sections, &pictures, tally))
                     @for (section, pictures) in sections.iter().zip(&pictures) {
                         (item::render(section, pictures))
                     }
@@ -132,16 +132,18 @@ fn contents(sections: &[Section]) -> Markup {
 }
 
 /// The head of the page: what verdicts mean, and every item in a line.
-fn summary(sections: &[Section], tally: &Tally) -> Markup {
+fn summary(sections: &[Section], pictures: &[Vec<Inline>], tally: &Tally) -> Markup {
     html! {
         header #summary {
             h1 { "What came out" }
             p {
-                "Every result of the sources that this program makes again, and what was asked beyond them: the question, what is \
-                 expected, the answer. Written by "
-                code { "stripmine reproduce" } "; each item names the command that makes it alone."
+                "Stripmine simulates particle systems in two dimensions and counts every vector operation of a step. This page compares it \
+                 with the four sources that it is made of, with theory, and with other programs. Each claim has a limit that was set before \
+                 the result. Written by "
+                code { "stripmine reproduce" } "."
             }
             (claims(tally))
+            (front(sections, pictures))
             details {
                 summary { "Programs, hosts and days of these results" }
                 @for made in super::origins(sections) {
@@ -170,6 +172,28 @@ fn summary(sections: &[Section], tally: &Tally) -> Markup {
                                 }
                             }
                         }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The results of the first screen: the answer and the first picture of each.
+fn front(sections: &[Section], pictures: &[Vec<Inline>]) -> Markup {
+    let mut shown: Vec<(&Section, &Vec<Inline>)> =
+        sections.iter().zip(pictures).filter(|(section, _)| section.front.is_some()).collect();
+    shown.sort_by_key(|(section, _)| section.front);
+    html! {
+        @if !shown.is_empty() {
+            div.front {
+                @for (section, pictures) in shown {
+                    article {
+                        h2 { a href={ "#" (section.name) } { (section.title) } }
+                        @if let (Some(picture), Some(figure)) = (pictures.first(), section.figures.first()) {
+                            div.picture { (picture.again(&item::picture_id(section, figure), &figure.title)) }
+                        }
+                        p { (prose(&section.answer)) }
                     }
                 }
             }

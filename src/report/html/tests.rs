@@ -64,6 +64,7 @@ fn section(name: &str) -> Section {
         }),
         claims: vec![],
         seeds: vec![1993, 7],
+        front: Some(1),
         depends_on_host: true,
         provenance: Some(Provenance {
             origin: Origin {
