@@ -1,10 +1,13 @@
 //! Numbers in documents are cells of the committed report: `<!-- n: NAME -->NUMBER<!-- / -->`, and at the end of the document, in a
 //! comment that begins with `numbers:`, a line `NAME = ITEM: EXPRESSION` for each.
 
+use std::cell::OnceCell;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use stripmine::frame::Expressions;
+use stripmine::claims::{self, Verdict};
+use stripmine::frame::{Expressions, Rows, Scope};
+use stripmine::report::tally::Tally;
 use stripmine::results::Folder;
 
 const BEGIN: &str = "<!-- n: ";
@@ -39,10 +42,25 @@ fn definitions(text: &str) -> BTreeMap<&str, (&str, &str)> {
         .collect()
 }
 
+/// Claims by source and verdict, as the report's first table has them.
+fn claims_of(folder: &Folder) -> Scope {
+    let items = [root().join("reports"), root().join("reports/host")]
+        .into_iter()
+        .flat_map(|it| fs::read_dir(it).unwrap());
+    let names = items.map(|it| it.unwrap().file_name().into_string().unwrap());
+    let sections: Vec<_> = names.filter_map(|name| folder.section(&name).unwrap()).collect();
+    let tally = Tally::of(&sections, &claims::all().unwrap());
+    let mut rows = Rows::of(tally.rows()).text("source", |(source, _)| *source);
+    for (at, verdict) in Verdict::ALL.into_iter().enumerate() {
+        rows = rows.count(verdict.words(), move |(_, counts)| counts[at]);
+    }
+    Scope::of([rows.frame("sources", "Claims by source and verdict")])
+}
+
 /// Checks the numbers of a text. Returns the text with the numbers of the report, how many there are, and faults with their lines:
 /// numbers that are not those of their cells, and cells that are gone.
 fn checked(text: &str, folder: &Folder) -> (String, usize, Vec<String>) {
-    let (expressions, known) = (Expressions::new(), definitions(text));
+    let (expressions, known, claims) = (Expressions::new(), definitions(text), OnceCell::new());
     let (mut renewed, mut held, mut faults, mut rest) = (String::new(), 0, vec![], text);
     while let Some((before, after)) = rest.split_once(BEGIN) {
         renewed += before;
@@ -53,7 +71,10 @@ fn checked(text: &str, folder: &Folder) -> (String, usize, Vec<String>) {
             let names = || known.keys().copied().collect::<Vec<_>>().join(", ");
             let (item, expression) =
                 known.get(name).ok_or_else(|| format!("`{name}` is not defined; there are {}", names()))?;
-            let scope = folder.scope(item).map_err(|cause| cause.to_string())?;
+            let scope = match *item {
+                "claims" => Some(claims.get_or_init(|| claims_of(folder)).clone()),
+                item => folder.scope(item).map_err(|cause| cause.to_string())?,
+            };
             let scope = scope.ok_or(format!("the report has no item `{item}`"))?;
             let value = expressions.text(&format!("{{{{ {expression} }}}}"), &scope).map_err(|(_, it)| it)?;
             Ok::<_, String>((name, shown, value, after))
