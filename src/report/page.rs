@@ -75,6 +75,7 @@ fn claims(tally: &Tally) -> String {
         write!(text, "\n**Not reproduced**\n\n| claim | source | expected | value |\n|---|---|---|---|\n");
     for ((_, title), claim) in tally.failed() {
         let JudgedClaim { text: words, place, expected, value, .. } = claim;
+        let words = words.replace('|', "\\|");
         let _ =
             writeln!(text, "| [{words}](#{}) | {} | {expected} | {value} |", anchor(title), place.join(", "));
     }
