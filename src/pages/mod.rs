@@ -6,7 +6,7 @@
 
 mod figures;
 
-use crate::claims::{self, Claim, ClaimError};
+use crate::claims::{self, Claim};
 use crate::frame::{Expressions, Frame, Scope, Table};
 use crate::report::figure::{Picture, data as figure_data};
 use crate::report::section::Film;
@@ -41,9 +41,6 @@ pub enum PageError {
         /// Cause, with the names that exist.
         cause: String,
     },
-    /// A claim of the item.
-    #[error(transparent)]
-    Claim(#[from] ClaimError),
 }
 
 impl Reported for PageError {
@@ -249,7 +246,7 @@ impl Page {
         // Claims may speak of the points of a chart, too.
         let of_charts = section.figures.iter().filter_map(figure_data).map(|table| Frame::from(&table));
         let scope = Scope::of(shown.frames.iter().cloned().chain(of_charts));
-        let judged = claims::judge(claims, &self.name, &scope, date)?;
+        let judged = claims::judge_where_possible(claims, &self.name, &scope, date);
         section.claims = judged.iter().map(Into::into).collect();
         Ok(section)
     }

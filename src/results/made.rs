@@ -110,7 +110,6 @@ pub(super) fn read(folder: &Path, page: &Page) -> Result<Option<Made>, Failure> 
 /// A section that was written without a template, with its claims judged by the tables of its folder.
 pub(super) fn judged(section: Section, folder: &Path, date: &str) -> Result<Section, Failure> {
     let (all, scope) = (claims::all()?, scope(folder)?);
-    // A table that this item will have only with its template leaves its claims out.
     let judged =
         all.iter().filter_map(|it| claims::judge(std::slice::from_ref(it), &section.name, &scope, date).ok());
     let claims = judged.flatten().map(|it| (&it).into()).collect();
