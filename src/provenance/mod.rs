@@ -103,6 +103,11 @@ impl Provenance {
         }
     }
 
+    /// Returns whether `reproduce` made it.
+    pub fn is_of_the_report(&self) -> bool {
+        self.command.split(' ').nth(1) == Some("reproduce")
+    }
+
     /// Returns whether kernels or physics have changed since it was made.
     pub fn is_stale(&self) -> bool {
         self.code != Some(Fingerprints::here())

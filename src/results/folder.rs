@@ -154,7 +154,7 @@ impl Folder {
         if !made.repeated.is_empty() {
             provenance.repeated.clone_from(&made.repeated);
         }
-        let (section, files) = files_of(name, made, provenance.measured_on())?;
+        let (section, files) = files_of(name, made, &provenance)?;
         let folder = self.path.join(section.folder());
         let own = own_files(&folder)?;
         let mut listed = vec![PROVENANCE];
@@ -260,7 +260,7 @@ impl Folder {
         made: &Made,
         provenance: &Provenance,
     ) -> Result<Section, Failure> {
-        let (section, files) = files_of(name, made, provenance.measured_on())?;
+        let (section, files) = files_of(name, made, provenance)?;
         let is_there = |(name, bytes): &(String, Vec<u8>)| {
             regular_file::read(&folder.join(name), LONGEST).is_ok_and(|there| there == *bytes)
         };

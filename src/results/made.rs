@@ -6,6 +6,7 @@ use crate::console::Failure;
 use crate::frame::csv::{self, Package};
 use crate::frame::{Frame, Scope};
 use crate::pages::{Page, Shown};
+use crate::provenance::Provenance;
 use crate::report::Section;
 use crate::report::figure::{self, Picture, svg};
 use serde::Serialize;
@@ -27,14 +28,19 @@ const OF_FIGURE: &str = ".data";
 /// A file: its name and contents.
 type File = (String, Vec<u8>);
 
-/// The section of an item, and its files but `provenance.json`; `date` is the day on which the data were made.
-pub(super) fn files_of(name: &str, made: &Made, date: &str) -> Result<(Section, Vec<File>), Failure> {
+/// The section of an item, and its files but `provenance.json`. An item of the report has claims, a study of another scene has none.
+pub(super) fn files_of(
+    name: &str,
+    made: &Made,
+    provenance: &Provenance,
+) -> Result<(Section, Vec<File>), Failure> {
     let section = match (&made.section, Page::of(name)?) {
         (Some(section), _) => section.clone(),
         (None, Some(page)) => {
             let Made { frames, pictures, film, files, seeds, .. } = made;
             let shown = Shown { frames, pictures, film: film.as_ref(), files, seeds };
-            page.section(&shown, &claims::all()?, date)?
+            let claims = if provenance.is_of_the_report() { claims::all()? } else { vec![] };
+            page.section(&shown, &claims, provenance.measured_on())?
         }
         (None, None) => Section::new(name, name),
     };
@@ -110,9 +116,8 @@ pub(super) fn read(folder: &Path, page: &Page) -> Result<Option<Made>, Failure> 
 /// A section that was written without a template, with its claims judged by the tables of its folder.
 pub(super) fn judged(section: Section, folder: &Path, date: &str) -> Result<Section, Failure> {
     let (all, scope) = (claims::all()?, scope(folder)?);
-    let judged =
-        all.iter().filter_map(|it| claims::judge(std::slice::from_ref(it), &section.name, &scope, date).ok());
-    let claims = judged.flatten().map(|it| (&it).into()).collect();
+    let judged = claims::judge_where_possible(&all, &section.name, &scope, date);
+    let claims = judged.iter().map(Into::into).collect();
     Ok(Section { claims, ..section })
 }
 
