@@ -131,7 +131,7 @@ fn legend(svg: &mut Svg, entries: &[(&String, Sample)]) {
             |lines: &Vec<String>| lines.len() <= most_lines && font::widest(lines, style::LABEL) <= most;
         (columns == 1 || all.iter().all(has_room)).then_some((columns, all))
     };
-    let Some((columns, all)) = (1..=4).rev().find_map(wrapped) else { return };
+    let Some((columns, all)) = (1..=4.min(entries.len())).rev().find_map(wrapped) else { return };
     let mut words = vec![];
     svg.size[1] += BETWEEN;
     for (row, entries) in all.chunks(columns).zip(entries.chunks(columns)) {
