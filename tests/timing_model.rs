@@ -73,26 +73,24 @@ fn a_machine_that_is_not_there_is_answered_with_those_that_are() {
 
 #[test]
 fn beyond_the_calibrated_range_nothing_is_predicted() {
-    for arguments in [
-        ["table", "--ladder", "--host", "--particles", "2000000"].as_slice(),
-        &["validate-model", "--particles", "5000000"],
+    for (arguments, said) in [
+        (["--particles", "5000000"], "calibrated range of 8 to 4000000"),
+        (["--particles", "200000"], "200000 discs lie outside the calibrated range of 60 to 32000"),
+        (["--occupancies", "0.27"], "0.27 discs a cell lie outside the calibrated range of 0.01 to 0.26"),
     ] {
-        let out = stripmine(arguments).code(4);
+        let out = stripmine(&[&["validate-model"][..], &arguments].concat()).code(4);
         let complaint = String::from_utf8_lossy(&out.get_output().stderr).into_owned();
-        assert!(complaint.contains("calibrated range of 8 to 4000000"), "{complaint}");
+        assert!(complaint.contains(said), "{complaint}");
     }
-    let out = stripmine(&["validate-model", "--particles", "200000"]).code(4);
-    let complaint = String::from_utf8_lossy(&out.get_output().stderr).into_owned();
-    assert!(complaint.contains("200000 discs lie outside the calibrated range of "), "{complaint}");
     stripmine(&["validate-model", "--calibrate", "--host", "host.toml"]).code(2);
 }
 
 #[test]
 fn the_shipped_host_model_is_used_and_said_so_and_bad_host_files_are_refused() {
-    let out = stripmine(&["table", "--ladder", "--host"]).success();
+    let out = stripmine(&["validate-model", "--particles", "5000000"]).code(4);
     assert!(String::from_utf8_lossy(&out.get_output().stderr).contains("comes with the program"));
     let folder = tempfile::tempdir().unwrap();
     let path = file(&folder, "format = 3\n");
-    let out = stripmine(&["table", "--ladder", "--host", &path]).code(3);
+    let out = stripmine(&["validate-model", "--host", &path]).code(3);
     assert!(String::from_utf8_lossy(&out.get_output().stderr).contains("`format` is 3, but"));
 }

@@ -1,25 +1,20 @@
 //! What can be reproduced of this method: each item a study and its section of the report.
 
 use super::sections;
-use super::study::calibration;
-use super::study::efficiency_table::Question;
-use super::study::model_validation::{self, Calibrated, model_validation};
+use super::study::calibration::this_host;
+use super::study::model_validation::{self, Calibrated};
 use super::study::rounds::Bound;
 use super::study::{
-    break_even, crossover, damping, density_cost, efficiency_table, host_ladder, identity, ladder, listing,
-    mask, measured_cost, misprints, pipe_flow, precision, printed_cost, threads, useful_work,
+    break_even, crossover, damping, density_cost, efficiency_table, identity, ladder, listing, mask,
+    measured_cost, misprints, pipe_flow, precision, printed_cost, threads, useful_work,
 };
 use crate::console::Failure;
-use crate::model::host::{HostModel, default_model};
 use crate::model::machines;
 use crate::report::Chapter::{Host, Sources};
 use crate::report::Section;
-use crate::results::{Item, Lab, Made, Progress, Size};
+use crate::results::{Item, Lab, Made, Size};
 use serde::Serialize;
-use std::sync::OnceLock;
 use std::time::Duration;
-use stripmine_kernels::InstructionSet;
-use stripmine_physics::origin;
 
 /// Every item, in the order of its chapter.
 pub(super) const ITEMS: &[Item] = &[
@@ -39,13 +34,7 @@ pub(super) const ITEMS: &[Item] = &[
     )
     .with_memory(900),
     Item::quick("measured", Host, [8.0, 21.0], measured, "The same, measured on this host"),
-    Item::quick(
-        "validation",
-        Host,
-        [4.0, 31.0],
-        validation,
-        "The timing model of a host against wall time here",
-    ),
+    Item::of("validation", model_validation::made),
     Item::full(
         "atlas",
         Host,
@@ -123,54 +112,7 @@ fn made(section: Section, data: &impl Serialize) -> Result<Made, Failure> {
     Made::new(section, data)
 }
 
-/// The shipped host model on few cases, or, in full, a fresh calibration and more of them.
-fn validation(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
-    let progress = lab.progress;
-    let runs = |particles, occupancies, rounds| model_validation::Effort {
-        particles,
-        occupancies,
-        rounds,
-        particle_steps: 10_000,
-    };
-    match effort {
-        Size::Quick => {
-            let (host, runs) = (default_model()?, runs(vec![300], vec![0.2], Bound::of(2)));
-            validated(&host, Calibrated::Shipped, &runs, &progress)
-        }
-        Size::Full | Size::All => {
-            let host = this_host(&|share| progress(0.5 * share))?;
-            let runs = runs(vec![150, 4000], vec![0.072, 0.24], bound(6, VALIDATION));
-            validated(host, Calibrated::Now, &runs, &|share| progress(0.5 + 0.5 * share))
-        }
-    }
-}
-
-fn validated(
-    host: &HostModel,
-    calibrated: Calibrated,
-    runs: &model_validation::Effort,
-    progress: Progress<'_>,
-) -> Result<Made, Failure> {
-    let data = model_validation(host, calibrated, runs, progress)?;
-    let ladder = host_ladder::host_ladder(&Question::default(), host, calibrated)?;
-    let section = sections::model_validation::section(&data).tables([sections::ladder::of_host(&ladder)]);
-    made(section, &serde_json::json!({ "validation": data, "ladder": ladder }))
-}
-
-/// The model of this host, calibrated by the first item that asks for it.
-fn this_host(progress: Progress<'_>) -> Result<&'static HostModel, Failure> {
-    static MODEL: OnceLock<HostModel> = OnceLock::new();
-    if let Some(known) = MODEL.get() {
-        return Ok(known);
-    }
-    let (effort, best) = (calibration::Effort { seconds: 25.0 }, InstructionSet::best());
-    let model = calibration::calibrate(origin::host(), best, effort, progress)?;
-    Ok(MODEL.get_or_init(|| model))
-}
-
-/// Seconds that rounds of the validation and of the atlas may take in full, so that all that is said of this host's model takes
-/// a minute and a half: scenes are laid out before, and the model is fitted after.
-const VALIDATION: u64 = 15;
+/// Seconds that rounds of the atlas may take in full: scenes are laid out before.
 const ATLAS: u64 = 12;
 
 fn bound(most: usize, seconds: u64) -> Bound {

@@ -8,9 +8,7 @@ use stripmine_kernels::InstructionSet;
 use toml::de::DeValue;
 
 /// The version of the file format that this program reads.
-pub const FORMAT: u32 = 14;
-
-/// What messages call it.
+pub const FORMAT: u32 = 15;
 const KIND: &str = "host file";
 /// Above every number of a host file: with larger ones a sum of all that a step does might not be finite.
 const MOST: f64 = 1e15;
@@ -29,6 +27,11 @@ impl HostModel {
     /// # Errors
     /// [`ModelFileError`]: another format, the grammar's first mistake, or every entry that cannot be.
     pub fn parse(file: &str, text: &str) -> Result<HostModel, ModelFileError> {
+        /// The version that a text states, whatever else it has.
+        #[derive(Deserialize)]
+        struct Version {
+            format: u32,
+        }
         let source = Source { kind: KIND, file, text };
         let model = match toml::from_str::<HostModel>(text) {
             Ok(model) => Some(model),
@@ -40,7 +43,8 @@ impl HostModel {
             let format = table.need("format", |it| match it.number()? {
                 found if found == f64::from(FORMAT) => Some(()),
                 found => {
-                    it.wrong(format!("`format` is {found}, but this program reads {FORMAT}: calibrate again"))
+                    let remedy = format!("but this program reads {FORMAT}: calibrate again");
+                    it.wrong(format!("`format` is {found}, {remedy}"))
                 }
             });
             table.others::<(), ()>(|_, it| format.and_then(|()| numbers(it)))?;
@@ -59,39 +63,34 @@ impl HostModel {
     /// The model, if its entries agree with each other.
     fn checked(self, table: &Table<'_>) -> Option<HostModel> {
         let sets: Vec<&str> = InstructionSet::ALL.iter().map(|set| set.name()).collect();
-        table.need("instruction_set", |it| match sets.contains(&&*self.instruction_set) {
-            true => Some(()),
-            false => it.wrong(format!(
-                "`instruction_set` is \"{}\", but must be one of {}",
-                self.instruction_set,
-                sets.join(", ")
-            )),
-        })?;
-        let footprints: Vec<f64> = self.levels.iter().map(|level| level.footprint).collect();
-        table.need("levels", |it| match () {
-            () if self.levels.is_empty() || self.lanes.is_empty() => {
-                it.wrong("`levels` with `lanes` must not be empty")
+        if !sets.contains(&&*self.instruction_set) {
+            let what = format!("is \"{}\", but must be one of {}", self.instruction_set, sets.join(", "));
+            return table.wrong_at("instruction_set", format!("`instruction_set` {what}"));
+        }
+        let lists = [
+            ("footprints", &self.footprints),
+            ("steps.discs", &self.steps.discs),
+            ("steps.occupancies", &self.steps.occupancies),
+        ];
+        for (path, list) in lists {
+            if list.first().is_none_or(|&first| first <= 0.0) || list.windows(2).any(|two| two[0] >= two[1]) {
+                return table.wrong_at(path, format!("`{path}` must be positive and rise"));
             }
-            () => rise(&footprints, "levels.footprint", it),
-        })?;
-        for (name, rates) in &self.rates {
-            table.need("rates", |it| rise(&rates.discs, &format!("rates.{name}.discs"), it))?;
+        }
+        let prices = self.programs.values().flat_map(|of| [&of.interpreted, &of.chained]);
+        if let Some(of) = prices.map(|of| of.bytes.len()).find(|&of| of != self.footprints.len()) {
+            let what =
+                format!("has {of} prices of a byte, but there are {} footprints", self.footprints.len());
+            return table.wrong_at("programs", format!("`programs` {what}"));
+        }
+        let (rows, columns) = (self.steps.discs.len(), self.steps.occupancies.len());
+        let mut grids = self.steps.ns.values().flat_map(|of| of.values()).flat_map(|of| of.values());
+        if grids.any(|grid| grid.len() != rows || grid.iter().any(|row| row.len() != columns)) {
+            let what = format!("must have {rows} rows of {columns} numbers, as discs and occupancies");
+            return table.wrong_at("steps.ns", format!("`steps.ns` {what}"));
         }
         Some(self)
     }
-}
-
-/// The version that a text states, whatever else it has.
-#[derive(Deserialize)]
-struct Version {
-    format: u32,
-}
-
-/// Notes numbers that are not positive or do not rise.
-fn rise(numbers: &[f64], path: &str, entry: &Entry<'_>) -> Option<()> {
-    let is_wrong =
-        numbers.first().is_some_and(|&first| first <= 0.0) || numbers.windows(2).any(|two| two[0] >= two[1]);
-    if is_wrong { entry.wrong(format!("`{path}` must be positive and rise")) } else { Some(()) }
 }
 
 /// Notes every number of an entry that cannot be.
@@ -109,11 +108,8 @@ fn numbers(entry: &Entry<'_>) -> Option<()> {
         Some("shortest" | "longest") => (1.0..=2_f64.powi(40), "a whole number from 1 to 2^40".to_owned()),
         _ => (0.0..=MOST, format!("from 0 to {MOST:e}")),
     };
-    if range.contains(&number) {
-        Some(())
-    } else {
-        entry.wrong(format!("`{path}` is {number}, but must be {words}"))
-    }
+    let what = || format!("`{path}` is {number}, but must be {words}");
+    if range.contains(&number) { Some(()) } else { entry.wrong(what()) }
 }
 
 /// What stands above the numbers.
@@ -121,12 +117,10 @@ const HEADING: &str = "\
 # What a host takes, as `stripmine calibrate` has measured it. Times are in nanoseconds, footprints in bytes. What counts is the middle of
 # the samples, under whatever else the machine was doing.
 #
-# run               a run of a program in addition to its passes, and of a compiled loop
-# lanes.*           an operation of an element, interpreted and in a compiled loop: `add` any of them, the others in addition; the start of
-#                   a pass of the interpreter; fitted to the programs of the lattice method on drill scenes
-# levels            a byte, by how many bytes are gone over before it is met again, fitted to the same programs
-# rates             work whose amount depends on the data: a step, disc, cell, candidate, contact, disc whose lists are rebuilt, entry of
-#                   these; and how many times as long with each number of discs
+# programs   prices of a run of a program, of the start of a pass, of an operation of an element, of one through an index vector in
+#            addition, and of a byte by how many bytes are gone over before it is visited again; interpreted and in a compiled loop;
+#            fitted to the programs of the lattice method on drill scenes
+# steps      phases of steps whose work depends on the data, on drill scenes: a row for each number of discs, in it each occupancy
 ";
 
 /// Digits that a number is written with.

@@ -1,14 +1,12 @@
 //! A host: all that is known of it, and what a program takes there.
 
-use super::lane::LaneCosts;
-use super::levels::{Around, Level};
+use super::costs::{Around, LaneCosts, charges};
 use super::out_of_range::OutOfRange;
-use super::rates::Rates;
+use super::steps::Steps;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use stripmine_kernels::Execution;
 use stripmine_kernels::backend::tape::Outlines;
-use stripmine_kernels::isa::OpClass;
 use stripmine_physics::number::{counted, significant};
 
 /// How the numbers were measured.
@@ -32,15 +30,13 @@ pub struct Measured {
     pub shortest: usize,
     /// Longest vectors.
     pub longest: usize,
-    /// Median deviation of the programs from the model that was fitted to them: interpreted, and as compiled loops.
-    pub residuals: [f64; 2],
+    /// Median deviation of the programs from the prices that were fitted to them.
+    pub residual: f64,
 }
 
 impl Measured {
-    /// With a larger half range of the samples the machine was noisy.
-    const NOISY: f64 = 0.05;
-    /// With a larger difference between the halves of the measurement it changed meanwhile.
-    const CHANGED: f64 = 0.05;
+    /// With a larger half range of the samples the machine was noisy, with a larger difference between the halves changing.
+    const UNSTEADY: f64 = 0.05;
 
     /// The state of a machine with so many cores and this load, whose samples lie so far apart, and the halves of whose measurement so.
     pub fn state_of([spread, disagreement]: [Option<f64>; 2], load: Option<f64>, cores: usize) -> String {
@@ -50,19 +46,18 @@ impl Measured {
             let cores = counted(cores, "core", "cores");
             format!("busy: the load average was {} on {cores} when it began", significant(load, 3))
         });
-        let noisy = spread.is_some_and(|spread| spread > Measured::NOISY);
+        let percent = |share: f64| format!("{:.0} %", 100.0 * share);
         let seen = match (spread, disagreement) {
-            (Some(_), Some(apart)) if apart > Measured::CHANGED => Some(format!(
-                "{}: the halves of the measurement differ by {:.0} %",
-                if noisy { "noisy and changing" } else { "changing" },
-                100.0 * apart
-            )),
-            (Some(spread), Some(_)) => {
-                noisy.then(|| format!("noisy: half of the samples lie within {:.0} %", 100.0 * spread))
+            (Some(spread), Some(apart)) => {
+                let noisy = (spread > Measured::UNSTEADY)
+                    .then(|| format!("noisy: half of the samples lie within {}", percent(spread)));
+                let changing = (apart > Measured::UNSTEADY)
+                    .then(|| format!("changing: the halves of the measurement differ by {}", percent(apart)));
+                noisy.into_iter().chain(changing).collect()
             }
-            _ => Some(
+            _ => vec![
                 "in an unknown state: too few samples of each program tell how far they scatter".to_owned(),
-            ),
+            ],
         };
         let said: Vec<String> = busy.into_iter().chain(seen).collect();
         if said.is_empty() { "quiet".to_owned() } else { said.join("; ") }
@@ -84,18 +79,14 @@ pub struct HostModel {
     pub title: String,
     /// The instructions it was measured with.
     pub instruction_set: String,
+    /// Footprints at which a byte has a price, rising; between two of them it is in between, by the logarithm (bytes).
+    pub footprints: Vec<f64>,
     /// How it was measured.
     pub measured: Measured,
-    /// Nanoseconds to bind the arrays of a step to a part's programs.
-    pub bind: f64,
-    /// Nanoseconds of a run of a program in addition to its passes, and of a compiled loop.
-    pub run: [f64; 2],
-    /// The levels of memory, nearest first.
-    pub levels: Vec<Level>,
-    /// Costs by the element type of the lanes.
-    pub lanes: BTreeMap<String, LaneCosts>,
-    /// Work whose amount depends on the data, by method.
-    pub rates: BTreeMap<String, Rates>,
+    /// Prices of programs by the element type of the lanes.
+    pub programs: BTreeMap<String, LaneCosts>,
+    /// Steps whose work depends on the data.
+    pub steps: Steps,
 }
 
 impl HostModel {
@@ -107,13 +98,6 @@ impl HostModel {
                 self.title, self.instruction_set
             )
         })
-    }
-
-    /// The same host where no byte takes time.
-    #[must_use]
-    pub fn in_cache(&self) -> HostModel {
-        let near = |level: &Level| Level { footprint: level.footprint, ..Level::default() };
-        HostModel { levels: self.levels.iter().map(near).collect(), ..self.clone() }
     }
 
     /// Whether vectors of `n` elements lie within what was measured.
@@ -143,57 +127,33 @@ impl HostModel {
             return Ok(0.0);
         }
         self.admits(n)?;
-        let lane = self.lane(outlines)?;
-        let footprints: Vec<f64> = self.levels.iter().map(|level| level.footprint).collect();
-        let bytes = around.bytes(outlines, (n, execution), lane.register_bytes, &footprints);
-        let [run, of_loop] = self.run;
-        let (run, level): (f64, fn(&Level) -> f64) = match execution {
-            Execution::Chained => (of_loop, |level| level.chained),
-            _ => (run, |level| level.interpreted),
-        };
-        let waiting: f64 = bytes.iter().zip(&self.levels).map(|(bytes, at)| bytes * level(at)).sum();
-        Ok(run + lane.operations(outlines, (n, execution))? + waiting)
-    }
-
-    /// The trivial baseline: operations times elements, each at the cost of a sum in the first-level cache (ns).
-    pub fn baseline(&self, outlines: &Outlines, n: usize, execution: Execution) -> f64 {
-        let lane = self.lanes.get(outlines.lane);
-        let classes = lane.map(|lane| match execution {
-            Execution::Chained => &lane.chained,
-            _ => &lane.interpreted,
-        });
-        let each = classes.and_then(|classes| classes.get(OpClass::Add.name())).copied();
-        let operations: usize =
-            outlines.instructions.iter().map(|outline| outline.operations().count()).sum();
-        each.unwrap_or(0.0) * (operations * n) as f64
-    }
-
-    fn lane(&self, outlines: &Outlines) -> Result<&LaneCosts, OutOfRange> {
         let unmeasured = || OutOfRange::NotMeasured(format!("precision {}", outlines.lane));
-        self.lanes.get(outlines.lane).ok_or_else(unmeasured)
+        let of = self.programs.get(outlines.lane).ok_or_else(unmeasured)?;
+        let costs = if execution == Execution::Chained { &of.chained } else { &of.interpreted };
+        let shape = (of.register_bytes, of.lanes);
+        Ok(costs.total(&charges(outlines, (n, execution), shape, around, &self.footprints)))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::host::Costs;
     use stripmine_kernels::backend::tape::{Outline, Place, Reference};
     use stripmine_kernels::isa::{Array, Op};
 
     /// A host on which a pass takes 10 ns to begin and 0.5 an element, a run 100, a loop 7, and a byte 0.25 or 0.125.
     fn host() -> HostModel {
-        let lane = LaneCosts {
+        let of = LaneCosts {
             register_bytes: [8.0, 1.0, 4.0],
             lanes: 1,
-            start: 10.0,
-            interpreted: BTreeMap::from([("add".to_owned(), 0.5)]),
-            chained: BTreeMap::from([("add".to_owned(), 0.375)]),
+            interpreted: Costs::of(&[100.0, 10.0, 0.5, 0.0, 0.25]),
+            chained: Costs::of(&[7.0, 0.0, 0.375, 0.0, 0.125]),
         };
         HostModel {
             measured: Measured { shortest: 8, longest: 1000, ..Measured::default() },
-            run: [100.0, 7.0],
-            levels: vec![Level { footprint: 64.0, interpreted: 0.25, chained: 0.125 }],
-            lanes: BTreeMap::from([("f64".to_owned(), lane)]),
+            footprints: vec![64.0],
+            programs: BTreeMap::from([("f64".to_owned(), of)]),
             ..HostModel::default()
         }
     }
@@ -208,22 +168,16 @@ mod tests {
 
     /// By hand: two passes over 100 elements at once, in strips of 32 of which the last has 4, and as a loop.
     #[test]
-    fn every_strip_begins_every_byte_counts_and_a_loop_meets_each_once() {
+    fn every_strip_begins_every_byte_counts_and_a_loop_visits_each_once() {
         let around = Around::of_step(&[(&sums(1), 100)]);
         let ns = |execution| host().program(&sums(2), 100, execution, &around);
         let bytes = 0.25 * 2.0 * 800.0;
         assert_eq!(ns(Execution::Eager), Ok(100.0 + 2.0 * (10.0 + 50.0) + bytes));
         assert_eq!(ns(Execution::Strip(32)), Ok(100.0 + 2.0 * (4.0 * 10.0 + 50.0) + bytes));
         assert_eq!(ns(Execution::Chained), Ok(7.0 + 100.0 * 2.0 * 0.375 + 0.125 * 800.0));
-        assert_eq!(host().in_cache().program(&sums(1), 100, Execution::Eager, &around), Ok(160.0));
         assert_eq!(host().program(&sums(2), 0, Execution::Eager, &around), Ok(0.0));
         let beyond = host().program(&sums(2), 1001, Execution::Eager, &around);
         assert!(matches!(beyond, Err(OutOfRange::Length { n: 1001, .. })));
-    }
-
-    #[test]
-    fn the_baseline_charges_every_operation_of_every_element() {
-        assert_eq!(host().baseline(&sums(3), 40, Execution::Eager), 0.5 * 120.0);
     }
 
     /// One sample has no spread, whatever the load; a load above the free cores is no quiet machine.
@@ -239,7 +193,12 @@ mod tests {
             ([None, None], Some(19.0), "busy", "unknown state"),
             ([Some(0.2), Some(0.01)], Some(0.5), "noisy", "20 %"),
             ([Some(0.01), Some(0.14)], Some(0.5), "changing", "14 %"),
-            ([Some(0.2), Some(0.14)], Some(1.5), "busy", "noisy and changing"),
+            (
+                [Some(0.2), Some(0.14)],
+                Some(1.5),
+                "busy",
+                "noisy: half of the samples lie within 20 %; changing",
+            ),
         ] {
             let said = state(seen, load);
             assert!(said.starts_with(begins) && said.contains(has), "{seen:?} {load:?}: {said}");

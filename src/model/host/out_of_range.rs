@@ -16,17 +16,19 @@ pub enum OutOfRange {
         /// Longest vectors.
         longest: usize,
     },
-    /// More or fewer discs than those that were measured.
+    /// More or fewer discs, or another density, than those that were measured.
     #[error(
-        "{discs} discs lie outside the calibrated range of {fewest} to {most}: ask for another number of particles"
+        "{value} {what} lie outside the calibrated range of {} to {}: ask for another number of particles, or another density",
+        ends[0],
+        ends[1]
     )]
     Discs {
-        /// Discs asked for.
-        discs: f64,
-        /// Fewest discs.
-        fewest: f64,
-        /// Most discs.
-        most: f64,
+        /// What is counted.
+        what: &'static str,
+        /// How many are asked for.
+        value: f64,
+        /// Fewest and most.
+        ends: [f64; 2],
     },
     /// An execution, precision or program that was not measured.
     #[error("{0} was not calibrated")]

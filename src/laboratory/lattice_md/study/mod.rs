@@ -6,7 +6,6 @@ pub mod crossover;
 pub mod damping;
 pub mod density_cost;
 pub mod efficiency_table;
-pub mod host_ladder;
 pub mod identity;
 pub mod ladder;
 pub mod listing;

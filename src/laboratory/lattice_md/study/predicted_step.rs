@@ -23,16 +23,11 @@ impl Step {
         Step { programs, around }
     }
 
-    /// Nanoseconds of a phase, and the baseline's.
+    /// Nanoseconds of a phase.
     ///
     /// # Errors
     /// [`OutOfRange`] where the model does not reach.
-    pub fn phase(
-        &self,
-        host: &HostModel,
-        phase: Phase,
-        execution: Execution,
-    ) -> Result<[f64; 2], OutOfRange> {
+    pub fn phase(&self, host: &HostModel, phase: Phase, execution: Execution) -> Result<f64, OutOfRange> {
         let parts: &[Part] = match phase {
             Phase::Predict => &[Part::Predictor],
             Phase::Index => &[Part::Index, Part::Lattice],
@@ -41,12 +36,7 @@ impl Step {
             // Only the fast engine has it, which has no programs.
             Phase::CorrectPredict | Phase::Halo => &[],
         };
-        // Every part binds all arrays of the step.
-        let [mut sum, mut baseline] = [parts.len() as f64 * host.bind, 0.0];
-        for (_, outlines, n) in self.programs.iter().filter(|(part, ..)| parts.contains(part)) {
-            sum += host.program(outlines, *n, execution, &self.around)?;
-            baseline += host.baseline(outlines, *n, execution);
-        }
-        Ok([sum, baseline])
+        let programs = self.programs.iter().filter(|(part, ..)| parts.contains(part));
+        programs.map(|(_, outlines, n)| host.program(outlines, *n, execution, &self.around)).sum()
     }
 }

@@ -4,7 +4,6 @@ use super::StudyError;
 use super::break_even::AtlasError;
 use super::calibration::CalibrationError;
 use super::efficiency_table::QuestionError;
-use super::host_ladder::LadderError;
 use super::model_validation::ValidationError;
 use stripmine_physics::method::throughput::MeasurementError;
 use stripmine_physics::reported::{Class, Reported};
@@ -18,15 +17,6 @@ impl Reported for QuestionError {
 impl From<QuestionError> for StudyError {
     fn from(error: QuestionError) -> Self {
         StudyError::Own(Box::new(error))
-    }
-}
-
-impl Reported for LadderError {
-    fn class(&self) -> Class {
-        match self {
-            LadderError::Question(error) => error.class(),
-            LadderError::OutOfRange(_) => Class::Precondition,
-        }
     }
 }
 

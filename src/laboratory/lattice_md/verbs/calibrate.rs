@@ -1,9 +1,7 @@
 //! `stripmine calibrate`: how long this host's operations take.
 
 use crate::console::{Common, Failure, clear_progress, print, print_json, progress, say, warn};
-use crate::laboratory::lattice_md::sections;
 use crate::laboratory::lattice_md::study::calibration::{Effort, calibrate};
-use crate::report::terminal;
 use clap::Args;
 use std::io::Write;
 use std::path::PathBuf;
@@ -63,8 +61,6 @@ impl CalibrateVerb {
             bar.set_position((1e3 * share) as u64)
         })?;
         clear_progress();
-        let drawn: Vec<String> = sections::calibration::tables(&model).iter().map(terminal::render).collect();
-        let drawn = drawn.join("\n");
         if !model.measured.was_quiet() {
             warn(format_args!("the machine was {}; the host file says so", model.measured.state));
         }
@@ -73,7 +69,18 @@ impl CalibrateVerb {
         if !common.quiet {
             say(format_args!("written: {}", self.out.display()));
         }
-        if common.json { print_json(&model) } else { print(&drawn) }
+        if common.json {
+            return print_json(&model);
+        }
+        let measured = &model.measured;
+        print(&format!(
+            "{}, {}: measured in {:.0} s on a machine that was {}. Programs deviate from their prices by {:.1} % (the median).\n",
+            model.title,
+            model.instruction_set,
+            measured.seconds,
+            measured.state,
+            100.0 * measured.residual
+        ))
     }
 
     /// Writes the whole file, or leaves what was there.

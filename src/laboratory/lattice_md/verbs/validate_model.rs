@@ -1,15 +1,12 @@
 //! `stripmine validate-model`: the host model against wall time.
 
-use crate::console::{Common, Failure, clear_progress, print, print_json, progress, say, warn};
-use crate::laboratory::lattice_md::sections;
+use super::print_made;
+use crate::console::{Common, Failure, clear_progress, progress, say, warn};
 use crate::laboratory::lattice_md::study::calibration;
-use crate::laboratory::lattice_md::study::model_validation::{
-    Calibrated, Effort, ModelValidation, model_validation,
-};
+use crate::laboratory::lattice_md::study::model_validation::{Calibrated, Effort, model_validation};
 use crate::laboratory::lattice_md::study::rounds::Bound;
 use crate::model::host::{HostModel, default_model};
 use crate::provenance::Provenance;
-use crate::report::terminal;
 use crate::results::{Folder, Made};
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
@@ -101,32 +98,19 @@ impl ValidateModel {
             None => None,
         };
         let start = Instant::now();
-        let (data, model) = self.validated(&effort, common)?;
+        let made = self.validated(&effort, common)?;
         if let Some(folder) = folder {
-            let mut made = Made::new(sections::model_validation::section(&data), &data)?;
-            if let Some(model) = model {
-                made = made.with_file("host.toml", model.to_toml());
-            }
             let provenance = Provenance::here(common.command.clone(), start.elapsed().as_secs_f64());
             let (folder, _) = signals::whole(|| folder.write("validation", &made, &provenance))?;
             if !common.quiet {
                 say(format_args!("written: {}", folder.display()));
             }
         }
-        if common.json {
-            return print_json(&data);
-        }
-        let tables = sections::model_validation::tables(&data);
-        let drawn: Vec<String> = tables.iter().map(terminal::render).collect();
-        print(&drawn.join("\n"))
+        print_made(&made, common)
     }
 
-    /// What came out, and the model if it was calibrated here.
-    fn validated(
-        &self,
-        effort: &Effort,
-        common: &Common,
-    ) -> Result<(ModelValidation, Option<HostModel>), Failure> {
+    /// The result, with the host file if the model was calibrated here.
+    fn validated(&self, effort: &Effort, common: &Common) -> Result<Made, Failure> {
         let bar = progress(common, "validate-model");
         let show = |share: f64| bar.set_position((1e3 * share) as u64);
         let (model, calibrated) = if self.calibrate {
@@ -139,8 +123,10 @@ impl ValidateModel {
             host_model(self.host.as_deref(), common)?
         };
         let begun = if self.calibrate { 0.4 } else { 0.0 };
-        let data = model_validation(&model, calibrated, effort, |share| show(begun + (1.0 - begun) * share))?;
+        let mut made =
+            model_validation(&model, calibrated, effort, |share| show(begun + (1.0 - begun) * share))?;
         clear_progress();
-        Ok((data, self.calibrate.then_some(model)))
+        made.files.extend(self.calibrate.then(|| ("host.toml".to_owned(), model.to_toml())));
+        Ok(made)
     }
 }

@@ -6,16 +6,19 @@ mod programs;
 mod scenes;
 
 use super::samples::Samples;
-use crate::model::host::{FORMAT, HostModel, LaneCosts, Level, Measured};
+use crate::model::host::{Costs, FORMAT, HostModel, LaneCosts, Measured};
+use crate::results::Progress;
 use crate::statistics::median;
-use programs::{FOOTPRINTS, Fitted, LANES, LONGEST, Programs, Ran};
+use fit::suited;
+use programs::{FOOTPRINTS, LANES, LONGEST, Programs};
 use scenes::Scenes;
+use std::sync::OnceLock;
 use std::time::{Duration, Instant};
+use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::tape::register_shape;
 use stripmine_kernels::isa::ProgramError;
-use stripmine_kernels::{Execution, InstructionSet};
 use stripmine_physics::method::throughput::MeasurementError;
-use stripmine_physics::origin::load_average;
+use stripmine_physics::origin::{self, load_average};
 
 /// How much is measured.
 #[derive(Clone, Copy, Debug)]
@@ -67,6 +70,19 @@ pub fn calibrate(
     })
 }
 
+/// The model of this host, calibrated by the first item that asks for it.
+///
+/// # Errors
+/// As of [`calibrate`].
+pub fn this_host(progress: Progress<'_>) -> Result<&'static HostModel, CalibrationError> {
+    static MODEL: OnceLock<HostModel> = OnceLock::new();
+    if let Some(known) = MODEL.get() {
+        return Ok(known);
+    }
+    let model = calibrate(origin::host(), InstructionSet::best(), Effort { seconds: 25.0 }, progress)?;
+    Ok(MODEL.get_or_init(|| model))
+}
+
 /// A calibration under way.
 struct Calibration {
     title: String,
@@ -80,7 +96,6 @@ struct Calibration {
     shapes: [([f64; 3], usize); LANES.len()],
     programs: Programs,
     scenes: Scenes,
-    binding: Samples,
 }
 
 impl Calibration {
@@ -94,8 +109,7 @@ impl Calibration {
             sweeps: 0,
             shapes: [register_shape::<f64>(set)?, register_shape::<f32>(set)?],
             programs: Programs::new()?,
-            scenes: Scenes::new()?,
-            binding: Samples::default(),
+            scenes: Scenes::new(),
         })
     }
 
@@ -105,7 +119,7 @@ impl Calibration {
         let (begun, mut of_scenes) = (self.begun, Duration::ZERO);
         let done = || (begun.elapsed().as_secs_f64() / time.as_secs_f64()).min(1.0);
         loop {
-            self.programs.sweep(self.set, self.sweeps, &mut self.binding)?;
+            self.programs.sweep(self.set, self.sweeps)?;
             self.sweeps += 1;
             progress(done());
             if of_scenes < begun.elapsed().mul_f64(SCENES) {
@@ -122,24 +136,20 @@ impl Calibration {
 
     /// The model fitted to what was measured.
     fn model(self) -> HostModel {
-        let Calibration { title, set, begun, load, shapes, programs, scenes, binding, .. } = self;
-        let ran: Vec<Ran> = programs.ran().collect();
-        let fitted = |chained: bool| {
-            let alike = ran.iter().filter(|ran| (ran.execution == Execution::Chained) == chained);
-            programs::fit(alike, &shapes)
+        let Calibration { title, set, begun, load, shapes, programs, scenes, .. } = self;
+        let mut deviations = vec![];
+        let mut prices = |lane, is_chained, shape| {
+            let rows = programs.rows((lane, is_chained), shape);
+            let prices = suited(&rows);
+            deviations.extend(rows.iter().map(|row| row.deviation(&prices)));
+            Costs::of(&prices)
         };
-        let [interpreted, chained] = [fitted(false), fitted(true)];
-        let levels = FOOTPRINTS.into_iter().zip(interpreted.levels.into_iter().zip(chained.levels));
-        let both = |of: fn(&Fitted) -> f64| [&interpreted, &chained].map(of);
-        let (run, residuals) = (both(|fitted| fitted.run), both(|fitted| fitted.residual));
-        let lanes = shapes.into_iter().zip(interpreted.lanes.into_iter().zip(chained.lanes));
-        let lanes = lanes.map(|((register_bytes, lanes), ((interpreted, start), (chained, _)))| LaneCosts {
-            register_bytes,
-            lanes,
-            start,
-            interpreted,
-            chained,
+        let lanes = LANES.into_iter().zip(shapes).map(|(lane, shape)| {
+            let [interpreted, chained] = [false, true].map(|is_chained| prices(lane, is_chained, shape));
+            let (register_bytes, lanes) = shape;
+            (lane.to_owned(), LaneCosts { register_bytes, lanes, interpreted, chained })
         });
+        let of_lanes = lanes.collect();
         let spread = middle_of_most(programs.samples().map(Samples::spread));
         let disagreement = middle_of_most(programs.samples().map(Samples::disagreement));
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
@@ -151,20 +161,16 @@ impl Calibration {
             disagreement,
             shortest: SHORTEST,
             longest: LONGEST,
-            residuals,
+            residual: median(deviations.into_iter()),
         };
         HostModel {
             format: FORMAT,
             title,
             instruction_set: set.name().to_owned(),
+            footprints: FOOTPRINTS.to_vec(),
             measured,
-            bind: binding.middle(),
-            run,
-            levels: levels
-                .map(|(footprint, (interpreted, chained))| Level { footprint, interpreted, chained })
-                .collect(),
-            lanes: LANES.map(str::to_owned).into_iter().zip(lanes).collect(),
-            rates: scenes.rates(),
+            programs: of_lanes,
+            steps: scenes.steps(),
         }
     }
 }

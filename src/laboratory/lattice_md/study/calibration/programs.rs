@@ -1,20 +1,15 @@
-//! The programs of a step on drill scenes of many sizes, one after the other, by the interpreter and as compiled loops; and what of
-//! the model is fitted to them.
+//! The programs of a step on drill scenes of many sizes, one after the other, by the interpreter and as compiled loops.
 
-use super::fit::{Row, suited};
+use super::fit::Row;
 use crate::laboratory::lattice_md::study::phase_times::Run;
 use crate::laboratory::lattice_md::study::samples::Samples;
-use crate::model::host::{Around, class_counts, starts};
-use crate::statistics::median;
-use std::collections::BTreeMap;
+use crate::model::host::{Around, charges};
 use std::ops::Range;
-use std::rc::Rc;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::backend::tape::Outlines;
-use stripmine_kernels::isa::{Memory, OpClass, ProgramError};
-use stripmine_kernels::sweep::lattice::Coordinates;
+use stripmine_kernels::isa::{Memory, ProgramError};
 use stripmine_kernels::{Execution, InstructionSet};
-use stripmine_physics::method::lattice_md::{Arrays, Discs, Lengths, Model, StepProgram, model, programs};
+use stripmine_physics::method::lattice_md::{Arrays, Lengths, StepProgram, model, programs};
 use stripmine_physics::method::throughput::MeasurementError;
 use stripmine_physics::scene::{self, Overrides, SEED, TEMPERATURE};
 
@@ -39,23 +34,6 @@ const SCENES: [(usize, f64); 12] = [
 
 /// A scene as large as vectors may be, in one precision.
 const LARGEST: (usize, f64) = (30_000, 30_000.0 / LONGEST as f64);
-
-/// The scene of the models that leave something out of the bench scene's, or have something more, so that more programs are drilled.
-const VARIED: (usize, f64) = (300, 0.13);
-const VARIANTS: [fn(&mut Model); 3] = [
-    |model| {
-        model.friction = false;
-        model.contact.shear_damping = 0.0;
-    },
-    |model| model.discs = Discs::Varying,
-    // The source's, which does not check itself, as runs do.
-    |model| {
-        model.discs = Discs::Varying;
-        model.coordinates = Coordinates::Absolute;
-        model.gravity = [9.81, 0.0];
-        model.watch = None;
-    },
-];
 
 /// Discs at rest: no drill depends on what the one before has left.
 fn at_rest(scene: Overrides) -> Overrides {
@@ -94,6 +72,9 @@ const KIB: f64 = 1024.0;
 pub(super) const FOOTPRINTS: [f64; 5] =
     [32.0 * KIB, 256.0 * KIB, 2048.0 * KIB, 16_384.0 * KIB, 131_072.0 * KIB];
 
+/// Prices of a kind of execution on lanes of one element type: four, and a byte's at each footprint.
+pub(super) const PRICES: usize = 4 + FOOTPRINTS.len();
+
 /// Arrays of either precision.
 trait Laid {
     fn memory(&mut self) -> Memory<'_>;
@@ -123,14 +104,9 @@ struct Step {
 }
 
 impl Step {
-    fn new(
-        (particles, occupancy): (usize, f64),
-        precision: &'static str,
-        change: fn(&mut Model),
-    ) -> Result<Step, MeasurementError> {
+    fn new((particles, occupancy): (usize, f64), precision: &'static str) -> Result<Step, MeasurementError> {
         let checked = Run { particles, occupancy, precision, execution: "chained" }.scene(at_rest)?;
-        let mut model = model(&checked);
-        change(&mut model);
+        let model = model(&checked);
         let (discs, precision) = (&checked.particles, checked.scene.machine.precision);
         let lengths = Lengths::new(&model, discs.grain_count(), discs.len());
         let programs = programs(&model, precision);
@@ -166,33 +142,27 @@ impl Step {
         Ok(())
     }
 
-    /// Its programs as they were run.
-    fn ran(&self) -> Vec<Ran> {
-        let outlines: Vec<Rc<Outlines>> =
-            self.programs.iter().map(|step| Rc::new(step.program.outlines())).collect();
-        let lengths = || self.ranges.iter().map(ExactSizeIterator::len);
-        let cycle: Vec<(&Outlines, usize)> = outlines.iter().map(Rc::as_ref).zip(lengths()).collect();
-        let around = Rc::new(Around::of_step(&cycle));
-        let of_execution = |(execution, samples): (Execution, &Vec<Samples>)| {
-            let each = outlines.iter().zip(lengths()).zip(samples);
-            let ran = each.map(|((outlines, n), samples)| {
-                let (outlines, around) = (Rc::clone(outlines), Rc::clone(&around));
-                Ran { outlines, n, execution, around, ns: samples.middle() }
+    /// What its programs on lanes of an element type are charged for by a kind of execution, and how long they took.
+    fn rows(&self, (lane, is_chained): (&str, bool), shape: ([f64; 3], usize)) -> Vec<Row<PRICES>> {
+        let lengths = self.ranges.iter().map(ExactSizeIterator::len);
+        let programs: Vec<(Outlines, usize)> =
+            self.programs.iter().map(|step| step.program.outlines()).zip(lengths).collect();
+        let cycle: Vec<(&Outlines, usize)> = programs.iter().map(|(outlines, n)| (outlines, *n)).collect();
+        let around = Around::of_step(&cycle);
+        let alike = EXECUTIONS.into_iter().zip(&self.samples);
+        let alike = alike.filter(|(execution, _)| (*execution == Execution::Chained) == is_chained);
+        let each = alike.flat_map(|(execution, samples)| {
+            let of_lane = cycle.iter().zip(samples).filter(|((outlines, n), samples)| {
+                outlines.lane == lane && *n > 0 && samples.middle().is_finite()
             });
-            ran.collect::<Vec<Ran>>()
+            of_lane.map(move |(&(outlines, n), samples)| (outlines, (n, execution), samples.middle()))
+        });
+        let row = |(outlines, run, ns)| {
+            let charges = charges(outlines, run, shape, &around, &FOOTPRINTS);
+            Row { features: std::array::from_fn(|at| charges[at]), ns }
         };
-        EXECUTIONS.into_iter().zip(&self.samples).flat_map(of_execution).collect()
+        each.map(row).collect()
     }
-}
-
-/// A program as it was run.
-pub(super) struct Ran {
-    outlines: Rc<Outlines>,
-    n: usize,
-    pub(super) execution: Execution,
-    around: Rc<Around>,
-    /// Nanoseconds that it took.
-    ns: f64,
 }
 
 /// Every program to be measured, and the arrays they run on.
@@ -201,31 +171,17 @@ pub(super) struct Programs(Vec<Step>);
 impl Programs {
     /// Lays out the drill scenes.
     pub(super) fn new() -> Result<Programs, MeasurementError> {
-        let as_it_is: fn(&mut Model) = |_| ();
-        let varied = VARIANTS.map(|change| (VARIED, change));
-        let all = SCENES.map(|place| (place, as_it_is)).into_iter().chain(varied);
-        let of =
-            |(place, change)| ["f64", "f32", "mixed"].map(|precision| Step::new(place, precision, change));
-        let largest = Step::new(LARGEST, "f32", as_it_is);
-        all.flat_map(of).chain([largest]).collect::<Result<_, _>>().map(Programs)
+        let scenes = SCENES.into_iter();
+        let of = |place| ["f64", "f32", "mixed"].map(|precision| Step::new(place, precision));
+        scenes.flat_map(of).chain([Step::new(LARGEST, "f32")]).collect::<Result<_, _>>().map(Programs)
     }
 
-    /// One more sample of all, and of the binding of their arrays.
+    /// One more sample of all.
     ///
     /// # Errors
     /// [`ProgramError`] if one cannot be run.
-    pub(super) fn sweep(
-        &mut self,
-        set: InstructionSet,
-        number: usize,
-        binding: &mut Samples,
-    ) -> Result<(), ProgramError> {
-        self.0.iter_mut().try_for_each(|step| step.sweep(set, number))?;
-        let Some(step) = self.0.first_mut() else { return Ok(()) };
-        binding.take(20_000.0, || {
-            _ = std::hint::black_box(step.arrays.memory());
-            Ok(())
-        })
+    pub(super) fn sweep(&mut self, set: InstructionSet, number: usize) -> Result<(), ProgramError> {
+        self.0.iter_mut().try_for_each(|step| step.sweep(set, number))
     }
 
     /// All samples.
@@ -233,72 +189,8 @@ impl Programs {
         self.0.iter().flat_map(|step| step.samples.iter().flatten())
     }
 
-    /// The programs as they were run.
-    pub(super) fn ran(&self) -> impl Iterator<Item = Ran> {
-        self.0.iter().flat_map(Step::ran)
-    }
-}
-
-/// A run, the classes of operations and the start of a pass of both lanes, and a byte of every level.
-const CLASSES: usize = OpClass::ALL.len();
-const UNKNOWN: usize = 1 + 2 * (CLASSES + 1) + FOOTPRINTS.len();
-
-/// What suits some runs best.
-pub(super) struct Fitted {
-    /// Nanoseconds of a run.
-    pub(super) run: f64,
-    /// Of both lanes: an operation of each class, and the start of a pass.
-    pub(super) lanes: [(BTreeMap<String, f64>, f64); 2],
-    /// A byte of each level.
-    pub(super) levels: [f64; FOOTPRINTS.len()],
-    /// Median deviation.
-    pub(super) residual: f64,
-}
-
-/// Fits what programs took, interpreted or as loops.
-pub(super) fn fit<'a>(ran: impl Iterator<Item = &'a Ran>, shapes: &[([f64; 3], usize); 2]) -> Fitted {
-    let row = |&Ran { ref outlines, n, execution, ref around, ns }: &Ran| {
-        let lane = usize::from(outlines.lane != LANES[0]);
-        let (register_bytes, lanes) = shapes[lane];
-        let mut features = [0.0; UNKNOWN];
-        features[0] = 1.0;
-        let of_lane = &mut features[1 + lane * (CLASSES + 1)..][..=CLASSES];
-        let counts = class_counts(outlines, execution).into_iter().map(|count| count * n as f64);
-        let paid = counts.chain([starts(outlines, (n, execution), lanes)]);
-        of_lane.iter_mut().zip(paid).for_each(|(feature, paid)| *feature = paid);
-        let bytes = around.bytes(outlines, (n, execution), register_bytes, &FOOTPRINTS);
-        features[1 + 2 * (CLASSES + 1)..].copy_from_slice(&bytes);
-        Row { features, ns }
-    };
-    let rows: Vec<Row<UNKNOWN>> = ran.filter(|ran| ran.n > 0 && ran.ns.is_finite()).map(row).collect();
-    let costs = suited(&rows);
-    let of_lane = |lane: usize| {
-        let costs = &costs[1 + lane * (CLASSES + 1)..];
-        let named = OpClass::ALL.iter().zip(costs).filter(|(_, cost)| **cost > 0.0);
-        (named.map(|(class, &cost)| (class.name().to_owned(), cost)).collect(), costs[CLASSES])
-    };
-    Fitted {
-        run: costs[0],
-        lanes: [0, 1].map(of_lane),
-        levels: std::array::from_fn(|at| costs[1 + 2 * (CLASSES + 1) + at]),
-        residual: median(rows.iter().map(|row| row.deviation(&costs))),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::laboratory::lattice_md::study::efficiency_table::{Question, step};
-
-    #[test]
-    fn the_step_of_the_source_is_drilled() {
-        let source = Step::new(VARIED, "f64", VARIANTS[VARIANTS.len() - 1]).unwrap();
-        let signatures = |programs: &[StepProgram]| -> Vec<String> {
-            programs.iter().map(|step| step.program.outlines().signature()).collect()
-        };
-        let drilled = signatures(&source.programs);
-        for (of, wanted) in signatures(&step(&Question::default()).unwrap().0).iter().enumerate() {
-            assert!(drilled.contains(wanted), "program {of}: {wanted} is none of {drilled:?}");
-        }
+    /// What all programs on lanes of an element type are charged for by a kind of execution, and how long they took.
+    pub(super) fn rows(&self, of: (&str, bool), shape: ([f64; 3], usize)) -> Vec<Row<PRICES>> {
+        self.0.iter().flat_map(|step| step.rows(of, shape)).collect()
     }
 }

@@ -4,14 +4,16 @@
 mod errors;
 mod strangers;
 
-pub use errors::{Case, Errors, PHASES, PHASES_OF_DATA, STEP, STEPS, STEPS_OF_DATA, STRANGERS};
-
-use super::calibration::CalibrationError;
+use super::calibration::{CalibrationError, this_host};
 use super::phase_times::{FAST, FAST_LISTS, LISTS, PhaseTimes, Run, Sampling, phase_times};
 use super::predicted_step::Step;
 use super::rounds::Bound;
-use crate::model::host::{HostModel, OutOfRange};
-use serde::Serialize;
+use crate::console::Failure;
+use crate::frame::{Frame, Rows};
+use crate::model::host::{HostModel, OutOfRange, default_model};
+use crate::results::{Lab, Made, Size};
+use errors::Case;
+use std::time::Duration;
 use strangers::strangers;
 use stripmine_kernels::Execution;
 use stripmine_physics::method::lattice_md::{Checked, Lengths, Phase, model, programs};
@@ -65,8 +67,7 @@ pub enum ValidationError {
 }
 
 /// Where the model comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Calibrated {
     /// With the program, of another machine perhaps.
     Shipped,
@@ -90,32 +91,48 @@ impl Calibrated {
     }
 }
 
-/// The dataset.
-#[derive(Clone, Debug, Serialize)]
-pub struct ModelValidation {
-    /// The host model: of which processor.
-    pub host: String,
-    /// Its instructions.
-    pub instruction_set: String,
-    /// In which state the machine was when it was calibrated.
-    pub state: String,
-    /// Where it comes from.
-    pub calibrated: Calibrated,
-    /// Rounds over all runs.
-    pub rounds: usize,
-    /// Every case.
-    pub cases: Vec<Case>,
-    /// The errors of all, and group by group.
-    pub errors: Vec<Errors>,
+/// The item: the shipped model on few runs, or, in full, a model calibrated just before on more of them.
+///
+/// # Errors
+/// [`ValidationError`] if this host cannot be calibrated or a scene breaks.
+pub fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
+    let effort = |particles: &[usize], occupancies: &[f64], rounds| Effort {
+        particles: particles.to_vec(),
+        occupancies: occupancies.to_vec(),
+        rounds,
+        particle_steps: 10_000,
+    };
+    let progress = lab.progress;
+    Ok(match size {
+        Size::Quick => {
+            let effort = effort(&[300], &[0.2], Bound::of(2));
+            model_validation(&default_model()?, Calibrated::Shipped, &effort, progress)?
+        }
+        Size::Full | Size::All => {
+            let host = this_host(&|share| progress(0.5 * share))?;
+            let rounds = Bound { most: 6, within: Some(Duration::from_secs(15)) };
+            let effort = effort(&[150, 4000], &[0.072, 0.24], rounds);
+            model_validation(host, Calibrated::Now, &effort, |share| progress(0.5 + 0.5 * share))?
+        }
+    })
 }
 
-impl ModelValidation {
-    /// The cases from the worst on.
-    pub fn worst(&self) -> Vec<&Case> {
-        let mut cases: Vec<&Case> = self.cases.iter().collect();
-        cases.sort_by(|a, b| b.error().total_cmp(&a.error()));
-        cases
-    }
+fn summary(host: &HostModel, calibrated: Calibrated, rounds: usize) -> Frame {
+    let remark = match calibrated {
+        Calibrated::Shipped => "It comes with the program and is not of this host: calibrate first.",
+        Calibrated::Before => "It was calibrated at another time.",
+        Calibrated::Elsewhere => {
+            "It is of another processor, or of other instructions than this host measures by."
+        }
+        Calibrated::Now => "It was calibrated just before, on other numbers of discs and densities.",
+    };
+    Rows::of([host])
+        .text("model", |host| calibrated.model_of(&host.title))
+        .text("remark", |_| remark)
+        .text("instructions", |host| &host.instruction_set)
+        .text("state of the machine when it was calibrated", |host| &host.measured.state)
+        .count("rounds", |_| rounds)
+        .frame("summary", "The model")
 }
 
 /// Predicts by a model and measures, on one thread. `progress` gets the share that is done.
@@ -127,19 +144,19 @@ pub fn model_validation(
     calibrated: Calibrated,
     effort: &Effort,
     progress: impl Fn(f64) + Sync,
-) -> Result<ModelValidation, ValidationError> {
+) -> Result<Made, ValidationError> {
     let runs: Vec<Run> = runs(effort).collect();
     // Before discs are placed: large scenes take their time.
     for run in &runs {
         let out = |cause| ValidationError::OutOfRange { case: run.name(), cause };
         host.admits(run.particles).map_err(out)?;
-        if run.rates().is_some() {
-            rated(host, run, &PhaseTimes::none(run.particles)).map_err(out)?;
+        if run.depends_on_data() {
+            run.predicted(host).map_err(out)?;
         }
     }
     let mut scenes = runs.into_iter().map(Scene::new).collect::<Result<Vec<_>, _>>()?;
     for scene in &scenes {
-        scene.programs(host)?;
+        scene.predicted(host)?;
     }
     let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(MeasurementError::Threads)?;
     alone.install(|| {
@@ -157,15 +174,8 @@ pub fn model_validation(
         }
         cases.extend(strangers(host)?);
         progress(1.0);
-        Ok(ModelValidation {
-            host: host.title.clone(),
-            instruction_set: host.instruction_set.clone(),
-            state: host.measured.state.clone(),
-            calibrated,
-            rounds: done,
-            errors: errors::errors(&cases),
-            cases,
-        })
+        let frames = errors::frames(&cases).into_iter();
+        Ok(Made::of(std::iter::once(summary(host, calibrated, done)).chain(frames)).with_seeds([1]))
     })
 }
 
@@ -201,15 +211,15 @@ impl Scene {
         Ok(Scene { run, checked, step, times: None })
     }
 
-    /// Nanoseconds of every phase of programs, and the baseline's; none where work depends on the data.
-    fn programs(&self, host: &HostModel) -> Result<Option<Vec<[f64; 2]>>, ValidationError> {
-        let Some((step, execution)) = &self.step else { return Ok(None) };
-        let phases = Phase::ALL.iter().map(|&phase| step.phase(host, phase, *execution));
-        phases.collect::<Result<_, _>>().map(Some).map_err(|cause| self.out(cause))
-    }
-
-    fn out(&self, cause: OutOfRange) -> ValidationError {
-        ValidationError::OutOfRange { case: self.run.name(), cause }
+    /// Nanoseconds of every phase.
+    fn predicted(&self, host: &HostModel) -> Result<Vec<f64>, ValidationError> {
+        let predicted = match &self.step {
+            Some((step, execution)) => {
+                Phase::ALL.iter().map(|&phase| step.phase(host, phase, *execution)).collect()
+            }
+            None => self.run.predicted(host),
+        };
+        predicted.map_err(|cause| ValidationError::OutOfRange { case: self.run.name(), cause })
     }
 
     fn measure(&mut self, effort: &Effort) -> Result<(), MeasurementError> {
@@ -230,23 +240,15 @@ impl Scene {
     /// The phases and the whole step.
     fn cases(&self, host: &HostModel) -> Result<Vec<Case>, ValidationError> {
         let Some(times) = &self.times else { return Ok(vec![]) };
-        let predicted: Vec<(f64, Option<f64>)> = match self.programs(host)? {
-            Some(all) => all.into_iter().map(|[ns, baseline]| (ns, Some(baseline))).collect(),
-            None => {
-                let phases = rated(host, &self.run, times).map_err(|cause| self.out(cause))?;
-                phases.into_iter().map(|ns| (ns, None)).collect()
-            }
-        };
         let Run { particles, occupancy, precision, execution } = self.run;
         let place = format!("{precision}, NP = {particles}, ρ = {occupancy}");
-        let phases = Phase::ALL.iter().zip(predicted).map(|(&phase, (predicted, baseline))| Case {
+        let phases = Phase::ALL.iter().zip(self.predicted(host)?).map(|(&phase, predicted)| Case {
             place: place.clone(),
             execution,
             phase: phase.name(),
             predicted,
             measured: times.of(phase),
-            halves: times.halves(phase),
-            baseline,
+            depends_on_data: self.run.depends_on_data(),
         });
         // Not every execution has every phase.
         let mut cases: Vec<Case> = phases.filter(|case| case.measured > 0.0).collect();
@@ -254,11 +256,4 @@ impl Scene {
         cases.extend(step);
         Ok(cases)
     }
-}
-
-/// What is predicted of the phases of a run whose work depends on the data, given what it had to do.
-fn rated(host: &HostModel, run: &Run, times: &PhaseTimes) -> Result<Vec<f64>, OutOfRange> {
-    let method = run.rates().unwrap_or_default();
-    let rates = host.rates.get(method).ok_or_else(|| OutOfRange::NotMeasured(format!("method {method}")))?;
-    Phase::ALL.iter().map(|phase| rates.phase(run.precision, phase.name(), &times.amounts)).collect()
 }

@@ -3,8 +3,7 @@
 use super::errors::{Case, STRANGER};
 use super::{EXECUTIONS, ValidationError};
 use crate::laboratory::lattice_md::study::samples::Samples;
-use crate::model::host::{Around, HostModel, OutOfRange};
-use stripmine_kernels::backend::tape::Outlines;
+use crate::model::host::{Around, HostModel};
 use stripmine_kernels::isa::{AlignedColumn, Array, Memory, Slot};
 use stripmine_kernels::law::gravity::Gravity;
 use stripmine_kernels::law::lennard_jones::LennardJones;
@@ -22,80 +21,58 @@ const SAMPLES: usize = 5;
 /// Least nanoseconds of one.
 const SHORTEST: f64 = 200_000.0;
 
-const BODY_SUMS: [Array; 3] = [Array::BodyFx, Array::BodyFy, Array::BodyFz];
-
 /// Every law over vectors of every length, by every execution of programs.
 pub(super) fn strangers(host: &HostModel) -> Result<Vec<Case>, ValidationError> {
     let mut cases = vec![];
     for n in LENGTHS {
         for (name, half_width) in [("Lennard-Jones, 24 places", 2), ("Lennard-Jones, 120 places", 5)] {
-            let side = (n as f64).sqrt() as usize;
-            let mask = Mask::square(half_width);
+            let (side, mask) = (n.isqrt(), Mask::square(half_width));
             let shape = LatticeShape::new(side, side, &mask, [true; 2]).map_err(MeasurementError::from)?;
-            let (law, frame) =
-                (LennardJones::new(1.0, 1.0, 1.12), Frame { origin: [0.0; 2], edge: [0.56; 2] });
+            let law = LennardJones::new(1.0, 1.0, 1.12);
+            let frame = Frame { origin: [0.0; 2], edge: [0.56; 2] };
             let forces = Forces::<f64, _>::new(law, &mask, shape, frame, Coordinates::CellRelative);
             let arrays = [&[Array::X, Array::Y][..], &[Array::Fx, Array::Fy]];
-            let run =
-                Ran { program: &Program::new(forces), first: shape.swept().start, n: shape.swept().len() };
-            cases.extend(run.cases(host, name, arrays, shape.padded())?);
+            let place = (shape.swept().start, shape.swept().len(), shape.padded());
+            cases.extend(ran(host, name, &Program::new(forces), arrays, place)?);
         }
-        let shifts = Shifts::<f64, _>::new(Gravity::<false> { softening: 0.1 }, 1..17);
+        let shifts = Program::new(Shifts::<f64, _>::new(Gravity::<false> { softening: 0.1 }, 1..17));
         let read: Vec<Array> = BODY_POSITION.into_iter().chain([Array::BodyMass]).collect();
-        let run = Ran { program: &Program::new(shifts), first: 0, n };
-        cases.extend(run.cases(host, "gravity, 16 shifts", [&read, &BODY_SUMS], 2 * n)?);
+        let arrays = [&read[..], &[Array::BodyFx, Array::BodyFy, Array::BodyFz]];
+        cases.extend(ran(host, "gravity, 16 shifts", &shifts, arrays, (0, n, 2 * n))?);
     }
     Ok(cases)
 }
 
-struct Ran<'p> {
-    program: &'p dyn Runnable,
-    first: usize,
-    n: usize,
-}
-
-impl Ran<'_> {
-    /// By every execution; `arrays` are read and written, of `length` elements each.
-    fn cases(
-        &self,
-        host: &HostModel,
-        name: &str,
-        [read, written]: [&[Array]; 2],
-        length: usize,
-    ) -> Result<Vec<Case>, ValidationError> {
-        let Ran { program, first, n } = *self;
-        let near_one = |array: &Array| {
-            AlignedColumn::new(*array as usize, (0..length).map(|i| 1.0 + 1e-3 * (i % 97) as f64))
-        };
-        let inputs: Vec<AlignedColumn<f64>> = read.iter().map(near_one).collect();
-        let mut outputs: Vec<AlignedColumn<f64>> =
-            written.iter().map(|array| AlignedColumn::filled(*array as usize, 0.0, length)).collect();
-        let mut memory = Memory::new();
-        read.iter().zip(&inputs).for_each(|(array, column)| memory.bind_read(Slot::new(*array), column));
-        for (array, column) in written.iter().zip(&mut outputs) {
-            memory.bind_write(Slot::new(*array), column);
-        }
-        let outlines: Outlines = program.outlines();
-        let out = |cause: OutOfRange| ValidationError::OutOfRange { case: name.to_owned(), cause };
-        let around = Around::of_step(&[(&outlines, n)]);
-        let mut cases = vec![];
-        for (execution, how) in EXECUTIONS.iter().filter_map(|(name, how)| Some((*name, (*how)?))) {
-            let predicted = host.program(&outlines, n, how, &around).map_err(out)?;
-            let mut samples = Samples::default();
-            for _ in 0..SAMPLES {
-                let run = || program.run(&memory, first..first + n, how, InstructionSet::best());
-                samples.take(SHORTEST, run).map_err(MeasurementError::from)?;
-            }
-            cases.push(Case {
-                place: format!("{name}, n = {n}"),
-                execution,
-                phase: STRANGER,
-                predicted,
-                measured: samples.middle(),
-                halves: samples.halves(),
-                baseline: Some(host.baseline(&outlines, n, how)),
-            });
-        }
-        Ok(cases)
+/// A program over `n` elements from `first` on, by every execution; arrays that it reads and writes have `length` elements each.
+fn ran(
+    host: &HostModel,
+    name: &str,
+    program: &dyn Runnable,
+    [read, written]: [&[Array]; 2],
+    (first, n, length): (usize, usize, usize),
+) -> Result<Vec<Case>, ValidationError> {
+    let near_one = |at: usize| 1.0 + 1e-3 * (at % 97) as f64;
+    let column = |array: &Array| AlignedColumn::new(*array as usize, (0..length).map(near_one));
+    let inputs: Vec<AlignedColumn<f64>> = read.iter().map(column).collect();
+    let mut outputs: Vec<AlignedColumn<f64>> = written.iter().map(column).collect();
+    let mut memory = Memory::new();
+    read.iter().zip(&inputs).for_each(|(array, column)| memory.bind_read(Slot::new(*array), column));
+    for (array, column) in written.iter().zip(&mut outputs) {
+        memory.bind_write(Slot::new(*array), column);
     }
+    let outlines = program.outlines();
+    let around = Around::of_step(&[(&outlines, n)]);
+    let mut cases = vec![];
+    for (execution, how) in EXECUTIONS.iter().filter_map(|(name, how)| Some((*name, (*how)?))) {
+        let out = |cause| ValidationError::OutOfRange { case: name.to_owned(), cause };
+        let predicted = host.program(&outlines, n, how, &around).map_err(out)?;
+        let mut samples = Samples::default();
+        for _ in 0..SAMPLES {
+            let run = || program.run(&memory, first..first + n, how, InstructionSet::best());
+            samples.take(SHORTEST, run).map_err(MeasurementError::from)?;
+        }
+        let (place, measured) = (format!("{name}, n = {n}"), samples.middle());
+        cases.push(Case { place, execution, phase: STRANGER, predicted, measured, depends_on_data: false });
+    }
+    Ok(cases)
 }

@@ -1,0 +1,249 @@
+//! The costs of a program: what a run of it is charged for, and at which price.
+
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use stripmine_kernels::Execution;
+use stripmine_kernels::backend::tape::{Outline, Outlines, Place};
+use stripmine_kernels::isa::{Array, OpClass};
+
+/// Prices of a kind of execution on lanes of one element type (ns).
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Costs {
+    /// A run of a program.
+    pub run: f64,
+    /// The start of a pass of the interpreter.
+    pub start: f64,
+    /// An operation of an element.
+    pub operation: f64,
+    /// The same through an index vector, in addition.
+    pub indexed: f64,
+    /// A byte, at each of the footprints.
+    pub bytes: Vec<f64>,
+}
+
+/// Costs on lanes of one element type, and how registers of these are shaped.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LaneCosts {
+    /// Bytes of an element in a register of each file: numbers, predicates, indices.
+    pub register_bytes: [f64; 3],
+    /// Lanes of a hardware register.
+    pub lanes: usize,
+    /// Prices of the interpreter, pass by pass.
+    pub interpreted: Costs,
+    /// Prices of a compiled loop.
+    pub chained: Costs,
+}
+
+/// What a run of a program is charged for: a run, starts of passes, operations of elements, those through an index vector, and bytes at
+/// each footprint.
+pub type Charges = Vec<f64>;
+
+impl Costs {
+    /// Prices in the order of [`Charges`].
+    pub fn of(prices: &[f64]) -> Costs {
+        let [run, start, operation, indexed] =
+            std::array::from_fn(|at| prices.get(at).copied().unwrap_or(0.0));
+        Costs { run, start, operation, indexed, bytes: prices.iter().skip(4).copied().collect() }
+    }
+
+    /// Nanoseconds of what is charged.
+    pub fn total(&self, charges: &Charges) -> f64 {
+        let prices = [self.run, self.start, self.operation, self.indexed]
+            .into_iter()
+            .chain(self.bytes.iter().copied());
+        prices.zip(charges).map(|(price, amount)| price * amount).sum()
+    }
+}
+
+/// What a run of a program over `n` elements is charged for, on registers of this shape, among the arrays of its step.
+pub fn charges(
+    outlines: &Outlines,
+    (n, execution): (usize, Execution),
+    (register_bytes, lanes): ([f64; 3], usize),
+    around: &Around,
+    footprints: &[f64],
+) -> Charges {
+    let is_chained = execution == Execution::Chained;
+    let all = if is_chained { &outlines.instructions } else { &outlines.passes };
+    let (mut operations, mut indexed) = (0.0, 0.0);
+    for op in all.iter().flat_map(Outline::operations) {
+        operations += n as f64;
+        if matches!(op.class(), OpClass::Gather | OpClass::Scatter) {
+            indexed += n as f64;
+        }
+    }
+    let mut charges = vec![1.0, 0.0, operations, indexed];
+    charges.resize(4 + footprints.len(), 0.0);
+    for (times, length) in strips(n, execution) {
+        if !is_chained {
+            // What is left beyond whole hardware registers goes element by element, in a pass of its own.
+            let is_whole = length < lanes || length.is_multiple_of(lanes.max(1));
+            charges[1] += times * outlines.passes.len() as f64 * if is_whole { 1.0 } else { 2.0 };
+        }
+        let [first, again] = around.moved(outlines, length as f64, register_bytes);
+        // A loop keeps what it visits again in hardware registers.
+        for moved in if is_chained { vec![first] } else { vec![first, again] } {
+            let shares = shares(footprints, moved.footprint);
+            charges[4..].iter_mut().zip(shares).for_each(|(sum, share)| *sum += times * share * moved.bytes);
+        }
+    }
+    charges
+}
+
+/// By how much each of some points counts for a value: two neighbours share it, by the logarithm.
+pub(super) fn shares(points: &[f64], value: f64) -> Vec<f64> {
+    let mut shares = vec![0.0; points.len()];
+    let Some(last) = points.len().checked_sub(1) else { return shares };
+    let next = points.partition_point(|&at| at <= value).min(last);
+    let (low, high) = (points[next.saturating_sub(1)], points[next]);
+    let share = if low < high { (value / low).ln() / (high / low).ln() } else { 1.0 };
+    shares[next] = share.clamp(0.0, 1.0);
+    shares[next.saturating_sub(1)] += 1.0 - shares[next];
+    shares
+}
+
+/// Bytes of a line, the least that moves between levels.
+const LINE: f64 = 64.0;
+
+/// The arrays of a step by name and element type, and how many bytes each has.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Around(BTreeMap<(Array, &'static str), f64>);
+
+/// Bytes that are moved, and how many are gone over before they are visited again.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Moved {
+    bytes: f64,
+    footprint: f64,
+}
+
+impl Around {
+    /// Of programs that run one after the other over vectors of these lengths.
+    pub fn of_step(programs: &[(&Outlines, usize)]) -> Around {
+        // What is visited element by element somewhere is as long as there; an index vector says nothing about it.
+        let [mut direct, mut indexed]: [BTreeMap<_, f64>; 2] = Default::default();
+        for (outlines, n) in programs {
+            for place in places(outlines) {
+                let (extents, reference) = match place {
+                    Place::Memory(reference) => (&mut direct, reference),
+                    Place::Indexed(reference) => (&mut indexed, reference),
+                    Place::Register(_) => continue,
+                };
+                let extent = extents.entry((reference.array, reference.element)).or_default();
+                *extent = extent.max(element_bytes(reference.element) * *n as f64);
+            }
+        }
+        indexed.extend(direct);
+        Around(indexed)
+    }
+
+    /// What a program moves in a strip of `n` elements: arrays that it visits for the first time, which lie as far as all of the
+    /// step's, and what it visits again or has in registers, of `register_bytes` by file.
+    fn moved(&self, outlines: &Outlines, n: f64, register_bytes: [f64; 3]) -> [Moved; 2] {
+        let (mut first, mut again, mut visited) = (0.0, 0.0, vec![]);
+        for place in places(outlines) {
+            let (bytes, reference) = match place {
+                Place::Register(name) => {
+                    again += n * register_bytes[name.file as usize];
+                    continue;
+                }
+                Place::Memory(it) => (n * element_bytes(it.element), it),
+                // A line for an element that an index leads to, but no more than there is.
+                Place::Indexed(it) => {
+                    let all = self.0.get(&(it.array, it.element)).copied().unwrap_or(f64::INFINITY);
+                    ((n * LINE).min(all), it)
+                }
+            };
+            let name = (reference.array, reference.element);
+            if visited.contains(&name) {
+                again += bytes;
+            } else {
+                visited.push(name);
+                first += bytes;
+            }
+        }
+        let files = outlines.registers.iter().zip(register_bytes);
+        let registers: f64 = files.map(|(&count, bytes)| count as f64 * bytes * n).sum();
+        let arrays: f64 = visited.iter().map(|(_, element)| n * element_bytes(element)).sum();
+        [
+            Moved { bytes: first, footprint: registers + self.0.values().sum::<f64>() },
+            Moved { bytes: again, footprint: registers + arrays },
+        ]
+    }
+}
+
+fn places(outlines: &Outlines) -> impl Iterator<Item = &Place> {
+    outlines.passes.iter().flat_map(|pass| pass.reads.iter().chain(&pass.writes))
+}
+
+/// How often an execution goes over how many elements.
+fn strips(n: usize, execution: Execution) -> impl Iterator<Item = (f64, usize)> {
+    let strip = if let Execution::Strip(strip) = execution { strip.min(n) } else { n }.max(1);
+    [((n / strip) as f64, strip), (1.0, n % strip)].into_iter().filter(|&(times, n)| times > 0.0 && n > 0)
+}
+
+/// Bytes of an element type by its name.
+fn element_bytes(element: &str) -> f64 {
+    if element == "f64" { 8.0 } else { 4.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stripmine_kernels::backend::tape::{File, Reference, RegisterName};
+    use stripmine_kernels::isa::Op;
+
+    const SHAPE: ([f64; 3], usize) = ([8.0, 1.0, 4.0], 4);
+
+    #[test]
+    fn two_neighbours_share_a_value_by_its_logarithm() {
+        let levels = [10.0, 1000.0, 1e6];
+        assert_eq!(shares(&levels, 1.0), [1.0, 0.0, 0.0]);
+        assert_eq!(shares(&levels, 1e9), [0.0, 0.0, 1.0]);
+        let between = shares(&levels, 100.0);
+        assert!((between[0] - 0.5).abs() < 1e-12 && (between[1] - 0.5).abs() < 1e-12, "{between:?}");
+        assert_eq!((shares(&[5.0], 2.0), shares(&[], 2.0)), (vec![1.0], vec![]));
+    }
+
+    #[test]
+    fn a_program_is_charged_for_its_operations_and_for_the_starts_of_its_passes() {
+        let of = |op| Outline { op, converts: false, reads: vec![], writes: None };
+        let (passes, instructions) =
+            (vec![of(Op::Add), of(Op::Gather)], vec![of(Op::Load), of(Op::Multiply)]);
+        let program = Outlines { lane: "f64", instructions, passes, registers: [0; 3] };
+        let charged = |n, execution| charges(&program, (n, execution), SHAPE, &Around::default(), &[]);
+        assert_eq!(charged(8, Execution::Eager), [1.0, 2.0, 16.0, 8.0]);
+        // Passes begin twice where elements are left over, and once a strip.
+        assert_eq!(charged(9, Execution::Eager), [1.0, 4.0, 18.0, 9.0]);
+        assert_eq!(charged(9, Execution::Strip(4)), [1.0, 6.0, 18.0, 9.0]);
+        assert_eq!(charged(9, Execution::Chained), [1.0, 0.0, 18.0, 0.0]);
+        let costs = Costs::of(&[100.0, 10.0, 0.5, 2.0]);
+        assert_eq!(costs.total(&charged(8, Execution::Eager)), 100.0 + 20.0 + 8.0 + 16.0);
+    }
+
+    /// By hand: an array visited twice, one through an index, and a register, by a program over 10 of 100 elements.
+    #[test]
+    fn the_first_use_of_an_array_comes_from_the_step_and_the_next_from_the_strip() {
+        let x = Reference { array: Array::X, element: "f64", shift: 0 };
+        let y = Reference { array: Array::Y, element: "f32", shift: 0 };
+        let register = Place::Register(RegisterName { file: File::Number, number: 0 });
+        let pass = |reads: &[Place]| Outline {
+            op: Op::Add,
+            converts: false,
+            reads: reads.to_vec(),
+            writes: Some(register),
+        };
+        let passes = vec![pass(&[Place::Memory(x)]), pass(&[Place::Memory(x), Place::Indexed(y)])];
+        let program = Outlines { lane: "f64", instructions: vec![], passes, registers: [3, 0, 0] };
+        let around = Around::of_step(&[(&program, 100)]);
+        let [first, again] = around.moved(&program, 10.0, SHAPE.0);
+        // 80 bytes of x, and a whole y instead of ten lines; three registers of 80 bytes and arrays of 800 and 400.
+        assert_eq!((first.bytes, first.footprint), (80.0 + 400.0, 240.0 + 1200.0));
+        assert_eq!((again.bytes, again.footprint), (80.0 + 2.0 * 80.0, 240.0 + 80.0 + 40.0));
+        let bytes = |execution| charges(&program, (100, execution), SHAPE, &around, &[64.0])[4];
+        assert_eq!(bytes(Execution::Strip(10)), 10.0 * (480.0 + 240.0));
+        // A loop visits x and y once, in no registers.
+        assert_eq!(bytes(Execution::Chained), 800.0 + 400.0);
+    }
+}
