@@ -5,8 +5,8 @@ use super::study::calibration::this_host;
 use super::study::model_validation::{self, Calibrated};
 use super::study::rounds::Bound;
 use super::study::{
-    break_even, crossover, damping, density_cost, efficiency_table, identity, ladder, listing, mask,
-    measured_cost, misprints, pipe_flow, precision, printed_cost, threads, useful_work,
+    break_even, corrector, crossover, damping, density_cost, efficiency_table, identity, ladder, listing,
+    mask, measured_cost, misprints, pipe_flow, precision, printed_cost, threads, useful_work,
 };
 use crate::console::Failure;
 use crate::model::machines;
@@ -23,6 +23,7 @@ pub(super) const ITEMS: &[Item] = &[
     Item::of("listing", listing::made),
     Item::of("mask", mask::made),
     Item::of("misprints", misprints::made),
+    Item::of("corrector", corrector::made),
     Item::of("cost", density_cost::made),
     Item::of("useful-work", useful_work::made),
     Item::quick(

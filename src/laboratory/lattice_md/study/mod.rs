@@ -2,6 +2,7 @@
 
 pub mod break_even;
 pub mod calibration;
+pub mod corrector;
 pub mod crossover;
 pub mod damping;
 pub mod density_cost;

@@ -5,7 +5,7 @@ mod as_printed;
 mod tests;
 
 use crate::console::Failure;
-use crate::frame::Rows;
+use crate::frame::{Cell, Rows};
 use crate::results::{Lab, Made, Size};
 use as_printed::{AsPrinted, Misprint};
 use stripmine_kernels::law::Law;
@@ -20,33 +20,18 @@ struct Finding {
     quantity: &'static str,
     /// Parameters of the law, and of the pair where it has some.
     setting: String,
-    right: Right,
-    by_printed: f64,
-    by_ours: f64,
+    /// "equal to" or "at most" a number, where the law is right.
+    right: (&'static str, f64),
+    /// By the printed form and by ours.
+    by: [f64; 2],
 }
 
-/// Value where the law is right.
-#[derive(Clone, Copy, Debug)]
-enum Right {
-    Equal(f64),
-    AtMost(f64),
-}
+/// Energy, kinetic and elastic, at a time of the head-on collision: with (14) as printed, with ours, and with ours undamped, by which
+/// the integrator is judged.
+type Energy = [f64; 4];
 
-/// Energy, kinetic and elastic, at a moment of the head-on collision: with (14) as printed, with ours, and with ours undamped, by
-/// which the integrator is judged.
-struct Energy {
-    time: f64,
-    printed: f64,
-    ours: f64,
-    undamped: f64,
-}
-
-/// |F_S| / (μ|F_N|) of a sliding contact with (15) as printed and with ours.
-struct CoulombRatio {
-    slip: f64,
-    printed: f64,
-    ours: f64,
-}
+/// |F_S| / (μ|F_N|) of a contact at a slip velocity, with (15) as printed and with ours.
+type CoulombRatio = [f64; 3];
 
 /// BP93's stiffness and friction, damping weak enough for discs of mass 1 to bounce, and its form of the law: separating discs may
 /// pull.
@@ -91,47 +76,82 @@ const SEED: u64 = 1993;
 /// None.
 pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let (head_on, sliding) = (head_on(), sliding());
+    let findings = Rows::of(findings(&head_on, &sliding))
+        .text("equation", |it| it.misprint.equation())
+        .text("as printed", |it| it.misprint.forms()[0])
+        .text("as it runs", |it| it.misprint.forms()[1])
+        .text("what shows it", |it| it.quantity)
+        .text("with", |it| it.setting.clone())
+        .text("right is", |it| it.right.0)
+        .number("right", 3, |it| it.right.1)
+        .number("printed gives", 3, |it| it.by[0])
+        .number("ours gives", 3, |it| it.by[1])
+        .frame("misprints", "Equations that do not work as printed");
+    let numbers = |row: &[f64]| row.iter().map(|it| Cell::Number(*it, 6)).collect::<Vec<_>>();
     Ok(Made::of([
-        Rows::of(findings(&head_on, &sliding))
-            .text("equation", |it| it.misprint.equation())
-            .text("as printed", |it| it.misprint.forms()[0])
-            .text("as it runs", |it| it.misprint.forms()[1])
-            .text("what shows it", |it| it.quantity)
-            .text("with", |it| it.setting.clone())
-            .text("right is", |it| if matches!(it.right, Right::Equal(_)) { "equal to" } else { "at most" })
-            .number("right", 3, |it| match it.right {
-                Right::Equal(value) | Right::AtMost(value) => value,
-            })
-            .number("printed gives", 3, |it| it.by_printed)
-            .number("ours gives", 3, |it| it.by_ours)
-            .frame("misprints", "Equations that do not work as printed"),
+        findings,
         Rows::of(&head_on)
-            .number("time", 3, |it| it.time)
-            .number("printed", 4, |it| it.printed)
-            .number("ours", 4, |it| it.ours)
-            .number("undamped", 6, |it| it.undamped)
+            .cells(["time", "printed", "ours", "undamped"], |it| numbers(*it))
             .frame("head_on", "Energy through the head-on collision of (14)"),
         Rows::of(&sliding)
-            .number("slip", 2, |it| it.slip)
-            .number("printed", 3, |it| it.printed)
-            .number("ours", 3, |it| it.ours)
+            .cells(["slip", "printed", "ours"], |it| numbers(*it))
             .frame("sliding", "Shear force over its bound in the sliding contact of (15)"),
     ])
     .with_seeds([SEED]))
 }
 
 fn findings(head_on: &[Energy], sliding: &[CoulombRatio]) -> [Finding; 6] {
-    [angular_momentum(), head_on_energy(head_on), coulomb_bound(sliding), mirror(), gears(), oblique()]
-}
-
-fn finding(
-    misprint: Misprint,
-    quantity: &'static str,
-    setting: String,
-    right: Right,
-    [by_printed, by_ours]: [f64; 2],
-) -> Finding {
-    Finding { misprint, quantity, setting, right, by_printed, by_ours }
+    use Misprint::{CoulombBound, NormalDamping, Slip, Tangent};
+    let start = |offset: f64| ("at most", Pair::colliding(offset).kinetic_energy());
+    let exact = ("equal to", 0.0);
+    let last = head_on[head_on.len() - 1];
+    let slips = format!("{}; v_t from −{LARGEST_SLIP} to {LARGEST_SLIP}", setting(SLIDING));
+    let finding = |misprint, quantity, setting, right, by| Finding { misprint, quantity, setting, right, by };
+    [
+        finding(
+            Tangent,
+            "largest |dL/dt + ξ F_S| of random pairs in contact",
+            format!("{}; {PAIRS} pairs", setting(CONTACT)),
+            exact,
+            [off_the_rule(&printed(Tangent, CONTACT)), off_the_rule(&ours(CONTACT))],
+        ),
+        // Discs that have parted hold no elastic energy.
+        finding(
+            NormalDamping,
+            "kinetic energy after a frictionless head-on collision",
+            setting(HEAD_ON),
+            start(0.0),
+            [last[1], last[2]],
+        ),
+        finding(
+            CoulombBound,
+            "largest |F_S| / (μ|F_N|) of a sliding contact",
+            slips.clone(),
+            ("at most", 1.0),
+            [1, 2].map(|law| largest(sliding.iter().map(|at| at[law]))),
+        ),
+        finding(
+            CoulombBound,
+            "largest difference between a sliding contact's forces mirrored and those of its mirror image",
+            slips,
+            exact,
+            [asymmetry(&printed(CoulombBound, SLIDING)), asymmetry(&ours(SLIDING))],
+        ),
+        finding(
+            Slip,
+            "|F_S| between gears that roll on each other",
+            setting(CONTACT),
+            exact,
+            [shear_of_gears(&printed(Slip, CONTACT)), shear_of_gears(&ours(CONTACT))],
+        ),
+        finding(
+            Slip,
+            "kinetic energy after an oblique collision",
+            format!("{}; lines of flight {OBLIQUE_OFFSET} apart", setting(OBLIQUE)),
+            start(OBLIQUE_OFFSET),
+            [energy_after(&printed(Slip, OBLIQUE)), energy_after(&ours(OBLIQUE))],
+        ),
+    ]
 }
 
 fn setting(contact: Contact) -> String {
@@ -153,24 +173,15 @@ fn ours(contact: Contact) -> Granular<true, false> {
     Granular { contact, disc: Disc { radius: f64::NAN, inverse_mass: f64::NAN } }
 }
 
-/// d(L_orbital + L_spin)/dt = −ξ F_S, where the torque on the own disc is −R F_S.
-fn angular_momentum() -> Finding {
-    fn off<L: Law<2>>(law: &L) -> f64 {
-        let mut random = Stream::new(SEED, Purpose::Placement, 0);
-        let pairs = (0..PAIRS).map(|_| Pair::random(&mut random));
-        largest(pairs.map(|pair| {
-            let [[_, _, torque], _] = pair.sums(law);
-            let shear = -torque / pair.bodies[0].radius;
-            pair.angular_momentum_rate(law) + pair.depth() * shear
-        }))
-    }
-    finding(
-        Misprint::Tangent,
-        "largest |dL/dt + ξ F_S| of random pairs in contact",
-        format!("{}; {PAIRS} pairs", setting(CONTACT)),
-        Right::Equal(0.0),
-        [off(&printed(Misprint::Tangent, CONTACT)), off(&ours(CONTACT))],
-    )
+/// Largest error of d(L_orbital + L_spin)/dt = −ξ F_S, where the torque on the own disc is −R F_S.
+fn off_the_rule<L: Law<2>>(law: &L) -> f64 {
+    let mut random = Stream::new(SEED, Purpose::Placement, 0);
+    let pairs = (0..PAIRS).map(|_| Pair::random(&mut random));
+    largest(pairs.map(|pair| {
+        let [[_, _, torque], _] = pair.sums(law);
+        let shear = -torque / pair.bodies[0].radius;
+        pair.angular_momentum_rate(law) + pair.depth() * shear
+    }))
 }
 
 /// Elastic energy of a contact, ⅖ k_N ξ^{5/2}: written here apart, because it judges the laws.
@@ -189,24 +200,10 @@ fn head_on() -> Vec<Energy> {
         moments.map(|pair| pair.kinetic_energy() + elastic_energy(&pair, HEAD_ON.stiffness)).collect()
     }
     let printed = energies(printed(Misprint::NormalDamping, HEAD_ON));
-    let damped = printed.into_iter().zip(energies(ours(HEAD_ON)));
+    let damped = energies(ours(HEAD_ON));
     let undamped = energies(ours(Contact { normal_damping: 0.0, ..HEAD_ON }));
-    let energies = damped.zip(undamped).enumerate().map(|(moment, ((printed, ours), undamped))| {
-        let time = (moment * MOMENT) as f64 / STEPS as f64;
-        Energy { time, printed, ours, undamped }
-    });
-    energies.collect()
-}
-
-/// Discs that have parted hold no elastic energy: the last of the energies is all kinetic.
-fn head_on_energy(energies: &[Energy]) -> Finding {
-    finding(
-        Misprint::NormalDamping,
-        "kinetic energy after a frictionless head-on collision",
-        setting(HEAD_ON),
-        Right::AtMost(Pair::colliding(0.0).kinetic_energy()),
-        energies.last().map_or([f64::NAN; 2], |last| [last.printed, last.ours]),
-    )
+    let time = |moment: usize| (moment * MOMENT) as f64 / STEPS as f64;
+    (0..printed.len()).map(|at| [time(at), printed[at], damped[at], undamped[at]]).collect()
 }
 
 /// Discs that touch, the first of them moving along the tangent.
@@ -221,70 +218,25 @@ fn slips() -> impl Iterator<Item = f64> {
 }
 
 fn sliding() -> Vec<CoulombRatio> {
-    fn ratio<L: Law<2>>(pair: &Pair, law: &L) -> f64 {
-        let [normal, shear] = pair.normal_and_shear(law);
+    fn ratio<L: Law<2>>(slip: f64, law: &L) -> f64 {
+        let [normal, shear] = slide(slip).normal_and_shear(law);
         shear.abs() / (SLIDING.friction * normal.abs())
     }
     let (printed, ours) = (printed(Misprint::CoulombBound, SLIDING), ours(SLIDING));
-    slips()
-        .map(|slip| {
-            let pair = slide(slip);
-            CoulombRatio { slip, printed: ratio(&pair, &printed), ours: ratio(&pair, &ours) }
-        })
-        .collect()
+    slips().map(|slip| [slip, ratio(slip, &printed), ratio(slip, &ours)]).collect()
 }
 
-fn sliding_setting() -> String {
-    format!("{}; v_t from −{LARGEST_SLIP} to {LARGEST_SLIP}", setting(SLIDING))
+fn asymmetry<L: Law<2>>(law: &L) -> f64 {
+    largest(slips().map(|slip| slide(slip).asymmetry(law)))
 }
 
-fn coulomb_bound(sliding: &[CoulombRatio]) -> Finding {
-    finding(
-        Misprint::CoulombBound,
-        "largest |F_S| / (μ|F_N|) of a sliding contact",
-        sliding_setting(),
-        Right::AtMost(1.0),
-        [largest(sliding.iter().map(|at| at.printed)), largest(sliding.iter().map(|at| at.ours))],
-    )
+fn shear_of_gears<L: Law<2>>(law: &L) -> f64 {
+    let [_, shear] = Pair::gears(1.0).normal_and_shear(law);
+    shear.abs()
 }
 
-fn mirror() -> Finding {
-    fn asymmetry<L: Law<2>>(law: L) -> f64 {
-        largest(slips().map(|slip| slide(slip).asymmetry(&law)))
-    }
-    finding(
-        Misprint::CoulombBound,
-        "largest difference between a sliding contact's forces mirrored and those of its mirror image",
-        sliding_setting(),
-        Right::Equal(0.0),
-        [asymmetry(printed(Misprint::CoulombBound, SLIDING)), asymmetry(ours(SLIDING))],
-    )
-}
-
-fn gears() -> Finding {
-    fn shear<L: Law<2>>(law: L) -> f64 {
-        let [_, shear] = Pair::gears(1.0).normal_and_shear(&law);
-        shear.abs()
-    }
-    finding(
-        Misprint::Slip,
-        "|F_S| between gears that roll on each other",
-        setting(CONTACT),
-        Right::Equal(0.0),
-        [shear(printed(Misprint::Slip, CONTACT)), shear(ours(CONTACT))],
-    )
-}
-
-fn oblique() -> Finding {
-    fn energy<L: Law<2>>(law: L) -> f64 {
-        let end = path(Pair::colliding(OBLIQUE_OFFSET), &law).nth(OBLIQUE_STEPS);
-        end.map_or(f64::NAN, |pair| pair.kinetic_energy())
-    }
-    finding(
-        Misprint::Slip,
-        "kinetic energy after an oblique collision",
-        format!("{}; lines of flight {OBLIQUE_OFFSET} apart", setting(OBLIQUE)),
-        Right::AtMost(Pair::colliding(OBLIQUE_OFFSET).kinetic_energy()),
-        [energy(printed(Misprint::Slip, OBLIQUE)), energy(ours(OBLIQUE))],
-    )
+/// Kinetic energy after the oblique collision.
+fn energy_after<L: Law<2>>(law: &L) -> f64 {
+    let end = path(Pair::colliding(OBLIQUE_OFFSET), law).nth(OBLIQUE_STEPS);
+    end.map_or(f64::NAN, |pair| pair.kinetic_energy())
 }
