@@ -4,195 +4,20 @@
 //! process lasts. Each round over the cases is therefore a process of its own, with an order of its own. The median of the processes counts, and
 //! the range stands beside it.
 
+mod case;
 mod process;
 
+pub use case::{Case, Own, Reading};
 pub use process::{VERB, serve};
 
-use super::running::{Running, on_threads};
 use crate::console::Failure;
 use crate::frame::{Cell, Frame, Rows};
 use crate::results::Lab;
 use crate::statistics::median;
-use crate::study::StudyError;
-use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
-use std::io;
-use std::time::Instant;
-use stripmine_physics::method;
-use stripmine_physics::reported::Class;
-use stripmine_physics::scene::Overrides;
+use process::Failed;
 
 /// Processes that measure every case, one after the other.
 pub const PROCESSES: usize = 3;
-
-/// Work that is no run of a scene: its name, and the function that measures it.
-#[derive(Debug)]
-pub struct Own {
-    /// Name by which the measuring process finds it.
-    pub name: &'static str,
-    /// Measures the work that some parameters describe.
-    pub measure: fn(&serde_json::Value) -> Result<Reading, StudyError>,
-}
-
-/// One case of a grid.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Case {
-    #[serde(skip)]
-    labels: Vec<(String, Cell)>,
-    work: Work,
-    /// Threads, where wall time counts.
-    threads: Option<usize>,
-}
-
-#[derive(Clone, Debug, Serialize, Deserialize)]
-enum Work {
-    Scene {
-        preset: String,
-        overrides: Vec<String>,
-        in_events: bool,
-        /// Steps or events before the clock starts, and at least after.
-        amount: [u64; 2],
-        /// Measured seconds, at least.
-        seconds: f64,
-    },
-    Own {
-        name: String,
-        parameters: serde_json::Value,
-        #[serde(skip)]
-        own: Option<&'static Own>,
-    },
-}
-
-impl Case {
-    /// A scene that is timed over some steps, after others that are not.
-    pub fn steps(preset: &str, overrides: &Overrides, warm_up: u64, steps: u64) -> Case {
-        Case::scene(preset, overrides, false, [warm_up, steps])
-    }
-
-    /// A scene that is timed over some events, after others that are not.
-    pub fn events(preset: &str, overrides: &Overrides, warm_up: u64, events: u64) -> Case {
-        Case::scene(preset, overrides, true, [warm_up, events])
-    }
-
-    fn scene(preset: &str, overrides: &Overrides, in_events: bool, amount: [u64; 2]) -> Case {
-        let (preset, overrides) = (preset.to_owned(), overrides.to_vec());
-        Case {
-            labels: vec![],
-            work: Work::Scene { preset, overrides, in_events, amount, seconds: 0.0 },
-            threads: None,
-        }
-    }
-
-    /// Work of another kind.
-    pub fn own(own: &'static Own, parameters: serde_json::Value) -> Case {
-        let work = Work::Own { name: own.name.to_owned(), parameters, own: Some(own) };
-        Case { labels: vec![], work, threads: None }
-    }
-
-    /// Adds a value by which the case differs from the others: a column of the frame, and a part of its name.
-    #[must_use]
-    pub fn label(mut self, heading: &str, value: impl Into<Cell>) -> Case {
-        self.labels.push((heading.to_owned(), value.into()));
-        self
-    }
-
-    /// The case with more steps or events, until they have taken at least so many seconds.
-    #[must_use]
-    pub fn for_seconds(mut self, least: f64) -> Case {
-        if let Work::Scene { seconds, .. } = &mut self.work {
-            *seconds = least;
-        }
-        self
-    }
-
-    /// The case on a number of threads, timed by the clock on the wall. A case without is timed by the processor, on one thread.
-    #[must_use]
-    pub fn on_threads(self, threads: usize) -> Case {
-        Case { threads: Some(threads), ..self }
-    }
-
-    fn name(&self) -> String {
-        let label = |(heading, value): &(String, Cell)| format!("{heading} = {}", value.for_reading());
-        self.labels.iter().map(label).collect::<Vec<_>>().join(", ")
-    }
-
-    fn measure(&self, all: &[&Own]) -> Result<Reading, Failure> {
-        let threads = self.threads.unwrap_or(1);
-        let measured = match &self.work {
-            Work::Own { name, parameters, own } => {
-                let known = || all.iter().find(|it| it.name == name).copied();
-                let unknown = || io::Error::other(format!("no work is called {name}"));
-                let own = own.or_else(known).ok_or_else(unknown).map_err(Failure::writing("cases"))?;
-                on_threads(threads, || (own.measure)(parameters))
-            }
-            Work::Scene { preset, overrides, in_events, amount, seconds } => on_threads(threads, || {
-                let mut running = Running::timed(preset, overrides)?;
-                let mut advance = |running: &mut Running, amount: u64| match in_events {
-                    true => running.events(amount),
-                    false => running.steps(amount),
-                };
-                let clock = if self.threads.is_some() { wall } else { processor };
-                timed(&mut running, *amount, *seconds, &mut advance, clock)
-            }),
-        };
-        Ok(measured?)
-    }
-}
-
-fn wall() -> Box<dyn Fn() -> f64> {
-    let begun = Instant::now();
-    Box::new(move || begun.elapsed().as_secs_f64())
-}
-
-fn processor() -> Box<dyn Fn() -> f64> {
-    let begun = cpu_time::ProcessTime::now();
-    Box::new(move || begun.elapsed().as_secs_f64())
-}
-
-/// Times a scene that runs: at least so much, and for at least so many seconds.
-fn timed(
-    running: &mut Running,
-    [warm_up, least]: [u64; 2],
-    seconds: f64,
-    advance: &mut dyn FnMut(&mut Running, u64) -> Result<(), method::Failure>,
-    clock: fn() -> Box<dyn Fn() -> f64>,
-) -> Result<Reading, StudyError> {
-    advance(running, warm_up)?;
-    running.simulation.reset_phases();
-    let counts = |running: &Running| running.simulation.event_operations();
-    let (work, before) = (running.simulation.work(), counts(running));
-    let elapsed = clock();
-    advance(running, least)?;
-    let mut done = least;
-    while elapsed() < seconds {
-        // As much as the rate so far asks for; the first steps may be slow.
-        let more = (done as f64 * (seconds / elapsed() - 1.0)).ceil().clamp(1.0, 4.0 * done as f64) as u64;
-        advance(running, more)?;
-        done += more;
-    }
-    let seconds = elapsed();
-    let owned = |(name, value): (&str, f64)| (name.to_owned(), value);
-    let after = counts(running).into_iter().zip(before);
-    Ok(Reading {
-        work: running.simulation.work() - work,
-        seconds,
-        parts: running.simulation.phases().into_iter().map(owned).collect(),
-        counts: after.map(|((name, after), (_, before))| owned((name, (after - before) as f64))).collect(),
-    })
-}
-
-/// One process's measurement of a case.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct Reading {
-    /// Work done: particle-steps, events, interactions.
-    pub work: f64,
-    /// Seconds that it took.
-    pub seconds: f64,
-    /// Seconds of its parts, by name.
-    pub parts: BTreeMap<String, f64>,
-    /// Operations that were counted, by name.
-    pub counts: BTreeMap<String, f64>,
-}
 
 /// A figure over several processes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -285,9 +110,6 @@ pub fn rates(lab: &Lab<'_>, cases: &[Case]) -> Result<Vec<Measured>, Failure> {
     })
 }
 
-/// Class and words of a failure; no class where a signal ended a process.
-type Failed = (Option<Class>, String);
-
 /// Makes the rounds; `round` measures some cases in their order, and tells each reading.
 fn rounds(
     cases: &[Case],
@@ -331,7 +153,8 @@ mod tests {
     use super::*;
     use crate::frame::Value;
     use std::cell::RefCell;
-    use stripmine_physics::scene::{COUNT, PACKING_FRACTION};
+    use stripmine_physics::reported::Class;
+    use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
 
     fn reading(seconds: f64) -> Reading {
         Reading { work: 12.0, seconds, ..Reading::default() }
@@ -416,32 +239,6 @@ mod tests {
         assert!(all[2].part("forces").median <= all[2].cost().range[1]);
         let [low, high] = all[0].over(&all[0]).range;
         assert_eq!((low, high), (1.0, 1.0));
-    }
-
-    /// A clock that a test turns: work goes on until the seconds are reached.
-    #[test]
-    fn work_goes_on_until_its_seconds_are_reached() {
-        thread_local!(static NOW: std::cell::Cell<f64> = const { std::cell::Cell::new(0.0) });
-        let clock: fn() -> Box<dyn Fn() -> f64> = || Box::new(|| NOW.get());
-        let discs = Overrides::new().set(&COUNT, 16_u64);
-        let mut running = Running::timed("hard-disks", &discs).unwrap();
-        let mut amounts = vec![];
-        let found = timed(
-            &mut running,
-            [7, 10],
-            30.0,
-            &mut |running, amount| {
-                if !amounts.is_empty() {
-                    NOW.set(NOW.get() + amount as f64);
-                }
-                amounts.push(amount);
-                running.events(amount)
-            },
-            clock,
-        );
-        assert_eq!(amounts, [7, 10, 20]);
-        let found = found.unwrap();
-        assert_eq!((found.work, found.seconds), (30.0, 30.0));
     }
 
     #[test]

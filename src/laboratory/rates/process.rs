@@ -1,7 +1,7 @@
 //! One round of measurements in a process of its own: the program calls itself, and the two speak through pipes, a line of JSON for each
 //! reading.
 
-use super::{Case, Failed, Own, Reading};
+use super::case::{Case, Own, Reading};
 use crate::console::{Failure, print};
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::path::Path;
@@ -9,6 +9,9 @@ use std::process::{Command, ExitStatus, Stdio};
 use std::thread;
 use stripmine_physics::reported::Class;
 use stripmine_physics::signals::INTERRUPTED;
+
+/// Class and words of a failure; no class where a signal ended a process.
+pub(super) type Failed = (Option<Class>, String);
 
 /// Verb of the measuring process.
 pub const VERB: &str = "measure-cases";

@@ -1,0 +1,218 @@
+//! A case of a grid, and its measurement in this process.
+
+use crate::console::Failure;
+use crate::frame::Cell;
+use crate::laboratory::running::{Running, on_threads};
+use crate::study::StudyError;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::io;
+use std::time::Instant;
+use stripmine_physics::method;
+use stripmine_physics::scene::Overrides;
+
+/// Work that is no run of a scene: its name, and the function that measures it.
+#[derive(Debug)]
+pub struct Own {
+    /// Name by which the measuring process finds it.
+    pub name: &'static str,
+    /// Measures the work that some parameters describe.
+    pub measure: fn(&serde_json::Value) -> Result<Reading, StudyError>,
+}
+
+/// One case of a grid.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Case {
+    #[serde(skip)]
+    pub(super) labels: Vec<(String, Cell)>,
+    task: Task,
+    /// Threads, where wall time counts.
+    threads: Option<usize>,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+enum Task {
+    Scene {
+        preset: String,
+        overrides: Vec<String>,
+        in_events: bool,
+        /// Steps or events before the clock starts, and at least after.
+        amount: [u64; 2],
+        /// Measured seconds, at least.
+        seconds: f64,
+    },
+    Own {
+        name: String,
+        parameters: serde_json::Value,
+        #[serde(skip)]
+        own: Option<&'static Own>,
+    },
+}
+
+impl Case {
+    /// A scene that is timed over some steps, after others that are not.
+    pub fn steps(preset: &str, overrides: &Overrides, warm_up: u64, steps: u64) -> Case {
+        Case::scene(preset, overrides, false, [warm_up, steps])
+    }
+
+    /// A scene that is timed over some events, after others that are not.
+    pub fn events(preset: &str, overrides: &Overrides, warm_up: u64, events: u64) -> Case {
+        Case::scene(preset, overrides, true, [warm_up, events])
+    }
+
+    fn scene(preset: &str, overrides: &Overrides, in_events: bool, amount: [u64; 2]) -> Case {
+        let (preset, overrides) = (preset.to_owned(), overrides.to_vec());
+        Case {
+            labels: vec![],
+            task: Task::Scene { preset, overrides, in_events, amount, seconds: 0.0 },
+            threads: None,
+        }
+    }
+
+    /// Work of another kind.
+    pub fn own(own: &'static Own, parameters: serde_json::Value) -> Case {
+        let task = Task::Own { name: own.name.to_owned(), parameters, own: Some(own) };
+        Case { labels: vec![], task, threads: None }
+    }
+
+    /// Adds a value by which the case differs from the others: a column of the frame, and a part of its name.
+    #[must_use]
+    pub fn label(mut self, heading: &str, value: impl Into<Cell>) -> Case {
+        self.labels.push((heading.to_owned(), value.into()));
+        self
+    }
+
+    /// The case with more steps or events, until they have taken at least so many seconds.
+    #[must_use]
+    pub fn for_seconds(mut self, least: f64) -> Case {
+        if let Task::Scene { seconds, .. } = &mut self.task {
+            *seconds = least;
+        }
+        self
+    }
+
+    /// The case on a number of threads, timed by the clock on the wall. A case without is timed by the processor, on one thread.
+    #[must_use]
+    pub fn on_threads(self, threads: usize) -> Case {
+        Case { threads: Some(threads), ..self }
+    }
+
+    /// Name in messages.
+    pub(super) fn name(&self) -> String {
+        let label = |(heading, value): &(String, Cell)| format!("{heading} = {}", value.for_reading());
+        self.labels.iter().map(label).collect::<Vec<_>>().join(", ")
+    }
+
+    /// Measures the case; `all` are the works that are no scenes, for a case that another process sent.
+    ///
+    /// # Errors
+    /// [`Failure`] if the scene is bad or breaks while running.
+    pub(super) fn measure(&self, all: &[&Own]) -> Result<Reading, Failure> {
+        let threads = self.threads.unwrap_or(1);
+        let measured = match &self.task {
+            Task::Own { name, parameters, own } => {
+                let known = || all.iter().find(|it| it.name == name).copied();
+                let unknown = || io::Error::other(format!("no work is called {name}"));
+                let own = own.or_else(known).ok_or_else(unknown).map_err(Failure::writing("cases"))?;
+                on_threads(threads, || (own.measure)(parameters))
+            }
+            Task::Scene { preset, overrides, in_events, amount, seconds } => on_threads(threads, || {
+                let mut running = Running::timed(preset, overrides)?;
+                let mut advance = |running: &mut Running, amount: u64| match in_events {
+                    true => running.events(amount),
+                    false => running.steps(amount),
+                };
+                let clock = if self.threads.is_some() { wall } else { processor };
+                timed(&mut running, *amount, *seconds, &mut advance, clock)
+            }),
+        };
+        Ok(measured?)
+    }
+}
+
+fn wall() -> Box<dyn Fn() -> f64> {
+    let begun = Instant::now();
+    Box::new(move || begun.elapsed().as_secs_f64())
+}
+
+fn processor() -> Box<dyn Fn() -> f64> {
+    let begun = cpu_time::ProcessTime::now();
+    Box::new(move || begun.elapsed().as_secs_f64())
+}
+
+/// Times a scene that runs: at least so much, and for at least so many seconds.
+fn timed(
+    running: &mut Running,
+    [warm_up, least]: [u64; 2],
+    seconds: f64,
+    advance: &mut dyn FnMut(&mut Running, u64) -> Result<(), method::Failure>,
+    clock: fn() -> Box<dyn Fn() -> f64>,
+) -> Result<Reading, StudyError> {
+    advance(running, warm_up)?;
+    running.simulation.reset_phases();
+    let counts = |running: &Running| running.simulation.event_operations();
+    let (work, before) = (running.simulation.work(), counts(running));
+    let elapsed = clock();
+    advance(running, least)?;
+    let mut done = least;
+    while elapsed() < seconds {
+        // As much as the rate so far asks for; the first steps may be slow.
+        let more = (done as f64 * (seconds / elapsed() - 1.0)).ceil().clamp(1.0, 4.0 * done as f64) as u64;
+        advance(running, more)?;
+        done += more;
+    }
+    let seconds = elapsed();
+    let owned = |(name, value): (&str, f64)| (name.to_owned(), value);
+    let after = counts(running).into_iter().zip(before);
+    Ok(Reading {
+        work: running.simulation.work() - work,
+        seconds,
+        parts: running.simulation.phases().into_iter().map(owned).collect(),
+        counts: after.map(|((name, after), (_, before))| owned((name, (after - before) as f64))).collect(),
+    })
+}
+
+/// One process's measurement of a case.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct Reading {
+    /// Work done: particle-steps, events, interactions.
+    pub work: f64,
+    /// Seconds that it took.
+    pub seconds: f64,
+    /// Seconds of its parts, by name.
+    pub parts: BTreeMap<String, f64>,
+    /// Operations that were counted, by name.
+    pub counts: BTreeMap<String, f64>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stripmine_physics::scene::COUNT;
+
+    /// A clock that a test turns: work goes on until the seconds are reached.
+    #[test]
+    fn work_goes_on_until_its_seconds_are_reached() {
+        thread_local!(static NOW: std::cell::Cell<f64> = const { std::cell::Cell::new(0.0) });
+        let clock: fn() -> Box<dyn Fn() -> f64> = || Box::new(|| NOW.get());
+        let discs = Overrides::new().set(&COUNT, 16_u64);
+        let mut running = Running::timed("hard-disks", &discs).unwrap();
+        let mut amounts = vec![];
+        let found = timed(
+            &mut running,
+            [7, 10],
+            30.0,
+            &mut |running, amount| {
+                if !amounts.is_empty() {
+                    NOW.set(NOW.get() + amount as f64);
+                }
+                amounts.push(amount);
+                running.events(amount)
+            },
+            clock,
+        );
+        assert_eq!(amounts, [7, 10, 20]);
+        let found = found.unwrap();
+        assert_eq!((found.work, found.seconds), (30.0, 30.0));
+    }
+}
