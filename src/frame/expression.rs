@@ -18,6 +18,8 @@ struct Names(BTreeMap<String, Arc<Frame>>, Option<Value>);
 
 /// Name of the element that a figure is repeated for.
 const EACH: &str = "it";
+/// Name of a row among its own cells, for columns whose names begin with a digit: `row['1_thread']`.
+const ROW: &str = "row";
 
 impl Scope {
     /// Frames by their names, with `_` for `-` and `.`.
@@ -89,6 +91,7 @@ impl Object for Row {
     fn get_value(self: &Arc<Self>, key: &Value) -> Option<Value> {
         match (key.as_str()?, &self.2) {
             (EACH, Some(it)) => Some(it.clone()),
+            (ROW, _) => Some(Value::from_dyn_object(Arc::clone(self))),
             (column, _) => Some(self.cell(column).unwrap_or_else(Value::from)),
         }
     }
@@ -286,6 +289,8 @@ mod tests {
         assert_eq!(number("look_up|selectattr('steps', 'gt', 100)|map(attribute='error')|sum"), 0.125);
         let said = "{{ summary.worst|tens(2) }}, {{ look_up[1].steps|count }}, {{ range(look_up.column('error'), 2) }}";
         assert_eq!(all.text(said, &scope).unwrap(), "2.5·10⁻⁷, 128, 0.12 to 2");
+        let of_row = all.of_row("row['steps'] / 2", &scope, scope.frame("look_up").unwrap(), 1).unwrap();
+        assert_eq!(f64::try_from(of_row).unwrap(), 64.0);
     }
 
     #[test]

@@ -1,7 +1,6 @@
 //! Particles in a bath, LAN17: what is measured and shown beside a run.
 
 mod items;
-mod sections;
 mod study;
 
 use super::Laboratory;
@@ -9,4 +8,4 @@ use items::ITEMS;
 
 /// Items, verbs and charts.
 pub(super) static LABORATORY: Laboratory =
-    Laboratory { method: "langevin", items: ITEMS, verbs: &[], charts: &[], works: &[] };
+    Laboratory { method: "langevin", items: ITEMS, verbs: &[], charts: &[], works: &study::sectors::WORKS };

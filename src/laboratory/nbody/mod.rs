@@ -1,7 +1,6 @@
 //! Bodies that attract each other, PWP: what is measured and shown beside a run.
 
 mod items;
-mod sections;
 mod study;
 
 use super::Laboratory;
@@ -9,4 +8,4 @@ use items::ITEMS;
 
 /// Items, verbs and charts.
 pub(super) static LABORATORY: Laboratory =
-    Laboratory { method: "nbody", items: ITEMS, verbs: &[], charts: &[], works: &[] };
+    Laboratory { method: "nbody", items: ITEMS, verbs: &[], charts: &[], works: &study::rates::WORKS };

@@ -1,9 +1,9 @@
 //! Studies of particles in a bath.
 
-pub mod accuracy;
-pub mod diffusion;
-pub mod losses;
-pub mod sectors;
+pub(super) mod accuracy;
+pub(super) mod diffusion;
+pub(super) mod losses;
+pub(super) mod sectors;
 
 /// Parts of a run, each a measurement; their scatter gives the error.
 const PARTS: usize = 20;

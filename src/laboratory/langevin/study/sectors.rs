@@ -1,10 +1,11 @@
-//! Wall time over the number of sectors along a side, on one thread and on two; where the time goes.
+//! Wall time over the number of sectors along a side, on one thread and on two; searches beside each other; where the time goes.
 
-use crate::laboratory::running::{Running, on_threads, prepared};
-use crate::results::Progress;
-use crate::statistics::median;
+use crate::console::Failure;
+use crate::frame::{Cell, Rows};
+use crate::laboratory::rates::{Case, Measured, Own, Reading, rates};
+use crate::laboratory::running::{Running, prepared};
+use crate::results::{Lab, Made, Size};
 use crate::study::StudyError;
-use serde::Serialize;
 use std::collections::BTreeMap;
 use std::time::Instant;
 use stripmine_physics::io::extxyz::{self, Frame};
@@ -13,8 +14,8 @@ use stripmine_physics::method::langevin::options::{By, PairLaw, SortKind};
 use stripmine_physics::scene::{COUNT, Overrides, SIDES, SPACING};
 use stripmine_physics::words::Words;
 
-/// Wall seconds of the source, on one thread and on two, over the sectors along a side.
-pub const SOURCE: [(u64, [f64; 2]); 8] = [
+/// Wall seconds of LAN17, on one thread and on two, over the sectors along a side.
+const SOURCE: [(u64, [f64; 2]); 8] = [
     (3, [1008.0, 526.0]),
     (5, [205.0, 132.0]),
     (10, [51.2, 34.4]),
@@ -24,38 +25,15 @@ pub const SOURCE: [(u64, [f64; 2]); 8] = [
     (400, [4.3, 6.8]),
     (800, [5.7, 8.1]),
 ];
-/// Threads compared.
-pub const THREADS: [usize; 2] = [1, 2];
-/// The source's number of steps, for which times are given.
+/// Its particles and steps, for which times are given.
+const PARTICLES: f64 = 40_000.0;
 const STEPS: f64 = 100.0;
 
-/// How much is measured.
-#[derive(Clone, Copy, Debug)]
-pub struct Effort {
-    /// Sectors along a side, at least.
-    pub fewest: u64,
-    /// Seconds of a measurement, about.
-    pub seconds: f64,
-    /// Alternating repeats.
-    pub rounds: usize,
-}
+/// Name of a search, and what it sets.
+type Search = (&'static str, fn(Overrides) -> Overrides);
 
-/// Wall time of the source's run.
-#[derive(Clone, Debug, Serialize)]
-pub struct Row {
-    /// Sectors along a side; none for neighbour lists.
-    pub per_side: Option<u64>,
-    /// Seconds for 100 steps, on one thread and on two: medians.
-    pub seconds: [f64; 2],
-    /// What the source has.
-    pub source: Option<[f64; 2]>,
-}
-
-/// A way to find pairs: its name, and what it sets.
-pub type Way = (&'static str, fn(Overrides) -> Overrides);
-
-/// Ways to find pairs that are compared.
-pub const SEARCHES: [Way; 4] = [
+/// Searches that are compared.
+const SEARCHES: [Search; 4] = [
     ("lattice", |scene| scene.set(&SEARCH, By::Lattice)),
     ("sectors, sorted when needed", |scene| scene.set(&SEARCH, By::Sectors).set(&SORT, SortKind::WhenNeeded)),
     ("sectors, sorted at every step", |scene| {
@@ -64,146 +42,144 @@ pub const SEARCHES: [Way; 4] = [
     ("lists", |scene| scene.set(&SEARCH, By::NeighborList)),
 ];
 /// Particles of the scenes in which they are compared, and their densities N σ²/A.
-const COMPARED: u32 = 4000;
+const COMPARED: f64 = 4000.0;
 const DENSITIES: [f64; 5] = [0.05, 0.2, 0.4, 0.6, 0.7];
 
-/// A fluid by every search.
-#[derive(Clone, Debug, Serialize)]
-pub struct Fluid {
-    /// The pair law.
-    pub law: &'static str,
-    /// Density N σ²/A.
-    pub density: f64,
-    /// Seconds of a step on one thread, by the ways of [`SEARCHES`]; none where one does not serve.
-    pub seconds: Vec<Option<f64>>,
-    /// The way that `auto` takes.
-    pub auto: String,
+/// Work that is no run of a scene.
+pub(in crate::laboratory::langevin) static WORKS: [Own; 1] =
+    [Own { name: "langevin-frames", measure: |_| frames() }];
+
+/// A fluid: the pair law, density N σ²/A, the search that `auto` takes, and the place of each search among the cases that serves it.
+struct Fluid {
+    law: PairLaw,
+    density: f64,
+    auto: String,
+    searches: [Option<usize>; SEARCHES.len()],
 }
 
-/// What came out.
-#[derive(Clone, Debug, Serialize)]
-pub struct Sectors {
-    /// Fluids by every search.
-    pub fluids: Vec<Fluid>,
-    /// Particles.
-    pub particles: usize,
-    /// Wall times.
-    pub rows: Vec<Row>,
-    /// Seconds of 100 steps in each phase, on one thread and by lists, and of writing ten frames.
-    pub phases: BTreeMap<String, f64>,
-}
-
-/// Seconds of a step on some threads, measured for about so long.
-fn seconds_of_a_step(
-    preset: &str,
-    overrides: &[String],
-    threads: usize,
-    seconds: f64,
-) -> Result<f64, StudyError> {
-    on_threads(threads, || {
-        let mut running = Running::timed(preset, overrides)?;
-        running.steps(1)?;
-        let (mut steps, mut in_all) = (1, 0.0);
-        loop {
-            let begun = Instant::now();
-            running.steps(steps)?;
-            in_all += begun.elapsed().as_secs_f64();
-            if in_all > seconds {
-                let done = running.simulation.clock().steps - 1;
-                return Ok(in_all / done as f64);
-            }
-            steps = (2 * steps).min(200);
-        }
-    })
-}
-
-/// Measures every number of sectors, and neighbour lists.
+/// Measures every number of sectors, neighbour lists, and fluids by every search.
 ///
 /// # Errors
 /// [`StudyError`] if a scene is refused.
-pub fn sectors(effort: &Effort, progress: Progress<'_>) -> Result<Sectors, StudyError> {
-    let counts = SOURCE.iter().filter(|(count, _)| *count >= effort.fewest);
-    let ways: Vec<(Option<u64>, Option<[f64; 2]>)> =
-        counts.map(|&(count, seconds)| (Some(count), Some(seconds))).chain([(None, None)]).collect();
-    let mut rows = vec![];
-    for (number, &(per_side, source)) in ways.iter().enumerate() {
-        let overrides = match per_side {
-            Some(count) => Overrides::new().set(&SEARCH, By::Sectors).set(&PER_SIDE, count),
+pub fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
+    let (fewest, seconds) = if size == Size::Quick { (100, 0.05) } else { (3, 0.06) };
+    let counts = SOURCE.iter().filter(|(count, _)| *count >= fewest);
+    let sides: Vec<Option<(u64, [f64; 2])>> = counts.copied().map(Some).chain([None]).collect();
+    let name =
+        |side: &Option<(u64, [f64; 2])>| side.map_or("lists".to_owned(), |(count, _)| count.to_string());
+    let mut cases = vec![];
+    for side in &sides {
+        let scene = match side {
+            Some((count, _)) => Overrides::new().set(&SEARCH, By::Sectors).set(&PER_SIDE, *count),
             None => Overrides::new().set(&SEARCH, By::NeighborList),
         };
-        let mut found = [vec![], vec![]];
-        for _ in 0..effort.rounds {
-            for (times, threads) in found.iter_mut().zip(THREADS) {
-                times
-                    .push(STEPS * seconds_of_a_step("langevin-report", &overrides, threads, effort.seconds)?);
-            }
-        }
-        rows.push(Row { per_side, seconds: found.map(|times| median(times.into_iter())), source });
-        progress((number + 1) as f64 / (ways.len() + 1) as f64);
+        cases.extend([1, 2].map(|threads| {
+            let case = Case::steps("langevin-report", &scene, 1, 1).label("sectors", name(side));
+            case.for_seconds(seconds).on_threads(threads)
+        }));
     }
-    let phases = phases()?;
     let laws = [PairLaw::Wca, PairLaw::LennardJones];
     let fluids = laws.into_iter().flat_map(|law| DENSITIES.map(|density| (law, density)));
-    let fluids = fluids.map(|(law, density)| fluid(law, density, effort)).collect::<Result<_, _>>()?;
-    progress(1.0);
-    let particles = prepared("langevin-report", &[])?.particles().len();
-    Ok(Sectors { fluids, particles, rows, phases })
+    let fluids: Vec<Fluid> = fluids
+        .map(|(law, density)| fluid(law, density, 0.25 * seconds, &mut cases))
+        .collect::<Result<_, _>>()?;
+    cases.push(
+        Case::steps("langevin-report", &Overrides::new(), 50, 500).label("phases of", "lists").on_threads(1),
+    );
+    cases.push(Case::own(&WORKS[0], serde_json::Value::Null).label("writing", "frames"));
+    let all = rates(lab, &cases)?;
+    let [.., phases, written] = all.as_slice() else { return Ok(Made::default()) };
+    let part =
+        |(name, _): (&String, &f64)| (name.clone(), phases.part(name).cell(1e3 * STEPS * PARTICLES, 2));
+    let mut parts: BTreeMap<String, Cell> = phases.readings[0].parts.iter().map(part).collect();
+    parts.insert("ten frames as text".to_owned(), written.cost().cell(1e3, 2));
+    let seconds = |case: &Measured| case.cost().cell(STEPS * PARTICLES, 4);
+    let of_search = |case: usize| all[case].cost().cell(1e6 * COMPARED, 1);
+    Ok(Made::of([
+        Rows::of(sides.iter().zip(all.chunks(2)))
+            .text("sectors", |(side, _)| name(side))
+            .cell("1 thread (s)", |(_, threads)| seconds(&threads[0]))
+            .cell("2 threads (s)", |(_, threads)| seconds(&threads[1]))
+            .cell("one over two", |(_, threads)| threads[1].over(&threads[0]).cell(1.0, 2))
+            .number("source", 2, |(side, _)| side.map(|(_, [one, two])| one / two))
+            .number("source, 1 (s)", 1, |(side, _)| side.map(|(_, source)| source[0]))
+            .number("source, 2 (s)", 1, |(side, _)| side.map(|(_, source)| source[1]))
+            .frame("wall-time", "Wall time of 100 steps: median and range of three processes"),
+        Rows::of(&fluids)
+            .text("pairs", |fluid| fluid.law.word())
+            .number("density N σ²/A", 2, |fluid| fluid.density)
+            .cells(SEARCHES.map(|(name, _)| format!("{name} (µs)")), |fluid| {
+                fluid.searches.map(|case| case.map(of_search))
+            })
+            .text("auto takes", |fluid| &fluid.auto)
+            .number("slower than the best (%)", 0, |fluid| fluid.loss(&all).map(|it| 100.0 * it))
+            .frame("searches", "A step of 4000 particles by every search, on one thread"),
+        Rows::of(parts)
+            .text("part", |(name, _)| name.clone())
+            .cell("time (ms)", |(_, time)| time.clone())
+            .frame("phases", "Where the time goes: 100 steps by lists on one thread"),
+    ])
+    .with_seeds([1]))
 }
 
-/// A fluid by every search that serves it, in turns.
-fn fluid(law: PairLaw, density: f64, effort: &Effort) -> Result<Fluid, StudyError> {
-    let side = (f64::from(COMPARED) / density).sqrt();
-    let scene = Overrides::new().set(&LAW, law).set(&COUNT, u64::from(COMPARED));
-    let scene = scene.set(&SIDES, [side; 2]).set(&SPACING, 1.13);
-    let mut found: Vec<Vec<f64>> = vec![vec![]; SEARCHES.len()];
-    for _ in 0..effort.rounds {
-        for (times, (_, searched)) in found.iter_mut().zip(SEARCHES) {
-            let overrides = searched(scene.clone());
-            if prepared("langevin-dense", &overrides).is_ok() {
-                times.push(seconds_of_a_step("langevin-dense", &overrides, 1, 0.25 * effort.seconds)?);
-            }
-        }
+impl Fluid {
+    /// Time by which `auto` is slower than the best search, relative to it.
+    fn loss(&self, all: &[Measured]) -> Option<f64> {
+        let cost = |case: &Option<usize>| case.map(|case| all[case].cost().median);
+        let best = self.searches.iter().filter_map(cost).fold(f64::INFINITY, f64::min);
+        // Sorted when needed is what auto does in sectors.
+        let name = match self.auto.as_str() {
+            "neighbor-list" => "lists",
+            "sectors" => "sectors, sorted when needed",
+            other => other,
+        };
+        let own = SEARCHES.iter().position(|(known, _)| *known == name)?;
+        cost(&self.searches[own]).map(|own| own / best - 1.0)
     }
-    let middle = |times: Vec<f64>| (!times.is_empty()).then(|| median(times.into_iter()));
-    let auto = prepared("langevin-dense", &scene)?.settings["search"].as_str().unwrap_or("").to_owned();
-    Ok(Fluid { law: law.word(), density, seconds: found.into_iter().map(middle).collect(), auto })
 }
 
-/// Seconds of the source's run in each phase on one thread, and of the ten frames that it would write.
-fn phases() -> Result<BTreeMap<String, f64>, StudyError> {
-    on_threads(1, || {
-        let mut running = Running::timed("langevin-report", &[])?;
-        running.steps(50)?;
-        running.simulation.reset_phases();
-        let steps = 500;
-        running.steps(steps)?;
-        let share = STEPS / steps as f64;
-        let named = running.simulation.phases().into_iter();
-        let mut phases: BTreeMap<String, f64> =
-            named.map(|(name, seconds)| (name.to_owned(), share * seconds)).collect();
-        let begun = Instant::now();
-        for step in 0..10 {
-            let frame = Frame {
-                particles: running.simulation.particles(),
-                cell: running.domain.lengths(),
-                origin: running.domain.corner(),
-                periodic: Some(running.domain.periodic()),
-                time: 0.0,
-                step,
-                seed: None,
-                has_raised_ids: false,
-            };
-            // What goes nowhere finds no obstacle.
-            drop(extxyz::write(&frame, &mut std::io::sink()));
-        }
-        phases.insert("ten frames as text".to_owned(), begun.elapsed().as_secs_f64());
-        Ok(phases)
-    })
+/// A fluid; the searches that serve it become cases.
+fn fluid(law: PairLaw, density: f64, seconds: f64, cases: &mut Vec<Case>) -> Result<Fluid, StudyError> {
+    let side = (COMPARED / density).sqrt();
+    let scene = Overrides::new().set(&LAW, law).set(&COUNT, COMPARED as u64);
+    let scene = scene.set(&SIDES, [side; 2]).set(&SPACING, 1.13);
+    let searches = SEARCHES.map(|(name, searched)| {
+        let overrides = searched(scene.clone());
+        prepared("langevin-dense", &overrides).is_ok().then(|| {
+            let case = Case::steps("langevin-dense", &overrides, 1, 1).for_seconds(seconds).on_threads(1);
+            cases.push(case.label("density", Cell::Number(density, 2)).label("search", name));
+            cases.len() - 1
+        })
+    });
+    let auto = prepared("langevin-dense", &scene)?.settings["search"].as_str().unwrap_or("").to_owned();
+    Ok(Fluid { law, density, auto, searches })
+}
+
+/// Writes the ten frames of the source's run as text.
+fn frames() -> Result<Reading, StudyError> {
+    let running = Running::timed("langevin-report", &[])?;
+    let begun = Instant::now();
+    for step in 0..10 {
+        let frame = Frame {
+            particles: running.simulation.particles(),
+            cell: running.domain.lengths(),
+            origin: running.domain.corner(),
+            periodic: Some(running.domain.periodic()),
+            time: 0.0,
+            step,
+            seed: None,
+            has_raised_ids: false,
+        };
+        // A sink cannot fail.
+        drop(extxyz::write(&frame, &mut std::io::sink()));
+    }
+    Ok(Reading { work: 1.0, seconds: begun.elapsed().as_secs_f64(), ..Reading::default() })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::laboratory::running::on_threads;
     use stripmine_physics::particles::Particle;
 
     /// Positions and velocities after some steps of a number of particles in sectors, to the bit, and the positions.

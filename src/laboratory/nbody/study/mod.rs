@@ -1,5 +1,5 @@
-//! What is measured of bodies beside a run: each study a file, its section of the report in `sections`.
+//! Studies of bodies that attract each other.
 
-pub mod collapse;
-pub mod energy;
-pub mod rates;
+pub(super) mod collapse;
+pub(super) mod energy;
+pub(super) mod rates;

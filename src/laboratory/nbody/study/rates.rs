@@ -1,13 +1,14 @@
-//! Interactions a second, and how exact the forces are.
+//! Interactions a second, and errors of the forces.
 
+use crate::console::Failure;
+use crate::frame::Rows;
+use crate::laboratory::rates::{Case, Own, Reading, rates};
 use crate::laboratory::running::{Running, on_threads};
-use crate::results::Progress;
-use crate::statistics::median;
+use crate::results::{Lab, Made, Size};
 use crate::study::StudyError;
-use serde::Serialize;
 use std::time::Instant;
 use stripmine_kernels::InstructionSet;
-use stripmine_physics::method::Failure;
+use stripmine_physics::method;
 use stripmine_physics::method::nbody::bodies::{Bodies, zeros};
 use stripmine_physics::method::nbody::field::{Attraction, never, potential};
 use stripmine_physics::method::nbody::keys::{ROOTS, SOFTENING};
@@ -19,7 +20,7 @@ use stripmine_physics::particles::{Particle, Particles};
 use stripmine_physics::scene::{DT, Overrides, PRECISION, Precision};
 use stripmine_physics::words::Words;
 
-/// The ways to compute forces.
+/// Precision of the forces, and how roots are formed.
 const WAYS: [(Precision, ArithmeticKind); 5] = [
     (Precision::Mixed, ArithmeticKind::Raw),
     (Precision::Mixed, ArithmeticKind::Estimated),
@@ -27,129 +28,119 @@ const WAYS: [(Precision, ArithmeticKind); 5] = [
     (Precision::F64, ArithmeticKind::Estimated),
     (Precision::F64, ArithmeticKind::Exact),
 ];
-/// Bodies whose forces are held against the sum as it is written.
+/// Bodies whose forces are compared with the sum as it is written.
 const SAMPLED: usize = 512;
-/// Softening of the sphere whose energy is followed (length).
+/// Softening of the spheres whose forces are compared, and of those whose energy is followed (length).
+const SHARP: f64 = 0.01;
 const SOFTENED: f64 = 0.05;
 /// Threads compared.
-pub const THREADS: [usize; 2] = [1, 2];
+const THREADS: [usize; 2] = [1, 2];
 
-/// How much is measured.
-#[derive(Clone, Debug)]
-pub struct Effort {
-    /// Numbers of bodies.
-    pub bodies: Vec<usize>,
-    /// Seconds of a measurement, at least.
-    pub seconds: f64,
-    /// Alternating repeats.
-    pub rounds: usize,
-}
-
-/// A way and a number of bodies.
-#[derive(Clone, Debug, Serialize)]
-pub struct Rate {
-    /// Precision of the forces.
-    pub precision: &'static str,
-    /// How roots are formed.
-    pub arithmetic: &'static str,
-    /// Bodies.
-    pub bodies: usize,
-    /// Directed interactions a second, N² counted, in 10⁹, by threads: medians.
-    pub rates: [f64; 2],
-    /// The largest error of an acceleration over the largest acceleration: of the kernel, for masses as it sees them; and with what
-    /// rounding of the masses adds where forces are in single precision.
-    pub error: [f64; 2],
-}
-
-/// A Plummer sphere that a leapfrog moves.
-#[derive(Clone, Debug, Serialize)]
-pub struct Conserving {
-    /// How roots are formed.
-    pub arithmetic: &'static str,
-    /// Precision of the forces.
-    pub precision: &'static str,
-    /// Steps of a unit of time.
-    pub steps: u64,
-    /// |ΔE/E| after two units of time.
-    pub error: f64,
-}
-
-/// What came out.
-#[derive(Clone, Debug, Serialize)]
-pub struct Rates {
-    /// The instruction set.
-    pub instruction_set: &'static str,
-    /// Rates.
-    pub rates: Vec<Rate>,
-    /// Energy errors of single and double precision.
-    pub conserving: Vec<Conserving>,
-    /// Whether two threads gave the bits of one, everywhere.
-    pub same_bits: bool,
-}
+/// Work that is no run of a scene: evaluations of all forces.
+pub(in crate::laboratory::nbody) static WORKS: [Own; 1] = [Own { name: "nbody-forces", measure: forces }];
 
 /// Measures every way.
 ///
 /// # Errors
 /// [`StudyError`] if threads cannot be had.
-pub fn rates(effort: &Effort, progress: Progress<'_>) -> Result<Rates, StudyError> {
-    let (mut rates, mut same_bits) = (vec![], true);
-    let all = (effort.bodies.len() * WAYS.len() + 1) as f64;
-    for &count in &effort.bodies {
-        for (precision, arithmetic) in WAYS {
-            let (rate, same) = rate(count, precision, arithmetic, effort)?;
-            rates.push(rate);
-            same_bits &= same;
-            progress(rates.len() as f64 / all);
-        }
-    }
-    let mut conserving = vec![];
-    for (arithmetic, precision) in [
-        (ArithmeticKind::Exact, Precision::F64),
-        (ArithmeticKind::Exact, Precision::Mixed),
-        (ArithmeticKind::Estimated, Precision::Mixed),
-        (ArithmeticKind::Raw, Precision::Mixed),
-    ] {
-        for steps in [128, 512] {
-            conserving.push(conserving_run(arithmetic, precision, steps)?);
-        }
-    }
-    progress(1.0);
-    Ok(Rates { instruction_set: InstructionSet::best().name(), rates, conserving, same_bits })
+pub fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
+    let (counts, seconds): (&[usize], f64) =
+        if size == Size::Quick { (&[1024], 0.05) } else { (&[1024, 4096, 16_384], 0.1) };
+    let all: Vec<(usize, usize)> =
+        counts.iter().flat_map(|&count| (0..WAYS.len()).map(move |way| (count, way))).collect();
+    let case = |&(count, way): &(usize, usize), threads: usize| {
+        let (precision, arithmetic) = WAYS[way];
+        let case = Case::own(&WORKS[0], serde_json::json!([count, way, seconds])).on_threads(threads);
+        case.label("bodies", count as u64)
+            .label("forces", precision.word())
+            .label("arithmetic", arithmetic.word())
+    };
+    let cases: Vec<Case> = all.iter().flat_map(|it| THREADS.map(|threads| case(it, threads))).collect();
+    let measured = rates(lab, &cases)?;
+    let errors = all.iter().map(|&(count, way)| errors(count, way)).collect::<Result<Vec<_>, _>>()?;
+    let rows =
+        all.iter().zip(measured.chunks(2)).zip(&errors).map(|((&(count, way), threads), (error, _))| {
+            (count, WAYS[way], &threads[0], &threads[1], error)
+        });
+    let same = errors.iter().all(|(_, same)| *same);
+    let ways = [WAYS[4], WAYS[2], WAYS[1], WAYS[0]];
+    let conserving = ways.into_iter().flat_map(|way| [128, 512].map(|steps| (way, steps)));
+    let conserving = conserving.map(|(way, steps)| Ok((way, steps, energy_error(way, steps)?)));
+    let conserving = conserving.collect::<Result<Vec<_>, StudyError>>()?;
+    Ok(Made::of([
+        Rows::of(rows)
+            .count("bodies", |(count, ..)| *count)
+            .text("forces", |(_, (precision, _), ..)| precision.word())
+            .text("arithmetic", |(_, (_, arithmetic), ..)| arithmetic.word())
+            .cell("1 thread (10⁹/s)", |(_, _, one, ..)| one.rate().cell(1e-9, 2))
+            .cell("2 threads (10⁹/s)", |(_, _, _, two, _)| two.rate().cell(1e-9, 2))
+            .cell("ratio", |(_, _, one, two, _)| two.over(one).cell(1.0, 2))
+            .short("force error", |(.., error)| error[0])
+            .short("with rounded masses", |(.., error)| error[1])
+            .frame(
+                "rates",
+                "Directed interactions a second, N² counted: median and range of three processes",
+            ),
+        Rows::of(conserving)
+            .text("forces", |((precision, _), ..)| precision.word())
+            .text("arithmetic", |((_, arithmetic), ..)| arithmetic.word())
+            .count("steps of a unit of time", |(_, steps, _)| *steps)
+            .short("|ΔE/E|", |(.., error)| *error)
+            .frame(
+                "conserving",
+                "Energy error of a Plummer sphere of 1024 bodies after two units of time, leapfrog",
+            ),
+        Rows::of([()])
+            .text("instruction set", |()| InstructionSet::best().name())
+            .text("bits of two threads", |()| if same { "the same" } else { "other" })
+            .frame("summary", "Instruction set, and bits of one thread and of two"),
+    ])
+    .with_seeds([1]))
 }
 
-fn rate(
-    count: usize,
-    precision: Precision,
-    arithmetic: ArithmeticKind,
-    effort: &Effort,
-) -> Result<(Rate, bool), StudyError> {
-    let mut scene = Scene { softening: 0.01, precision, arithmetic, ..Scene::default() };
+/// The scene of a way, and a Plummer sphere.
+fn sphere(count: usize, way: usize) -> (Scene, Bodies) {
+    let (precision, arithmetic) = WAYS[way];
+    let mut scene = Scene { softening: SHARP, precision, arithmetic, ..Scene::default() };
     (scene.start.kind, scene.start.count) = (StartKind::Plummer, count);
-    let all = Bodies::new(bodies(&scene.start, 0.01, 1.0).into_iter().map(|(m, r, v)| (r, v, m)));
-    let mut found = [vec![], vec![]];
-    let mut last = vec![];
-    for _ in 0..effort.rounds {
-        for (rates, threads) in found.iter_mut().zip(THREADS) {
-            let (rate, accelerations) = on_threads(threads, || {
-                let mut field = Attraction::new(&scene, &all)?;
-                let mut into = zeros(all.entries());
-                field.asking(false, &never).acceleration(&all.position, &mut into).map_err(Failure::from)?;
-                let (begun, mut sweeps) = (Instant::now(), 0);
-                while begun.elapsed().as_secs_f64() < effort.seconds {
-                    field
-                        .asking(false, &never)
-                        .acceleration(&all.position, &mut into)
-                        .map_err(Failure::from)?;
-                    sweeps += 1;
-                }
-                let seconds = begun.elapsed().as_secs_f64() / f64::from(sweeps);
-                Ok((1e-9 * (count as f64).powi(2) / seconds, into))
-            })?;
-            rates.push(rate);
-            last.push(accelerations);
-        }
+    let all = Bodies::new(bodies(&scene.start, SHARP, 1.0).into_iter().map(|(m, r, v)| (r, v, m)));
+    (scene, all)
+}
+
+/// Times evaluations of the forces: number of bodies, place among [`WAYS`], seconds at least.
+fn forces(parameters: &serde_json::Value) -> Result<Reading, StudyError> {
+    let [count, way] = [0, 1].map(|at| parameters[at].as_u64().unwrap_or_default() as usize);
+    let (scene, all) = sphere(count, way);
+    let mut field = Attraction::new(&scene, &all)?;
+    let mut into = zeros(all.entries());
+    let mut sweep =
+        || field.asking(false, &never).acceleration(&all.position, &mut into).map_err(method::Failure::from);
+    sweep()?;
+    let (begun, mut sweeps) = (Instant::now(), 0);
+    while begun.elapsed().as_secs_f64() < parameters[2].as_f64().unwrap_or_default() {
+        sweep()?;
+        sweeps += 1;
     }
-    let same = last.windows(2).all(|pair| pair[0] == pair[1]);
+    let seconds = begun.elapsed().as_secs_f64();
+    Ok(Reading { work: f64::from(sweeps) * (count as f64).powi(2), seconds, ..Reading::default() })
+}
+
+/// Largest error of an acceleration over the largest acceleration, of the kernel for masses as it sees them, and with the rounding of
+/// masses where forces are in single precision; and whether two threads give the bits of one.
+fn errors(count: usize, way: usize) -> Result<([f64; 2], bool), StudyError> {
+    let (scene, all) = sphere(count, way);
+    let on = |threads: usize| {
+        on_threads(threads, || {
+            let mut into = zeros(all.entries());
+            let mut field = Attraction::new(&scene, &all)?;
+            field
+                .asking(false, &never)
+                .acceleration(&all.position, &mut into)
+                .map_err(method::Failure::from)?;
+            Ok(into)
+        })
+    };
+    let [one, two] = [on(1)?, on(2)?];
     let error = |is_rounded: bool| {
         let (mut largest, mut worst) = (0.0_f64, 0.0_f64);
         // Some bodies, spread over all.
@@ -157,17 +148,12 @@ fn rate(
             let expected = written_down(&all, body, scene.softening, is_rounded);
             for (axis, expected) in expected.into_iter().enumerate() {
                 largest = largest.max(expected.abs());
-                worst = worst.max((last[0][axis][body] - expected).abs());
+                worst = worst.max((one[axis][body] - expected).abs());
             }
         }
         worst / largest
     };
-    let error = [error(precision != Precision::F64), error(false)];
-    let rates = found.map(|rates| median(rates.into_iter()));
-    Ok((
-        Rate { precision: precision.word(), arithmetic: arithmetic.word(), bodies: count, rates, error },
-        same,
-    ))
+    Ok(([error(scene.precision != Precision::F64), error(false)], one == two))
 }
 
 /// The acceleration of a body, its partners one after the other and summed with the digits that additions lose (Neumaier);
@@ -198,20 +184,16 @@ fn energy(particles: &Particles, softening: f64) -> Result<f64, StudyError> {
     let position = [0, 1, 2].map(|axis| all.iter().map(|body| body.position[axis]).collect());
     let square = |body: &Particle| body.velocity.iter().map(|v| v * v).sum::<f64>();
     let kinetic: f64 = all.iter().map(|body| 0.5 * body.mass * square(body)).sum();
-    let potential = potential(&mass, &position, softening, &never).map_err(Failure::from)?;
+    let potential = potential(&mass, &position, softening, &never).map_err(method::Failure::from)?;
     Ok(kinetic + potential)
 }
 
-fn conserving_run(
-    arithmetic: ArithmeticKind,
-    precision: Precision,
-    steps: u64,
-) -> Result<Conserving, StudyError> {
+/// |ΔE/E| of a Plummer sphere that a leapfrog moves, after two units of time of so many steps each.
+fn energy_error((precision, arithmetic): (Precision, ArithmeticKind), steps: u64) -> Result<f64, StudyError> {
     let machine = Overrides::new().set(&PRECISION, precision).set(&ROOTS, arithmetic);
     let overrides = machine.set(&DT, 1.0 / steps as f64).set(&SOFTENING, SOFTENED);
     let mut running = Running::timed("plummer", &overrides)?;
     let begin = energy(&running.simulation.particles(), SOFTENED)?;
     running.steps(2 * steps)?;
-    let error = energy(&running.simulation.particles(), SOFTENED)? / begin - 1.0;
-    Ok(Conserving { arithmetic: arithmetic.word(), precision: precision.word(), steps, error: error.abs() })
+    Ok((energy(&running.simulation.particles(), SOFTENED)? / begin - 1.0).abs())
 }

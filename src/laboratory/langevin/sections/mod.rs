@@ -1,3 +1,0 @@
-//! What the studies say, as items of the report.
-
-pub mod sectors;
