@@ -107,7 +107,7 @@ fn machine_files_are_read_or_refused() {
 /// A host model with few entries, so that mutations meet every kind of entry.
 fn small_host() -> Vec<u8> {
     let mut model = default_model().unwrap();
-    model.steps.ns.retain(|name, _| name == "fast");
+    model.rates.retain(|name, _| name == "fast");
     model.to_toml().into_bytes()
 }
 

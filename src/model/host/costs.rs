@@ -93,7 +93,7 @@ pub fn charges(
 }
 
 /// By how much each of some points counts for a value: two neighbours share it, by the logarithm.
-pub(super) fn shares(points: &[f64], value: f64) -> Vec<f64> {
+fn shares(points: &[f64], value: f64) -> Vec<f64> {
     let mut shares = vec![0.0; points.len()];
     let Some(last) = points.len().checked_sub(1) else { return shares };
     let next = points.partition_point(|&at| at <= value).min(last);

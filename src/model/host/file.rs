@@ -67,12 +67,7 @@ impl HostModel {
             let what = format!("is \"{}\", but must be one of {}", self.instruction_set, sets.join(", "));
             return table.wrong_at("instruction_set", format!("`instruction_set` {what}"));
         }
-        let lists = [
-            ("footprints", &self.footprints),
-            ("steps.discs", &self.steps.discs),
-            ("steps.occupancies", &self.steps.occupancies),
-        ];
-        for (path, list) in lists {
+        for (path, list) in [("footprints", &self.footprints[..]), ("discs", &self.discs)] {
             if list.first().is_none_or(|&first| first <= 0.0) || list.windows(2).any(|two| two[0] >= two[1]) {
                 return table.wrong_at(path, format!("`{path}` must be positive and rise"));
             }
@@ -82,12 +77,6 @@ impl HostModel {
             let what =
                 format!("has {of} prices of a byte, but there are {} footprints", self.footprints.len());
             return table.wrong_at("programs", format!("`programs` {what}"));
-        }
-        let (rows, columns) = (self.steps.discs.len(), self.steps.occupancies.len());
-        let mut grids = self.steps.ns.values().flat_map(|of| of.values()).flat_map(|of| of.values());
-        if grids.any(|grid| grid.len() != rows || grid.iter().any(|row| row.len() != columns)) {
-            let what = format!("must have {rows} rows of {columns} numbers, as discs and occupancies");
-            return table.wrong_at("steps.ns", format!("`steps.ns` {what}"));
         }
         Some(self)
     }
@@ -120,7 +109,8 @@ const HEADING: &str = "\
 # programs   prices of a run of a program, of the start of a pass, of an operation of an element, of one through an index vector in
 #            addition, and of a byte by how many bytes are gone over before it is visited again; interpreted and in a compiled loop;
 #            fitted to the programs of the lattice method on drill scenes
-# steps      phases of steps whose work depends on the data, on drill scenes: a row for each number of discs, in it each occupancy
+# rates      work whose amount depends on the data, by method, phase and precision: a step, disc, cell, candidate, contact, making of
+#            lists, disc whose lists are rebuilt, entry of these
 ";
 
 /// Digits that a number is written with.

@@ -1,15 +1,15 @@
 //! Today's hosts, in one line for every execution: `t = start-ups + operations × time + bytes × time of their level`. Operations are
-//! charged alike, but for those through an index vector; bytes by how much the program goes over before it visits them again. A step
-//! whose work depends on the data is looked up among steps that were timed.
+//! charged alike, but for those through an index vector; bytes by how much the program goes over before it visits them again. Work
+//! whose amount depends on the data is charged by units of it.
 
 mod costs;
 mod file;
 mod model;
 mod out_of_range;
-mod steps;
+mod rates;
 
 pub use costs::{Around, Charges, Costs, LaneCosts, charges};
 pub use file::{FORMAT, default_model};
 pub use model::{HostModel, Measured};
 pub use out_of_range::OutOfRange;
-pub use steps::Steps;
+pub use rates::{Amounts, MAKING, Rates, Units, phase};

@@ -2,7 +2,7 @@
 
 use super::costs::{Around, LaneCosts, charges};
 use super::out_of_range::OutOfRange;
-use super::steps::Steps;
+use super::rates::{Amounts, Rates, phase};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use stripmine_kernels::Execution;
@@ -85,8 +85,10 @@ pub struct HostModel {
     pub measured: Measured,
     /// Prices of programs by the element type of the lanes.
     pub programs: BTreeMap<String, LaneCosts>,
-    /// Steps whose work depends on the data.
-    pub steps: Steps,
+    /// Fewest and most discs of the steps that rates were fitted to.
+    pub discs: [f64; 2],
+    /// Work whose amount depends on the data, by method.
+    pub rates: BTreeMap<String, Rates>,
 }
 
 impl HostModel {
@@ -110,6 +112,23 @@ impl HostModel {
             return Err(OutOfRange::Length { n, shortest, longest });
         }
         Ok(())
+    }
+
+    /// Nanoseconds of a phase of a method whose work depends on the data.
+    ///
+    /// # Errors
+    /// [`OutOfRange`] where nothing was measured that could say.
+    pub fn rated(
+        &self,
+        (method, name, precision): (&str, &str, &str),
+        amounts: &Amounts,
+    ) -> Result<f64, OutOfRange> {
+        let ([fewest, most], discs) = (self.discs, amounts.discs);
+        if !(fewest..=most).contains(&discs) {
+            return Err(OutOfRange::Discs { discs, fewest, most });
+        }
+        let unmeasured = || OutOfRange::NotMeasured(format!("method {method}"));
+        phase(self.rates.get(method).ok_or_else(unmeasured)?, name, precision, amounts)
     }
 
     /// Nanoseconds of a run of a program over `n` elements, among the arrays of a step.
@@ -178,6 +197,8 @@ mod tests {
         assert_eq!(host().program(&sums(2), 0, Execution::Eager, &around), Ok(0.0));
         let beyond = host().program(&sums(2), 1001, Execution::Eager, &around);
         assert!(matches!(beyond, Err(OutOfRange::Length { n: 1001, .. })));
+        let beyond = host().rated(("fast", "index", "f64"), &Amounts { discs: 9.0, ..Amounts::default() });
+        assert_eq!(beyond, Err(OutOfRange::Discs { discs: 9.0, fewest: 0.0, most: 0.0 }));
     }
 
     /// One sample has no spread, whatever the load; a load above the free cores is no quiet machine.

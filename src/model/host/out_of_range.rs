@@ -16,19 +16,17 @@ pub enum OutOfRange {
         /// Longest vectors.
         longest: usize,
     },
-    /// More or fewer discs, or another density, than those that were measured.
+    /// More or fewer discs than those that were measured.
     #[error(
-        "{value} {what} lie outside the calibrated range of {} to {}: ask for another number of particles, or another density",
-        ends[0],
-        ends[1]
+        "{discs} discs lie outside the calibrated range of {fewest} to {most}: ask for another number of particles"
     )]
     Discs {
-        /// What is counted.
-        what: &'static str,
-        /// How many are asked for.
-        value: f64,
-        /// Fewest and most.
-        ends: [f64; 2],
+        /// Discs asked for.
+        discs: f64,
+        /// Fewest discs.
+        fewest: f64,
+        /// Most discs.
+        most: f64,
     },
     /// An execution, precision or program that was not measured.
     #[error("{0} was not calibrated")]

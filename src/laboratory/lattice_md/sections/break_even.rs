@@ -145,7 +145,7 @@ mod tests {
         let sheets = vec![sheet(false, [[2.0, 1.0]; 3]), sheet(true, [[2.0, 1.0], [2.0, 1.0], [1.0, 1.5]])];
         let answer = |calibrated: Calibrated| {
             let model = calibrated.model_of("A CPU");
-            section(&Atlas { model, lists: vec![], sheets: sheets.clone() }, "").answer
+            section(&Atlas { model, lists: vec![], fast_lists: vec![], sheets: sheets.clone() }, "").answer
         };
         let shipped = answer(Calibrated::Shipped);
         let begin = "By the shipped model of A CPU the cheapest method is named at 2 of 3 places measured on this host; one that always names \

@@ -4,10 +4,10 @@
 use super::StudyError;
 use super::density_cost::{ListFigures, grid, list_figures};
 use super::model_validation::Calibrated;
-use super::phase_times::{FAST, FAST_LISTS, LISTS, PhaseTimes, Run, Sampling, phase_times};
+use super::phase_times::{FAST, FAST_LISTS, HALF_MASK, LISTS, PhaseTimes, Run, Sampling, phase_times};
 use super::predicted_step::Step;
 use super::rounds::Bound;
-use crate::model::host::{HostModel, OutOfRange};
+use crate::model::host::{Amounts, HostModel, OutOfRange};
 use crate::model::machine::MachineModel;
 use serde::Serialize;
 use stripmine_kernels::Execution;
@@ -74,9 +74,11 @@ pub struct Sheet {
 pub struct Atlas {
     /// Whose model of a host it is.
     pub model: String,
-    /// What lists hold at each density, measured in a run of about a thousand discs: what clocks take for the number of candidates and
-    /// contacts everywhere.
+    /// What lists hold at each density, measured in a run of about a thousand discs: what the models take for the number of
+    /// candidates and contacts everywhere.
     pub lists: Vec<ListFigures>,
+    /// The same of the fast lists, whose skin is another: a step of that run.
+    pub fast_lists: Vec<Amounts>,
     /// The sheets.
     pub sheets: Vec<Sheet>,
 }
@@ -158,6 +160,10 @@ pub fn atlas(
 ) -> Result<Atlas, AtlasError> {
     let lists: Vec<ListFigures> = OCCUPANCIES.map(list_figures).into_iter().collect::<Result<_, _>>()?;
     let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(MeasurementError::Threads)?;
+    let fast_lists: Vec<Amounts> = OCCUPANCIES
+        .iter()
+        .map(|&occupancy| alone.install(|| fast_list_amounts(occupancy)))
+        .collect::<Result<_, _>>()?;
     let mut sheets = vec![];
     for machine in machines {
         let places = grid(machine, &lists, &PARTICLES)?.into_iter();
@@ -178,11 +184,10 @@ pub fn atlas(
     let methods: Vec<String> = VARIANTS.iter().map(|(name, _)| (*name).to_owned()).collect();
     let mut predicted = vec![];
     for particles in PARTICLES {
-        for occupancy in OCCUPANCIES {
-            let costs =
-                VARIANTS.iter().map(|variant| predict(host, run(particles, occupancy, variant), variant.1));
+        for figures in lists.iter().zip(&fast_lists) {
+            let costs = VARIANTS.iter().map(|variant| predict(host, particles, figures, variant));
             let costs = costs.collect::<Result<_, AtlasError>>()?;
-            predicted.push(Place { particles, occupancy, costs });
+            predicted.push(Place { particles, occupancy: figures.0.occupancy, costs });
         }
     }
     sheets.push(Sheet {
@@ -223,23 +228,59 @@ pub fn atlas(
         methods,
         places,
     });
-    Ok(Atlas { model: calibrated.model_of(&host.title), lists, sheets })
+    Ok(Atlas { model: calibrated.model_of(&host.title), lists, fast_lists, sheets })
 }
 
 fn run(particles: usize, occupancy: f64, (name, _): &(&'static str, Option<Execution>)) -> Run {
     Run { particles, occupancy, precision: "f64", execution: name }
 }
 
-/// Nanoseconds of a step by the model.
-fn predict(host: &HostModel, run: Run, execution: Option<Execution>) -> Result<f64, AtlasError> {
-    let Some(execution) = execution else {
-        return Ok(run.predicted(host)?.into_iter().sum());
-    };
+/// What fast lists have to do in a step, in a run of about a thousand discs.
+fn fast_list_amounts(occupancy: f64) -> Result<Amounts, MeasurementError> {
+    let checked = run(1000, occupancy, &(FAST_LISTS, None)).scene(std::convert::identity)?;
+    let sampling = Sampling { equilibration: 200, repeats: 2, particle_steps: 300_000, least_steps: 100 };
+    Ok(phase_times(&checked, &sampling)?.amounts)
+}
+
+/// Nanoseconds of a step by the model; candidates and contacts as in the run of about a thousand discs.
+fn predict(
+    host: &HostModel,
+    particles: usize,
+    (figures, fast_lists): (&ListFigures, &Amounts),
+    variant: &(&'static str, Option<Execution>),
+) -> Result<f64, AtlasError> {
+    let run = run(particles, figures.occupancy, variant);
     let checked = run.scene(std::convert::identity)?;
-    let model = model(&checked);
-    let lengths = Lengths::new(&model, checked.particles.grain_count(), checked.particles.len());
-    let step = Step::new(&programs(&model, checked.scene.machine.precision), &lengths);
-    Phase::ALL.iter().map(|&phase| Ok(step.phase(host, phase, execution)?)).sum()
+    let (model, discs) = (model(&checked), checked.particles.grain_count());
+    let lengths = Lengths::new(&model, discs, checked.particles.len());
+    if let Some(execution) = variant.1 {
+        let step = Step::new(&programs(&model, checked.scene.machine.precision), &lengths);
+        let phases = Phase::ALL.iter().map(|&phase| Ok(step.phase(host, phase, execution)?));
+        return phases.sum::<Result<f64, AtlasError>>();
+    }
+    let np = discs as f64;
+    let amounts = if run.execution == LISTS {
+        Amounts {
+            steps: 1.0,
+            discs: np,
+            cells: 0.0,
+            candidates: figures.candidates * np,
+            contacts: figures.contacts * np,
+            makings: 1.0 / figures.steps_a_list,
+            remade: np / figures.steps_a_list,
+            relisted: figures.candidates * np / figures.steps_a_list,
+        }
+    } else if run.execution == FAST_LISTS {
+        let of_so_many = fast_lists.with(&Amounts::default(), |amount, _| amount * np / fast_lists.discs);
+        Amounts { steps: 1.0, makings: fast_lists.makings, ..of_so_many }
+    } else {
+        // Each pair once; in the lists it is in both.
+        let contacts = 0.5 * figures.contacts * np;
+        let cells = lengths.cells as f64;
+        let candidates = HALF_MASK * np * np / cells;
+        Amounts { steps: 1.0, discs: np, cells, candidates, contacts, ..Amounts::default() }
+    };
+    Ok(run.predicted(host, &amounts)?.into_iter().sum())
 }
 
 /// The times of a step, measured once.
@@ -281,7 +322,7 @@ mod tests {
         measured
             .places
             .extend([sheet(true, [3.0, 4.0]), sheet(true, [9.0, 1.0])].into_iter().flat_map(|it| it.places));
-        let atlas = Atlas { model: String::new(), lists: vec![], sheets: vec![measured] };
+        let atlas = Atlas { model: String::new(), lists: vec![], fast_lists: vec![], sheets: vec![measured] };
         assert_eq!(atlas.baseline(), Some(("b", 2)));
     }
 
@@ -289,7 +330,7 @@ mod tests {
     fn a_wrong_winner_costs_what_it_is_dearer() {
         for (measured, cheapest, dearer) in [([10.0, 20.0], "a", 1.0), ([10.0, 5.0], "b", 2.0)] {
             let sheets = vec![sheet(false, [1.0, 2.0]), sheet(true, measured)];
-            let named = Atlas { model: String::new(), lists: vec![], sheets }.named();
+            let named = Atlas { model: String::new(), lists: vec![], fast_lists: vec![], sheets }.named();
             let [only] = named.as_slice() else { panic!("{named:?}") };
             assert_eq!((only.named.as_str(), only.cheapest.as_str(), only.dearer), ("a", cheapest, dearer));
         }

@@ -1,14 +1,16 @@
-//! How long is each phase of a step? Runs of the bench scene, timed phase by phase.
+//! How long is each phase of a step, and how much was there to do? Runs of the bench scene, timed phase by phase.
 
 use super::samples::Samples;
-use crate::model::host::{HostModel, OutOfRange};
+use crate::model::host::{Amounts, HostModel, OutOfRange};
 use std::f64::consts::PI;
 use std::time::Instant;
+use stripmine_kernels::ledger::Length;
 use stripmine_physics::method::Failure;
-use stripmine_physics::method::lattice_md::assemble;
+use stripmine_physics::method::lattice_md::Lengths;
 use stripmine_physics::method::lattice_md::keys::{CELL_EDGE, ENGINE, EXECUTION, SEARCH};
 use stripmine_physics::method::lattice_md::{Checked, Document};
 use stripmine_physics::method::lattice_md::{Engine, Phase};
+use stripmine_physics::method::lattice_md::{assemble, model};
 use stripmine_physics::method::throughput::MeasurementError;
 use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION, PRECISION};
 
@@ -33,6 +35,9 @@ pub const FAST: &str = "fast";
 /// The name of lists in the fast engine among them.
 pub const FAST_LISTS: &str = "fast lists";
 
+/// Places of half a mask of 5×5 cells.
+pub(super) const HALF_MASK: f64 = 12.0;
+
 impl Run {
     /// The scene, with further overrides.
     ///
@@ -56,19 +61,25 @@ impl Run {
         Ok(Document::load("bench", &further(overrides))?.check()?)
     }
 
-    /// Whether its work depends on the data.
-    pub fn depends_on_data(&self) -> bool {
-        [FAST, FAST_LISTS, LISTS].contains(&self.execution)
+    /// The name that a host model gives the rates of this run's method, if its work depends on the data: a lattice with few discs
+    /// is searched by another algorithm.
+    pub fn rates(&self) -> Option<&'static str> {
+        match self.execution {
+            LISTS => Some("lists"),
+            FAST_LISTS => Some("fast lists"),
+            FAST if self.occupancy < stripmine_kernels::sweep::fast::lattice::SPARSE => Some("fast, sparse"),
+            FAST => Some("fast"),
+            _ => None,
+        }
     }
 
     /// Nanoseconds of every phase by the model of a host, where the work depends on the data.
     ///
     /// # Errors
-    /// [`OutOfRange`] where no such step was timed.
-    pub fn predicted(&self, host: &HostModel) -> Result<Vec<f64>, OutOfRange> {
-        let at = (self.particles as f64, self.occupancy);
-        let of = |phase: &Phase| host.steps.phase((self.execution, self.precision, phase.name()), at);
-        Phase::ALL.iter().map(of).collect()
+    /// [`OutOfRange`] where the model does not reach.
+    pub fn predicted(&self, host: &HostModel, amounts: &Amounts) -> Result<Vec<f64>, OutOfRange> {
+        let method = self.rates().unwrap_or_default();
+        Phase::ALL.iter().map(|phase| host.rated((method, phase.name(), self.precision), amounts)).collect()
     }
 
     /// Whether it has neighbour lists.
@@ -84,8 +95,10 @@ impl Run {
 }
 
 /// What was measured.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct PhaseTimes {
+    /// What there was to do in a step, on average.
+    pub amounts: Amounts,
     /// Nanoseconds a step of every phase; without the making of lists.
     samples: [Samples; Phase::ALL.len()],
     /// Nanoseconds of each making of lists.
@@ -95,6 +108,16 @@ pub struct PhaseTimes {
 }
 
 impl PhaseTimes {
+    /// Nothing measured yet, of `discs` discs.
+    pub fn none(discs: usize) -> PhaseTimes {
+        PhaseTimes {
+            amounts: Amounts { steps: 1.0, discs: discs as f64, ..Amounts::default() },
+            samples: Default::default(),
+            makings: Samples::default(),
+            made: 0.0,
+        }
+    }
+
     /// What there is of a run, if there is something already, and the same run measured once more.
     #[must_use]
     pub fn with(before: Option<PhaseTimes>, more: PhaseTimes) -> PhaseTimes {
@@ -108,7 +131,9 @@ impl PhaseTimes {
     #[must_use]
     pub fn joined(mut self, more: PhaseTimes) -> PhaseTimes {
         let [a, b] = [&self, &more].map(|times| times.samples[Phase::Forces as usize].count() as f64);
-        self.made = (a * self.made + b * more.made) / (a + b);
+        let mean = |x: f64, y: f64| (a * x + b * y) / (a + b);
+        self.amounts = self.amounts.with(&more.amounts, mean);
+        self.made = mean(self.made, more.made);
         self.makings.join(&more.makings);
         for (samples, more) in self.samples.iter_mut().zip(&more.samples) {
             samples.join(more);
@@ -126,13 +151,13 @@ impl PhaseTimes {
     }
 
     /// Nanoseconds of a phase without the rebuilding of lists: the middle of the samples.
-    fn upkeep(&self, phase: Phase) -> f64 {
+    pub fn upkeep(&self, phase: Phase) -> f64 {
         let samples = &self.samples[phase as usize];
         if samples.count() > 0 { samples.middle() } else { 0.0 }
     }
 
     /// Nanoseconds of a making of lists; none if there was none.
-    fn making(&self) -> Option<f64> {
+    pub fn making(&self) -> Option<f64> {
         (self.makings.count() > 0).then(|| self.makings.middle())
     }
 }
@@ -160,20 +185,27 @@ pub struct Sampling {
 pub fn phase_times(checked: &Checked, sampling: &Sampling) -> Result<PhaseTimes, MeasurementError> {
     let discs = checked.particles.grain_count();
     let steps = sampling.repeats * (sampling.particle_steps / discs).clamp(sampling.least_steps, 2000);
-    let mut timing = Timing { method: assemble(checked)?, times: PhaseTimes::default(), steps: 0, made: 0 };
+    let mut timing = Timing {
+        method: assemble(checked)?,
+        times: PhaseTimes::none(discs),
+        found: Found::default(),
+        steps: 0,
+        made: 0,
+    };
     let step = timing.unnoticed(sampling.equilibration.max(1))?;
     let group = ((SHORT / step).floor() as usize).clamp(1, steps);
     for done in (0..steps).step_by(group) {
         timing.group(group.min(steps - done))?;
     }
-    timing.times.made = timing.made as f64 / timing.steps.max(1) as f64;
-    Ok(timing.times)
+    let cells = Lengths::new(&model(checked), discs, checked.particles.len()).cells;
+    Ok(timing.done(cells))
 }
 
 /// A run that is being timed.
 struct Timing {
     method: Box<dyn Engine>,
     times: PhaseTimes,
+    found: Found,
     /// Steps so far, and how often lists were made in them.
     steps: usize,
     made: usize,
@@ -182,7 +214,7 @@ struct Timing {
 impl Timing {
     /// Steps of which only the makings of lists count, for these are rare. Nanoseconds of the shortest.
     fn unnoticed(&mut self, count: usize) -> Result<f64, Failure> {
-        let ran = Ran::some(self.method.as_mut(), count)?;
+        let ran = Ran::some(self.method.as_mut(), count, &mut Found::default())?;
         self.times.take_makings(&ran);
         self.count(count, ran.makings.len());
         Ok(1e9 * ran.shortest)
@@ -195,10 +227,31 @@ impl Timing {
 
     /// A sample of some steps.
     fn group(&mut self, count: usize) -> Result<(), Failure> {
-        let ran = Ran::some(self.method.as_mut(), count)?;
+        let ran = Ran::some(self.method.as_mut(), count, &mut self.found)?;
         self.times.take_group(self.method.as_ref(), count, &ran);
         self.count(count, ran.makings.len());
         Ok(())
+    }
+
+    /// The times and amounts, on a lattice of `cells` cells if there is one.
+    fn done(self, cells: usize) -> PhaseTimes {
+        let Timing { method, mut times, found, steps, made, .. } = self;
+        let lists = method.lists().is_some();
+        let discs = times.amounts.discs;
+        times.made = made as f64 / steps.max(1) as f64;
+        let near = HALF_MASK * discs * discs / cells.max(1) as f64;
+        let candidates = if lists { found.mean(found.candidates) } else { near };
+        times.amounts = Amounts {
+            steps: 1.0,
+            discs,
+            cells: if lists { 0.0 } else { cells as f64 },
+            candidates,
+            contacts: found.mean(found.contacts),
+            makings: if lists { times.made } else { 0.0 },
+            remade: times.made * discs,
+            relisted: if lists { times.made * candidates } else { 0.0 },
+        };
+        times
     }
 }
 
@@ -211,7 +264,8 @@ struct Ran {
 }
 
 impl Ran {
-    fn some(method: &mut dyn Engine, count: usize) -> Result<Ran, Failure> {
+    /// Runs `count` steps and counts what each of them had to do.
+    fn some(method: &mut dyn Engine, count: usize, found: &mut Found) -> Result<Ran, Failure> {
         let made = |method: &dyn Engine| method.lists().map_or(0, |(_, made)| made);
         let (mut makings, mut shortest) = (vec![], f64::INFINITY);
         method.reset_timings();
@@ -220,6 +274,7 @@ impl Ran {
             let start = Instant::now();
             method.step()?;
             shortest = start.elapsed().as_secs_f64().min(shortest);
+            found.look(method);
             if made(method) > earlier {
                 makings.push(method.timings().seconds(Phase::Index) - seconds);
             }
@@ -249,23 +304,22 @@ impl PhaseTimes {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// Candidates and contacts of the steps that were counted.
+#[derive(Default)]
+struct Found {
+    steps: u64,
+    candidates: u64,
+    contacts: u64,
+}
 
-    /// Runs that scatter by a factor of a thousand, as on a busy machine, count by their middle.
-    #[test]
-    fn scattered_runs_do_not_drive_the_times_of_phases_away() {
-        let run = |ns: f64| {
-            let mut times = PhaseTimes { made: 0.5, ..PhaseTimes::default() };
-            for phase in [Phase::Forces, Phase::Index] {
-                times.samples[phase as usize].push(ns);
-            }
-            times.makings.push(10.0 * ns);
-            times
-        };
-        let all = [1.0, 900.0, 0.75, 40.0, 1.25].map(run).into_iter().reduce(PhaseTimes::joined).unwrap();
-        // Lists are made in every second step.
-        assert_eq!((all.of(Phase::Forces), all.of(Phase::Index)), (1.25, 0.5 * 12.5 + 1.25));
+impl Found {
+    fn look(&mut self, method: &dyn Engine) {
+        self.steps += 1;
+        self.candidates += method.lists().map_or(0, |(entries, _)| entries as u64);
+        self.contacts += method.length(Length::Pairs);
+    }
+
+    fn mean(&self, sum: u64) -> f64 {
+        sum as f64 / self.steps.max(1) as f64
     }
 }

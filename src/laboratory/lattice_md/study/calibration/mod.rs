@@ -109,7 +109,7 @@ impl Calibration {
             sweeps: 0,
             shapes: [register_shape::<f64>(set)?, register_shape::<f32>(set)?],
             programs: Programs::new()?,
-            scenes: Scenes::new(),
+            scenes: Scenes::new()?,
         })
     }
 
@@ -170,7 +170,8 @@ impl Calibration {
             footprints: FOOTPRINTS.to_vec(),
             measured,
             programs: of_lanes,
-            steps: scenes.steps(),
+            discs: scenes.discs(),
+            rates: scenes.rates(),
         }
     }
 }

@@ -1,18 +1,21 @@
-//! Steps whose work depends on the data: the fast engine and the neighbour lists, on drill scenes of their own.
+//! Work whose amount depends on the data: the fast engine and the neighbour lists, on drill scenes of their own.
 
+use super::fit::{Row, suited};
 use crate::laboratory::lattice_md::study::phase_times::{
     FAST, FAST_LISTS, LISTS, PhaseTimes, Run, Sampling, phase_times,
 };
-use crate::model::host::Steps;
+use crate::model::host::{Amounts, MAKING, Rates, Units};
+use std::collections::BTreeMap;
 use std::time::Instant;
+use stripmine_physics::method::lattice_md::Checked;
 use stripmine_physics::method::lattice_md::Phase;
 use stripmine_physics::method::throughput::MeasurementError;
 use stripmine_physics::scene::SEED;
 
 /// NP of the drill scenes: close enough to each other that no level of memory ends unseen between two of them.
 const PARTICLES: [usize; 6] = [60, 220, 900, 3300, 11_000, 32_000];
-/// ρ of the drill scenes. At 0.15 a lattice is searched by another algorithm.
-const OCCUPANCIES: [f64; 8] = [0.01, 0.02, 0.04, 0.08, 0.149, 0.151, 0.2, 0.26];
+/// ρ of the drill scenes, of every second NP these and of the others those; the first is sparse.
+const OCCUPANCIES: [[f64; 3]; 2] = [[0.05, 0.12, 0.26], [0.07, 0.17, 0.22]];
 const PRECISIONS: [&str; 3] = ["f64", "f32", "mixed"];
 
 /// Steps before the clock starts, and those that are timed: fewer of many discs, but enough for lists to be rebuilt.
@@ -22,55 +25,117 @@ fn sampling(run: &Run) -> Sampling {
     Sampling { equilibration, repeats: 1, particle_steps: 10_000, least_steps: 2 }
 }
 
-/// Every drill scene, and what was measured of it.
-pub(super) struct Scenes(Vec<(Run, Option<PhaseTimes>)>);
+/// A drill scene, and what was measured of it.
+type Scene = (Run, Checked, Option<PhaseTimes>);
+
+/// Every drill scene.
+pub(super) struct Scenes(Vec<Scene>);
 
 impl Scenes {
     /// Nothing measured yet.
-    pub(super) fn new() -> Scenes {
-        let places = PARTICLES.iter().flat_map(|&discs| OCCUPANCIES.map(|occupancy| (discs, occupancy)));
-        let runs = places.flat_map(|(particles, occupancy)| {
-            PRECISIONS.into_iter().flat_map(move |precision| {
-                [FAST, FAST_LISTS, LISTS].map(|execution| Run { particles, occupancy, precision, execution })
-            })
-        });
-        Scenes(runs.map(|run| (run, None)).collect())
+    pub(super) fn new() -> Result<Scenes, MeasurementError> {
+        let mut scenes = vec![];
+        for (particles, occupancies) in PARTICLES.into_iter().zip(OCCUPANCIES.iter().cycle()) {
+            for &occupancy in occupancies {
+                for precision in PRECISIONS {
+                    for execution in [FAST, FAST_LISTS, LISTS] {
+                        let run = Run { particles, occupancy, precision, execution };
+                        scenes.push((run, run.scene(|scene| scene.set(&SEED, 11_u64))?, None));
+                    }
+                }
+            }
+        }
+        Ok(Scenes(scenes))
     }
 
     /// Runs once more every scene of which there is nothing yet, and of the others those for which there is time until `end`.
     pub(super) fn sweep(&mut self, end: Instant) -> Result<(), MeasurementError> {
-        for (run, times) in &mut self.0 {
+        for (run, checked, times) in &mut self.0 {
             if times.is_none() || Instant::now() < end {
-                let more = phase_times(&run.scene(|scene| scene.set(&SEED, 11_u64))?, &sampling(run))?;
+                let more = phase_times(checked, &sampling(run))?;
                 *times = Some(PhaseTimes::with(times.take(), more));
             }
         }
         Ok(())
     }
 
-    /// The phases as they were timed.
-    pub(super) fn steps(&self) -> Steps {
-        let mut steps = Steps {
-            discs: PARTICLES.map(|discs| discs as f64).to_vec(),
-            occupancies: OCCUPANCIES.to_vec(),
-            ..Steps::default()
-        };
-        // In the order of the numbers of discs, and for each of these of the occupancies.
-        for (run, times) in &self.0 {
-            let precisions = steps.ns.entry(run.execution.to_owned()).or_default();
-            let phases = precisions.entry(run.precision.to_owned()).or_default();
-            for phase in Phase::ALL {
-                let ns = times.as_ref().map_or(0.0, |times| times.of(*phase));
-                let grid = phases.entry(phase.name().to_owned()).or_default();
-                if grid.last().is_none_or(|row| row.len() == OCCUPANCIES.len()) {
-                    grid.push(vec![]);
+    /// Fewest and most discs.
+    pub(super) fn discs(&self) -> [f64; 2] {
+        [PARTICLES[0], PARTICLES[PARTICLES.len() - 1]].map(|discs| discs as f64)
+    }
+
+    /// The rates of the methods.
+    pub(super) fn rates(&self) -> BTreeMap<String, Rates> {
+        let mut methods = BTreeMap::<String, Rates>::new();
+        for method in ["fast", "fast, sparse", "fast lists", "lists"] {
+            for precision in PRECISIONS {
+                let alike = self
+                    .0
+                    .iter()
+                    .filter(|(run, ..)| (run.rates(), run.precision) == (Some(method), precision));
+                let times: Vec<&PhaseTimes> = alike.filter_map(|(.., times)| times.as_ref()).collect();
+                let upkeep = Phase::ALL.iter().map(|&phase| {
+                    let done = |it: &&PhaseTimes| Some((charged(phase, &it.amounts), it.upkeep(phase)));
+                    (phase.name(), units(times.iter().filter_map(done)))
+                });
+                let making = |it: &&PhaseTimes| {
+                    let Amounts { discs: remade, candidates: relisted, .. } = it.amounts;
+                    Some((Amounts { makings: 1.0, remade, relisted, ..Amounts::default() }, it.making()?))
+                };
+                let making = (MAKING, units(times.iter().filter_map(making)));
+                for (phase, units) in upkeep.chain([making]) {
+                    let Some(units) = units else { continue };
+                    let rates = methods.entry(method.to_owned()).or_default();
+                    rates.entry(phase.to_owned()).or_default().insert(precision.to_owned(), units);
                 }
-                grid.last_mut().into_iter().for_each(|row| row.push(ns));
             }
         }
-        // Not every method has every phase.
-        let precisions = steps.ns.values_mut().flat_map(|of| of.values_mut());
-        precisions.for_each(|phases| phases.retain(|_, grid| grid.iter().flatten().any(|&ns| ns > 0.0)));
-        steps
+        methods
+    }
+}
+
+/// What each unit takes, by the amounts of runs and the nanoseconds that they took; none where there is no such work.
+fn units(done: impl Iterator<Item = (Amounts, f64)>) -> Option<Units> {
+    let rows = done.filter(|(_, ns)| *ns > 0.0);
+    let rows: Vec<_> = rows.map(|(amounts, ns)| Row { features: amounts.values(), ns }).collect();
+    (!rows.is_empty()).then(|| suited(&rows))
+}
+
+/// The units that a phase can depend on: others would only fit the noise.
+fn charged(phase: Phase, amounts: &Amounts) -> Amounts {
+    let Amounts { steps, discs, cells, candidates, contacts, .. } = *amounts;
+    let none = Amounts { steps, discs, ..Amounts::default() };
+    match phase {
+        Phase::Forces => Amounts { cells, candidates, contacts, ..none },
+        Phase::Index => Amounts { cells, ..none },
+        Phase::Predict | Phase::CorrectPredict | Phase::Halo | Phase::Correct => none,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Runs that scatter by a factor of a thousand, as on a busy machine, count by most of them; a unit without work costs nothing.
+    #[test]
+    fn scattered_runs_do_not_drive_units_away() {
+        let done = |(at, scatter): (usize, f64)| {
+            let amounts = Amounts { discs: 100.0 * 4f64.powi(at as i32), ..Amounts::default() };
+            (amounts, 2.0 * scatter * amounts.discs)
+        };
+        let scatter = [1.0, 900.0, 0.8, 1.1, 40.0, 1.2, 0.9].into_iter().enumerate();
+        let units = units(scatter.map(done)).unwrap();
+        assert!((1.0..4.0).contains(&units[1]), "{units:?}");
+        assert_eq!(units.iter().filter(|unit| **unit > 0.0).count(), 1);
+        assert_eq!(super::units(std::iter::empty()), None);
+    }
+
+    #[test]
+    fn discs_and_contacts_are_told_apart() {
+        let done = |discs: f64, contacts: f64| {
+            (Amounts { discs, contacts, ..Amounts::default() }, 2.0 * discs + 5.0 * contacts)
+        };
+        let found = units([done(100.0, 10.0), done(100.0, 70.0), done(1000.0, 1.0)].into_iter()).unwrap();
+        assert!((found[1] - 2.0).abs() < 1e-3 && (found[4] - 5.0).abs() < 1e-3, "{found:?}");
     }
 }

@@ -150,13 +150,13 @@ pub fn model_validation(
     for run in &runs {
         let out = |cause| ValidationError::OutOfRange { case: run.name(), cause };
         host.admits(run.particles).map_err(out)?;
-        if run.depends_on_data() {
-            run.predicted(host).map_err(out)?;
+        if run.rates().is_some() {
+            run.predicted(host, &PhaseTimes::none(run.particles).amounts).map_err(out)?;
         }
     }
     let mut scenes = runs.into_iter().map(Scene::new).collect::<Result<Vec<_>, _>>()?;
     for scene in &scenes {
-        scene.predicted(host)?;
+        scene.programs(host)?;
     }
     let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(MeasurementError::Threads)?;
     alone.install(|| {
@@ -211,15 +211,15 @@ impl Scene {
         Ok(Scene { run, checked, step, times: None })
     }
 
-    /// Nanoseconds of every phase.
-    fn predicted(&self, host: &HostModel) -> Result<Vec<f64>, ValidationError> {
-        let predicted = match &self.step {
-            Some((step, execution)) => {
-                Phase::ALL.iter().map(|&phase| step.phase(host, phase, *execution)).collect()
-            }
-            None => self.run.predicted(host),
-        };
-        predicted.map_err(|cause| ValidationError::OutOfRange { case: self.run.name(), cause })
+    /// Nanoseconds of every phase of programs; none where work depends on the data.
+    fn programs(&self, host: &HostModel) -> Result<Option<Vec<f64>>, ValidationError> {
+        let Some((step, execution)) = &self.step else { return Ok(None) };
+        let phases = Phase::ALL.iter().map(|&phase| step.phase(host, phase, *execution));
+        phases.collect::<Result<_, _>>().map(Some).map_err(|cause| self.out(cause))
+    }
+
+    fn out(&self, cause: OutOfRange) -> ValidationError {
+        ValidationError::OutOfRange { case: self.run.name(), cause }
     }
 
     fn measure(&mut self, effort: &Effort) -> Result<(), MeasurementError> {
@@ -240,15 +240,19 @@ impl Scene {
     /// The phases and the whole step.
     fn cases(&self, host: &HostModel) -> Result<Vec<Case>, ValidationError> {
         let Some(times) = &self.times else { return Ok(vec![]) };
+        let predicted = match self.programs(host)? {
+            Some(phases) => phases,
+            None => self.run.predicted(host, &times.amounts).map_err(|cause| self.out(cause))?,
+        };
         let Run { particles, occupancy, precision, execution } = self.run;
         let place = format!("{precision}, NP = {particles}, ρ = {occupancy}");
-        let phases = Phase::ALL.iter().zip(self.predicted(host)?).map(|(&phase, predicted)| Case {
+        let phases = Phase::ALL.iter().zip(predicted).map(|(&phase, predicted)| Case {
             place: place.clone(),
             execution,
             phase: phase.name(),
             predicted,
             measured: times.of(phase),
-            depends_on_data: self.run.depends_on_data(),
+            depends_on_data: self.step.is_none(),
         });
         // Not every execution has every phase.
         let mut cases: Vec<Case> = phases.filter(|case| case.measured > 0.0).collect();
