@@ -198,7 +198,7 @@ impl Job<'_> {
         self.bar.set_message(format!("{}, about {}", item.name, lasting(share)));
         let (start, bar) = (Instant::now(), &self.bar);
         let progress = |part| bar.set_position(ticks(before + part * share));
-        let lab = Lab { progress: &progress, program: std::env::current_exe().ok() };
+        let lab = Lab::apart(&progress);
         let made = item.make(&lab, self.effort)?;
         self.before.set(before + share);
         let seconds = start.elapsed().as_secs_f64();

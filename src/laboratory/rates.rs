@@ -29,7 +29,8 @@ pub struct Spread {
 }
 
 impl Spread {
-    fn of(values: impl Iterator<Item = f64>) -> Spread {
+    /// Of the values of processes.
+    pub fn of(values: impl Iterator<Item = f64>) -> Spread {
         let values: Vec<f64> = values.collect();
         let least = |sign: f64| sign * values.iter().map(|value| sign * value).fold(f64::INFINITY, f64::min);
         Spread { median: median(values.iter().copied()), range: [1.0, -1.0].map(least) }
@@ -50,6 +51,11 @@ pub struct Measured {
 }
 
 impl Measured {
+    /// A case without labels.
+    pub fn of(readings: impl IntoIterator<Item = Reading>) -> Measured {
+        Measured { labels: vec![], readings: readings.into_iter().collect() }
+    }
+
     fn each(&self, of: impl Fn(&Reading) -> f64) -> Spread {
         Spread::of(self.readings.iter().map(of))
     }
@@ -116,7 +122,7 @@ fn rounds(
     progress: &dyn Fn(f64),
     mut round: impl FnMut(&[&Case], &mut dyn FnMut(Reading)) -> Result<(), Failed>,
 ) -> Result<Vec<Measured>, Failure> {
-    let labelled = |case: &Case| Measured { labels: case.labels.clone(), readings: vec![] };
+    let labelled = |case: &Case| Measured { labels: case.labels.clone(), ..Measured::of([]) };
     let mut all: Vec<Measured> = cases.iter().map(labelled).collect();
     let rounds = if cases.is_empty() { 0 } else { PROCESSES };
     for number in 0..rounds {
@@ -140,12 +146,9 @@ fn rounds(
 
 /// Order of the cases in a round: each begins elsewhere, and every second one runs backwards.
 fn order(cases: usize, round: usize) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..cases).collect();
-    order.rotate_left(round * cases / PROCESSES);
-    if round % 2 == 1 {
-        order.reverse();
-    }
-    order
+    let start = round * cases / PROCESSES;
+    let place = |step: usize| if round % 2 == 1 { start + cases - step } else { start + step };
+    (0..cases).map(|step| place(step) % cases).collect()
 }
 
 #[cfg(test)]

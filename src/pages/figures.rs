@@ -248,25 +248,38 @@ fn series(spec: &SeriesSpec, next: usize, fill: &Filling<'_>) -> Result<Vec<Seri
     Ok(all)
 }
 
-/// Cells in the order of their places; a place without a row is empty.
+/// Cells in the order of their places: numbers rise, words keep their order. A place without a row is empty.
 fn mapped(spec: &MapSpec, [x, y]: [Axis; 2], fill: &Filling<'_>) -> Result<Map, PageError> {
     let frame = fill.frame(&spec.from)?;
     let rows = Rows { frame, fill };
     let mut cells = vec![];
     for row in 0..frame.rows.len() {
-        if let (Some(x), Some(y)) = (rows.number(&spec.x, row)?, rows.number(&spec.y, row)?) {
-            cells.push(([x, y], rows.number(&spec.value, row)?.unwrap_or(f64::NAN)));
+        let place = [rows.value(&spec.x, row)?, rows.value(&spec.y, row)?];
+        if place.iter().all(|it| !it.is_none()) {
+            cells.push((place, rows.number(&spec.value, row)?.unwrap_or(f64::NAN)));
         }
     }
-    let places = |axis: usize| {
-        let mut all: Vec<f64> = cells.iter().map(|(place, _)| place[axis]).collect();
-        all.sort_by(f64::total_cmp);
-        all.dedup();
-        all
+    let along = |axis: usize, drawn: Axis, text: &Text| {
+        let mut all: Vec<Value> = vec![];
+        for (place, _) in &cells {
+            if !all.contains(&place[axis]) {
+                all.push(place[axis].clone());
+            }
+        }
+        if all.iter().any(|it| it.kind() == ValueKind::String) {
+            return Ok((Axis::names(&drawn.label, all.iter().map(Value::to_string)), all));
+        }
+        let numbers = all.iter().map(number).collect::<Result<Vec<_>, String>>();
+        numbers.map_err(|cause| fill.refused(text.span().start, cause))?;
+        all.sort();
+        Ok((drawn, all))
     };
-    let [across, up] = [places(0), places(1)];
-    let at = |x: f64, y: f64| cells.iter().find(|(place, _)| *place == [x, y]).map_or(f64::NAN, |it| it.1);
-    let rows = up.iter().map(|y| across.iter().map(|x| at(*x, *y)).collect()).collect();
+    let (x, across) = along(0, x, &spec.x)?;
+    let (y, up) = along(1, y, &spec.y)?;
+    let at = |x: &Value, y: &Value| {
+        cells.iter().find(|(place, _)| place[0] == *x && place[1] == *y).map_or(f64::NAN, |it| it.1)
+    };
+    let rows = up.iter().map(|y| across.iter().map(|x| at(x, y)).collect()).collect();
     Ok(Map { x, y, value: axis(&spec.shade, fill)?, rows })
 }
 

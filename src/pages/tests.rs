@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::frame::Rows;
+use crate::report::figure::Axis;
 
 const TEMPLATE: &str = r#"+++
 title = "Errors"
@@ -76,6 +77,19 @@ fn a_figure_is_repeated() {
     let [Picture::Chart(a), Picture::Chart(b)] = [&a.picture, &b.picture] else { panic!("no charts") };
     assert_eq!((a.series.len(), a.series[0].points.len(), b.series[0].points.len()), (1, 2, 1));
     assert_ne!(a.x.scale, b.x.scale);
+}
+
+/// Places of a map are numbers that rise, or words in the order of the rows; a place without a row is empty.
+#[test]
+fn a_map_has_a_cell_for_each_row() {
+    let map = "map = { from = \"errors\", x = \"steps\", y = \"scheme\", value = \"error\", shade = { label = \"error\" } }";
+    let from = TEMPLATE.find("series = [").unwrap();
+    let to = TEMPLATE.find("\n[[table]]").unwrap();
+    let section = filled(&TEMPLATE.replace(&TEMPLATE[from..to], &format!("{map}\n"))).unwrap();
+    let Picture::Map(map) = &section.figures[0].picture else { panic!("no map") };
+    assert_eq!(map.y, Axis::names("error", ["a", "b"]));
+    assert_eq!(map.rows[0][..2], [1.0, 0.5]);
+    assert!(map.rows[0][2].is_nan() && map.rows[1][2] == 0.25);
 }
 
 #[test]

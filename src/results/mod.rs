@@ -39,6 +39,11 @@ impl<'p> Lab<'p> {
     pub fn here(progress: Progress<'p>) -> Lab<'p> {
         Lab { progress, program: None }
     }
+
+    /// Surroundings in which processes of their own measure.
+    pub fn apart(progress: Progress<'p>) -> Lab<'p> {
+        Lab { progress, program: std::env::current_exe().ok() }
+    }
 }
 
 /// Size of a study.

@@ -1,14 +1,14 @@
 //! Lattice MD of granular discs, BP93: what is measured and shown beside a run.
 
 mod items;
-pub mod sections;
 pub mod study;
 mod verbs;
 
 use super::Laboratory;
 use items::ITEMS;
+use study::printed;
 use verbs::{CHARTS, VERBS};
 
 /// Items, verbs and charts.
 pub(super) static LABORATORY: Laboratory =
-    Laboratory { method: "lattice-md", items: ITEMS, verbs: VERBS, charts: CHARTS, works: &[] };
+    Laboratory { method: "lattice-md", items: ITEMS, verbs: VERBS, charts: CHARTS, works: &[printed::EAGER] };

@@ -159,28 +159,6 @@ fn spread_by_density(lists: &[Curve]) -> Option<f64> {
     ratios.reduce(f64::max)
 }
 
-/// NP, ρ and the clock periods of a step, on the lattice and with lists, wherever there is a lattice.
-///
-/// # Errors
-/// [`StudyError`] never for numbers of particles and occupancies that make lattices.
-pub(super) fn grid(
-    machine: &MachineModel,
-    lists: &[ListFigures],
-    particles: &[usize],
-) -> Result<Vec<(usize, f64, [f64; 2])>, StudyError> {
-    let model = Model::of(machine)?;
-    let mut costs = vec![];
-    for figures in lists {
-        for &particles in particles {
-            let cells = (particles as f64 / figures.occupancy).ceil() as usize;
-            let [vector, list] =
-                [model.step(particles, cells)?.counted, model.list_cost(particles, figures).counted];
-            costs.push((particles, figures.occupancy, [vector, list]));
-        }
-    }
-    Ok(costs)
-}
-
 /// NP of every curve: five a decade.
 fn particles() -> impl Iterator<Item = usize> {
     (5..=25).map(|fifth| 10f64.powf(f64::from(fifth) / 5.0).round() as usize)

@@ -1,7 +1,6 @@
 //! The classes of the errors of studies, for a user.
 
 use super::StudyError;
-use super::break_even::AtlasError;
 use super::calibration::CalibrationError;
 use super::efficiency_table::QuestionError;
 use super::model_validation::ValidationError;
@@ -52,24 +51,6 @@ impl Reported for ValidationError {
             ValidationError::Measurement(error) => Some(error),
             ValidationError::Calibration(error) => Some(error),
             ValidationError::OutOfRange { .. } => None,
-        }
-    }
-}
-
-impl Reported for AtlasError {
-    fn class(&self) -> Class {
-        match self {
-            AtlasError::OutOfRange(_) => Class::Precondition,
-            AtlasError::Study(error) => error.class(),
-            AtlasError::Measurement(error) => error.class(),
-        }
-    }
-
-    fn passed_on(&self) -> Option<&dyn Reported> {
-        match self {
-            AtlasError::Study(error) => Some(error),
-            AtlasError::Measurement(error) => Some(error),
-            AtlasError::OutOfRange(_) => None,
         }
     }
 }

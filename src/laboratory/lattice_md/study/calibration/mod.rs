@@ -7,18 +7,16 @@ mod scenes;
 
 use super::samples::Samples;
 use crate::model::host::{Costs, FORMAT, HostModel, LaneCosts, Measured};
-use crate::results::Progress;
 use crate::statistics::median;
 use fit::suited;
 use programs::{FOOTPRINTS, LANES, LONGEST, Programs};
 use scenes::Scenes;
-use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::tape::register_shape;
 use stripmine_kernels::isa::ProgramError;
 use stripmine_physics::method::throughput::MeasurementError;
-use stripmine_physics::origin::{self, load_average};
+use stripmine_physics::origin::load_average;
 
 /// How much is measured.
 #[derive(Clone, Copy, Debug)]
@@ -68,19 +66,6 @@ pub fn calibrate(
         calibration.measure(effort.seconds, &progress)?;
         Ok(calibration.model())
     })
-}
-
-/// The model of this host, calibrated by the first item that asks for it.
-///
-/// # Errors
-/// As of [`calibrate`].
-pub fn this_host(progress: Progress<'_>) -> Result<&'static HostModel, CalibrationError> {
-    static MODEL: OnceLock<HostModel> = OnceLock::new();
-    if let Some(known) = MODEL.get() {
-        return Ok(known);
-    }
-    let model = calibrate(origin::host(), InstructionSet::best(), Effort { seconds: 25.0 }, progress)?;
-    Ok(MODEL.get_or_init(|| model))
 }
 
 /// A calibration under way.

@@ -4,7 +4,7 @@
 mod errors;
 mod strangers;
 
-use super::calibration::{CalibrationError, this_host};
+use super::calibration::{self, CalibrationError, calibrate};
 use super::phase_times::{FAST, FAST_LISTS, LISTS, PhaseTimes, Run, Sampling, phase_times};
 use super::predicted_step::Step;
 use super::rounds::Bound;
@@ -15,9 +15,10 @@ use crate::results::{Lab, Made, Size};
 use errors::Case;
 use std::time::Duration;
 use strangers::strangers;
-use stripmine_kernels::Execution;
+use stripmine_kernels::{Execution, InstructionSet};
 use stripmine_physics::method::lattice_md::{Checked, Lengths, Phase, model, programs};
 use stripmine_physics::method::throughput::MeasurementError;
+use stripmine_physics::origin;
 
 /// How much is measured.
 #[derive(Clone, Debug)]
@@ -109,10 +110,12 @@ pub fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
             model_validation(&default_model()?, Calibrated::Shipped, &effort, progress)?
         }
         Size::Full | Size::All => {
-            let host = this_host(&|share| progress(0.5 * share))?;
+            let effort_of_calibration = calibration::Effort { seconds: 25.0 };
+            let set = InstructionSet::best();
+            let host = calibrate(origin::host(), set, effort_of_calibration, |share| progress(0.5 * share))?;
             let rounds = Bound { most: 6, within: Some(Duration::from_secs(15)) };
             let effort = effort(&[150, 4000], &[0.072, 0.24], rounds);
-            model_validation(host, Calibrated::Now, &effort, |share| progress(0.5 + 0.5 * share))?
+            model_validation(&host, Calibrated::Now, &effort, |share| progress(0.5 + 0.5 * share))?
         }
     })
 }

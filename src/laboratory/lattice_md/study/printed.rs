@@ -1,0 +1,427 @@
+//! The printed text on this host: NOP·(n + D) against wall time part by part, and whole steps from the CRAY's way to today's engine.
+
+use super::density_cost::CEILING;
+use super::efficiency_table::{Choice, SOURCES_PARTS, counting_model};
+use super::samples::Samples;
+use crate::console::Failure;
+use crate::frame::{Cell, Frame, Rows};
+use crate::laboratory::rates::{self, Case, Measured, Own, Reading, Spread, rates};
+use crate::results::{Lab, Made, Size};
+use crate::study::StudyError;
+use rand::RngExt;
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+use stripmine_kernels::backend::tape::{Outlines, Place};
+use stripmine_kernels::isa::Array;
+use stripmine_kernels::noise::{Purpose, Stream};
+use stripmine_kernels::sweep::lattice::ShapeError;
+use stripmine_kernels::{Execution, InstructionSet};
+use stripmine_physics::method::lattice_md::keys::{CELL_EDGE, COHESIONLESS, ENGINE, EXECUTION, SEARCH, TEXT};
+use stripmine_physics::method::lattice_md::options::{By, EngineChoice};
+use stripmine_physics::method::lattice_md::{
+    Arrays, Model, Part, ProgramText, StepProgram, execute, programs,
+};
+use stripmine_physics::method::throughput::MeasurementError;
+use stripmine_physics::particles::{Kind, Particle, Particles, in_space};
+use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION, Precision};
+
+/// ρ of the measurements over n.
+const OCCUPANCY: f64 = 0.25;
+/// LMAX of the measurements over ρ.
+const CELLS: usize = 10_000;
+/// Share of the line within which it holds.
+const HOLDS: f64 = 0.1;
+/// ρ of the scene whose steps are compared.
+const SCENE: f64 = 0.2;
+
+/// LMAX of the measurements over n: short vectors for the line, up to the first cache; long ones for where it breaks.
+const SHORT: [usize; 9] = [25, 49, 100, 170, 290, 500, 1000, CELLS, 100_000];
+const LONG: [usize; 5] = [2000, 5000, 30_000, 300_000, 1_000_000];
+
+/// Name of a way to run the scene, its change against the one before, and its keys.
+type Way = (&'static str, &'static str, fn(Overrides) -> Overrides);
+
+/// From 1993 to today, each one change further.
+const WAYS: [Way; 6] = [
+    ("printed, eager", "the CRAY's way: every instruction a pass over the whole lattice", |scene| {
+        on_narrow_cells(scene, ProgramText::Printed, "eager")
+    }),
+    ("printed, strips of 256", "strip-mining: passes stay in the first cache", |scene| {
+        on_narrow_cells(scene, ProgramText::Printed, "strip:256")
+    }),
+    ("printed, chained", "registers: every operation of an element before the next element", |scene| {
+        on_narrow_cells(scene, ProgramText::Printed, "chained")
+    }),
+    (
+        "ours, chained",
+        "our text: a select for the products, inverse masses, no Test; scaled derivatives; positions relative to the cell",
+        |scene| on_narrow_cells(scene, ProgramText::Ours, "chained"),
+    ),
+    ("ours, chained, largest cells", "the largest cells that the geometry allows", |scene| {
+        scene.set(&TEXT, ProgramText::Ours).set(&EXECUTION, "chained")
+    }),
+    (FAST, "half the pairs, contacts first: the law for contacts only, each once", |scene| {
+        scene.set(&ENGINE, EngineChoice::Fast).set(&SEARCH, By::Lattice)
+    }),
+];
+
+const FAST: &str = "fast lattice";
+
+/// The programs of a text on cells of the paper's size.
+fn on_narrow_cells(scene: Overrides, text: ProgramText, execution: &str) -> Overrides {
+    scene.set(&TEXT, text).set(&CELL_EDGE, 0.5).set(&EXECUTION, execution)
+}
+
+/// Parts of the eager step.
+pub(crate) const EAGER: Own = Own {
+    name: "eager-parts",
+    measure: |parameters| {
+        let number = |name: &str| parameters[name].as_u64().unwrap_or(1) as usize;
+        let occupancy = parameters["occupancy"].as_f64().unwrap_or(OCCUPANCY);
+        let choice = match parameters["ours"] == true {
+            true => Choice::default(),
+            false => Choice::default().printed(),
+        };
+        Ok(eager(number("cells"), occupancy, choice, number("samples"))?)
+    },
+};
+
+/// A part of the eager step on a lattice.
+struct Timed {
+    part: &'static str,
+    cells: usize,
+    occupancy: f64,
+    /// NP or the cells that are swept.
+    n: usize,
+    nop: u64,
+    /// Nanoseconds of each process.
+    each: Vec<f64>,
+}
+
+impl Timed {
+    fn of(part: &'static str, cells: usize, occupancy: f64, measured: &Measured) -> Timed {
+        let count = |kind: &str| measured.count(&format!("{kind} of {part}"));
+        let each = measured.readings.iter().map(|it| 1e9 * it.parts.get(part).copied().unwrap_or(f64::NAN));
+        let each = each.collect();
+        Timed { part, cells, occupancy, n: count("n") as usize, nop: count("NOP") as u64, each }
+    }
+
+    fn ns(&self) -> Spread {
+        Spread::of(self.each.iter().copied())
+    }
+}
+
+/// NOP·(n + D) of a part on this host.
+struct Fitted {
+    part: &'static str,
+    nop: u64,
+    /// Nanoseconds of a clock period: what an element more costs an operation. The range is over processes, and over fits that leave
+    /// out one length.
+    period: Spread,
+    /// D, likewise.
+    depth: Spread,
+    /// The longest vectors at which the line is within [`HOLDS`].
+    holds_to: usize,
+    /// Bytes that a pass may touch again there: registers and arrays of all elements.
+    bytes: f64,
+    /// The largest difference from the line up to there, as a share.
+    worst: f64,
+    /// Measured time over that of the line at the longest vectors.
+    beyond: f64,
+}
+
+/// The study.
+///
+/// # Errors
+/// [`Failure`] if a scene breaks.
+pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
+    let (cells, occupancies, samples, discs): (Vec<usize>, &[f64], u64, usize) = match size {
+        Size::Quick => (SHORT.to_vec(), &[1.0], 3, 1000),
+        Size::Full | Size::All => ([&SHORT[..], &LONG].concat(), &[0.05, 0.1, 0.5, 1.0], 8, 10_000),
+    };
+    let over_n = cells.into_iter().map(|cells| (cells, OCCUPANCY, false));
+    let over_density = occupancies.iter().map(|&occupancy| (CELLS, occupancy, false));
+    let places: Vec<_> = over_n.chain(over_density).chain([(CELLS, OCCUPANCY, true)]).collect();
+    let parts = places.iter().map(|&(cells, occupancy, ours)| {
+        let parameters =
+            serde_json::json!({ "cells": cells, "occupancy": occupancy, "ours": ours, "samples": samples });
+        let occupancy = Cell::Number(occupancy, 2);
+        Case::own(&EAGER, parameters).label("cells", cells as u64).label("occupancy", occupancy)
+    });
+    let scene =
+        Overrides::new().set(&COUNT, discs).set(&PACKING_FRACTION, SCENE * PI).set(&COHESIONLESS, false);
+    let ways = WAYS.iter().map(|(name, _, set)| {
+        // Only what the fast engine does depends on the discs.
+        let warm_up = if *name == FAST { 200 } else { 2 };
+        let steps = (200_000 / discs).clamp(4, 200) as u64;
+        Case::steps("bench", &set(scene.clone()), warm_up, steps).for_seconds(0.1).label("way", *name)
+    });
+    let measured = rates(lab, &parts.chain(ways).collect::<Vec<_>>())?;
+    let (eager, ways) = measured.split_at(places.len());
+    let all = places.iter().zip(eager).filter(|((.., ours), _)| !ours);
+    let timed: Vec<Timed> = all
+        .flat_map(|(&(cells, occupancy, _), it)| {
+            SOURCES_PARTS.map(|part| Timed::of(part.name(), cells, occupancy, it))
+        })
+        .collect();
+    let fitted = SOURCES_PARTS.iter().map(|part| fit(part.name(), &timed));
+    let fitted =
+        fitted.collect::<Result<Vec<_>, _>>().map_err(|it| StudyError::from(MeasurementError::from(it)))?;
+    let frames = [over_vectors(&timed, &fitted), fits(&fitted), densities(&timed), prices(ways)];
+    let at = places.iter().position(|place| *place == (CELLS, OCCUPANCY, false));
+    let summary = Rows::of(at.map(|at| [&eager[at], &eager[eager.len() - 1]]))
+        .cell("printed text, eager (µs)", |[printed, _]| printed.cost().cell(1e6, 0))
+        .cell("our text, eager (µs)", |[_, ours]| ours.cost().cell(1e6, 0))
+        .count("discs", |_| discs)
+        .text("instruction set", |_| InstructionSet::best().name())
+        .frame("summary", "The eager step of both texts, and the scene of the development");
+    let made = Made::of(frames.into_iter().chain([summary])).with_seeds([1]);
+    Ok(Made { processes: Some(rates::PROCESSES), ..made })
+}
+
+/// Discs on a share of the cells at random, one a cell, almost at rest.
+fn scattered(model: &Model, occupancy: f64) -> Particles {
+    let mut random = Stream::new(1, Purpose::Placement, 0);
+    let mut discs = vec![];
+    for row in 0..model.shape.rows() {
+        for column in 0..model.shape.columns() {
+            if random.random::<f64>() >= occupancy {
+                continue;
+            }
+            let place = [column, row].map(|cell| cell as f64 + 0.02 + 0.96 * random.random::<f64>());
+            let at = [0, 1].map(|axis| model.frame.origin[axis] + place[axis] * model.frame.edge[axis]);
+            let velocity = [0, 1].map(|_| random.random::<f64>() - 0.5);
+            discs.push(Particle {
+                id: discs.len() as u32 + 1,
+                kind: Kind::Grain,
+                position: in_space(at),
+                velocity: in_space(velocity),
+                angle: 0.0,
+                omega: random.random::<f64>() - 0.5,
+                radius: 0.5,
+                mass: 1.0,
+            });
+        }
+    }
+    Particles::new(discs)
+}
+
+/// Every part of an eager step on a lattice of about a number of cells: medians of the samples. Nothing in it depends on the data, so the
+/// discs need not move: the step is so short that none leaves its cell.
+fn eager(cells: usize, occupancy: f64, choice: Choice, samples: usize) -> Result<Reading, MeasurementError> {
+    let model = Model { dt: 1e-9, ..counting_model(cells, choice)? };
+    let particles = scattered(&model, occupancy);
+    let mut arrays = Arrays::<f64, f64>::new(&model, &particles);
+    drop(particles);
+    let step = programs(&model, Precision::F64);
+    let is_there = |part: &Part| step.iter().any(|step| step.part == *part);
+    let parts: Vec<Part> = Part::ALL.iter().copied().filter(is_there).collect();
+    let mut all = vec![Samples::default(); parts.len()];
+    let set = InstructionSet::best();
+    // About 20 ms a sample on short lattices; of the longest, far beyond where the line holds, one.
+    let times = (3_000_000 / (cells * 40)).clamp(1, 200);
+    for _ in 0..(4_000_000 / cells / rates::PROCESSES).clamp(1, samples) {
+        Samples::take_in_turns(&mut all, times, |at| {
+            let (memory, lengths) = arrays.memory();
+            execute(&step, &parts[at..=at], &memory, lengths, Execution::Eager, set)
+        })?;
+    }
+    let mut reading = Reading { work: 1.0, ..Reading::default() };
+    for (part, samples) in parts.iter().zip(&all).filter(|(part, _)| SOURCES_PARTS.contains(part)) {
+        let own = || step.iter().filter(|program| program.part == *part);
+        let nop = |program: &StepProgram| -> u64 {
+            program.program.tally().iter().map(|(_, counts)| counts.total()).sum()
+        };
+        let n = own().next_back().map_or(0, |program| arrays.lengths().range(program.length).len());
+        let counts = [("n", n as f64), ("NOP", own().map(nop).sum::<u64>() as f64)];
+        let counts = counts.map(|(kind, count)| (format!("{kind} of {}", part.name()), count));
+        reading.counts.extend(counts);
+        reading.parts.insert(part.name().to_owned(), 1e-9 * samples.middle());
+    }
+    reading.seconds = reading.parts.values().sum();
+    Ok(reading)
+}
+
+/// The straight line through the shortest vectors, up to where it holds.
+fn fit(part: &'static str, timed: &[Timed]) -> Result<Fitted, ShapeError> {
+    let mut points: Vec<&Timed> =
+        timed.iter().filter(|timed| timed.part == part && timed.occupancy == OCCUPANCY).collect();
+    points.sort_by_key(|timed| timed.n);
+    let nop = points.first().map_or(1, |timed| timed.nop);
+    let over = |line: [f64; 2], timed: &Timed| {
+        timed.ns().median / (line[0] * (timed.n as f64 + line[1]) * nop as f64)
+    };
+    // Through the shortest, but for the one left out.
+    let line = |count: usize, left_out: Option<usize>, ns: &dyn Fn(&Timed) -> f64| {
+        let kept = points[..count].iter().enumerate().filter(|(at, _)| Some(*at) != left_out);
+        straight(&kept.map(|(_, timed)| (timed.n as f64, ns(timed) / nop as f64)).collect::<Vec<_>>())
+    };
+    let median = |timed: &Timed| timed.ns().median;
+    let worst = |count: usize| {
+        let line = line(count, None, &median);
+        points[..count].iter().map(|timed| (over(line, timed) - 1.0).abs()).fold(0.0, f64::max)
+    };
+    let held = (3..=points.len()).rev().find(|&count| worst(count) <= HOLDS).unwrap_or(points.len().min(3));
+    let middle = line(held, None, &median);
+    let processes = points.first().map_or(0, |timed| timed.each.len());
+    let of_processes = (0..processes).map(|at| line(held, None, &|timed: &Timed| timed.each[at]));
+    // Two points have a line that says nothing of the others.
+    let without = (0..held).filter(|_| held > 3).map(|at| line(held, Some(at), &median));
+    let others: Vec<[f64; 2]> = of_processes.chain(without).chain([middle]).collect();
+    let spread = |at: usize| Spread { median: middle[at], ..Spread::of(others.iter().map(|line| line[at])) };
+    let holds_to = points.get(held.saturating_sub(1)).map_or(0, |timed| timed.n);
+    Ok(Fitted {
+        part,
+        nop,
+        period: spread(0),
+        depth: spread(1),
+        holds_to,
+        bytes: holds_to as f64 * bytes_an_element(part)?,
+        worst: worst(held),
+        beyond: points.last().map_or(1.0, |timed| over(middle, timed)),
+    })
+}
+
+/// Slope τ and D of y = τ (x + D) by least squares of the relative differences.
+fn straight(points: &[(f64, f64)]) -> [f64; 2] {
+    let [mut w, mut wx, mut wxx, mut wy, mut wxy] = [0.0; 5];
+    for &(x, y) in points {
+        let weight = 1.0 / (y * y);
+        w += weight;
+        wx += weight * x;
+        wxx += weight * x * x;
+        wy += weight * y;
+        wxy += weight * x * y;
+    }
+    let slope = (w * wxy - wx * wy) / (w * wxx - wx * wx);
+    let at_zero = (wy - slope * wx) / w;
+    [slope, at_zero / slope]
+}
+
+/// Bytes of registers and arrays that the passes of a part hold for an element.
+fn bytes_an_element(part: &str) -> Result<f64, ShapeError> {
+    let model = counting_model(400, Choice::default().printed())?;
+    let of_part = programs(&model, Precision::F64).into_iter().filter(|step| step.part.name() == part);
+    let bytes = of_part.map(|step| {
+        let Outlines { registers, passes, .. } = step.program.outlines();
+        let mut arrays: Vec<Array> = vec![];
+        for place in passes.iter().flat_map(|pass| pass.reads.iter().chain(&pass.writes)) {
+            if let Place::Memory(from) | Place::Indexed(from) = place
+                && !arrays.contains(&from.array)
+            {
+                arrays.push(from.array);
+            }
+        }
+        8.0 * (registers[0] + arrays.len()) as f64 + 4.0 * registers[2] as f64
+    });
+    Ok(bytes.fold(0.0, f64::max))
+}
+
+/// Time an element and operation, with the line as far as it holds; no line of a part for which none holds.
+fn over_vectors(timed: &[Timed], fitted: &[Fitted]) -> Frame {
+    let of_part = |part: &str| fitted.iter().find(|fitted| fitted.part == part && fitted.worst <= HOLDS);
+    let line = |it: &Timed| {
+        let fit = of_part(it.part).filter(|fit| it.n <= fit.holds_to)?;
+        Some(fit.period.median * (it.n as f64 + fit.depth.median) / it.n as f64)
+    };
+    Rows::of(timed.iter().filter(|it| it.occupancy == OCCUPANCY))
+        .text("part", |it| it.part)
+        .count("n", |it| it.n)
+        .cell("an element and operation (ns)", |it| it.ns().cell(1.0 / (it.nop as f64 * it.n as f64), 4))
+        .number("line (ns)", 4, |it| line(it))
+        .count("processes", |it| it.each.len())
+        .frame("vectors", "Time an element and operation of the printed text, eager")
+}
+
+fn fits(fitted: &[Fitted]) -> Frame {
+    Rows::of(fitted)
+        .text("part", |fitted| fitted.part)
+        .count("NOP", |fitted| fitted.nop)
+        .cell("clock period (ns)", |fitted| fitted.period.cell(1.0, 3))
+        .cell("D", |fitted| fitted.depth.cell(1.0, 0))
+        .count("holds to n", |fitted| fitted.holds_to)
+        .number("registers and arrays there (kB)", 0, |fitted| fitted.bytes / 1e3)
+        .number("largest difference (%)", 1, |fitted| 100.0 * fitted.worst)
+        .number("times the line at the longest n", 2, |fitted| fitted.beyond)
+        .frame("fits", "NOP·(n + D) on this host, part by part")
+}
+
+fn densities(timed: &[Timed]) -> Frame {
+    let mut of_occupancy: BTreeMap<u64, Vec<&Timed>> = BTreeMap::new();
+    for it in timed.iter().filter(|it| it.cells == CELLS) {
+        of_occupancy.entry((1e6 * it.occupancy) as u64).or_default().push(it);
+    }
+    let mut rows = Rows::of(of_occupancy.into_values()).number("occupancy ρ", 2, |parts| parts[0].occupancy);
+    for (at, part) in SOURCES_PARTS.iter().enumerate() {
+        rows = rows.cell(format!("{} (µs)", part.name()), move |parts| parts[at].ns().cell(1e-3, 2));
+    }
+    rows.text("reachable", |parts| if parts[0].occupancy > CEILING { "no packing of discs" } else { "" })
+        .frame("densities", format!("The eager step over the occupancy, on {CELLS} cells"))
+}
+
+fn prices(ways: &[Measured]) -> Frame {
+    let first = &ways[0];
+    let before = std::iter::once(first).chain(ways);
+    Rows::of(WAYS.iter().zip(ways).zip(before).enumerate())
+        .count("step", |(at, _)| at + 1)
+        .text("way", |(_, (((name, ..), _), _))| *name)
+        .cell("ns a disc and step", |(_, ((_, own), _))| own.cost().cell(1e9, 1))
+        .number("times faster than the one before", 2, |(_, ((_, own), before))| own.over(before).median)
+        .number("times faster than the first", 1, |(_, ((_, own), _))| own.over(first).median)
+        .text("what changes", |(_, (((_, change, _), _), _))| *change)
+        .frame("prices", "What each step of the development made of one scene")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_gives_its_clock_period_and_depth() {
+        let points: Vec<(f64, f64)> = [10.0, 100.0, 1000.0, 1e5].map(|n| (n, 0.3 * (n + 20.0))).to_vec();
+        let [period, depth] = straight(&points);
+        assert!((period - 0.3).abs() < 1e-12 && (depth - 20.0).abs() < 1e-9, "{period} {depth}");
+    }
+
+    fn timed(ns: impl Fn(usize) -> f64) -> Vec<Timed> {
+        let one = |n: usize| {
+            let each = [0.99, 1.0, 1.01].map(|share| share * ns(n)).to_vec();
+            Timed { part: "forces", cells: n, occupancy: OCCUPANCY, n, nop: 100, each }
+        };
+        [100, 1000, 10_000, 100_000, 1_000_000].map(one).into()
+    }
+
+    /// A line that breaks at a cache is fitted below it only, and says by how much it is passed.
+    #[test]
+    fn the_fit_ends_where_the_line_breaks() {
+        let slow = |n| if n > 50_000 { 3.0 } else { 1.0 };
+        let timed = timed(|n| 100.0 * 0.2 * (n as f64 + 30.0) * slow(n));
+        let fitted = fit("forces", &timed).unwrap();
+        assert_eq!(fitted.holds_to, 10_000);
+        assert!((fitted.period.median - 0.2).abs() < 1e-9 && (fitted.depth.median - 30.0).abs() < 1e-6);
+        assert!(fitted.period.range[0] < 0.199 && fitted.period.range[1] > 0.201);
+        assert!((fitted.beyond - 3.0).abs() < 1e-6 && fitted.worst < 1e-9);
+    }
+
+    /// No line is drawn of a part for which none holds.
+    #[test]
+    fn a_line_that_fails_is_not_drawn() {
+        let drawn = |timed: &[Timed]| {
+            let frame = over_vectors(timed, &[fit("forces", timed).unwrap()]);
+            let at = frame.position("line").unwrap();
+            frame.rows.iter().filter(|row| matches!(row[at], crate::frame::Value::Number(_))).count()
+        };
+        assert_eq!(drawn(&timed(|n| 100.0 * (n as f64 + 30.0))), 5);
+        assert_eq!(drawn(&timed(|n| (n as f64).powi(3))), 0);
+    }
+
+    #[test]
+    fn every_part_of_the_sources_table_is_timed() {
+        let reading = eager(400, 0.5, Choice::default().printed(), 1).unwrap();
+        for part in SOURCES_PARTS.map(Part::name) {
+            let count = |kind: &str| reading.counts[&format!("{kind} of {part}")];
+            assert!(count("n") > 100.0 && count("NOP") > 10.0 && reading.parts[part] > 0.0, "{reading:?}");
+        }
+        assert!(bytes_an_element("forces").unwrap() > 100.0);
+    }
+}

@@ -1,0 +1,378 @@
+//! Which search is the fastest where: rates over particles, density, search, precision and threads, beside the methods of 1993.
+
+use crate::console::Failure;
+use crate::frame::{Cell, Frame, Rows};
+use crate::laboratory::rates::{self, Case, Measured, rates};
+use crate::results::{Lab, Made, Size};
+use crate::statistics::slope;
+use crate::study::StudyError;
+use std::f64::consts::PI;
+use stripmine_physics::method::lattice_md::Document;
+use stripmine_physics::method::lattice_md::keys::{
+    CELL_EDGE, COHESIONLESS, ENGINE, EXECUTION, INTEGRATOR, REBUILD, SEARCH, TEXT,
+};
+use stripmine_physics::method::lattice_md::options::{EngineChoice, IntegratorKind};
+use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION, PRECISION};
+use stripmine_physics::words::Words;
+
+const F64: &str = "f64";
+/// Precisions, the first of which is measured everywhere.
+const PRECISIONS: [&str; 3] = [F64, "mixed", "f32"];
+/// Searches of today, as scenes name them. The lattice comes first.
+const TODAY: [&str; 3] = ["lattice", "neighbor-list", "sectors"];
+const EAGER: &str = "printed lattice, eager";
+const CHAINED: &str = "lattice, chained";
+const ALL_PAIRS: &str = "printed lists of all pairs";
+/// Methods of 1993, and the lattice's programs as compiled loops.
+const PAPER: [&str; 3] = [EAGER, CHAINED, ALL_PAIRS];
+
+/// Grid of a size.
+struct Grid {
+    /// Discs and packing fractions, falling, of the searches of today.
+    discs: &'static [usize],
+    packing_fractions: &'static [f64],
+    /// Discs of which all precisions are compared; none of 0.
+    compared: usize,
+    /// Discs and packing fractions of several threads.
+    threads: (&'static [usize], &'static [f64]),
+    /// Discs of the methods of 1993 at the highest occupancy, and their occupancies at [`MIDDLE`] discs.
+    paper: (&'static [usize], &'static [f64]),
+    /// Discs and occupancies between which lattice and lists of 1993 break even.
+    break_even: (&'static [usize], &'static [f64]),
+    /// Seconds of a measurement, at least.
+    seconds: f64,
+}
+
+const MIDDLE: usize = 1000;
+/// Highest occupancy of the methods of 1993, on cells as wide as the radius.
+const DENSE: f64 = 0.25;
+
+const QUICK: Grid = Grid {
+    discs: &[3000],
+    packing_fractions: &[0.84, 0.3, 0.1],
+    compared: 0,
+    threads: (&[10_000], &[0.84]),
+    paper: (&[100, 1000], &[]),
+    break_even: (&[300, 3000], &[DENSE]),
+    seconds: 0.02,
+};
+
+const FULL: Grid = Grid {
+    discs: &[300, 3000, 10_000, 100_000],
+    packing_fractions: &[0.84, 0.8, 0.6, 0.3, 0.1, 0.03],
+    compared: 10_000,
+    threads: (&[10_000, 100_000], &[0.84, 0.3]),
+    paper: (&[100, 300, 1000, 3000, 10_000], &[0.01, 0.03, 0.06, 0.12]),
+    break_even: (&[300, 1000, 3000, 10_000, 20_000], &[0.06, 0.12, DENSE]),
+    seconds: 0.06,
+};
+
+/// A case of the grid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Place {
+    search: &'static str,
+    precision: &'static str,
+    /// Threads, where wall time counts.
+    threads: Option<usize>,
+    /// Discs asked for.
+    discs: usize,
+    packing_fraction: f64,
+}
+
+impl Place {
+    fn of(search: &'static str, discs: usize, packing_fraction: f64) -> Place {
+        Place { search, precision: F64, threads: None, discs, packing_fraction }
+    }
+
+    fn scene(self) -> Overrides {
+        let scene = Overrides::new().set(&COUNT, self.discs).set(&PACKING_FRACTION, self.packing_fraction);
+        let scene = scene.set(&PRECISION, self.precision);
+        // The paper has no clamp, and cells as wide as the radius.
+        let paper = |scene: Overrides, text: &str, execution: &str| {
+            let scene = scene.set(&TEXT, text).set(&EXECUTION, execution).set(&COHESIONLESS, false);
+            scene.set(&SEARCH, "lattice").set(&CELL_EDGE, 0.5)
+        };
+        match self.search {
+            EAGER => paper(scene, "printed", "eager"),
+            CHAINED => paper(scene, "ours", "chained"),
+            ALL_PAIRS => {
+                let scene = scene.set(&TEXT, "printed").set(&EXECUTION, "chained").set(&COHESIONLESS, false);
+                scene.set(&SEARCH, "neighbor-list").set(&REBUILD, "all-pairs")
+            }
+            search => fast(scene).set(&SEARCH, search),
+        }
+    }
+
+    /// Steps before the clock starts, and at least after: lists are remade several times, and a lattice takes every step alike.
+    fn steps(self) -> [u64; 2] {
+        let most = |particle_steps: usize| (particle_steps / self.discs) as u64;
+        match self.search {
+            EAGER | CHAINED => [2, 3],
+            ALL_PAIRS => [20, most(300_000).clamp(40, 400)],
+            _ => [most(6_000_000).clamp(20, 200), most(400_000).max(40)],
+        }
+    }
+
+    fn case(self, seconds: f64) -> Case {
+        let [warm_up, steps] = self.steps();
+        // As it was asked for.
+        let occupancy = (1e6 * self.packing_fraction / PI).round() / 1e6;
+        let case = Case::steps("bench", &self.scene(), warm_up, steps)
+            .for_seconds(seconds)
+            .label("search", self.search)
+            .label("precision", self.precision)
+            .label("discs", self.discs as u64)
+            .label("packing fraction", Cell::Number(self.packing_fraction, 3))
+            .label("occupancy ρ", Cell::Number(occupancy, 3));
+        match self.threads {
+            Some(threads) => case.label("threads", threads as u64).on_threads(threads),
+            None => case,
+        }
+    }
+}
+
+fn fast(scene: Overrides) -> Overrides {
+    scene.set(&ENGINE, EngineChoice::Fast).set(&INTEGRATOR, IntegratorKind::VelocityVerlet)
+}
+
+/// Every place of a grid, each once.
+fn places(grid: &Grid, threads: usize) -> Vec<Place> {
+    let crossed = |searches: &'static [&'static str], discs: &'static [usize], fractions: Vec<f64>| {
+        let of = move |search: &'static str, discs: usize| {
+            fractions.clone().into_iter().map(move |phi| Place::of(search, discs, phi))
+        };
+        let each = searches.iter().flat_map(move |&search| discs.iter().map(move |&discs| (search, discs)));
+        each.flat_map(move |(search, discs)| of(search, discs)).collect::<Vec<Place>>()
+    };
+    let occupied = |occupancies: &[f64]| occupancies.iter().map(|rho| PI * rho).collect::<Vec<f64>>();
+    let mut all = crossed(&TODAY, grid.discs, grid.packing_fractions.to_vec());
+    for precision in &PRECISIONS[1..] {
+        let same = all.iter().filter(|it| it.precision == F64 && it.discs == grid.compared);
+        all.extend(same.map(|it| Place { precision, ..*it }).collect::<Vec<_>>());
+    }
+    let (discs, fractions) = grid.threads;
+    for threads in [1, threads] {
+        let lattices = crossed(&TODAY[..1], discs, fractions.to_vec()).into_iter();
+        all.extend(lattices.map(|it| Place { threads: Some(threads), ..it }));
+    }
+    all.extend(crossed(&PAPER, grid.paper.0, occupied(&[DENSE])));
+    all.extend(crossed(&PAPER, &[MIDDLE], occupied(grid.paper.1)));
+    all.extend(crossed(&[CHAINED, ALL_PAIRS], grid.break_even.0, occupied(grid.break_even.1)));
+    let mut once: Vec<Place> = vec![];
+    for place in all {
+        if !once.contains(&place) {
+            once.push(place);
+        }
+    }
+    once
+}
+
+/// Rates of a grid.
+struct Measurements<'g> {
+    grid: &'g Grid,
+    all: Vec<(Place, Measured)>,
+}
+
+/// The study.
+///
+/// # Errors
+/// [`Failure`] if a scene breaks.
+pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
+    let grid = if size == Size::Quick { &QUICK } else { &FULL };
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let places = places(grid, threads);
+    let cases: Vec<Case> = places.iter().map(|it| it.case(grid.seconds)).collect();
+    let measured = rates(lab, &cases)?;
+    let data = Measurements { grid, all: places.into_iter().zip(measured).collect() };
+    let single = data.all.iter().filter(|(place, _)| place.threads.is_none()).map(|(_, it)| it.clone());
+    let title = "Million particle-steps a second of processor time, one thread";
+    let all = rates::frame(&single.collect::<Vec<_>>(), ("rates", title), ("rate (M/s)", 1e-6, 2));
+    let [break_even, summary] = data.break_even();
+    let frames = [all, data.lost(), data.fastest()?, data.crossings(), break_even, data.threads(), summary];
+    let made = Made::of(frames).with_seeds([1]);
+    Ok(Made { processes: Some(rates::PROCESSES), ..made })
+}
+
+impl Measurements<'_> {
+    fn at(&self, place: Place) -> Option<&Measured> {
+        self.all.iter().find(|(known, _)| *known == place).map(|(_, measured)| measured)
+    }
+
+    /// Discs and rising packing fractions of the searches of today, one thread, in double precision.
+    fn grid(&self) -> impl Iterator<Item = (usize, f64)> {
+        let fractions = self.grid.packing_fractions;
+        self.grid.discs.iter().flat_map(move |&discs| fractions.iter().rev().map(move |&phi| (discs, phi)))
+    }
+
+    /// Searches of today at a place, the fastest first.
+    fn ranked(&self, discs: usize, packing_fraction: f64) -> Vec<(&'static str, &Measured)> {
+        let each = |search| Some((search, self.at(Place::of(search, discs, packing_fraction))?));
+        let mut all: Vec<_> = TODAY.into_iter().filter_map(each).collect();
+        all.sort_by(|a, b| b.1.rate().median.total_cmp(&a.1.rate().median));
+        all
+    }
+
+    /// Time by each search over that by the fastest.
+    fn lost(&self) -> Frame {
+        let mut rows = vec![];
+        for search in TODAY {
+            for (discs, phi) in self.grid() {
+                let (ranked, own) = (self.ranked(discs, phi), self.at(Place::of(search, discs, phi)));
+                rows.extend(own.map(|own| (search, discs, phi, ranked[0].1.over(own))));
+            }
+        }
+        Rows::of(rows)
+            .text("search", |row| row.0)
+            .count("discs", |row| row.1)
+            .number("packing fraction", 2, |row| row.2)
+            .cell("time over that of the fastest", |row| row.3.cell(1.0, 2))
+            .frame("lost", "Time lost by each search")
+    }
+
+    /// The fastest search, and the one that `auto` takes.
+    fn fastest(&self) -> Result<Frame, StudyError> {
+        let mut rows = vec![];
+        for (discs, phi) in self.grid() {
+            let scene = Overrides::new().set(&COUNT, discs).set(&PACKING_FRACTION, phi);
+            let auto = Document::load("bench", &fast(scene))?.check()?.scene.search.by.word();
+            let ranked = self.ranked(discs, phi);
+            let [(first, best), (second, next), ..] = ranked.as_slice() else { continue };
+            let own = ranked.iter().find(|(name, _)| *name == auto);
+            let lost = own.map(|(_, own)| best.over(own));
+            rows.push((discs, phi, *first, best.rate(), *second, best.over(next), auto, lost));
+        }
+        Ok(Rows::of(rows)
+            .count("discs", |row| row.0)
+            .number("packing fraction", 2, |row| row.1)
+            .text("fastest", |row| row.2)
+            .cell("rate (M/s)", |row| row.3.cell(1e-6, 1))
+            .text("next", |row| row.4)
+            .cell("time of the next over its own", |row| row.5.cell(1.0, 2))
+            .text("choice of auto", |row| row.6)
+            .cell("time of that over the fastest", |row| row.7.map(|it| it.cell(1.0, 2)))
+            .frame("fastest", "Fastest search and choice of auto, million particle-steps a second"))
+    }
+
+    /// Packing fractions from which on the lattice is faster than its best rival.
+    fn crossings(&self) -> Frame {
+        let of_f64 = self.grid.discs.iter().map(|&discs| (F64, discs));
+        let others = PRECISIONS[1..].iter().map(|&precision| (precision, self.grid.compared));
+        let rows = of_f64.chain(others).filter_map(|(precision, discs)| {
+            let ratios = self.grid.packing_fractions.iter().filter_map(|&phi| {
+                let own = |search| self.at(Place { precision, ..Place::of(search, discs, phi) });
+                let rivals = TODAY[1..].iter().filter_map(|&search| own(search));
+                let best = rivals.max_by(|a, b| a.rate().median.total_cmp(&b.rate().median))?;
+                Some((phi, own(TODAY[0])?.over(best).median))
+            });
+            let ratios: Vec<(f64, f64)> = ratios.collect();
+            let densest = ratios.first()?.1;
+            Some((precision, discs, crossing(&ratios), densest))
+        });
+        Rows::of(rows.collect::<Vec<_>>())
+            .text("precision", |row| row.0)
+            .count("discs", |row| row.1)
+            .number("packing fraction", 3, |row| row.2)
+            .number("lattice over its best rival at the densest", 2, |row| row.3)
+            .frame("crossings", "Packing fraction from which on the lattice is the fastest")
+    }
+
+    /// Discs from which on the lattice's programs are faster than lists of all pairs, and the power of ρ with which they change.
+    fn break_even(&self) -> [Frame; 2] {
+        let (discs, occupancies) = self.grid.break_even;
+        let rows = occupancies.iter().map(|rho| {
+            let ratios = discs.iter().rev().filter_map(|&discs| {
+                let own = |search| self.at(Place::of(search, discs, PI * rho));
+                Some((discs as f64, own(CHAINED)?.over(own(ALL_PAIRS)?).median))
+            });
+            (*rho, crossing(&ratios.collect::<Vec<_>>()))
+        });
+        let rows: Vec<(f64, Option<f64>)> = rows.collect();
+        let known = rows.iter().filter_map(|(rho, discs)| Some((rho.ln(), discs.as_ref()?.ln())));
+        let (x, y): (Vec<f64>, Vec<f64>) = known.unzip();
+        let power = (x.len() > 1).then(|| slope(&x, &y));
+        let table = Rows::of(rows).number("occupancy ρ", 2, |row| row.0).number("discs", 0, |row| row.1);
+        let summary = Rows::of([()]).number("power of ρ", 2, |()| power);
+        [
+            table.frame(
+                "break_even",
+                "Discs from which on the lattice's programs are faster than lists of all pairs",
+            ),
+            summary.frame("summary", "Change of the break-even with the density"),
+        ]
+    }
+
+    /// Gain of threads.
+    fn threads(&self) -> Frame {
+        let single = self.all.iter().filter(|(place, _)| place.threads == Some(1));
+        let rows = single.map(|(place, alone)| {
+            let several = |(other, _): &&(Place, Measured)| {
+                other.threads.is_some_and(|threads| threads > 1)
+                    && Place { threads: Some(1), ..*other } == *place
+            };
+            (place, alone, self.all.iter().find(several))
+        });
+        Rows::of(rows.collect::<Vec<_>>())
+            .count("discs", |row| row.0.discs)
+            .number("packing fraction", 2, |row| row.0.packing_fraction)
+            .cell("one thread (M/s)", |row| row.1.rate().cell(1e-6, 1))
+            .cell("threads", |row| row.2.and_then(|(place, _)| place.threads).map(|it| it as u64))
+            .cell("all threads (M/s)", |row| row.2.map(|(_, it)| it.rate().cell(1e-6, 1)))
+            .cell("times as fast", |row| row.2.map(|(_, it)| it.over(row.1).cell(1.0, 2)))
+            .frame(
+                "threads",
+                "The lattice on one thread and on all, million particle-steps a second of wall time",
+            )
+    }
+}
+
+/// Where a ratio falls below 1, straight in the logarithms; places are in falling order.
+fn crossing(ratios: &[(f64, f64)]) -> Option<f64> {
+    ratios.windows(2).find_map(|pair| {
+        let [(x0, y0), (x1, y1)] = [pair[0], pair[1]].map(|(x, ratio)| (x.ln(), ratio.ln()));
+        (y0 >= 0.0 && y1 < 0.0).then(|| (x0 + (x1 - x0) * y0 / (y0 - y1)).exp())
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::Value;
+    use crate::laboratory::running::prepared;
+
+    #[test]
+    fn the_crossing_is_where_the_logarithms_cross() {
+        assert!((crossing(&[(0.8, 2.0), (0.2, 0.5)]).unwrap() - 0.4).abs() < 1e-12);
+        assert_eq!(crossing(&[(0.8, 2.0), (0.2, 1.5)]), None);
+        assert_eq!(crossing(&[(0.8, 0.9), (0.2, 0.5)]), None);
+    }
+
+    /// Every scene of both sizes is accepted, and none is measured twice.
+    #[test]
+    fn every_place_of_the_grids_is_a_scene() {
+        for (grid, count) in [(&QUICK, 21), (&FULL, 161)] {
+            let all = places(grid, 2);
+            assert_eq!(all.len(), count);
+            for place in all.iter().filter(|it| it.discs <= MIDDLE || grid.discs.len() == 1) {
+                prepared("bench", &place.scene()).unwrap_or_else(|error| panic!("{place:?}: {error}"));
+            }
+        }
+    }
+
+    /// Rates that follow known costs give the break-even of these costs: 1/ρ.
+    #[test]
+    fn the_break_even_follows_from_the_rates() {
+        let reading = |seconds: f64| rates::Reading { work: 1.0, seconds, ..rates::Reading::default() };
+        let measured = |place: Place| {
+            let rho = place.packing_fraction / PI;
+            let seconds = if place.search == CHAINED { 50.0 / rho } else { 0.1 * place.discs as f64 };
+            (place, Measured::of([reading(seconds)]))
+        };
+        let data = Measurements { grid: &FULL, all: places(&FULL, 2).into_iter().map(measured).collect() };
+        let [table, summary] = data.break_even();
+        let number = |value: &Value| if let Value::Number(number) = value { *number } else { f64::NAN };
+        for row in &table.rows {
+            assert!((number(&row[0]) * number(&row[1]) / 500.0 - 1.0).abs() < 1e-9, "{row:?}");
+        }
+        assert!((number(&summary.rows[0][0]) + 1.0).abs() < 1e-9);
+    }
+}
