@@ -48,7 +48,7 @@ pub(super) const ITEMS: &[Item] = &[
     )
     .with_more(450.0)
     .with_memory(500),
-    Item::full("hard-disks-cooling", Beyond, 4.0, haff, "Hard discs: Haff's law, and inelastic collapse"),
+    Item::of("hard-disks-cooling", cooling::made),
     Item::full(
         "hard-disks-collapse",
         Beyond,
@@ -129,12 +129,6 @@ fn growth(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
     };
     let data = complexity::complexity(&effort, progress)?;
     Made::new(sections::complexity::section(&data), &data)
-}
-
-fn haff(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let progress = lab.progress;
-    let data = cooling::cooling(10_000, 12.0, progress)?;
-    Made::new(sections::cooling::section(&data), &data)
 }
 
 fn collapses(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {

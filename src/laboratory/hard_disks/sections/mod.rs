@@ -3,7 +3,6 @@
 pub mod atmosphere;
 pub mod collapse;
 pub mod complexity;
-pub mod cooling;
 pub mod fluid;
 pub mod masks;
 pub mod precision;
