@@ -49,13 +49,7 @@ pub(super) const ITEMS: &[Item] = &[
     .with_more(450.0)
     .with_memory(500),
     Item::of("hard-disks-cooling", cooling::made),
-    Item::full(
-        "hard-disks-collapse",
-        Beyond,
-        20.0,
-        collapses,
-        "Hard discs: inelastic collapse over restitution and number of discs",
-    ),
+    Item::of("hard-disks-collapse", collapse::made),
     Item::full("hard-disks-precision", Host, 70.0, error, "Hard discs: error of Z against processor time"),
     Item::full(
         "hard-disks-atmosphere",
@@ -129,12 +123,6 @@ fn growth(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
     };
     let data = complexity::complexity(&effort, progress)?;
     Made::new(sections::complexity::section(&data), &data)
-}
-
-fn collapses(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let progress = lab.progress;
-    let data = collapse::collapses(progress)?;
-    Made::new(sections::collapse::section(&data), &data)
 }
 
 fn error(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
