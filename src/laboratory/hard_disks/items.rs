@@ -51,13 +51,7 @@ pub(super) const ITEMS: &[Item] = &[
     Item::of("hard-disks-cooling", cooling::made),
     Item::of("hard-disks-collapse", collapse::made),
     Item::full("hard-disks-precision", Host, 70.0, error, "Hard discs: error of Z against processor time"),
-    Item::full(
-        "hard-disks-atmosphere",
-        Beyond,
-        17.0,
-        open_system,
-        "Hard discs above a hot floor, without a ceiling",
-    ),
+    Item::of("hard-disks-atmosphere", atmosphere::made),
     Item::quick("soft-hard", Beyond, [2.0, 10.0], limit, "Soft discs of growing stiffness against hard ones"),
 ];
 
@@ -130,12 +124,6 @@ fn error(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let effort = precision::Effort { discs: vec![100, 1000, 10_000], collisions: 1_000_000 };
     let data = precision::precision(&effort, progress)?;
     Made::new(sections::precision::section(&data), &data)
-}
-
-fn open_system(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let progress = lab.progress;
-    let data = atmosphere::atmosphere(600, progress)?;
-    Made::new(sections::atmosphere::section(&data), &data)
 }
 
 fn limit(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {

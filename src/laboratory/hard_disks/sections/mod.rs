@@ -1,6 +1,5 @@
 //! How the report shows what is measured of hard discs.
 
-pub mod atmosphere;
 pub mod complexity;
 pub mod fluid;
 pub mod masks;
