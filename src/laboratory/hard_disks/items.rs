@@ -10,13 +10,7 @@ use crate::results::{Item, Lab, Made, Size};
 
 /// Every item, in the order of its chapter.
 pub(super) const ITEMS: &[Item] = &[
-    Item::full(
-        "hard-disks-fluid",
-        Sources,
-        34.0,
-        pressure,
-        "Hard discs: pressure and collision rate of the fluid",
-    ),
+    Item::of("hard-disks-fluid", fluid::made),
     Item::full(
         "hard-disks-structure",
         Beyond,
@@ -54,12 +48,6 @@ pub(super) const ITEMS: &[Item] = &[
     Item::of("hard-disks-atmosphere", atmosphere::made),
     Item::quick("soft-hard", Beyond, [2.0, 10.0], limit, "Soft discs of growing stiffness against hard ones"),
 ];
-
-fn pressure(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let progress = lab.progress;
-    let data = fluid::fluids(&fluid::Effort { discs: 10_000, collisions: 10_000_000 }, progress)?;
-    Made::new(sections::fluid::section(&data), &data)
-}
 
 fn melting(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let progress = lab.progress;

@@ -1,7 +1,6 @@
 //! How the report shows what is measured of hard discs.
 
 pub mod complexity;
-pub mod fluid;
 pub mod masks;
 pub mod precision;
 pub mod rates;
