@@ -11,13 +11,7 @@ use crate::results::{Item, Lab, Made, Size};
 /// Every item, in the order of its chapter.
 pub(super) const ITEMS: &[Item] = &[
     Item::of("hard-disks-fluid", fluid::made),
-    Item::full(
-        "hard-disks-structure",
-        Beyond,
-        24.0,
-        melting,
-        "Hard discs: order, free times and speeds on both sides of melting",
-    ),
+    Item::of("hard-disks-structure", structure::made),
     Item::quick(
         "hard-disks-rates",
         Sources,
@@ -48,12 +42,6 @@ pub(super) const ITEMS: &[Item] = &[
     Item::of("hard-disks-atmosphere", atmosphere::made),
     Item::quick("soft-hard", Beyond, [2.0, 10.0], limit, "Soft discs of growing stiffness against hard ones"),
 ];
-
-fn melting(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let progress = lab.progress;
-    let data = structure::structures(4096, progress)?;
-    Made::new(sections::structure::section(&data), &data)
-}
 
 fn speed(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
     let progress = lab.progress;

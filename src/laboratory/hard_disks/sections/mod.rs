@@ -5,4 +5,3 @@ pub mod masks;
 pub mod precision;
 pub mod rates;
 pub mod soft_hard;
-pub mod structure;
