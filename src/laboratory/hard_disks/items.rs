@@ -1,11 +1,9 @@
 //! What can be reproduced of this method: each item a study and its section of the report.
 
 use super::sections;
-use super::study::soft_hard::{Question, soft_hard};
-use super::study::{atmosphere, collapse, complexity, cooling, fluid, masks, precision, rates, structure};
-use super::verbs::question;
+use super::study::{atmosphere, collapse, complexity, cooling, fluid, masks, precision, rates, soft_hard, structure};
 use crate::console::Failure;
-use crate::report::Chapter::{Beyond, Host, Sources};
+use crate::report::Chapter::{Host, Sources};
 use crate::results::{Item, Lab, Made, Size};
 
 /// Every item, in the order of its chapter.
@@ -40,7 +38,7 @@ pub(super) const ITEMS: &[Item] = &[
     Item::of("hard-disks-collapse", collapse::made),
     Item::full("hard-disks-precision", Host, 70.0, error, "Hard discs: error of Z against processor time"),
     Item::of("hard-disks-atmosphere", atmosphere::made),
-    Item::quick("soft-hard", Beyond, [2.0, 10.0], limit, "Soft discs of growing stiffness against hard ones"),
+    Item::of("soft-hard", soft_hard::made),
 ];
 
 fn speed(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
@@ -100,16 +98,4 @@ fn error(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let effort = precision::Effort { discs: vec![100, 1000, 10_000], collisions: 1_000_000 };
     let data = precision::precision(&effort, progress)?;
     Made::new(sections::precision::section(&data), &data)
-}
-
-fn limit(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
-    let progress = lab.progress;
-    let question = match effort {
-        Size::Quick => {
-            Question { discs: 200, stiffnesses: vec![1e3, 1e4, 1e5], seeds: 2, time: 4.0, ..question() }
-        }
-        Size::Full | Size::All => question(),
-    };
-    let data = soft_hard(&question, progress)?;
-    Made::new(sections::soft_hard::section(&data, "stripmine reproduce --only soft-hard".into()), &data)
 }

@@ -4,4 +4,3 @@ pub mod complexity;
 pub mod masks;
 pub mod precision;
 pub mod rates;
-pub mod soft_hard;
