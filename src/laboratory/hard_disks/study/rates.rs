@@ -5,7 +5,6 @@ use crate::frame::Rows;
 use crate::laboratory::rates::{Case, rates};
 use crate::laboratory::running::prepared;
 use crate::results::{Lab, Made, Size};
-use stripmine_physics::method::Prepared;
 use stripmine_physics::method::hard_disks::keys::ENGINE;
 use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
 
@@ -42,27 +41,28 @@ pub fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
         })
     });
     let measured = rates(lab, &cases.collect::<Vec<_>>())?;
-    let by_engine = |(discs, packing): &(u64, f64)| {
-        let of = |engine| prepared("hard-disks", &fluid(engine, *discs, *packing));
-        Ok::<_, Failure>([of(ENGINES[0])?, of(ENGINES[1])?])
+    // Discs, bytes of a run, mask.
+    let facts = |engine: &str, &(discs, packing): &(u64, f64)| {
+        let scene = prepared("hard-disks", &fluid(engine, discs, packing))?;
+        let mask = scene.settings["mask"].as_str().unwrap_or_default().to_owned();
+        Ok::<_, Failure>((scene.particles().grain_count() as f64, scene.memory.needed as f64, mask))
     };
-    let prepared = scenes.iter().map(by_engine).collect::<Result<Vec<_>, _>>()?;
+    let facts = scenes.iter().map(|it| Ok([facts(ENGINES[0], it)?, facts(ENGINES[1], it)?]));
+    let facts = facts.collect::<Result<Vec<_>, Failure>>()?;
     let pairs = measured.chunks_exact(ENGINES.len()).map(|pair| [&pair[0], &pair[1]]);
-    let megabytes = |it: &Prepared| 1e-6 * it.memory.needed as f64;
-    let count = |it: &Prepared| it.particles().grain_count() as f64;
     let source = |discs: f64| SOURCE.into_iter().find(|(known, _)| (discs / known - 1.0).abs() < 0.1);
-    Ok(Made::of([Rows::of(scenes.iter().zip(pairs).zip(&prepared))
-        .number("discs", 0, |(_, [fast, _])| count(fast))
+    Ok(Made::of([Rows::of(scenes.iter().zip(pairs).zip(&facts))
+        .number("discs", 0, |(_, [fast, _])| fast.0)
         .number("ν", 2, |(((_, packing), _), _)| *packing)
         .cell("fast (million/s)", |((_, [fast, _]), _)| fast.rate().cell(1e-6, 3))
         .cell("the source's way (million/s)", |((_, [_, reference]), _)| reference.rate().cell(1e-6, 3))
-        .text("its mask", |(_, [_, reference])| reference.settings["mask"].as_str().unwrap_or_default())
+        .text("its mask", |(_, [_, reference])| reference.2.clone())
         .cell("fast over it", |((_, [fast, reference]), _)| fast.over(reference).cell(1.0, 1))
         .number("fast over the source's machine", 0, |((_, [fast, _]), [scene, _])| {
-            source(count(scene)).map(|(_, rate)| 3600e-6 * fast.rate().median / rate)
+            source(scene.0).map(|(_, rate)| 3600e-6 * fast.rate().median / rate)
         })
-        .number("memory, fast (MB)", 0, |(_, [fast, _])| megabytes(fast))
-        .number("memory, the source's way (MB)", 0, |(_, [_, reference])| megabytes(reference))
+        .number("memory, fast (MB)", 0, |(_, [fast, _])| 1e-6 * fast.1)
+        .number("memory, the source's way (MB)", 0, |(_, [_, reference])| 1e-6 * reference.1)
         .frame("rates", "Million collisions a second of processor time")])
     .with_seeds([1]))
 }
