@@ -1,7 +1,7 @@
 //! Figures of a page: charts and maps by expressions over the columns of frames, and pictures that a study drew.
 
 use super::{Filling, PageError, Shown, Text};
-use crate::frame::Frame;
+use crate::frame::{Frame, Scope};
 use crate::report::figure::{Axis, Band, Chart, Figure, Map, Picture, Point, Series, Style};
 use minijinja::value::{Value, ValueKind};
 use serde::Deserialize;
@@ -17,6 +17,10 @@ pub(super) struct FigureSpec {
     each: Option<Text>,
     /// Whether there is such a figure; always where it is left out.
     when: Option<Text>,
+    /// List of elements, for each of which the chart has a panel; expressions call the element `it`.
+    panels: Option<Text>,
+    /// Name of a panel.
+    panel: Option<Text>,
     title: Text,
     caption: Option<Text>,
     /// Axes of a chart or a map; none of a picture that the study drew.
@@ -95,8 +99,10 @@ struct SeriesSpec {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct BandSpec {
+    /// List of elements, for each of which there is such a part; expressions call the element `it`.
+    each: Option<Text>,
     label: Text,
-    /// Ends on the horizontal axis: numbers or expressions.
+    /// Ends on the horizontal axis, numbers or expressions; equal ones make a line.
     x: Option<Spanned<[End; 2]>>,
     /// Ends on the vertical axis.
     y: Option<Spanned<[End; 2]>>,
@@ -134,14 +140,16 @@ pub(super) fn figures(
         }
     }
     let Some(each) = &spec.each else { return Ok(vec![figure(spec, fill, shown)?]) };
-    let refused = |cause: String| fill.refused(each.span().start, cause);
-    let all = fill.expressions.value(each.get_ref(), fill.scope).map_err(refused)?;
+    let one = |scope: Scope| figure(spec, &Filling { scope: &scope, ..*fill }, shown);
+    elements(each, fill)?.into_iter().map(one).collect()
+}
+
+/// Names that expressions may use for each element of a list.
+fn elements(list: &Text, fill: &Filling<'_>) -> Result<Vec<Scope>, PageError> {
+    let refused = |cause: String| fill.refused(list.span().start, cause);
+    let all = fill.expressions.value(list.get_ref(), fill.scope).map_err(refused)?;
     let all = all.try_iter().map_err(|cause| refused(cause.to_string()))?;
-    let one = |it: Value| {
-        let scope = fill.scope.with_it(&it);
-        figure(spec, &Filling { scope: &scope, ..*fill }, shown)
-    };
-    all.map(one).collect()
+    Ok(all.map(|it| fill.scope.with_it(&it)).collect())
 }
 
 /// The figure of a page.
@@ -152,9 +160,18 @@ fn figure(spec: &FigureSpec, fill: &Filling<'_>, shown: &Shown<'_>) -> Result<Fi
     let picture = match (&spec.x, &spec.y) {
         (Some(x), Some(y)) => {
             let axes = [axis(x, fill)?, axis(y, fill)?];
-            match &spec.map {
-                Some(map) => Picture::Map(mapped(map, axes, fill)?),
-                None => Picture::Chart(chart(spec, axes, fill)?),
+            let panel = |scope: Scope| {
+                let fill = Filling { scope: &scope, ..*fill };
+                let name = spec.panel.as_ref().map_or(Ok(String::new()), |name| fill.text(name))?;
+                Ok((name, chart(spec, axes.clone(), &fill)?))
+            };
+            match (&spec.map, &spec.panels) {
+                (Some(map), _) => Picture::Map(mapped(map, axes, fill)?),
+                (None, None) => Picture::Chart(chart(spec, axes, fill)?),
+                (None, Some(all)) => {
+                    let panels = elements(all, fill)?.into_iter().map(panel);
+                    Picture::Panels(panels.collect::<Result<_, PageError>>()?)
+                }
             }
         }
         _ => {
@@ -190,25 +207,34 @@ fn chart(spec: &FigureSpec, [x, y]: [Axis; 2], fill: &Filling<'_>) -> Result<Cha
         chart = chart.with(series(spec, next, fill)?);
     }
     for spec in &spec.band {
-        let label = fill.text(&spec.label)?;
-        let ends = |ends: &Spanned<[End; 2]>| {
-            let end = |end: &End| match end {
-                End::Number(number) => Ok(*number),
-                End::Expression(text) => {
-                    let value = fill.expressions.value(text, fill.scope);
-                    let number = value.and_then(|value| number(&value).map(|it| it.unwrap_or(f64::NAN)));
-                    number.map_err(|cause| fill.refused(ends.span().start, cause))
-                }
-            };
-            let [low, high] = ends.get_ref();
-            Ok::<_, PageError>([end(low)?, end(high)?])
+        let scopes =
+            spec.each.as_ref().map_or_else(|| Ok(vec![fill.scope.clone()]), |all| elements(all, fill))?;
+        for scope in &scopes {
+            chart = band(chart, spec, &Filling { scope, ..*fill })?;
+        }
+    }
+    Ok(chart)
+}
+
+fn band(mut chart: Chart, spec: &BandSpec, fill: &Filling<'_>) -> Result<Chart, PageError> {
+    let label = fill.text(&spec.label)?;
+    let ends = |ends: &Spanned<[End; 2]>| {
+        let end = |end: &End| match end {
+            End::Number(number) => Ok(*number),
+            End::Expression(text) => {
+                let value = fill.expressions.value(text, fill.scope);
+                let number = value.and_then(|value| number(&value).map(|it| it.unwrap_or(f64::NAN)));
+                number.map_err(|cause| fill.refused(ends.span().start, cause))
+            }
         };
-        if let Some(x) = &spec.x {
-            chart = chart.band(Band::of_x(&label, ends(x)?));
-        }
-        if let Some(y) = &spec.y {
-            chart = chart.band(Band::of_y(&label, ends(y)?));
-        }
+        let [low, high] = ends.get_ref();
+        Ok::<_, PageError>([end(low)?, end(high)?])
+    };
+    if let Some(x) = &spec.x {
+        chart = chart.band(Band::of_x(&label, ends(x)?));
+    }
+    if let Some(y) = &spec.y {
+        chart = chart.band(Band::of_y(&label, ends(y)?));
     }
     Ok(chart)
 }

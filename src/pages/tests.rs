@@ -92,6 +92,24 @@ fn a_map_has_a_cell_for_each_row() {
     assert!(map.rows[0][2].is_nan() && map.rows[1][2] == 0.25);
 }
 
+/// Panels for the elements of a list, with a line for each row of a table.
+#[test]
+fn a_chart_has_panels_and_lines() {
+    let panels = "name = \"over-steps\"\npanels = \"['a', 'b']\"\npanel = \"scheme {{ it }}\"";
+    let template = TEMPLATE.replace("name = \"over-steps\"", panels);
+    let template = template.replace("x = \"steps\"", "only = \"scheme == it\", x = \"steps\"");
+    let lines =
+        "band = [{ each = \"errors\", label = \"{{ it.steps }}\", x = [\"it.steps\", \"it.steps\"] }]";
+    let (before, after) = template.split_once("band = ").unwrap();
+    let (_, after) = after.split_once('\n').unwrap();
+    let section = filled(&format!("{before}{lines}\n{after}")).unwrap();
+    let Picture::Panels(panels) = &section.figures[0].picture else { panic!("{:?}", section.figures) };
+    let [(a, of_a), (b, of_b)] = panels.as_slice() else { panic!("{panels:?}") };
+    assert_eq!([a, b], ["scheme a", "scheme b"]);
+    assert_eq!([&of_a.series[0].points, &of_b.series[0].points].map(Vec::len), [2, 1]);
+    assert_eq!(of_b.bands.iter().map(|it| it.ends[0]).collect::<Vec<_>>(), [2.0, 4.0, 1.0]);
+}
+
 #[test]
 fn a_template_with_a_fault_names_the_line_and_what_exists() {
     for (from, to, line, named) in [

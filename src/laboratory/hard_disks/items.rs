@@ -1,169 +1,20 @@
-//! What can be reproduced of this method: each item a study and its section of the report.
+//! Items of `reproduce` of this method, in the order of their chapters.
 
-use super::sections;
-use super::study::soft_hard::{Question, soft_hard};
-use super::study::{atmosphere, collapse, complexity, cooling, fluid, masks, precision, rates, structure};
-use super::verbs::question;
-use crate::console::Failure;
-use crate::report::Chapter::{Beyond, Host, Sources};
-use crate::results::{Item, Lab, Made, Size};
+use super::study::{
+    atmosphere, collapse, complexity, cooling, fluid, masks, precision, rates, soft_hard, structure,
+};
+use crate::results::Item;
 
-/// Every item, in the order of its chapter.
+/// Every item.
 pub(super) const ITEMS: &[Item] = &[
-    Item::full(
-        "hard-disks-fluid",
-        Sources,
-        34.0,
-        pressure,
-        "Hard discs: pressure and collision rate of the fluid",
-    ),
-    Item::full(
-        "hard-disks-structure",
-        Beyond,
-        24.0,
-        melting,
-        "Hard discs: order, free times and speeds on both sides of melting",
-    ),
-    Item::quick(
-        "hard-disks-rates",
-        Sources,
-        [4.0, 24.0],
-        speed,
-        "Hard discs: collisions a second, the fast engine and the source's",
-    )
-    .with_memory(400),
-    Item::quick(
-        "hard-disks-masks",
-        Sources,
-        [3.0, 20.0],
-        comparison,
-        "Hard discs: cost over mask and density, and the source's formula",
-    ),
-    Item::quick(
-        "hard-disks-complexity",
-        Sources,
-        [2.0, 45.0],
-        growth,
-        "Hard discs: operations and time of a collision over the number of discs",
-    )
-    .with_more(450.0)
-    .with_memory(500),
-    Item::full("hard-disks-cooling", Beyond, 4.0, haff, "Hard discs: Haff's law, and inelastic collapse"),
-    Item::full(
-        "hard-disks-collapse",
-        Beyond,
-        20.0,
-        collapses,
-        "Hard discs: inelastic collapse over restitution and number of discs",
-    ),
-    Item::full("hard-disks-precision", Host, 70.0, error, "Hard discs: error of Z against processor time"),
-    Item::full(
-        "hard-disks-atmosphere",
-        Beyond,
-        17.0,
-        open_system,
-        "Hard discs above a hot floor, without a ceiling",
-    ),
-    Item::quick("soft-hard", Beyond, [2.0, 10.0], limit, "Soft discs of growing stiffness against hard ones"),
+    Item::of("hard-disks-fluid", fluid::made),
+    Item::of("hard-disks-structure", structure::made),
+    Item::of("hard-disks-rates", rates::made),
+    Item::of("hard-disks-masks", masks::made),
+    Item::of("hard-disks-complexity", complexity::made),
+    Item::of("hard-disks-cooling", cooling::made),
+    Item::of("hard-disks-collapse", collapse::made),
+    Item::of("hard-disks-precision", precision::made),
+    Item::of("hard-disks-atmosphere", atmosphere::made),
+    Item::of("soft-hard", soft_hard::made),
 ];
-
-fn pressure(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let progress = lab.progress;
-    let data = fluid::fluids(&fluid::Effort { discs: 10_000, collisions: 10_000_000 }, progress)?;
-    Made::new(sections::fluid::section(&data), &data)
-}
-
-fn melting(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let progress = lab.progress;
-    let data = structure::structures(4096, progress)?;
-    Made::new(sections::structure::section(&data), &data)
-}
-
-fn speed(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
-    let progress = lab.progress;
-    let packing_fractions = vec![0.10, 0.30, 0.50, 0.65, 0.70];
-    let effort = match effort {
-        Size::Quick => rates::Effort { discs: vec![2500], packing_fractions, rounds: 1, collisions: 50_000 },
-        Size::Full | Size::All => {
-            rates::Effort { discs: vec![2500, 250_000], packing_fractions, rounds: 3, collisions: 100_000 }
-        }
-    };
-    let data = rates::rates(&effort, progress)?;
-    Made::new(sections::rates::section(&data), &data)
-}
-
-fn comparison(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
-    let progress = lab.progress;
-    let (densities, turns): (&[f64], _) = match effort {
-        Size::Quick => (&[0.10, 0.50], (1, 3000)),
-        Size::Full | Size::All => (&[0.02, 0.10, 0.30, 0.50, 0.70], (3, 10_000)),
-    };
-    let data = masks::masks(2500, densities, turns, progress)?;
-    Made::new(sections::masks::section(&data), &data)
-}
-
-fn growth(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
-    let progress = lab.progress;
-    let effort = match effort {
-        Size::Quick => complexity::Effort {
-            discs: vec![1000, 10_000],
-            packing_fractions: vec![0.50],
-            rounds: 1,
-            collisions: 20_000,
-            most_by_reference: 10_000,
-        },
-        Size::Full => complexity::Effort {
-            discs: vec![1000, 10_000, 100_000, 1_000_000],
-            packing_fractions: vec![0.30, 0.70],
-            rounds: 3,
-            collisions: 200_000,
-            most_by_reference: 100_000,
-        },
-        Size::All => complexity::Effort {
-            discs: vec![1000, 10_000, 100_000, 1_000_000, 10_000_000],
-            packing_fractions: vec![0.30, 0.70],
-            rounds: 3,
-            collisions: 1_000_000,
-            most_by_reference: 1_000_000,
-        },
-    };
-    let data = complexity::complexity(&effort, progress)?;
-    Made::new(sections::complexity::section(&data), &data)
-}
-
-fn haff(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let progress = lab.progress;
-    let data = cooling::cooling(10_000, 12.0, progress)?;
-    Made::new(sections::cooling::section(&data), &data)
-}
-
-fn collapses(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let progress = lab.progress;
-    let data = collapse::collapses(progress)?;
-    Made::new(sections::collapse::section(&data), &data)
-}
-
-fn error(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let progress = lab.progress;
-    let effort = precision::Effort { discs: vec![100, 1000, 10_000], collisions: 1_000_000 };
-    let data = precision::precision(&effort, progress)?;
-    Made::new(sections::precision::section(&data), &data)
-}
-
-fn open_system(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let progress = lab.progress;
-    let data = atmosphere::atmosphere(600, progress)?;
-    Made::new(sections::atmosphere::section(&data), &data)
-}
-
-fn limit(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
-    let progress = lab.progress;
-    let question = match effort {
-        Size::Quick => {
-            Question { discs: 200, stiffnesses: vec![1e3, 1e4, 1e5], seeds: 2, time: 4.0, ..question() }
-        }
-        Size::Full | Size::All => question(),
-    };
-    let data = soft_hard(&question, progress)?;
-    Made::new(sections::soft_hard::section(&data, "stripmine reproduce --only soft-hard".into()), &data)
-}

@@ -1,7 +1,6 @@
-//! Event-driven hard discs, ISO99: what is measured and shown beside a run.
+//! Event-driven hard discs, ISO99: studies, items and verbs.
 
 mod items;
-mod sections;
 mod study;
 mod verbs;
 

@@ -1,11 +1,10 @@
 //! The studies below `chart` that are this method's own.
 
-use super::sections;
 use super::study::soft_hard::{Question, soft_hard};
 use crate::console::Verb;
 use crate::console::{Common, Failure, clear_progress, print, print_json, progress, say};
 use crate::provenance::Provenance;
-use crate::results::{Folder, Made};
+use crate::results::Folder;
 use clap::{Args, FromArgMatches};
 use std::path::PathBuf;
 use std::time::Instant;
@@ -52,35 +51,17 @@ impl SoftHardVerb {
             discs: self.particles,
             packing_fraction: self.packing_fraction,
             restitution: self.restitution,
-            ..question()
+            ..Question::REPORT
         };
         let (bar, start) = (progress(common, "chart"), Instant::now());
-        let data = soft_hard(&question, &|share| bar.set_position((1e3 * share) as u64))?;
-        let again = format!(
-            "stripmine chart soft-hard --particles {} --packing-fraction {} --restitution {}",
-            self.particles, self.packing_fraction, self.restitution
-        );
-        let section = sections::soft_hard::section(&data, again);
-        let answer = section.paragraphs().collect::<Vec<_>>().join(" ");
-        let made = Made::new(section, &data)?;
+        let made = soft_hard(&question, &|share| bar.set_position((1e3 * share) as u64))?;
         let provenance = Provenance::here(common.command.clone(), start.elapsed().as_secs_f64());
-        let (folder, _) = signals::whole(|| folder.write("soft-hard", &made, &provenance))?;
+        let (folder, section) = signals::whole(|| folder.write("soft-hard", &made, &provenance))?;
         clear_progress();
         if !common.quiet {
             say(format_args!("written: {}", folder.display()));
         }
-        if common.json { print_json(&data) } else { print(&(answer + "\n")) }
-    }
-}
-
-/// What is asked if nothing else is.
-pub(super) fn question() -> Question {
-    Question {
-        discs: 500,
-        packing_fraction: 0.5,
-        restitution: 0.9,
-        stiffnesses: vec![1e3, 1e4, 1e5, 1e6, 1e7],
-        seeds: 8,
-        time: 20.0,
+        let paragraphs: Vec<&str> = section.paragraphs().collect();
+        if common.json { print_json(&made.json()) } else { print(&(paragraphs.join(" ") + "\n")) }
     }
 }

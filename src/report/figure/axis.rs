@@ -12,8 +12,9 @@ const FREE: f64 = 0.04;
 const MOST_DECADES: i32 = 5;
 /// An axis of fewer decades is marked like a linear one.
 const FEWEST_DECADES: f64 = 0.7;
-/// Distances of decades with labels, from many labels to few. At 0, numbers between decades have labels too.
-const STRIDES: [i32; 9] = [0, 1, 2, 3, 5, 10, 20, 50, 100];
+/// Distances of decades with labels, from many labels to few. At 0, numbers between decades have labels too; at -1, for a short axis with
+/// one decade on it, 3 times that decade.
+const STRIDES: [i32; 10] = [0, 1, 2, 3, 5, 10, 20, 50, 100, -1];
 /// Numbers of labels that steps of 1, 2 or 5 times a power of ten give at most.
 const PARTS: [f64; 6] = [10.0, 5.0, 2.0, 1.0, 0.5, 0.2];
 
@@ -107,6 +108,7 @@ impl Span {
                 let value = f64::from(factor) * pow(10.0, f64::from(raised));
                 let is_labelled = match stride {
                     0 => [1, 2, 5].contains(&factor),
+                    -1 => [1, 3].contains(&factor),
                     _ => factor == 1 && raised % stride == 0,
                 };
                 let label = match factor {
@@ -219,6 +221,9 @@ mod tests {
         assert_eq!(linear([0.0, 2.5e-9]), ["0", "0.5×10⁻⁹", "1×10⁻⁹", "1.5×10⁻⁹", "2×10⁻⁹", "2.5×10⁻⁹"]);
         assert_eq!(linear([0.0, 4e6]), ["0", "1×10⁶", "2×10⁶", "3×10⁶", "4×10⁶"]);
         let logarithmic = |limits| labels(Scale::Logarithmic, limits);
+        let short = Span::new(&axis(Scale::Logarithmic, Some([22.0, 380.0])), std::iter::empty()).unwrap();
+        let short = short.marks(3.0, |_| 1.0).into_iter().map(|mark| mark.1);
+        assert_eq!(short.filter(|label| !label.is_empty()).collect::<Vec<_>>(), ["30", "100", "300"]);
         assert_eq!(logarithmic([0.01, 1e3]), ["0.01", "0.1", "1", "10", "100", "1000"]);
         assert_eq!(logarithmic([1e-5, 1.0]), ["10⁻⁵", "10⁻⁴", "10⁻³", "10⁻²", "10⁻¹", "1"]);
         assert_eq!(logarithmic([1e6, 5e7]), ["10⁶", "2×10⁶", "5×10⁶", "10⁷", "2×10⁷", "5×10⁷"]);

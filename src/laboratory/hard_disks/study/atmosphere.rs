@@ -1,83 +1,89 @@
 //! Discs under gravity above a hot floor, without a ceiling: their density over the height, beside the barometric law.
 
+use crate::console::Failure;
+use crate::frame::{Cell, Rows};
 use crate::laboratory::running::Running;
-use crate::results::{Meter, Progress};
+use crate::results::{Lab, Made, Meter, Size};
 use crate::statistics::Mean;
 use crate::study::StudyError;
-use serde::Serialize;
 use stripmine_physics::method::Until;
 use stripmine_physics::method::hard_disks::keys::{ENGINE, RESTITUTION, TIME};
 use stripmine_physics::method::hard_disks::options::EngineChoice;
 use stripmine_physics::method::observed::summed_up;
+use stripmine_physics::number::counted;
 use stripmine_physics::scene::{COUNT, GRAVITY, Overrides, SIDES};
 
-/// Bins of the profile, each of this part of the height kT/(m g).
-const BIN: f64 = 0.25;
-/// Heights kT/(m g) that the profile spans.
-const SPAN: f64 = 8.0;
+/// Layers that the discs would fill, and restitution.
+const GASES: [(f64, f64); 4] = [(0.02, 1.0), (0.2, 1.0), (1.0, 1.0), (1.0, 0.95)];
+/// Scenes of the source's look-up.
+const SCENES: [&str; 2] = ["hot-floor", "vibrating-floor"];
+/// Discs of a gas.
+const DISCS: usize = 200;
+/// Looks at a gas, a time √(kT/m)/g apart.
+const LOOKS: usize = 600;
+/// Bins of the profile, each of this part of the height kT/(m g), and their number.
+const BINS: (f64, usize) = (0.25, 32);
 
-/// A profile.
-#[derive(Clone, Debug, Serialize)]
-pub struct Profile {
-    /// Discs times their diameter, over the width of the box: layers that they would fill.
-    pub layers: f64,
-    /// Discs.
-    pub discs: usize,
-    /// Heights of the middle of the bins above the lowest that a centre may have, in kT/(m g).
-    pub heights: Vec<f64>,
-    /// Discs of a unit of area, over what the barometric law has on the floor.
-    pub densities: Vec<Mean>,
-    /// The mean height of the centres over kT/(m g): 1 by the barometric law.
-    pub mean_height: Mean,
-    /// The temperature over that of the floor, for elastic discs 1.
-    pub temperature: Mean,
-    /// The highest that a disc was seen, in kT/(m g).
-    pub highest: f64,
+/// Profile of a gas.
+struct Profile {
+    name: String,
+    /// Discs of a unit of area by height, over the barometric density on the floor.
+    densities: Vec<Mean>,
+    /// Mean height of the centres over kT/(m g): 1 by the barometric law.
+    mean_height: Mean,
+    /// Temperature over that of the floor.
+    temperature: Mean,
+    /// Largest height of a disc over kT/(m g).
+    highest: f64,
 }
 
-/// What came out.
-#[derive(Clone, Debug, Serialize)]
-pub struct Atmosphere {
-    /// Profiles, from dilute to dense.
-    pub profiles: Vec<Profile>,
-    /// Looks at each.
-    pub looks: usize,
-    /// A gas of inelastic discs, where the floor's heat is lost on the way up.
-    pub granular: Profile,
-    /// Its restitution.
-    pub restitution: f64,
-    /// The cells of the source's look-up after a while.
-    pub look_ups: Vec<LookUp>,
-}
-
-/// What the source's look-up of occupied cells takes.
-#[derive(Clone, Debug, Serialize)]
-pub struct LookUp {
-    /// The preset.
-    pub scene: &'static str,
-    /// Discs, which are the entries of A, BX and BY.
-    pub discs: usize,
-    /// Entries of C and D.
-    pub entries: f64,
-    /// Events so far.
-    pub events: u64,
+/// Memory of the source's look-up of occupied cells.
+struct LookUp {
+    scene: &'static str,
+    discs: usize,
+    entries: f64,
+    events: u64,
     /// Whether every disc is where it is by the fast engine, to the bit.
-    pub agrees: bool,
+    agrees: bool,
 }
 
-/// Follows discs over `looks` looks, a time √(kT/m)/g apart.
+/// Follows the gases, and counts the entries of the source's look-up.
 ///
 /// # Errors
 /// [`StudyError`] if a scene breaks.
-pub fn atmosphere(looks: usize, progress: Progress<'_>) -> Result<Atmosphere, StudyError> {
-    let restitution = 0.95;
-    let gases = [(0.02, 1.0), (0.2, 1.0), (1.0, 1.0), (1.0, restitution)];
-    let scenes = ["hot-floor", "vibrating-floor"];
-    let meter = Meter::new((gases.len() + scenes.len()) as f64, progress);
-    let mut profiles = meter.each(&gases, |&(layers, restitution)| profile(layers, restitution, looks))?;
-    let granular = profiles.split_off(gases.len() - 1).remove(0);
-    let look_ups = meter.each(&scenes, |&scene| look_up(scene))?;
-    Ok(Atmosphere { profiles, looks, granular, restitution, look_ups })
+pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+    let meter = Meter::new((GASES.len() + SCENES.len()) as f64, lab.progress);
+    let profiles = meter.each(&GASES, profile)?;
+    let look_ups = meter.each(&SCENES, |&scene| look_up(scene))?;
+    let bins = profiles.iter().flat_map(|it| it.densities.iter().enumerate().map(move |bin| (it, bin)));
+    let height = |bin: usize| (bin as f64 + 0.5) * BINS.0;
+    Ok(Made::of([
+        Rows::of(&profiles)
+            .text("discs", |it| it.name.clone())
+            .count("how many", |_| DISCS)
+            .number("mean height over kT/(m g)", 3, |it| it.mean_height.value)
+            .number("± (95 %)", 3, |it| it.mean_height.bar)
+            .number("temperature over the floor's", 3, |it| it.temperature.value)
+            .number("± (95 %)", 3, |it| it.temperature.bar)
+            .number("highest seen", 1, |it| it.highest)
+            .frame("atmosphere", "Discs above a hot floor"),
+        Rows::of(&look_ups)
+            .text("scene", |it| it.scene)
+            .count("discs (entries of A, BX, BY)", |it| it.discs)
+            .number("entries of C and D", 0, |it| it.entries)
+            .count("events", |it| it.events)
+            .text("same bits by the fast engine", |it| if it.agrees { "yes" } else { "no" })
+            .frame("look-up", "The source's look-up of occupied cells, as printed"),
+        Rows::of(bins)
+            .text("discs", |(it, _)| it.name.clone())
+            .number("height over kT/(m g)", 3, |(_, (bin, _))| height(*bin))
+            .cell("density over the barometric one at the floor", |(_, (_, mean))| {
+                Cell::with_error(mean.value, Some(mean.bar), 4)
+            })
+            .number("barometric law", 4, |(_, (bin, _))| (-height(*bin)).exp())
+            .frame("heights", "Density over the height"),
+    ])
+    .with_seeds([1]))
 }
 
 /// A scene by the source's engine, and beside it by the fast one.
@@ -98,42 +104,41 @@ fn look_up(scene: &'static str) -> Result<LookUp, StudyError> {
 }
 
 /// Discs of diameter, mass and kT 1, and kT/(m g) of 20.
-fn profile(layers: f64, restitution: f64, looks: usize) -> Result<Profile, StudyError> {
-    let (height, discs) = (20.0, 200_usize);
-    let width = discs as f64 / layers;
+fn profile(&(layers, restitution): &(f64, f64)) -> Result<Profile, StudyError> {
+    let height = 20.0;
+    let width = DISCS as f64 / layers;
     let place = Overrides::new().set(&SIDES, [width, 120.0]).set(&GRAVITY, [0.0, -1.0 / height]);
-    let overrides = place.set(&COUNT, discs).set(&RESTITUTION, restitution).set(&TIME, 1e9);
+    let overrides = place.set(&COUNT, DISCS).set(&RESTITUTION, restitution).set(&TIME, 1e9);
     let mut gas = Running::begin("hot-floor", &overrides)?;
     // A disc falls through the height in a time of about √2 √(kT/m)/g.
     let between = height;
     let mut now = 40.0 * between;
     gas.until(Until::Time(now))?;
-    let bins = (SPAN / BIN) as usize;
-    let mut densities = vec![vec![]; bins];
+    let mut densities = vec![vec![]; BINS.1];
     let (mut heights, mut temperatures, mut highest) = (vec![], vec![], 0.0_f64);
-    for _ in 0..looks {
+    for _ in 0..LOOKS {
         now += between;
         gas.until(Until::Time(now))?;
-        let mut counts = vec![0.0; bins];
+        let mut counts = vec![0.0; BINS.1];
         let mut height_now = 0.0;
         for disc in gas.simulation.particles().grains() {
             let above = (disc.position[1] - disc.radius) / height;
-            height_now += above / discs as f64;
+            height_now += above / DISCS as f64;
             highest = highest.max(above);
-            if let Some(count) = counts.get_mut((above / BIN) as usize) {
+            if let Some(count) = counts.get_mut((above / BINS.0) as usize) {
                 *count += 1.0;
             }
         }
         heights.push(height_now);
-        temperatures.push(gas.observed(["kinetic"])?[0] / discs as f64);
+        temperatures.push(gas.observed(["kinetic"])?[0] / DISCS as f64);
         // The barometric law has N/h of them on a unit of height at the floor.
-        let now = counts.into_iter().map(|count| count / (discs as f64 * BIN));
+        let now = counts.into_iter().map(|count| count / (DISCS as f64 * BINS.0));
         densities.iter_mut().zip(now).for_each(|(course, now)| course.push(now));
     }
+    let layers = counted(layers, "layer", "layers");
+    let name = if restitution < 1.0 { format!("{layers}, e = {restitution}") } else { layers };
     Ok(Profile {
-        layers,
-        discs,
-        heights: (0..bins).map(|bin| (bin as f64 + 0.5) * BIN).collect(),
+        name,
         densities: densities.iter().map(|course| Mean::of_course(course)).collect(),
         mean_height: Mean::of_course(&heights),
         temperature: Mean::of_course(&temperatures),

@@ -1,10 +1,11 @@
 //! Where the method fails: inelastic collapse over restitution and number of discs, in a row and in the plane.
 
+use crate::console::Failure;
+use crate::frame::{Cell, Rows};
 use crate::laboratory::running::{Running, prepared};
-use crate::results::{Meter, Progress};
+use crate::results::{Lab, Made, Meter, Size};
 use crate::study::StudyError;
 use rand::RngExt;
-use serde::Serialize;
 use std::f64::consts::FRAC_PI_4;
 use stripmine_kernels::noise::{Purpose, Stream};
 use stripmine_physics::method::Until;
@@ -25,50 +26,27 @@ const SEEDS: u64 = 3;
 /// Collisions of a disc in the runs of the map.
 const COLLISIONS: f64 = 200.0;
 /// Packing fraction of the gases of the map.
-pub const PACKING: f64 = 0.25;
+const PACKING: f64 = 0.25;
 
 /// Discs in a row that fly towards each other, without sides.
-#[derive(Clone, Debug, Serialize)]
-pub struct Row {
-    /// Discs.
-    pub discs: u32,
-    /// The largest restitution at which a start collapses and the smallest found at which none does.
-    pub edge: [f64; 2],
-    /// That of theory.
-    pub theory: f64,
+struct Row {
+    discs: u32,
+    /// Largest restitution at which a start collapses and smallest found at which none does.
+    edge: [f64; 2],
 }
 
 /// Gases of a number of discs.
-#[derive(Clone, Debug, Serialize)]
-pub struct Gases {
-    /// Discs.
-    pub discs: usize,
-    /// Those that lie across the box, whatever their place along it: N d/L.
-    pub across: f64,
-    /// The share of the seeds that collapse, by restitution.
-    pub collapsed: Vec<f64>,
-    /// The restitution below which a row of as many discs as lie across collapses.
-    pub theory: f64,
-}
-
-/// What came out.
-#[derive(Clone, Debug, Serialize)]
-pub struct Collapses {
-    /// Rows.
-    pub rows: Vec<Row>,
-    /// Restitutions of the gases.
-    pub restitutions: Vec<f64>,
-    /// Gases.
-    pub gases: Vec<Gases>,
-    /// Seeds of each.
-    pub seeds: u64,
-    /// Collisions of a disc after which a gas counts as one that does not collapse.
-    pub collisions: f64,
+struct Gases {
+    discs: usize,
+    /// Discs that lie across the box, whatever their place along it: N d/L.
+    across: f64,
+    /// Share of the seeds that collapse, by restitution.
+    collapsed: Vec<f64>,
 }
 
 /// The restitution below which discs in a row can collapse: tan²(π/4 (1 − 2/N)), exact for three (7 − 4√3) and an estimate for more,
 /// of which each half is taken for a column that meets a wall, after Bernu and Mazighi (1990).
-pub fn of_a_row(discs: f64) -> f64 {
+fn of_a_row(discs: f64) -> f64 {
     if discs > 2.0 { (FRAC_PI_4 * (1.0 - 2.0 / discs)).tan().powi(2) } else { 0.0 }
 }
 
@@ -76,16 +54,42 @@ pub fn of_a_row(discs: f64) -> f64 {
 ///
 /// # Errors
 /// [`StudyError`] if a scene breaks otherwise than by collapse.
-pub fn collapses(progress: Progress<'_>) -> Result<Collapses, StudyError> {
+pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let places = DISCS.iter().flat_map(|&discs| RESTITUTIONS.map(|restitution| (discs, restitution)));
     let places: Vec<(u64, f64)> = places.collect();
-    let meter = Meter::new((ROWS.len() + places.len()) as f64, progress);
+    let meter = Meter::new((ROWS.len() + places.len()) as f64, lab.progress);
     let rows = meter.each(&ROWS, |&discs| row(discs))?;
     let shares = meter.each_from_last(&places, |&(discs, restitution)| share(discs, restitution))?;
     let shares = shares.chunks(RESTITUTIONS.len());
     let gases = DISCS.iter().zip(shares).map(|(&discs, collapsed)| gases(discs, collapsed.to_vec()));
-    let gases = gases.collect::<Result<_, StudyError>>()?;
-    Ok(Collapses { rows, restitutions: RESTITUTIONS.to_vec(), gases, seeds: SEEDS, collisions: COLLISIONS })
+    let gases: Vec<Gases> = gases.collect::<Result<_, StudyError>>()?;
+    let places = gases.iter().flat_map(|it| it.collapsed.iter().zip(RESTITUTIONS).map(move |at| (it, at)));
+    Ok(Made::of([
+        Rows::of(&rows)
+            .count("discs in the row", |row| row.discs)
+            .number("collapses at", 4, |row| row.edge[0])
+            .number("does not at", 4, |row| row.edge[1])
+            .number("theory", 4, |row| of_a_row(f64::from(row.discs)))
+            .frame("rows", "Discs in a row"),
+        Rows::of((30..=160).step_by(5).map(|tenths| f64::from(tenths) / 10.0))
+            .number("discs in the row", 1, |discs| *discs)
+            .number("restitution", 4, |discs| of_a_row(*discs))
+            .frame("theory", "Estimate for discs in a row: tan²(π/4 (1 − 2/N))"),
+        Rows::of(&gases)
+            .count("discs", |gases| gases.discs)
+            .number("N d/L", 1, |gases| gases.across)
+            .number("theory of a row", 3, |gases| of_a_row(gases.across))
+            .cells(RESTITUTIONS.map(|e| format!("e = {e}")), |gases| {
+                gases.collapsed.iter().map(|&share| Cell::Number(share, 2)).collect::<Vec<_>>()
+            })
+            .frame("plane", "Share of the seeds that collapse"),
+        Rows::of(places)
+            .count("discs", |(gases, _)| gases.discs)
+            .number("restitution", 1, |(_, (_, restitution))| *restitution)
+            .number("share", 2, |(_, (share, _))| **share)
+            .frame("gases", "Share of the seeds that collapse, a row for each restitution"),
+    ])
+    .with_seeds(1..=SEEDS))
 }
 
 /// Whether a scene collapses before its end.
@@ -123,7 +127,7 @@ fn row(discs: u32) -> Result<Row, StudyError> {
             high = middle;
         }
     }
-    Ok(Row { discs, edge: [low, high], theory: of_a_row(f64::from(discs)) })
+    Ok(Row { discs, edge: [low, high] })
 }
 
 /// Places and velocities of discs in a row: gaps of about a diameter, the faster inwards the farther out. The first start is
@@ -162,7 +166,7 @@ fn gases(discs: u64, collapsed: Vec<f64>) -> Result<Gases, StudyError> {
     let discs = prepared("cooling-gas", &gas(discs))?.particles().grain_count();
     // N d/L with N = ν L²/(π d²/4).
     let across = (discs as f64 * PACKING / FRAC_PI_4).sqrt();
-    Ok(Gases { discs, across, collapsed, theory: of_a_row(across) })
+    Ok(Gases { discs, across, collapsed })
 }
 
 #[cfg(test)]

@@ -1,16 +1,16 @@
-//! What a collision costs over the number of discs: in counted operations, and in processor time.
+//! Cost of a collision over the number of discs: counted operations, and processor time.
 
-use crate::laboratory::hard_disks::study::rates::ENGINES;
-use crate::laboratory::running::Running;
-use crate::results::Progress;
-use crate::statistics::{median, non_negative};
-use crate::study::StudyError;
-use serde::Serialize;
-use stripmine_physics::method::hard_disks::keys::ENGINE;
-use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
+use super::rates::{ENGINES, fluid};
+use crate::console::Failure;
+use crate::frame::Rows;
+use crate::laboratory::rates::{Case, Measured, rates};
+use crate::laboratory::running::prepared;
+use crate::provenance::Machine;
+use crate::results::{Lab, Made, Size};
+use crate::statistics::{non_negative, slope};
 
-/// What is counted, by its name, and how tables call it.
-pub const COUNTED: [(&str, &str); 5] = [
+/// Counted operations: their names, and their headings.
+const COUNTED: [(&str, &str); 5] = [
     ("predictions", "predictions of a pair"),
     ("searches", "searches for the next event of a disc"),
     ("repairs", "of these for a lost partner"),
@@ -18,164 +18,152 @@ pub const COUNTED: [(&str, &str); 5] = [
     ("cell_updates", "discs put into a cell"),
 ];
 
-/// How much is measured.
-#[derive(Clone, Debug)]
-pub struct Effort {
+/// Grid of a size.
+struct Grid {
     /// Numbers of discs, at least.
-    pub discs: Vec<u64>,
-    /// Packing fractions.
-    pub packing_fractions: Vec<f64>,
-    /// Rounds, in which the engines take turns.
-    pub rounds: usize,
-    /// Collisions of a round.
-    pub collisions: u64,
-    /// The source's way has no more discs than this: it takes minutes.
-    pub most_by_reference: u64,
+    discs: &'static [u64],
+    packing_fractions: &'static [f64],
+    /// Collisions that are measured.
+    collisions: u64,
+    /// The source's way has no more discs than this.
+    most_by_reference: u64,
 }
 
 /// An engine with a number of discs.
-#[derive(Clone, Debug, Serialize)]
-pub struct Cost {
-    /// Discs.
-    pub discs: usize,
-    /// Area of the discs over that of the box.
-    pub packing_fraction: f64,
-    /// The engine.
-    pub engine: &'static str,
-    /// Operations of a collision, as in [`COUNTED`].
-    pub operations: [f64; COUNTED.len()],
-    /// Processor seconds of a collision: the median of the rounds.
-    pub seconds: f64,
+struct Cost {
+    engine: &'static str,
+    packing_fraction: f64,
+    discs: f64,
+    /// Bytes of a run.
+    memory: f64,
+    measured: Measured,
 }
 
-/// A time that grows with the logarithm of the number of discs, fitted to an engine at a packing fraction.
-#[derive(Clone, Debug, Serialize)]
-pub struct Fit {
-    /// The engine.
-    pub engine: &'static str,
-    /// Area of the discs over that of the box.
-    pub packing_fraction: f64,
-    /// Seconds of a collision, and seconds more for each doubling of the number of discs.
-    pub seconds: [f64; 2],
-    /// By how much the farthest measured time is off, as a factor.
-    pub off: f64,
-}
+/// A logarithm of the number of discs, fitted to an engine at a packing fraction: seconds of a collision, and seconds more for each
+/// doubling.
+struct Fit([f64; 2]);
 
 impl Fit {
-    /// Seconds of a collision of so many discs.
-    pub fn at(&self, discs: f64) -> f64 {
-        self.seconds[0] + self.seconds[1] * discs.log2()
+    /// Least squares of the relative errors; neither constant is below nothing.
+    fn of(costs: impl Iterator<Item = [f64; 2]>) -> Fit {
+        // In nanoseconds, for numbers near one.
+        let row = |[discs, seconds]: [f64; 2]| ([1.0, discs.log2()].map(|term| 1e-9 * term / seconds), 1.0);
+        Fit(non_negative(&costs.map(row).collect::<Vec<_>>()).map(|constant| 1e-9 * constant))
+    }
+
+    /// Seconds of a collision.
+    fn at(&self, discs: f64) -> f64 {
+        self.0[0] + self.0[1] * discs.log2()
     }
 }
 
-/// What came out.
-#[derive(Clone, Debug, Serialize)]
-pub struct Complexity {
-    /// Every engine, packing fraction and number of discs.
-    pub costs: Vec<Cost>,
-    /// The fits.
-    pub fits: Vec<Fit>,
-}
-
-/// Measures.
+/// Measures both engines.
 ///
 /// # Errors
-/// [`StudyError`] if a scene breaks.
-pub fn complexity(effort: &Effort, progress: Progress<'_>) -> Result<Complexity, StudyError> {
-    let mut costs = vec![];
-    let work: u64 = effort.discs.iter().map(|discs| 5 * discs + effort.collisions).sum();
-    let mut done = 0;
-    for &discs in &effort.discs {
-        for &packing_fraction in &effort.packing_fractions {
-            costs.extend(engines(discs, packing_fraction, effort)?);
-            done += 5 * discs + effort.collisions;
-            progress(done as f64 / (work * effort.packing_fractions.len() as u64) as f64);
+/// [`Failure`] of a scene.
+pub fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
+    let grid = match size {
+        Size::Quick => Grid {
+            discs: &[1000, 10_000],
+            packing_fractions: &[0.50],
+            collisions: 20_000,
+            most_by_reference: 10_000,
+        },
+        Size::Full => Grid {
+            discs: &[1000, 10_000, 100_000],
+            packing_fractions: &[0.30, 0.70],
+            collisions: 200_000,
+            most_by_reference: 100_000,
+        },
+        Size::All => Grid {
+            discs: &[1000, 10_000, 100_000, 1_000_000, 10_000_000],
+            packing_fractions: &[0.30, 0.70],
+            collisions: 1_000_000,
+            most_by_reference: 1_000_000,
+        },
+    };
+    let mut scenes = vec![];
+    for engine in ENGINES {
+        let is_measured = |discs: &&u64| engine == ENGINES[0] || **discs <= grid.most_by_reference;
+        for &discs in grid.discs.iter().filter(is_measured) {
+            scenes.extend(grid.packing_fractions.iter().map(|&packing| (engine, packing, discs)));
         }
     }
-    let fits = effort.packing_fractions.iter().flat_map(|&packing_fraction| {
-        let costs = &costs;
-        ENGINES.map(|engine| fit(engine, packing_fraction, costs))
-    });
-    Ok(Complexity { fits: fits.collect(), costs })
+    // From the lattice of the start, and lists that are all as old, to discs in motion: ten collisions of each.
+    let case = |&(engine, packing, discs): &(&str, f64, u64)| {
+        let case = Case::events("hard-disks", &fluid(engine, discs, packing), 5 * discs, grid.collisions);
+        case.label("engine", engine).label("ν", packing.to_string()).label("discs", discs)
+    };
+    let measured = rates(lab, &scenes.iter().map(case).collect::<Vec<_>>())?;
+    let cost = |((engine, packing_fraction, discs), measured): (_, Measured)| {
+        let scene = prepared("hard-disks", &fluid(engine, discs, packing_fraction))?;
+        let discs = scene.particles().grain_count() as f64;
+        Ok(Cost { engine, packing_fraction, discs, memory: scene.memory.needed as f64, measured })
+    };
+    let costs = scenes.into_iter().zip(measured).map(cost).collect::<Result<Vec<Cost>, Failure>>()?;
+    let fit = |it: &Cost| {
+        let alike =
+            |other: &&Cost| (other.engine, other.packing_fraction) == (it.engine, it.packing_fraction);
+        let seen = costs.iter().filter(alike).map(|it| [it.discs, it.measured.cost().median]);
+        Fit::of(seen).at(it.discs)
+    };
+    let off = |it: &Cost| (fit(it) / it.measured.cost().median).max(it.measured.cost().median / fit(it));
+    let fast = || costs.iter().filter(|it| it.engine == ENGINES[0]);
+    let [discs, memory] =
+        [|it: &Cost| it.discs, |it: &Cost| it.memory].map(|of| fast().map(of).collect::<Vec<_>>());
+    let bytes = slope(&discs, &memory);
+    let rows = COUNTED.into_iter().fold(
+        Rows::of(&costs)
+            .text("engine", |it| it.engine)
+            .number("ν", 2, |it| it.packing_fraction)
+            .count("discs", |it| it.discs as u64)
+            .cell("time (µs)", |it| it.measured.cost().cell(1e6, 3)),
+        |rows, (kind, heading)| rows.number(heading, 3, move |it| it.measured.count(kind)),
+    );
+    Ok(Made::of([
+        rows.number("by the fit (µs)", 3, |it| 1e6 * fit(it))
+            .frame("complexity", "Of a collision: processor time and counted operations"),
+        Rows::of(caches())
+            .text("cache", |(name, _)| name.clone())
+            .number("bytes", 0, |(_, bytes)| *bytes)
+            .number("discs", 0, |(_, size)| size / bytes)
+            .frame("caches", "Discs of the fast engine that a cache holds"),
+        Rows::of([()])
+            .number("off a logarithm", 2, |()| costs.iter().map(off).fold(1.0, f64::max))
+            .number("bytes of a disc", 0, |()| bytes)
+            .frame(
+                "summary",
+                "Largest factor between a time and the logarithm fitted to it; memory of the fast engine",
+            ),
+    ])
+    .with_seeds([1]))
 }
 
-fn engines(discs: u64, packing_fraction: f64, effort: &Effort) -> Result<Vec<Cost>, StudyError> {
-    let mut running: Vec<(Running, Vec<f64>, [f64; COUNTED.len()])> = vec![];
-    for engine in of_size(discs, effort) {
-        let scene = Overrides::new().set(&COUNT, discs).set(&PACKING_FRACTION, packing_fraction);
-        let mut system = Running::timed("hard-disks", &scene.set(&ENGINE, engine))?;
-        // From the lattice of the start, and lists that are all as old, to discs in motion: ten collisions of each.
-        system.events(5 * discs)?;
-        let before = counted(&system);
-        running.push((system, vec![], before));
-    }
-    for _ in 0..effort.rounds {
-        for (system, times, _) in &mut running {
-            let begun = cpu_time::ProcessTime::now();
-            system.events(effort.collisions)?;
-            times.push(begun.elapsed().as_secs_f64() / effort.collisions as f64);
-        }
-    }
-    let collisions = (effort.rounds as u64 * effort.collisions) as f64;
-    let cost =
-        |(engine, (system, times, before)): (&'static str, (Running, Vec<f64>, [f64; COUNTED.len()]))| {
-            let after = counted(&system);
-            Ok(Cost {
-                discs: system.simulation.particles().grain_count(),
-                packing_fraction,
-                engine,
-                operations: std::array::from_fn(|kind| (after[kind] - before[kind]) / collisions),
-                seconds: median(times.into_iter()),
-            })
-        };
-    of_size(discs, effort).into_iter().zip(running).map(cost).collect()
-}
-
-/// The engines that are measured with a number of discs.
-fn of_size(discs: u64, effort: &Effort) -> Vec<&'static str> {
-    let is_measured = |engine: &&str| *engine != ENGINES[1] || discs <= effort.most_by_reference;
-    ENGINES.into_iter().filter(is_measured).collect()
-}
-
-fn counted(system: &Running) -> [f64; COUNTED.len()] {
-    let counts = system.simulation.event_operations();
-    COUNTED.map(|(name, _)| counts.iter().find(|it| it.0 == name).map_or(0.0, |it| it.1 as f64))
-}
-
-/// Least squares of the relative errors; neither constant is below nothing.
-fn fit(engine: &'static str, packing_fraction: f64, costs: &[Cost]) -> Fit {
-    let own = || costs.iter().filter(|it| (it.engine, it.packing_fraction) == (engine, packing_fraction));
-    // In nanoseconds, for numbers near one.
-    let row = |it: &Cost| ([1.0, (it.discs as f64).log2()].map(|term| 1e-9 * term / it.seconds), 1.0);
-    let seconds = non_negative(&own().map(row).collect::<Vec<_>>()).map(|constant| 1e-9 * constant);
-    let fit = Fit { engine, packing_fraction, seconds, off: 1.0 };
-    let off =
-        own().map(|it| (fit.at(it.discs as f64) / it.seconds).max(it.seconds / fit.at(it.discs as f64)));
-    Fit { off: off.fold(1.0, f64::max), ..fit }
+/// Names and bytes of the caches of this machine that hold data.
+fn caches() -> Vec<(String, f64)> {
+    let cache = |text: &String| {
+        let (name, size) = text.split_once(' ')?;
+        let kibibytes: f64 = size.strip_suffix('K')?.parse().ok()?;
+        Some((name.to_owned(), 1024.0 * kibibytes))
+    };
+    Machine::here().caches.iter().filter_map(cache).filter(|(name, _)| !name.ends_with('i')).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Times made by a logarithm give it back, and one that is not on it is said to be off.
     #[test]
-    fn a_logarithm_is_found_again() {
-        let cost = |discs: usize, seconds: f64| Cost {
-            discs,
-            packing_fraction: 0.5,
-            engine: ENGINES[0],
-            operations: [0.0; COUNTED.len()],
-            seconds,
-        };
-        let on = |discs: usize| cost(discs, 1e-9 * (200.0 + 30.0 * (discs as f64).log2()));
-        let mut costs: Vec<Cost> = [1 << 10, 1 << 14, 1 << 20].map(on).to_vec();
-        let found = fit(ENGINES[0], 0.5, &costs);
-        assert!(
-            (found.seconds[0] / 200e-9 - 1.0).abs() < 1e-2 && (found.seconds[1] / 30e-9 - 1.0).abs() < 1e-2
-        );
-        assert!(found.off < 1.01);
-        costs.push(cost(1 << 22, 4e-6));
-        assert!(fit(ENGINES[0], 0.5, &costs).off > 1.5);
+    fn a_logarithm_is_fitted_by_itself_alone() {
+        let on = |discs: f64| [discs, 1e-9 * (200.0 + 30.0 * discs.log2())];
+        let all = [1024.0, 16_384.0, 1_048_576.0].map(on);
+        let found = Fit::of(all.into_iter());
+        assert!((found.0[0] / 200e-9 - 1.0).abs() < 1e-2 && (found.0[1] / 30e-9 - 1.0).abs() < 1e-2);
+        let far = [4_194_304.0, 4e-6];
+        let found = Fit::of(all.into_iter().chain([far]));
+        assert!(all.into_iter().chain([far]).any(|[discs, seconds]| {
+            let off = found.at(discs) / seconds;
+            !(1.0 / 1.5..1.5).contains(&off)
+        }));
     }
 }

@@ -1,84 +1,99 @@
 //! A granular gas cools: Haff's law while it is even, and inelastic collapse where it is too dissipative.
 
-use crate::laboratory::running::{Running, prepared};
-use crate::results::{Meter, Progress};
+use crate::console::Failure;
+use crate::frame::Rows;
+use crate::laboratory::running::Running;
+use crate::results::{Lab, Made, Meter, Size};
 use crate::study::{StudyError, first_line};
-use serde::Serialize;
 use stripmine_physics::method::Until;
 use stripmine_physics::method::hard_disks::keys::{CONTACT_DURATION, RESTITUTION};
 use stripmine_physics::method::observed::summed_up;
 use stripmine_physics::scene::{COUNT, Overrides};
 
+/// Discs, at least.
+const DISCS: u64 = 10_000;
 /// Restitutions of the gases that are followed.
 const RESTITUTIONS: [f64; 3] = [0.99, 0.95, 0.90];
-/// Collisions of a disc between looks.
-const BETWEEN: f64 = 0.5;
+/// Looks at a gas, half a collision of each disc apart.
+const LOOKS: usize = 24;
 /// Restitutions of which it is asked whether the gas collapses.
 const COLLAPSING: [f64; 4] = [0.9, 0.5, 0.3, 0.1];
+/// Contact duration that cures collapse (time).
+const CURE: f64 = 1e-4;
 
 /// A gas that cools.
-#[derive(Clone, Debug, Serialize)]
-pub struct Gas {
-    /// Restitution.
-    pub restitution: f64,
-    /// Collisions of a disc at the looks, from the first on.
-    pub collisions: Vec<f64>,
-    /// Time since then.
-    pub times: Vec<f64>,
-    /// Temperature over that then.
-    pub temperatures: Vec<f64>,
+struct Gas {
+    restitution: f64,
+    /// Collisions of a disc, time, and temperature over that of the first look, at each look.
+    looks: Vec<[f64; 3]>,
     /// Haff's time t₀ = 4/((1 − e²) ω₀), with the rate ω₀ of an elastic gas of the temperature of the first look.
-    pub haff_time: f64,
-    /// By how much the temperature is off Haff's law at the last look, relative to it: by the time, and by the count of collisions.
-    pub off: [f64; 2],
+    haff_time: f64,
+    /// T₀ exp(−(1 − e²) collisions/N) at the last look.
+    by_collisions: f64,
 }
 
-/// What becomes of a very dissipative gas.
-#[derive(Clone, Debug, Serialize)]
-pub struct Fate {
-    /// Restitution.
-    pub restitution: f64,
+/// Fate of a very dissipative gas.
+struct Fate {
+    restitution: f64,
     /// Collisions of a disc when it ended.
-    pub collisions: f64,
-    /// What was found, if it collapsed.
-    pub collapse: Option<String>,
-    /// With a contact duration: the share of the collisions that were made elastic in a run of the same length.
-    pub made_elastic: Option<f64>,
+    collisions: f64,
+    /// Message, if it collapsed.
+    collapse: Option<String>,
+    /// Share of the collisions that the contact duration made elastic in a run of the same length.
+    made_elastic: Option<f64>,
 }
 
-/// What came out.
-#[derive(Clone, Debug, Serialize)]
-pub struct Cooling {
-    /// Discs.
-    pub discs: usize,
-    /// Gases that are even.
-    pub gases: Vec<Gas>,
-    /// Very dissipative ones.
-    pub fates: Vec<Fate>,
-    /// The contact duration of the cure (time).
-    pub contact_duration: f64,
+impl Gas {
+    /// Haff's law: the temperature over that of the first look.
+    fn haff(&self, time: f64) -> f64 {
+        (1.0 + time / self.haff_time).powi(-2)
+    }
+
+    fn last(&self) -> [f64; 3] {
+        self.looks[self.looks.len() - 1]
+    }
 }
 
-/// Haff's law: the temperature over that at the start.
-pub fn haff(time: f64, haff_time: f64) -> f64 {
-    (1.0 + time / haff_time).powi(-2)
-}
-
-/// Follows gases over `each` collisions of a disc.
+/// Follows gases that cool and gases that collapse.
 ///
 /// # Errors
 /// [`StudyError`] if a scene breaks otherwise than by collapse.
-pub fn cooling(discs: u64, each: f64, progress: Progress<'_>) -> Result<Cooling, StudyError> {
-    let meter = Meter::new((RESTITUTIONS.len() + COLLAPSING.len()) as f64, progress);
-    let gases = meter.each(&RESTITUTIONS, |&restitution| gas(discs, restitution, each))?;
-    let contact_duration = 1e-4;
-    let fates = meter.each(&COLLAPSING, |&restitution| fate(discs, restitution, contact_duration))?;
-    let scene = prepared("cooling-gas", &Overrides::new().set(&COUNT, discs))?;
-    Ok(Cooling { discs: scene.particles().grain_count(), gases, fates, contact_duration })
+pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+    let meter = Meter::new((RESTITUTIONS.len() + COLLAPSING.len()) as f64, lab.progress);
+    let gases = meter.each(&RESTITUTIONS, gas)?;
+    let fates = meter.each(&COLLAPSING, fate)?;
+    let looks = gases.iter().flat_map(|gas| gas.looks.iter().enumerate().skip(1).map(move |it| (gas, it)));
+    let off = |temperature: f64, law: f64| 100.0 * (temperature / law - 1.0);
+    Ok(Made::of([
+        Rows::of(&gases)
+            .number("restitution", 2, |gas| gas.restitution)
+            .number("collisions of a disc", 1, |gas| gas.last()[0])
+            .number("t₀", 3, |gas| gas.haff_time)
+            .number("T/T₀ at the end", 4, |gas| gas.last()[2])
+            .number("off Haff by time (%)", 2, |gas| off(gas.last()[2], gas.haff(gas.last()[1])))
+            .number("off Haff by collisions (%)", 2, |gas| off(gas.last()[2], gas.by_collisions))
+            .frame("gases", "Temperatures beside Haff's law"),
+        Rows::of(&fates)
+            .number("restitution", 2, |fate| fate.restitution)
+            .number("collisions of a disc", 1, |fate| fate.collisions)
+            .text("what was found", |fate| fate.collapse.clone().unwrap_or_else(|| "no collapse".into()))
+            .number("made elastic by the contact duration (%)", 3, |fate| {
+                fate.made_elastic.map(|share| 100.0 * share)
+            })
+            .frame("collapse", "Fate of very dissipative gases in 200 collisions of a disc"),
+        Rows::of(looks)
+            .number("restitution", 2, |(gas, _)| gas.restitution)
+            .count("look", |(_, (at, _))| *at)
+            .number("time", 3, |(_, (_, look))| look[1])
+            .number("temperature over that of the first look", 4, |(_, (_, look))| look[2])
+            .number("Haff", 4, |(gas, (_, look))| gas.haff(look[1]))
+            .frame("looks", "Temperatures over time, in units of those at the first look"),
+    ])
+    .with_seeds([1]))
 }
 
-fn gas(discs: u64, restitution: f64, each: f64) -> Result<Gas, StudyError> {
-    let scene = Overrides::new().set(&COUNT, discs);
+fn gas(&restitution: &f64) -> Result<Gas, StudyError> {
+    let scene = Overrides::new().set(&COUNT, DISCS);
     let begin =
         |restitution: f64| Running::begin("cooling-gas", &scene.clone().set(&RESTITUTION, restitution));
     let names = ["time", "collisions", "temperature"];
@@ -96,26 +111,24 @@ fn gas(discs: u64, restitution: f64, each: f64) -> Result<Gas, StudyError> {
     let first = gas.observed(names)?;
     let haff_time = 4.0 / ((1.0 - restitution * restitution) * elastic_rate * first[2].sqrt());
     let mut looks = vec![first];
-    for _ in 0..(each / BETWEEN) as usize {
-        gas.events((BETWEEN * 0.5 * count) as u64)?;
+    for _ in 0..LOOKS {
+        gas.events((0.25 * count) as u64)?;
         looks.push(gas.observed(names)?);
     }
-    let last = looks[looks.len() - 1];
-    let temperature = last[2] / first[2];
-    let by_count = (-(1.0 - restitution * restitution) * (last[1] - first[1]) / count).exp();
+    let relative =
+        |look: [f64; 3]| [2.0 * (look[1] - first[1]) / count, look[0] - first[0], look[2] / first[2]];
+    let last = looks[LOOKS];
     Ok(Gas {
         restitution,
-        collisions: looks.iter().map(|look| 2.0 * (look[1] - first[1]) / count).collect(),
-        times: looks.iter().map(|look| look[0] - first[0]).collect(),
-        temperatures: looks.iter().map(|look| look[2] / first[2]).collect(),
+        looks: looks.into_iter().map(relative).collect(),
         haff_time,
-        off: [temperature / haff(last[0] - first[0], haff_time) - 1.0, temperature / by_count - 1.0],
+        by_collisions: (-(1.0 - restitution * restitution) * (last[1] - first[1]) / count).exp(),
     })
 }
 
 /// Up to 200 collisions of a disc, or to the collapse.
-fn fate(discs: u64, restitution: f64, contact_duration: f64) -> Result<Fate, StudyError> {
-    let scene = Overrides::new().set(&COUNT, discs).set(&RESTITUTION, restitution);
+fn fate(&restitution: &f64) -> Result<Fate, StudyError> {
+    let scene = Overrides::new().set(&COUNT, DISCS).set(&RESTITUTION, restitution);
     let begin = |contact_duration: f64| {
         Running::begin("cooling-gas", &scene.clone().set(&CONTACT_DURATION, contact_duration))
     };
@@ -133,7 +146,7 @@ fn fate(discs: u64, restitution: f64, contact_duration: f64) -> Result<Fate, Stu
     let made_elastic = match collapse {
         None => None,
         Some(_) => {
-            let mut cured = begin(contact_duration)?;
+            let mut cured = begin(CURE)?;
             cured.events(events)?;
             let summary = cured.simulation.summary();
             Some(summed_up(&summary, "made_elastic")? / summed_up(&summary, "collisions")?)

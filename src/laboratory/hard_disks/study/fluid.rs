@@ -1,97 +1,104 @@
 //! Pressure and collision rate of the equilibrium fluid, over the packing fraction.
 
+use crate::console::Failure;
+use crate::frame::{Cell, Rows};
 use crate::laboratory::running::Running;
-use crate::results::{Meter, Progress};
+use crate::results::{Lab, Made, Meter, Size};
+use crate::statistics::Mean;
 use crate::study::StudyError;
-use serde::Serialize;
+use std::f64::consts::PI;
 use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
 
-pub use crate::statistics::Mean;
-
-/// Packing fraction, Z, and collisions of a disc in a unit of time (diameter = m = kT = 1), measured by two independent codes with
-/// 250 000 discs, good to about 0.1 %.
-pub const KNOWN: [[f64; 3]; 7] = [
-    [0.10, 1.2359, 0.5328],
-    [0.20, 1.5704, 1.287],
-    [0.30, 2.0632, 2.3995],
-    [0.40, 2.829, 4.130],
-    [0.50, 4.1094, 7.017],
-    [0.60, 6.455, 12.30],
-    [0.65, 8.41, 16.72],
+/// Reference up to a packing fraction of 0.5.
+const VIRIAL: &str = "virial series, Padé [4/5] (Clisby and McCoy 2006)";
+/// Reference of denser fluids, at which the approximants of the series differ.
+const LUDING: &str = "equation of state (Luding 2001)";
+/// Compressibility at a packing fraction of 0.5; Padé approximants of other degrees differ by 3·10⁻⁵ of it.
+pub(super) const Z_AT_HALF: f64 = 4.106_24;
+/// Packing fractions with their compressibility and its origin.
+const KNOWN: [(f64, f64, &str); 7] = [
+    (0.10, 1.236_143_6, VIRIAL),
+    (0.20, 1.570_366, VIRIAL),
+    (0.30, 2.063_26, VIRIAL),
+    (0.40, 2.829_32, VIRIAL),
+    (0.50, Z_AT_HALF, VIRIAL),
+    (0.60, 6.452_15, LUDING),
+    (0.65, 8.408_52, LUDING),
 ];
-
+/// Discs, at least.
+const DISCS: u64 = 10_000;
+/// Collisions that are measured.
+const COLLISIONS: u64 = 10_000_000;
 /// Parts of a run, each a measurement; their scatter and correlation give the error.
 const PARTS: u64 = 200;
 
-/// How much is measured.
-#[derive(Clone, Copy, Debug)]
-pub struct Effort {
-    /// Discs, at least.
-    pub discs: u64,
-    /// Collisions that are measured.
-    pub collisions: u64,
+/// A fluid beside the known compressibility.
+struct State {
+    packing_fraction: f64,
+    known: f64,
+    reference: &'static str,
+    compressibility: Mean,
+    rate: Mean,
+    /// Kinetic energy at the end less that at the start, over the latter.
+    energy_error: f64,
 }
 
-/// A fluid.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct State {
-    /// Area of the discs over that of the box.
-    pub packing_fraction: f64,
-    /// p A/(N kT), from the virial of the collisions.
-    pub compressibility: Mean,
-    /// Collisions of a disc in a unit of time, at kT = 1.
-    pub rate: Mean,
-    /// The kinetic energy at the end less that at the start, over the latter.
-    pub energy_error: f64,
-    /// What other programs have measured: Z and the rate.
-    pub known: [f64; 2],
-}
-
-/// Every fluid.
-#[derive(Clone, Debug, Serialize)]
-pub struct Fluids {
-    /// Discs.
-    pub discs: u64,
-    /// Collisions measured at each packing fraction.
-    pub collisions: u64,
-    /// The fluids.
-    pub states: Vec<State>,
-}
-
-impl State {
-    /// By how much it is off what is known, relative to that: Z and the rate.
-    pub fn off(&self) -> [Mean; 2] {
-        [self.compressibility.off(self.known[0]), self.rate.off(self.known[1])]
-    }
-}
-
-/// Henderson's compressibility of the fluid.
-pub fn henderson(packing_fraction: f64) -> f64 {
-    let nu = packing_fraction;
-    (1.0 + nu * nu / 8.0) / ((1.0 - nu) * (1.0 - nu))
-}
-
-/// Luding's, Z = 1 + 2 ν g₄ with g₄ = g − ν³/(128 (1 − ν)⁴) and g = (1 − 7ν/16)/(1 − ν)².
-pub fn luding(packing_fraction: f64) -> f64 {
-    let nu = packing_fraction;
+/// Luding's compressibility, Z = 1 + 2 ν g₄ with g₄ = g − ν³/(128 (1 − ν)⁴) and g = (1 − 7ν/16)/(1 − ν)².
+pub(super) fn luding(nu: f64) -> f64 {
     let contact_value =
         (1.0 - 7.0 * nu / 16.0) / (1.0 - nu).powi(2) - nu.powi(3) / (128.0 * (1.0 - nu).powi(4));
     1.0 + 2.0 * nu * contact_value
+}
+
+/// Henderson's compressibility.
+fn henderson(nu: f64) -> f64 {
+    (1.0 + nu * nu / 8.0) / ((1.0 - nu) * (1.0 - nu))
+}
+
+/// Collisions of a disc in a unit of time (diameter = m = kT = 1), by the virial theorem.
+pub(super) fn collision_rate(compressibility: f64) -> f64 {
+    4.0 * (compressibility - 1.0) / PI.sqrt()
 }
 
 /// Measures every packing fraction that is known.
 ///
 /// # Errors
 /// [`StudyError`] if a scene breaks.
-pub fn fluids(effort: &Effort, progress: Progress<'_>) -> Result<Fluids, StudyError> {
-    let meter = Meter::new(KNOWN.len() as f64, progress);
-    let states = meter
-        .each_from_last(&KNOWN, |&[packing_fraction, z, rate]| state(packing_fraction, [z, rate], effort))?;
-    Ok(Fluids { discs: effort.discs, collisions: effort.collisions, states })
+pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+    let states = Meter::new(KNOWN.len() as f64, lab.progress).each_from_last(&KNOWN, state)?;
+    let off = |mean: Mean, known: f64| {
+        let off = mean.off(known).percent();
+        Cell::with_error(off.value, Some(off.bar), 2)
+    };
+    Ok(Made::of([
+        Rows::of(&states)
+            .number("ν", 2, |it| it.packing_fraction)
+            .number("Z", 4, |it| it.compressibility.value)
+            .number("± (95 %)", 4, |it| it.compressibility.bar)
+            .number("Z known", 4, |it| it.known)
+            .text("reference", |it| it.reference)
+            .cell("off (%)", |it| off(it.compressibility, it.known))
+            .number("ω", 4, |it| it.rate.value)
+            .number("± (95 %)", 4, |it| it.rate.bar)
+            .number("ω known", 4, |it| collision_rate(it.known))
+            .cell("off (%)", |it| off(it.rate, collision_rate(it.known)))
+            .number("Henderson's Z", 4, |it| henderson(it.packing_fraction))
+            .number("Luding's Z", 4, |it| luding(it.packing_fraction))
+            .short("energy error", |it| it.energy_error)
+            .frame(
+                "fluid",
+                "Compressibility and collisions of a disc in a unit of time (diameter = m = kT = 1)",
+            ),
+        Rows::of((1..=68).map(|at| 0.01 * f64::from(at)))
+            .number("packing fraction ν", 2, |nu| *nu)
+            .number("compressibility Z", 4, |nu| luding(*nu))
+            .frame("luding", "Luding's equation of state"),
+    ])
+    .with_seeds([1]))
 }
 
-fn state(packing_fraction: f64, known: [f64; 2], effort: &Effort) -> Result<State, StudyError> {
-    let overrides = Overrides::new().set(&PACKING_FRACTION, packing_fraction).set(&COUNT, effort.discs);
+fn state(&(packing_fraction, known, reference): &(f64, f64, &'static str)) -> Result<State, StudyError> {
+    let overrides = Overrides::new().set(&PACKING_FRACTION, packing_fraction).set(&COUNT, DISCS);
     let mut fluid = Running::begin("hard-disks", &overrides)?;
     let discs = fluid.simulation.particles().grain_count() as f64;
     // The lattice of the start melts within some tens of collisions of each disc.
@@ -100,7 +107,7 @@ fn state(packing_fraction: f64, known: [f64; 2], effort: &Effort) -> Result<Stat
     let mut before = fluid.observed(names)?;
     let (mut pressures, mut rates) = (vec![], vec![]);
     for _ in 0..PARTS {
-        fluid.events(effort.collisions / PARTS)?;
+        fluid.events(COLLISIONS / PARTS)?;
         let after = fluid.observed(names)?;
         let [time, virial, collisions] = [0, 1, 2].map(|which| after[which] - before[which]);
         let temperature = after[3];
@@ -110,10 +117,11 @@ fn state(packing_fraction: f64, known: [f64; 2], effort: &Effort) -> Result<Stat
     }
     Ok(State {
         packing_fraction,
+        known,
+        reference,
         compressibility: Mean::of_course(&pressures),
         rate: Mean::of_course(&rates),
         energy_error: before[4],
-        known,
     })
 }
 
@@ -121,15 +129,24 @@ fn state(packing_fraction: f64, known: [f64; 2], effort: &Effort) -> Result<Stat
 mod tests {
     use super::*;
 
-    /// Both equations of state are those of the table to their own accuracy.
+    /// Coefficients B₂ … B₁₀ over the powers of B₂ (Clisby and McCoy 2006, table 1); the first three are exact.
+    fn virial_series(nu: f64) -> f64 {
+        let third = 4.0 / 3.0 - 3f64.sqrt() / PI;
+        let fourth = 2.0 - 4.5 * 3f64.sqrt() / PI + 10.0 / (PI * PI);
+        let numerical = [0.333_556_04, 0.198_842_5, 0.114_872_8, 0.064_993, 0.036_219_3, 0.019_953_7];
+        let all = [1.0, 1.0, third, fourth].into_iter().chain(numerical);
+        all.zip(0..).map(|(coefficient, power)| coefficient * (2.0 * nu).powi(power)).sum()
+    }
+
     #[test]
-    fn equations_of_state_agree_with_what_is_known() {
-        for [packing_fraction, z, rate] in KNOWN {
-            assert!((luding(packing_fraction) / z - 1.0).abs() < 0.006, "{packing_fraction}");
-            assert!((henderson(packing_fraction) / z - 1.0).abs() < 0.025, "{packing_fraction}");
-            // ω = 4 (Z − 1)/√π.
-            let of_z = 4.0 * (z - 1.0) / std::f64::consts::PI.sqrt();
-            assert!((of_z / rate - 1.0).abs() < 0.002, "{packing_fraction}: {of_z}");
+    fn references_agree_with_the_virial_series_and_equations_of_state() {
+        for ((nu, z, _), within) in KNOWN.into_iter().zip([1e-7, 2e-6, 5e-5, 8e-4]) {
+            assert!((virial_series(nu) / z - 1.0).abs() < within, "{nu}");
+        }
+        for (nu, z, reference) in KNOWN {
+            let within = if reference == LUDING { 1e-6 } else { 8e-4 };
+            assert!((luding(nu) / z - 1.0).abs() < within, "{nu}");
+            assert!((henderson(nu) / z - 1.0).abs() < 0.025, "{nu}");
         }
     }
 }

@@ -1,140 +1,145 @@
-//! The source's comparison: what a collision costs, over the mask and the packing fraction; and its cost formula, fitted.
+//! The source's comparison: cost of a collision over the mask and the packing fraction; and its cost formula, fitted.
 
+use super::rates::{ENGINES, fluid};
+use crate::console::Failure;
+use crate::frame::{Frame, Rows};
+use crate::laboratory::rates::{Case, Spread, rates};
 use crate::laboratory::running::{Running, prepared};
-use crate::results::Progress;
-use crate::statistics::{median, non_negative};
-use crate::study::StudyError;
-use serde::Serialize;
-use stripmine_physics::method::hard_disks::keys::{ENGINE, MASK, MASKS};
-use stripmine_physics::method::hard_disks::options::EngineChoice;
+use crate::results::{Lab, Made, Size};
+use crate::statistics::non_negative;
+use stripmine_kernels::mask::Mask;
+use stripmine_physics::method::hard_disks::keys::{MASK, MASKS};
+use stripmine_physics::method::hard_disks::reference::choice;
 use stripmine_physics::method::observed::summed_up;
-use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
 
-/// Constants of the source's formula.
-pub const TERMS: [&str; 4] = [
+/// Discs, at least.
+const DISCS: u64 = 2500;
+/// Terms of the source's formula.
+const TERMS: [&str; 4] = [
     "a collision",
     "a disc in the mask, for each collision",
     "a disc, for each filling",
     "a disc in the mask of a disc, for each filling",
 ];
+/// Unit of the fit: constants are a nanosecond or so.
+const NANO: f64 = 1e-9;
 
 /// A mask at a packing fraction.
-#[derive(Clone, Debug, Serialize)]
-pub struct Cost {
-    /// The mask.
-    pub mask: &'static str,
-    /// Its places.
-    pub places: usize,
-    /// Discs in the mask, on average.
-    pub candidates: f64,
-    /// Area of the discs over that of the box.
-    pub packing_fraction: f64,
-    /// Processor seconds of a collision.
-    pub seconds: f64,
-    /// Fillings of the grid for each collision of the system.
-    pub fillings: f64,
-    /// What the fitted formula says (s).
-    pub fitted: f64,
+struct Cost {
+    packing_fraction: f64,
+    mask: &'static str,
+    places: usize,
+    /// Discs of the system, and discs in the mask, on average.
+    discs: f64,
+    candidates: f64,
+    /// Fillings of the grid for each collision.
+    fillings: f64,
+    seconds: Spread,
 }
 
-/// What came out.
-#[derive(Clone, Debug, Serialize)]
-pub struct Masks {
-    /// Discs.
-    pub discs: usize,
-    /// Every mask at every packing fraction.
-    pub costs: Vec<Cost>,
-    /// The constants of the formula (s), as in [`TERMS`].
-    pub constants: [f64; 4],
-    /// The root of the mean square of the relative errors of the formula.
-    pub error: f64,
-    /// At each packing fraction: the cheapest mask, and what `auto` takes.
-    pub best: Vec<(f64, &'static str, String)>,
+/// Choice of `auto` at a packing fraction.
+struct Choice {
+    packing_fraction: f64,
+    cheapest: &'static str,
+    auto: String,
+    /// Cost by `auto` over that of the cheapest mask.
+    ratio: f64,
 }
 
-/// Measures `rounds` times `collisions` collisions of every mask, in turns.
+/// Measures every mask.
 ///
 /// # Errors
-/// [`StudyError`] if a scene breaks.
-pub fn masks(
-    discs: u64,
-    packing_fractions: &[f64],
-    (rounds, collisions): (usize, u64),
-    progress: Progress<'_>,
-) -> Result<Masks, StudyError> {
-    let masks = &MASKS[1..];
-    let (mut costs, mut best, mut count) = (vec![], vec![], 0);
-    for (at, &packing_fraction) in packing_fractions.iter().enumerate() {
-        let overrides = |mask: &str| {
-            let scene = Overrides::new().set(&COUNT, discs).set(&PACKING_FRACTION, packing_fraction);
-            scene.set(&ENGINE, EngineChoice::Reference).set(&MASK, mask)
-        };
-        let mut running: Vec<(Running, Vec<f64>)> = vec![];
-        for mask in masks {
-            let mut system = Running::begin("hard-disks", &overrides(mask))?;
-            system.events(10 * discs)?;
-            running.push((system, vec![]));
+/// [`Failure`] of a scene.
+pub fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
+    let (densities, collisions): (&[f64], _) = match size {
+        Size::Quick => (&[0.10, 0.50], 3000),
+        Size::Full | Size::All => (&[0.02, 0.10, 0.30, 0.50, 0.70], 10_000),
+    };
+    let scene = |nu: f64, mask: &str| fluid(ENGINES[1], DISCS, nu).set(&MASK, mask);
+    let masks = MASKS.iter().filter_map(|name| Some((*name, choice::mask(name)?)));
+    let masks: Vec<(&str, Mask)> = masks.collect();
+    let cases = densities.iter().flat_map(|&nu| {
+        masks.iter().map(move |(mask, _)| {
+            let case = Case::events("hard-disks", &scene(nu, mask), 4 * DISCS, collisions);
+            case.label("ν", nu.to_string()).label("mask", *mask)
+        })
+    });
+    let measured = rates(lab, &cases.collect::<Vec<_>>())?;
+    let (mut costs, mut choices): (Vec<Cost>, Vec<Choice>) = (vec![], vec![]);
+    for (&packing_fraction, measured) in densities.iter().zip(measured.chunks_exact(masks.len())) {
+        let system = Running::timed("hard-disks", &scene(packing_fraction, "min"))?;
+        let occupancy = summed_up(&system.simulation.summary(), "occupancy")?;
+        let discs = system.simulation.particles().grain_count() as f64;
+        let here = masks.iter().zip(measured).map(|((mask, offsets), measured)| {
+            let places = offsets.offsets().len();
+            let candidates = places as f64 * occupancy;
+            let fillings = measured.count("cell_updates") / discs;
+            Cost { packing_fraction, mask, places, discs, candidates, fillings, seconds: measured.cost() }
+        });
+        let here: Vec<Cost> = here.collect();
+        let auto = prepared("hard-disks", &scene(packing_fraction, "auto"))?.settings;
+        let auto = auto["mask"].as_str().unwrap_or_default().to_owned();
+        let cheapest = here.iter().min_by(|a, b| a.seconds.median.total_cmp(&b.seconds.median));
+        if let (Some(cheapest), Some(chosen)) = (cheapest, here.iter().find(|it| it.mask == auto)) {
+            let (cheapest, ratio) = (cheapest.mask, chosen.seconds.median / cheapest.seconds.median);
+            choices.push(Choice { packing_fraction, cheapest, auto, ratio });
         }
-        let remaps = |system: &Running| summed_up(&system.simulation.summary(), "remaps");
-        let before: Vec<f64> = running.iter().map(|(system, _)| remaps(system)).collect::<Result<_, _>>()?;
-        for round in 0..rounds {
-            for (system, times) in &mut running {
-                let begun = cpu_time::ProcessTime::now();
-                system.events(collisions)?;
-                times.push(begun.elapsed().as_secs_f64() / collisions as f64);
-            }
-            let done = at as f64 + (round + 1) as f64 / rounds as f64;
-            progress(done / packing_fractions.len() as f64);
-        }
-        let auto = prepared("hard-disks", &overrides("auto"))?.settings;
-        let mut here: Vec<Cost> = vec![];
-        for ((mask, (system, times)), before) in masks.iter().zip(&running).zip(before) {
-            count = system.simulation.particles().grain_count();
-            let places = stripmine_physics::method::hard_disks::reference::choice::mask(mask);
-            let places = places.map_or(0, |mask| mask.offsets().len());
-            let occupancy = summed_up(&system.simulation.summary(), "occupancy")?;
-            here.push(Cost {
-                mask,
-                places,
-                candidates: places as f64 * occupancy,
-                packing_fraction,
-                seconds: median(times.iter().copied()),
-                fillings: (remaps(system)? - before) / (rounds as u64 * collisions) as f64,
-                fitted: 0.0,
-            });
-        }
-        let cheapest = here.iter().min_by(|a, b| a.seconds.total_cmp(&b.seconds));
-        best.push((
-            packing_fraction,
-            cheapest.map_or("", |cost| cost.mask),
-            auto["mask"].as_str().unwrap_or("").to_owned(),
-        ));
         costs.extend(here);
     }
-    let constants = fit(&costs, count);
-    for cost in &mut costs {
-        cost.fitted = terms(cost, count).iter().zip(constants).map(|(term, constant)| term * constant).sum();
-    }
-    let squares: f64 = costs.iter().map(|cost| (cost.fitted / cost.seconds - 1.0).powi(2)).sum();
-    let error = (squares / costs.len() as f64).sqrt();
-    Ok(Masks { discs: count, costs, constants, error, best })
+    Ok(Made::of(frames(&costs, &choices, &masks)).with_seeds([1]))
 }
 
-/// What the constants multiply.
-fn terms(cost: &Cost, discs: usize) -> [f64; 4] {
-    let filled = discs as f64 * cost.fillings;
+fn frames(costs: &[Cost], choices: &[Choice], masks: &[(&str, Mask)]) -> [Frame; 5] {
+    let constants = fit(costs);
+    let fitted = |cost: &Cost| terms(cost).iter().zip(constants).map(|(term, it)| term * it).sum::<f64>();
+    let ratio = |cost: &Cost| fitted(cost) / cost.seconds.median;
+    let off = |cost: &Cost| ratio(cost).max(ratio(cost).recip());
+    let squares: f64 = costs.iter().map(|cost| (ratio(cost) - 1.0).powi(2)).sum();
+    let farthest = costs.iter().max_by(|a, b| off(a).total_cmp(&off(b)));
+    [
+        Rows::of(costs)
+            .number("ν", 2, |cost| cost.packing_fraction)
+            .text("mask", |cost| cost.mask)
+            .count("places", |cost| cost.places)
+            .cell("collision (µs)", |cost| cost.seconds.cell(1e6, 2))
+            .number("by the formula (µs)", 2, |cost| 1e6 * fitted(cost))
+            .number("fillings in a thousand collisions", 3, |cost| 1e3 * cost.fillings)
+            .frame("masks", "Processor time of a collision"),
+        Rows::of(TERMS.into_iter().zip(constants))
+            .text("of what", |(term, _)| *term)
+            .number("nanoseconds", 2, |(_, constant)| constant / NANO)
+            .frame("constants", "ISO99's formula of the cost, fitted"),
+        Rows::of(choices)
+            .number("ν", 2, |it| it.packing_fraction)
+            .text("cheapest mask", |it| it.cheapest)
+            .text("choice of auto", |it| it.auto.clone())
+            .number("cost of auto over the cheapest", 2, |it| it.ratio)
+            .frame("choices", "Cheapest mask, and the choice of `mask = \"auto\"`"),
+        Rows::of(masks)
+            .text("mask", |(name, _)| *name)
+            .count("places", |(_, mask)| mask.offsets().len())
+            .number("distance", 4, |(_, mask)| f64::from(mask.reach_squared()).sqrt())
+            .frame("reach", "Smallest distance to the rim of a mask (cells)"),
+        Rows::of(farthest)
+            .number("off the formula", 2, |cost| off(cost))
+            .number("ν", 2, |cost| cost.packing_fraction)
+            .text("mask", |cost| cost.mask)
+            .number("error (%)", 0, |_| 100.0 * (squares / costs.len() as f64).sqrt())
+            .frame("summary", "Fitted formula: the farthest measurement, and the root of the mean square"),
+    ]
+}
+
+/// Factors of the constants.
+fn terms(cost: &Cost) -> [f64; 4] {
+    let filled = cost.discs * cost.fillings;
     [1.0, cost.candidates, filled, cost.candidates * filled]
 }
 
 /// Least squares of the relative errors; no constant is below nothing.
-fn fit(costs: &[Cost], discs: usize) -> [f64; 4] {
-    let row = |cost: &Cost| (terms(cost, discs).map(|term| SCALE * term / cost.seconds), 1.0);
-    let rows: Vec<_> = costs.iter().map(row).collect();
-    non_negative(&rows).map(|constant| SCALE * constant)
+fn fit(costs: &[Cost]) -> [f64; 4] {
+    let row = |cost: &Cost| (terms(cost).map(|term| NANO * term / cost.seconds.median), 1.0);
+    non_negative(&costs.iter().map(row).collect::<Vec<_>>()).map(|constant| NANO * constant)
 }
-
-/// Constants are a nanosecond or so.
-const SCALE: f64 = 1e-9;
 
 #[cfg(test)]
 mod tests {
@@ -142,26 +147,17 @@ mod tests {
 
     /// Costs made by the formula give its constants back.
     #[test]
-    fn the_formula_is_found_again() {
+    fn the_fit_returns_the_constants_of_the_formula() {
         let constants = [1e-7, 2e-9, 3e-8, 3e-9];
-        let mut costs = vec![];
-        for (candidates, fillings) in
-            [(8.0, 0.01), (13.0, 0.004), (30.0, 0.001), (90.0, 0.0003), (5.0, 0.1), (70.0, 0.02)]
-        {
-            let mut cost = Cost {
-                mask: "",
-                places: 0,
-                candidates,
-                packing_fraction: 0.5,
-                seconds: 0.0,
-                fillings,
-                fitted: 0.0,
-            };
-            cost.seconds =
-                terms(&cost, 100).iter().zip(constants).map(|(term, constant)| term * constant).sum();
-            costs.push(cost);
-        }
-        for (found, constant) in fit(&costs, 100).into_iter().zip(constants) {
+        let made = [(8.0, 0.01), (13.0, 0.004), (30.0, 0.001), (90.0, 0.0003), (5.0, 0.1), (70.0, 0.02)];
+        let costs = made.map(|(candidates, fillings)| {
+            let seconds = Spread { median: 0.0, range: [0.0; 2] };
+            let (packing_fraction, mask, places, discs) = (0.5, "", 0, 100.0);
+            let mut cost = Cost { packing_fraction, mask, places, discs, candidates, fillings, seconds };
+            cost.seconds.median = terms(&cost).iter().zip(constants).map(|(term, it)| term * it).sum();
+            cost
+        });
+        for (found, constant) in fit(&costs).into_iter().zip(constants) {
             assert!((found / constant - 1.0).abs() < 1e-2, "{found} {constant}");
         }
     }

@@ -1,4 +1,4 @@
-//! What is measured of hard discs beside a run: each study a file, its section of the report in `sections`.
+//! Studies of hard discs, each a file.
 
 pub mod atmosphere;
 pub mod collapse;

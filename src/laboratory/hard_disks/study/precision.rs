@@ -1,117 +1,94 @@
-//! Speed against accuracy: the error of Z over the processor time that it took.
+//! Speed against accuracy: the error of Z over the processor time that it takes.
 
+use super::fluid::Z_AT_HALF;
+use super::rates::{ENGINES, fluid};
+use crate::console::Failure;
+use crate::frame::Rows;
+use crate::laboratory::rates::{Case, rates};
 use crate::laboratory::running::Running;
-use crate::results::Progress;
+use crate::results::{Lab, Made, Meter, Size};
+use crate::statistics::Spread;
 use crate::study::StudyError;
-use serde::Serialize;
-use stripmine_physics::method::hard_disks::keys::ENGINE;
-use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION, SEED};
+use stripmine_physics::scene::SEED;
 
-/// The packing fraction, and Z of it, measured with two independent codes to 0.1 % (the figures of the specification of ISO99).
-pub const STATE: [f64; 2] = [0.50, 4.1094];
-/// To what that is known.
-pub const KNOWN_TO: f64 = 1e-3;
-/// Collisions of a disc until the lattice of the start is forgotten.
-const FORGOTTEN: f64 = 100.0;
+/// Packing fraction.
+const PACKING: f64 = 0.5;
+/// Numbers of discs, at least.
+const DISCS: [u64; 3] = [100, 1000, 10_000];
+/// Collisions after which Z is read.
+const LOOKS: [u64; 6] = [976, 3906, 15_625, 62_500, 250_000, 1_000_000];
+/// Collisions for each disc until the lattice of the start is forgotten.
+const FORGOTTEN: u64 = 50;
 /// Seeds, each an independent run.
 const SEEDS: u64 = 8;
 
-/// How much is measured.
-#[derive(Clone, Debug)]
-pub struct Effort {
-    /// Numbers of discs.
-    pub discs: Vec<u64>,
-    /// Collisions of the longest runs.
-    pub collisions: u64,
+/// A number of discs by an engine.
+struct Way {
+    engine: &'static str,
+    asked: u64,
+    discs: usize,
+    /// Relative errors of Z: by seed, then by collisions.
+    errors: Vec<Vec<f64>>,
 }
 
-/// An engine with a number of discs.
-#[derive(Clone, Debug, Serialize)]
-pub struct Way {
-    /// The engine.
-    pub engine: &'static str,
-    /// Discs.
-    pub discs: usize,
-    /// Collisions in a second of processor time.
-    pub rate: f64,
-    /// What is seen after growing numbers of collisions.
-    pub looks: Vec<Look>,
-}
-
-/// What is known of Z after some time.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct Look {
-    /// Collisions measured.
-    pub collisions: u64,
-    /// Processor time of a run (s).
-    pub seconds: f64,
-    /// Root mean square of the errors over the seeds, relative.
-    pub error: f64,
-    /// The mean over the seeds less what is known, relative, and the standard error of that.
-    pub bias: [f64; 2],
-}
-
-/// What came out.
-#[derive(Clone, Debug, Serialize)]
-pub struct Precision {
-    /// Ways.
-    pub ways: Vec<Way>,
-    /// Seeds.
-    pub seeds: u64,
-}
-
-/// Follows every engine with every number of discs.
+/// Follows both engines with every number of discs and every seed, and measures their rates.
 ///
 /// # Errors
-/// [`StudyError`] if a scene breaks.
-pub fn precision(effort: &Effort, progress: Progress<'_>) -> Result<Precision, StudyError> {
-    let mut ways = vec![];
-    let parts = (effort.discs.len() * super::rates::ENGINES.len()) as f64;
-    for &discs in &effort.discs {
-        for engine in super::rates::ENGINES {
-            ways.push(way(engine, discs, effort.collisions)?);
-            progress(ways.len() as f64 / parts);
-        }
-    }
-    Ok(Precision { ways, seeds: SEEDS })
+/// [`Failure`] of a scene.
+pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+    let runs = DISCS.iter().flat_map(|&discs| ENGINES.map(|engine| (discs, engine)));
+    let runs: Vec<(u64, &str, u64)> =
+        runs.flat_map(|(discs, engine)| (1..=SEEDS).map(move |seed| (discs, engine, seed))).collect();
+    let half = |share: f64| (lab.progress)(0.5 * share);
+    let errors = Meter::new(runs.len() as f64, &half).each_from_last(&runs, errors)?;
+    let of_ways = runs.chunks(SEEDS as usize).zip(errors.chunks(SEEDS as usize));
+    let ways: Vec<Way> = of_ways
+        .map(|(runs, errors)| Way {
+            engine: runs[0].1,
+            asked: runs[0].0,
+            discs: errors[0].0,
+            errors: errors.iter().map(|it| it.1.clone()).collect(),
+        })
+        .collect();
+    let case = |way: &Way| {
+        let scene = fluid(way.engine, way.asked, PACKING);
+        let case = Case::events("hard-disks", &scene, FORGOTTEN * way.asked, LOOKS[4]);
+        case.label("engine", way.engine).label("discs", way.asked)
+    };
+    let half = |share: f64| (lab.progress)(0.5 + 0.5 * share);
+    let lab = Lab { progress: &half, program: lab.program.clone() };
+    let rates = rates(&lab, &ways.iter().map(case).collect::<Vec<_>>())?;
+    let looks = ways.iter().zip(&rates).flat_map(|it| (0..LOOKS.len()).map(move |look| (it, look)));
+    let of_seeds =
+        |way: &Way, look: usize| way.errors.iter().map(|it| 100.0 * it[look]).collect::<Vec<f64>>();
+    let square =
+        |values: Vec<f64>| (values.iter().map(|it| it * it).sum::<f64>() / values.len() as f64).sqrt();
+    Ok(Made::of([Rows::of(looks)
+        .text("engine and discs", |((way, _), _)| format!("{}, N = {}", way.engine, way.discs))
+        .count("collisions", |(_, look)| LOOKS[*look])
+        .cell("processor time (s)", |((_, rate), look)| rate.cost().cell(LOOKS[*look] as f64, 3))
+        .cell("million collisions/s", |((_, rate), _)| rate.rate().cell(1e-6, 3))
+        .number("error of Z (%)", 3, |((way, _), look)| square(of_seeds(way, *look)))
+        .number("mean error (%)", 3, |((way, _), look)| Spread::of(&of_seeds(way, *look)).mean)
+        .number("its standard error (%)", 3, |((way, _), look)| Spread::of(&of_seeds(way, *look)).error)
+        .frame("precision", "Errors of Z after growing numbers of collisions")])
+    .with_seeds(1..=SEEDS))
 }
 
-fn way(engine: &'static str, discs: u64, most: u64) -> Result<Way, StudyError> {
-    let mut looks: Vec<u64> = std::iter::successors(Some(most), |it| Some(it / 4)).take(6).collect();
-    looks.reverse();
-    // By look: seconds, and Z of every seed.
-    let mut seen: Vec<(f64, Vec<f64>)> = vec![(0.0, vec![]); looks.len()];
-    let mut count = 0;
-    for seed in 1..=SEEDS {
-        let [packing, _] = STATE;
-        let scene = Overrides::new().set(&COUNT, discs).set(&PACKING_FRACTION, packing);
-        let mut fluid = Running::begin("hard-disks", &scene.set(&SEED, seed).set(&ENGINE, engine))?;
-        count = fluid.simulation.particles().grain_count();
-        fluid.events((0.5 * FORGOTTEN * count as f64) as u64)?;
-        let names = ["time", "virial", "temperature"];
-        let [begun, virial, _] = fluid.observed(names)?;
-        let (before, mut done) = (cpu_time::ProcessTime::now(), 0);
-        for (&collisions, (seconds, values)) in looks.iter().zip(&mut seen) {
-            fluid.events(collisions - done)?;
-            done = collisions;
-            *seconds += before.elapsed().as_secs_f64() / SEEDS as f64;
-            let [time, sum, temperature] = fluid.observed(names)?;
-            values.push(1.0 + (sum - virial) / (2.0 * count as f64 * temperature * (time - begun)));
-        }
+/// Number of discs, and compressibilities of a run over the known one, less 1.
+fn errors(&(discs, engine, seed): &(u64, &str, u64)) -> Result<(usize, Vec<f64>), StudyError> {
+    let mut system = Running::begin("hard-disks", &fluid(engine, discs, PACKING).set(&SEED, seed))?;
+    let discs = system.simulation.particles().grain_count();
+    system.events(FORGOTTEN * discs as u64)?;
+    let names = ["time", "virial", "temperature"];
+    let [begun, virial, _] = system.observed(names)?;
+    let (mut all, mut done) = (vec![], 0);
+    for collisions in LOOKS {
+        system.events(collisions - done)?;
+        done = collisions;
+        let [time, sum, temperature] = system.observed(names)?;
+        let z = 1.0 + (sum - virial) / (2.0 * discs as f64 * temperature * (time - begun));
+        all.push(z / Z_AT_HALF - 1.0);
     }
-    let [_, known] = STATE;
-    let look = |(&collisions, (seconds, values)): (&u64, (f64, Vec<f64>))| {
-        let off: Vec<f64> = values.iter().map(|z| z / known - 1.0).collect();
-        let spread = crate::statistics::Spread::of(&off);
-        let square = off.iter().map(|it| it * it).sum::<f64>() / off.len() as f64;
-        Look {
-            collisions,
-            seconds,
-            error: square.sqrt(),
-            bias: [spread.mean, spread.error.unwrap_or(f64::NAN)],
-        }
-    };
-    let looks: Vec<Look> = looks.iter().zip(seen).map(look).collect();
-    let rate = looks.last().map_or(f64::NAN, |look| look.collisions as f64 / look.seconds);
-    Ok(Way { engine, discs: count, rate, looks })
+    Ok((discs, all))
 }

@@ -1,110 +1,68 @@
-//! Collisions a second: the fast engine and the source's, over packing fraction and number of discs, in turns.
+//! Collisions a second: the fast engine and the source's, over packing fraction and number of discs.
 
+use crate::console::Failure;
+use crate::frame::Rows;
+use crate::laboratory::rates::{Case, rates};
 use crate::laboratory::running::prepared;
-use crate::results::Progress;
-use crate::statistics::median;
-use crate::study::StudyError;
-use serde::Serialize;
-use stripmine_kernels::InstructionSet;
-use stripmine_physics::method::hard_disks::benches::BENCHES;
+use crate::results::{Lab, Made, Size};
 use stripmine_physics::method::hard_disks::keys::ENGINE;
-use stripmine_physics::method::throughput::TimedRun;
 use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
 
 /// The engines, by the names that scenes give them.
-pub const ENGINES: [&str; 2] = ["fast", "reference"];
+pub(super) const ENGINES: [&str; 2] = ["fast", "reference"];
+/// Packing fractions.
+const PACKING_FRACTIONS: [f64; 5] = [0.10, 0.30, 0.50, 0.65, 0.70];
+/// ISO99: number of discs, and million collisions an hour at the best density.
+const SOURCE: [(f64, f64); 2] = [(2500.0, 460.0), (2_500_000.0, 210.0)];
 
-/// How much is measured.
-#[derive(Clone, Debug)]
-pub struct Effort {
-    /// Numbers of discs, at least.
-    pub discs: Vec<u64>,
-    /// Packing fractions.
-    pub packing_fractions: Vec<f64>,
-    /// Rounds: each of them runs every engine once, so that a disturbance affects them alike.
-    pub rounds: usize,
-    /// Collisions of a round.
-    pub collisions: u64,
+/// An engine's fluid.
+pub(super) fn fluid(engine: &str, discs: u64, packing_fraction: f64) -> Overrides {
+    let scene = Overrides::new().set(&COUNT, discs).set(&PACKING_FRACTION, packing_fraction);
+    scene.set(&ENGINE, engine)
 }
 
-/// An engine at a packing fraction.
-#[derive(Clone, Debug, Serialize)]
-pub struct Rate {
-    /// Discs.
-    pub discs: usize,
-    /// Area of the discs over that of the box.
-    pub packing_fraction: f64,
-    /// The engine.
-    pub engine: &'static str,
-    /// Its mask, if it has one.
-    pub mask: Option<String>,
-    /// Collisions in a second of processor time, round by round.
-    pub rates: Vec<f64>,
-    /// Bytes that its run takes, as `scene check` foresees them.
-    pub bytes: u64,
-}
-
-impl Rate {
-    /// The median round.
-    pub fn median(&self) -> f64 {
-        median(self.rates.iter().copied())
-    }
-}
-
-/// Every rate.
-#[derive(Clone, Debug, Serialize)]
-pub struct Rates {
-    /// The instructions of the fast engine.
-    pub instruction_set: &'static str,
-    /// Collisions of a round.
-    pub collisions: u64,
-    /// The rates, engine by engine for each scene.
-    pub rates: Vec<Rate>,
-}
-
-/// Measures.
+/// Measures both engines.
 ///
 /// # Errors
-/// [`StudyError`] if a scene breaks.
-pub fn rates(effort: &Effort, progress: Progress<'_>) -> Result<Rates, StudyError> {
-    let mut rates = vec![];
-    let scenes = effort.discs.len() * effort.packing_fractions.len();
-    for &discs in &effort.discs {
-        for &packing_fraction in &effort.packing_fractions {
-            rates.extend(engines(discs, packing_fraction, effort)?);
-            progress(rates.len() as f64 / (ENGINES.len() * scenes) as f64);
-        }
-    }
-    Ok(Rates { instruction_set: InstructionSet::best().name(), collisions: effort.collisions, rates })
-}
-
-fn engines(discs: u64, packing_fraction: f64, effort: &Effort) -> Result<Vec<Rate>, StudyError> {
-    let mut rates = vec![];
-    let mut running = vec![];
-    for engine in ENGINES {
-        let scene = Overrides::new().set(&COUNT, discs).set(&PACKING_FRACTION, packing_fraction);
-        let scene = prepared("hard-disks", &scene.set(&ENGINE, engine))?;
-        rates.push(Rate {
-            discs: scene.particles().grain_count(),
-            packing_fraction,
-            engine,
-            mask: scene.settings["mask"].as_str().map(str::to_owned),
-            rates: vec![],
-            bytes: scene.memory.needed,
-        });
-        // From the lattice of the start to moving discs: a few collisions of each, as many as take about as long as a round.
-        let equilibration = (10 * discs).min(2 * effort.collisions);
-        running.push((scene, equilibration));
-    }
-    let mut running = running
-        .into_iter()
-        .map(|(scene, equilibration)| TimedRun::begin(&BENCHES[0], scene, equilibration, effort.collisions))
-        .collect::<Result<Vec<_>, _>>()?;
-    for _ in 0..effort.rounds {
-        for (rate, running) in rates.iter_mut().zip(&mut running) {
-            running.repeat()?;
-            rate.rates.push(running.last_rate());
-        }
-    }
-    Ok(rates)
+/// [`Failure`] of a scene.
+pub fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
+    let (sizes, collisions): (&[u64], _) = match size {
+        Size::Quick => (&[2500], 50_000),
+        Size::Full | Size::All => (&[2500, 250_000], 100_000),
+    };
+    let scenes = sizes.iter().flat_map(|&discs| PACKING_FRACTIONS.map(|packing| (discs, packing)));
+    let scenes: Vec<(u64, f64)> = scenes.collect();
+    // From the lattice of the start to moving discs: a few collisions of each, as many as take about as long as the measurement.
+    let cases = scenes.iter().flat_map(|&(discs, packing)| {
+        let warm_up = (10 * discs).min(2 * collisions);
+        ENGINES.map(|engine| {
+            let case = Case::events("hard-disks", &fluid(engine, discs, packing), warm_up, collisions);
+            case.label("discs", discs).label("ν", packing.to_string()).label("engine", engine)
+        })
+    });
+    let measured = rates(lab, &cases.collect::<Vec<_>>())?;
+    // Discs, bytes of a run, mask.
+    let facts = |engine: &str, &(discs, packing): &(u64, f64)| {
+        let scene = prepared("hard-disks", &fluid(engine, discs, packing))?;
+        let mask = scene.settings["mask"].as_str().unwrap_or_default().to_owned();
+        Ok::<_, Failure>((scene.particles().grain_count() as f64, scene.memory.needed as f64, mask))
+    };
+    let facts = scenes.iter().map(|it| Ok([facts(ENGINES[0], it)?, facts(ENGINES[1], it)?]));
+    let facts = facts.collect::<Result<Vec<_>, Failure>>()?;
+    let pairs = measured.chunks_exact(ENGINES.len()).map(|pair| [&pair[0], &pair[1]]);
+    let source = |discs: f64| SOURCE.into_iter().find(|(known, _)| (discs / known - 1.0).abs() < 0.1);
+    Ok(Made::of([Rows::of(scenes.iter().zip(pairs).zip(&facts))
+        .number("discs", 0, |(_, [fast, _])| fast.0)
+        .number("ν", 2, |(((_, packing), _), _)| *packing)
+        .cell("fast (million/s)", |((_, [fast, _]), _)| fast.rate().cell(1e-6, 3))
+        .cell("the source's way (million/s)", |((_, [_, reference]), _)| reference.rate().cell(1e-6, 3))
+        .text("its mask", |(_, [_, reference])| reference.2.clone())
+        .cell("fast over it", |((_, [fast, reference]), _)| fast.over(reference).cell(1.0, 1))
+        .number("fast over the source's machine", 0, |((_, [fast, _]), [scene, _])| {
+            source(scene.0).map(|(_, rate)| 3600e-6 * fast.rate().median / rate)
+        })
+        .number("memory, fast (MB)", 0, |(_, [fast, _])| 1e-6 * fast.1)
+        .number("memory, the source's way (MB)", 0, |(_, [_, reference])| 1e-6 * reference.1)
+        .frame("rates", "Million collisions a second of processor time")])
+    .with_seeds([1]))
 }

@@ -1,18 +1,18 @@
 //! Soft against hard: one scene by lattice MD with stiffer and stiffer discs, and by hard ones.
 
-use super::fluid::luding;
+use super::fluid::{collision_rate, luding};
+use crate::console::Failure;
+use crate::frame::{Cell, Rows};
 use crate::laboratory::running::Running;
-use crate::results::{Meter, Progress};
+use crate::results::{Lab, Made, Meter, Progress, Size};
 use crate::statistics::{Mean, median};
 use crate::study::StudyError;
-use serde::Serialize;
 use stripmine_kernels::law::spring::{Impact, Spring};
 use stripmine_physics::method::lattice_md::keys::{FRICTION, NORMAL_DAMPING, SHEAR_DAMPING, STIFFNESS};
 use stripmine_physics::method::{Until, hard_disks};
 use stripmine_physics::scene::{COUNT, DT, Overrides, PACKING_FRACTION, SEED, STEPS, TEMPERATURE};
 
 /// The scene, and how much is measured. Diameter, mass and kT are 1.
-#[derive(Clone, Debug, Serialize)]
 pub struct Question {
     /// Discs, at least.
     pub discs: u64,
@@ -21,11 +21,23 @@ pub struct Question {
     /// Restitution of the gas that cools.
     pub restitution: f64,
     /// Stiffnesses k_N of the soft discs (kT/diameter^2.5).
-    pub stiffnesses: Vec<f64>,
+    pub stiffnesses: &'static [f64],
     /// Seeds, each an independent start.
     pub seeds: u64,
     /// Time over which the pressure is measured.
     pub time: f64,
+}
+
+impl Question {
+    /// Question of the report.
+    pub const REPORT: Question = Question {
+        discs: 500,
+        packing_fraction: 0.5,
+        restitution: 0.9,
+        stiffnesses: &[1e3, 1e4, 1e5, 1e6, 1e7],
+        seeds: 8,
+        time: 20.0,
+    };
 }
 
 /// Steps of a typical contact.
@@ -37,107 +49,119 @@ const COOLING: f64 = 10.0;
 /// Γ(7/5), of Hertz discs' effective diameter.
 const GAMMA: f64 = 0.887_263_817_503_075;
 
-/// What one way to model the scene gives.
-#[derive(Clone, Debug, Serialize)]
-pub struct Model {
-    /// Stiffness; none for hard discs.
-    pub stiffness: Option<f64>,
-    /// Normal damping γ_N that gives the restitution at the scene's speeds (1/time).
-    pub damping: Option<f64>,
-    /// Step (time).
-    pub step: Option<f64>,
-    /// How deep a head-on contact of kT goes (diameters).
-    pub depth: f64,
+/// Discs of a stiffness, or hard ones.
+struct Model {
+    soft: Option<Soft>,
+    /// Depth of a head-on contact of kT (diameters).
+    depth: f64,
     /// Compressibility of the elastic fluid.
-    pub compressibility: Mean,
-    /// What it would be for hard discs of the effective diameter.
-    pub effective: f64,
+    compressibility: Mean,
+    /// Compressibility of hard discs of the effective diameter.
+    effective: f64,
     /// Temperature of the cooled gas over that at its start.
-    pub cooled: Mean,
+    cooled: Mean,
     /// Processor seconds for a unit of time of the elastic fluid.
-    pub cost: f64,
+    cost: f64,
 }
 
-/// What came out.
-#[derive(Clone, Debug, Serialize)]
-pub struct SoftHard {
-    /// The scene.
-    pub question: Question,
-    /// Discs.
-    pub discs: usize,
-    /// The time in which the gas cools.
-    pub cooling_time: f64,
-    /// The typical normal speed of an impact, at which the damping gives the restitution.
-    pub impact_speed: f64,
-    /// Soft models from the softest on, then the hard one.
-    pub models: Vec<Model>,
+/// The question of the report.
+///
+/// # Errors
+/// As of [`soft_hard`].
+pub fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
+    let question = match size {
+        Size::Quick => {
+            Question { discs: 200, stiffnesses: &[1e3, 1e4, 1e5], seeds: 2, time: 4.0, ..Question::REPORT }
+        }
+        Size::Full | Size::All => Question::REPORT,
+    };
+    soft_hard(&question, lab.progress)
 }
 
-impl SoftHard {
-    /// Hard discs.
-    pub fn hard(&self) -> Option<&Model> {
-        self.models.iter().find(|model| model.stiffness.is_none())
-    }
-}
-
-/// Runs every model with every seed.
+/// Runs soft models from the softest on, then the hard one, with every seed.
 ///
 /// # Errors
 /// [`StudyError`] if a scene is refused or breaks.
-pub fn soft_hard(question: &Question, progress: Progress<'_>) -> Result<SoftHard, StudyError> {
-    let pressure = luding(question.packing_fraction);
-    // ω = 4 (Z − 1)/√π, of a gas that keeps its temperature.
-    let rate = 4.0 * (pressure - 1.0) / std::f64::consts::PI.sqrt();
-    let cooling_time = COOLING / rate;
+pub fn soft_hard(question: &Question, progress: Progress<'_>) -> Result<Made, Failure> {
+    // A gas that keeps its temperature.
+    let cooling_time = COOLING / collision_rate(luding(question.packing_fraction));
     // Mean normal speed of impacts at kT = m = 1: √π.
     let impact_speed = std::f64::consts::PI.sqrt();
-    let kinds: Vec<Option<f64>> = question.stiffnesses.iter().copied().map(Some).chain([None]).collect();
     let seeds: Vec<u64> = (1..=question.seeds).collect();
+    let kinds: Vec<Option<f64>> = question.stiffnesses.iter().copied().map(Some).chain([None]).collect();
     let meter = Meter::new((kinds.len() * seeds.len()) as f64, progress);
-    let mut models = vec![];
-    let mut discs = 0;
+    let (mut models, mut discs) = (vec![], 0);
     for stiffness in kinds {
-        let way = match stiffness {
-            Some(stiffness) => Way::soft(stiffness, question.restitution, impact_speed)?,
-            None => Way::Hard,
-        };
-        let runs = meter.each(&seeds, |&seed| way.run(question, seed, cooling_time))?;
+        let kind = Discs(stiffness.map(|it| Soft::new(it, question.restitution, impact_speed)));
+        let runs = meter.each(&seeds, |&seed| kind.run(question, seed, cooling_time))?;
         discs = runs[0].discs;
         let over = |of: fn(&One) -> f64| Mean::of(&runs.iter().map(of).collect::<Vec<_>>());
         let depth = stiffness.map_or(0.0, |stiffness| (2.5 / stiffness).powf(0.4));
         let diameter = 1.0 - GAMMA * depth;
-        let effective = luding(question.packing_fraction * diameter * diameter);
         models.push(Model {
-            stiffness,
-            damping: way.damping(),
-            step: way.step(),
             depth,
             compressibility: over(|one| one.compressibility),
-            effective,
+            effective: luding(question.packing_fraction * diameter * diameter),
             cooled: over(|one| one.cooled),
             cost: median(runs.iter().map(|one| one.cost)),
+            soft: kind.0,
         });
     }
-    Ok(SoftHard { question: question.clone(), discs, cooling_time, impact_speed, models })
+    let hard = &models[models.len() - 1];
+    let off = |model: &Model| {
+        let Mean { value, bar } = hard.compressibility;
+        let off = model.compressibility.off(value);
+        let off = Mean { bar: off.bar.hypot(bar / value), ..off }.percent();
+        Cell::with_error(off.value, Some(off.bar), 2)
+    };
+    let ends = [question.stiffnesses[0], question.stiffnesses[question.stiffnesses.len() - 1]];
+    Ok(Made::of([
+        Rows::of(&models)
+            .cell("stiffness of a contact", |it| match &it.soft {
+                Some(soft) => Cell::Short(soft.stiffness),
+                None => Cell::from("hard"),
+            })
+            .number("damping γ_N", 3, |it| it.soft.as_ref().map(|it| it.damping))
+            .number("step", 6, |it| it.soft.as_ref().map(|it| it.step))
+            .number("depth of a contact of kT (%)", 2, |it| 100.0 * it.depth)
+            .number("Z", 4, |it| it.compressibility.value)
+            .number("± (95 %)", 4, |it| it.compressibility.bar)
+            .number("Z of the effective diameter", 4, |it| it.effective)
+            .number("T/T₀ cooled", 4, |it| it.cooled.value)
+            .number("± (95 %)", 4, |it| it.cooled.bar)
+            .number("cost (ms for a unit of time)", 2, |it| 1e3 * it.cost)
+            .frame("soft_hard", "Soft discs and hard ones"),
+        Rows::of(ends)
+            .short("stiffness of a contact", |end| *end)
+            .number("Z", 4, |_| hard.compressibility.value)
+            .number("T/T₀ cooled", 4, |_| hard.cooled.value)
+            .number("cost", 6, |_| hard.cost)
+            .frame("hard", "Hard discs, at the ends of the range of stiffnesses"),
+        Rows::of([()])
+            .count("discs", |()| discs)
+            .number("packing fraction", 2, |()| question.packing_fraction)
+            .number("restitution", 2, |()| question.restitution)
+            .count("seeds", |()| question.seeds)
+            .number("cooling time", 2, |()| cooling_time)
+            .number("impact speed", 2, |()| impact_speed)
+            .cell("softest off (%)", |()| off(&models[0]))
+            .cell("stiffest off (%)", |()| off(&models[models.len() - 2]))
+            .number("stiffest cost over hard", 0, |()| models[models.len() - 2].cost / hard.cost)
+            .frame("summary", "The scene, and pressure and cost beside those of hard discs"),
+    ])
+    .with_seeds(1..=question.seeds))
 }
 
-/// A way to model the scene.
-enum Way {
-    Soft { stiffness: f64, damping: f64, step: f64 },
-    Hard,
+/// Soft discs.
+struct Soft {
+    stiffness: f64,
+    damping: f64,
+    step: f64,
 }
 
-/// What comes out of one seed.
-struct One {
-    discs: usize,
-    compressibility: f64,
-    cooled: f64,
-    cost: f64,
-}
-
-impl Way {
+impl Soft {
     /// Discs of a stiffness, with the damping that gives a restitution at a speed.
-    fn soft(stiffness: f64, restitution: f64, speed: f64) -> Result<Way, StudyError> {
+    fn new(stiffness: f64, restitution: f64, speed: f64) -> Soft {
         let (mut low, mut high) = (0.0, 1.0);
         while impact(stiffness, high, speed).restitution > restitution {
             high *= 2.0;
@@ -151,43 +175,45 @@ impl Way {
             }
         }
         let duration = impact(stiffness, 0.0, speed).duration;
-        Ok(Way::Soft { stiffness, damping: 0.5 * (low + high), step: duration / STEPS_A_CONTACT })
+        Soft { stiffness, damping: 0.5 * (low + high), step: duration / STEPS_A_CONTACT }
     }
+}
 
-    fn damping(&self) -> Option<f64> {
-        if let Way::Soft { damping, .. } = self { Some(*damping) } else { None }
-    }
+/// Discs of the scene: soft ones, or hard ones.
+struct Discs(Option<Soft>);
 
-    fn step(&self) -> Option<f64> {
-        if let Way::Soft { step, .. } = self { Some(*step) } else { None }
-    }
+/// Run of one seed.
+struct One {
+    discs: usize,
+    compressibility: f64,
+    cooled: f64,
+    cost: f64,
+}
 
+impl Discs {
     fn begin(&self, question: &Question, seed: u64, elastic: bool) -> Result<Running, StudyError> {
         let scene = Overrides::new()
             .set(&COUNT, question.discs)
             .set(&PACKING_FRACTION, question.packing_fraction)
             .set(&SEED, seed)
             .set(&TEMPERATURE, 1.0);
-        match self {
-            Way::Hard => {
+        match &self.0 {
+            None => {
                 let restitution = if elastic { 1.0 } else { question.restitution };
                 Running::begin("hard-disks", &scene.set(&hard_disks::keys::RESTITUTION, restitution))
             }
-            Way::Soft { stiffness, damping, step } => {
-                let damping = if elastic { 0.0 } else { *damping };
-                let law = scene.set(&STIFFNESS, *stiffness).set(&NORMAL_DAMPING, damping);
+            Some(soft) => {
+                let damping = if elastic { 0.0 } else { soft.damping };
+                let law = scene.set(&STIFFNESS, soft.stiffness).set(&NORMAL_DAMPING, damping);
                 let law = law.set(&SHEAR_DAMPING, 0.0).set(&FRICTION, 0.0);
-                Running::begin("bench", &law.set(&DT, *step).set(&STEPS, 1_u64))
+                Running::begin("bench", &law.set(&DT, soft.step).set(&STEPS, 1_u64))
             }
         }
     }
 
     /// A time, as a moment: the step that is nearest to it, where there are steps.
     fn at(&self, time: f64) -> Until {
-        match self.step() {
-            Some(step) => Until::Steps((time / step).round() as u64),
-            None => Until::Time(time),
-        }
+        self.0.as_ref().map_or(Until::Time(time), |it| Until::Steps((time / it.step).round() as u64))
     }
 
     fn run(&self, question: &Question, seed: u64, cooling_time: f64) -> Result<One, StudyError> {
@@ -198,14 +224,14 @@ impl Way {
         fluid.until(self.at(melted))?;
         let begun = cpu_time::ThreadTime::now();
         let mut pressure = 0.0;
-        let virial = |fluid: &Running| match self {
-            Way::Hard => fluid.observed(["virial"]).map(|[virial]| virial),
-            Way::Soft { .. } => Ok(0.0),
+        let virial = |fluid: &Running| match self.0 {
+            None => fluid.observed(["virial"]).map(|[virial]| virial),
+            Some(_) => Ok(0.0),
         };
         let (before, time) = (virial(&fluid)?, fluid.simulation.clock().time);
         for look in 1..=LOOKS {
             fluid.until(self.at(melted + question.time * look as f64 / LOOKS as f64))?;
-            if let Way::Soft { .. } = self {
+            if self.0.is_some() {
                 let [seen, temperature] = fluid.observed(["pressure", "temperature"])?;
                 // The pressure has the kinetic energy of N − 1 discs, for momentum is conserved; that of hard discs has all.
                 pressure += (seen * area + temperature) / (discs as f64 * temperature);
@@ -213,9 +239,9 @@ impl Way {
         }
         let flown = fluid.simulation.clock().time - time;
         let cost = begun.elapsed().as_secs_f64() / flown;
-        let compressibility = match self {
-            Way::Soft { .. } => pressure / LOOKS as f64,
-            Way::Hard => {
+        let compressibility = match self.0 {
+            Some(_) => pressure / LOOKS as f64,
+            None => {
                 let [temperature] = fluid.observed(["temperature"])?;
                 1.0 + (virial(&fluid)? - before) / (2.0 * discs as f64 * temperature * flown)
             }
@@ -243,7 +269,7 @@ mod tests {
         let Impact { restitution, duration } = impact(1e4, 0.0, 1.5);
         let depth = (1.25 * 0.5 * 1.5 * 1.5 / 1e4_f64).powf(0.4);
         assert!((restitution - 1.0).abs() < 1e-3 && (duration / (2.943 * depth / 1.5) - 1.0).abs() < 2e-3);
-        let Ok(Way::Soft { damping, .. }) = Way::soft(1e4, 0.8, 1.5) else { panic!("no way") };
+        let Soft { damping, .. } = Soft::new(1e4, 0.8, 1.5);
         assert!((impact(1e4, damping, 1.5).restitution - 0.8).abs() < 1e-3);
     }
 }

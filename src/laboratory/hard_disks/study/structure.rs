@@ -1,10 +1,12 @@
 //! Order, free times and speeds of hard discs on both sides of melting.
 
+use crate::console::Failure;
+use crate::frame::{Frame, Rows};
 use crate::laboratory::running::Running;
-use crate::results::{Meter, Progress};
+use crate::report::figure::{Drawing, Guide, Picture, Shape, Tint};
+use crate::results::{Lab, Made, Meter, Size};
 use crate::statistics::{Mean, kolmogorov_smirnov};
 use crate::study::StudyError;
-use serde::Serialize;
 use std::f64::consts::{PI, TAU};
 use stripmine_physics::domain::Domain;
 use stripmine_physics::method::hard_disks::keys::COLLISION_LOG;
@@ -15,6 +17,8 @@ use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
 
 /// Packing fractions: a gas, the fluid, between fluid and crystal, the crystal.
 const PACKING_FRACTIONS: [f64; 4] = [0.02, 0.65, 0.71, 0.74];
+/// Discs, at least.
+const DISCS: usize = 4096;
 /// Collisions a disc before anything is measured.
 const SETTLING: u64 = 1500;
 /// Looks at the order, and collisions a disc between them.
@@ -25,77 +29,101 @@ const LOGGED: u64 = 200_000;
 const DISTANCES: (f64, usize) = (0.02, 200);
 /// Width of the bins of free times over their mean, and their number.
 const TIMES: (f64, usize) = (0.1, 80);
+/// Side of the part of the box that is drawn (diameters).
+const SHOWN: f64 = 30.0;
 
-/// A disc as it is drawn: centre, and how far its neighbours point as those of the whole system do, from −1 to 1.
-type Drawn = ([f64; 2], f64);
-
-/// What came out at a packing fraction.
-#[derive(Clone, Debug, Serialize)]
-pub struct Structure {
-    /// Area of the discs over that of the box.
-    pub packing_fraction: f64,
-    /// The global bond-orientational order |Σ ψ₆|/N, and the mean |ψ₆| of a disc.
-    pub order: [Mean; 2],
-    /// The pair correlation at the middle of each bin of distances.
-    pub correlation: Vec<f64>,
-    /// Its value at contact by the virial, (Z − 1)/(2 ν).
-    pub contact: f64,
-    /// Probability density of free times over their mean, in units of it.
-    pub free_times: Vec<f64>,
-    /// The mean free time, and the mean free path over the diameter.
-    pub free: [f64; 2],
-    /// Probability by Kolmogorov and Smirnov that the velocities are Maxwell's: at the start, where all discs are equally fast, and
-    /// at the end.
-    pub maxwell: [f64; 2],
-    /// The box.
-    #[serde(skip)]
-    pub sides: [f64; 2],
-    /// The discs of the last look.
-    #[serde(skip)]
-    pub discs: Vec<Drawn>,
-}
-
-/// Every packing fraction.
-#[derive(Clone, Debug, Serialize)]
-pub struct Structures {
-    /// Discs.
-    pub discs: usize,
-    /// Looks at the order.
-    pub looks: usize,
-    /// Distances over the diameter.
-    pub distances: Vec<f64>,
-    /// Free times over their mean.
-    pub times: Vec<f64>,
-    /// Their density in a dilute gas, by the speeds of Maxwell and the collision rate of a disc of each speed.
-    pub dilute: Vec<f64>,
-    /// What came out, by packing fraction.
-    pub structures: Vec<Structure>,
+/// Discs at a packing fraction.
+struct Structure {
+    packing_fraction: f64,
+    discs: usize,
+    /// Global bond-orientational order |Σ ψ₆|/N, and mean |ψ₆| of a disc.
+    order: [Mean; 2],
+    /// Pair correlation at the middle of each bin of distances.
+    correlation: Vec<f64>,
+    /// Pair correlation at contact by the virial, (Z − 1)/(2 ν).
+    contact: f64,
+    /// Probability density of free times over their mean.
+    free_times: Vec<f64>,
+    /// Mean free time, and mean free path over the diameter.
+    free: [f64; 2],
+    /// Probability by Kolmogorov and Smirnov that the velocities are Maxwell's: at the start, where all discs are equally fast, and at
+    /// the end.
+    maxwell: [f64; 2],
+    picture: Picture,
 }
 
 /// Follows discs at every packing fraction, from a crystal in which all are equally fast.
 ///
 /// # Errors
 /// [`StudyError`] if a scene breaks.
-pub fn structures(discs: usize, progress: Progress<'_>) -> Result<Structures, StudyError> {
-    let meter = Meter::new(PACKING_FRACTIONS.len() as f64, progress);
-    let structures =
-        meter.each(&PACKING_FRACTIONS, |&packing_fraction| structure(packing_fraction, discs))?;
-    let middles = |(width, count): (f64, usize)| (0..count).map(|bin| (bin as f64 + 0.5) * width).collect();
-    let times: Vec<f64> = middles(TIMES);
-    let dilute = times.iter().map(|&time| dilute(time)).collect();
-    let distances: Vec<f64> = middles(DISTANCES);
-    Ok(Structures {
-        discs,
-        looks: LOOKS.0,
-        distances: distances.into_iter().map(|over| 1.0 + over).collect(),
-        times,
-        dilute,
-        structures,
+pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+    let all = Meter::new(PACKING_FRACTIONS.len() as f64, lab.progress).each(&PACKING_FRACTIONS, structure)?;
+    let dilute: Vec<f64> = (0..TIMES.1).map(|bin| dilute(middle(TIMES, bin))).collect();
+    let bins = |count: usize| all.iter().flat_map(move |it| (0..count).map(move |bin| (it, bin)));
+    let off = all[0].free_times.iter().zip(&dilute).map(|(seen, theory)| (seen - theory).abs());
+    let off = off.fold(0.0, f64::max);
+    let made = Made::of([
+        table(&all),
+        Rows::of(bins(DISTANCES.1))
+            .number("ν", 2, |(it, _)| it.packing_fraction)
+            .number("distance over the diameter", 2, |(_, bin)| 1.0 + middle(DISTANCES, *bin))
+            .number("pair correlation g", 3, |(it, bin)| it.correlation[*bin])
+            .frame("correlation", "Pair correlation"),
+        Rows::of(bins(TIMES.1))
+            .number("ν", 2, |(it, _)| it.packing_fraction)
+            .number("free time over its mean", 2, |(_, bin)| middle(TIMES, *bin))
+            .number("density", 3, |(it, bin)| it.free_times[*bin])
+            .number("density of a dilute gas", 3, |(_, bin)| dilute[*bin])
+            .frame("times", "Probability density of free times"),
+        Rows::of([()])
+            .count("discs", |()| all[0].discs)
+            .number("largest difference of free times", 3, |()| off)
+            .frame("summary", "Number of discs, and free times of the gas beside theory"),
+    ]);
+    let made = all.into_iter().skip(1).fold(made, |made, it| {
+        made.with_picture(&format!("discs-{}", it.packing_fraction).replace('.', "-"), it.picture)
+    });
+    Ok(made.with_seeds([1]))
+}
+
+fn table(all: &[Structure]) -> Frame {
+    Rows::of(all)
+        .number("ν", 2, |it| it.packing_fraction)
+        .number("|Ψ₆| of all", 3, |it| it.order[0].value)
+        .number("± (95 %)", 3, |it| it.order[0].bar)
+        .number("mean |ψ₆|", 3, |it| it.order[1].value)
+        .number("± (95 %)", 4, |it| it.order[1].bar)
+        .number("g at contact, by the virial", 3, |it| it.contact)
+        .number("g from 1.00 to 1.02", 3, |it| it.correlation[0])
+        .number("mean free time", 5, |it| it.free[0])
+        .number("mean free path", 5, |it| it.free[1])
+        .short("p of Maxwell at the start", |it| it.maxwell[0])
+        .number("p at the end", 3, |it| it.maxwell[1])
+        .frame("structure", "Order, free times and velocities (diameter = m = kT = 1)")
+}
+
+/// Middle of a bin.
+fn middle((width, _): (f64, usize), bin: usize) -> f64 {
+    (bin as f64 + 0.5) * width
+}
+
+/// A part of the box. Each disc has its place and the direction of its bonds beside that of all, from −1 to 1.
+fn picture(domain: Domain, discs: Vec<([f64; 2], f64)>) -> Picture {
+    let sides = domain.lengths().map(|side| side.min(SHOWN));
+    let shown =
+        discs.into_iter().filter(|(centre, _)| centre.iter().zip(sides).all(|(x, side)| *x < side + 0.5));
+    let disc = |(centre, along)| Shape::Disc { centre, radius: 0.5, tint: Tint::Shade(0.5 * (along + 1.0)) };
+    Picture::Drawing(Drawing {
+        window: [[0.0; 2], sides],
+        width: 640.0,
+        shapes: shown.map(disc).collect(),
+        shades: Some((-1.0, 1.0, "ψ₆ along the mean of all".into())),
+        guide: Some(Guide { unit: "diameters".into(), gravity: None }),
     })
 }
 
-fn structure(packing_fraction: f64, discs: usize) -> Result<Structure, StudyError> {
-    let overrides = Overrides::new().set(&PACKING_FRACTION, packing_fraction).set(&COUNT, discs);
+fn structure(&packing_fraction: &f64) -> Result<Structure, StudyError> {
+    let overrides = Overrides::new().set(&PACKING_FRACTION, packing_fraction).set(&COUNT, DISCS);
     let overrides = overrides.set(&COLLISION_LOG, true);
     let (scene, method) = load("melting", &overrides, METHODS)?;
     let (domain, mut start) = (scene.domain, scene.particles().clone());
@@ -128,8 +156,8 @@ fn structure(packing_fraction: f64, discs: usize) -> Result<Structure, StudyErro
         order[0].push(whole / count as f64);
         order[1].push(bonds.iter().map(|bond| bond[0].hypot(bond[1])).sum::<f64>() / count as f64);
         count_pairs(domain, &places, &mut pairs);
-        let along = |bond: [f64; 2]| (bond[0] * sum[0] + bond[1] * sum[1]) / whole;
-        drawn = places.iter().copied().zip(bonds.into_iter().map(along)).collect();
+        let along = bonds.into_iter().map(|bond| (bond[0] * sum[0] + bond[1] * sum[1]) / whole);
+        drawn = places.into_iter().zip(along).collect();
     }
     let after = running.observed(names)?;
     let [time, virial, collisions] = [0, 1, 2].map(|which| after[which] - before[which]);
@@ -144,6 +172,7 @@ fn structure(packing_fraction: f64, discs: usize) -> Result<Structure, StudyErro
     let ideal = |bin: usize| 0.5 * (count as f64).powi(2) / domain.area() * ring(bin) * looks;
     Ok(Structure {
         packing_fraction,
+        discs: count,
         order: order.map(|course| Mean::of_course(&course)),
         correlation: (0..DISTANCES.1).map(|bin| pairs[bin] / ideal(bin)).collect(),
         contact: (compressibility - 1.0) / (2.0 * packing_fraction),
@@ -151,8 +180,7 @@ fn structure(packing_fraction: f64, discs: usize) -> Result<Structure, StudyErro
         // The mean speed of discs of m = kT = 1 is √(π/2).
         free: [free_time, free_time * (0.5 * PI * after[3]).sqrt()],
         maxwell: [begin, maxwell(&running)?],
-        sides: domain.lengths(),
-        discs: drawn,
+        picture: picture(domain, drawn),
     })
 }
 
