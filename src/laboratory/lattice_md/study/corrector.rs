@@ -25,7 +25,7 @@ pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     });
     let order = |values: usize| {
         let error = |steps| followed("difference", values, steps).unwrap_or(f64::NAN);
-        (error(512) / error(1024)).log2()
+        libm::log2(error(512) / error(1024))
     };
     Ok(Made::of([
         Rows::of(runs)
