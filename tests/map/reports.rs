@@ -9,8 +9,9 @@ use stripmine::results::Folder;
 const WORDS: usize = 120;
 /// Decimals of a number in a sentence at most.
 const DECIMALS: usize = 9;
-/// Bytes of the pages at most, an item of the short one.
+/// Bytes of the pages at most: of the short one for each item, and for each claim that failed and stands on its first screen.
 const PAGES: [(&str, usize); 2] = [("README.md", 1_100), ("index.html", 1_200_000)];
+const FAILED: usize = 350;
 
 fn reports() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("reports")
@@ -30,6 +31,8 @@ fn an_item_is_read_in_a_minute() {
     let sections = sections();
     assert!(sections.len() > 30);
     let items = sections.len();
+    let failed =
+        sections.iter().flat_map(|it| &it.claims).filter(|it| it.verdict == "not reproduced").count();
     for Section { name, question, expected, answer, .. } in sections {
         let words =
             [question, expected, answer].iter().map(|it| it.split_whitespace().count()).sum::<usize>();
@@ -37,7 +40,7 @@ fn an_item_is_read_in_a_minute() {
     }
     for (page, most) in PAGES {
         let bytes = fs::metadata(reports().join(page)).unwrap().len();
-        let most = if page == "README.md" { items * most } else { most };
+        let most = if page == "README.md" { items * most + failed * FAILED } else { most };
         assert!(bytes <= most as u64, "{page}: {bytes} bytes");
     }
 }
