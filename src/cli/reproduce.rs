@@ -313,6 +313,10 @@ mod tests {
         let folder = Folder::of_another(&Path::new(env!("CARGO_MANIFEST_DIR")).join("reports"));
         for item in items_of(METHODS) {
             let Some(made) = folder.provenance(item.name).unwrap() else { continue };
+            // Costs are those of a release, and of an item as its template has it.
+            if made.code.is_none() || !made.machine.compiler.contains("release") {
+                continue;
+            }
             let near = |stated: f64| made.seconds < 1.5 * stated + 1.0 && stated < 1.5 * made.seconds + 1.0;
             let stated = [Size::Full, Size::All].map(|effort| item.seconds(effort));
             assert!(

@@ -156,7 +156,6 @@ mod tests {
             HostModel::parse("bad.toml", &text.replacen(old, new, 1)).unwrap_err().to_string()
         };
         for (old, new, expected) in [
-            ("bind = ", "bind = -", "`bind` is -"),
             ("\"avx512\"", "\"purple\"", "`instruction_set` is \"purple\", but must be one of scalar, wide"),
             ("bind = ", "binds = ", "unknown field `binds`"),
             ("footprint = ", "footprints = ", "unknown field `footprints`"),
