@@ -157,12 +157,11 @@ mod tests {
         };
         for (old, new, expected) in [
             ("\"avx512\"", "\"purple\"", "`instruction_set` is \"purple\", but must be one of scalar, wide"),
-            ("bind = ", "binds = ", "unknown field `binds`"),
-            ("footprint = ", "footprints = ", "unknown field `footprints`"),
-            ("footprint = ", "footprint = 1e12 #", "`levels.footprint` must be positive and rise"),
-            ("format = 14", "format = 15", "`format` is 15"),
-            ("format = 14", "format = 13\npace = 1.0", "`format` is 13, but this program reads 14"),
-            ("format = 14\n", "", "missing field `format`"),
+            ("operation = ", "operations = ", "unknown field `operations`"),
+            ("footprints = ", "footprint = ", "unknown field `footprint`"),
+            ("format = 15", "format = 16", "`format` is 16"),
+            ("format = 15", "format = 14\npace = 1.0", "`format` is 14, but this program reads 15"),
+            ("format = 15\n", "", "missing field `format`"),
         ] {
             let said = complaint(old, new);
             assert!(said.contains(expected) && said.contains("line "), "{said}");
