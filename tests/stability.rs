@@ -135,7 +135,7 @@ fn every_method_with_steps_has_a_map_without_an_axis() {
         ("two-discs", &["--set", "run.time=0.5"], "stiffness"),
     ] {
         let data = succeeds(&map(scene, &folder.path().join(scene), &[&["--size", "3"], more].concat()));
-        assert_eq!(data[scene]["parameter"]["name"], parameter);
+        assert_eq!(data["maps"][0]["parameter"], parameter);
     }
     let hard = map("hard-disks", &folder.path().join("hard"), &[]);
     assert_eq!(hard.status.code(), Some(2));

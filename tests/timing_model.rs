@@ -26,9 +26,9 @@ fn a_machine_file_of_ones_own_is_asked_and_every_clock_answers() {
     let path = file(&folder, MACHINE);
     let out = stripmine(&["table", "--ladder", "--machine", &path, "--json"]).success();
     let data: serde_json::Value = serde_json::from_slice(&out.get_output().stdout).unwrap();
-    assert_eq!(data["machine"], "Mine");
-    assert_eq!(data["rungs"].as_array().unwrap().len(), 6);
-    assert!(data["assumed_share"].as_f64().unwrap() > 0.0);
+    assert_eq!(data["machines"][0]["machine"], "Mine");
+    assert_eq!(data["ladder"].as_array().unwrap().len(), 6);
+    assert!(data["machines"][0]["share_of_the_last_rung_from_assumed_start_ups"].as_f64().unwrap() > 0.0);
 }
 
 #[test]
