@@ -15,7 +15,7 @@ fn judged(claim: &Claim) -> Option<(&str, &Claim)> {
     Some((claim.item.as_deref()?, claim))
 }
 
-/// Whether an item was made from its template; one that was made before there were claims is judged once it is made again.
+/// Returns whether an item was made from its template. An item of an earlier version is judged once it is made again.
 fn is_made_from_its_template(item: &str) -> bool {
     let folders = [root().join("reports").join(item), root().join("reports/host").join(item)];
     folders.iter().any(|it| it.join("provenance.json").exists() && !it.join("section.json").exists())

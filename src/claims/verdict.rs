@@ -51,7 +51,7 @@ pub struct Judged<'c> {
     pub verdict: Verdict,
     /// Value, for a reader; nothing where there is none.
     pub value: String,
-    /// Whether the limit was set after the result was made.
+    /// Set if the limit is newer than the result.
     pub is_too_new: bool,
 }
 

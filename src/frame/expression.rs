@@ -28,7 +28,7 @@ impl Scope {
         Scope(Arc::new(Names(frames.into_iter().map(named).collect(), None)))
     }
 
-    /// The same frames, and an element that expressions call `it`.
+    /// Adds an element that expressions call `it`.
     pub fn with_it(&self, it: &Value) -> Scope {
         Scope(Arc::new(Names(self.0.0.clone(), Some(it.clone()))))
     }

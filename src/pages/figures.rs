@@ -15,7 +15,7 @@ pub(super) struct FigureSpec {
     name: Text,
     /// List of elements, for each of which there is such a figure; expressions call the element `it`.
     each: Option<Text>,
-    /// Whether there is such a figure; always where it is left out.
+    /// Condition of the figure; none for a figure that is always there.
     when: Option<Text>,
     /// List of elements, for each of which the chart has a panel; expressions call the element `it`.
     panels: Option<Text>,
@@ -39,7 +39,7 @@ impl FigureSpec {
         self.name.get_ref()
     }
 
-    /// Whether the study draws it.
+    /// Returns whether the study draws it.
     pub(super) fn is_drawn(&self) -> bool {
         self.x.is_none() || self.y.is_none()
     }
@@ -90,7 +90,7 @@ struct SeriesSpec {
     style: Style,
     /// Colour of the first series; the next one that is free where it is left out.
     hue: Option<usize>,
-    /// Whether points are put in the order of x.
+    /// Puts points in the order of x.
     #[serde(default)]
     sorted: bool,
 }

@@ -56,7 +56,7 @@ pub struct Page {
     header: Header,
     /// Whole file.
     text: String,
-    /// Where the paragraphs begin in it.
+    /// Byte at which the paragraphs begin.
     body: usize,
 }
 
@@ -69,7 +69,7 @@ struct Header {
     cost: Cost,
     question: Text,
     expected: Option<Text>,
-    /// Whether the results depend on the host.
+    /// Set for results that depend on the host.
     #[serde(default)]
     host: bool,
     /// Place among the results of the report's first screen.
@@ -181,7 +181,7 @@ impl Page {
         Ok(Page { name: name.to_owned(), header, text, body })
     }
 
-    /// Whether the results depend on the host.
+    /// Returns whether the results depend on the host.
     pub fn depends_on_host(&self) -> bool {
         self.header.host
     }

@@ -64,7 +64,7 @@ pub struct Fingerprints {
 }
 
 impl Fingerprints {
-    /// Of this program.
+    /// Fingerprints of this program.
     pub fn here() -> Fingerprints {
         Fingerprints {
             kernels: env!("STRIPMINE_KERNELS").to_owned(),

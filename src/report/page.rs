@@ -57,7 +57,7 @@ pub fn render(sections: &[Section], left_out: &[String], tally: &Tally) -> Strin
     page
 }
 
-/// How many claims of each source have which verdict, and those that failed.
+/// Table of claims by source and verdict, and the claims that failed.
 fn claims(tally: &Tally) -> String {
     if tally.is_empty() {
         return String::new();

@@ -149,7 +149,7 @@ impl Section {
         if self.depends_on_host { here } else { everywhere }
     }
 
-    /// How its claims came out, in a few words.
+    /// Counts its claims by verdict, in words.
     pub fn outcome(&self) -> String {
         let counts = self.counts().map(|(verdict, count)| format!("{count} {}", verdict.words()));
         let counts: Vec<String> = counts.collect();

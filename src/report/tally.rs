@@ -12,7 +12,7 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Of the items of a report, and the claims that no item answers.
+    /// Collects the claims of the items of a report, and those that no item answers.
     pub fn of(sections: &[Section], all: &[Claim]) -> Tally {
         let judged = sections.iter().flat_map(|section| {
             let item = (section.name.clone(), section.title.clone());
@@ -22,7 +22,7 @@ impl Tally {
         Tally { claims: judged.chain(open.map(|claim| (None, (&Judged::unjudged(claim)).into()))).collect() }
     }
 
-    /// Whether there is none.
+    /// Returns whether there are no claims.
     pub fn is_empty(&self) -> bool {
         self.claims.is_empty()
     }

@@ -201,7 +201,7 @@ fn front(sections: &[Section], pictures: &[Vec<Inline>]) -> Markup {
     }
 }
 
-/// How many claims of each source have which verdict, and those that failed.
+/// Table of claims by source and verdict, and the claims that failed.
 fn claims(tally: &Tally) -> Markup {
     html! {
         @if !tally.is_empty() {

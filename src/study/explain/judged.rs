@@ -84,7 +84,7 @@ fn table(judged: &[Judged]) -> Frame {
         .frame("plans", "Plans, carried out")
 }
 
-/// What one scene may be modelled without.
+/// A feature that one scene may be modelled without.
 struct Twin<'j> {
     judged: &'j Judged,
     twin: &'j LeftOut,
@@ -94,7 +94,7 @@ fn twins(judged: &[Judged]) -> Vec<Twin<'_>> {
     judged.iter().flat_map(|judged| judged.left_out.iter().map(move |twin| Twin { judged, twin })).collect()
 }
 
-/// What each of them saves, over all scenes that have it.
+/// Saving by each feature that may be left out, over all scenes that have it.
 fn saved(judged: &[Judged]) -> Frame {
     let twins = twins(judged);
     let mut names: Vec<&str> = twins.iter().map(|it| it.twin.name.as_str()).collect();
@@ -118,7 +118,7 @@ fn saved(judged: &[Judged]) -> Frame {
         .frame("saved", "What scenes may be modelled without, and what that saves of the wall time")
 }
 
-/// The same scene by scene.
+/// Savings scene by scene.
 fn left_out(judged: &[Judged]) -> Frame {
     let twins = twins(judged);
     Rows::of(&twins)

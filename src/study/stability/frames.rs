@@ -109,7 +109,7 @@ fn multiples(data: &Stability, edges: &[Edge]) -> [Cell; 3] {
     numbers.unwrap_or([const { Cell::Nothing }; 3])
 }
 
-/// Where there is no such edge.
+/// Position of an edge that no seed has within the map.
 fn beyond(edges: &[Edge]) -> Option<&'static str> {
     match edges {
         _ if over_seeds(edges).is_some() => None,
