@@ -90,7 +90,7 @@ fn cells(Map { x, y, value, rows }: &Map) -> (Vec<String>, Vec<Vec<Cell>>) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::samples;
+    use super::super::tests::samples;
     use super::*;
 
     #[test]

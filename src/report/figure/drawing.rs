@@ -11,7 +11,7 @@ use stripmine_physics::number::significant;
 const RIM: f64 = 0.08;
 const RIMS: [f64; 2] = [0.4, 1.2];
 /// Discs of no more than this radius have no outline (pixels).
-const SMALL: f64 = 2.4;
+const SMALL: f64 = 2.5;
 /// Height of the rows in which dots are sorted (tenths of a pixel).
 const ROW: i64 = 120;
 

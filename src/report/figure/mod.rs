@@ -11,8 +11,6 @@ mod output;
 mod picture;
 mod plane;
 mod plot;
-#[cfg(test)]
-mod samples;
 mod series;
 pub mod style;
 #[cfg(test)]

@@ -63,7 +63,8 @@ pub(super) fn tree(text: &str) -> Result<Tree, String> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Picture, samples, style};
+    use super::super::tests::samples;
+    use super::super::{Picture, style};
     use super::*;
 
     #[test]

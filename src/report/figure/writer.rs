@@ -202,7 +202,8 @@ pub fn bends(places: &[[f64; 2]]) -> Vec<[f64; 2]> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{samples, svg};
+    use super::super::svg;
+    use super::super::tests::samples;
     use super::*;
 
     #[test]

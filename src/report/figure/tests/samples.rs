@@ -1,6 +1,8 @@
 //! A figure of each kind, for the tests of everything that draws.
 
-use super::{Axis, Band, Chart, Drawing, Figure, Guide, Map, Picture, Point, Series, Shape, Style, Tint};
+use super::super::{
+    Axis, Band, Chart, Drawing, Figure, Guide, Map, Picture, Point, Series, Shape, Style, Tint,
+};
 
 /// All of them.
 pub fn all() -> Vec<Figure> {

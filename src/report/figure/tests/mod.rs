@@ -1,7 +1,9 @@
 //! What must hold for every picture, as `resvg` sees it.
 
+pub mod samples;
+
 use super::output::tree;
-use super::{Axis, Chart, Drawing, Figure, Map, Picture, Point, Scale, Style, samples, svg};
+use super::{Axis, Chart, Drawing, Figure, Map, Picture, Point, Scale, Style, svg};
 use resvg::usvg::{Group, Node};
 
 /// Left, upper, right and lower end of every line of words.
