@@ -123,7 +123,7 @@ impl Field {
     }
 }
 
-/// Reads a frame that [`write`] wrote, by its description.
+/// Reads a frame that [`write()`] wrote, by its description.
 ///
 /// # Errors
 /// A sentence with the line and the column of a cell that is not of its column's type.

@@ -94,7 +94,7 @@ impl Counted<'_> {
 /// The efficiency table of a question on a machine.
 ///
 /// # Errors
-/// [`QuestionError`] if no such lattice exists.
+/// `QuestionError` if no such lattice exists.
 pub fn efficiency_table(question: &Question, machine: &MachineModel) -> Result<Made, QuestionError> {
     let source_question = Question { choice: question.choice.printed(), ..question.clone() };
     let texts = [Counted::of(&source_question, machine)?, Counted::of(question, machine)?];
