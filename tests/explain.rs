@@ -2,6 +2,7 @@
 
 use assert_cmd::cargo::CommandCargoExt;
 use serde_json::Value;
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -408,17 +409,18 @@ fn the_error_of_a_mean_is_charted_over_its_cost() {
             "--quiet",
         ]);
         let output = command.args(["--set", "particles.count=100", "--of", quantity]).output().unwrap();
-        let all = plan(&output);
-        let data = &all[scene];
-        let curves = data["curves"].as_array().unwrap();
-        assert!(data["quantity"] == quantity && curves.len() == ways, "{data:#}");
-        for curve in curves {
-            let points = curve["points"].as_array().unwrap();
-            let [first, last] =
-                [&points[0], &points[points.len() - 1]].map(|point| point[1].as_f64().unwrap());
-            assert!(points.len() > 3 && last < first, "{curve:#}");
+        let data = plan(&output);
+        let mut curves: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
+        for point in data["points"].as_array().unwrap() {
+            let errors = curves.entry(point["curve"].as_str().unwrap()).or_default();
+            errors.push(point["error"].as_f64().unwrap());
         }
-        let pictures = folder.join(format!("{scene}.work-precision/host/work-precision"));
+        assert!(data["summary"][0]["quantity"] == quantity && curves.len() == ways, "{data:#}");
+        for (curve, errors) in curves {
+            assert!(errors.len() > 3 && errors.last() < errors.first(), "{curve}: {errors:?}");
+        }
+        let name = "work-precision-of-means";
+        let pictures = folder.join(format!("{scene}.{name}/host/{name}"));
         let svg = fs::read_dir(pictures)
             .unwrap()
             .flatten()

@@ -7,10 +7,10 @@ use crate::provenance::{Provenance, built};
 use crate::results::Made;
 use crate::results::Progress;
 use crate::results::{Folder, Journal, Team};
-use crate::study::explain::{Target, precision, precision_page};
+use crate::study::explain::{Target, precision, precision_frames};
 use crate::study::stability::{self, Over, stability};
 use crate::study::work_precision::{self, work_precision};
-use crate::study::{Case, StudyError, Subject, work_precision::section as diagram_section};
+use crate::study::{Case, StudyError, Subject};
 use clap::{Args, Subcommand};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -70,8 +70,8 @@ struct WorkPrecisionVerb {
     /// the method is mostly asked for
     #[arg(long = "of", value_name = "QUANTITY", conflicts_with_all = ["machine", "repeats"])]
     quantity: Option<String>,
-    /// Folder for data, tables and figures; the scene's name with `.work-precision` by default. A study that was interrupted
-    /// goes on there
+    /// Folder for data, tables and figures; by default the scene's name with `.work-precision`, or `.work-precision-of-means` for the error of
+    /// a mean. A study that was interrupted goes on there
     #[arg(long)]
     out: Option<PathBuf>,
 }
@@ -140,10 +140,10 @@ impl WorkPrecisionVerb {
         let options = format!("budget {} repeats {} machine {named}", self.budget, self.repeats);
         let (budget, repeats) = (f64::from(self.budget), self.repeats.into());
         let effort = work_precision::Effort { budget, repeats, phases: PHASES, machine };
-        let place = Place { name: diagram_section::NAME, scene: &self.scene, out: self.out.as_deref() };
-        place.study(common, &subject, &options, |journal, progress, stem, again| {
+        let place = Place { name: "work-precision", scene: &self.scene, out: self.out.as_deref() };
+        place.study(common, &subject, &options, |journal, progress, stem| {
             let data = work_precision(&subject, &effort, journal, progress)?;
-            diagram_section::made(&[(stem, data)], again)
+            Ok(work_precision::made(&[(stem, data)]))
         })
     }
 }
@@ -157,22 +157,14 @@ impl WorkPrecisionVerb {
         }
         let own = |error| StudyError::Own(Box::new(error));
         let target = Target::of(case, self.quantity.as_deref(), None).map_err(own)?;
-        let place = Place { name: diagram_section::NAME, scene: &self.scene, out: self.out.as_deref() };
+        let place = Place { name: precision_frames::NAME, scene: &self.scene, out: self.out.as_deref() };
         let (folder, stem) = place.folder()?;
         let (bar, start) = (progress(common, place.name), Instant::now());
         let show = |share: f64| bar.set_position((1e3 * share) as u64);
         let threads = rayon::current_num_threads() as f64;
         let seconds = f64::from(self.budget) / threads;
         let data = precision(case, &target, seconds, signals::asked(), &show).map_err(own)?;
-        let again =
-            format!("stripmine chart {} {} --of {}", place.name, case.arguments(), target.quantity.name);
-        written(
-            common,
-            &folder,
-            place.name,
-            &precision_page::made(place.name, &[(stem, data)], again)?,
-            start,
-        )
+        written(common, &folder, place.name, &precision_frames::made(&stem, &data), start)
     }
 }
 
@@ -197,7 +189,7 @@ impl StabilityVerb {
             self.budget
         );
         let place = Place { name: "stability", scene: &self.scene, out: self.out.as_deref() };
-        place.study(common, &subject, &options, |journal, progress, stem, _| {
+        place.study(common, &subject, &options, |journal, progress, stem| {
             let data = stability(&subject, over, &effort, journal, progress)?;
             Ok(stability::made(&[(stem, data)]))
         })
@@ -246,13 +238,13 @@ impl Place<'_> {
         Path::new(self.scene).file_stem().unwrap_or_default().to_string_lossy().into_owned()
     }
 
-    /// Makes a study of the finished runs in its folder, with progress, the scene's stem and the command that makes it.
+    /// Makes a study of the finished runs in its folder, with progress and the scene's stem.
     fn study(
         &self,
         common: &Common,
         subject: &Subject,
         options: &str,
-        make: impl FnOnce(&Journal, Progress<'_>, String, String) -> Result<Made, Failure>,
+        make: impl FnOnce(&Journal, Progress<'_>, String) -> Result<Made, Failure>,
     ) -> Result<(), Failure> {
         if let Crew::Processes(join) = common.crew {
             let same =
@@ -277,8 +269,7 @@ impl Place<'_> {
         let bar = progress(common, self.name);
         let start = Instant::now();
         let show = |share: f64| bar.set_position((1e3 * share) as u64);
-        let again = format!("stripmine chart {} {}", self.name, subject.arguments());
-        let made = make(&journal, &show, stem, again)?;
+        let made = make(&journal, &show, stem)?;
         folder.map_or(Ok(()), |folder| written(common, &folder, self.name, &made, start))
     }
 }

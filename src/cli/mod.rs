@@ -88,7 +88,7 @@ fn command(methods: Methods) -> clap::Command {
     let benches: Vec<PossibleValue> =
         benches.map(|bench| PossibleValue::new(bench.name).help(bench.doc)).collect();
     let items: Vec<PossibleValue> =
-        items_of(methods).map(|item| PossibleValue::new(item.name).help(item.heading().1)).collect();
+        items_of(methods).map(|item| PossibleValue::new(item.name).help(item.title())).collect();
     let presets: Vec<&str> = scene::presets(methods).map(|preset| preset.name).collect();
     let names: Vec<PossibleValue> = methods
         .iter()

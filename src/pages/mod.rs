@@ -8,7 +8,7 @@ mod figures;
 
 use crate::claims::{self, Claim};
 use crate::frame::{Expressions, Frame, Scope, Table};
-use crate::report::figure::{Picture, data as figure_data};
+use crate::report::figure::{Figure, Picture, data as figure_data};
 use crate::report::section::Film;
 use crate::report::{Chapter, Section};
 use figures::FigureSpec;
@@ -224,18 +224,23 @@ impl Page {
             &self.header;
         let body = fill.at(&self.text[self.body..], self.body)?;
         let mut paragraphs = body.split("\n\n").map(one_line).filter(|paragraph| !paragraph.is_empty());
-        let mut section = Section::new(&self.name, title)
-            .asks(fill.text(question)?)
-            .expects(expected.as_ref().map_or(Ok(String::new()), |expected| fill.text(expected))?)
-            .answers(paragraphs.next().unwrap_or_default())
-            .details(paragraphs)
-            .seeds(shown.seeds.iter().copied());
-        (section.depends_on_host, section.chapter, section.front) = (*host, *chapter, *front);
+        let mut section = Section {
+            chapter: *chapter,
+            question: fill.text(question)?,
+            expected: expected.as_ref().map_or(Ok(String::new()), |expected| fill.text(expected))?,
+            answer: paragraphs.next().unwrap_or_default(),
+            details: paragraphs.collect(),
+            seeds: shown.seeds.to_vec(),
+            front: *front,
+            depends_on_host: *host,
+            ..Section::new(&self.name, title)
+        };
         for spec in figure {
-            section.figures.extend(figures::figures(spec, &fill, shown)?);
+            let drawn = figures::figures(spec, &fill, shown)?;
+            section.figures.extend(drawn.into_iter().filter(Figure::has_points));
         }
         for spec in table {
-            section.tables.push(fill.table(spec)?);
+            section.tables.extend(Some(fill.table(spec)?).filter(|table| !table.rows.is_empty()));
         }
         if let Some(excerpt) = excerpt {
             section.excerpt = Some((fill.text(&excerpt.caption)?, fill.lines(excerpt, shown.files)?));

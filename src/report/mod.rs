@@ -12,7 +12,7 @@ use crate::provenance::Provenance;
 use stripmine_physics::number::counted;
 
 pub use crate::frame::{Cell, Rows, Table};
-pub use section::{Chapter, Section, Verdict};
+pub use section::{Chapter, Section};
 
 /// Who made the items, and where: a sentence for each machine, with how many each program has made there, the most first.
 fn origins(sections: &[Section]) -> Vec<String> {

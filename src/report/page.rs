@@ -85,7 +85,8 @@ fn claims(tally: &Tally) -> String {
 /// The answer, the picture and the table of conclusions, then what was asked. All further words, pictures and tables stand on the page
 /// with charts.
 fn item(section: &Section) -> String {
-    let Section { name, title, question, expected, again, .. } = section;
+    let Section { name, title, question, expected, .. } = section;
+    let again = section.again();
     let folder = section.folder();
     let mut text = format!("\n## {title}\n\n**{}**: {}\n\n", section.outcome(), section.answer);
     if let Some(figure) = section.figures.first() {

@@ -5,7 +5,7 @@
 
 use super::Made;
 use super::journal::is_journal;
-use super::made::{self, LONGEST, SECTION, bytes_of, files_of};
+use super::made::{self, LONGEST, bytes_of, files_of};
 use crate::claims;
 use crate::console::{Failure, to_json};
 use crate::frame::Scope;
@@ -235,17 +235,14 @@ impl Folder {
     fn read(&self, name: &str) -> Result<Known, Failure> {
         let Some(folder) = self.item(name) else { return Ok(Known::Absent) };
         let Some(provenance) = self.provenance(name)? else { return Ok(Known::OfAnotherVersion) };
-        let of_template = match Page::of(name)? {
+        let made = match Page::of(name)? {
             Some(page) => made::read(&folder, &page)?,
             None => None,
         };
-        let section = match of_template {
-            Some(made) => Some(self.renewed(name, &folder, &made, &provenance)?),
-            None if folder.join(SECTION).exists() => {
-                let section = serde_json::from_slice::<Section>(&bytes_of(&folder.join(SECTION))?).ok();
-                section.map(|section| made::judged(section, &folder, provenance.measured_on())).transpose()?
-            }
-            None => None,
+        let section = match made.map(|made| self.renewed(name, &folder, &made, &provenance)).transpose() {
+            // Its tables are not those that the page of this version shows.
+            Err(_) if provenance.origin.version != built().version => None,
+            section => section?,
         };
         let there = |section| Known::There(Box::new(Section { provenance: Some(provenance), ..section }));
         Ok(section.map_or(Known::OfAnotherVersion, there))
@@ -279,12 +276,12 @@ impl Folder {
         Ok(serde_json::from_slice(&bytes_of(&folder.join(PROVENANCE))?).ok())
     }
 
-    /// The tables of an item, for expressions; none if the folder does not have it.
+    /// The tables of an item, for expressions; none if the folder does not have it, or another version of the program wrote it.
     ///
     /// # Errors
     /// If they cannot be read.
     pub fn scope(&self, name: &str) -> Result<Option<Scope>, Failure> {
-        self.item(name).map(|folder| made::scope(&folder)).transpose()
+        self.item(name).map_or(Ok(None), |folder| made::scope(&folder))
     }
 
     /// An item as its page shows it; none if the folder does not have it, or another version of the program wrote it.

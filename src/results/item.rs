@@ -16,81 +16,36 @@ type Make = fn(&Lab<'_>, Size) -> Result<Made, console::Failure>;
 pub struct Item {
     /// Name on the command line, and of its template.
     pub name: &'static str,
-    made: Option<(Chapter, &'static str, Cost)>,
     make: Make,
 }
 
-/// MiB that most items stay below.
+/// MiB of an item without a page.
 const USUAL_MEMORY: u64 = 256;
 
 impl Item {
     /// An item whose template says title, chapter and cost.
     pub const fn of(name: &'static str, make: Make) -> Item {
-        Item { name, made: None, make }
+        Item { name, make }
     }
 
-    /// An item that is made in full only, in about so many seconds.
-    pub const fn full(
-        name: &'static str,
-        chapter: Chapter,
-        seconds: f64,
-        make: Make,
-        doc: &'static str,
-    ) -> Item {
-        let cost = Cost { quick: None, full: seconds, all: None, memory: USUAL_MEMORY };
-        Item { name, made: Some((chapter, doc, cost)), make }
+    fn page(&self) -> Option<Page> {
+        Page::of(self.name).ok().flatten()
     }
 
-    /// An item that `--quick` makes too, with the seconds that it takes: quick, in full. Data that are the same on every host are the
-    /// same in both.
-    pub const fn quick(
-        name: &'static str,
-        chapter: Chapter,
-        [quick, full]: [f64; 2],
-        make: Make,
-        doc: &'static str,
-    ) -> Item {
-        let cost = Cost { quick: Some(quick), full, all: None, memory: USUAL_MEMORY };
-        Item { name, made: Some((chapter, doc, cost)), make }
-    }
-
-    /// The item with more of it by `--all`, in about so many seconds.
-    pub const fn with_more(mut self, seconds: f64) -> Item {
-        if let Some((_, _, cost)) = &mut self.made {
-            cost.all = Some(seconds);
-        }
-        self
-    }
-
-    /// The item with the memory that it takes in full, where this is more than usual.
-    pub const fn with_memory(mut self, mebibytes: u64) -> Item {
-        if let Some((_, _, cost)) = &mut self.made {
-            cost.memory = mebibytes;
-        }
-        self
-    }
-
-    /// Chapter of the report, and title.
-    pub fn heading(&self) -> (Chapter, String) {
-        let page = || Page::of(self.name).ok().flatten();
-        match self.made {
-            Some((chapter, doc, _)) => (chapter, doc.to_owned()),
-            None => {
-                page().map_or((Chapter::Beyond, String::new()), |it| (it.chapter(), it.title().to_owned()))
-            }
-        }
+    /// Title.
+    pub fn title(&self) -> String {
+        self.page().map_or_else(String::new, |page| page.title().to_owned())
     }
 
     /// Chapter of the report.
     pub fn chapter(&self) -> Chapter {
-        self.heading().0
+        self.page().map_or(Chapter::Beyond, |page| page.chapter())
     }
 
     /// Stated cost.
     fn cost(&self) -> Cost {
         let none = Cost { quick: None, full: 0.0, all: None, memory: USUAL_MEMORY };
-        let page = || Page::of(self.name).ok().flatten().map_or(none, |it| it.cost());
-        self.made.map_or_else(page, |(_, _, cost)| cost)
+        self.page().map_or(none, |page| page.cost())
     }
 
     /// Returns whether `--quick` makes it.
@@ -123,13 +78,6 @@ impl Item {
     /// # Errors
     /// Those of its study.
     pub fn make(&self, lab: &Lab<'_>, size: Size) -> Result<Made, console::Failure> {
-        let mut made = (self.make)(lab, size)?;
-        if let Some(section) = &mut made.section {
-            section.chapter = self.chapter();
-            if size == Size::All && self.cost().all.is_some() {
-                section.again = format!("stripmine reproduce --all --only {}", self.name);
-            }
-        }
-        Ok(made)
+        (self.make)(lab, size)
     }
 }

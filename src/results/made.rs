@@ -14,8 +14,6 @@ use std::path::Path;
 use stripmine_physics::io::regular_file;
 use stripmine_physics::quoted;
 
-/// Section of an item without a template.
-pub(super) const SECTION: &str = "section.json";
 /// Longer than any file of an item that is read again (bytes).
 pub(super) const LONGEST: u64 = 1 << 30;
 /// Columns, types, units and meanings of an item's tables.
@@ -34,49 +32,38 @@ pub(super) fn files_of(
     made: &Made,
     provenance: &Provenance,
 ) -> Result<(Section, Vec<File>), Failure> {
-    let section = match (&made.section, Page::of(name)?) {
-        (Some(section), _) => section.clone(),
-        (None, Some(page)) => {
-            let Made { frames, pictures, film, files, seeds, .. } = made;
+    let Made { frames, pictures, film, files, seeds, .. } = made;
+    let section = match Page::of(name)? {
+        Some(page) => {
             let shown = Shown { frames, pictures, film: film.as_ref(), files, seeds };
             let claims = if provenance.is_of_the_report() { claims::all()? } else { vec![] };
             page.section(&shown, &claims, provenance.measured_on())?
         }
-        (None, None) => Section::new(name, name),
+        None => Section::new(name, name),
     };
-    let mut all = vec![];
-    if !made.data.is_null() {
-        all.push(("data.json".to_owned(), compact(&made.data)?.into_bytes()));
-    }
     let of_figures = section.figures.iter().filter_map(figure::data).map(|table| Frame::from(&table));
-    let shown = section.tables.iter().chain(&made.tables);
-    let of_page = shown.filter(|_| made.section.is_some()).map(Frame::from);
-    let frames: Vec<Frame> = made.frames.iter().cloned().chain(of_page).chain(of_figures).collect();
+    let frames: Vec<Frame> = frames.iter().cloned().chain(of_figures).collect();
+    let mut all = vec![];
     for frame in &frames {
         let mut bytes = vec![];
         csv::write(frame, &mut bytes).map_err(Failure::writing("CSV"))?;
         all.push((format!("{}.csv", frame.name), bytes));
     }
-    if !frames.is_empty() || made.section.is_none() {
-        let package = Package::of(&section.name, &section.title, &made.seeds, &frames);
-        all.push((PACKAGE.to_owned(), compact(&package)?.into_bytes()));
-    }
+    let package = Package::of(&section.name, &section.title, seeds, &frames);
+    all.push((PACKAGE.to_owned(), compact(&package)?.into_bytes()));
     for figure in &section.figures {
         all.push((format!("{}.svg", figure.name), svg(figure)?.into_bytes()));
     }
-    if let Some(film) = &made.film {
+    if let Some(film) = film {
         all.push((FILM.to_owned(), compact(film)?.into_bytes()));
     }
-    all.extend(made.files.iter().map(|(name, text)| (name.clone(), text.clone().into_bytes())));
-    if made.section.is_some() {
-        all.push((SECTION.to_owned(), compact(&section)?.into_bytes()));
-    }
+    all.extend(files.iter().map(|(name, text)| (name.clone(), text.clone().into_bytes())));
     Ok((section, all))
 }
 
 /// An item as its folder has it, for a template; nothing if another version of the program wrote it.
 pub(super) fn read(folder: &Path, page: &Page) -> Result<Option<Made>, Failure> {
-    if !folder.join(PACKAGE).exists() || folder.join(SECTION).exists() {
+    if !folder.join(PACKAGE).exists() {
         return Ok(None);
     }
     let text =
@@ -103,7 +90,8 @@ pub(super) fn read(folder: &Path, page: &Page) -> Result<Option<Made>, Failure> 
         }
     }
     if folder.join(FILM).exists() {
-        made.film = serde_json::from_str(&text(FILM)?).ok();
+        let Ok(film) = serde_json::from_str(&text(FILM)?) else { return Ok(None) };
+        made.film = Some(film);
     }
     for name in page.files() {
         if folder.join(name).exists() {
@@ -113,25 +101,20 @@ pub(super) fn read(folder: &Path, page: &Page) -> Result<Option<Made>, Failure> 
     Ok(Some(made))
 }
 
-/// A section that was written without a template, with its claims judged by the tables of its folder.
-pub(super) fn judged(section: Section, folder: &Path, date: &str) -> Result<Section, Failure> {
-    let (all, scope) = (claims::all()?, scope(folder)?);
-    let judged = claims::judge_where_possible(&all, &section.name, &scope, date);
-    let claims = judged.iter().map(Into::into).collect();
-    Ok(Section { claims, ..section })
-}
-
-/// The tables of an item's folder, for expressions.
-pub(super) fn scope(folder: &Path) -> Result<Scope, Failure> {
+/// The tables of an item's folder, for expressions; nothing if another version of the program wrote it.
+pub(super) fn scope(folder: &Path) -> Result<Option<Scope>, Failure> {
     let mut frames = vec![];
     if folder.join(PACKAGE).exists() {
-        let package = serde_json::from_slice::<Package>(&bytes_of(&folder.join(PACKAGE))?);
-        for resource in package.map(|it| it.resources).unwrap_or_default() {
+        let Ok(package) = serde_json::from_slice::<Package>(&bytes_of(&folder.join(PACKAGE))?) else {
+            return Ok(None);
+        };
+        for resource in package.resources {
             let bytes = bytes_of(&folder.join(&resource.path))?;
-            frames.extend(csv::read(resource, &bytes));
+            let Ok(frame) = csv::read(resource, &bytes) else { return Ok(None) };
+            frames.push(frame);
         }
     }
-    Ok(Scope::of(frames))
+    Ok(Some(Scope::of(frames)))
 }
 
 /// The bytes of a file.

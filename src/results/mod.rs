@@ -17,13 +17,10 @@ pub use meter::Meter;
 pub(crate) use own_files::OwnFiles;
 pub use team::Team;
 
-use crate::console::Failure;
-use crate::frame::{Frame, Table};
+use crate::frame::Frame;
 use crate::provenance::Measurement;
-use crate::report::Section;
 use crate::report::figure::Picture;
 use crate::report::section::Film;
-use serde::Serialize;
 use std::path::PathBuf;
 
 /// Surroundings of a study.
@@ -60,12 +57,6 @@ pub enum Size {
 /// A finished item.
 #[derive(Default)]
 pub struct Made {
-    /// Section of an item that has no template.
-    pub section: Option<Section>,
-    /// Dataset of an item that has no template.
-    pub data: serde_json::Value,
-    /// Tables for programs that the page does not show, of an item that has no template.
-    pub tables: Vec<Table>,
     /// Frames.
     pub frames: Vec<Frame>,
     /// Pictures that are no charts of frames, by name.
@@ -90,10 +81,7 @@ impl Made {
 
     /// The data for programs: each frame by its name, as a list of rows.
     pub fn json(&self) -> serde_json::Value {
-        match self.data.is_null() {
-            true => self.frames.iter().map(|frame| (frame.name.clone(), frame.json())).collect(),
-            false => self.data.clone(),
-        }
+        self.frames.iter().map(|frame| (frame.name.clone(), frame.json())).collect()
     }
 
     /// Adds a picture that is no chart of a frame.
@@ -113,36 +101,6 @@ impl Made {
     #[must_use]
     pub fn with_seeds(self, seeds: impl IntoIterator<Item = u64>) -> Made {
         Made { seeds: seeds.into_iter().collect(), ..self }
-    }
-
-    /// Of a section and its dataset.
-    ///
-    /// # Errors
-    /// If the dataset, or the section, is none that JSON can hold: a number that is none comes back as nothing.
-    pub fn new(section: Section, data: &impl Serialize) -> Result<Made, Failure> {
-        let data = serde_json::to_value(data).map_err(|cause| Failure::writing("JSON")(cause.into()))?;
-        // It is read when the page is made again.
-        serde_json::to_vec(&section)
-            .and_then(|text| serde_json::from_slice::<Section>(&text))
-            .map_err(|cause| Failure::writing("JSON")(cause.into()))?;
-        Ok(Made { section: Some(section), data, ..Made::default() })
-    }
-
-    /// An item of several scenes, each with a name, under which its data stands.
-    ///
-    /// # Errors
-    /// If the dataset is none that JSON can hold.
-    pub fn by_name<T: Serialize>(section: Section, scenes: &[(String, T)]) -> Result<Made, Failure> {
-        let one = |(name, data): &(String, T)| Ok((name.clone(), serde_json::to_value(data)?));
-        let all = scenes.iter().map(one).collect::<serde_json::Result<serde_json::Map<_, _>>>();
-        Made::new(section, &all.map_err(|cause| Failure::writing("JSON")(cause.into()))?)
-    }
-
-    /// With tables for programs that the page does not show.
-    #[must_use]
-    pub fn with_tables(mut self, tables: impl IntoIterator<Item = Table>) -> Made {
-        self.tables.extend(tables);
-        self
     }
 
     /// With one more file.

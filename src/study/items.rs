@@ -1,24 +1,17 @@
 //! What `reproduce` makes of studies.
 
+use super::Subject;
 use super::explain::{SCENES, SECONDS, judged, regret};
 use super::rivals;
 use super::stability::{self, Over, stability};
 use super::work_precision::{self, work_precision};
-use super::{Subject, work_precision::section as diagram_section};
 use crate::console::Failure;
-use crate::report::Chapter;
 use crate::results::{Item, Journal, Lab, Made, Size};
 use stripmine_physics::method::METHODS;
 
 /// Every item, in the order of its chapter.
 pub const ITEMS: &[Item] = &[
-    Item::quick(
-        diagram_section::NAME,
-        Chapter::Host,
-        [3.0, 56.0],
-        speed_against_accuracy,
-        "Speed against accuracy of four scenes: which integrator, step and precision for which wish",
-    ),
+    Item::of("work-precision", speed_against_accuracy),
     Item::of("stability", where_it_works),
     Item::of("plans", plans_judged),
     Item::of("rivals", rivals::made),
@@ -60,7 +53,7 @@ fn speed_against_accuracy(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> 
         let share = |part: f64| progress((at as f64 + part) / shown.len() as f64);
         scenes.push(((*name).to_owned(), work_precision(&subject, &effort, &Journal::none(), &share)?));
     }
-    diagram_section::made(&scenes, format!("stripmine reproduce --only {}", diagram_section::NAME))
+    Ok(work_precision::made(&scenes))
 }
 
 /// The maps that methods state for it.

@@ -110,22 +110,6 @@ impl Series {
     ) -> Series {
         Series { name: name.into(), style, hue, points: points.into_iter().map(Into::into).collect() }
     }
-
-    /// Makes a series for each name that points bear, in the order in which names occur.
-    pub fn by_name(
-        style: Style,
-        points: impl IntoIterator<Item = (impl Into<String>, impl Into<Point>)>,
-    ) -> Vec<Series> {
-        let mut all: Vec<Series> = vec![];
-        for (name, point) in points {
-            let (name, hue) = (name.into(), all.len());
-            match all.iter_mut().find(|known| known.name == name) {
-                Some(known) => known.points.push(point.into()),
-                None => all.push(Series::new(name, style, hue, [point])),
-            }
-        }
-        all
-    }
 }
 
 /// Look of a series.
@@ -216,18 +200,4 @@ impl Band {
 pub(crate) enum Along {
     X,
     Y,
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn points_of_a_name_are_one_series() {
-        let series =
-            Series::by_name(Style::Points, [("b", (0.0, 1.0)), ("a", (1.0, 2.0)), ("b", (2.0, 3.0))]);
-        let [b, a] = series.as_slice() else { panic!("{series:?}") };
-        assert_eq!((b.name.as_str(), b.hue, a.name.as_str(), a.hue), ("b", 0, "a", 1));
-        assert_eq!(b.points, [Point::at(0.0, 1.0), Point::at(2.0, 3.0)]);
-    }
 }

@@ -52,6 +52,16 @@ impl Figure {
         Figure { caption: caption.into(), ..self }
     }
 
+    /// Returns whether there is anything to see: a chart without a point is none.
+    pub(crate) fn has_points(&self) -> bool {
+        let has = |chart: &Chart| chart.series.iter().any(|series| !series.points.is_empty());
+        match &self.picture {
+            Picture::Chart(chart) => has(chart),
+            Picture::Panels(panels) => panels.iter().any(|(_, chart)| has(chart)),
+            Picture::Map(_) | Picture::Drawing(_) | Picture::Drawn { .. } => true,
+        }
+    }
+
     /// Names in the legend of a chart.
     pub fn legend(&self) -> Vec<&str> {
         let charts: Vec<&Chart> = match &self.picture {

@@ -213,7 +213,7 @@ fn again(section: &Section) -> Markup {
         div.again {
             h3 { "To get it again" }
             div.command {
-                code tabindex="0" { (section.again) }
+                code tabindex="0" { (section.again()) }
                 button type="button" data-copy="" { "Copy" }
             }
             p {

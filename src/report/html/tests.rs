@@ -39,8 +39,6 @@ fn section(name: &str) -> Section {
         expected: HOSTILE.to_owned(),
         answer: format!("`{HOSTILE}` {HOSTILE}"),
         details: vec![HOSTILE.to_owned()],
-        verdict: crate::report::Verdict::Partly,
-        again: HOSTILE.to_owned(),
         figures: vec![figure("chart", Picture::Chart(chart)), figure("drawing", Picture::Drawing(drawing))],
         tables: vec![Table {
             name: "table".to_owned(),

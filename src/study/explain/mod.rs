@@ -20,7 +20,7 @@ mod margin;
 mod optimum;
 mod plan;
 pub mod precision;
-pub mod precision_page;
+pub mod precision_frames;
 mod recommended;
 mod reference;
 pub mod regret;

@@ -5,7 +5,6 @@ use super::findings::{SHARES, Way, Work};
 use super::sample::{Known, Sample};
 use super::{ExplainError, Target};
 use crate::study::Case;
-use serde::Serialize;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 use stripmine_physics::method::Decides;
@@ -19,7 +18,7 @@ const FEWEST: usize = 6;
 const HALVINGS: usize = 4;
 
 /// A way and a step, measured.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
 pub struct Curve {
     /// The way.
     pub way: String,
@@ -34,7 +33,7 @@ pub struct Curve {
 }
 
 /// What was measured of a scene.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
 pub struct Precision {
     /// The scene, as it is named on a command line.
     pub scene: String,

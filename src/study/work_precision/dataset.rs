@@ -11,7 +11,7 @@ use crate::study::orders::Fitted;
 use serde::{Deserialize, Serialize};
 
 /// The dataset.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
 pub struct WorkPrecision {
     /// The scene, as it is named on a command line.
     pub scene: String,
@@ -73,7 +73,7 @@ pub struct Reference {
 }
 
 /// A way to run the scene.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
 pub struct Way {
     /// Its settings, by axis.
     pub settings: Vec<(&'static str, &'static str)>,
@@ -137,7 +137,7 @@ impl Run {
 }
 
 /// How an error falls with the step.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
 pub struct Order {
     /// The way.
     pub way: usize,

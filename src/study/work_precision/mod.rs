@@ -4,15 +4,16 @@
 //! and one by another integrator, say what the error of the reference is. Then every way is run with the scene's own step, with
 //! smaller ones down to the reference's error and with larger ones until it breaks, and timed in alternating repeats.
 
-pub mod conclusions;
+mod conclusions;
 mod dataset;
 mod engine;
+mod frames;
 mod front;
 mod measures;
 mod plan;
-pub mod section;
 
 pub use dataset::{Order, Reference, Run, Way, WorkPrecision};
+pub use frames::made;
 pub use front::front;
 pub use measures::{Errors, Measure};
 pub use plan::Plan;

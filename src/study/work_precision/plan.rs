@@ -1,7 +1,6 @@
 //! Which runs a diagram is made of: as many as fit into the time that is given.
 
 use crate::study::choice::Choice;
-use serde::{Deserialize, Serialize};
 use stripmine_physics::method::Decides;
 
 /// Steps go up to this power of two times the scene's own.
@@ -13,7 +12,7 @@ pub const BELOW: i32 = 3;
 const SHARE: f64 = 0.6;
 
 /// How much is run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Scope {
     /// Whether ways that cost otherwise but give the same are run in every scheme and precision.
     every_cost: bool,
@@ -33,7 +32,7 @@ const SCOPES: [Scope; 6] = [
 ];
 
 /// What is run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     /// Steps of the scene's own that the runs last; divided by the coarsest step.
     pub own_steps: u64,
