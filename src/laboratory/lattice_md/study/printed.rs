@@ -236,7 +236,7 @@ fn eager(cells: usize, occupancy: f64, choice: Choice, samples: usize) -> Result
         let counts = [("n", n as f64), ("NOP", own().map(nop).sum::<u64>() as f64)];
         let counts = counts.map(|(kind, count)| (format!("{kind} of {}", part.name()), count));
         reading.counts.extend(counts);
-        reading.parts.insert(part.name().to_owned(), 1e-9 * samples.middle());
+        reading.parts.insert(part.name().to_owned(), 1e-9 * samples.median().unwrap_or(f64::NAN));
     }
     reading.seconds = reading.parts.values().sum();
     Ok(reading)

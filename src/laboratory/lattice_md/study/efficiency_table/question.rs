@@ -1,5 +1,6 @@
 //! Questions that an efficiency table answers: a number of particles, an occupancy, and what is modelled.
 
+use crate::study::StudyError;
 use stripmine_kernels::law::granular::{Contact, ContactArm, Disc};
 use stripmine_kernels::law::spring::Spring;
 use stripmine_kernels::mask::Mask;
@@ -7,6 +8,7 @@ use stripmine_kernels::sweep::lattice::{Coordinates, Frame, LatticeShape, ShapeE
 use stripmine_physics::method::lattice_md::{
     Discs, GearValues, Lengths, Model, ProgramText, Scheme, StepProgram, programs,
 };
+use stripmine_physics::reported::{Class, Reported};
 use stripmine_physics::scene::Precision;
 
 /// A scene whose operations are counted.
@@ -91,6 +93,18 @@ pub enum QuestionError {
         /// Cause.
         cause: ShapeError,
     },
+}
+
+impl Reported for QuestionError {
+    fn class(&self) -> Class {
+        Class::Usage
+    }
+}
+
+impl From<QuestionError> for StudyError {
+    fn from(error: QuestionError) -> Self {
+        StudyError::Own(Box::new(error))
+    }
 }
 
 /// A model with `choice` on a nearly square, periodic lattice of about `cells` cells.
