@@ -36,7 +36,7 @@ pub(crate) fn listing(part: Part, question: &Question) -> Result<(Frame, String)
 /// [`QuestionError`] never for this lattice.
 pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let ours = Question::default();
-    let printed = Question { choice: ours.choice.printed(), ..ours.clone() };
+    let printed = ours.printed();
     let (mut rows, mut files) = (vec![], vec![]);
     for (text, prefix, question) in [("printed", "printed_", &printed), ("ours", "", &ours)] {
         for part in Part::ALL {

@@ -59,7 +59,7 @@ pub(super) fn conventions(question: &Question) -> Result<(Frame, [usize; 7]), Qu
     let mut shown = all[..6].to_vec();
     let exact = all[6..].iter().filter(|it| it.exact() == most).take(4);
     shown.extend(exact);
-    shown.push(texts.counted(Way(question.choice.gear_values as u64, EVERYTHING)));
+    shown.push(texts.counted(Way(question.choice.gear_values.into(), EVERYTHING)));
     let yes = |is: bool| if is { "yes" } else { "no" };
     let mut rows = Rows::of(&shown).count("Gear values", |it| it.way.0);
     for (at, choice) in CHOICES.iter().enumerate() {
@@ -171,7 +171,7 @@ mod tests {
     use super::*;
     use crate::laboratory::lattice_md::study::efficiency_table::{Choice, SOURCES_PARTS, printed_nop};
 
-    fn question(gear_values: usize) -> Question {
+    fn question(gear_values: u8) -> Question {
         let choice = Choice { gear_values, ..Choice::default() };
         Question { choice: choice.printed(), ..Question::default() }
     }
@@ -188,7 +188,7 @@ mod tests {
                     let run = programs.iter().find(|step| step.part == part).unwrap().program.tally();
                     let run = sum(&run);
                     let arithmetic = run.filtered(|op| !op.class().moves_data()).total();
-                    let way = Way(gear_values as u64, [scaled, true, !scaled, true, true, true, true, true]);
+                    let way = Way(gear_values.into(), [scaled, true, !scaled, true, true, true, true, true]);
                     let [mut counted, mut loads, stores, gathers] = gear(way, corrects);
                     if corrects {
                         counted += 1; // Gravity.

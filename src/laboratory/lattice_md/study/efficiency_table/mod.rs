@@ -95,8 +95,8 @@ impl Counted<'_> {
 ///
 /// # Errors
 /// `QuestionError` if no such lattice exists.
-pub fn efficiency_table(question: &Question, machine: &MachineModel) -> Result<Made, QuestionError> {
-    let source_question = Question { choice: question.choice.printed(), ..question.clone() };
+pub(crate) fn efficiency_table(question: &Question, machine: &MachineModel) -> Result<Made, QuestionError> {
+    let source_question = question.printed();
     let texts = [Counted::of(&source_question, machine)?, Counted::of(question, machine)?];
     let [printed, ours] = &texts;
     let Lengths { discs, cells, .. } = ours.lengths;
@@ -221,17 +221,17 @@ fn savings(question: &Question, machine: &MachineModel) -> Result<Frame, Questio
     let asked = question.choice;
     let variants = [
         ("as asked", asked),
-        ("without friction", Choice { friction: false, ..asked }),
-        ("with equal discs", Choice { varying_discs: false, ..asked }),
-        ("without friction, with equal discs", Choice { friction: false, varying_discs: false, ..asked }),
+        ("without friction", Choice { frictionless: true, ..asked }),
+        ("with equal discs", Choice { equal_discs: true, ..asked }),
+        ("without friction, with equal discs", Choice { frictionless: true, equal_discs: true, ..asked }),
         ("with 4 Gear values", Choice { gear_values: 4, ..asked }),
         ("with 6 Gear values", Choice { gear_values: 6, ..asked }),
         ("with positions relative to the cell", Choice { cell_relative: true, ..asked }),
-        ("with the 7×7 mask", Choice { mask_half_width: 3, ..asked }),
+        ("with the 7×7 mask", Choice { mask: 7, ..asked }),
     ];
     let variants = variants.into_iter().filter(|(name, choice)| *name == "as asked" || *choice != asked);
     let counted =
-        |(name, choice)| Ok((name, Counted::of(&Question { choice, ..question.clone() }, machine)?));
+        |(name, choice)| Ok((name, Counted::of(&Question { choice, ..*question }, machine)?));
     let variants = variants.map(counted).collect::<Result<Vec<_>, QuestionError>>()?;
     let nop = |counted: &Counted<'_>, part: Part| counted.ledger.part(part.name()).total();
     let clocks = |counted: &Counted<'_>| counted.sums(None).1.unwrap_or(f64::NAN);
