@@ -7,7 +7,7 @@ use super::question::{Question, QuestionError, model_of, step};
 use crate::frame::{Frame, Rows};
 use stripmine_kernels::isa::{Op, OpClass, OpCounts};
 use stripmine_kernels::mask::Mask;
-use stripmine_physics::method::lattice_md::{Part, StepProgram, programs};
+use stripmine_physics::method::lattice_md::{Part, ledger, programs};
 use stripmine_physics::scene::Precision;
 
 /// BP93's numbers: predictor, index, a place of the mask, corrector.
@@ -95,18 +95,16 @@ struct Texts {
 
 impl Texts {
     fn of(question: &Question) -> Result<Texts, QuestionError> {
-        let tally = |programs: &[StepProgram], part: Part| -> Vec<(&'static str, OpCounts)> {
-            programs.iter().filter(|step| step.part == part).flat_map(|step| step.program.tally()).collect()
-        };
         let mut model = model_of(question)?;
-        let (all, places) = (step(question)?.0, model.mask.offsets().len() as u64);
+        let (all, places) = (ledger(&step(question)?.0), model.mask.offsets().len() as u64);
         model.mask = Mask::one_place();
-        let one = programs(&model, Precision::F64);
+        let one = ledger(&programs(&model, Precision::F64));
+        let index = all.entries().iter().filter(|entry| entry.part == Part::Index.name());
         Ok(Texts {
-            index: tally(&all, Part::Index),
+            index: index.map(|entry| (entry.section, entry.counts.clone())).collect(),
             places,
-            all_places: sum(&tally(&all, Part::Forces)),
-            one_place: sum(&tally(&one, Part::Forces)),
+            all_places: all.part(Part::Forces.name()),
+            one_place: one.part(Part::Forces.name()),
             gravity: model.gravity != [0.0; 2],
         })
     }
@@ -144,12 +142,6 @@ impl Texts {
     }
 }
 
-fn sum(sections: &[(&'static str, OpCounts)]) -> OpCounts {
-    let mut sum = OpCounts::default();
-    sections.iter().for_each(|(_, counts)| sum.add(counts));
-    sum
-}
-
 /// Arithmetic, loads, stores and gathers of Gear's predictor or corrector for the three freedoms of a disc.
 fn gear(Way(values, [scaled, angle, folded, ..]): Way, corrects: bool) -> [u64; 4] {
     // A change of scale, and a constant of its own at each term.
@@ -185,8 +177,7 @@ mod tests {
             {
                 let (programs, _) = step(&Question { choice, ..Question::default() }).unwrap();
                 for (part, corrects) in [(Part::Predictor, false), (Part::Corrector, true)] {
-                    let run = programs.iter().find(|step| step.part == part).unwrap().program.tally();
-                    let run = sum(&run);
+                    let run = ledger(&programs).part(part.name());
                     let arithmetic = run.filtered(|op| !op.class().moves_data()).total();
                     let way = Way(gear_values.into(), [scaled, true, !scaled, true, true, true, true, true]);
                     let [mut counted, mut loads, stores, gathers] = gear(way, corrects);

@@ -67,27 +67,19 @@ impl Counted<'_> {
     }
 
     /// Parts over vectors of one length each: name, operations, length, clock periods.
-    fn rows(&self) -> impl Iterator<Item = (&'static str, OpCounts, Length, f64)> {
-        self.ledger.parts().into_iter().map(|(part, length, counts)| {
-            let clocks = Clock::Paper.clocks(self.machine, &Work::from(counts.clone()), self.n(length));
+    fn rows(&self, clock: Clock) -> impl Iterator<Item = (&'static str, OpCounts, Length, f64)> {
+        self.ledger.parts().into_iter().map(move |(part, length, counts)| {
+            let clocks = clock.clocks(self.machine, &Work::from(counts.clone()), self.n(length));
             (part, counts, length, clocks)
         })
     }
 
     /// Operations and clock periods of a part, or of the step; none of a part that the text lacks.
     fn sums(&self, part: Option<Part>) -> (Option<u64>, Option<f64>) {
-        let rows = self.rows().filter(|(name, ..)| part.is_none_or(|part| part.name() == *name));
+        let rows = self.rows(Clock::Paper).filter(|(name, ..)| part.is_none_or(|part| part.name() == *name));
         let (nop, clocks) =
             rows.fold((0, 0.0), |(nop, sum), (_, counts, _, clocks)| (nop + counts.total(), sum + clocks));
         ((nop > 0).then_some(nop), (clocks != 0.0).then_some(clocks))
-    }
-
-    /// Clock periods of the step's operations on a scalar machine.
-    fn scalar_clocks(&self) -> f64 {
-        let parts = self.ledger.parts().into_iter();
-        parts
-            .map(|(_, length, counts)| Clock::Scalar.clocks(self.machine, &counts.into(), self.n(length)))
-            .sum()
     }
 }
 
@@ -120,7 +112,9 @@ pub(crate) fn efficiency_table(question: &Question, machine: &MachineModel) -> R
         .number("occupancy", 4, |()| discs as f64 / cells as f64)
         .text("machine", |()| machine.title())
         .number("clock period (ns)", 3, |()| machine.clock_period_ns().value)
-        .number("clocks of the printed text on a scalar machine", 0, |()| printed.scalar_clocks())
+        .number("clocks of the printed text on a scalar machine", 0, |()| {
+            printed.rows(Clock::Scalar).map(|(.., clocks)| clocks).sum::<f64>()
+        })
         .number("clocks of the four parts of the printed text", 0, |()| {
             SOURCES_PARTS.iter().filter_map(|&part| printed.sums(Some(part)).1).sum::<f64>()
         })
@@ -187,7 +181,7 @@ fn force_sections(question: &Question, name: &str, title: &str) -> Result<Frame,
 }
 
 fn vector_lengths(texts: [(&'static str, &Counted<'_>); 2]) -> Frame {
-    let rows = texts.into_iter().flat_map(|(name, text)| text.rows().map(move |row| (name, text, row)));
+    let rows = texts.into_iter().flat_map(|(name, text)| text.rows(Clock::Paper).map(move |row| (name, text, row)));
     let moving = |counts: &OpCounts| counts.filtered(|op| op.class().moves_data()).total();
     Rows::of(rows)
         .text("text", |(name, ..)| *name)
