@@ -14,9 +14,6 @@ const SCAN: [f64; 5] = [100.0, 200.0, 400.0, 700.0, 1000.0];
 const SEEDS: [u64; 6] = [1, 2, 3, 4, 5, 6];
 
 /// Runs every case with every seed.
-///
-/// # Errors
-/// [`Failure`] if a scene breaks.
 pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let scan = SCAN.map(|damping| {
         let name = format!("γ_N = {damping:.0} 1/s");

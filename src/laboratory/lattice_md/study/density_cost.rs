@@ -67,17 +67,11 @@ struct Curve {
 }
 
 /// The curves by the clock of the paper's machine.
-///
-/// # Errors
-/// [`StudyError`] if a scene breaks whose lists are counted.
 pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     Ok(density_cost(&machines::preset("paper")?)?)
 }
 
 /// The curves by the clock of a machine.
-///
-/// # Errors
-/// [`StudyError`] if a scene breaks whose lists are counted.
 pub(crate) fn density_cost(machine: &MachineModel) -> Result<Made, StudyError> {
     let figures = OCCUPANCIES.into_par_iter().filter(|&occupancy| occupancy < CEILING).map(list_figures);
     let figures: Vec<ListFigures> = figures.collect::<Result<_, _>>()?;
@@ -229,8 +223,9 @@ impl Model<'_> {
         let costs = particles().map(|particles| {
             let np = particles as f64;
             let clocks = |counts: &OpCounts, n: f64| n * self.clocks(Clock::Scalar, counts, 1);
-            let visiting =
-                rows.iter().map(|(_, length, counts)| clocks(counts, figures.length(*length, np).unwrap_or(np)));
+            let visiting = rows
+                .iter()
+                .map(|(_, length, counts)| clocks(counts, figures.length(*length, np).unwrap_or(np)));
             let making = clocks(&self.test(), 0.5 * np * (np - 1.0)) / figures.steps_a_list;
             Cost { particles, printed: None, counted: visiting.sum::<f64>() + making }
         });

@@ -17,9 +17,6 @@ type Scene = (&'static str, &'static str, Overrides, u64);
 const STRIDE: u64 = 1000;
 
 /// Runs each scene with both methods.
-///
-/// # Errors
-/// [`StudyError`] if a scene breaks.
 pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let few = Overrides::new().set(&COUNT, 400_u64);
     let dense = few.clone().set(&PACKING_FRACTION, 0.84).set(&NORMAL_DAMPING, 0.5);

@@ -39,9 +39,6 @@ pub(super) struct Run {
 
 impl Run {
     /// The scene, with further overrides.
-    ///
-    /// # Errors
-    /// [`MeasurementError::Scene`] if there is no such scene.
     pub(super) fn scene(self, further: &Overrides) -> Result<Checked, MeasurementError> {
         let scene = Overrides::new().set(&COUNT, self.particles).set(&PRECISION, self.precision);
         let scene = scene.set(&PACKING_FRACTION, PI * self.occupancy);
@@ -122,9 +119,6 @@ impl TimedRun {
     }
 
     /// Runs the scene once more from its start and times its phases, on the thread that calls.
-    ///
-    /// # Errors
-    /// [`MeasurementError`] if it breaks.
     pub(super) fn measure(&mut self) -> Result<(), MeasurementError> {
         let mut engine = assemble(&self.checked)?;
         // Programs need warm caches only; fewer steps of many discs, but enough for lists to be rebuilt.

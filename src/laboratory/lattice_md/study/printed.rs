@@ -105,9 +105,6 @@ struct Fitted {
 }
 
 /// The study.
-///
-/// # Errors
-/// [`Failure`] if a scene breaks.
 pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     let (cells, occupancies, samples, discs): (Vec<usize>, &[f64], u64, usize) = match size {
         Size::Quick => (SHORT.to_vec(), &[1.0], 3, 1000),

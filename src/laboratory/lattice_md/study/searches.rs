@@ -172,9 +172,6 @@ struct Measurements<'g> {
 }
 
 /// The study.
-///
-/// # Errors
-/// [`Failure`] if a scene breaks.
 pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     let grid = if size == Size::Quick { &QUICK } else { &FULL };
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
@@ -186,7 +183,8 @@ pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     let title = "Million particle-steps a second of processor time, one thread";
     let all = rates::frame(&single.collect::<Vec<_>>(), ("rates", title), ("rate (M/s)", 1e-6, 2));
     let [break_even, summary] = data.break_even();
-    let frames = [all, data.lost(), data.fastest()?, data.crossings(), break_even, data.threads(threads), summary];
+    let frames =
+        [all, data.lost(), data.fastest()?, data.crossings(), break_even, data.threads(threads), summary];
     let made = Made::of(frames).with_seeds([1]);
     Ok(Made { processes: Some(rates::PROCESSES), ..made })
 }

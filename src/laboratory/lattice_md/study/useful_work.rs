@@ -12,9 +12,6 @@ use stripmine_kernels::ledger::{Ledger, Length};
 use stripmine_physics::method::lattice_md::{Part, ledger, rival_ledger};
 
 /// Counts; the contacts are those of a warm gas.
-///
-/// # Errors
-/// [`StudyError`] if a scene breaks whose contacts are counted.
 pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let occupancies = [0.01, 0.025].into_iter().chain(OCCUPANCIES);
     let reachable: Vec<f64> = occupancies.filter(|&occupancy| occupancy < CEILING).collect();

@@ -3,8 +3,8 @@
 use crate::console::{Common, Failure, clear_progress, print, print_json, progress};
 use crate::laboratory::lattice_md::study::density_cost::density_cost;
 use crate::laboratory::lattice_md::study::searches;
-use crate::model::machines;
 use crate::laboratory::written;
+use crate::model::machines;
 use crate::results::{Folder, Lab, Size};
 use clap::Args;
 use std::path::PathBuf;

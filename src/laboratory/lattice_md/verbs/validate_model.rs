@@ -109,8 +109,7 @@ impl ValidateModel {
         } else {
             host_model(self.host.as_deref(), common)?
         };
-        let mut made =
-            model_validation(&model, whose, &effort, |share| show(begun + (1.0 - begun) * share))?;
+        let mut made = model_validation(&model, whose, &effort, |share| show(begun + (1.0 - begun) * share))?;
         clear_progress();
         made.files.extend(self.calibrate.then(|| ("host.toml".to_owned(), model.to_toml())));
         if let Some(folder) = folder {

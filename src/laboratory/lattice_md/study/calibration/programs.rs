@@ -141,7 +141,8 @@ impl Step {
         let alike = EXECUTIONS.into_iter().zip(&self.samples);
         let alike = alike.filter(|(execution, _)| (*execution == Execution::Chained) == is_chained);
         let each = alike.flat_map(|(execution, samples)| {
-            let of_lane = cycle.iter().zip(samples).filter(|((outlines, n), _)| outlines.lane == lane && *n > 0);
+            let of_lane =
+                cycle.iter().zip(samples).filter(|((outlines, n), _)| outlines.lane == lane && *n > 0);
             of_lane.filter_map(move |(&(outlines, n), it)| Some((outlines, (n, execution), it.median()?)))
         });
         let row = |(outlines, run, ns)| {

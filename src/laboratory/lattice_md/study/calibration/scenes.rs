@@ -1,9 +1,7 @@
 //! Work whose amount depends on the data: the fast engine and the neighbour lists, on drill scenes of their own.
 
 use super::fit::{Row, suited};
-use crate::laboratory::lattice_md::study::phase_times::{
-    FAST, FAST_LISTS, LISTS, PRECISIONS, Run, TimedRun,
-};
+use crate::laboratory::lattice_md::study::phase_times::{FAST, FAST_LISTS, LISTS, PRECISIONS, Run, TimedRun};
 use crate::model::host::{Amounts, MAKING, Rates, Units};
 use std::collections::BTreeMap;
 use std::time::Instant;

@@ -42,9 +42,6 @@ pub(crate) fn printed_clocks(part: Part, machine: &MachineModel, discs: u64, cel
 }
 
 /// The default question on the machine of the paper.
-///
-/// # Errors
-/// [`QuestionError`] never for this question.
 pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     Ok(efficiency_table(&Question::default(), &machines::preset("paper")?)?)
 }
@@ -84,9 +81,6 @@ impl Counted<'_> {
 }
 
 /// The efficiency table of a question on a machine.
-///
-/// # Errors
-/// `QuestionError` if no such lattice exists.
 pub(crate) fn efficiency_table(question: &Question, machine: &MachineModel) -> Result<Made, QuestionError> {
     let source_question = question.printed();
     let texts = [Counted::of(&source_question, machine)?, Counted::of(question, machine)?];
@@ -181,7 +175,8 @@ fn force_sections(question: &Question, name: &str, title: &str) -> Result<Frame,
 }
 
 fn vector_lengths(texts: [(&'static str, &Counted<'_>); 2]) -> Frame {
-    let rows = texts.into_iter().flat_map(|(name, text)| text.rows(Clock::Paper).map(move |row| (name, text, row)));
+    let rows =
+        texts.into_iter().flat_map(|(name, text)| text.rows(Clock::Paper).map(move |row| (name, text, row)));
     let moving = |counts: &OpCounts| counts.filtered(|op| op.class().moves_data()).total();
     Rows::of(rows)
         .text("text", |(name, ..)| *name)
@@ -224,8 +219,7 @@ fn savings(question: &Question, machine: &MachineModel) -> Result<Frame, Questio
         ("with the 7×7 mask", Choice { mask: 7, ..asked }),
     ];
     let variants = variants.into_iter().filter(|(name, choice)| *name == "as asked" || *choice != asked);
-    let counted =
-        |(name, choice)| Ok((name, Counted::of(&Question { choice, ..*question }, machine)?));
+    let counted = |(name, choice)| Ok((name, Counted::of(&Question { choice, ..*question }, machine)?));
     let variants = variants.map(counted).collect::<Result<Vec<_>, QuestionError>>()?;
     let nop = |counted: &Counted<'_>, part: Part| counted.ledger.part(part.name()).total();
     let clocks = |counted: &Counted<'_>| counted.sums(None).1.unwrap_or(f64::NAN);

@@ -43,7 +43,7 @@ pub(crate) struct Choice {
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u8).range(4..=6))]
     pub(crate) gear_values: u8,
     /// Width of the mask: 5 (24 places) or 7 (48)
-    #[arg(long, default_value = "5", value_parser = PossibleValuesParser::new(["5", "7"]).map(|it| if it == "7" { 7 } else { 5 }))]
+    #[arg(long, default_value = "5", value_parser = PossibleValuesParser::new(["5", "7"]).map(|it| if it == "7" { 7_u32 } else { 5 }))]
     pub(crate) mask: u32,
     /// Positions relative to the cell instead of the origin
     #[arg(long, conflicts_with = "text")]
@@ -112,9 +112,6 @@ impl From<QuestionError> for StudyError {
 /// A model with `choice` on a nearly square, periodic lattice of about `cells` cells.
 ///
 /// Parameters that change no operation count are arbitrary.
-///
-/// # Errors
-/// [`ShapeError`] if no such lattice exists.
 pub(crate) fn counting_model(cells: usize, choice: Choice) -> Result<Model, ShapeError> {
     let columns = ((cells as f64).sqrt().round() as usize).max(1);
     let rows = cells.div_ceil(columns);
@@ -152,9 +149,6 @@ pub(crate) fn counting_model(cells: usize, choice: Choice) -> Result<Model, Shap
 }
 
 /// The model of a question.
-///
-/// # Errors
-/// [`QuestionError`] if no such lattice exists.
 pub(crate) fn model_of(question: &Question) -> Result<Model, QuestionError> {
     let &Question { particles, occupancy, choice } = question;
     if particles == 0 {
@@ -168,9 +162,6 @@ pub(crate) fn model_of(question: &Question) -> Result<Model, QuestionError> {
 }
 
 /// The programs of a step, and how long their vectors are, for a question.
-///
-/// # Errors
-/// [`QuestionError`] if no such lattice exists.
 pub(crate) fn step(question: &Question) -> Result<(Vec<StepProgram>, Lengths), QuestionError> {
     let model = model_of(question)?;
     let lengths = Lengths::new(&model, question.particles, question.particles);

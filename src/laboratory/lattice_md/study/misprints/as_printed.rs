@@ -32,16 +32,12 @@ impl Misprint {
                 "F_N = k_N ξ^(3/2) + γ_N M_eff (v_i − v_j)",
                 "F_N = k_N ξ^(3/2) − γ_N M_eff (v_i − v_j)·n",
             ],
-            Misprint::CoulombBound => [
-                "(15)",
-                "F_S = min(−γ_S M_eff v_t, μ|F_N|)",
-                "F_S = −sign(v_t) min(γ_S M_eff |v_t|, μ|F_N|)",
-            ],
-            Misprint::Slip => [
-                "(16)",
-                "v_t = (v_i − v_j) + R_i Ω_i − R_j Ω_j",
-                "v_t = (v_i − v_j)·s − R_i Ω_i − R_j Ω_j",
-            ],
+            Misprint::CoulombBound => {
+                ["(15)", "F_S = min(−γ_S M_eff v_t, μ|F_N|)", "F_S = −sign(v_t) min(γ_S M_eff |v_t|, μ|F_N|)"]
+            }
+            Misprint::Slip => {
+                ["(16)", "v_t = (v_i − v_j) + R_i Ω_i − R_j Ω_j", "v_t = (v_i − v_j)·s − R_i Ω_i − R_j Ω_j"]
+            }
         }
     }
 }

@@ -71,9 +71,6 @@ const PAIRS: usize = 500;
 const SEED: u64 = 1993;
 
 /// Tries every misprint.
-///
-/// # Errors
-/// None.
 pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let (head_on, sliding) = (head_on(), sliding());
     let findings = Rows::of(findings(&head_on, &sliding))

@@ -32,17 +32,11 @@ const CONTROL: u64 = 40_000;
 const ROWS: usize = 120;
 
 /// Two fifths of the pipe.
-///
-/// # Errors
-/// [`StudyError`] if the scene breaks.
 pub(crate) fn short(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     Ok(Runs::of("pipe-small", &Overrides::new(), &[1], false, lab)?.made())
 }
 
 /// The whole pipe, with snapshots as in figure 6.
-///
-/// # Errors
-/// [`StudyError`] if the scene breaks.
 pub(crate) fn whole(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let runs = Runs::of("pipe", &Overrides::new(), &[1, 2], true, lab)?;
     let (drawn, made) = (&runs.flows[0], runs.made());
@@ -51,9 +45,6 @@ pub(crate) fn whole(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
 }
 
 /// The whole pipe with fewer grains.
-///
-/// # Errors
-/// [`StudyError`] if the scene breaks.
 pub(crate) fn thin(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let thin = Overrides::new().set(&PACKING_FRACTION, 0.35);
     Ok(Runs::of("pipe", &thin, &[1, 2], false, lab)?.made())
@@ -101,9 +92,6 @@ pub(super) fn late(course: &[f64]) -> Mean {
 ///
 /// The run uses neighbour lists: they give the lattice's trajectory to the bit (item `identity`), in a third of the time for so small
 /// a scene.
-///
-/// # Errors
-/// [`StudyError`] if the scene is bad or breaks while running.
 pub(super) fn flow(
     scene: &str,
     overrides: &Overrides,

@@ -48,9 +48,6 @@ struct OverSeeds {
 }
 
 /// Every case, and the deviations over time. `progress` gets the share that is done.
-///
-/// # Errors
-/// [`StudyError`] if a scene breaks.
 pub(super) fn frames(progress: Progress<'_>) -> Result<[Frame; 2], StudyError> {
     let cases: Vec<(Stepping, &str)> =
         STEPPINGS.iter().flat_map(|&stepping| PRECISIONS.map(|precision| (stepping, precision))).collect();

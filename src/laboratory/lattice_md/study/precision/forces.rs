@@ -37,9 +37,6 @@ struct Configuration {
 }
 
 /// Every variant on every configuration. `progress` gets the share that is done.
-///
-/// # Errors
-/// [`StudyError`] if a scene breaks.
 pub(super) fn frame(progress: impl Fn(f64)) -> Result<Frame, StudyError> {
     let mut all = Vec::new();
     for packing_fraction in PACKING_FRACTIONS {

@@ -26,9 +26,6 @@ const PARTED: f64 = 10.0;
 const LOST: f64 = 0.02;
 
 /// Every variant, and its distances over time.
-///
-/// # Errors
-/// [`StudyError`] if a scene breaks.
 pub(super) fn frames() -> Result<[Frame; 2], StudyError> {
     let starts: Vec<(f64, u64)> =
         PACKING_FRACTIONS.iter().flat_map(|&fraction| SEEDS.map(|seed| (fraction, seed))).collect();
