@@ -38,10 +38,9 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     };
     let cases: Vec<_> = cases.iter().zip(flows.chunks(SEEDS.len()).map(spreads)).collect();
     let with_error = |it: Spread, decimals: usize| Cell::with_error(it.mean, it.error, decimals);
-    // The standard error below the mean reaches to the lowest run at most.
     let drawn = |it: Spread| {
         let error = it.error.unwrap_or(0.0);
-        [it.mean, (it.mean - error).max(it.lowest), it.mean + error].map(|value| Cell::Number(value, 3))
+        [it.mean, it.mean - error, it.mean + error].map(|value| Cell::Number(value, 3))
     };
     let [late, start] =
         ["late", "start"].map(|name| [name.into(), format!("{name} low"), format!("{name} high")]);

@@ -8,7 +8,6 @@ use crate::frame::{Cell, Frame, Rows};
 use crate::laboratory::rates::{self, Case, Measured, Own, Reading, Spread, rates};
 use crate::results::{Lab, Made, Size};
 use rand::RngExt;
-use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use stripmine_kernels::noise::{Purpose, Stream};
 use stripmine_kernels::{Execution, InstructionSet};
@@ -301,15 +300,15 @@ fn fits(fitted: &[Fitted]) -> Frame {
 }
 
 fn densities(timed: &[Timed]) -> Frame {
-    let mut of_occupancy: BTreeMap<u64, Vec<&Timed>> = BTreeMap::new();
-    for it in timed.iter().filter(|it| it.cells == CELLS) {
-        of_occupancy.entry((1e6 * it.occupancy) as u64).or_default().push(it);
-    }
-    let mut rows = Rows::of(of_occupancy.into_values()).number("occupancy ρ", 2, |parts| parts[0].occupancy);
-    for (at, part) in SOURCES_PARTS.iter().enumerate() {
-        rows = rows.cell(format!("{} (µs)", part.name()), move |parts| parts[at].ns().cell(1e-3, 2));
-    }
-    rows.text("reachable", |parts| if parts[0].occupancy > CEILING { "no packing of discs" } else { "" })
+    let mut of_places: Vec<&[Timed]> = timed.chunks(SOURCES_PARTS.len()).collect();
+    of_places.retain(|parts| parts[0].cells == CELLS);
+    of_places.sort_by(|a, b| a[0].occupancy.total_cmp(&b[0].occupancy));
+    Rows::of(of_places)
+        .number("occupancy ρ", 2, |parts| parts[0].occupancy)
+        .cells(SOURCES_PARTS.map(|part| format!("{} (µs)", part.name())), |parts| {
+            parts.iter().map(|it| it.ns().cell(1e-3, 2)).collect::<Vec<_>>()
+        })
+        .text("reachable", |parts| if parts[0].occupancy > CEILING { "no packing of discs" } else { "" })
         .frame("densities", format!("The eager step over the occupancy, on {CELLS} cells"))
 }
 

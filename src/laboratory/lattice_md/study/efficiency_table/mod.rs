@@ -19,19 +19,14 @@ use stripmine_kernels::printed::EQUATIONS;
 use stripmine_physics::method::lattice_md::{Lengths, Model, Part, ledger, programs};
 use stripmine_physics::scene::Precision;
 
-/// BP93's count of a part: NOP. BP93 has no entry for the lattice vectors, nor for parts that are ours alone.
-pub(crate) const fn printed_nop(part: Part) -> Option<u64> {
-    match part {
-        Part::Predictor => Some(59),
-        Part::Index => Some(12),
-        Part::Box | Part::Halo | Part::Lattice => None,
-        Part::Forces => Some(1656),
-        Part::Corrector => Some(54),
-    }
-}
-
-/// Parts of BP93's table.
+/// Parts of BP93's table, and its counts of them (NOP). BP93 has no entry for the lattice vectors, nor for parts that are ours alone.
 pub(crate) const SOURCES_PARTS: [Part; 4] = [Part::Predictor, Part::Index, Part::Forces, Part::Corrector];
+const PRINTED: [u64; 4] = [59, 12, 1656, 54];
+
+/// BP93's count of a part.
+pub(crate) fn printed_nop(part: Part) -> Option<u64> {
+    SOURCES_PARTS.iter().position(|it| *it == part).map(|at| PRINTED[at])
+}
 
 /// Clock periods of a part by BP93's formula and its NOP.
 pub(crate) fn printed_clocks(part: Part, machine: &MachineModel, discs: u64, cells: u64) -> Option<f64> {

@@ -12,7 +12,7 @@ use stripmine_kernels::mask::Mask;
 use stripmine_kernels::sweep::all_pairs::shifts::{BODY_POSITION, Shifts};
 use stripmine_kernels::sweep::lattice::forces::Forces;
 use stripmine_kernels::sweep::lattice::{Coordinates, Frame, LatticeShape};
-use stripmine_kernels::{Execution, InstructionSet, Program, Runnable};
+use stripmine_kernels::{InstructionSet, Program, Runnable};
 use stripmine_physics::method::throughput::MeasurementError;
 
 /// Elements of the vectors, about: in the caches and beyond.
@@ -20,7 +20,7 @@ const LENGTHS: [usize; 3] = [600, 8000, 100_000];
 /// Samples of each.
 const SAMPLES: usize = 5;
 /// Elements of a sample, about.
-const ELEMENTS: usize = 3000;
+const ELEMENTS: usize = 30_000;
 
 /// Every law over vectors of every length, by every execution of programs.
 pub(super) fn strangers(host: &HostModel) -> Result<Vec<Case>, StudyError> {
@@ -63,24 +63,19 @@ fn ran(
     }
     let outlines = program.outlines();
     let around = Around::of_step(&[(&outlines, n)]);
-    let executions = EXECUTIONS.iter().filter_map(|(name, how)| Some((*name, (*how)?)));
-    let executions: Vec<(&str, Execution)> = executions.collect();
-    let mut samples = vec![Samples::default(); executions.len()];
-    for _ in 0..SAMPLES {
-        Samples::take_in_turns(&mut samples, (ELEMENTS / n).max(1), |at| {
-            program.run(&memory, first..first + n, executions[at].1, InstructionSet::best())
-        })
-        .map_err(MeasurementError::from)?;
-    }
-    let cases = executions.into_iter().zip(samples).map(|((execution, how), samples)| {
+    let programs = EXECUTIONS.iter().filter_map(|(name, how)| Some((*name, (*how)?)));
+    let cases = programs.map(|(execution, how)| {
         let predicted = host.program(&outlines, n, how, &around);
-        Ok(Case {
-            place: format!("{name}, n = {n}"),
-            execution,
-            phase: STRANGER,
-            predicted: predicted.map_err(NoPrediction::of(execution.to_owned()))?,
-            measured: samples.median().unwrap_or(f64::NAN),
-        })
+        let predicted = predicted.map_err(NoPrediction::of(execution.to_owned()))?;
+        // Each by itself: another execution would leave other caches.
+        let mut samples = [Samples::default()];
+        for _ in 0..SAMPLES {
+            let run = |_| program.run(&memory, first..first + n, how, InstructionSet::best());
+            Samples::take_in_turns(&mut samples, (ELEMENTS / n).max(1), run)
+                .map_err(MeasurementError::from)?;
+        }
+        let (place, measured) = (format!("{name}, n = {n}"), samples[0].median().unwrap_or(f64::NAN));
+        Ok(Case { place, execution, phase: STRANGER, predicted, measured })
     });
     cases.collect()
 }
