@@ -9,9 +9,12 @@ pub mod programs;
 pub mod rates;
 mod running;
 
-use crate::console::Verb;
-use crate::results::Item;
+use crate::console::{Common, Failure, Verb, say};
+use crate::provenance::Provenance;
+use crate::results::{Folder, Item, Made};
+use std::time::Instant;
 use stripmine_physics::method::Methods;
+use stripmine_physics::signals;
 
 /// What the laboratory has of a method.
 #[derive(Debug)]
@@ -37,4 +40,19 @@ pub fn laboratories(methods: Methods) -> impl Iterator<Item = &'static Laborator
     methods.iter().flat_map(|method| {
         LABORATORIES.into_iter().filter(|laboratory| laboratory.method == method.vocabulary.keys.method)
     })
+}
+
+/// Writes a result of a verb that began at `start` to its folder, and says where. Returns the words of its page.
+fn written(
+    folder: &Folder,
+    (name, made): (&str, &Made),
+    start: Instant,
+    common: &Common,
+) -> Result<String, Failure> {
+    let provenance = Provenance::here(common.command.clone(), start.elapsed().as_secs_f64());
+    let (folder, section) = signals::whole(|| folder.write(name, made, &provenance))?;
+    if !common.quiet {
+        say(format_args!("written: {}", folder.display()));
+    }
+    Ok(section.paragraphs().collect::<Vec<_>>().join(" "))
 }

@@ -2,13 +2,12 @@
 
 use super::study::soft_hard::{Question, soft_hard};
 use crate::console::Verb;
-use crate::console::{Common, Failure, clear_progress, print, print_json, progress, say};
-use crate::provenance::Provenance;
+use crate::console::{Common, Failure, clear_progress, print, print_json, progress};
+use crate::laboratory::written;
 use crate::results::Folder;
 use clap::{Args, FromArgMatches};
 use std::path::PathBuf;
 use std::time::Instant;
-use stripmine_physics::signals;
 
 /// Every study below `chart`.
 pub(super) const CHARTS: &[Verb] = &[Verb {
@@ -55,13 +54,8 @@ impl SoftHardVerb {
         };
         let (bar, start) = (progress(common, "chart"), Instant::now());
         let made = soft_hard(&question, &|share| bar.set_position((1e3 * share) as u64))?;
-        let provenance = Provenance::here(common.command.clone(), start.elapsed().as_secs_f64());
-        let (folder, section) = signals::whole(|| folder.write("soft-hard", &made, &provenance))?;
         clear_progress();
-        if !common.quiet {
-            say(format_args!("written: {}", folder.display()));
-        }
-        let paragraphs: Vec<&str> = section.paragraphs().collect();
-        if common.json { print_json(&made.json()) } else { print(&(paragraphs.join(" ") + "\n")) }
+        let words = written(&folder, ("soft-hard", &made), start, common)?;
+        if common.json { print_json(&made.json()) } else { print(&(words + "\n")) }
     }
 }

@@ -1,7 +1,7 @@
 //! Lattice MD of granular discs, BP93: what is measured and shown beside a run.
 
 mod items;
-pub mod study;
+mod study;
 mod verbs;
 
 use super::Laboratory;

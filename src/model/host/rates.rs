@@ -34,15 +34,6 @@ impl Amounts {
         let Amounts { steps, discs, cells, candidates, contacts, makings, remade, relisted } = *self;
         [steps, discs, cells, candidates, contacts, makings, remade, relisted]
     }
-
-    /// Each amount with that of another.
-    #[must_use]
-    pub fn with(&self, other: &Amounts, mean: impl Fn(f64, f64) -> f64) -> Amounts {
-        let (ours, theirs) = (self.values(), other.values());
-        let [steps, discs, cells, candidates, contacts, makings, remade, relisted] =
-            std::array::from_fn(|at| mean(ours[at], theirs[at]));
-        Amounts { steps, discs, cells, candidates, contacts, makings, remade, relisted }
-    }
 }
 
 /// Nanoseconds of each unit in the phases of a method, by phase and precision.

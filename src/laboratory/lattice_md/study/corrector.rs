@@ -14,9 +14,6 @@ const PERIODS: u32 = 10;
 const LOST: f64 = 0.5;
 
 /// Follows the oscillation by both correctors.
-///
-/// # Errors
-/// None.
 pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let runs = ["printed", "difference"].into_iter().flat_map(|corrector| {
         let of =

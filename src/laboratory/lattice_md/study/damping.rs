@@ -13,19 +13,7 @@ const SCAN: [f64; 5] = [100.0, 200.0, 400.0, 700.0, 1000.0];
 /// Starts of every case.
 const SEEDS: [u64; 6] = [1, 2, 3, 4, 5, 6];
 
-/// A case over its seeds.
-struct Case {
-    name: String,
-    /// γ_N (1/s); none of the control.
-    damping: Option<f64>,
-    /// Fano factor at the start and late, strongest mode at the start and late, late mean velocity (m/s).
-    spreads: [Spread; 5],
-}
-
 /// Runs every case with every seed.
-///
-/// # Errors
-/// [`Failure`] if a scene breaks.
 pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let scan = SCAN.map(|damping| {
         let name = format!("γ_N = {damping:.0} 1/s");
@@ -37,40 +25,39 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
         cases.iter().flat_map(|(.., overrides)| SEEDS.map(|seed| (overrides, seed))).collect();
     let flows = Meter::new(runs.len() as f64, lab.progress)
         .each(&runs, |&(overrides, seed)| flow("pipe-small", overrides, seed, false, |_| {}))?;
-    let cases = cases.iter().zip(flows.chunks(SEEDS.len())).map(|((name, damping, _), flows)| {
+    // Fano factor at the start and late, strongest mode at the start and late, late mean velocity (m/s).
+    let spreads = |flows: &[Flow]| {
         let over = |of: fn(&Flow) -> f64| Spread::of(&flows.iter().map(of).collect::<Vec<_>>());
-        let spreads = [
+        [
             over(|flow| flow.fano[0]),
             over(|flow| late(&flow.fano).value),
             over(|flow| flow.strongest_mode[0]),
             over(|flow| late(&flow.strongest_mode).value),
             over(|flow| late(&flow.flow).value),
-        ];
-        Case { name: name.clone(), damping: *damping, spreads }
-    });
-    let cases: Vec<Case> = cases.collect();
+        ]
+    };
+    let cases: Vec<_> = cases.iter().zip(flows.chunks(SEEDS.len()).map(spreads)).collect();
     let with_error = |it: Spread, decimals: usize| Cell::with_error(it.mean, it.error, decimals);
-    // The standard error below the mean reaches to the lowest run at most.
     let drawn = |it: Spread| {
         let error = it.error.unwrap_or(0.0);
-        [it.mean, (it.mean - error).max(it.lowest), it.mean + error].map(|value| Cell::Number(value, 3))
+        [it.mean, it.mean - error, it.mean + error].map(|value| Cell::Number(value, 3))
     };
     let [late, start] =
         ["late", "start"].map(|name| [name.into(), format!("{name} low"), format!("{name} high")]);
     Ok(Made::of([
         Rows::of(&cases)
-            .text("case", |case| &case.name)
-            .cell("Fano at the start", |case| with_error(case.spreads[0], 2))
-            .cell("Fano late", |case| with_error(case.spreads[1], 2))
-            .cell("single seeds", |case| Cell::Range([case.spreads[1].lowest, case.spreads[1].highest], 2))
-            .cell("strongest mode at the start", |case| with_error(case.spreads[2], 3))
-            .cell("strongest mode late", |case| with_error(case.spreads[3], 3))
-            .cell("mean velocity late (m/s)", |case| with_error(case.spreads[4], 3))
+            .text("case", |((name, ..), _)| name)
+            .cell("Fano at the start", |(_, spreads)| with_error(spreads[0], 2))
+            .cell("Fano late", |(_, spreads)| with_error(spreads[1], 2))
+            .cell("single seeds", |(_, spreads)| Cell::Range([spreads[1].lowest, spreads[1].highest], 2))
+            .cell("strongest mode at the start", |(_, spreads)| with_error(spreads[2], 3))
+            .cell("strongest mode late", |(_, spreads)| with_error(spreads[3], 3))
+            .cell("mean velocity late (m/s)", |(_, spreads)| with_error(spreads[4], 3))
             .frame("cases", "Every case"),
-        Rows::of(cases.iter().filter(|case| case.damping.is_some()))
-            .number("γ_N (1/s)", 0, |case| case.damping)
-            .cells(late, |case| drawn(case.spreads[1]))
-            .cells(start, |case| drawn(case.spreads[0]))
+        Rows::of(cases.iter().filter(|((_, damping, _), _)| damping.is_some()))
+            .number("γ_N (1/s)", 0, |((_, damping, _), _)| *damping)
+            .cells(late, |(_, spreads)| drawn(spreads[1]))
+            .cells(start, |(_, spreads)| drawn(spreads[0]))
             .frame("scan", "Fano factors over the damping, with the ends of their standard errors"),
     ])
     .with_seeds(SEEDS))

@@ -1,9 +1,7 @@
 //! Clock periods of a step over the number of particles and their density, by BP93's clock: its figures 3 and 4.
 
 use super::StudyError;
-use super::efficiency_table::{
-    Choice, Question, QuestionError, counting_model, model_of, printed_clocks, step,
-};
+use super::efficiency_table::{Choice, Question, counting_model, model_of, printed_clocks, step};
 use crate::console::Failure;
 use crate::frame::{Frame, Rows};
 use crate::model::clock::Clock;
@@ -15,11 +13,10 @@ use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use std::f64::consts::PI;
 use stripmine_kernels::isa::OpCounts;
 use stripmine_kernels::ledger::{Ledger, Length};
-use stripmine_physics::method::lattice_md::Document;
-use stripmine_physics::method::lattice_md::assemble;
 use stripmine_physics::method::lattice_md::keys::{EXECUTION, SEARCH};
 use stripmine_physics::method::lattice_md::options::By;
-use stripmine_physics::method::lattice_md::{Lengths, Part, ledger, rival_ledger};
+use stripmine_physics::method::lattice_md::{Document, Lengths, Part, assemble, ledger, rival_ledger};
+use stripmine_physics::method::throughput::MeasurementError;
 use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
 
 /// Highest ρ of discs on cells as wide as their radius: touching discs in hexagonal order, `1/(2√3)`.
@@ -32,16 +29,25 @@ const LATTICES: [usize; 3] = [1_000, 10_000, 100_000];
 pub(super) const OCCUPANCIES: [f64; 6] = [0.05, 0.1, 0.2, 0.25, 0.35, 0.5];
 
 /// Neighbour lists at a density: measured in a run, because no model knows them.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
-pub struct ListFigures {
+#[derive(Clone, Copy)]
+pub(super) struct ListFigures {
     /// ρ on cells as wide as the radius.
-    pub occupancy: f64,
-    /// Candidates that a step tests, for each disc.
-    pub candidates: f64,
-    /// Candidates in contact, for each disc.
-    pub contacts: f64,
-    /// Steps between two makings of the lists.
-    pub steps_a_list: f64,
+    pub(super) occupancy: f64,
+    /// Candidates that a step tests, and those in contact, for each disc.
+    pub(super) candidates: f64,
+    pub(super) contacts: f64,
+    pub(super) steps_a_list: f64,
+}
+
+impl ListFigures {
+    /// Elements of vectors of a length of lists, with so many discs; none of other lengths.
+    pub(super) fn length(&self, length: Length, discs: f64) -> Option<f64> {
+        match length {
+            Length::Candidates => Some(self.candidates * discs),
+            Length::Pairs => Some(self.contacts * discs),
+            _ => None,
+        }
+    }
 }
 
 /// Clock periods of a step.
@@ -61,34 +67,28 @@ struct Curve {
 }
 
 /// The curves by the clock of the paper's machine.
-///
-/// # Errors
-/// [`StudyError`] if a scene breaks whose lists are counted.
 pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     Ok(density_cost(&machines::preset("paper")?)?)
 }
 
 /// The curves by the clock of a machine.
-///
-/// # Errors
-/// [`StudyError`] if a scene breaks whose lists are counted.
 pub(crate) fn density_cost(machine: &MachineModel) -> Result<Made, StudyError> {
     let figures = OCCUPANCIES.into_par_iter().filter(|&occupancy| occupancy < CEILING).map(list_figures);
     let figures: Vec<ListFigures> = figures.collect::<Result<_, _>>()?;
     let model = Model::of(machine)?;
-    let cells = LATTICES.map(|cells| model.over_particles(Some(cells), None)).into_iter();
-    let cells = cells.collect::<Result<Vec<_>, _>>()?;
-    let densities = OCCUPANCIES.map(|occupancy| model.over_particles(None, Some(occupancy))).into_iter();
-    let densities = densities.collect::<Result<Vec<_>, _>>()?;
+    let cells = LATTICES.iter().map(|&cells| model.over_particles(Some(cells), None));
+    let densities = OCCUPANCIES.iter().map(|&occupancy| model.over_particles(None, Some(occupancy)));
+    let (cells, densities): (Vec<_>, Vec<_>) =
+        (cells.collect::<Result<_, _>>()?, densities.collect::<Result<_, _>>()?);
     let lists: Vec<Curve> = figures.iter().map(|figures| model.with_lists(figures)).collect();
     let dense = &lists[lists.len() - 1];
-    let break_even = cells.iter().map(|curve| (curve, dense)).chain(by_density(&densities, &lists));
+    let rivals = cells.iter().map(|curve| (curve, dense)).chain(by_density(&densities, &lists));
     Ok(Made::of([
         curves(&[("vector", &cells), ("vector", &densities), ("lists", &lists)]),
-        Rows::of(break_even)
+        Rows::of(rivals)
             .cell("LMAX", |(curve, _)| curve.cells.map(|cells| cells as u64))
             .number("ρ", 2, |(curve, _)| curve.occupancy)
-            .number("NP", 0, |(curve, lists)| crossing(curve, lists))
+            .number("NP", 0, |(curve, lists)| break_even(curve, lists))
             .frame("break_even", "Number of particles from which on a vector step is the shorter one"),
         Rows::of(&figures)
             .number("occupancy ρ", 2, |figures| figures.occupancy)
@@ -127,27 +127,32 @@ fn by_density<'c>(lattice: &'c [Curve], lists: &'c [Curve]) -> impl Iterator<Ite
 }
 
 /// NP from which on the lattice is cheaper than lists, between two points of the curves.
-fn crossing(lattice: &Curve, lists: &Curve) -> Option<f64> {
-    let ratios: Vec<(f64, f64)> = lattice
-        .costs
-        .iter()
-        .filter_map(|cost| {
-            let rival = lists.costs.iter().find(|rival| rival.particles == cost.particles)?;
-            Some(((cost.particles as f64).ln(), (cost.counted / rival.counted).ln()))
-        })
-        .collect();
-    ratios.windows(2).find(|pair| pair[0].1 > 0.0 && pair[1].1 <= 0.0).map(|pair| {
-        let [(x0, y0), (x1, y1)] = [pair[0], pair[1]];
-        (x0 + (x1 - x0) * y0 / (y0 - y1)).exp()
+fn break_even(lattice: &Curve, lists: &Curve) -> Option<f64> {
+    let ratios = lattice.costs.iter().filter_map(|cost| {
+        let rival = lists.costs.iter().find(|rival| rival.particles == cost.particles)?;
+        Some((cost.particles as f64, cost.counted / rival.counted))
+    });
+    crossing(&ratios.collect::<Vec<_>>())
+}
+
+/// Place where a ratio falls below 1, straight in the logarithms.
+pub(super) fn crossing(ratios: &[(f64, f64)]) -> Option<f64> {
+    ratios.windows(2).find_map(|pair| {
+        let [(x0, y0), (x1, y1)] = [pair[0], pair[1]].map(|(x, ratio)| (x.ln(), ratio.ln()));
+        (y0 >= 0.0 && y1 < 0.0).then(|| (x0 + (x1 - x0) * y0 / (y0 - y1)).exp())
     })
 }
 
-/// Power of ρ with which the number of particles changes from which on the lattice is cheaper: slope of a line through logarithms.
-fn break_even_power(lattice: &[Curve], lists: &[Curve]) -> Option<f64> {
-    let pairs = by_density(lattice, lists)
-        .filter_map(|(lattice, lists)| Some((lists.occupancy?.ln(), crossing(lattice, lists)?.ln())));
-    let (densities, particles): (Vec<f64>, Vec<f64>) = pairs.unzip();
+/// Power of ρ with which a number of particles changes: slope of a line through logarithms; none of fewer than two points.
+pub(super) fn power(points: impl Iterator<Item = (f64, Option<f64>)>) -> Option<f64> {
+    let known = points.filter_map(|(density, particles)| Some((density.ln(), particles?.ln())));
+    let (densities, particles): (Vec<f64>, Vec<f64>) = known.unzip();
     (densities.len() > 1).then(|| slope(&densities, &particles))
+}
+
+fn break_even_power(lattice: &[Curve], lists: &[Curve]) -> Option<f64> {
+    let density = |curve: &Curve| curve.occupancy.unwrap_or(f64::NAN);
+    power(by_density(lattice, lists).map(|(lattice, lists)| (density(lists), break_even(lattice, lists))))
 }
 
 /// Largest ratio of the costs of lists of different densities at one number of particles.
@@ -174,74 +179,57 @@ struct Model<'m> {
 
 impl Model<'_> {
     /// Counts, which depend on what is modelled and not on the size of the lattice.
-    fn of(machine: &MachineModel) -> Result<Model<'_>, QuestionError> {
+    fn of(machine: &MachineModel) -> Result<Model<'_>, StudyError> {
         let question = Question::default();
         let (programs, rival) = (step(&question)?.0, rival_ledger(&model_of(&question)?));
         Ok(Model { machine, choice: question.choice, lattice: ledger(&programs), rival })
     }
 
-    /// A curve of the vector algorithm, with LMAX or ρ fixed.
-    fn over_particles(&self, cells: Option<usize>, occupancy: Option<f64>) -> Result<Curve, StudyError> {
-        let mut costs = vec![];
-        for particles in particles() {
-            let of_density = || (particles as f64 / occupancy.unwrap_or(1.0)).ceil() as usize;
-            let cells = cells.unwrap_or_else(of_density);
-            let least = if occupancy.is_some() { 25 } else { 0 };
-            if cells < least || particles as f64 > CEILING.max(occupancy.unwrap_or(0.0)) * cells as f64 + 1.0
-            {
-                continue;
-            }
-            costs.push(self.step(particles, cells)?);
-        }
-        Ok(Curve { cells, occupancy, costs })
+    fn clocks(&self, clock: Clock, counts: &OpCounts, n: u64) -> f64 {
+        clock.clocks(self.machine, &counts.clone().into(), n)
     }
 
-    fn step(&self, particles: usize, cells: usize) -> Result<Cost, StudyError> {
-        let occupancy = particles as f64 / cells as f64;
-        let model = counting_model(cells, self.choice).map_err(|cause| QuestionError::Shape {
-            particles,
-            occupancy,
-            cause,
-        })?;
-        let lengths = Lengths::new(&model, particles, particles);
-        let clocks = |counts: &OpCounts, n| Clock::Paper.clocks(self.machine, &counts.clone().into(), n);
-        let counted = self
-            .lattice
-            .parts()
-            .into_iter()
-            .map(|(_, length, counts)| clocks(&counts, lengths.range(length).len() as u64));
+    /// A curve of the vector algorithm, with LMAX or ρ fixed.
+    fn over_particles(&self, cells: Option<usize>, occupancy: Option<f64>) -> Result<Curve, StudyError> {
+        let full = CEILING.max(occupancy.unwrap_or(0.0));
+        let lattices = particles().map(|particles| {
+            let of_density = || (particles as f64 / occupancy.unwrap_or(1.0)).ceil() as usize;
+            (particles, cells.unwrap_or_else(of_density))
+        });
+        let costs = lattices.filter(|&(particles, cells)| {
+            let is_wide = occupancy.is_none() || cells >= 25;
+            is_wide && particles as f64 <= full * cells as f64 + 1.0
+        });
+        let costs = costs.map(|(particles, cells)| self.step(particles, cells));
+        Ok(Curve { cells, occupancy, costs: costs.collect::<Result<_, _>>()? })
+    }
+
+    fn step(&self, particles: usize, cells: usize) -> Result<Cost, MeasurementError> {
+        let lengths = Lengths::new(&counting_model(cells, self.choice)?, particles, particles);
+        let counted = self.lattice.parts().into_iter().map(|(_, length, counts)| {
+            self.clocks(Clock::Paper, &counts, lengths.range(length).len() as u64)
+        });
         let printed = Part::ALL
             .iter()
             .filter_map(|&part| printed_clocks(part, self.machine, particles as u64, cells as u64));
         Ok(Cost { particles, printed: Some(printed.sum()), counted: counted.sum() })
     }
 
-    /// A curve of the scalar rival.
+    /// A curve of the scalar rival: every operation costs the whole depth of the pipeline. The Index belongs to the lattice and is left
+    /// out.
     fn with_lists(&self, figures: &ListFigures) -> Curve {
-        let costs = particles().map(|particles| self.list_cost(particles, figures)).collect();
-        Curve { cells: None, occupancy: Some(figures.occupancy), costs }
-    }
-
-    /// The scalar rival: every operation costs the whole depth of the pipeline. The Index belongs to the lattice and is
-    /// left out.
-    fn list_cost(&self, particles: usize, figures: &ListFigures) -> Cost {
-        let clocks =
-            |counts: &OpCounts, n: f64| n * Clock::Scalar.clocks(self.machine, &counts.clone().into(), 1);
-        let np = particles as f64;
-        let rows = self.rival.parts();
-        let walking =
-            rows.iter().filter(|(part, ..)| *part != Part::Index.name()).map(|(_, length, counts)| {
-                clocks(
-                    counts,
-                    match length {
-                        Length::Candidates => figures.candidates * np,
-                        Length::Pairs => figures.contacts * np,
-                        _ => np,
-                    },
-                )
-            });
-        let making = clocks(&self.test(), 0.5 * np * (np - 1.0)) / figures.steps_a_list;
-        Cost { particles, printed: None, counted: walking.sum::<f64>() + making }
+        let rows: Vec<_> =
+            self.rival.parts().into_iter().filter(|(part, ..)| *part != Part::Index.name()).collect();
+        let costs = particles().map(|particles| {
+            let np = particles as f64;
+            let clocks = |counts: &OpCounts, n: f64| n * self.clocks(Clock::Scalar, counts, 1);
+            let visiting = rows
+                .iter()
+                .map(|(_, length, counts)| clocks(counts, figures.length(*length, np).unwrap_or(np)));
+            let making = clocks(&self.test(), 0.5 * np * (np - 1.0)) / figures.steps_a_list;
+            Cost { particles, printed: None, counted: visiting.sum::<f64>() + making }
+        });
+        Curve { cells: None, occupancy: Some(figures.occupancy), costs: costs.collect() }
     }
 
     /// Distance and contact of one pair.
@@ -288,6 +276,13 @@ mod tests {
             Cost { particles, printed: None, counted }
         });
         Curve { cells: None, occupancy: Some(occupancy), costs: costs.into() }
+    }
+
+    #[test]
+    fn the_crossing_is_where_the_logarithms_cross() {
+        assert!((crossing(&[(0.8, 2.0), (0.2, 0.5)]).unwrap() - 0.4).abs() < 1e-12);
+        assert_eq!(crossing(&[(0.8, 2.0), (0.2, 1.5)]), None);
+        assert_eq!(crossing(&[(0.8, 0.9), (0.2, 0.5)]), None);
     }
 
     /// A lattice whose step takes NP/ρ, and lists that take NP² times a power of ρ.

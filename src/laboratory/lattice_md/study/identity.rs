@@ -4,28 +4,19 @@ use super::StudyError;
 use crate::console::Failure;
 use crate::frame::Rows;
 use crate::results::{Lab, Made, Meter, Size};
-use stripmine_physics::method::lattice_md::Document;
-use stripmine_physics::method::lattice_md::assemble;
 use stripmine_physics::method::lattice_md::keys::{EXECUTION, NORMAL_DAMPING, SEARCH};
 use stripmine_physics::method::lattice_md::options::By;
+use stripmine_physics::method::lattice_md::{Document, assemble};
 use stripmine_physics::particles::Particles;
 use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
 
-/// A scene that both methods run.
-struct Scene {
-    name: &'static str,
-    preset: &'static str,
-    overrides: Overrides,
-    steps: u64,
-}
+/// A name, a preset with overrides, and the steps that both methods run.
+type Scene = (&'static str, &'static str, Overrides, u64);
 
 /// Steps between two comparisons.
 const STRIDE: u64 = 1000;
 
 /// Runs each scene with both methods.
-///
-/// # Errors
-/// [`StudyError`] if a scene breaks.
 pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let few = Overrides::new().set(&COUNT, 400_u64);
     let dense = few.clone().set(&PACKING_FRACTION, 0.84).set(&NORMAL_DAMPING, 0.5);
@@ -33,11 +24,10 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
         ("dense gas with friction", "bench", dense, 2000),
         ("density waves", "pipe-small", Overrides::new(), 4000),
         ("elastic gas", "dense-gas", few, 2000),
-    ]
-    .map(|(name, preset, overrides, steps)| Scene { name, preset, overrides, steps });
+    ];
     let states = Meter::new(scenes.len() as f64, lab.progress).each(&scenes, compared)?;
     let rows =
-        scenes.iter().zip(&states).flat_map(|(scene, states)| states.iter().map(move |it| (scene.name, it)));
+        scenes.iter().zip(&states).flat_map(|(scene, states)| states.iter().map(move |it| (scene.0, it)));
     Ok(Made::of([Rows::of(rows)
         .text("scene", |(name, _)| *name)
         .count("grains", |(_, (_, [lattice, _]))| lattice.grain_count())
@@ -55,14 +45,14 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
 }
 
 /// Steps, and the particles by the lattice and by lists.
-fn compared(scene: &Scene) -> Result<Vec<(u64, [Particles; 2])>, StudyError> {
+fn compared((_, preset, overrides, steps): &Scene) -> Result<Vec<(u64, [Particles; 2])>, StudyError> {
     let start = |search: By| {
-        let overrides = scene.overrides.clone().set(&SEARCH, search).set(&EXECUTION, "chained");
-        Ok::<_, StudyError>(assemble(&Document::load(scene.preset, &overrides)?.check()?)?)
+        let overrides = overrides.clone().set(&SEARCH, search).set(&EXECUTION, "chained");
+        Ok::<_, StudyError>(assemble(&Document::load(preset, &overrides)?.check()?)?)
     };
     let (mut lattice, mut lists) = (start(By::Lattice)?, start(By::NeighborList)?);
     let mut states = vec![];
-    for step in 1..=scene.steps {
+    for step in 1..=*steps {
         lattice.step()?;
         lists.step()?;
         if step % STRIDE == 0 {

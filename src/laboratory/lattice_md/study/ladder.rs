@@ -13,9 +13,6 @@ use stripmine_physics::method::lattice_md::Part;
 const MACHINES: [&str; 3] = ["cray-y-mp-el", "cray-1", "sx-aurora"];
 
 /// The default question on every machine of the report.
-///
-/// # Errors
-/// [`Failure`] if there is no such machine.
 pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let machines = MACHINES.map(machines::preset).into_iter().collect::<Result<Vec<_>, _>>()?;
     let ladders = machines.iter().map(|machine| Ladder::of(&Question::default(), machine));
@@ -29,9 +26,6 @@ pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
 }
 
 /// The frames of one machine: rungs, convoys, summary.
-///
-/// # Errors
-/// [`QuestionError`] if no such lattice exists.
 pub(crate) fn ladder(question: &Question, machine: &MachineModel) -> Result<Made, QuestionError> {
     let ladder = Ladder::of(question, machine)?;
     Ok(Made::of([ladder.rungs("ladder".into()), ladder.convoys(), summary(&[ladder])]))

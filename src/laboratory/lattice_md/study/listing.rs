@@ -7,9 +7,6 @@ use crate::results::{Lab, Made, Size};
 use stripmine_physics::method::lattice_md::Part;
 
 /// The programs of a part: their instructions, and the listing.
-///
-/// # Errors
-/// [`QuestionError`] if there is no such lattice.
 pub(crate) fn listing(part: Part, question: &Question) -> Result<(Frame, String), QuestionError> {
     let (programs, lengths) = step(question)?;
     let (mut rows, mut text) = (vec![], String::new());
@@ -31,12 +28,9 @@ pub(crate) fn listing(part: Part, question: &Question) -> Result<(Frame, String)
 }
 
 /// Lists both texts, BP93's own first.
-///
-/// # Errors
-/// [`QuestionError`] never for this lattice.
 pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let ours = Question::default();
-    let printed = Question { choice: ours.choice.printed(), ..ours.clone() };
+    let printed = ours.printed();
     let (mut rows, mut files) = (vec![], vec![]);
     for (text, prefix, question) in [("printed", "printed_", &printed), ("ours", "", &ours)] {
         for part in Part::ALL {

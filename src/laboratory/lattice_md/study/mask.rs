@@ -8,9 +8,6 @@ use std::f64::consts::SQRT_2;
 use stripmine_kernels::mask::{Mask, Offset};
 
 /// Figure 2, its places in their order, and the reach of both masks.
-///
-/// # Errors
-/// None.
 pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let (mask, wider) = (Mask::square(2), Mask::square(3));
     let places = mask.offsets();

@@ -1,25 +1,22 @@
 //! The studies of this method: one file per question a user asks, each a function from parameters to a dataset.
 
-pub mod calibration;
-pub mod corrector;
-pub mod damping;
-pub mod density_cost;
-pub mod efficiency_table;
-pub mod identity;
-pub mod ladder;
-pub mod listing;
-pub mod mask;
-pub mod misprints;
-pub mod model_validation;
-pub mod phase_times;
-pub mod pipe_flow;
-pub mod precision;
-pub mod predicted_step;
+pub(super) mod calibration;
+pub(super) mod corrector;
+pub(super) mod damping;
+pub(super) mod density_cost;
+pub(super) mod efficiency_table;
+pub(super) mod identity;
+pub(super) mod ladder;
+pub(super) mod listing;
+pub(super) mod mask;
+pub(super) mod misprints;
+pub(super) mod model_validation;
+mod phase_times;
+pub(super) mod pipe_flow;
+pub(super) mod precision;
 pub(super) mod printed;
-mod reported;
-pub mod rounds;
-pub mod samples;
+mod samples;
 pub(super) mod searches;
-pub mod useful_work;
+pub(super) mod useful_work;
 
-pub use crate::study::StudyError;
+use crate::study::StudyError;

@@ -7,14 +7,9 @@ use crate::console::Failure;
 use crate::frame::{Cell, Frame, Rows};
 use crate::laboratory::rates::{self, Case, Measured, Own, Reading, Spread, rates};
 use crate::results::{Lab, Made, Size};
-use crate::study::StudyError;
 use rand::RngExt;
-use std::collections::BTreeMap;
 use std::f64::consts::PI;
-use stripmine_kernels::backend::tape::{Outlines, Place};
-use stripmine_kernels::isa::Array;
 use stripmine_kernels::noise::{Purpose, Stream};
-use stripmine_kernels::sweep::lattice::ShapeError;
 use stripmine_kernels::{Execution, InstructionSet};
 use stripmine_physics::method::lattice_md::keys::{CELL_EDGE, COHESIONLESS, ENGINE, EXECUTION, SEARCH, TEXT};
 use stripmine_physics::method::lattice_md::options::{By, EngineChoice};
@@ -38,39 +33,19 @@ const SCENE: f64 = 0.2;
 const SHORT: [usize; 9] = [25, 49, 100, 170, 290, 500, 1000, CELLS, 100_000];
 const LONG: [usize; 5] = [2000, 5000, 30_000, 300_000, 1_000_000];
 
-/// Name of a way to run the scene, its change against the one before, and its keys.
-type Way = (&'static str, &'static str, fn(Overrides) -> Overrides);
-
-/// From 1993 to today, each one change further.
-const WAYS: [Way; 6] = [
-    ("printed, eager", "the CRAY's way: every instruction a pass over the whole lattice", |scene| {
-        on_narrow_cells(scene, ProgramText::Printed, "eager")
-    }),
-    ("printed, strips of 256", "strip-mining: passes stay in the first cache", |scene| {
-        on_narrow_cells(scene, ProgramText::Printed, "strip:256")
-    }),
-    ("printed, chained", "registers: every operation of an element before the next element", |scene| {
-        on_narrow_cells(scene, ProgramText::Printed, "chained")
-    }),
-    (
-        "ours, chained",
-        "our text: a select for the products, inverse masses, no Test; scaled derivatives; positions relative to the cell",
-        |scene| on_narrow_cells(scene, ProgramText::Ours, "chained"),
-    ),
-    ("ours, chained, largest cells", "the largest cells that the geometry allows", |scene| {
-        scene.set(&TEXT, ProgramText::Ours).set(&EXECUTION, "chained")
-    }),
-    (FAST, "half the pairs, contacts first: the law for contacts only, each once", |scene| {
-        scene.set(&ENGINE, EngineChoice::Fast).set(&SEARCH, By::Lattice)
-    }),
+/// Ways to run the scene from 1993 to today, each one change further: a name, the text, the execution, and whether cells are of the
+/// paper's size.
+const WAYS: [(&str, ProgramText, &str, bool); 6] = [
+    ("printed, eager", ProgramText::Printed, "eager", true),
+    ("printed, strips of 256", ProgramText::Printed, "strip:256", true),
+    ("printed, chained", ProgramText::Printed, "chained", true),
+    ("ours, chained", ProgramText::Ours, "chained", true),
+    ("ours, chained, largest cells", ProgramText::Ours, "chained", false),
+    ("fast lattice", ProgramText::Ours, FAST, false),
 ];
 
-const FAST: &str = "fast lattice";
-
-/// The programs of a text on cells of the paper's size.
-fn on_narrow_cells(scene: Overrides, text: ProgramText, execution: &str) -> Overrides {
-    scene.set(&TEXT, text).set(&CELL_EDGE, 0.5).set(&EXECUTION, execution)
-}
+/// The fast engine among the executions.
+const FAST: &str = "fast";
 
 /// Parts of the eager step.
 pub(crate) const EAGER: Own = Own {
@@ -122,8 +97,6 @@ struct Fitted {
     depth: Spread,
     /// The longest vectors at which the line is within [`HOLDS`].
     holds_to: usize,
-    /// Bytes that a pass may touch again there: registers and arrays of all elements.
-    bytes: f64,
     /// The largest difference from the line up to there, as a share.
     worst: f64,
     /// Measured time over that of the line at the longest vectors.
@@ -131,9 +104,6 @@ struct Fitted {
 }
 
 /// The study.
-///
-/// # Errors
-/// [`Failure`] if a scene breaks.
 pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     let (cells, occupancies, samples, discs): (Vec<usize>, &[f64], u64, usize) = match size {
         Size::Quick => (SHORT.to_vec(), &[1.0], 3, 1000),
@@ -150,11 +120,17 @@ pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     });
     let scene =
         Overrides::new().set(&COUNT, discs).set(&PACKING_FRACTION, SCENE * PI).set(&COHESIONLESS, false);
-    let ways = WAYS.iter().map(|(name, _, set)| {
+    let ways = WAYS.map(|(name, text, execution, is_narrow)| {
+        let is_fast = execution == FAST;
+        let set = match is_fast {
+            true => scene.clone().set(&ENGINE, EngineChoice::Fast).set(&SEARCH, By::Lattice),
+            false => scene.clone().set(&TEXT, text).set(&EXECUTION, execution),
+        };
+        let set = if is_narrow { set.set(&CELL_EDGE, 0.5) } else { set };
         // Only what the fast engine does depends on the discs.
-        let warm_up = if *name == FAST { 200 } else { 2 };
+        let warm_up = if is_fast { 200 } else { 2 };
         let steps = (200_000 / discs).clamp(4, 200) as u64;
-        Case::steps("bench", &set(scene.clone()), warm_up, steps).for_seconds(0.1).label("way", *name)
+        Case::steps("bench", &set, warm_up, steps).for_seconds(0.1).label("way", name)
     });
     let measured = rates(lab, &parts.chain(ways).collect::<Vec<_>>())?;
     let (eager, ways) = measured.split_at(places.len());
@@ -164,9 +140,7 @@ pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
             SOURCES_PARTS.map(|part| Timed::of(part.name(), cells, occupancy, it))
         })
         .collect();
-    let fitted = SOURCES_PARTS.iter().map(|part| fit(part.name(), &timed));
-    let fitted =
-        fitted.collect::<Result<Vec<_>, _>>().map_err(|it| StudyError::from(MeasurementError::from(it)))?;
+    let fitted = SOURCES_PARTS.map(|part| fit(part.name(), &timed));
     let frames = [over_vectors(&timed, &fitted), fits(&fitted), densities(&timed), prices(ways)];
     let at = places.iter().position(|place| *place == (CELLS, OCCUPANCY, false));
     let summary = Rows::of(at.map(|at| [&eager[at], &eager[eager.len() - 1]]))
@@ -236,14 +210,14 @@ fn eager(cells: usize, occupancy: f64, choice: Choice, samples: usize) -> Result
         let counts = [("n", n as f64), ("NOP", own().map(nop).sum::<u64>() as f64)];
         let counts = counts.map(|(kind, count)| (format!("{kind} of {}", part.name()), count));
         reading.counts.extend(counts);
-        reading.parts.insert(part.name().to_owned(), 1e-9 * samples.middle());
+        reading.parts.insert(part.name().to_owned(), 1e-9 * samples.median().unwrap_or(f64::NAN));
     }
     reading.seconds = reading.parts.values().sum();
     Ok(reading)
 }
 
 /// The straight line through the shortest vectors, up to where it holds.
-fn fit(part: &'static str, timed: &[Timed]) -> Result<Fitted, ShapeError> {
+fn fit(part: &'static str, timed: &[Timed]) -> Fitted {
     let mut points: Vec<&Timed> =
         timed.iter().filter(|timed| timed.part == part && timed.occupancy == OCCUPANCY).collect();
     points.sort_by_key(|timed| timed.n);
@@ -270,16 +244,15 @@ fn fit(part: &'static str, timed: &[Timed]) -> Result<Fitted, ShapeError> {
     let others: Vec<[f64; 2]> = of_processes.chain(without).chain([middle]).collect();
     let spread = |at: usize| Spread { median: middle[at], ..Spread::of(others.iter().map(|line| line[at])) };
     let holds_to = points.get(held.saturating_sub(1)).map_or(0, |timed| timed.n);
-    Ok(Fitted {
+    Fitted {
         part,
         nop,
         period: spread(0),
         depth: spread(1),
         holds_to,
-        bytes: holds_to as f64 * bytes_an_element(part)?,
         worst: worst(held),
         beyond: points.last().map_or(1.0, |timed| over(middle, timed)),
-    })
+    }
 }
 
 /// Slope τ and D of y = τ (x + D) by least squares of the relative differences.
@@ -296,25 +269,6 @@ fn straight(points: &[(f64, f64)]) -> [f64; 2] {
     let slope = (w * wxy - wx * wy) / (w * wxx - wx * wx);
     let at_zero = (wy - slope * wx) / w;
     [slope, at_zero / slope]
-}
-
-/// Bytes of registers and arrays that the passes of a part hold for an element.
-fn bytes_an_element(part: &str) -> Result<f64, ShapeError> {
-    let model = counting_model(400, Choice::default().printed())?;
-    let of_part = programs(&model, Precision::F64).into_iter().filter(|step| step.part.name() == part);
-    let bytes = of_part.map(|step| {
-        let Outlines { registers, passes, .. } = step.program.outlines();
-        let mut arrays: Vec<Array> = vec![];
-        for place in passes.iter().flat_map(|pass| pass.reads.iter().chain(&pass.writes)) {
-            if let Place::Memory(from) | Place::Indexed(from) = place
-                && !arrays.contains(&from.array)
-            {
-                arrays.push(from.array);
-            }
-        }
-        8.0 * (registers[0] + arrays.len()) as f64 + 4.0 * registers[2] as f64
-    });
-    Ok(bytes.fold(0.0, f64::max))
 }
 
 /// Time an element and operation, with the line as far as it holds; no line of a part for which none holds.
@@ -340,22 +294,21 @@ fn fits(fitted: &[Fitted]) -> Frame {
         .cell("clock period (ns)", |fitted| fitted.period.cell(1.0, 3))
         .cell("D", |fitted| fitted.depth.cell(1.0, 0))
         .count("holds to n", |fitted| fitted.holds_to)
-        .number("registers and arrays there (kB)", 0, |fitted| fitted.bytes / 1e3)
         .number("largest difference (%)", 1, |fitted| 100.0 * fitted.worst)
         .number("times the line at the longest n", 2, |fitted| fitted.beyond)
         .frame("fits", "NOP·(n + D) on this host, part by part")
 }
 
 fn densities(timed: &[Timed]) -> Frame {
-    let mut of_occupancy: BTreeMap<u64, Vec<&Timed>> = BTreeMap::new();
-    for it in timed.iter().filter(|it| it.cells == CELLS) {
-        of_occupancy.entry((1e6 * it.occupancy) as u64).or_default().push(it);
-    }
-    let mut rows = Rows::of(of_occupancy.into_values()).number("occupancy ρ", 2, |parts| parts[0].occupancy);
-    for (at, part) in SOURCES_PARTS.iter().enumerate() {
-        rows = rows.cell(format!("{} (µs)", part.name()), move |parts| parts[at].ns().cell(1e-3, 2));
-    }
-    rows.text("reachable", |parts| if parts[0].occupancy > CEILING { "no packing of discs" } else { "" })
+    let mut of_places: Vec<&[Timed]> = timed.chunks(SOURCES_PARTS.len()).collect();
+    of_places.retain(|parts| parts[0].cells == CELLS);
+    of_places.sort_by(|a, b| a[0].occupancy.total_cmp(&b[0].occupancy));
+    Rows::of(of_places)
+        .number("occupancy ρ", 2, |parts| parts[0].occupancy)
+        .cells(SOURCES_PARTS.map(|part| format!("{} (µs)", part.name())), |parts| {
+            parts.iter().map(|it| it.ns().cell(1e-3, 2)).collect::<Vec<_>>()
+        })
+        .text("reachable", |parts| if parts[0].occupancy > CEILING { "no packing of discs" } else { "" })
         .frame("densities", format!("The eager step over the occupancy, on {CELLS} cells"))
 }
 
@@ -368,7 +321,6 @@ fn prices(ways: &[Measured]) -> Frame {
         .cell("ns a disc and step", |(_, ((_, own), _))| own.cost().cell(1e9, 1))
         .number("times faster than the one before", 2, |(_, ((_, own), before))| own.over(before).median)
         .number("times faster than the first", 1, |(_, ((_, own), _))| own.over(first).median)
-        .text("what changes", |(_, (((_, change, _), _), _))| *change)
         .frame("prices", "What each step of the development made of one scene")
 }
 
@@ -396,7 +348,7 @@ mod tests {
     fn the_fit_ends_where_the_line_breaks() {
         let slow = |n| if n > 50_000 { 3.0 } else { 1.0 };
         let timed = timed(|n| 100.0 * 0.2 * (n as f64 + 30.0) * slow(n));
-        let fitted = fit("forces", &timed).unwrap();
+        let fitted = fit("forces", &timed);
         assert_eq!(fitted.holds_to, 10_000);
         assert!((fitted.period.median - 0.2).abs() < 1e-9 && (fitted.depth.median - 30.0).abs() < 1e-6);
         assert!(fitted.period.range[0] < 0.199 && fitted.period.range[1] > 0.201);
@@ -407,7 +359,7 @@ mod tests {
     #[test]
     fn a_line_that_fails_is_not_drawn() {
         let drawn = |timed: &[Timed]| {
-            let frame = over_vectors(timed, &[fit("forces", timed).unwrap()]);
+            let frame = over_vectors(timed, &[fit("forces", timed)]);
             let at = frame.position("line").unwrap();
             frame.rows.iter().filter(|row| matches!(row[at], crate::frame::Value::Number(_))).count()
         };
@@ -422,6 +374,5 @@ mod tests {
             let count = |kind: &str| reading.counts[&format!("{kind} of {part}")];
             assert!(count("n") > 100.0 && count("NOP") > 10.0 && reading.parts[part] > 0.0, "{reading:?}");
         }
-        assert!(bytes_an_element("forces").unwrap() > 100.0);
     }
 }

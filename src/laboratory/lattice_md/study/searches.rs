@@ -1,10 +1,10 @@
 //! Which search is the fastest where: rates over particles, density, search, precision and threads, beside the methods of 1993.
 
+use super::density_cost::{crossing, power};
 use crate::console::Failure;
 use crate::frame::{Cell, Frame, Rows};
 use crate::laboratory::rates::{self, Case, Measured, rates};
 use crate::results::{Lab, Made, Size};
-use crate::statistics::slope;
 use crate::study::StudyError;
 use std::f64::consts::PI;
 use stripmine_physics::method::lattice_md::Document;
@@ -137,33 +137,31 @@ fn fast(scene: Overrides) -> Overrides {
 
 /// Every place of a grid, each once.
 fn places(grid: &Grid, threads: usize) -> Vec<Place> {
-    let crossed = |searches: &'static [&'static str], discs: &'static [usize], fractions: Vec<f64>| {
-        let of = move |search: &'static str, discs: usize| {
-            fractions.clone().into_iter().map(move |phi| Place::of(search, discs, phi))
-        };
-        let each = searches.iter().flat_map(move |&search| discs.iter().map(move |&discs| (search, discs)));
-        each.flat_map(move |(search, discs)| of(search, discs)).collect::<Vec<Place>>()
+    let crossed = |searches: &[&'static str], discs: &[usize], fractions: &[f64]| {
+        let of = |search, discs| fractions.iter().map(move |&phi| Place::of(search, discs, phi));
+        let each = searches.iter().flat_map(|&search| discs.iter().map(move |&discs| (search, discs)));
+        each.flat_map(|(search, discs)| of(search, discs)).collect::<Vec<Place>>()
     };
     let occupied = |occupancies: &[f64]| occupancies.iter().map(|rho| PI * rho).collect::<Vec<f64>>();
-    let mut all = crossed(&TODAY, grid.discs, grid.packing_fractions.to_vec());
-    for precision in &PRECISIONS[1..] {
+    let mut all = crossed(&TODAY, grid.discs, grid.packing_fractions);
+    for &precision in &PRECISIONS[1..] {
         let same = all.iter().filter(|it| it.precision == F64 && it.discs == grid.compared);
         all.extend(same.map(|it| Place { precision, ..*it }).collect::<Vec<_>>());
     }
     let (discs, fractions) = grid.threads;
     for threads in [1, threads] {
-        let lattices = crossed(&TODAY[..1], discs, fractions.to_vec()).into_iter();
+        let lattices = crossed(&TODAY[..1], discs, fractions).into_iter();
         all.extend(lattices.map(|it| Place { threads: Some(threads), ..it }));
     }
-    all.extend(crossed(&PAPER, grid.paper.0, occupied(&[DENSE])));
-    all.extend(crossed(&PAPER, &[MIDDLE], occupied(grid.paper.1)));
-    all.extend(crossed(&[CHAINED, ALL_PAIRS], grid.break_even.0, occupied(grid.break_even.1)));
+    all.extend(crossed(&PAPER, grid.paper.0, &occupied(&[DENSE])));
+    all.extend(crossed(&PAPER, &[MIDDLE], &occupied(grid.paper.1)));
+    all.extend(crossed(&[CHAINED, ALL_PAIRS], grid.break_even.0, &occupied(grid.break_even.1)));
     let mut once: Vec<Place> = vec![];
-    for place in all {
+    all.into_iter().for_each(|place| {
         if !once.contains(&place) {
             once.push(place);
         }
-    }
+    });
     once
 }
 
@@ -174,9 +172,6 @@ struct Measurements<'g> {
 }
 
 /// The study.
-///
-/// # Errors
-/// [`Failure`] if a scene breaks.
 pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     let grid = if size == Size::Quick { &QUICK } else { &FULL };
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
@@ -188,7 +183,8 @@ pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     let title = "Million particle-steps a second of processor time, one thread";
     let all = rates::frame(&single.collect::<Vec<_>>(), ("rates", title), ("rate (M/s)", 1e-6, 2));
     let [break_even, summary] = data.break_even();
-    let frames = [all, data.lost(), data.fastest()?, data.crossings(), break_even, data.threads(), summary];
+    let frames =
+        [all, data.lost(), data.fastest()?, data.crossings(), break_even, data.threads(threads), summary];
     let made = Made::of(frames).with_seeds([1]);
     Ok(Made { processes: Some(rates::PROCESSES), ..made })
 }
@@ -214,13 +210,11 @@ impl Measurements<'_> {
 
     /// Time by each search over that by the fastest.
     fn lost(&self) -> Frame {
-        let mut rows = vec![];
-        for search in TODAY {
-            for (discs, phi) in self.grid() {
-                let (ranked, own) = (self.ranked(discs, phi), self.at(Place::of(search, discs, phi)));
-                rows.extend(own.map(|own| (search, discs, phi, ranked[0].1.over(own))));
-            }
-        }
+        let rows = TODAY.into_iter().flat_map(|search| self.grid().map(move |place| (search, place)));
+        let rows = rows.filter_map(|(search, (discs, phi))| {
+            let own = self.at(Place::of(search, discs, phi))?;
+            Some((search, discs, phi, self.ranked(discs, phi)[0].1.over(own)))
+        });
         Rows::of(rows)
             .text("search", |row| row.0)
             .count("discs", |row| row.1)
@@ -236,20 +230,17 @@ impl Measurements<'_> {
             let scene = Overrides::new().set(&COUNT, discs).set(&PACKING_FRACTION, phi);
             let auto = Document::load("bench", &fast(scene))?.check()?.scene.search.by.word();
             let ranked = self.ranked(discs, phi);
-            let [(first, best), (second, next), ..] = ranked.as_slice() else { continue };
+            let Some((first, best)) = ranked.first() else { continue };
             let own = ranked.iter().find(|(name, _)| *name == auto);
-            let lost = own.map(|(_, own)| best.over(own));
-            rows.push((discs, phi, *first, best.rate(), *second, best.over(next), auto, lost));
+            rows.push((discs, phi, *first, best.rate(), auto, own.map(|(_, own)| best.over(own))));
         }
         Ok(Rows::of(rows)
             .count("discs", |row| row.0)
             .number("packing fraction", 2, |row| row.1)
             .text("fastest", |row| row.2)
             .cell("rate (M/s)", |row| row.3.cell(1e-6, 1))
-            .text("next", |row| row.4)
-            .cell("time of the next over its own", |row| row.5.cell(1.0, 2))
-            .text("choice of auto", |row| row.6)
-            .cell("time of that over the fastest", |row| row.7.map(|it| it.cell(1.0, 2)))
+            .text("choice of auto", |row| row.4)
+            .cell("time of that over the fastest", |row| row.5.map(|it| it.cell(1.0, 2)))
             .frame("fastest", "Fastest search and choice of auto, million particle-steps a second"))
     }
 
@@ -287,50 +278,32 @@ impl Measurements<'_> {
             (*rho, crossing(&ratios.collect::<Vec<_>>()))
         });
         let rows: Vec<(f64, Option<f64>)> = rows.collect();
-        let known = rows.iter().filter_map(|(rho, discs)| Some((rho.ln(), discs.as_ref()?.ln())));
-        let (x, y): (Vec<f64>, Vec<f64>) = known.unzip();
-        let power = (x.len() > 1).then(|| slope(&x, &y));
+        let power = power(rows.iter().copied());
+        let title = "Discs from which on the lattice's programs are faster than lists of all pairs";
         let table = Rows::of(rows).number("occupancy ρ", 2, |row| row.0).number("discs", 0, |row| row.1);
         let summary = Rows::of([()]).number("power of ρ", 2, |()| power);
         [
-            table.frame(
-                "break_even",
-                "Discs from which on the lattice's programs are faster than lists of all pairs",
-            ),
+            table.frame("break_even", title),
             summary.frame("summary", "Change of the break-even with the density"),
         ]
     }
 
     /// Gain of threads.
-    fn threads(&self) -> Frame {
-        let single = self.all.iter().filter(|(place, _)| place.threads == Some(1));
-        let rows = single.map(|(place, alone)| {
-            let several = |(other, _): &&(Place, Measured)| {
-                other.threads.is_some_and(|threads| threads > 1)
-                    && Place { threads: Some(1), ..*other } == *place
-            };
-            (place, alone, self.all.iter().find(several))
+    fn threads(&self, threads: usize) -> Frame {
+        let single = self.all.iter().filter(|(place, _)| place.threads == Some(1) && threads > 1);
+        let rows = single.filter_map(|(place, alone)| {
+            Some((place, alone, self.at(Place { threads: Some(threads), ..*place })?))
         });
-        Rows::of(rows.collect::<Vec<_>>())
-            .count("discs", |row| row.0.discs)
-            .number("packing fraction", 2, |row| row.0.packing_fraction)
-            .cell("one thread (M/s)", |row| row.1.rate().cell(1e-6, 1))
-            .cell("threads", |row| row.2.and_then(|(place, _)| place.threads).map(|it| it as u64))
-            .cell("all threads (M/s)", |row| row.2.map(|(_, it)| it.rate().cell(1e-6, 1)))
-            .cell("times as fast", |row| row.2.map(|(_, it)| it.over(row.1).cell(1.0, 2)))
-            .frame(
-                "threads",
-                "The lattice on one thread and on all, million particle-steps a second of wall time",
-            )
+        let title = "The lattice on one thread and on all, million particle-steps a second of wall time";
+        Rows::of(rows)
+            .count("discs", |(place, ..)| place.discs)
+            .number("packing fraction", 2, |(place, ..)| place.packing_fraction)
+            .cell("one thread (M/s)", |(_, alone, _)| alone.rate().cell(1e-6, 1))
+            .count("threads", |_| threads)
+            .cell("all threads (M/s)", |(.., all)| all.rate().cell(1e-6, 1))
+            .cell("times as fast", |(_, alone, all)| all.over(alone).cell(1.0, 2))
+            .frame("threads", title)
     }
-}
-
-/// Where a ratio falls below 1, straight in the logarithms; places are in falling order.
-fn crossing(ratios: &[(f64, f64)]) -> Option<f64> {
-    ratios.windows(2).find_map(|pair| {
-        let [(x0, y0), (x1, y1)] = [pair[0], pair[1]].map(|(x, ratio)| (x.ln(), ratio.ln()));
-        (y0 >= 0.0 && y1 < 0.0).then(|| (x0 + (x1 - x0) * y0 / (y0 - y1)).exp())
-    })
 }
 
 #[cfg(test)]
@@ -338,13 +311,6 @@ mod tests {
     use super::*;
     use crate::frame::Value;
     use crate::laboratory::running::prepared;
-
-    #[test]
-    fn the_crossing_is_where_the_logarithms_cross() {
-        assert!((crossing(&[(0.8, 2.0), (0.2, 0.5)]).unwrap() - 0.4).abs() < 1e-12);
-        assert_eq!(crossing(&[(0.8, 2.0), (0.2, 1.5)]), None);
-        assert_eq!(crossing(&[(0.8, 0.9), (0.2, 0.5)]), None);
-    }
 
     /// Every scene of both sizes is accepted, and none is measured twice.
     #[test]

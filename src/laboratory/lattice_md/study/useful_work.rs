@@ -4,7 +4,7 @@ use super::StudyError;
 use super::density_cost::{CEILING, ListFigures, OCCUPANCIES, list_figures};
 use super::efficiency_table::{Question, model_of, step};
 use crate::console::Failure;
-use crate::frame::Rows;
+use crate::frame::{Cell, Rows};
 use crate::results::{Lab, Made, Size};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use stripmine_kernels::isa::OpClass;
@@ -12,9 +12,6 @@ use stripmine_kernels::ledger::{Ledger, Length};
 use stripmine_physics::method::lattice_md::{Part, ledger, rival_ledger};
 
 /// Counts; the contacts are those of a warm gas.
-///
-/// # Errors
-/// [`StudyError`] if a scene breaks whose contacts are counted.
 pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let occupancies = [0.01, 0.025].into_iter().chain(OCCUPANCIES);
     let reachable: Vec<f64> = occupancies.filter(|&occupancy| occupancy < CEILING).collect();
@@ -23,16 +20,13 @@ pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
         let figures = figures?;
         Ok((figures, shares(figures)?))
     });
-    let mut table = Rows::of(rows.collect::<Result<Vec<_>, StudyError>>()?)
+    let shares = ["lattice, forces", "lattice, step", "lists, forces", "lists, step"];
+    let frame = Rows::of(rows.collect::<Result<Vec<_>, StudyError>>()?)
         .number("ρ", 3, |(figures, _)| figures.occupancy)
         .number("contacts a disc, each from both sides", 3, |(figures, _)| figures.contacts)
-        .number("candidates a disc", 2, |(figures, _)| figures.candidates);
-    for (at, name) in
-        ["lattice, forces", "lattice, step", "lists, forces", "lists, step"].into_iter().enumerate()
-    {
-        table = table.number(name, 3, |(_, shares)| 100.0 * shares[at]);
-    }
-    let frame = table.frame("useful_work", "Share of the operations that act on real contacts (%)");
+        .number("candidates a disc", 2, |(figures, _)| figures.candidates)
+        .cells(shares, |(_, shares)| shares.map(|share| Cell::Number(100.0 * share, 3)))
+        .frame("useful_work", "Share of the operations that act on real contacts (%)");
     Ok(Made::of([frame]).with_seeds([1]))
 }
 
@@ -57,29 +51,21 @@ fn shares(figures: ListFigures) -> Result<[f64; 4], StudyError> {
     let sum = |ledger: &Ledger, forces_only: bool| -> f64 {
         let parts = ledger.parts().into_iter();
         let parts = parts.filter(|(part, ..)| !forces_only || *part == Part::Forces.name());
-        parts
-            .map(|(_, length, counts)| {
-                let n = match length {
-                    Length::Candidates => figures.candidates * discs,
-                    Length::Pairs => contacts,
-                    length => lengths.range(length).len() as f64,
-                };
-                n * counts.total() as f64
-            })
-            .sum()
+        let n = |length: Length| figures.length(length, discs).unwrap_or(lengths.range(length).len() as f64);
+        parts.map(|(_, length, counts)| n(length) * counts.total() as f64).sum()
     };
     let lists = rival_ledger(&model_of(&question)?);
-    let of_pair: u64 = lists
-        .entries()
-        .iter()
-        .filter(|entry| matches!(entry.length, Length::Candidates | Length::Pairs))
-        .map(|entry| entry.counts.total())
-        .sum();
+    let pairs =
+        lists.entries().iter().filter(|entry| matches!(entry.length, Length::Candidates | Length::Pairs));
+    let of_pair: u64 = pairs.map(|entry| entry.counts.total()).sum();
     let useful_pairs = contacts * of_pair as f64;
-    let of =
-        |useful: f64, ledger: &Ledger| [true, false].map(|forces_only| useful / sum(ledger, forces_only));
-    let ([a, b], [c, d]) = (of(useful, &lattice), of(useful_pairs, &lists));
-    Ok([a, b, c, d])
+    let of = |useful: f64, ledger: &Ledger, forces_only: bool| useful / sum(ledger, forces_only);
+    Ok([
+        of(useful, &lattice, true),
+        of(useful, &lattice, false),
+        of(useful_pairs, &lists, true),
+        of(useful_pairs, &lists, false),
+    ])
 }
 
 #[cfg(test)]

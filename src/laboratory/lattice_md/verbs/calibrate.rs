@@ -1,13 +1,12 @@
 //! `stripmine calibrate`: how long this host's operations take.
 
 use crate::console::{Common, Failure, clear_progress, print, print_json, progress, say, warn};
-use crate::laboratory::lattice_md::study::calibration::{Effort, calibrate};
+use crate::laboratory::lattice_md::study::calibration::calibrate;
 use clap::Args;
 use std::io::Write;
 use std::path::PathBuf;
-use stripmine_kernels::InstructionSet;
 use stripmine_physics::io::replace::{folder_of, temporary, written_beside};
-use stripmine_physics::origin::host;
+use stripmine_physics::quoted;
 use stripmine_physics::reported::{Class, FilePlace, Reported};
 use stripmine_physics::signals;
 
@@ -21,45 +20,43 @@ pub(super) struct CalibrateVerb {
     #[arg(long)]
     force: bool,
     /// Seconds that it takes, about
-    #[arg(long, default_value_t = Effort::default().seconds as u16, value_parser = clap::value_parser!(u16).range(10..=3600))]
+    #[arg(long, default_value_t = SECONDS, value_parser = clap::value_parser!(u16).range(10..=3600))]
     seconds: u16,
 }
 
-/// Why no host file is written.
-#[derive(Debug, thiserror::Error)]
-enum Refusal {
-    /// There is one.
-    #[error("{} is there already: --force writes over it, --out elsewhere", stripmine_physics::quoted::path(.0))]
-    Exists(PathBuf),
-}
+/// Seconds that a calibration takes, about.
+pub(super) const SECONDS: u16 = 75;
 
-impl Reported for Refusal {
+/// There is a host file already.
+#[derive(Debug, thiserror::Error)]
+#[error("{} is there already: {ELSEWHERE}", quoted::path(.0))]
+struct Exists(PathBuf);
+
+const ELSEWHERE: &str = "--force writes over it, --out elsewhere";
+
+impl Reported for Exists {
     fn class(&self) -> Class {
         Class::Usage
     }
 
     fn place(&self) -> Option<FilePlace> {
-        let Refusal::Exists(file) = self;
-        Some(FilePlace::at(file))
+        Some(FilePlace::at(&self.0))
     }
 
     fn remedy(&self) -> Option<String> {
-        Some("--force writes over it, --out elsewhere".to_owned())
+        Some(ELSEWHERE.to_owned())
     }
 }
 
 impl CalibrateVerb {
     pub(super) fn run(&self, common: &Common) -> Result<(), Failure> {
         if self.out.exists() && !self.force {
-            return Err(Refusal::Exists(self.out.clone()).into());
+            return Err(Exists(self.out.clone()).into());
         }
         // A place that cannot be written is found before minutes of measuring.
         drop(temporary().tempfile_in(folder_of(&self.out)).map_err(self.failed())?);
         let bar = progress(common, "calibrate");
-        let effort = Effort { seconds: self.seconds.into() };
-        let model = calibrate(host(), InstructionSet::best(), effort, |share| {
-            bar.set_position((1e3 * share) as u64)
-        })?;
+        let model = calibrate(self.seconds.into(), |share| bar.set_position((1e3 * share) as u64))?;
         clear_progress();
         if !model.measured.was_quiet() {
             warn(format_args!("the machine was {}; the host file says so", model.measured.state));

@@ -1,7 +1,7 @@
 //! `stripmine listing`: the vector instructions of a part.
 
-use super::scene_choice::SceneChoice;
 use crate::console::{Common, Failure, print, print_json};
+use crate::laboratory::lattice_md::study::efficiency_table::Question;
 use crate::laboratory::lattice_md::study::listing::listing;
 use crate::results::Made;
 use clap::Args;
@@ -15,7 +15,7 @@ pub(super) struct ListingVerb {
     #[arg(value_parser = part_parser())]
     part: Part,
     #[command(flatten)]
-    scene: SceneChoice,
+    scene: Question,
 }
 
 /// Accepts the parts there are; clap lists them where another is asked for.
@@ -29,7 +29,7 @@ fn part_parser() -> impl TypedValueParser<Value = Part> {
 
 impl ListingVerb {
     pub(super) fn run(&self, common: &Common) -> Result<(), Failure> {
-        let (instructions, text) = listing(self.part, &self.scene.question())?;
+        let (instructions, text) = listing(self.part, &self.scene)?;
         if common.json { print_json(&Made::of([instructions]).json()) } else { print(&text) }
     }
 }

@@ -3,7 +3,6 @@
 mod calibrate;
 mod density_cost;
 mod listing;
-mod scene_choice;
 mod table;
 mod validate_model;
 

@@ -1,9 +1,8 @@
 //! `stripmine table`: the efficiency table, and the ladder of clocks.
 
 use super::print_made;
-use super::scene_choice::SceneChoice;
 use crate::console::{Common, Failure};
-use crate::laboratory::lattice_md::study::efficiency_table::efficiency_table;
+use crate::laboratory::lattice_md::study::efficiency_table::{Question, efficiency_table};
 use crate::laboratory::lattice_md::study::ladder::ladder;
 use crate::model::machines;
 use clap::Args;
@@ -12,7 +11,7 @@ use clap::Args;
 #[derive(Args)]
 pub(super) struct TableVerb {
     #[command(flatten)]
-    scene: SceneChoice,
+    scene: Question,
     #[arg(long, default_value = "paper", help = machine_help())]
     machine: String,
     /// Instead: the clock periods of a step by every clock, from the trivial one to chaining and memory ports
@@ -28,7 +27,7 @@ pub(super) fn machine_help() -> String {
 
 impl TableVerb {
     pub(super) fn run(&self, common: &Common) -> Result<(), Failure> {
-        let (question, machine) = (self.scene.question(), machines::find(&self.machine)?);
+        let (question, machine) = (self.scene, machines::find(&self.machine)?);
         let made = match self.ladder {
             true => ladder(&question, &machine)?,
             false => efficiency_table(&question, &machine)?,

@@ -1,20 +1,20 @@
 //! `stripmine validate-model`: the host model against wall time.
 
+use super::calibrate::SECONDS;
 use super::print_made;
 use crate::console::{Common, Failure, clear_progress, progress, say, warn};
-use crate::laboratory::lattice_md::study::calibration;
-use crate::laboratory::lattice_md::study::model_validation::{Calibrated, Effort, model_validation};
-use crate::laboratory::lattice_md::study::rounds::Bound;
-use crate::model::host::{HostModel, default_model};
-use crate::provenance::Provenance;
-use crate::results::{Folder, Made};
+use crate::laboratory::lattice_md::study::calibration::calibrate;
+use crate::laboratory::lattice_md::study::model_validation::{Effort, calibrated_now, model_validation};
+use crate::laboratory::written;
+use crate::model::host::{HostModel, Measured, default_model};
+use crate::results::Folder;
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
+use std::fmt;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 use stripmine_kernels::InstructionSet;
 use stripmine_physics::origin;
-use stripmine_physics::signals;
 
 /// Predicts runs that nothing was fitted to, measures them as users run them, and says how far off each prediction was
 #[derive(Args)]
@@ -54,34 +54,39 @@ const DENSEST: f64 = 0.907;
 
 /// Rounds over all runs at most.
 const ROUNDS: usize = 12;
+/// Share of the progress for a calibration just before.
+const CALIBRATION: f64 = 0.4;
 
-/// The model of a host file, or the one that comes with the program; which of them it is.
-pub(super) fn host_model(file: Option<&Path>, common: &Common) -> Result<(HostModel, Calibrated), Failure> {
+/// The model of a host file, or the one that comes with the program; whose it is.
+fn host_model(file: Option<&Path>, common: &Common) -> Result<(HostModel, String), Failure> {
+    let note = |warns: bool, words: fmt::Arguments<'_>| match common.quiet {
+        true => (),
+        false if warns => warn(words),
+        false => say(words),
+    };
     let Some(file) = file else {
         let model = default_model()?;
-        if !common.quiet {
-            say(format_args!(
-                "no --host: using the model that comes with the program, of {}; see calibrate",
-                model.title
-            ));
+        let title = &model.title;
+        note(
+            false,
+            format_args!("no --host: using the model that comes with the program, of {title}; see calibrate"),
+        );
+        let whose = format!("the shipped model of {title}");
+        return Ok((model, whose));
+    };
+    let (model, name) = (HostModel::load(file)?, file.display());
+    let Measured { state, .. } = &model.measured;
+    if !model.measured.was_quiet() {
+        note(true, format_args!("the machine of {name} was {state} when it was calibrated"));
+    }
+    let whose = match model.differs_from(&origin::host(), InstructionSet::best().name()) {
+        None => format!("the model of {} from a host file", model.title),
+        Some(difference) => {
+            note(true, format_args!("{name}: {difference}"));
+            format!("the model of another host, {}, from a host file", model.title)
         }
-        return Ok((model, Calibrated::Shipped));
     };
-    let model = HostModel::load(file)?;
-    if !model.measured.was_quiet() && !common.quiet {
-        warn(format_args!(
-            "the machine of {} was {} when it was calibrated",
-            file.display(),
-            model.measured.state
-        ));
-    }
-    let Some(difference) = model.differs_from(&origin::host(), InstructionSet::best().name()) else {
-        return Ok((model, Calibrated::Before));
-    };
-    if !common.quiet {
-        warn(format_args!("{}: {difference}", file.display()));
-    }
-    Ok((model, Calibrated::Elsewhere))
+    Ok((model, whose))
 }
 
 impl ValidateModel {
@@ -89,44 +94,27 @@ impl ValidateModel {
         let effort = Effort {
             particles: self.particles.clone(),
             occupancies: self.occupancies.clone(),
-            rounds: Bound { most: ROUNDS, within: Some(Duration::from_secs(self.seconds.into())) },
-            particle_steps: 10_000,
+            rounds: ROUNDS,
+            seconds: self.seconds.into(),
         };
         // Before anything takes its time.
-        let folder = match &self.out {
-            Some(out) => Some(Folder::open(out, &["validation"], false)?),
-            None => None,
-        };
-        let start = Instant::now();
-        let made = self.validated(&effort, common)?;
-        if let Some(folder) = folder {
-            let provenance = Provenance::here(common.command.clone(), start.elapsed().as_secs_f64());
-            let (folder, _) = signals::whole(|| folder.write("validation", &made, &provenance))?;
-            if !common.quiet {
-                say(format_args!("written: {}", folder.display()));
-            }
-        }
-        print_made(&made, common)
-    }
-
-    /// The result, with the host file if the model was calibrated here.
-    fn validated(&self, effort: &Effort, common: &Common) -> Result<Made, Failure> {
-        let bar = progress(common, "validate-model");
+        let folder = self.out.as_ref().map(|out| Folder::open(out, &["validation"], false)).transpose()?;
+        let (start, bar) = (Instant::now(), progress(common, "validate-model"));
         let show = |share: f64| bar.set_position((1e3 * share) as u64);
-        let (model, calibrated) = if self.calibrate {
-            let effort = calibration::Effort::default();
-            let model = calibration::calibrate(origin::host(), InstructionSet::best(), effort, |share| {
-                show(0.4 * share)
-            })?;
-            (model, Calibrated::Now)
+        let begun = if self.calibrate { CALIBRATION } else { 0.0 };
+        let (model, whose) = if self.calibrate {
+            let model = calibrate(SECONDS.into(), |share| show(begun * share))?;
+            let whose = calibrated_now(&model);
+            (model, whose)
         } else {
             host_model(self.host.as_deref(), common)?
         };
-        let begun = if self.calibrate { 0.4 } else { 0.0 };
-        let mut made =
-            model_validation(&model, calibrated, effort, |share| show(begun + (1.0 - begun) * share))?;
+        let mut made = model_validation(&model, whose, &effort, |share| show(begun + (1.0 - begun) * share))?;
         clear_progress();
         made.files.extend(self.calibrate.then(|| ("host.toml".to_owned(), model.to_toml())));
-        Ok(made)
+        if let Some(folder) = folder {
+            written(&folder, ("validation", &made), start, common)?;
+        }
+        print_made(&made, common)
     }
 }

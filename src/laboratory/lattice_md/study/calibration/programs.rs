@@ -1,7 +1,7 @@
 //! The programs of a step on drill scenes of many sizes, one after the other, by the interpreter and as compiled loops.
 
 use super::fit::Row;
-use crate::laboratory::lattice_md::study::phase_times::Run;
+use crate::laboratory::lattice_md::study::phase_times::{PRECISIONS, Run, step};
 use crate::laboratory::lattice_md::study::samples::Samples;
 use crate::model::host::{Around, charges};
 use std::ops::Range;
@@ -9,7 +9,7 @@ use stripmine_kernels::backend::Precision;
 use stripmine_kernels::backend::tape::Outlines;
 use stripmine_kernels::isa::{Memory, ProgramError};
 use stripmine_kernels::{Execution, InstructionSet};
-use stripmine_physics::method::lattice_md::{Arrays, Lengths, StepProgram, model, programs};
+use stripmine_physics::method::lattice_md::{Arrays, StepProgram, model};
 use stripmine_physics::method::throughput::MeasurementError;
 use stripmine_physics::scene::{self, Overrides, SEED, TEMPERATURE};
 
@@ -35,11 +35,6 @@ const SCENES: [(usize, f64); 12] = [
 /// A scene as large as vectors may be, in one precision.
 const LARGEST: (usize, f64) = (30_000, 30_000.0 / LONGEST as f64);
 
-/// Discs at rest: no drill depends on what the one before has left.
-fn at_rest(scene: Overrides) -> Overrides {
-    scene.set(&TEMPERATURE, 0.0).set(&SEED, 7_u64)
-}
-
 /// How they are executed; strips whose registers lie in the first and in the second level, and of which none leaves elements over.
 const EXECUTIONS: [Execution; 5] = [
     Execution::Chained,
@@ -53,16 +48,6 @@ const EXECUTIONS: [Execution; 5] = [
 const INTERPRETED_ELEMENTS: usize = 20_000;
 const LOOP_ELEMENTS: usize = 100_000;
 const MOST: usize = 8;
-
-/// Vectors of this number of elements take part in every n-th sweep only: the longest would take most of the time.
-fn turn(elements: usize) -> usize {
-    match elements {
-        0..=30_000 => 1,
-        30_001..=100_000 => 2,
-        100_001..=1_000_000 => 6,
-        _ => 64,
-    }
-}
 
 /// The element types of lanes.
 pub(super) const LANES: [&str; 2] = ["f64", "f32"];
@@ -105,16 +90,15 @@ struct Step {
 
 impl Step {
     fn new((particles, occupancy): (usize, f64), precision: &'static str) -> Result<Step, MeasurementError> {
-        let checked = Run { particles, occupancy, precision, execution: "chained" }.scene(at_rest)?;
-        let model = model(&checked);
-        let (discs, precision) = (&checked.particles, checked.scene.machine.precision);
-        let lengths = Lengths::new(&model, discs.grain_count(), discs.len());
-        let programs = programs(&model, precision);
+        // No drill depends on what the one before has left: the discs are at rest.
+        let at_rest = Overrides::new().set(&TEMPERATURE, 0.0).set(&SEED, 7_u64);
+        let checked = Run { particles, occupancy, precision, execution: "chained" }.scene(&at_rest)?;
+        let (model, discs, (programs, lengths)) = (model(&checked), &checked.particles, step(&checked));
         Ok(Step {
             ranges: programs.iter().map(|step| lengths.range(step.length)).collect(),
             samples: std::array::from_fn(|_| vec![Samples::default(); programs.len()]),
             programs,
-            arrays: match precision {
+            arrays: match checked.scene.machine.precision {
                 scene::Precision::F64 => Box::new(Arrays::<f64, f64>::new(&model, discs)),
                 scene::Precision::F32 => Box::new(Arrays::<f32, f32>::new(&model, discs)),
                 scene::Precision::Mixed => Box::new(Arrays::<f64, f32>::new(&model, discs)),
@@ -122,19 +106,24 @@ impl Step {
         })
     }
 
-    /// One more sample of the programs one after the other, as in a step, by every execution, where it is their turn.
+    /// One more sample of the programs one after the other, as in a step, by every execution. The longest vectors would take most of the
+    /// time: they take part in every n-th sweep only.
     fn sweep(&mut self, set: InstructionSet, number: usize) -> Result<(), ProgramError> {
         let longest = self.ranges.iter().map(ExactSizeIterator::len).max().unwrap_or(1).max(1);
-        if !number.is_multiple_of(turn(longest)) {
+        let turn = match longest {
+            0..=30_000 => 1,
+            30_001..=100_000 => 2,
+            100_001..=1_000_000 => 6,
+            _ => 64,
+        };
+        if !number.is_multiple_of(turn) {
             return Ok(());
         }
         self.arrays.elsewhere();
         let memory = self.arrays.memory();
         for (execution, samples) in EXECUTIONS.into_iter().zip(&mut self.samples) {
-            let elements = match execution {
-                Execution::Chained => LOOP_ELEMENTS,
-                _ => INTERPRETED_ELEMENTS,
-            };
+            let is_chained = execution == Execution::Chained;
+            let elements = if is_chained { LOOP_ELEMENTS } else { INTERPRETED_ELEMENTS };
             Samples::take_in_turns(samples, (elements / longest).clamp(1, MOST), |at| {
                 self.programs[at].program.run(&memory, self.ranges[at].clone(), execution, set)
             })?;
@@ -152,10 +141,9 @@ impl Step {
         let alike = EXECUTIONS.into_iter().zip(&self.samples);
         let alike = alike.filter(|(execution, _)| (*execution == Execution::Chained) == is_chained);
         let each = alike.flat_map(|(execution, samples)| {
-            let of_lane = cycle.iter().zip(samples).filter(|((outlines, n), samples)| {
-                outlines.lane == lane && *n > 0 && samples.middle().is_finite()
-            });
-            of_lane.map(move |(&(outlines, n), samples)| (outlines, (n, execution), samples.middle()))
+            let of_lane =
+                cycle.iter().zip(samples).filter(|((outlines, n), _)| outlines.lane == lane && *n > 0);
+            of_lane.filter_map(move |(&(outlines, n), it)| Some((outlines, (n, execution), it.median()?)))
         });
         let row = |(outlines, run, ns)| {
             let charges = charges(outlines, run, shape, &around, &FOOTPRINTS);
@@ -172,7 +160,7 @@ impl Programs {
     /// Lays out the drill scenes.
     pub(super) fn new() -> Result<Programs, MeasurementError> {
         let scenes = SCENES.into_iter();
-        let of = |place| ["f64", "f32", "mixed"].map(|precision| Step::new(place, precision));
+        let of = |place| PRECISIONS.map(|precision| Step::new(place, precision));
         scenes.flat_map(of).chain([Step::new(LARGEST, "f32")]).collect::<Result<_, _>>().map(Programs)
     }
 

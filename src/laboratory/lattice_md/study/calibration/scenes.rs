@@ -1,46 +1,32 @@
 //! Work whose amount depends on the data: the fast engine and the neighbour lists, on drill scenes of their own.
 
 use super::fit::{Row, suited};
-use crate::laboratory::lattice_md::study::phase_times::{
-    FAST, FAST_LISTS, LISTS, PhaseTimes, Run, Sampling, phase_times,
-};
+use crate::laboratory::lattice_md::study::phase_times::{FAST, FAST_LISTS, LISTS, PRECISIONS, Run, TimedRun};
 use crate::model::host::{Amounts, MAKING, Rates, Units};
 use std::collections::BTreeMap;
 use std::time::Instant;
-use stripmine_physics::method::lattice_md::Checked;
 use stripmine_physics::method::lattice_md::Phase;
 use stripmine_physics::method::throughput::MeasurementError;
-use stripmine_physics::scene::SEED;
+use stripmine_physics::scene::{Overrides, SEED};
 
 /// NP of the drill scenes: close enough to each other that no level of memory ends unseen between two of them.
 const PARTICLES: [usize; 6] = [60, 220, 900, 3300, 11_000, 32_000];
 /// ρ of the drill scenes, of every second NP these and of the others those; the first is sparse.
 const OCCUPANCIES: [[f64; 3]; 2] = [[0.05, 0.12, 0.26], [0.07, 0.17, 0.22]];
-const PRECISIONS: [&str; 3] = ["f64", "f32", "mixed"];
 
-/// Steps before the clock starts, and those that are timed: fewer of many discs, but enough for lists to be rebuilt.
-fn sampling(run: &Run) -> Sampling {
-    let discs = if run.has_lists() { 250_000 } else { 100_000 };
-    let equilibration = (discs / run.particles).clamp(3, 60);
-    Sampling { equilibration, repeats: 1, particle_steps: 10_000, least_steps: 2 }
-}
-
-/// A drill scene, and what was measured of it.
-type Scene = (Run, Checked, Option<PhaseTimes>);
-
-/// Every drill scene.
-pub(super) struct Scenes(Vec<Scene>);
+/// Every drill scene, and whether something was measured of it.
+pub(super) struct Scenes(Vec<(TimedRun, bool)>);
 
 impl Scenes {
     /// Nothing measured yet.
     pub(super) fn new() -> Result<Scenes, MeasurementError> {
-        let mut scenes = vec![];
+        let (mut scenes, seed) = (vec![], Overrides::new().set(&SEED, 11_u64));
         for (particles, occupancies) in PARTICLES.into_iter().zip(OCCUPANCIES.iter().cycle()) {
             for &occupancy in occupancies {
                 for precision in PRECISIONS {
                     for execution in [FAST, FAST_LISTS, LISTS] {
                         let run = Run { particles, occupancy, precision, execution };
-                        scenes.push((run, run.scene(|scene| scene.set(&SEED, 11_u64))?, None));
+                        scenes.push((TimedRun::new(run, &seed)?, false));
                     }
                 }
             }
@@ -50,10 +36,10 @@ impl Scenes {
 
     /// Runs once more every scene of which there is nothing yet, and of the others those for which there is time until `end`.
     pub(super) fn sweep(&mut self, end: Instant) -> Result<(), MeasurementError> {
-        for (run, checked, times) in &mut self.0 {
-            if times.is_none() || Instant::now() < end {
-                let more = phase_times(checked, &sampling(run))?;
-                *times = Some(PhaseTimes::with(times.take(), more));
+        for (scene, is_measured) in &mut self.0 {
+            if !*is_measured || Instant::now() < end {
+                scene.measure()?;
+                *is_measured = true;
             }
         }
         Ok(())
@@ -69,21 +55,17 @@ impl Scenes {
         let mut methods = BTreeMap::<String, Rates>::new();
         for method in ["fast", "fast, sparse", "fast lists", "lists"] {
             for precision in PRECISIONS {
-                let alike = self
-                    .0
-                    .iter()
-                    .filter(|(run, ..)| (run.rates(), run.precision) == (Some(method), precision));
-                let times: Vec<&PhaseTimes> = alike.filter_map(|(.., times)| times.as_ref()).collect();
+                let is_alike = |run: &Run| (run.rates(), run.precision) == (Some(method), precision);
+                let alike = || self.0.iter().map(|(scene, _)| scene).filter(|scene| is_alike(&scene.run));
                 let upkeep = Phase::ALL.iter().map(|&phase| {
-                    let done = |it: &&PhaseTimes| Some((charged(phase, &it.amounts), it.upkeep(phase)));
-                    (phase.name(), units(times.iter().filter_map(done)))
+                    let done = alike().map(|it| (charged(phase, &it.amounts()), it.upkeep(phase)));
+                    (phase.name(), units(done))
                 });
-                let making = |it: &&PhaseTimes| {
-                    let Amounts { discs: remade, candidates: relisted, .. } = it.amounts;
+                let making = alike().filter_map(|it| {
+                    let Amounts { discs: remade, candidates: relisted, .. } = it.amounts();
                     Some((Amounts { makings: 1.0, remade, relisted, ..Amounts::default() }, it.making()?))
-                };
-                let making = (MAKING, units(times.iter().filter_map(making)));
-                for (phase, units) in upkeep.chain([making]) {
+                });
+                for (phase, units) in upkeep.chain([(MAKING, units(making))]) {
                     let Some(units) = units else { continue };
                     let rates = methods.entry(method.to_owned()).or_default();
                     rates.entry(phase.to_owned()).or_default().insert(precision.to_owned(), units);

@@ -7,7 +7,7 @@ use super::question::{Question, QuestionError, model_of, step};
 use crate::frame::{Frame, Rows};
 use stripmine_kernels::isa::{Op, OpClass, OpCounts};
 use stripmine_kernels::mask::Mask;
-use stripmine_physics::method::lattice_md::{Part, StepProgram, programs};
+use stripmine_physics::method::lattice_md::{Part, ledger, programs};
 use stripmine_physics::scene::Precision;
 
 /// BP93's numbers: predictor, index, a place of the mask, corrector.
@@ -59,7 +59,7 @@ pub(super) fn conventions(question: &Question) -> Result<(Frame, [usize; 7]), Qu
     let mut shown = all[..6].to_vec();
     let exact = all[6..].iter().filter(|it| it.exact() == most).take(4);
     shown.extend(exact);
-    shown.push(texts.counted(Way(question.choice.gear_values as u64, EVERYTHING)));
+    shown.push(texts.counted(Way(question.choice.gear_values.into(), EVERYTHING)));
     let yes = |is: bool| if is { "yes" } else { "no" };
     let mut rows = Rows::of(&shown).count("Gear values", |it| it.way.0);
     for (at, choice) in CHOICES.iter().enumerate() {
@@ -95,18 +95,16 @@ struct Texts {
 
 impl Texts {
     fn of(question: &Question) -> Result<Texts, QuestionError> {
-        let tally = |programs: &[StepProgram], part: Part| -> Vec<(&'static str, OpCounts)> {
-            programs.iter().filter(|step| step.part == part).flat_map(|step| step.program.tally()).collect()
-        };
         let mut model = model_of(question)?;
-        let (all, places) = (step(question)?.0, model.mask.offsets().len() as u64);
+        let (all, places) = (ledger(&step(question)?.0), model.mask.offsets().len() as u64);
         model.mask = Mask::one_place();
-        let one = programs(&model, Precision::F64);
+        let one = ledger(&programs(&model, Precision::F64));
+        let index = all.entries().iter().filter(|entry| entry.part == Part::Index.name());
         Ok(Texts {
-            index: tally(&all, Part::Index),
+            index: index.map(|entry| (entry.section, entry.counts.clone())).collect(),
             places,
-            all_places: sum(&tally(&all, Part::Forces)),
-            one_place: sum(&tally(&one, Part::Forces)),
+            all_places: all.part(Part::Forces.name()),
+            one_place: one.part(Part::Forces.name()),
             gravity: model.gravity != [0.0; 2],
         })
     }
@@ -144,12 +142,6 @@ impl Texts {
     }
 }
 
-fn sum(sections: &[(&'static str, OpCounts)]) -> OpCounts {
-    let mut sum = OpCounts::default();
-    sections.iter().for_each(|(_, counts)| sum.add(counts));
-    sum
-}
-
 /// Arithmetic, loads, stores and gathers of Gear's predictor or corrector for the three freedoms of a disc.
 fn gear(Way(values, [scaled, angle, folded, ..]): Way, corrects: bool) -> [u64; 4] {
     // A change of scale, and a constant of its own at each term.
@@ -171,7 +163,7 @@ mod tests {
     use super::*;
     use crate::laboratory::lattice_md::study::efficiency_table::{Choice, SOURCES_PARTS, printed_nop};
 
-    fn question(gear_values: usize) -> Question {
+    fn question(gear_values: u8) -> Question {
         let choice = Choice { gear_values, ..Choice::default() };
         Question { choice: choice.printed(), ..Question::default() }
     }
@@ -185,10 +177,9 @@ mod tests {
             {
                 let (programs, _) = step(&Question { choice, ..Question::default() }).unwrap();
                 for (part, corrects) in [(Part::Predictor, false), (Part::Corrector, true)] {
-                    let run = programs.iter().find(|step| step.part == part).unwrap().program.tally();
-                    let run = sum(&run);
+                    let run = ledger(&programs).part(part.name());
                     let arithmetic = run.filtered(|op| !op.class().moves_data()).total();
-                    let way = Way(gear_values as u64, [scaled, true, !scaled, true, true, true, true, true]);
+                    let way = Way(gear_values.into(), [scaled, true, !scaled, true, true, true, true, true]);
                     let [mut counted, mut loads, stores, gathers] = gear(way, corrects);
                     if corrects {
                         counted += 1; // Gravity.

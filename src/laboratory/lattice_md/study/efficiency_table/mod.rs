@@ -19,19 +19,14 @@ use stripmine_kernels::printed::EQUATIONS;
 use stripmine_physics::method::lattice_md::{Lengths, Model, Part, ledger, programs};
 use stripmine_physics::scene::Precision;
 
-/// BP93's count of a part: NOP. BP93 has no entry for the lattice vectors, nor for parts that are ours alone.
-pub(crate) const fn printed_nop(part: Part) -> Option<u64> {
-    match part {
-        Part::Predictor => Some(59),
-        Part::Index => Some(12),
-        Part::Box | Part::Halo | Part::Lattice => None,
-        Part::Forces => Some(1656),
-        Part::Corrector => Some(54),
-    }
-}
-
-/// Parts of BP93's table.
+/// Parts of BP93's table, and its counts of them (NOP). BP93 has no entry for the lattice vectors, nor for parts that are ours alone.
 pub(crate) const SOURCES_PARTS: [Part; 4] = [Part::Predictor, Part::Index, Part::Forces, Part::Corrector];
+const PRINTED: [u64; 4] = [59, 12, 1656, 54];
+
+/// BP93's count of a part.
+pub(crate) fn printed_nop(part: Part) -> Option<u64> {
+    SOURCES_PARTS.iter().position(|it| *it == part).map(|at| PRINTED[at])
+}
 
 /// Clock periods of a part by BP93's formula and its NOP.
 pub(crate) fn printed_clocks(part: Part, machine: &MachineModel, discs: u64, cells: u64) -> Option<f64> {
@@ -42,9 +37,6 @@ pub(crate) fn printed_clocks(part: Part, machine: &MachineModel, discs: u64, cel
 }
 
 /// The default question on the machine of the paper.
-///
-/// # Errors
-/// [`QuestionError`] never for this question.
 pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     Ok(efficiency_table(&Question::default(), &machines::preset("paper")?)?)
 }
@@ -67,36 +59,25 @@ impl Counted<'_> {
     }
 
     /// Parts over vectors of one length each: name, operations, length, clock periods.
-    fn rows(&self) -> impl Iterator<Item = (&'static str, OpCounts, Length, f64)> {
-        self.ledger.parts().into_iter().map(|(part, length, counts)| {
-            let clocks = Clock::Paper.clocks(self.machine, &Work::from(counts.clone()), self.n(length));
+    fn rows(&self, clock: Clock) -> impl Iterator<Item = (&'static str, OpCounts, Length, f64)> {
+        self.ledger.parts().into_iter().map(move |(part, length, counts)| {
+            let clocks = clock.clocks(self.machine, &Work::from(counts.clone()), self.n(length));
             (part, counts, length, clocks)
         })
     }
 
     /// Operations and clock periods of a part, or of the step; none of a part that the text lacks.
     fn sums(&self, part: Option<Part>) -> (Option<u64>, Option<f64>) {
-        let rows = self.rows().filter(|(name, ..)| part.is_none_or(|part| part.name() == *name));
+        let rows = self.rows(Clock::Paper).filter(|(name, ..)| part.is_none_or(|part| part.name() == *name));
         let (nop, clocks) =
             rows.fold((0, 0.0), |(nop, sum), (_, counts, _, clocks)| (nop + counts.total(), sum + clocks));
         ((nop > 0).then_some(nop), (clocks != 0.0).then_some(clocks))
     }
-
-    /// Clock periods of the step's operations on a scalar machine.
-    fn scalar_clocks(&self) -> f64 {
-        let parts = self.ledger.parts().into_iter();
-        parts
-            .map(|(_, length, counts)| Clock::Scalar.clocks(self.machine, &counts.into(), self.n(length)))
-            .sum()
-    }
 }
 
 /// The efficiency table of a question on a machine.
-///
-/// # Errors
-/// `QuestionError` if no such lattice exists.
-pub fn efficiency_table(question: &Question, machine: &MachineModel) -> Result<Made, QuestionError> {
-    let source_question = Question { choice: question.choice.printed(), ..question.clone() };
+pub(crate) fn efficiency_table(question: &Question, machine: &MachineModel) -> Result<Made, QuestionError> {
+    let source_question = question.printed();
     let texts = [Counted::of(&source_question, machine)?, Counted::of(question, machine)?];
     let [printed, ours] = &texts;
     let Lengths { discs, cells, .. } = ours.lengths;
@@ -120,7 +101,9 @@ pub fn efficiency_table(question: &Question, machine: &MachineModel) -> Result<M
         .number("occupancy", 4, |()| discs as f64 / cells as f64)
         .text("machine", |()| machine.title())
         .number("clock period (ns)", 3, |()| machine.clock_period_ns().value)
-        .number("clocks of the printed text on a scalar machine", 0, |()| printed.scalar_clocks())
+        .number("clocks of the printed text on a scalar machine", 0, |()| {
+            printed.rows(Clock::Scalar).map(|(.., clocks)| clocks).sum::<f64>()
+        })
         .number("clocks of the four parts of the printed text", 0, |()| {
             SOURCES_PARTS.iter().filter_map(|&part| printed.sums(Some(part)).1).sum::<f64>()
         })
@@ -187,7 +170,8 @@ fn force_sections(question: &Question, name: &str, title: &str) -> Result<Frame,
 }
 
 fn vector_lengths(texts: [(&'static str, &Counted<'_>); 2]) -> Frame {
-    let rows = texts.into_iter().flat_map(|(name, text)| text.rows().map(move |row| (name, text, row)));
+    let rows =
+        texts.into_iter().flat_map(|(name, text)| text.rows(Clock::Paper).map(move |row| (name, text, row)));
     let moving = |counts: &OpCounts| counts.filtered(|op| op.class().moves_data()).total();
     Rows::of(rows)
         .text("text", |(name, ..)| *name)
@@ -221,17 +205,16 @@ fn savings(question: &Question, machine: &MachineModel) -> Result<Frame, Questio
     let asked = question.choice;
     let variants = [
         ("as asked", asked),
-        ("without friction", Choice { friction: false, ..asked }),
-        ("with equal discs", Choice { varying_discs: false, ..asked }),
-        ("without friction, with equal discs", Choice { friction: false, varying_discs: false, ..asked }),
+        ("without friction", Choice { frictionless: true, ..asked }),
+        ("with equal discs", Choice { equal_discs: true, ..asked }),
+        ("without friction, with equal discs", Choice { frictionless: true, equal_discs: true, ..asked }),
         ("with 4 Gear values", Choice { gear_values: 4, ..asked }),
         ("with 6 Gear values", Choice { gear_values: 6, ..asked }),
         ("with positions relative to the cell", Choice { cell_relative: true, ..asked }),
-        ("with the 7×7 mask", Choice { mask_half_width: 3, ..asked }),
+        ("with the 7×7 mask", Choice { mask: 7, ..asked }),
     ];
     let variants = variants.into_iter().filter(|(name, choice)| *name == "as asked" || *choice != asked);
-    let counted =
-        |(name, choice)| Ok((name, Counted::of(&Question { choice, ..question.clone() }, machine)?));
+    let counted = |(name, choice)| Ok((name, Counted::of(&Question { choice, ..*question }, machine)?));
     let variants = variants.map(counted).collect::<Result<Vec<_>, QuestionError>>()?;
     let nop = |counted: &Counted<'_>, part: Part| counted.ledger.part(part.name()).total();
     let clocks = |counted: &Counted<'_>| counted.sums(None).1.unwrap_or(f64::NAN);

@@ -1,5 +1,8 @@
 //! Questions that an efficiency table answers: a number of particles, an occupancy, and what is modelled.
 
+use crate::study::StudyError;
+use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use stripmine_kernels::law::granular::{Contact, ContactArm, Disc};
 use stripmine_kernels::law::spring::Spring;
 use stripmine_kernels::mask::Mask;
@@ -7,102 +10,112 @@ use stripmine_kernels::sweep::lattice::{Coordinates, Frame, LatticeShape, ShapeE
 use stripmine_physics::method::lattice_md::{
     Discs, GearValues, Lengths, Model, ProgramText, Scheme, StepProgram, programs,
 };
+use stripmine_physics::reported::{Class, Reported};
 use stripmine_physics::scene::Precision;
+use stripmine_physics::words::Words;
 
-/// A scene whose operations are counted.
-#[derive(Clone, Debug)]
-pub struct Question {
-    /// NP.
-    pub particles: usize,
-    /// ρ = NP/LMAX.
-    pub occupancy: f64,
-    /// What is modelled.
-    pub choice: Choice,
+/// A scene whose operations are counted: options of verbs.
+#[derive(Args, Clone, Copy, Debug)]
+pub(crate) struct Question {
+    /// Number of particles NP
+    #[arg(long, default_value_t = 1000)]
+    pub(crate) particles: usize,
+    /// Occupancy of the lattice: particles for each cell, above 0 and at most 1
+    #[arg(long, default_value_t = 0.25)]
+    pub(crate) occupancy: f64,
+    #[command(flatten)]
+    pub(crate) choice: Choice,
 }
 
+/// Parts of the method that a scene needs. BP93's programs have friction, different discs and absolute positions.
+#[derive(Args, Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Choice {
+    /// Whose programs: ours, or the source's own as printed
+    #[arg(long, default_value = "ours", value_parser = text_parser())]
+    pub(crate) text: ProgramText,
+    /// Leave out friction, and with it rotation
+    #[arg(long, conflicts_with = "text")]
+    pub(crate) frictionless: bool,
+    /// All discs alike: radius and mass are numbers, not vectors
+    #[arg(long, conflicts_with = "text")]
+    pub(crate) equal_discs: bool,
+    /// Values of Gear's scheme
+    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u8).range(4..=6))]
+    pub(crate) gear_values: u8,
+    /// Width of the mask: 5 (24 places) or 7 (48)
+    #[arg(long, default_value = "5", value_parser = PossibleValuesParser::new(["5", "7"]).map(|it| if it == "7" { 7_u32 } else { 5 }))]
+    pub(crate) mask: u32,
+    /// Positions relative to the cell instead of the origin
+    #[arg(long, conflicts_with = "text")]
+    pub(crate) cell_relative: bool,
+}
+
+fn text_parser() -> impl TypedValueParser<Value = ProgramText> {
+    // The parser admits words of the list only.
+    PossibleValuesParser::new(ProgramText::WORDS.to_vec())
+        .map(|word| ProgramText::parse(&word).unwrap_or(ProgramText::Ours))
+}
+
+/// 1000 discs on 4000 cells.
 impl Default for Question {
-    /// 1000 discs on 4000 cells, everything modelled that the source models.
     fn default() -> Self {
         Question { particles: 1000, occupancy: 0.25, choice: Choice::default() }
     }
 }
 
-/// Parts of the method that a scene needs.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Choice {
-    /// Programs of BP93, which have friction, different discs and absolute positions whatever is chosen here, or ours.
-    pub text: ProgramText,
-    /// Friction, and with it rotation, torque and spin.
-    pub friction: bool,
-    /// Whether radii and masses differ.
-    pub varying_discs: bool,
-    /// Values of Gear's scheme.
-    pub gear_values: usize,
-    /// Half-width of the mask: 2 for 5×5, 3 for 7×7.
-    pub mask_half_width: u32,
-    /// Whether positions are relative to the cell.
-    pub cell_relative: bool,
-}
-
-impl Choice {
-    /// The same by the source's own programs.
-    #[must_use]
-    pub fn printed(self) -> Choice {
-        Choice {
-            text: ProgramText::Printed,
-            friction: true,
-            varying_discs: true,
-            cell_relative: false,
-            ..self
-        }
+/// Everything that the source models, by our programs.
+impl Default for Choice {
+    fn default() -> Self {
+        let (text, [frictionless, equal_discs, cell_relative]) = (ProgramText::Ours, [false; 3]);
+        Choice { text, frictionless, equal_discs, gear_values: 5, mask: 5, cell_relative }
     }
 }
 
-impl Default for Choice {
-    /// The source's own scene: rough discs of different sizes, absolute positions, 24 places.
-    fn default() -> Self {
-        Choice {
-            text: ProgramText::Ours,
-            friction: true,
-            varying_discs: true,
-            gear_values: 5,
-            mask_half_width: 2,
-            cell_relative: false,
-        }
+impl Choice {
+    /// The choice with the source's own programs.
+    pub(crate) fn printed(self) -> Choice {
+        let Choice { gear_values, mask, .. } = self;
+        Choice { text: ProgramText::Printed, gear_values, mask, ..Choice::default() }
+    }
+}
+
+impl Question {
+    /// The question to the source's own programs.
+    pub(crate) fn printed(self) -> Question {
+        Question { choice: self.choice.printed(), ..self }
     }
 }
 
 /// A scene that has no table.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum QuestionError {
-    /// An occupancy that no lattice has.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum QuestionError {
     #[error("an occupancy lies above 0 and at most at 1 (one disc a cell), not at {0}")]
     Occupancy(f64),
-    /// No particles.
     #[error("a step needs at least one particle")]
     NoParticles,
-    /// No lattice of that many cells.
     #[error("{particles} particles at occupancy {occupancy} make no lattice: {cause}")]
-    Shape {
-        /// NP.
-        particles: usize,
-        /// ρ.
-        occupancy: f64,
-        /// Cause.
-        cause: ShapeError,
-    },
+    Shape { particles: usize, occupancy: f64, cause: ShapeError },
+}
+
+impl Reported for QuestionError {
+    fn class(&self) -> Class {
+        Class::Usage
+    }
+}
+
+impl From<QuestionError> for StudyError {
+    fn from(error: QuestionError) -> Self {
+        StudyError::Own(Box::new(error))
+    }
 }
 
 /// A model with `choice` on a nearly square, periodic lattice of about `cells` cells.
 ///
 /// Parameters that change no operation count are arbitrary.
-///
-/// # Errors
-/// [`ShapeError`] if no such lattice exists.
-pub fn counting_model(cells: usize, choice: Choice) -> Result<Model, ShapeError> {
+pub(crate) fn counting_model(cells: usize, choice: Choice) -> Result<Model, ShapeError> {
     let columns = ((cells as f64).sqrt().round() as usize).max(1);
     let rows = cells.div_ceil(columns);
-    let mask = Mask::square(choice.mask_half_width);
+    let mask = Mask::square(choice.mask / 2);
     let coordinates = if choice.cell_relative { Coordinates::CellRelative } else { Coordinates::Absolute };
     let disc = Disc { radius: 0.5, inverse_mass: 1.0 };
     Ok(Model {
@@ -121,12 +134,8 @@ pub fn counting_model(cells: usize, choice: Choice) -> Result<Model, ShapeError>
             cohesionless: choice.text == ProgramText::Ours,
             arm: ContactArm::Radius,
         },
-        friction: choice.friction,
-        discs: if choice.varying_discs {
-            Discs::Varying
-        } else {
-            Discs::Equal { disc, inverse_inertia: 8.0 }
-        },
+        friction: !choice.frictionless,
+        discs: if choice.equal_discs { Discs::Equal { disc, inverse_inertia: 8.0 } } else { Discs::Varying },
         scheme: Scheme::Gear(match choice.gear_values {
             4 => GearValues::Four,
             5 => GearValues::Five,
@@ -140,9 +149,6 @@ pub fn counting_model(cells: usize, choice: Choice) -> Result<Model, ShapeError>
 }
 
 /// The model of a question.
-///
-/// # Errors
-/// [`QuestionError`] if no such lattice exists.
 pub(crate) fn model_of(question: &Question) -> Result<Model, QuestionError> {
     let &Question { particles, occupancy, choice } = question;
     if particles == 0 {
@@ -156,10 +162,7 @@ pub(crate) fn model_of(question: &Question) -> Result<Model, QuestionError> {
 }
 
 /// The programs of a step, and how long their vectors are, for a question.
-///
-/// # Errors
-/// [`QuestionError`] if no such lattice exists.
-pub fn step(question: &Question) -> Result<(Vec<StepProgram>, Lengths), QuestionError> {
+pub(crate) fn step(question: &Question) -> Result<(Vec<StepProgram>, Lengths), QuestionError> {
     let model = model_of(question)?;
     let lengths = Lengths::new(&model, question.particles, question.particles);
     Ok((programs(&model, Precision::F64), lengths))

@@ -4,7 +4,7 @@
 //! place for a mistake on purpose. Without a misprint the two are one law: `without_a_misprint_this_law_is_ours` in `tests.rs`.
 
 use stripmine_kernels::isa::{Predicate, Vector};
-use stripmine_kernels::law::granular::{Contact, ContactArm};
+use stripmine_kernels::law::granular::Contact;
 use stripmine_kernels::law::{Axis, Env, Field, Law, Sum};
 
 /// An equation of BP93's contact law that does not work as printed. A test of `tests.rs` decides each.
@@ -21,34 +21,28 @@ pub(super) enum Misprint {
 }
 
 impl Misprint {
-    /// The number of the equation in BP93.
-    pub(super) const fn equation(self) -> &'static str {
+    /// The number of the equation in BP93, its form as printed and its form as it runs.
+    pub(super) const fn words(self) -> [&'static str; 3] {
         match self {
-            Misprint::Tangent => "(10)–(11)",
-            Misprint::NormalDamping => "(14)",
-            Misprint::CoulombBound => "(15)",
-            Misprint::Slip => "(16)",
-        }
-    }
-
-    /// The equation as printed and as it runs.
-    pub(super) const fn forms(self) -> [&'static str; 2] {
-        match self {
-            Misprint::Tangent => ["F += F_N n + F_S (n_y, −n_x)", "F += F_N n + F_S (−n_y, n_x)"],
-            Misprint::NormalDamping => {
-                ["F_N = k_N ξ^(3/2) + γ_N M_eff (v_i − v_j)", "F_N = k_N ξ^(3/2) − γ_N M_eff (v_i − v_j)·n"]
+            Misprint::Tangent => {
+                ["(10)–(11)", "F += F_N n + F_S (n_y, −n_x)", "F += F_N n + F_S (−n_y, n_x)"]
             }
+            Misprint::NormalDamping => [
+                "(14)",
+                "F_N = k_N ξ^(3/2) + γ_N M_eff (v_i − v_j)",
+                "F_N = k_N ξ^(3/2) − γ_N M_eff (v_i − v_j)·n",
+            ],
             Misprint::CoulombBound => {
-                ["F_S = min(−γ_S M_eff v_t, μ|F_N|)", "F_S = −sign(v_t) min(γ_S M_eff |v_t|, μ|F_N|)"]
+                ["(15)", "F_S = min(−γ_S M_eff v_t, μ|F_N|)", "F_S = −sign(v_t) min(γ_S M_eff |v_t|, μ|F_N|)"]
             }
             Misprint::Slip => {
-                ["v_t = (v_i − v_j) + R_i Ω_i − R_j Ω_j", "v_t = (v_i − v_j)·s − R_i Ω_i − R_j Ω_j"]
+                ["(16)", "v_t = (v_i − v_j) + R_i Ω_i − R_j Ω_j", "v_t = (v_i − v_j)·s − R_i Ω_i − R_j Ω_j"]
             }
         }
     }
 }
 
-/// BP93 (4)–(17) with at most one equation as printed, for rough discs that may differ.
+/// BP93 (4)–(17) with at most one equation as printed, for rough discs that may differ: separating discs may pull, and arms are radii.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct AsPrinted {
     pub(super) contact: Contact,
@@ -107,16 +101,10 @@ impl Law<2> for AsPrinted {
         let damping = number(self.contact.normal_damping) * effective_mass * (vx * nx + vy * ny);
         let elastic = number(self.contact.stiffness) * depth * depth.sqrt();
         let normal = if self.prints(Misprint::NormalDamping) { elastic + damping } else { elastic - damping };
-        let normal = if self.contact.cohesionless { normal.max(zero) } else { normal };
 
         // (16)
-        let arms = radii.map(|radius| match self.contact.arm {
-            ContactArm::Radius => radius,
-            ContactArm::Overlap | ContactArm::Lammps => radius - number(0.5) * depth,
-        });
         let [own_omega, omega] = both(Field::Omega);
-        let surfaces = if self.contact.arm == ContactArm::Lammps { radii } else { arms };
-        let (own_rim, rim) = (surfaces[0] * own_omega, surfaces[1] * omega);
+        let (own_rim, rim) = (radii[0] * own_omega, radii[1] * omega);
         let along = vx * sx + vy * sy;
         let slip = if self.prints(Misprint::Slip) { along + own_rim - rim } else { along - own_rim - rim };
 
@@ -141,9 +129,9 @@ impl Law<2> for AsPrinted {
             }
         }
         let shear = E::V::select(touch, shear, zero);
-        env.own_add(Sum::Torque, zero - arms[0] * shear);
+        env.own_add(Sum::Torque, zero - radii[0] * shear);
         if E::BOTH_PARTNERS {
-            env.partner_sub(Sum::Torque, place, arms[1] * shear);
+            env.partner_sub(Sum::Torque, place, radii[1] * shear);
         }
     }
 }

@@ -71,15 +71,10 @@ const PAIRS: usize = 500;
 const SEED: u64 = 1993;
 
 /// Tries every misprint.
-///
-/// # Errors
-/// None.
 pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let (head_on, sliding) = (head_on(), sliding());
     let findings = Rows::of(findings(&head_on, &sliding))
-        .text("equation", |it| it.misprint.equation())
-        .text("as printed", |it| it.misprint.forms()[0])
-        .text("as it runs", |it| it.misprint.forms()[1])
+        .cells(["equation", "as printed", "as it runs"], |it| it.misprint.words())
         .text("what shows it", |it| it.quantity)
         .text("with", |it| it.setting.clone())
         .text("right is", |it| it.right.0)

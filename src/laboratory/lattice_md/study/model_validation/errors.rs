@@ -11,21 +11,17 @@ pub(super) const STRANGER: &str = "law";
 /// How many of the worst cases are named.
 const NAMED: usize = 12;
 
-/// A phase of a step of one run, a whole step, or a program.
+/// A phase of a step of one run, a whole step, or a program of a law that nothing was calibrated on.
 #[derive(Clone, Debug)]
 pub(super) struct Case {
     /// Precision, NP and ρ; or the law and the length of the vectors.
     pub(super) place: String,
-    /// What executed it.
     pub(super) execution: &'static str,
-    /// The phase; `step` of a whole one, `law` of a program of a law that nothing was calibrated on.
+    /// Name of the phase, [`STEP`] or [`STRANGER`].
     pub(super) phase: &'static str,
-    /// Predicted (ns).
+    /// Nanoseconds.
     pub(super) predicted: f64,
-    /// Measured: the middle of the samples (ns).
     pub(super) measured: f64,
-    /// Whether its work depends on the data.
-    pub(super) depends_on_data: bool,
 }
 
 impl Case {
@@ -39,6 +35,11 @@ impl Case {
     /// The error, relative to what was measured.
     fn error(&self) -> f64 {
         self.predicted / self.measured - 1.0
+    }
+
+    /// Returns whether its work depends on the data.
+    fn depends_on_data(&self) -> bool {
+        EXECUTIONS.contains(&(self.execution, None))
     }
 }
 
@@ -71,25 +72,27 @@ pub(super) fn frames(cases: &[Case]) -> [Frame; 3] {
     ]
 }
 
-/// Groups of cases with their errors in rising order.
+/// Groups of cases with the magnitudes of their errors in rising order.
 fn groups(cases: &[Case]) -> Vec<(String, Vec<f64>)> {
     let mut groups = vec![];
-    let mut group = |what: &str, keep: &dyn Fn(&Case) -> bool| {
+    let mut group = |what: String, keep: &dyn Fn(&Case) -> bool| {
         let mut errors: Vec<f64> = cases.iter().filter(|it| keep(it)).map(|it| it.error().abs()).collect();
         errors.sort_by(f64::total_cmp);
         if !errors.is_empty() {
-            groups.push((what.to_owned(), errors));
+            groups.push((what, errors));
         }
     };
-    let is_phase = |case: &Case| case.phase != STEP && case.phase != STRANGER;
-    let programs = "eager, strip-mined and chained";
-    group(&format!("whole steps, {programs}"), &|case| case.phase == STEP && !case.depends_on_data);
-    group("whole steps, fast and lists", &|case| case.phase == STEP && case.depends_on_data);
-    group(&format!("phases, {programs}"), &|case| is_phase(case) && !case.depends_on_data);
-    group("phases, fast and lists", &|case| is_phase(case) && case.depends_on_data);
-    group("laws that nothing was calibrated on", &|case| case.phase == STRANGER);
+    let engines = [("eager, strip-mined and chained", false), ("fast and lists", true)];
+    for (kind, is_step) in [("whole steps", true), ("phases", false)] {
+        for (engine, depends) in engines {
+            group(format!("{kind}, {engine}"), &|case| {
+                case.phase != STRANGER && (case.phase == STEP) == is_step && case.depends_on_data() == depends
+            });
+        }
+    }
+    group("laws that nothing was calibrated on".into(), &|case| case.phase == STRANGER);
     for (name, _) in EXECUTIONS {
-        group(&format!("whole steps, {name}"), &|case| case.phase == STEP && case.execution == name);
+        group(format!("whole steps, {name}"), &|case| case.phase == STEP && case.execution == name);
     }
     groups
 }
@@ -99,8 +102,7 @@ mod tests {
     use super::*;
 
     fn case(predicted: f64, execution: &'static str, phase: &'static str) -> Case {
-        let depends_on_data = execution == "lists";
-        Case { place: "here".into(), execution, phase, predicted, measured: 100.0, depends_on_data }
+        Case { place: "here".into(), execution, phase, predicted, measured: 100.0 }
     }
 
     #[test]
@@ -125,6 +127,6 @@ mod tests {
     fn a_step_is_the_sum_of_its_phases() {
         let step = Case::step(&[case(102.0, "eager", "forces"), case(92.0, "eager", "index")]).unwrap();
         assert_eq!((step.phase, step.predicted, step.measured), (STEP, 194.0, 200.0));
-        assert!(!step.depends_on_data && Case::step(&[]).is_none());
+        assert!(!step.depends_on_data() && Case::step(&[]).is_none());
     }
 }

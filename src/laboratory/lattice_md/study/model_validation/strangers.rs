@@ -1,7 +1,8 @@
 //! Programs of laws that nothing was calibrated on: a model that needs a number for every program would have none for these.
 
 use super::errors::{Case, STRANGER};
-use super::{EXECUTIONS, ValidationError};
+use super::{EXECUTIONS, NoPrediction};
+use crate::laboratory::lattice_md::study::StudyError;
 use crate::laboratory::lattice_md::study::samples::Samples;
 use crate::model::host::{Around, HostModel};
 use stripmine_kernels::isa::{AlignedColumn, Array, Memory, Slot};
@@ -18,11 +19,11 @@ use stripmine_physics::method::throughput::MeasurementError;
 const LENGTHS: [usize; 3] = [600, 8000, 100_000];
 /// Samples of each.
 const SAMPLES: usize = 5;
-/// Least nanoseconds of one.
-const SHORTEST: f64 = 200_000.0;
+/// Elements of a sample, about.
+const ELEMENTS: usize = 30_000;
 
 /// Every law over vectors of every length, by every execution of programs.
-pub(super) fn strangers(host: &HostModel) -> Result<Vec<Case>, ValidationError> {
+pub(super) fn strangers(host: &HostModel) -> Result<Vec<Case>, StudyError> {
     let mut cases = vec![];
     for n in LENGTHS {
         for (name, half_width) in [("Lennard-Jones, 24 places", 2), ("Lennard-Jones, 120 places", 5)] {
@@ -50,7 +51,7 @@ fn ran(
     program: &dyn Runnable,
     [read, written]: [&[Array]; 2],
     (first, n, length): (usize, usize, usize),
-) -> Result<Vec<Case>, ValidationError> {
+) -> Result<Vec<Case>, StudyError> {
     let near_one = |at: usize| 1.0 + 1e-3 * (at % 97) as f64;
     let column = |array: &Array| AlignedColumn::new(*array as usize, (0..length).map(near_one));
     let inputs: Vec<AlignedColumn<f64>> = read.iter().map(column).collect();
@@ -62,17 +63,19 @@ fn ran(
     }
     let outlines = program.outlines();
     let around = Around::of_step(&[(&outlines, n)]);
-    let mut cases = vec![];
-    for (execution, how) in EXECUTIONS.iter().filter_map(|(name, how)| Some((*name, (*how)?))) {
-        let out = |cause| ValidationError::OutOfRange { case: name.to_owned(), cause };
-        let predicted = host.program(&outlines, n, how, &around).map_err(out)?;
-        let mut samples = Samples::default();
+    let programs = EXECUTIONS.iter().filter_map(|(name, how)| Some((*name, (*how)?)));
+    let cases = programs.map(|(execution, how)| {
+        let predicted = host.program(&outlines, n, how, &around);
+        let predicted = predicted.map_err(NoPrediction::of(execution.to_owned()))?;
+        // Each by itself: another execution would leave other caches.
+        let mut samples = [Samples::default()];
         for _ in 0..SAMPLES {
-            let run = || program.run(&memory, first..first + n, how, InstructionSet::best());
-            samples.take(SHORTEST, run).map_err(MeasurementError::from)?;
+            let run = |_| program.run(&memory, first..first + n, how, InstructionSet::best());
+            Samples::take_in_turns(&mut samples, (ELEMENTS / n).max(1), run)
+                .map_err(MeasurementError::from)?;
         }
-        let (place, measured) = (format!("{name}, n = {n}"), samples.middle());
-        cases.push(Case { place, execution, phase: STRANGER, predicted, measured, depends_on_data: false });
-    }
-    Ok(cases)
+        let (place, measured) = (format!("{name}, n = {n}"), samples[0].median().unwrap_or(f64::NAN));
+        Ok(Case { place, execution, phase: STRANGER, predicted, measured })
+    });
+    cases.collect()
 }

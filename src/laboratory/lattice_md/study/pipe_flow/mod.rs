@@ -8,12 +8,11 @@ use crate::frame::{Frame, Rows};
 use crate::results::{Lab, Made, Meter, Size};
 use crate::statistics::Mean;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
-use stripmine_physics::method::lattice_md::Document;
 use stripmine_physics::method::lattice_md::keys::{
     EXECUTION, FRICTION, NORMAL_DAMPING, SEARCH, SHEAR_DAMPING,
 };
 use stripmine_physics::method::lattice_md::options::By;
-use stripmine_physics::method::lattice_md::{assemble, model};
+use stripmine_physics::method::lattice_md::{Document, assemble, model};
 use stripmine_physics::observe::waves::{Directions, directions, fano, histogram, strongest_mode};
 use stripmine_physics::observe::{Observation, Scenery};
 use stripmine_physics::particles::Particles;
@@ -33,29 +32,19 @@ const CONTROL: u64 = 40_000;
 const ROWS: usize = 120;
 
 /// Two fifths of the pipe.
-///
-/// # Errors
-/// [`StudyError`] if the scene breaks.
 pub(crate) fn short(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let runs = Runs::of("pipe-small", &Overrides::new(), &[1], false, lab)?;
-    Ok(runs.made())
+    Ok(Runs::of("pipe-small", &Overrides::new(), &[1], false, lab)?.made())
 }
 
 /// The whole pipe, with snapshots as in figure 6.
-///
-/// # Errors
-/// [`StudyError`] if the scene breaks.
 pub(crate) fn whole(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let runs = Runs::of("pipe", &Overrides::new(), &[1, 2], true, lab)?;
-    let (piece, snapshots) = (pictures::piece(&runs.flows[0]), pictures::snapshots(&runs.flows[0]));
-    let made = runs.made().with_picture("figure_5", piece).with_picture("figure_6", snapshots);
-    Ok(made.with_film(pictures::film(&runs.flows[0])))
+    let (drawn, made) = (&runs.flows[0], runs.made());
+    let made = made.with_picture("figure_5", pictures::piece(drawn));
+    Ok(made.with_picture("figure_6", pictures::snapshots(drawn)).with_film(pictures::film(drawn)))
 }
 
 /// The whole pipe with fewer grains.
-///
-/// # Errors
-/// [`StudyError`] if the scene breaks.
 pub(crate) fn thin(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let thin = Overrides::new().set(&PACKING_FRACTION, 0.35);
     Ok(Runs::of("pipe", &thin, &[1, 2], false, lab)?.made())
@@ -68,6 +57,7 @@ pub(super) fn elastic(pipe: &Overrides) -> Overrides {
 }
 
 /// A run.
+#[derive(Default)]
 pub(super) struct Flow {
     seed: u64,
     grains: usize,
@@ -102,9 +92,6 @@ pub(super) fn late(course: &[f64]) -> Mean {
 ///
 /// The run uses neighbour lists: they give the lattice's trajectory to the bit (item `identity`), in a third of the time for so small
 /// a scene.
-///
-/// # Errors
-/// [`StudyError`] if the scene is bad or breaks while running.
 pub(super) fn flow(
     scene: &str,
     overrides: &Overrides,
@@ -124,20 +111,7 @@ pub(super) fn flow(
     let grains = checked.particles.grain_count();
     let radius = radii.sum::<f64>() / grains as f64;
     let bins = |width: f64| (length / (width * radius)).round() as usize;
-    let mut flow = Flow {
-        seed,
-        grains,
-        length,
-        times: vec![],
-        fano: vec![],
-        strongest_mode: vec![],
-        flow: vec![],
-        density: vec![],
-        directions: Directions::default(),
-        deepest: 0.0,
-        checksum: String::new(),
-        frames: vec![],
-    };
+    let mut flow = Flow { seed, grains, length, ..Flow::default() };
     loop {
         if method.steps().is_multiple_of(every) {
             let now = method.particles();
@@ -217,7 +191,7 @@ impl Runs {
             })
             .text("final state, CRC-32", |(_, flow)| format!("0x{}", flow.checksum))
             .frame("runs", title);
-        let made = Made::of([runs, self.course(), self.even(), self.summary()]);
+        let made = Made::of([runs, self.course(), self.summary()]);
         made.with_picture("density_map", pictures::map(&flows[0])).with_seeds(flows.iter().map(|it| it.seed))
     }
 
@@ -232,15 +206,6 @@ impl Runs {
             .number("time (s)", 2, |(_, (time, _))| **time)
             .number("Fano factor", 2, |(_, (_, fano))| **fano)
             .frame("course", "Variance over mean of the grains in a bin, over time")
-    }
-
-    /// The Fano factor of independent grains, at both ends of time.
-    fn even(&self) -> Frame {
-        let end = self.flows.iter().filter_map(|flow| flow.times.last()).copied().fold(0.0, f64::max);
-        Rows::of([0.0, end])
-            .number("time (s)", 2, |time| *time)
-            .number("Fano factor", 0, |_| 1.0)
-            .frame("even", "Fano factor above which there are waves")
     }
 
     fn summary(&self) -> Frame {

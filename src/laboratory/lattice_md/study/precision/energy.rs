@@ -39,58 +39,47 @@ const STEPPINGS: [Stepping; 4] = [
 ];
 
 /// A case over its seeds. Deviations of the energy are relative to its value at the first sample.
-struct EnergyCase {
-    stepping: Stepping,
-    precision: &'static str,
-    /// Mean times since the first sample of windows that widen with them.
-    times: Vec<f64>,
-    /// Root of the mean square deviation over the seeds and the samples of each window.
-    deviation: Vec<f64>,
+struct OverSeeds {
+    /// Mean times since the first sample of windows that widen with them, and the root of the mean square deviation over the seeds and the
+    /// samples of each.
+    deviations: Vec<(f64, f64)>,
     /// Largest magnitude of a run's deviation, deviation at its end, and change over the run by a straight line of least squares.
     spreads: [Spread; 3],
 }
 
 /// Every case, and the deviations over time. `progress` gets the share that is done.
-///
-/// # Errors
-/// [`StudyError`] if a scene breaks.
 pub(super) fn frames(progress: Progress<'_>) -> Result<[Frame; 2], StudyError> {
     let cases: Vec<(Stepping, &str)> =
         STEPPINGS.iter().flat_map(|&stepping| PRECISIONS.map(|precision| (stepping, precision))).collect();
     let runs: Vec<_> = cases.iter().flat_map(|&case| SEEDS.map(|seed| (case, seed))).collect();
     let deviations = Meter::new(runs.len() as f64, progress)
         .each(&runs, |&((stepping, precision), seed)| deviations(stepping, precision, seed, STEPS))?;
-    let cases = cases.into_iter().zip(deviations.chunks(SEEDS.len()));
-    let cases: Vec<EnergyCase> =
-        cases.map(|((stepping, precision), runs)| over_seeds(stepping, precision, runs)).collect();
-    let samples = cases.iter().flat_map(|case| {
-        let samples = case.times.iter().zip(&case.deviation);
-        samples.map(move |(&time, &deviation)| (case, time, deviation))
-    });
+    let over = deviations.chunks(SEEDS.len()).zip(&cases).map(|(runs, ((.., dt), _))| over_seeds(*dt, runs));
+    let cases: Vec<_> = cases.iter().zip(over).collect();
+    let samples = cases.iter().flat_map(|(case, over)| over.deviations.iter().map(move |at| (case, at)));
     let headings = ["largest deviation (10⁻⁶)", "deviation at the end (10⁻⁶)", "drift (10⁻⁶)"];
+    let with_error = |it: Spread| Cell::with_error(1e6 * it.mean, it.error.map(|error| 1e6 * error), 2);
     Ok([
         Rows::of(&cases)
-            .text("integrator", |case| case.stepping.0)
-            .number("dt", 4, |case| case.stepping.2)
-            .text("precision", |case| case.precision)
-            .cells(headings, |case| {
-                case.spreads.map(|it| Cell::with_error(1e6 * it.mean, it.error.map(|error| 1e6 * error), 2))
-            })
+            .text("integrator", |(((name, ..), _), _)| *name)
+            .number("dt", 4, |(((.., dt), _), _)| *dt)
+            .text("precision", |((_, precision), _)| *precision)
+            .cells(headings, |(_, over)| over.spreads.map(with_error))
             .frame("energy", "Energy over 100,000 undamped steps"),
         Rows::of(samples)
-            .text("integrator", |(case, ..)| case.stepping.0)
-            .number("dt", 4, |(case, ..)| case.stepping.2)
-            .text("precision", |(case, ..)| case.precision)
-            .number("time", 2, |(_, time, _)| *time)
-            .short("deviation", |(.., deviation)| *deviation)
+            .text("integrator", |(((name, ..), _), _)| *name)
+            .number("dt", 4, |(((.., dt), _), _)| *dt)
+            .text("precision", |((_, precision), _)| *precision)
+            .number("time", 2, |(_, (time, _))| *time)
+            .short("deviation", |(_, (_, deviation))| *deviation)
             .frame("deviations", "Root of the mean square deviation of the energy over time"),
     ])
 }
 
-/// Statistics over the runs of a case.
-fn over_seeds(stepping: Stepping, precision: &'static str, runs: &[Vec<f64>]) -> EnergyCase {
+/// Statistics over the runs of a case with a step `dt`.
+fn over_seeds(dt: f64, runs: &[Vec<f64>]) -> OverSeeds {
     let samples = runs.iter().map(Vec::len).min().unwrap_or(0);
-    let times: Vec<f64> = (1..=samples).map(|sample| (sample as u64 * STRIDE) as f64 * stepping.2).collect();
+    let times: Vec<f64> = (1..=samples).map(|sample| (sample as u64 * STRIDE) as f64 * dt).collect();
     let over =
         |figure: &dyn Fn(&[f64]) -> f64| Spread::of(&runs.iter().map(|run| figure(run)).collect::<Vec<_>>());
     let mean = |window: &Range<usize>, value: &dyn Fn(usize) -> f64| {
@@ -98,12 +87,10 @@ fn over_seeds(stepping: Stepping, precision: &'static str, runs: &[Vec<f64>]) ->
     };
     let mean_square =
         |sample: usize| runs.iter().map(|run| run[sample] * run[sample]).sum::<f64>() / runs.len() as f64;
-    let windows: Vec<Range<usize>> = windows(samples).collect();
-    EnergyCase {
-        stepping,
-        precision,
-        times: windows.iter().map(|window| mean(window, &|sample| times[sample])).collect(),
-        deviation: windows.iter().map(|window| mean(window, &mean_square).sqrt()).collect(),
+    let deviations =
+        windows(samples).map(|it| (mean(&it, &|sample| times[sample]), mean(&it, &mean_square).sqrt()));
+    OverSeeds {
+        deviations: deviations.collect(),
         spreads: [
             over(&|run| run.iter().fold(0.0, |largest, deviation| deviation.abs().max(largest))),
             over(&|run| run.last().copied().unwrap_or(0.0)),
@@ -163,10 +150,8 @@ mod tests {
     #[test]
     fn figures_are_over_seeds_and_windows() {
         let runs = [vec![1.0, -1.0, 3.0, 4.0], vec![1.0, 1.0, -3.0, -4.0]];
-        let case = over_seeds(STEPPINGS[0], "f64", &runs);
-        assert_eq!(case.deviation, [1.0, 1.0, 12.5f64.sqrt()]);
-        assert_eq!(case.times, [2.5, 5.0, 8.75]);
-        let [largest, last, drift] = case.spreads;
+        let OverSeeds { deviations, spreads: [largest, last, drift] } = over_seeds(STEPPINGS[0].2, &runs);
+        assert_eq!(deviations, [(2.5, 1.0), (5.0, 1.0), (8.75, 12.5f64.sqrt())]);
         assert_eq!((largest.mean, last.mean, last.highest), (4.0, 0.0, 4.0));
         assert!((drift.highest - 1.3 * 4.0).abs() < 1e-12, "{drift:?}");
     }

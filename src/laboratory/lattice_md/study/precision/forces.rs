@@ -25,43 +25,39 @@ const VARIANTS: [Variant; 7] = [
 /// Numbers of discs.
 const PARTICLES: [usize; 3] = [1000, 10_000, 100_000];
 
-/// Errors on one configuration.
-struct ForceError {
-    variant: &'static str,
+/// Errors of the variants on one configuration.
+struct Configuration {
     packing_fraction: f64,
     discs: usize,
     /// Longer side of the box (diameters).
     side: f64,
     contacts: f64,
     /// Root of the mean square error of a disc's force, and the largest error, over the root of the mean square of the forces.
-    errors: [f64; 2],
+    errors: [[f64; 2]; VARIANTS.len()],
 }
 
 /// Every variant on every configuration. `progress` gets the share that is done.
-///
-/// # Errors
-/// [`StudyError`] if a scene breaks.
 pub(super) fn frame(progress: impl Fn(f64)) -> Result<Frame, StudyError> {
-    let mut errors = Vec::new();
-    let cases = PACKING_FRACTIONS.len() * PARTICLES.len();
+    let mut all = Vec::new();
     for packing_fraction in PACKING_FRACTIONS {
         for particles in PARTICLES {
-            errors.extend(on_one_configuration(packing_fraction, particles)?);
-            progress(errors.len() as f64 / (cases * VARIANTS.len()) as f64);
+            all.push(on_one_configuration(packing_fraction, particles)?);
+            progress(all.len() as f64 / (PACKING_FRACTIONS.len() * PARTICLES.len()) as f64);
         }
     }
-    Ok(Rows::of(errors)
-        .number("packing fraction", 2, |error| error.packing_fraction)
-        .count("discs", |error| error.discs)
-        .number("side (diameters)", 0, |error| error.side)
-        .number("contacts a disc", 3, |error| error.contacts)
-        .text("variant", |error| error.variant)
-        .short("rms error", |error| error.errors[0])
-        .short("largest error", |error| error.errors[1])
+    let each = all.iter().flat_map(|it| VARIANTS.iter().zip(&it.errors).map(move |found| (it, found)));
+    Ok(Rows::of(each)
+        .number("packing fraction", 2, |(it, _)| it.packing_fraction)
+        .count("discs", |(it, _)| it.discs)
+        .number("side (diameters)", 0, |(it, _)| it.side)
+        .number("contacts a disc", 3, |(it, _)| it.contacts)
+        .text("variant", |(_, ((name, ..), _))| *name)
+        .short("rms error", |(_, (_, errors))| errors[0])
+        .short("largest error", |(_, (_, errors))| errors[1])
         .frame("forces", "Errors of the forces on one configuration"))
 }
 
-fn on_one_configuration(packing_fraction: f64, count: usize) -> Result<Vec<ForceError>, StudyError> {
+fn on_one_configuration(packing_fraction: f64, count: usize) -> Result<Configuration, StudyError> {
     let place = place(count, packing_fraction, 1);
     let discs = Gas::equilibrated(&place)?;
     let computed = |(_, precision, engine, coordinates): Variant| {
@@ -69,15 +65,18 @@ fn on_one_configuration(packing_fraction: f64, count: usize) -> Result<Vec<Force
         Gas::seen_from(coordinates, &overrides, Some(&discs))
     };
     let reference = computed(("f64, fast", "f64", "fast", CellRelative))?;
-    let exact = reference.method.forces();
-    let domain = reference.scenery.domain;
-    let contacts = contacts(&discs, &domain).len() as f64 / discs.len() as f64;
-    let side = domain.length(0).max(domain.length(1));
-    let variants = VARIANTS.into_iter().map(|variant| {
-        let errors = errors(&exact, &computed(variant)?.method.forces());
-        Ok(ForceError { variant: variant.0, packing_fraction, discs: discs.len(), side, contacts, errors })
-    });
-    variants.collect()
+    let (exact, domain) = (reference.method.forces(), reference.scenery.domain);
+    let mut found = [[0.0; 2]; VARIANTS.len()];
+    for (found, variant) in found.iter_mut().zip(VARIANTS) {
+        *found = errors(&exact, &computed(variant)?.method.forces());
+    }
+    Ok(Configuration {
+        packing_fraction,
+        discs: discs.len(),
+        side: domain.length(0).max(domain.length(1)),
+        contacts: contacts(&discs, &domain).len() as f64 / discs.len() as f64,
+        errors: found,
+    })
 }
 
 /// Root of the mean square of the errors of forces, and the largest, over that of the exact ones.
@@ -104,8 +103,8 @@ mod tests {
     #[test]
     fn errors_do_not_depend_on_the_box_but_from_its_corner() {
         let [small, large] = [400, 6400].map(|count| on_one_configuration(0.84, count).unwrap());
-        let rms = |errors: &[ForceError], name: &str| {
-            errors.iter().find(|error| error.variant == name).map(|error| error.errors[0]).unwrap()
+        let rms = |it: &Configuration, name: &str| {
+            it.errors[VARIANTS.iter().position(|(variant, ..)| *variant == name).unwrap()][0]
         };
         for name in ["mixed, fast", "f32, fast", "mixed, programs, from the cell"] {
             let ratio = rms(&large, name) / rms(&small, name);

@@ -12,9 +12,6 @@ use crate::results::{Lab, Made, Size};
 use gas::SEEDS;
 
 /// Errors of forces, energies of undamped gases, and divergence of trajectories.
-///
-/// # Errors
-/// [`Failure`] if a scene breaks.
 pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     // Shares of the time, about.
     let (forces_end, trajectories_end) = (0.3, 0.4);

@@ -25,51 +25,38 @@ const PARTED: f64 = 10.0;
 /// Distance (diameters) up to which the growth is exponential: beyond it discs collide with other partners.
 const LOST: f64 = 0.02;
 
-/// A variant beside the fast engine in f64.
-struct Divergence {
-    packing_fraction: f64,
-    variant: &'static str,
-    /// Root of the mean square distance between a disc and its twin, over discs and seeds, at each sample (diameters).
-    distance: Vec<f64>,
-    /// Rate of the exponential growth from [`PARTED`] on and up to [`LOST`] (1/time).
-    rate: Spread,
-}
-
 /// Every variant, and its distances over time.
-///
-/// # Errors
-/// [`StudyError`] if a scene breaks.
 pub(super) fn frames() -> Result<[Frame; 2], StudyError> {
     let starts: Vec<(f64, u64)> =
         PACKING_FRACTIONS.iter().flat_map(|&fraction| SEEDS.map(|seed| (fraction, seed))).collect();
     let runs = starts.par_iter().map(|&(fraction, seed)| distances(&place(PARTICLES, fraction, seed), STEPS));
     let runs: Vec<[Vec<f64>; RIVALS.len()]> = runs.collect::<Result<_, StudyError>>()?;
     let times: Vec<f64> = (1..=STEPS / STRIDE).map(|sample| (sample * STRIDE) as f64 * DT).collect();
+    // Packing fraction, variant; root of the mean square distance between a disc and its twin, over discs and seeds, at each sample; rate
+    // of the exponential growth from PARTED on and up to LOST.
     let mut all = vec![];
-    for (&packing_fraction, runs) in PACKING_FRACTIONS.iter().zip(runs.chunks(SEEDS.len())) {
+    for (fraction, runs) in PACKING_FRACTIONS.iter().zip(runs.chunks(SEEDS.len())) {
         for (rival, [variant, ..]) in RIVALS.into_iter().enumerate() {
-            let mean_square = |sample: usize| {
-                runs.iter().map(|run| run[rival][sample] * run[rival][sample]).sum::<f64>()
-                    / runs.len() as f64
-            };
+            let square = |sample: usize| runs.iter().map(move |run| run[rival][sample] * run[rival][sample]);
+            let mean_square = |sample: usize| square(sample).sum::<f64>() / runs.len() as f64;
+            let distances: Vec<f64> = (0..times.len()).map(|sample| mean_square(sample).sqrt()).collect();
             let rates: Vec<f64> = runs.iter().map(|run| growth(&times, &run[rival])).collect();
-            let distance = (0..times.len()).map(|sample| mean_square(sample).sqrt()).collect();
-            all.push(Divergence { packing_fraction, variant, distance, rate: Spread::of(&rates) });
+            all.push((*fraction, variant, distances, Spread::of(&rates)));
         }
     }
-    let lost = |it: &Divergence| Some(times[it.distance.iter().position(|&distance| distance >= LOST)?]);
-    let samples = all.iter().flat_map(|it| it.distance.iter().zip(&times).map(move |sample| (it, sample)));
+    let lost = |distances: &[f64]| Some(times[distances.iter().position(|&distance| distance >= LOST)?]);
+    let samples = all.iter().flat_map(|it| it.2.iter().zip(&times).map(move |sample| (it, sample)));
     Ok([
         Rows::of(&all)
-            .number("packing fraction", 2, |it| it.packing_fraction)
-            .text("variant", |it| it.variant)
-            .short(format!("distance after {STRIDE} steps (diameters)"), |it| it.distance[0])
-            .cell("rate of growth (1/time)", |it| Cell::with_error(it.rate.mean, it.rate.error, 3))
-            .number(format!("time until {LOST} diameters"), 1, |it| lost(it))
+            .number("packing fraction", 2, |(fraction, ..)| *fraction)
+            .text("variant", |(_, variant, ..)| *variant)
+            .short(format!("distance after {STRIDE} steps (diameters)"), |(_, _, distances, _)| distances[0])
+            .cell("rate of growth (1/time)", |(.., rate)| Cell::with_error(rate.mean, rate.error, 3))
+            .number(format!("time until {LOST} diameters"), 1, |(_, _, distances, _)| lost(distances))
             .frame("trajectories", "Divergence of trajectories from those of the fast engine in f64"),
         Rows::of(samples)
-            .number("packing fraction", 2, |(it, _)| it.packing_fraction)
-            .text("variant", |(it, _)| it.variant)
+            .number("packing fraction", 2, |((fraction, ..), _)| *fraction)
+            .text("variant", |((_, variant, ..), _)| *variant)
             .number("time", 1, |(_, (_, time))| **time)
             .short("distance (diameters)", |(_, (distance, _))| **distance)
             .frame("distances", "Distance of a disc from its twin over time"),
@@ -108,12 +95,10 @@ fn distances(place: &Overrides, steps: u64) -> Result<[Vec<f64>; RIVALS.len()], 
 /// Rate of exponential growth while a distance is neither rounding nor loss.
 fn growth(times: &[f64], distances: &[f64]) -> f64 {
     let first = distances.first().copied().unwrap_or(0.0);
-    let grown = |&&(_, distance): &&(f64, f64)| distance > PARTED * first;
-    let points: Vec<(f64, f64)> = times.iter().copied().zip(distances.iter().copied()).collect();
-    let growing =
-        points.iter().skip_while(|point| !grown(point)).take_while(|&&(_, distance)| distance < LOST);
+    let points = times.iter().zip(distances).skip_while(|(_, distance)| **distance <= PARTED * first);
+    let growing = points.take_while(|(_, distance)| **distance < LOST);
     let (times, logarithms): (Vec<f64>, Vec<f64>) =
-        growing.map(|&(time, distance)| (time, libm::log(distance))).unzip();
+        growing.map(|(&time, &distance)| (time, libm::log(distance))).unzip();
     slope(&times, &logarithms)
 }
 
