@@ -119,7 +119,7 @@ pub fn efficiency_table(question: &Question, machine: &MachineModel) -> Result<M
         .count("LMAX", |()| cells)
         .number("occupancy", 4, |()| discs as f64 / cells as f64)
         .text("machine", |()| machine.title())
-        .number("clock period (ns)", 3, |()| machine.clock_period_ns().value)
+        .number("clock period (ns)", 3, |()| machine.clock_period_ns())
         .number("clocks of the printed text on a scalar machine", 0, |()| printed.scalar_clocks())
         .number("clocks of the four parts of the printed text", 0, |()| {
             SOURCES_PARTS.iter().filter_map(|&part| printed.sums(Some(part)).1).sum::<f64>()
