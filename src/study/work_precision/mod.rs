@@ -12,10 +12,9 @@ mod measures;
 mod plan;
 pub mod section;
 
-pub use dataset::{Order, Reference, Run, Way, WorkPrecision};
+pub use dataset::{Way, WorkPrecision};
 pub use front::front;
 pub use measures::{Errors, Measure};
-pub use plan::Plan;
 
 use super::choice::Choice;
 use super::encounters::{Encounters, encounters};

@@ -32,7 +32,7 @@ const LATTICES: [usize; 3] = [1_000, 10_000, 100_000];
 pub(super) const OCCUPANCIES: [f64; 6] = [0.05, 0.1, 0.2, 0.25, 0.35, 0.5];
 
 /// Neighbour lists at a density: measured in a run, because no model knows them.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ListFigures {
     /// ρ on cells as wide as the radius.
     pub occupancy: f64,
