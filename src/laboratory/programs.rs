@@ -37,15 +37,12 @@ pub(crate) fn counted(scene: &str, programs: &[VectorProgram], machines: &[Machi
             .text("machine", |(machine, ..)| machine.title())
             .text("clock", |(_, clock, _)| clock.name())
             .number("clock periods", 0, |(.., clocks)| *clocks)
-            .number("ms", 3, |(machine, _, clocks)| 1e3 * (clocks * machine.clock_period_ns().value * 1e-9))
+            .number("ms", 3, |(machine, _, clocks)| 1e3 * (clocks * machine.clock_period_ns() * 1e-9))
             .frame("clocks", format!("{scene}: time of a step by every clock")),
     ]
 }
 
 /// Frames of some scenes, numbered in their order, with the listing of the first program.
-///
-/// # Errors
-/// [`Failure`] if there is no such machine.
 pub(crate) fn made(scenes: &[(&str, Prepared)]) -> Result<Made, Failure> {
     let machines: Vec<MachineModel> =
         MACHINES.iter().map(|name| machines::preset(name)).collect::<Result<_, _>>()?;

@@ -21,17 +21,17 @@ pub struct Own {
 }
 
 /// One case of a grid.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug)]
 pub struct Case {
-    #[serde(skip)]
     pub(super) labels: Vec<(String, Cell)>,
-    task: Task,
+    pub(super) task: Task,
     /// Threads, where wall time counts.
-    threads: Option<usize>,
+    pub(super) threads: Option<usize>,
 }
 
+/// Work of a case, which another process is told.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-enum Task {
+pub(super) enum Task {
     Scene {
         preset: String,
         overrides: Vec<String>,
@@ -104,9 +104,6 @@ impl Case {
     }
 
     /// Measures the case; `all` are the works that are no scenes, for a case that another process sent.
-    ///
-    /// # Errors
-    /// [`Failure`] if the scene is bad or breaks while running.
     pub(super) fn measure(&self, all: &[&Own]) -> Result<Reading, Failure> {
         let threads = self.threads.unwrap_or(1);
         let measured = match &self.task {

@@ -1,16 +1,12 @@
 //! Where a method ceases to work: by bisection between steps of a ladder.
 
-use serde::{Deserialize, Serialize};
-
 /// The edge of what works along the step.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Edge {
     /// Not even the smallest step works.
     Below,
     /// The largest step that was found to work and the smallest that was not (time), as far apart as the tolerance lets them.
     Between([f64; 2]),
-    /// The largest step works.
     Above,
 }
 
@@ -26,9 +22,6 @@ impl Edge {
 
 /// Finds the edge between rising steps, beginning at the place `guess` of the first that fails, until it lies within a part
 /// `tolerance` of the step.
-///
-/// # Errors
-/// Those of `works`.
 pub fn edge<E>(
     steps: &[f64],
     guess: usize,

@@ -20,53 +20,38 @@ pub enum Class {
     EnergyLoss,
     /// It comes to its end with more energy than there should be.
     EnergyGrowth,
-    /// A contact is too deep.
     Penetration,
     /// A particle moves so far in a step that contacts pass unseen.
     MaskOutrun,
     /// Two particles are where one may be.
     SharedCell,
-    /// A particle leaves the box.
     ParticleLost,
     /// Numbers that are none.
     NonFinite,
-    /// Something else stops it.
     Stopped,
     /// The scene cannot be, whatever the step.
     Refused,
 }
 
 impl Class {
-    /// Every class, from what works on.
-    pub const ALL: [Class; 11] = [
-        Class::Works,
-        Class::Silent,
-        Class::EnergyLoss,
-        Class::EnergyGrowth,
-        Class::Penetration,
-        Class::MaskOutrun,
-        Class::SharedCell,
-        Class::ParticleLost,
-        Class::NonFinite,
-        Class::Stopped,
-        Class::Refused,
+    /// Every class with its name, from what works on.
+    pub const ALL: [(Class, &'static str); 11] = [
+        (Class::Works, "works"),
+        (Class::Silent, "wrong but silent"),
+        (Class::EnergyLoss, "energy lost"),
+        (Class::EnergyGrowth, "energy growth"),
+        (Class::Penetration, "penetration"),
+        (Class::MaskOutrun, "mask outrun"),
+        (Class::SharedCell, "two in a cell"),
+        (Class::ParticleLost, "particle lost"),
+        (Class::NonFinite, "non-finite"),
+        (Class::Stopped, "stopped otherwise"),
+        (Class::Refused, "no such scene"),
     ];
 
-    /// What it is called.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Class::Works => "works",
-            Class::Silent => "wrong but silent",
-            Class::EnergyLoss => "energy lost",
-            Class::EnergyGrowth => "energy growth",
-            Class::Penetration => "penetration",
-            Class::MaskOutrun => "mask outrun",
-            Class::SharedCell => "two in a cell",
-            Class::ParticleLost => "particle lost",
-            Class::NonFinite => "non-finite",
-            Class::Stopped => "stopped otherwise",
-            Class::Refused => "no such scene",
-        }
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        Class::ALL.iter().find(|(class, _)| *class == self).map_or("", |(_, name)| name)
     }
 
     /// Whether the run comes to its end.
@@ -96,20 +81,15 @@ impl Class {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Foreseen {
-    /// Nothing.
     Nothing,
-    /// It warns.
     Warned,
-    /// It refuses to run it.
     Refused,
 }
 
 /// A run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ran {
-    /// What was said before.
     pub foreseen: Foreseen,
-    /// How it ended.
     pub end: End,
 }
 
@@ -118,7 +98,6 @@ pub struct Ran {
 pub enum End {
     /// It was never begun, or stopped, and why.
     Broken(Class, String),
-    /// It came to its end.
     Whole {
         /// Means over its second half.
         means: Means,
@@ -132,23 +111,14 @@ pub enum End {
 }
 
 /// A place of a map.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Cell {
-    /// What became of it.
     pub class: Class,
     /// What was seen, in a line.
     pub what: String,
-    /// What was said before.
     pub foreseen: Foreseen,
     /// Names of the checks that warned on the way.
     pub warned: Vec<String>,
-}
-
-impl Cell {
-    /// Whether the program says something of it, before the run or after.
-    pub fn is_said(&self) -> bool {
-        self.foreseen != Foreseen::Nothing || !self.warned.is_empty()
-    }
 }
 
 impl Ran {
