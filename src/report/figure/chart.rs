@@ -19,6 +19,11 @@ impl Chart {
         Chart { x, y, series: vec![], bands: vec![] }
     }
 
+    /// Axis along which points spread.
+    pub(super) fn spreads_along(&self) -> (&Axis, Along) {
+        if matches!(self.y.scale, Scale::Names(_)) { (&self.x, Along::X) } else { (&self.y, Along::Y) }
+    }
+
     /// Adds a series.
     pub fn series(
         self,
@@ -129,7 +134,7 @@ pub enum Style {
     Ribbon,
 }
 
-/// A point of a series. Its spread is the lowest and highest observed or credible value of y.
+/// A point of a series. Its spread is the lowest and highest observed or credible value of y; of x on a chart with names on its y axis.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Point {
     pub(crate) x: f64,

@@ -43,14 +43,15 @@ pub fn check(picture: &Picture) -> Result<(), String> {
     }
 }
 
-fn check_chart(Chart { x, y, series, bands }: &Chart) -> Result<(), String> {
+fn check_chart(chart: &Chart) -> Result<(), String> {
+    let (Chart { x, y, series, bands }, (spreads, _)) = (chart, chart.spreads_along());
     [x, y].into_iter().try_for_each(check_axis)?;
     for series in series {
         let place = |i: usize, what: &str| format!("{what} of point {i} of `{}`", series.name);
         for (i, point) in series.points.iter().enumerate() {
             showable(x, point.x, || place(i, "x"))?;
             showable(y, point.y, || place(i, "y"))?;
-            point.spread.iter().flatten().try_for_each(|end| showable(y, *end, || place(i, "the spread")))?;
+            point.spread.iter().flatten().try_for_each(|end| showable(spreads, *end, || place(i, "the spread")))?;
         }
     }
     if let Some(band) = bands.iter().find(|band| !matches!(band.ends, [low, high] if low <= high)) {

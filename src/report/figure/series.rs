@@ -3,7 +3,7 @@
 use super::plane::Plane;
 use super::style::{CURVE, Look, MARKERS, PAPER, has_markers};
 use super::writer::{Svg, bends, stroke, tenths, through};
-use super::{Point, Series, Style};
+use super::{Point, Scale, Series, Style};
 
 /// Half the width of the ends of an error bar (pixels). A script of the page knows it.
 const CAP: f64 = 4.5;
@@ -42,10 +42,14 @@ pub fn curve(svg: &mut Svg, plane: &Plane, look: &Look, series: &Series) {
 /// Adds the error bars and markers of a series, with its name. A single point has a marker in any case, and no marker is cut.
 pub fn points(svg: &mut Svg, plane: &Plane, look: &Look, series: &Series) {
     let mut bars = String::new();
-    for Point { x, spread, .. } in series.points.iter().filter(|_| look.style != Style::Ribbon) {
-        if let Some([low, high]) = spread.map(|ends| ends.map(|end| plane.place(*x, end))) {
-            let (left, cap) = (low[0] - CAP, 2.0 * CAP);
-            bars += &format!("M{left:.2} {:.2}h{cap}m-{CAP} 0V{:.2}m-{CAP} 0h{cap}", low[1], high[1]);
+    for &Point { x, y, spread } in series.points.iter().filter(|_| look.style != Style::Ribbon) {
+        let (Some(ends), cap) = (spread, 2.0 * CAP) else { continue };
+        if matches!(plane.y.scale, Scale::Names(_)) {
+            let [[left, up], [right, _]] = ends.map(|end| plane.place(end, y));
+            bars += &format!("M{left:.2} {:.2}v{cap}m0-{CAP}H{right:.2}m0-{CAP}v{cap}", up - CAP);
+        } else {
+            let [[across, low], [_, high]] = ends.map(|end| plane.place(x, end));
+            bars += &format!("M{:.2} {low:.2}h{cap}m-{CAP} 0V{high:.2}m-{CAP} 0h{cap}", across - CAP);
         }
     }
     let is_inside =
