@@ -128,8 +128,6 @@ pub enum Style {
     Points,
     /// Points joined by a line.
     Joined,
-    /// Steps of a histogram: each point is the middle of a bin.
-    Steps,
     /// A dashed line on a ground between the ends of the spreads: a mean with its error.
     Ribbon,
 }
@@ -182,16 +180,6 @@ impl Band {
     /// Marks the plane between two values of y.
     pub fn of_y(label: &str, ends: [f64; 2]) -> Band {
         Band { along: Along::Y, ..Band::of_x(label, ends) }
-    }
-
-    /// Marks one value of x by a line, with the label above the plane.
-    pub fn at_x(label: &str, x: f64) -> Band {
-        Band::of_x(label, [x, x])
-    }
-
-    /// Marks one value of y by a line.
-    pub fn at_y(label: &str, y: f64) -> Band {
-        Band::of_y(label, [y, y])
     }
 
     /// Reports if it is a line.

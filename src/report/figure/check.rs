@@ -101,22 +101,12 @@ fn check_drawing(Drawing { window, width, shapes, shades, .. }: &Drawing) -> Res
     }
     for (i, shape) in shapes.iter().enumerate() {
         let place = || format!("a number of shape {i}");
-        if let Shape::Disc { tint: Tint::Shade(shade), .. }
-        | Shape::Rectangle { tint: Tint::Shade(shade), .. } = shape
-        {
+        if let Shape::Disc { tint: Tint::Shade(shade), .. } = shape {
             finite(*shade, place)?;
         }
-        let numbers = match shape {
-            Shape::Disc { centre: [x, y], radius, .. } => [x, y, radius, radius],
-            Shape::Rectangle { corners: [[a, b], [c, d]], .. } | Shape::Line { ends: [[a, b], [c, d]] } => {
-                [a, b, c, d]
-            }
-            Shape::Text { centre: [x, y], height, .. } => [x, y, height, height],
-        };
-        for &value in numbers {
+        for (value, low) in shape.extent().into_iter().flat_map(|corner| corner.into_iter().zip([left, low])) {
             finite(value, place)?;
-            let pixels =
-                width / (right - left) * value.abs().min((value - left).abs()).min((value - low).abs());
+            let pixels = width / (right - left) * (value - low).abs();
             if pixels > FARTHEST || pixels.is_nan() {
                 let [value, pixels] = [significant(value, 6), significant(pixels, 2)];
                 return Err(format!("{} is {value}, which is {pixels} pixels on the picture", place()));

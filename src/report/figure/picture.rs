@@ -128,11 +128,10 @@ pub(crate) enum Shape {
         radius: f64,
         tint: Tint,
     },
-    /// A box from its lower left to its upper right corner.
+    /// A box with an outline, from its lower left to its upper right corner.
     Rectangle {
         corners: [[f64; 2]; 2],
         tint: Tint,
-        outlined: bool,
     },
     Line {
         ends: [[f64; 2]; 2],
@@ -143,6 +142,17 @@ pub(crate) enum Shape {
         height: f64,
         words: String,
     },
+}
+
+impl Shape {
+    /// Opposite corners of the box around it.
+    pub(super) fn extent(&self) -> [[f64; 2]; 2] {
+        match *self {
+            Shape::Disc { centre: [x, y], radius: most, .. }
+            | Shape::Text { centre: [x, y], height: most, .. } => [[x - most, y - most], [x + most, y + most]],
+            Shape::Rectangle { corners: ends, .. } | Shape::Line { ends } => ends,
+        }
+    }
 }
 
 /// A filling.

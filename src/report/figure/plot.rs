@@ -4,7 +4,7 @@ use super::axis::Span;
 use super::plane::{self, Head, Plane};
 use super::style::{self, Colour, Look};
 use super::writer::{Svg, at};
-use super::{Along, Axis, Band, Chart, Point, Scale, Series, font, series};
+use super::{Along, Axis, Band, Chart, Scale, Series, font, series};
 
 /// Width of a line that marks a value (pixels).
 const LINE: f64 = 1.6;
@@ -18,24 +18,22 @@ const BETWEEN: f64 = 9.0;
 /// Draws charts with the axes of the first and one legend.
 pub fn draw(title: &str, panels: &[(&str, &Chart)]) -> Result<Svg, String> {
     let charts = || panels.iter().map(|panel| panel.1);
-    let values = |along: Along| {
-        let of = move |chart: &'_ Chart| {
+    // Points, their spreads and the ends of bands along an axis.
+    let values = |along: Along, axis: &Axis| {
+        let mut all = vec![];
+        for chart in charts() {
             let spreads = chart.spreads_along().1 == along;
-            let points = chart.series.iter().flat_map(|series| series.points.clone());
-            let value = move |point: Point| if along == Along::X { point.x } else { point.y };
-            points.flat_map(move |it| it.spread.filter(|_| spreads).into_iter().flatten().chain([value(it)]))
-                .collect::<Vec<_>>()
-        };
-        charts().flat_map(of)
-    };
-    let edges = |along: Along, axis: &Axis| {
-        let least = if axis.scale == Scale::Logarithmic { 0.0 } else { f64::NEG_INFINITY };
-        let of = charts().flat_map(|chart| &chart.bands).filter(move |band| band.along == along);
-        of.flat_map(|band| band.ends).filter(move |&end| end.is_finite() && end > least)
+            for point in chart.series.iter().flat_map(|series| &series.points) {
+                all.push(if along == Along::X { point.x } else { point.y });
+                all.extend(point.spread.filter(|_| spreads).into_iter().flatten());
+            }
+            let ends = chart.bands.iter().filter(|band| band.along == along).flat_map(|band| band.ends);
+            all.extend(ends.filter(|end| end.is_finite() && (*end > 0.0 || axis.scale != Scale::Logarithmic)));
+        }
+        all.into_iter()
     };
     let [x, y] = panels.first().map(|(_, chart)| [&chart.x, &chart.y]).ok_or("there are no panels")?;
-    let y = Span::new(y, values(Along::Y).chain(edges(Along::Y, y)))?;
-    let x = Span::new(x, values(Along::X).chain(edges(Along::X, x)))?;
+    let (x, y) = (Span::new(x, values(Along::X, x))?, Span::new(y, values(Along::Y, y))?);
 
     // A series of several panels has one look, and one entry in the legend.
     let (mut all, mut of_panels) = (Vec::<&Series>::new(), vec![]);

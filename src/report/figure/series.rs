@@ -27,10 +27,7 @@ pub fn curve(svg: &mut Svg, plane: &Plane, look: &Look, series: &Series) {
     if look.style == Style::Points || series.points.len() < 2 {
         return;
     }
-    let mut places: Vec<_> = series.points.iter().map(|it| plane.place(it.x, it.y)).collect();
-    if look.style == Style::Steps {
-        places = steps(&places);
-    }
+    let places: Vec<_> = series.points.iter().map(|it| plane.place(it.x, it.y)).collect();
     let d = through(&bends(&places));
     if has_markers(look.style) {
         line(svg, look, "", &d);
@@ -105,28 +102,4 @@ fn marker(svg: &mut Svg, look: &Look) -> String {
         stroke(rim, width), MARKERS[marker]
     ));
     name
-}
-
-/// Returns the outline of a histogram whose bins have these middles: each bin reaches halfway to its neighbours, the outermost are as
-/// wide on the outside as on the inside.
-fn steps(middles: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    let mut edges: Vec<f64> = middles.windows(2).map(|pair| 0.5 * (pair[0][0] + pair[1][0])).collect();
-    let [first, last] = [0, middles.len() - 1].map(|i| middles[i][0]);
-    let ends = [2.0 * first - edges.first().unwrap_or(&first), 2.0 * last - edges.last().unwrap_or(&last)];
-    edges.insert(0, ends[0]);
-    edges.push(ends[1]);
-    let bin = |(&[_, y], ends): (&[f64; 2], &[f64])| [[ends[0], y], [ends[1], y]];
-    middles.iter().zip(edges.windows(2)).flat_map(bin).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn bins_reach_halfway_to_their_neighbours() {
-        let outline = steps(&[[0.0, 1.0], [2.0, 3.0], [4.0, 2.0]]);
-        assert_eq!(outline, [[-1.0, 1.0], [1.0, 1.0], [1.0, 3.0], [3.0, 3.0], [3.0, 2.0], [5.0, 2.0]]);
-        assert_eq!(steps(&[[1.0, 2.0]]), [[1.0, 2.0], [1.0, 2.0]]);
-    }
 }

@@ -100,10 +100,10 @@ pub fn panels() -> Figure {
             .series("list and queue", Style::Joined, 0, curve(0.1).step_by(5))
             .series("grid and tournament", Style::Joined, 1, curve(0.3).step_by(5))
             .series("n log n", Style::Dashed, 6, curve(0.2))
-            .band(Band::at_x("L1", 300.0))
-            .band(Band::at_x("L2", 9000.0))
-            .band(Band::at_x("L3", 11000.0))
-            .band(Band::at_y("as it stands", 3.0))
+            .band(Band::of_x("L1", [300.0; 2]))
+            .band(Band::of_x("L2", [9000.0; 2]))
+            .band(Band::of_x("L3", [11000.0; 2]))
+            .band(Band::of_y("as it stands", [3.0; 2]))
     };
     let all = [("5×5", 1.0), ("7×7", 2.0), ("round, 24 places", 0.4)]
         .map(|(name, factor)| (name.to_owned(), chart(factor)));
@@ -125,7 +125,7 @@ pub fn names() -> Figure {
     let chart =
         Chart::of(Axis::names("map", maps), Axis::linear("edge of what works over the step of theory", None))
             .series("measured", Style::Points, 0, points)
-            .band(Band::at_y("theory", 1.0));
+            .band(Band::of_y("theory", [1.0; 2]));
     figure("names", "Edge over theory", Picture::Chart(chart))
 }
 
@@ -135,7 +135,7 @@ pub fn named_rows() -> Figure {
     for point in &mut series[0].points {
         *point = Point::at(point.y, point.x);
     }
-    let chart = Chart { x: y, y: x, series, bands: vec![Band::at_x("theory", 1.0)] };
+    let chart = Chart { x: y, y: x, series, bands: vec![Band::of_x("theory", [1.0; 2])] };
     figure("named-rows", "Edge over theory", Picture::Chart(chart))
 }
 
@@ -168,7 +168,7 @@ pub fn mask() -> Figure {
                 }
             };
             let corners = [[x - 0.5, y - 0.5], [x + 0.5, y + 0.5]];
-            shapes.push(Shape::Rectangle { corners, tint, outlined: true });
+            shapes.push(Shape::Rectangle { corners, tint });
             shapes.push(Shape::Text { centre: [x, y], height: 0.26, words });
         }
     }
