@@ -30,7 +30,7 @@ const WIDE: f64 = 1800.0;
 /// Least radius of a particle; radius of one of a few bodies, which have none, and of where it was (pixels).
 const LEAST: f64 = 1.0;
 const LARGE_POINT: f64 = 9.0;
-const TRACE: f64 = 2.0;
+const TRACE: f64 = 1.6;
 /// Thickness of the tracks of bodies that are told apart, in grey print too (parts of the usual one).
 const THICKNESS: [f64; 3] = [1.0, 0.5, 1.5];
 /// Letters of a run's name in a title, at most.
@@ -170,8 +170,7 @@ fn state(
         Shape::Disc { centre: place(flat(trace)), radius, tint: Tint::Hue(hue) }
     });
     // Grains come before walls, and have values.
-    let seen =
-        || all.iter().enumerate().step_by(every).filter(|(_, particle)| is_inside(particle.position));
+    let seen = || all.iter().enumerate().step_by(every).filter(|(_, particle)| is_inside(particle.position));
     let shade = |value: &f64| Tint::Shade(((value - low) / (high - low)).clamp(0.0, 1.0));
     let shapes = seen().map(|(at, particle)| Shape::Disc {
         centre: place(flat(particle.position)),

@@ -121,6 +121,8 @@ impl Series {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Style {
     /// A line, for a model.
+    // Results of an older version, which had steps, are read until they are made again.
+    #[serde(alias = "Steps")]
     Line,
     /// A dashed line, for a rival or a limit.
     Dashed,

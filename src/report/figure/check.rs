@@ -51,7 +51,11 @@ fn check_chart(chart: &Chart) -> Result<(), String> {
         for (i, point) in series.points.iter().enumerate() {
             showable(x, point.x, || place(i, "x"))?;
             showable(y, point.y, || place(i, "y"))?;
-            point.spread.iter().flatten().try_for_each(|end| showable(spreads, *end, || place(i, "the spread")))?;
+            point
+                .spread
+                .iter()
+                .flatten()
+                .try_for_each(|end| showable(spreads, *end, || place(i, "the spread")))?;
         }
     }
     if let Some(band) = bands.iter().find(|band| !matches!(band.ends, [low, high] if low <= high)) {
@@ -104,7 +108,8 @@ fn check_drawing(Drawing { window, width, shapes, shades, .. }: &Drawing) -> Res
         if let Shape::Disc { tint: Tint::Shade(shade), .. } = shape {
             finite(*shade, place)?;
         }
-        for (value, low) in shape.extent().into_iter().flat_map(|corner| corner.into_iter().zip([left, low])) {
+        for (value, low) in shape.extent().into_iter().flat_map(|corner| corner.into_iter().zip([left, low]))
+        {
             finite(value, place)?;
             let pixels = width / (right - left) * (value - low).abs();
             if pixels > FARTHEST || pixels.is_nan() {

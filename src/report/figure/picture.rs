@@ -149,7 +149,9 @@ impl Shape {
     pub(super) fn extent(&self) -> [[f64; 2]; 2] {
         match *self {
             Shape::Disc { centre: [x, y], radius: most, .. }
-            | Shape::Text { centre: [x, y], height: most, .. } => [[x - most, y - most], [x + most, y + most]],
+            | Shape::Text { centre: [x, y], height: most, .. } => {
+                [[x - most, y - most], [x + most, y + most]]
+            }
             Shape::Rectangle { corners: ends, .. } | Shape::Line { ends } => ends,
         }
     }

@@ -28,7 +28,9 @@ pub fn draw(title: &str, panels: &[(&str, &Chart)]) -> Result<Svg, String> {
                 all.extend(point.spread.filter(|_| spreads).into_iter().flatten());
             }
             let ends = chart.bands.iter().filter(|band| band.along == along).flat_map(|band| band.ends);
-            all.extend(ends.filter(|end| end.is_finite() && (*end > 0.0 || axis.scale != Scale::Logarithmic)));
+            all.extend(
+                ends.filter(|end| end.is_finite() && (*end > 0.0 || axis.scale != Scale::Logarithmic)),
+            );
         }
         all.into_iter()
     };
