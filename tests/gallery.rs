@@ -84,17 +84,20 @@ fn lessons_have_numbers_and_run_times() {
     let pages = fs::read_dir(root().join("pages")).unwrap().map(|page| page.unwrap().path());
     let anchor = |path: std::path::PathBuf| {
         let text = fs::read_to_string(&path).unwrap();
-        let title = text.lines().find_map(|line| line.strip_prefix("title = \"")).unwrap().trim_end_matches('"');
+        let title =
+            text.lines().find_map(|line| line.strip_prefix("title = \"")).unwrap().trim_end_matches('"');
         let kept = title.to_lowercase();
         let kept = kept.chars().filter(|it| it.is_alphanumeric() || " -".contains(*it));
         kept.collect::<String>().replace(' ', "-")
     };
     let anchors: BTreeSet<String> = pages.map(anchor).collect();
     let text = page();
-    let lessons: Vec<&str> = text.split("*Learned:*").skip(1).map(|it| it.split("\n\n").next().unwrap()).collect();
+    let lessons: Vec<&str> =
+        text.split("*Learned:*").skip(1).map(|it| it.split("\n\n").next().unwrap()).collect();
     assert_eq!(lessons.len(), 12);
     for lesson in lessons {
-        let (said, time) = lesson.split_once(" Run time: ").unwrap_or_else(|| panic!("no run time: {lesson}"));
+        let (said, time) =
+            lesson.split_once(" Run time: ").unwrap_or_else(|| panic!("no run time: {lesson}"));
         let seconds = time.trim_end().strip_suffix(" s.").and_then(|it| it.parse::<u32>().ok());
         assert!(seconds.is_some(), "{time}");
         let own = said.split("([report]").next().unwrap();

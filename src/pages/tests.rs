@@ -65,6 +65,31 @@ fn a_page_is_filled_from_frames() {
     assert_eq!(table.notes, ["All 3."]);
 }
 
+/// Words in the place of a coordinate are names on its axis: from the left, or from above.
+#[test]
+fn words_are_names_on_an_axis() {
+    let chart = |x: &str, y: &str| {
+        let template = TEMPLATE.replace(
+            "x = \"steps\", y = \"error\", error = \"error / 2\", by = \"scheme\"",
+            &format!("x = \"{x}\", y = \"{y}\", spread = [\"steps\", \"2 * steps\"]"),
+        );
+        let section =
+            filled(&template.replace(", unit = \"J\" }\nseries", " }\nseries").replace("band = ", "#"))
+                .unwrap();
+        let Picture::Chart(chart) = section.figures[0].picture.clone() else { panic!("{section:?}") };
+        crate::report::figure::svg(&chart.clone().figure("x", "X")).unwrap();
+        chart
+    };
+    let across = chart("scheme", "error");
+    assert_eq!(across.x, Axis::names("steps", ["a", "b"]));
+    assert_eq!(across.series[0].points.iter().map(|it| it.x).collect::<Vec<_>>(), [0.0, 0.0, 1.0]);
+    let down = chart("steps", "scheme");
+    assert_eq!(down.y, Axis::names("error", ["b", "a"]));
+    let points: Vec<_> = down.series[0].points.iter().map(|it| (it.x, it.y, it.spread)).collect();
+    let expected = [(1.0, 1.0), (2.0, 1.0), (4.0, 0.0)].map(|(x, y)| (x, y, Some([x, 2.0 * x])));
+    assert_eq!(points, expected);
+}
+
 /// A figure for each element of a list, which its texts and expressions call `it`.
 #[test]
 fn a_figure_is_repeated() {
