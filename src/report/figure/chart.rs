@@ -1,9 +1,9 @@
 //! Curves and points over two axes.
 
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 
 /// A chart. Each point must have a place on both axes: a finite one, and above zero on a logarithmic axis.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Chart {
     pub(crate) x: Axis,
     pub(crate) y: Axis,
@@ -49,7 +49,7 @@ impl Chart {
 }
 
 /// An axis. It is fitted to its data where it has no limits.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
     pub(crate) label: String,
     pub(crate) unit: Option<String>,
@@ -85,7 +85,7 @@ impl Axis {
 }
 
 /// Positions of numbers on an axis.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Scale {
     Linear,
     Logarithmic,
@@ -94,7 +94,7 @@ pub(crate) enum Scale {
 }
 
 /// A named set of points.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Series {
     /// Empty for no entry in the legend.
     pub name: String,
@@ -118,11 +118,9 @@ impl Series {
 }
 
 /// Look of a series.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 pub enum Style {
     /// A line, for a model.
-    // Results of an older version, which had steps, are read until they are made again.
-    #[serde(alias = "Steps")]
     Line,
     /// A dashed line, for a rival or a limit.
     Dashed,
@@ -135,7 +133,7 @@ pub enum Style {
 }
 
 /// A point of a series. Its spread is the lowest and highest observed or credible value of y; of x on a chart with names on its y axis.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
     pub(crate) x: f64,
     pub(crate) y: f64,
@@ -165,7 +163,7 @@ impl From<(f64, f64, [f64; 2])> for Point {
 ///
 /// Bands between values of x are grey, such as densities that no configuration has; those between values of y are a light ground, such as
 /// errors that are small enough.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Band {
     pub(crate) label: String,
     /// Equal ones make a line.
@@ -191,7 +189,7 @@ impl Band {
 }
 
 /// One of two axes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Along {
     X,
     Y,

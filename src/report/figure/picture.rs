@@ -1,10 +1,9 @@
 //! Pictures and the words beside them.
 
 use super::chart::{Axis, Chart};
-use serde::{Deserialize, Serialize};
 
 /// A picture with a name for files, one line that says what it shows, and further notes for the reader.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
     pub(crate) name: String,
     pub(crate) title: String,
@@ -13,7 +12,7 @@ pub struct Figure {
 }
 
 /// The content of a figure.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Picture {
     /// Curves and points over two axes.
     Chart(Chart),
@@ -86,7 +85,7 @@ impl Figure {
 /// A heat map, such as the density over place and time.
 ///
 /// The limits of its axes are the outer edges of the outermost cells; an axis of names needs none.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Map {
     pub(crate) x: Axis,
     pub(crate) y: Axis,
@@ -97,24 +96,22 @@ pub struct Map {
 }
 
 /// A drawing in its own coordinates: x to the right, y upwards.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Drawing {
     /// Lower left and upper right corner of the visible part.
     pub(crate) window: [[f64; 2]; 2],
     /// Width of the picture (pixels); its height follows from the window.
     pub(crate) width: f64,
     /// Shapes from back to front. They are not stored with a section: its picture is.
-    #[serde(skip)]
     pub(crate) shapes: Vec<Shape>,
     /// Lowest and highest value of the shades, and their quantity with its unit; none where shades mean nothing.
     pub(crate) shades: Option<(f64, f64, String)>,
     /// Scale bar and gravity below the drawing; none where the coordinates mean nothing.
-    #[serde(default)]
     pub(crate) guide: Option<Guide>,
 }
 
 /// Unit and direction of gravity in a drawing's coordinates.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Guide {
     pub unit: String,
     pub gravity: Option<[f64; 2]>,
