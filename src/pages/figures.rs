@@ -168,10 +168,11 @@ fn figure(spec: &FigureSpec, fill: &Filling<'_>, shown: &Shown<'_>) -> Result<Fi
             };
             match (&spec.map, &spec.panels) {
                 (Some(map), _) => Picture::Map(mapped(map, axes, fill)?),
-                (None, None) => Picture::Chart(chart(spec, axes, fill)?),
-                (None, Some(all)) => {
-                    let panels = elements(all, fill)?.into_iter().map(panel);
-                    Picture::Panels(panels.collect::<Result<_, PageError>>()?)
+                (None, panels) => {
+                    let all = panels
+                        .as_ref()
+                        .map_or_else(|| Ok(vec![fill.scope.clone()]), |all| elements(all, fill))?;
+                    Picture::Charts(all.into_iter().map(panel).collect::<Result<_, PageError>>()?)
                 }
             }
         }

@@ -29,8 +29,7 @@ const FARTHEST: f64 = 1e6;
 /// Finds the first fault of a picture.
 pub fn check(picture: &Picture) -> Result<(), String> {
     match picture {
-        Picture::Chart(chart) => check_chart(chart),
-        Picture::Panels(panels) => {
+        Picture::Charts(panels) => {
             let first = &panels.first().ok_or("there is nothing in it")?.1;
             match panels.iter().find(|(_, chart)| chart.x != first.x || chart.y != first.y) {
                 Some((name, _)) => Err(format!("panel `{name}` has other axes than the first panel")),

@@ -14,10 +14,8 @@ pub struct Figure {
 /// The content of a figure.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Picture {
-    /// Curves and points over two axes.
-    Chart(Chart),
-    /// Small multiples: charts beside each other, each with its name, on the same axes and with one legend.
-    Panels(Vec<(String, Chart)>),
+    /// Curves and points over two axes: a chart without a name, or several beside each other, on the same axes and with one legend.
+    Charts(Vec<(String, Chart)>),
     /// A number for each place of a grid, as a colour.
     Map(Map),
     /// Discs, cells and words at their places.
@@ -41,7 +39,7 @@ impl Picture {
 impl Chart {
     /// Returns the figure of this chart, without a caption.
     pub fn figure(self, name: impl Into<String>, title: impl Into<String>) -> Figure {
-        Picture::Chart(self).figure(name, title)
+        Picture::Charts(vec![(String::new(), self)]).figure(name, title)
     }
 }
 
@@ -55,8 +53,7 @@ impl Figure {
     pub(crate) fn has_points(&self) -> bool {
         let has = |chart: &Chart| chart.series.iter().any(|series| !series.points.is_empty());
         match &self.picture {
-            Picture::Chart(chart) => has(chart),
-            Picture::Panels(panels) => panels.iter().any(|(_, chart)| has(chart)),
+            Picture::Charts(panels) => panels.iter().any(|(_, chart)| has(chart)),
             Picture::Map(_) | Picture::Drawing(_) | Picture::Drawn { .. } => true,
         }
     }
@@ -64,8 +61,7 @@ impl Figure {
     /// Names in the legend of a chart.
     pub fn legend(&self) -> Vec<&str> {
         let charts: Vec<&Chart> = match &self.picture {
-            Picture::Chart(chart) => vec![chart],
-            Picture::Panels(panels) => panels.iter().map(|(_, chart)| chart).collect(),
+            Picture::Charts(panels) => panels.iter().map(|(_, chart)| chart).collect(),
             Picture::Map(_) | Picture::Drawing(_) | Picture::Drawn { .. } => vec![],
         };
         let mut names: Vec<&str> = vec![];

@@ -16,8 +16,8 @@ const BESIDE: f64 = 18.0;
 const BETWEEN: f64 = 9.0;
 
 /// Draws charts with the axes of the first and one legend.
-pub fn draw(title: &str, panels: &[(&str, &Chart)]) -> Result<Svg, String> {
-    let charts = || panels.iter().map(|panel| panel.1);
+pub fn draw(title: &str, panels: &[(String, Chart)]) -> Result<Svg, String> {
+    let charts = || panels.iter().map(|panel| &panel.1);
     // Points, their spreads and the ends of bands along an axis.
     let values = |along: Along, axis: &Axis| {
         let mut all = vec![];
@@ -51,7 +51,7 @@ pub fn draw(title: &str, panels: &[(&str, &Chart)]) -> Result<Svg, String> {
     }
     let looks = style::looks(&all);
     let mut svg = Svg::new(title, style::WIDTH, 1.0);
-    let heads: Vec<Head> = panels.iter().map(|(name, chart)| (*name, labels(chart, &x))).collect();
+    let heads: Vec<Head> = panels.iter().map(|(name, chart)| (name.as_str(), labels(chart, &x))).collect();
     let planes = plane::draw(&mut svg, &x, &y, &heads);
     for ((plane, chart), seen) in planes.iter().zip(charts()).zip(&of_panels) {
         plane.fill(&mut svg, "", |svg| {
