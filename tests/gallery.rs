@@ -77,30 +77,34 @@ fn every_scene_runs_and_is_drawn() {
     }
 }
 
-/// What a paragraph says to be of the report stands there: a report that is made anew with other numbers asks for another page.
+/// Each picture has a lesson with a number and the run's time; a link leads to an item of the report. Numbers of the report are cells of it
+/// (`tests/numbers.rs`).
 #[test]
-fn figures_are_those_of_the_report() {
-    let report = fs::read_to_string(root().join("reports/README.md")).unwrap();
+fn lessons_have_numbers_and_run_times() {
+    let pages = fs::read_dir(root().join("pages")).unwrap().map(|page| page.unwrap().path());
+    let anchor = |path: std::path::PathBuf| {
+        let text = fs::read_to_string(&path).unwrap();
+        let title =
+            text.lines().find_map(|line| line.strip_prefix("title = \"")).unwrap().trim_end_matches('"');
+        let kept = title.to_lowercase();
+        let kept = kept.chars().filter(|it| it.is_alphanumeric() || " -".contains(*it));
+        kept.collect::<String>().replace(' ', "-")
+    };
+    let anchors: BTreeSet<String> = pages.map(anchor).collect();
     let text = page();
-    let learned: Vec<&str> = text.split("*Learned:*").skip(1).collect();
-    assert_eq!(learned.len(), 12);
-    let mut held = 0;
-    for said in learned {
-        let said = said.split("\n\n").next().unwrap();
-        let Some((said, link)) = said.split_once("([report](../reports/README.md#") else { continue };
-        let anchor = link.split(')').next().unwrap();
-        let is_it = |section: &&str| {
-            let title = section.lines().next().unwrap().to_lowercase();
-            let kept = title.chars().filter(|it| it.is_alphanumeric() || " -".contains(*it));
-            kept.collect::<String>().replace(' ', "-") == anchor
-        };
-        let section = report.split("\n## ").find(is_it).unwrap_or_else(|| panic!("no section {anchor}"));
-        let of_numbers = |it: char| it.is_ascii_digit() || it == '.';
-        let numbers = said.split(|it| !of_numbers(it)).map(|number| number.trim_matches('.'));
-        for number in numbers.filter(|number| number.contains('.')) {
-            assert!(section.contains(number), "{number} is not in {anchor}: {said}");
-            held += 1;
+    let lessons: Vec<&str> =
+        text.split("*Learned:*").skip(1).map(|it| it.split("\n\n").next().unwrap()).collect();
+    assert_eq!(lessons.len(), 12);
+    for lesson in lessons {
+        let (said, time) =
+            lesson.split_once(" Run time: ").unwrap_or_else(|| panic!("no run time: {lesson}"));
+        let seconds = time.trim_end().strip_suffix(" s.").and_then(|it| it.parse::<u32>().ok());
+        assert!(seconds.is_some(), "{time}");
+        let own = said.split("([report]").next().unwrap();
+        assert!(own.chars().any(|it| it.is_ascii_digit()), "no number: {lesson}");
+        for link in said.split("](../reports/README.md#").skip(1) {
+            let to = link.split(')').next().unwrap();
+            assert!(anchors.contains(to), "no item `{to}`; there are {anchors:?}");
         }
     }
-    assert!(held >= 16, "{held}");
 }

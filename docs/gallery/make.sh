@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes the pictures of docs/gallery.md by the commands that stand there; about three minutes on two cores.
+# Makes the pictures of docs/gallery.md by the commands that stand there; the runs take 70 s of processor time.
 #
 #   docs/gallery/make.sh [FOLDER]
 #

@@ -70,7 +70,8 @@ impl Default for Truth {
     }
 }
 
-/// Points of a chart: an expression over the cells of a row gives each coordinate.
+/// Points of a chart: an expression over the cells of a row gives each coordinate, a number or a name. An axis with names has them in the
+/// order of the rows, from the left or from above.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SeriesSpec {
@@ -79,7 +80,7 @@ struct SeriesSpec {
     y: Text,
     /// Half-width of the interval of y.
     error: Option<Text>,
-    /// Ends of the interval of y.
+    /// Ends of the interval of y; of x where y is a name.
     spread: Option<[Text; 2]>,
     /// Name in the legend: one series.
     name: Option<Text>,
@@ -167,10 +168,11 @@ fn figure(spec: &FigureSpec, fill: &Filling<'_>, shown: &Shown<'_>) -> Result<Fi
             };
             match (&spec.map, &spec.panels) {
                 (Some(map), _) => Picture::Map(mapped(map, axes, fill)?),
-                (None, None) => Picture::Chart(chart(spec, axes, fill)?),
-                (None, Some(all)) => {
-                    let panels = elements(all, fill)?.into_iter().map(panel);
-                    Picture::Panels(panels.collect::<Result<_, PageError>>()?)
+                (None, panels) => {
+                    let all = panels
+                        .as_ref()
+                        .map_or_else(|| Ok(vec![fill.scope.clone()]), |all| elements(all, fill))?;
+                    Picture::Charts(all.into_iter().map(panel).collect::<Result<_, PageError>>()?)
                 }
             }
         }
@@ -202,9 +204,20 @@ fn axis(spec: &AxisSpec, fill: &Filling<'_>) -> Result<Axis, PageError> {
 
 fn chart(spec: &FigureSpec, [x, y]: [Axis; 2], fill: &Filling<'_>) -> Result<Chart, PageError> {
     let mut chart = Chart::of(x, y);
+    let mut names = [vec![], vec![]];
     for spec in &spec.series {
         let next = chart.series.iter().map(|it| it.hue + 1).max().unwrap_or(0);
-        chart = chart.with(series(spec, next, fill)?);
+        chart = chart.with(series(spec, next, &mut names, fill)?);
+    }
+    let [across, mut down] = names;
+    if !across.is_empty() {
+        chart.x = Axis::names(&chart.x.label, across);
+    }
+    if !down.is_empty() {
+        let points = chart.series.iter_mut().flat_map(|series| &mut series.points);
+        points.for_each(|point| point.y = (down.len() - 1) as f64 - point.y);
+        down.reverse();
+        chart.y = Axis::names(&chart.y.label, down);
     }
     for spec in &spec.band {
         let scopes =
@@ -239,7 +252,13 @@ fn band(mut chart: Chart, spec: &BandSpec, fill: &Filling<'_>) -> Result<Chart, 
     Ok(chart)
 }
 
-fn series(spec: &SeriesSpec, next: usize, fill: &Filling<'_>) -> Result<Vec<Series>, PageError> {
+/// Series of a chart. Names that are new to its axes are added to theirs.
+fn series(
+    spec: &SeriesSpec,
+    next: usize,
+    [across, down]: &mut [Vec<String>; 2],
+    fill: &Filling<'_>,
+) -> Result<Vec<Series>, PageError> {
     let frame = fill.frame(&spec.from)?;
     let rows = Rows { frame, fill };
     let fixed = spec.name.as_ref().map_or(Ok(String::new()), |name| fill.text(name))?;
@@ -250,7 +269,8 @@ fn series(spec: &SeriesSpec, next: usize, fill: &Filling<'_>) -> Result<Vec<Seri
         {
             continue;
         }
-        let (Some(x), Some(y)) = (rows.number(&spec.x, row)?, rows.number(&spec.y, row)?) else { continue };
+        let place = (rows.place(&spec.x, row, across)?, rows.place(&spec.y, row, down)?);
+        let (Some(x), Some(y)) = place else { continue };
         let mut point = Point::at(x, y);
         if let Some(error) = &spec.error
             && let Some(error) = rows.number(error, row)?
@@ -319,6 +339,17 @@ impl Rows<'_> {
     fn value(&self, text: &Text, row: usize) -> Result<Value, PageError> {
         let value = self.fill.expressions.of_row(text.get_ref(), self.fill.scope, self.frame, row);
         value.map_err(|cause| self.fill.refused(text.span().start, cause))
+    }
+
+    /// Place on an axis: a number, or the position of a name.
+    fn place(&self, text: &Text, row: usize, names: &mut Vec<String>) -> Result<Option<f64>, PageError> {
+        let value = self.value(text, row)?;
+        let Some(name) = value.as_str() else { return self.number(text, row) };
+        let at = names.iter().position(|known| known == name).unwrap_or_else(|| {
+            names.push(name.to_owned());
+            names.len() - 1
+        });
+        Ok(Some(at as f64))
     }
 
     fn number(&self, text: &Text, row: usize) -> Result<Option<f64>, PageError> {

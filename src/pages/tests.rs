@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::frame::Rows;
-use crate::report::figure::Axis;
+use crate::report::figure::{Axis, Chart, Figure};
 
 const TEMPLATE: &str = r#"+++
 title = "Errors"
@@ -47,6 +47,11 @@ fn filled(template: &str) -> Result<Section, String> {
     page.section(&shown, &[], "2026-11-26").map_err(|cause| cause.to_string())
 }
 
+fn chart_of(figure: &Figure) -> &Chart {
+    let Picture::Charts(panels) = &figure.picture else { panic!("{figure:?}") };
+    &panels[0].1
+}
+
 #[test]
 fn a_page_is_filled_from_frames() {
     let section = filled(TEMPLATE).unwrap();
@@ -54,7 +59,7 @@ fn a_page_is_filled_from_frames() {
     assert_eq!([section.answer.as_str(), &section.details[0]], ["The first error is 0.50.", "More words."]);
     let figure = &section.figures[0];
     assert_eq!(figure.caption, "Worst 1.");
-    let Picture::Chart(chart) = &figure.picture else { panic!("{figure:?}") };
+    let chart = chart_of(figure);
     let [a, b] = chart.series.as_slice() else { panic!("{chart:?}") };
     assert_eq!((a.name.as_str(), a.hue, b.name.as_str(), b.hue), ("a", 0, "b", 1));
     assert_eq!(a.points.iter().map(|it| it.x).collect::<Vec<_>>(), [1.0, 2.0]);
@@ -63,6 +68,31 @@ fn a_page_is_filled_from_frames() {
     let table = &section.tables[0];
     assert_eq!(table.columns, ["error", "scheme"]);
     assert_eq!(table.notes, ["All 3."]);
+}
+
+/// Words in the place of a coordinate are names on its axis: from the left, or from above.
+#[test]
+fn words_are_names_on_an_axis() {
+    let chart = |x: &str, y: &str| {
+        let template = TEMPLATE.replace(
+            "x = \"steps\", y = \"error\", error = \"error / 2\", by = \"scheme\"",
+            &format!("x = \"{x}\", y = \"{y}\", spread = [\"steps\", \"2 * steps\"]"),
+        );
+        let section =
+            filled(&template.replace(", unit = \"J\" }\nseries", " }\nseries").replace("band = ", "#"))
+                .unwrap();
+        let chart = chart_of(&section.figures[0]).clone();
+        crate::report::figure::svg(&chart.clone().figure("x", "X")).unwrap();
+        chart
+    };
+    let across = chart("scheme", "error");
+    assert_eq!(across.x, Axis::names("steps", ["a", "b"]));
+    assert_eq!(across.series[0].points.iter().map(|it| it.x).collect::<Vec<_>>(), [0.0, 0.0, 1.0]);
+    let down = chart("steps", "scheme");
+    assert_eq!(down.y, Axis::names("error", ["b", "a"]));
+    let points: Vec<_> = down.series[0].points.iter().map(|it| (it.x, it.y, it.spread)).collect();
+    let expected = [(1.0, 1.0), (2.0, 1.0), (4.0, 0.0)].map(|(x, y)| (x, y, Some([x, 2.0 * x])));
+    assert_eq!(points, expected);
 }
 
 /// A figure for each element of a list, which its texts and expressions call `it`.
@@ -74,7 +104,7 @@ fn a_figure_is_repeated() {
     let section = filled(&template.replace("log = true", "log = \"it == 'b'\"")).unwrap();
     let [a, b] = section.figures.as_slice() else { panic!("{:?}", section.figures) };
     assert_eq!([&a.name, &b.name], ["over-steps-a", "over-steps-b"]);
-    let [Picture::Chart(a), Picture::Chart(b)] = [&a.picture, &b.picture] else { panic!("no charts") };
+    let [a, b] = [a, b].map(chart_of);
     assert_eq!((a.series.len(), a.series[0].points.len(), b.series[0].points.len()), (1, 2, 1));
     assert_ne!(a.x.scale, b.x.scale);
 }
@@ -103,7 +133,7 @@ fn a_chart_has_panels_and_lines() {
     let (before, after) = template.split_once("band = ").unwrap();
     let (_, after) = after.split_once('\n').unwrap();
     let section = filled(&format!("{before}{lines}\n{after}")).unwrap();
-    let Picture::Panels(panels) = &section.figures[0].picture else { panic!("{:?}", section.figures) };
+    let Picture::Charts(panels) = &section.figures[0].picture else { panic!("{:?}", section.figures) };
     let [(a, of_a), (b, of_b)] = panels.as_slice() else { panic!("{panels:?}") };
     assert_eq!([a, b], ["scheme a", "scheme b"]);
     assert_eq!([&of_a.series[0].points, &of_b.series[0].points].map(Vec::len), [2, 1]);

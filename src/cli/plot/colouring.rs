@@ -18,7 +18,7 @@ const MOST: f64 = 0.99;
 /// What the colours of particles say.
 pub(super) struct Colouring {
     /// The word on the command line.
-    pub(super) word: &'static str,
+    word: &'static str,
     /// What it is.
     doc: &'static str,
     /// Its name at the colours.
@@ -34,7 +34,7 @@ pub(super) struct Colouring {
 }
 
 /// All of them, the usual one first.
-pub(super) static COLOURINGS: [Colouring; 6] = [
+static COLOURINGS: [Colouring; 6] = [
     Colouring {
         word: "speed",
         doc: "how fast it moves",
@@ -47,7 +47,7 @@ pub(super) static COLOURINGS: [Colouring; 6] = [
     Colouring {
         word: "psi6",
         doc: "hexatic order |ψ6|, 1 in a hexagonal crystal; of discs in a box",
-        label: "|ψ6|",
+        label: "hexatic order |ψ6|",
         si: None,
         of: |frame, _| orders(frame),
         takes_forces: false,
@@ -87,7 +87,7 @@ pub(super) static COLOURINGS: [Colouring; 6] = [
     Colouring {
         word: "id",
         doc: "its number, from which it is seen how particles mix",
-        label: "id",
+        label: "number",
         si: None,
         of: |frame, _| Ok(of_each(frame, |particle| f64::from(particle.id))),
         takes_forces: false,
@@ -167,20 +167,23 @@ impl Colouring {
 /// A colouring of the particles of a run.
 pub(super) struct Colours {
     colouring: &'static Colouring,
+    /// Set if the user asked for it.
+    pub(super) is_chosen: bool,
     /// The forces of its scene, where the colouring takes them.
     forces: Option<PairForces>,
 }
 
 impl Colours {
     /// The colouring of a word, the usual one where there is none of it.
-    pub(super) fn new(word: &str, run: &Path, methods: Methods) -> Colours {
-        let colouring = COLOURINGS.iter().find(|it| it.word == word).unwrap_or(&COLOURINGS[0]);
+    pub(super) fn new(word: Option<&str>, run: &Path, methods: Methods) -> Colours {
+        let colouring = COLOURINGS.iter().find(|it| Some(it.word) == word).unwrap_or(&COLOURINGS[0]);
         let forces = || {
             let scene = run.join("scene.toml");
             let (prepared, _) = load(&scene.to_string_lossy(), &[], methods).ok()?;
             prepared.model.pair_forces()
         };
-        Colours { colouring, forces: if colouring.takes_forces { forces() } else { None } }
+        let forces = if colouring.takes_forces { forces() } else { None };
+        Colours { colouring, is_chosen: word.is_some(), forces }
     }
 
     /// A value for each grain of a frame.
@@ -211,6 +214,11 @@ impl Colours {
         let others =
             COLOURINGS.iter().map(|it| it.word).filter(|word| *word != self.colouring.word).collect();
         ColouringError { word: self.colouring.word, why, others }
+    }
+
+    /// Name of the quantity.
+    pub(super) fn quantity(&self) -> &'static str {
+        self.colouring.label
     }
 
     /// What stands at the colours: the quantity and its unit.

@@ -1,7 +1,7 @@
 //! A film of a run: the frames of its trajectory in one page.
 
 use super::colouring::{ColouringError, Colours, units};
-use super::particles::{LARGE_POINT, POINT, SHOWN, TRACED, WIDTH, scene};
+use super::particles::{SHOWN, WIDTH, point, scene};
 use super::window;
 use crate::report::section::{Film, Frame as Moment, Side};
 use std::collections::HashMap;
@@ -166,7 +166,7 @@ impl Reel {
         let is_seen = |[x, y, _]: [f64; 3], radius: f64| {
             x > left - radius && x < right + radius && y > low - radius && y < high + radius
         };
-        let point = if cast.particles.len() <= TRACED { LARGE_POINT } else { POINT };
+        let point = point(cast.particles.len());
         let of_a_point = point / WIDTH * (right - left).max(high - low);
         let is_of_points = window::is_of_points(last, bounds);
         let radius = |particle: &Particle| if is_of_points { of_a_point } else { particle.radius };

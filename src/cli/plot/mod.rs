@@ -15,7 +15,7 @@ use crate::report::{html, terminal};
 use crate::results::OwnFiles;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use colouring::{COLOURINGS, Colouring, Colours};
+use colouring::{Colouring, Colours};
 use observed::Observed;
 use particles::PictureError;
 use serde_json::json;
@@ -32,9 +32,9 @@ pub(super) struct PlotVerb {
     /// Columns of thermo.csv, with commas between them; all that change by default
     #[arg(long, value_delimiter = ',')]
     columns: Vec<String>,
-    /// What the colours of particles say
-    #[arg(long, default_value = COLOURINGS[0].word, value_parser = PossibleValuesParser::new(Colouring::possible_values()))]
-    color: String,
+    /// Meaning of the particles' colours: their speed, or which body is which of up to six with tracks, where this is left out
+    #[arg(long, value_parser = PossibleValuesParser::new(Colouring::possible_values()))]
+    color: Option<String>,
     /// Also a film of the trajectory: film.html, one page to be opened in a browser, which needs nothing else
     #[arg(long)]
     film: bool,
@@ -60,7 +60,7 @@ impl PlotVerb {
         let wanted = table.wanted(&self.columns, methods)?;
         let mut figures = table.figures(&wanted);
         figures.extend(structure::figures(&run));
-        let colours = Colours::new(&self.color, &run, methods);
+        let colours = Colours::new(self.color.as_deref(), &run, methods);
         match particles::pictures(&run, &colours) {
             Ok(pictures) => figures.extend(pictures),
             Err(PictureError::Colouring(error)) => return Err(error.into()),

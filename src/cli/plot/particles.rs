@@ -19,17 +19,28 @@ const LONG: f64 = 4.0;
 const BIN: f64 = 2.5;
 
 /// Bodies up to which the places of earlier frames are shown too.
-pub(super) const TRACED: usize = 12;
+const TRACED: usize = 12;
+/// Bodies up to which each has a colour of its own.
+const TOLD_APART: usize = 6;
 /// Places of earlier frames, at most.
 const TRACES: usize = 5000;
 /// Width of a picture, and of one that is much wider than high (pixels).
 pub(super) const WIDTH: f64 = 720.0;
 const WIDE: f64 = 1800.0;
-/// Least radius of a particle; radius of a body, which has none, of one of a few, and of where it was (pixels).
+/// Least radius of a particle; radius of one of a few bodies, which have none, and of where it was (pixels).
 const LEAST: f64 = 1.0;
-pub(super) const POINT: f64 = 2.5;
-pub(super) const LARGE_POINT: f64 = 9.0;
-const TRACE: f64 = 2.0;
+const LARGE_POINT: f64 = 9.0;
+const TRACE: f64 = 1.6;
+/// Thickness of the tracks of bodies that are told apart, in grey print too (parts of the usual one).
+const THICKNESS: [f64; 3] = [1.0, 0.5, 1.5];
+/// Letters of a run's name in a title, at most.
+const NAMED: usize = 60;
+
+/// Radius of one of some bodies (pixels): the more, the smaller, for a dense core is to be seen in a halo.
+pub(super) fn point(bodies: usize) -> f64 {
+    let shrunk = 2.5 * (1000.0 / bodies as f64).sqrt();
+    if bodies <= TRACED { LARGE_POINT } else { shrunk.clamp(1.7, 2.5) }
+}
 
 /// Why there are no pictures.
 #[derive(Debug, thiserror::Error)]
@@ -47,26 +58,30 @@ pub(super) enum PictureError {
 /// # Errors
 /// If the trajectory cannot be read, or its particles cannot be coloured so.
 pub(super) fn pictures(run: &Path, colours: &Colours) -> Result<Vec<Figure>, PictureError> {
-    let (mut last, mut slices, mut traces) = (None, vec![], vec![]);
+    let (mut last, mut slices, mut tracks) = (None, vec![], vec![]);
     for frame in Trajectory::open(run)? {
         let frame: Frame = frame?;
         slices.extend(slice(&frame).map(|counts| (frame.time, counts)));
         if frame.particles.len() <= TRACED && window::is_endless(&frame) {
-            traces.extend(frame.particles.all().iter().map(|particle| particle.position));
+            tracks.push(frame.particles.all().iter().map(|particle| particle.position).collect::<Vec<_>>());
         }
         last = Some(frame);
     }
     let Some(last) = last else { return Ok(vec![]) };
     let scene = scene(run);
-    let traces: Vec<[f64; 3]> =
-        traces.iter().step_by(traces.len().div_ceil(TRACES).max(1)).copied().collect();
+    let every = (tracks.len() * last.particles.len()).div_ceil(TRACES).max(1);
+    let traces = tracks.into_iter().step_by(every).flatten().collect::<Vec<_>>();
     let has_depth = last.particles.all().iter().any(|particle| particle.position[2] != 0.0);
     let views: &[View] = if has_depth { &[View::AlongZ, View::AlongY] } else { &[View::Plane] };
     let values = colours.values(&last)?;
     let ends = colours.ends(values.clone())?;
-    let shades = Shades { values, ends, label: colours.label(scene.as_ref()) };
-    let states = views.iter().map(|&view| state(&last, scene.as_ref(), &traces, &shades, view));
-    Ok(states.chain(density(&last, scene.as_ref(), &slices)).collect())
+    let tells_apart = !colours.is_chosen && !traces.is_empty() && last.particles.len() <= TOLD_APART;
+    let (quantity, label) = (colours.quantity(), colours.label(scene.as_ref()));
+    let shades = Shades { values, ends, quantity, label, tells_apart };
+    let stem = run.file_stem().unwrap_or_default().to_string_lossy();
+    let name: String = stem.chars().take(NAMED).collect();
+    let states = views.iter().map(|&view| state(&name, &last, scene.as_ref(), &traces, &shades, view));
+    Ok(states.chain(density(&name, &last, scene.as_ref(), &slices)).collect())
 }
 
 /// What the shades of particles say.
@@ -75,7 +90,10 @@ struct Shades {
     values: Vec<f64>,
     /// Those of the lowest and the highest shade.
     ends: [f64; 2],
+    quantity: &'static str,
     label: String,
+    /// Set if each particle has a colour of its own instead.
+    tells_apart: bool,
 }
 
 /// From where particles are seen.
@@ -113,6 +131,7 @@ fn gravity(scene: &toml::Table) -> Option<[f64; 2]> {
 
 /// The particles of a frame with their shades.
 fn state(
+    name: &str,
     frame: &Frame,
     scene: Option<&toml::Table>,
     traces: &[[f64; 3]],
@@ -120,7 +139,7 @@ fn state(
     view: View,
 ) -> Figure {
     let all = frame.particles.all();
-    let Shades { values, ends: [low, high], label } = shades;
+    let Shades { values, ends: [low, high], quantity, label, tells_apart } = shades;
     let every = all.len().div_ceil(SHOWN).max(1);
     let axes = view.axes();
     let flat = |position: [f64; 3]| axes.map(|axis| position[axis]);
@@ -134,8 +153,7 @@ fn state(
     let pixels = if lies || width > LONG * height { WIDE } else { WIDTH };
     let pixel = (window[1][0] - window[0][0]) / pixels;
     let is_point = window::is_of_points(frame, bounds);
-    let point = if all.len() <= TRACED { LARGE_POINT } else { POINT };
-    let radius = |of: f64| if is_point { point * pixel } else { of.max(LEAST * pixel) };
+    let radius = |of: f64| if is_point { point(all.len()) * pixel } else { of.max(LEAST * pixel) };
     let (across, up) = (x..=x_end, y..=y_end);
     // What is beyond the window would be drawn over the words around it.
     let upright = bounds[0].into_iter().filter(|at| across.contains(at)).map(|at| [[at, y], [at, y_end]]);
@@ -145,26 +163,35 @@ fn state(
         let [a, b] = flat(position);
         across.contains(&a) && up.contains(&b)
     };
-    let earlier = traces.iter().filter(|trace| is_inside(**trace)).map(|&trace| Shape::Disc {
-        centre: place(flat(trace)),
-        radius: TRACE * pixel,
-        tint: Tint::Hue(0),
+    let seen = traces.iter().enumerate().filter(|(_, trace)| is_inside(**trace));
+    let earlier = seen.map(|(at, &trace)| {
+        let hue = if *tells_apart { at % all.len() } else { 0 };
+        let radius = TRACE * THICKNESS[hue % THICKNESS.len()] * pixel;
+        Shape::Disc { centre: place(flat(trace)), radius, tint: Tint::Hue(hue) }
     });
     // Grains come before walls, and have values.
-    let seen = all.iter().enumerate().step_by(every).filter(|(_, particle)| is_inside(particle.position));
-    let shapes = seen.map(|(at, particle)| Shape::Disc {
+    let seen = || all.iter().enumerate().step_by(every).filter(|(_, particle)| is_inside(particle.position));
+    let shade = |value: &f64| Tint::Shade(((value - low) / (high - low)).clamp(0.0, 1.0));
+    let shapes = seen().map(|(at, particle)| Shape::Disc {
         centre: place(flat(particle.position)),
         radius: radius(particle.radius),
-        tint: values
-            .get(at)
-            .map_or(Tint::Still, |value| Tint::Shade(((value - low) / (high - low)).clamp(0.0, 1.0))),
+        tint: if *tells_apart { Tint::Hue(at) } else { values.get(at).map_or(Tint::Still, shade) },
+    });
+    let numbers = seen().filter(|_| *tells_apart).map(|(_, particle)| Shape::Text {
+        centre: place(flat(particle.position)),
+        height: LARGE_POINT * pixel,
+        words: particle.id.to_string(),
     });
     let outside = all.iter().filter(|particle| !is_inside(particle.position)).count();
     let [of_length, of_time] = match units(scene) {
         Units::Si => ["m", " s"],
         Units::Other(_) => ["", ""],
     };
-    let mut title = format!("The particles at time {}{of_time}", significant(frame.time, 6));
+    let time = format!("time {}{of_time}", significant(frame.time, 6));
+    let mut title = match *tells_apart {
+        true => format!("{name}: tracks of {} bodies until {time}", all.len()),
+        false => format!("{name}: particles by {quantity} at {time}"),
+    };
     match view {
         View::Plane => {}
         View::AlongZ => title.push_str(", seen along z: x to the right, y upwards"),
@@ -173,7 +200,7 @@ fn state(
     if all.is_empty() {
         title.push_str("; there are none");
     }
-    if !traces.is_empty() {
+    if !traces.is_empty() && !tells_apart {
         title.push_str("; small dots: where they were");
     }
     if outside > 0 {
@@ -192,8 +219,8 @@ fn state(
     Picture::Drawing(Drawing {
         window,
         width: pixels,
-        shapes: walls.chain(earlier).chain(shapes).collect(),
-        shades: Some((*low, *high, label.clone())),
+        shapes: walls.chain(earlier).chain(shapes).chain(numbers).collect(),
+        shades: (!tells_apart).then(|| (*low, *high, label.clone())),
         guide: Some(Guide {
             unit: of_length.to_owned(),
             gravity: scene
@@ -203,7 +230,7 @@ fn state(
         }),
     })
     .figure(if view == View::AlongY { "last-state-side" } else { "last-state" }, title)
-    .caption(format!("Shade: {label}.{traced}"))
+    .caption(if *tells_apart { traced.trim().to_owned() } else { format!("Shade: {label}.{traced}") })
 }
 
 /// Grains in slices across a long box, from its lower or left end; none where no side is much the longest.
@@ -225,7 +252,12 @@ fn slice(frame: &Frame) -> Option<Vec<f64>> {
 }
 
 /// The density along a long box over time.
-fn density(last: &Frame, scene: Option<&toml::Table>, slices: &[(f64, Vec<f64>)]) -> Option<Figure> {
+fn density(
+    name: &str,
+    last: &Frame,
+    scene: Option<&toml::Table>,
+    slices: &[(f64, Vec<f64>)],
+) -> Option<Figure> {
     let ((begun, first), (ended, _)) = (slices.first()?, slices.last()?);
     let bins = first.len();
     let stride = slices.len().div_ceil(ROWS);
@@ -246,7 +278,7 @@ fn density(last: &Frame, scene: Option<&toml::Table>, slices: &[(f64, Vec<f64>)]
             value: Axis::linear("density, relative to the mean", None),
             rows: rows.collect(),
         })
-        .figure("density-map", "Density along the box over time")
+        .figure("density-map", format!("{name}: density along the box over time"))
         .caption(format!("Grains in {bins} slices across the box, over their mean.")),
     )
 }

@@ -1,9 +1,9 @@
 //! Curves and points over two axes.
 
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 
 /// A chart. Each point must have a place on both axes: a finite one, and above zero on a logarithmic axis.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Chart {
     pub(crate) x: Axis,
     pub(crate) y: Axis,
@@ -17,6 +17,11 @@ impl Chart {
     /// Makes an empty chart over two axes.
     pub fn of(x: Axis, y: Axis) -> Chart {
         Chart { x, y, series: vec![], bands: vec![] }
+    }
+
+    /// Axis along which points spread.
+    pub(super) fn spreads_along(&self) -> (&Axis, Along) {
+        if matches!(self.y.scale, Scale::Names(_)) { (&self.x, Along::X) } else { (&self.y, Along::Y) }
     }
 
     /// Adds a series.
@@ -44,7 +49,7 @@ impl Chart {
 }
 
 /// An axis. It is fitted to its data where it has no limits.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
     pub(crate) label: String,
     pub(crate) unit: Option<String>,
@@ -80,7 +85,7 @@ impl Axis {
 }
 
 /// Positions of numbers on an axis.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Scale {
     Linear,
     Logarithmic,
@@ -89,7 +94,7 @@ pub(crate) enum Scale {
 }
 
 /// A named set of points.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Series {
     /// Empty for no entry in the legend.
     pub name: String,
@@ -113,7 +118,7 @@ impl Series {
 }
 
 /// Look of a series.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 pub enum Style {
     /// A line, for a model.
     Line,
@@ -123,14 +128,12 @@ pub enum Style {
     Points,
     /// Points joined by a line.
     Joined,
-    /// Steps of a histogram: each point is the middle of a bin.
-    Steps,
     /// A dashed line on a ground between the ends of the spreads: a mean with its error.
     Ribbon,
 }
 
-/// A point of a series. Its spread is the lowest and highest observed or credible value of y.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// A point of a series. Its spread is the lowest and highest observed or credible value of y; of x on a chart with names on its y axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
     pub(crate) x: f64,
     pub(crate) y: f64,
@@ -160,7 +163,7 @@ impl From<(f64, f64, [f64; 2])> for Point {
 ///
 /// Bands between values of x are grey, such as densities that no configuration has; those between values of y are a light ground, such as
 /// errors that are small enough.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Band {
     pub(crate) label: String,
     /// Equal ones make a line.
@@ -179,16 +182,6 @@ impl Band {
         Band { along: Along::Y, ..Band::of_x(label, ends) }
     }
 
-    /// Marks one value of x by a line, with the label above the plane.
-    pub fn at_x(label: &str, x: f64) -> Band {
-        Band::of_x(label, [x, x])
-    }
-
-    /// Marks one value of y by a line.
-    pub fn at_y(label: &str, y: f64) -> Band {
-        Band::of_y(label, [y, y])
-    }
-
     /// Reports if it is a line.
     pub(super) fn is_line(&self) -> bool {
         self.ends[0] == self.ends[1]
@@ -196,7 +189,7 @@ impl Band {
 }
 
 /// One of two axes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Along {
     X,
     Y,

@@ -29,8 +29,7 @@ const FARTHEST: f64 = 1e6;
 /// Finds the first fault of a picture.
 pub fn check(picture: &Picture) -> Result<(), String> {
     match picture {
-        Picture::Chart(chart) => check_chart(chart),
-        Picture::Panels(panels) => {
+        Picture::Charts(panels) => {
             let first = &panels.first().ok_or("there is nothing in it")?.1;
             match panels.iter().find(|(_, chart)| chart.x != first.x || chart.y != first.y) {
                 Some((name, _)) => Err(format!("panel `{name}` has other axes than the first panel")),
@@ -43,14 +42,19 @@ pub fn check(picture: &Picture) -> Result<(), String> {
     }
 }
 
-fn check_chart(Chart { x, y, series, bands }: &Chart) -> Result<(), String> {
+fn check_chart(chart: &Chart) -> Result<(), String> {
+    let (Chart { x, y, series, bands }, (spreads, _)) = (chart, chart.spreads_along());
     [x, y].into_iter().try_for_each(check_axis)?;
     for series in series {
         let place = |i: usize, what: &str| format!("{what} of point {i} of `{}`", series.name);
         for (i, point) in series.points.iter().enumerate() {
             showable(x, point.x, || place(i, "x"))?;
             showable(y, point.y, || place(i, "y"))?;
-            point.spread.iter().flatten().try_for_each(|end| showable(y, *end, || place(i, "the spread")))?;
+            point
+                .spread
+                .iter()
+                .flatten()
+                .try_for_each(|end| showable(spreads, *end, || place(i, "the spread")))?;
         }
     }
     if let Some(band) = bands.iter().find(|band| !matches!(band.ends, [low, high] if low <= high)) {
@@ -100,22 +104,13 @@ fn check_drawing(Drawing { window, width, shapes, shades, .. }: &Drawing) -> Res
     }
     for (i, shape) in shapes.iter().enumerate() {
         let place = || format!("a number of shape {i}");
-        if let Shape::Disc { tint: Tint::Shade(shade), .. }
-        | Shape::Rectangle { tint: Tint::Shade(shade), .. } = shape
-        {
+        if let Shape::Disc { tint: Tint::Shade(shade), .. } = shape {
             finite(*shade, place)?;
         }
-        let numbers = match shape {
-            Shape::Disc { centre: [x, y], radius, .. } => [x, y, radius, radius],
-            Shape::Rectangle { corners: [[a, b], [c, d]], .. } | Shape::Line { ends: [[a, b], [c, d]] } => {
-                [a, b, c, d]
-            }
-            Shape::Text { centre: [x, y], height, .. } => [x, y, height, height],
-        };
-        for &value in numbers {
+        for (value, low) in shape.extent().into_iter().flat_map(|corner| corner.into_iter().zip([left, low]))
+        {
             finite(value, place)?;
-            let pixels =
-                width / (right - left) * value.abs().min((value - left).abs()).min((value - low).abs());
+            let pixels = width / (right - left) * (value - low).abs();
             if pixels > FARTHEST || pixels.is_nan() {
                 let [value, pixels] = [significant(value, 6), significant(pixels, 2)];
                 return Err(format!("{} is {value}, which is {pixels} pixels on the picture", place()));

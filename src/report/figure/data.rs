@@ -10,14 +10,19 @@ use crate::report::{Cell, Table};
 /// row for each of its rows from the bottom: the middle of the row, and its values under the middles of the columns.
 pub fn data(figure: &Figure) -> Option<Table> {
     let (columns, rows) = match &figure.picture {
-        Picture::Chart(chart) => (headings(chart), points(chart)),
-        Picture::Panels(panels) => {
-            let columns = panels.first().map(|(_, chart)| headings(chart)).unwrap_or_default();
-            let row = |name: &str, row: Vec<Cell>| [vec![Cell::Text(name.to_owned())], row].concat();
-            let of = |(name, chart): &(String, Chart)| {
-                points(chart).into_iter().map(|it| row(name, it)).collect::<Vec<_>>()
-            };
-            ([vec!["panel".to_owned()], columns].concat(), panels.iter().flat_map(of).collect())
+        Picture::Charts(panels) => {
+            let (mut columns, rows) =
+                (headings(&panels.first()?.1), panels.iter().map(|(_, chart)| points(chart)));
+            if panels.iter().all(|(name, _)| name.is_empty()) {
+                (columns, rows.flatten().collect())
+            } else {
+                columns.insert(0, "panel".to_owned());
+                let named = |(row, (name, _)): (Vec<Vec<Cell>>, &(String, Chart))| {
+                    let name = Cell::Text(name.clone());
+                    row.into_iter().map(|cells| [vec![name.clone()], cells].concat()).collect::<Vec<_>>()
+                };
+                (columns, rows.zip(panels).flat_map(named).collect())
+            }
         }
         Picture::Map(map) => cells(map),
         Picture::Drawing(_) | Picture::Drawn { .. } => return None,
@@ -103,8 +108,7 @@ mod tests {
             assert!(table.rows.iter().all(|row| row.len() == table.columns.len()), "{}", figure.name);
             let points = |chart: &Chart| chart.series.iter().map(|series| series.points.len()).sum::<usize>();
             let rows = match &figure.picture {
-                Picture::Chart(chart) => points(chart),
-                Picture::Panels(panels) => panels.iter().map(|(_, chart)| points(chart)).sum(),
+                Picture::Charts(panels) => panels.iter().map(|(_, chart)| points(chart)).sum(),
                 Picture::Map(map) => map.rows.len(),
                 Picture::Drawing(_) | Picture::Drawn { .. } => unreachable!("it has no data"),
             };

@@ -58,19 +58,14 @@ struct View<'a> {
 }
 
 impl View<'_> {
-    /// Adds the shapes from back to front; filled discs that follow each other are drawn together, and so are lines.
+    /// Adds the shapes from back to front; filled discs that follow each other are drawn together.
     fn shapes(&self, svg: &mut Svg) {
-        let kind = |shape: &Shape| match shape {
-            Shape::Disc { tint, .. } if *tint != Tint::Clear => 1,
-            Shape::Line { .. } => 2,
-            _ => 0,
-        };
+        let is_dot = |shape: &Shape| matches!(shape, Shape::Disc { tint, .. } if *tint != Tint::Clear);
         let mut before = 0;
-        for alike in self.drawing.shapes.chunk_by(|a, b| kind(a) != 0 && kind(a) == kind(b)) {
-            match kind(&alike[0]) {
-                1 => self.dots(svg, alike),
-                2 => svg.path(&self.ink(), &alike.iter().map(|it| self.line(it)).collect::<String>()),
-                _ => self.shape(svg, &alike[0], &self.drawing.shapes[..before]),
+        for alike in self.drawing.shapes.chunk_by(|a, b| is_dot(a) && is_dot(b)) {
+            match &alike[0] {
+                dot if is_dot(dot) => self.dots(svg, alike),
+                shape => self.shape(svg, shape, &self.drawing.shapes[..before]),
             }
             before += alike.len();
         }
@@ -80,12 +75,6 @@ impl View<'_> {
         stroke(style::INK, LINE * self.zoom)
     }
 
-    fn line(&self, shape: &Shape) -> String {
-        let Shape::Line { ends } = shape else { return String::new() };
-        let [[x1, y1], [x2, y2]] = ends.map(|end| self.place(end).map(tenths));
-        format!("M{x1} {y1}L{x2} {y2}")
-    }
-
     fn shape(&self, svg: &mut Svg, shape: &Shape, below: &[Shape]) {
         match shape {
             Shape::Disc { centre, radius, .. } => {
@@ -93,23 +82,28 @@ impl View<'_> {
                 let (r, stroke) = (tenths(radius), stroke(style::INK, self.rim(radius)));
                 svg.add(format_args!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\" fill=\"none\"{stroke}/>"));
             }
-            Shape::Rectangle { corners, tint, outlined } => {
+            Shape::Rectangle { corners, tint } => {
                 let [[left, bottom], [right, top]] = corners.map(|corner| self.place(corner));
                 let place = at([left, top], [right - left, bottom - top]);
                 let fill = self.colour(*tint).map_or("none".to_owned(), |colour| colour.to_string());
-                let stroke = if *outlined { self.ink() } else { String::new() };
-                svg.add(format_args!("<rect{place} fill=\"{fill}\"{stroke}/>"));
+                svg.add(format_args!("<rect{place} fill=\"{fill}\"{}/>", self.ink()));
+            }
+            Shape::Line { ends } => {
+                let [[x1, y1], [x2, y2]] = ends.map(|end| self.place(end).map(tenths));
+                svg.path(&self.ink(), &format!("M{x1} {y1}L{x2} {y2}"));
             }
             Shape::Text { centre, height, words } => {
-                let ground = below.iter().rev().filter(|shape| covers(shape, *centre));
-                let ground = ground.filter_map(|shape| self.filling(shape)).next().unwrap_or(style::PAPER);
+                let covers = |[low, high]: [[f64; 2]; 2]| {
+                    (0..2).all(|side| (low[side]..=high[side]).contains(&centre[side]))
+                };
+                let covering = below.iter().rev().filter(|shape| covers(shape.extent()));
+                let ground = covering.filter_map(|shape| self.filling(shape)).next().unwrap_or(style::PAPER);
                 let ([x, y], height) = (self.place(*centre), height.abs() * self.scale);
                 let look = format!("{MIDDLE} fill=\"{}\"", style::ink_on(ground));
                 if height > 0.0 {
                     svg.words([x, y + 0.5 * height], height / font::CAPITAL, &look, words);
                 }
             }
-            Shape::Line { .. } => {}
         }
     }
 
@@ -208,16 +202,6 @@ impl View<'_> {
 fn round(most: f64) -> f64 {
     let power = libm::pow(10.0, libm::log10(most).floor());
     [5.0, 2.0, 1.0].into_iter().map(|factor| factor * power).find(|it| *it <= most).unwrap_or(power)
-}
-
-fn covers(shape: &Shape, [x, y]: [f64; 2]) -> bool {
-    match shape {
-        Shape::Disc { centre, radius, .. } => (x - centre[0]).hypot(y - centre[1]) <= *radius,
-        Shape::Rectangle { corners: [[left, low], [right, high]], .. } => {
-            (*left..=*right).contains(&x) && (*low..=*high).contains(&y)
-        }
-        _ => false,
-    }
 }
 
 #[cfg(test)]

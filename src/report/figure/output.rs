@@ -26,11 +26,7 @@ pub fn svg(figure: &Figure) -> Result<String, FigureError> {
     let failed = |problem| FigureError { figure: figure.name.clone(), problem };
     check(&figure.picture).map_err(failed)?;
     let drawn = match &figure.picture {
-        Picture::Chart(chart) => plot::draw(&figure.title, &[("", chart)]),
-        Picture::Panels(panels) => {
-            let panels: Vec<_> = panels.iter().map(|(name, chart)| (name.as_str(), chart)).collect();
-            plot::draw(&figure.title, &panels)
-        }
+        Picture::Charts(panels) => plot::draw(&figure.title, panels),
         Picture::Map(map) => map::draw(&figure.title, map),
         Picture::Drawing(drawing) => Ok(drawing::draw(&figure.title, drawing)),
         Picture::Drawn { svg, .. } => return Ok(svg.clone()),

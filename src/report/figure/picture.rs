@@ -1,10 +1,9 @@
 //! Pictures and the words beside them.
 
 use super::chart::{Axis, Chart};
-use serde::{Deserialize, Serialize};
 
 /// A picture with a name for files, one line that says what it shows, and further notes for the reader.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
     pub(crate) name: String,
     pub(crate) title: String,
@@ -13,12 +12,10 @@ pub struct Figure {
 }
 
 /// The content of a figure.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Picture {
-    /// Curves and points over two axes.
-    Chart(Chart),
-    /// Small multiples: charts beside each other, each with its name, on the same axes and with one legend.
-    Panels(Vec<(String, Chart)>),
+    /// Curves and points over two axes: a chart without a name, or several beside each other, on the same axes and with one legend.
+    Charts(Vec<(String, Chart)>),
     /// A number for each place of a grid, as a colour.
     Map(Map),
     /// Discs, cells and words at their places.
@@ -42,7 +39,7 @@ impl Picture {
 impl Chart {
     /// Returns the figure of this chart, without a caption.
     pub fn figure(self, name: impl Into<String>, title: impl Into<String>) -> Figure {
-        Picture::Chart(self).figure(name, title)
+        Picture::Charts(vec![(String::new(), self)]).figure(name, title)
     }
 }
 
@@ -56,8 +53,7 @@ impl Figure {
     pub(crate) fn has_points(&self) -> bool {
         let has = |chart: &Chart| chart.series.iter().any(|series| !series.points.is_empty());
         match &self.picture {
-            Picture::Chart(chart) => has(chart),
-            Picture::Panels(panels) => panels.iter().any(|(_, chart)| has(chart)),
+            Picture::Charts(panels) => panels.iter().any(|(_, chart)| has(chart)),
             Picture::Map(_) | Picture::Drawing(_) | Picture::Drawn { .. } => true,
         }
     }
@@ -65,8 +61,7 @@ impl Figure {
     /// Names in the legend of a chart.
     pub fn legend(&self) -> Vec<&str> {
         let charts: Vec<&Chart> = match &self.picture {
-            Picture::Chart(chart) => vec![chart],
-            Picture::Panels(panels) => panels.iter().map(|(_, chart)| chart).collect(),
+            Picture::Charts(panels) => panels.iter().map(|(_, chart)| chart).collect(),
             Picture::Map(_) | Picture::Drawing(_) | Picture::Drawn { .. } => vec![],
         };
         let mut names: Vec<&str> = vec![];
@@ -86,7 +81,7 @@ impl Figure {
 /// A heat map, such as the density over place and time.
 ///
 /// The limits of its axes are the outer edges of the outermost cells; an axis of names needs none.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Map {
     pub(crate) x: Axis,
     pub(crate) y: Axis,
@@ -97,24 +92,22 @@ pub struct Map {
 }
 
 /// A drawing in its own coordinates: x to the right, y upwards.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Drawing {
     /// Lower left and upper right corner of the visible part.
     pub(crate) window: [[f64; 2]; 2],
     /// Width of the picture (pixels); its height follows from the window.
     pub(crate) width: f64,
     /// Shapes from back to front. They are not stored with a section: its picture is.
-    #[serde(skip)]
     pub(crate) shapes: Vec<Shape>,
     /// Lowest and highest value of the shades, and their quantity with its unit; none where shades mean nothing.
     pub(crate) shades: Option<(f64, f64, String)>,
     /// Scale bar and gravity below the drawing; none where the coordinates mean nothing.
-    #[serde(default)]
     pub(crate) guide: Option<Guide>,
 }
 
 /// Unit and direction of gravity in a drawing's coordinates.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Guide {
     pub unit: String,
     pub gravity: Option<[f64; 2]>,
@@ -128,11 +121,10 @@ pub(crate) enum Shape {
         radius: f64,
         tint: Tint,
     },
-    /// A box from its lower left to its upper right corner.
+    /// A box with an outline, from its lower left to its upper right corner.
     Rectangle {
         corners: [[f64; 2]; 2],
         tint: Tint,
-        outlined: bool,
     },
     Line {
         ends: [[f64; 2]; 2],
@@ -143,6 +135,19 @@ pub(crate) enum Shape {
         height: f64,
         words: String,
     },
+}
+
+impl Shape {
+    /// Opposite corners of the box around it.
+    pub(super) fn extent(&self) -> [[f64; 2]; 2] {
+        match *self {
+            Shape::Disc { centre: [x, y], radius: most, .. }
+            | Shape::Text { centre: [x, y], height: most, .. } => {
+                [[x - most, y - most], [x + most, y + most]]
+            }
+            Shape::Rectangle { corners: ends, .. } | Shape::Line { ends } => ends,
+        }
+    }
 }
 
 /// A filling.

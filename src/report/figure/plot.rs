@@ -16,18 +16,26 @@ const BESIDE: f64 = 18.0;
 const BETWEEN: f64 = 9.0;
 
 /// Draws charts with the axes of the first and one legend.
-pub fn draw(title: &str, panels: &[(&str, &Chart)]) -> Result<Svg, String> {
-    let charts = || panels.iter().map(|panel| panel.1);
-    let points = || charts().flat_map(|chart| &chart.series).flat_map(|series| &series.points);
-    let edges = |along: Along, axis: &Axis| {
-        let least = if axis.scale == Scale::Logarithmic { 0.0 } else { f64::NEG_INFINITY };
-        let of = charts().flat_map(|chart| &chart.bands).filter(move |band| band.along == along);
-        of.flat_map(|band| band.ends).filter(move |&end| end.is_finite() && end > least)
+pub fn draw(title: &str, panels: &[(String, Chart)]) -> Result<Svg, String> {
+    let charts = || panels.iter().map(|panel| &panel.1);
+    // Points, their spreads and the ends of bands along an axis.
+    let values = |along: Along, axis: &Axis| {
+        let mut all = vec![];
+        for chart in charts() {
+            let spreads = chart.spreads_along().1 == along;
+            for point in chart.series.iter().flat_map(|series| &series.points) {
+                all.push(if along == Along::X { point.x } else { point.y });
+                all.extend(point.spread.filter(|_| spreads).into_iter().flatten());
+            }
+            let ends = chart.bands.iter().filter(|band| band.along == along).flat_map(|band| band.ends);
+            all.extend(
+                ends.filter(|end| end.is_finite() && (*end > 0.0 || axis.scale != Scale::Logarithmic)),
+            );
+        }
+        all.into_iter()
     };
     let [x, y] = panels.first().map(|(_, chart)| [&chart.x, &chart.y]).ok_or("there are no panels")?;
-    let heights = points().flat_map(|point| point.spread.into_iter().flatten().chain([point.y]));
-    let y = Span::new(y, heights.chain(edges(Along::Y, y)))?;
-    let x = Span::new(x, points().map(|point| point.x).chain(edges(Along::X, x)))?;
+    let (x, y) = (Span::new(x, values(Along::X, x))?, Span::new(y, values(Along::Y, y))?);
 
     // A series of several panels has one look, and one entry in the legend.
     let (mut all, mut of_panels) = (Vec::<&Series>::new(), vec![]);
@@ -43,7 +51,7 @@ pub fn draw(title: &str, panels: &[(&str, &Chart)]) -> Result<Svg, String> {
     }
     let looks = style::looks(&all);
     let mut svg = Svg::new(title, style::WIDTH, 1.0);
-    let heads: Vec<Head> = panels.iter().map(|(name, chart)| (*name, labels(chart, &x))).collect();
+    let heads: Vec<Head> = panels.iter().map(|(name, chart)| (name.as_str(), labels(chart, &x))).collect();
     let planes = plane::draw(&mut svg, &x, &y, &heads);
     for ((plane, chart), seen) in planes.iter().zip(charts()).zip(&of_panels) {
         plane.fill(&mut svg, "", |svg| {

@@ -3,7 +3,7 @@
 use super::plane::Plane;
 use super::style::{CURVE, Look, MARKERS, PAPER, has_markers};
 use super::writer::{Svg, bends, stroke, tenths, through};
-use super::{Point, Series, Style};
+use super::{Point, Scale, Series, Style};
 
 /// Half the width of the ends of an error bar (pixels). A script of the page knows it.
 const CAP: f64 = 4.5;
@@ -27,10 +27,7 @@ pub fn curve(svg: &mut Svg, plane: &Plane, look: &Look, series: &Series) {
     if look.style == Style::Points || series.points.len() < 2 {
         return;
     }
-    let mut places: Vec<_> = series.points.iter().map(|it| plane.place(it.x, it.y)).collect();
-    if look.style == Style::Steps {
-        places = steps(&places);
-    }
+    let places: Vec<_> = series.points.iter().map(|it| plane.place(it.x, it.y)).collect();
     let d = through(&bends(&places));
     if has_markers(look.style) {
         line(svg, look, "", &d);
@@ -42,10 +39,14 @@ pub fn curve(svg: &mut Svg, plane: &Plane, look: &Look, series: &Series) {
 /// Adds the error bars and markers of a series, with its name. A single point has a marker in any case, and no marker is cut.
 pub fn points(svg: &mut Svg, plane: &Plane, look: &Look, series: &Series) {
     let mut bars = String::new();
-    for Point { x, spread, .. } in series.points.iter().filter(|_| look.style != Style::Ribbon) {
-        if let Some([low, high]) = spread.map(|ends| ends.map(|end| plane.place(*x, end))) {
-            let (left, cap) = (low[0] - CAP, 2.0 * CAP);
-            bars += &format!("M{left:.2} {:.2}h{cap}m-{CAP} 0V{:.2}m-{CAP} 0h{cap}", low[1], high[1]);
+    for &Point { x, y, spread } in series.points.iter().filter(|_| look.style != Style::Ribbon) {
+        let (Some(ends), cap) = (spread, 2.0 * CAP) else { continue };
+        if matches!(plane.y.scale, Scale::Names(_)) {
+            let [[left, up], [right, _]] = ends.map(|end| plane.place(end, y));
+            bars += &format!("M{left:.2} {:.2}v{cap}m0-{CAP}H{right:.2}m0-{CAP}v{cap}", up - CAP);
+        } else {
+            let [[across, low], [_, high]] = ends.map(|end| plane.place(x, end));
+            bars += &format!("M{:.2} {low:.2}h{cap}m-{CAP} 0V{high:.2}m-{CAP} 0h{cap}", across - CAP);
         }
     }
     let is_inside =
@@ -101,28 +102,4 @@ fn marker(svg: &mut Svg, look: &Look) -> String {
         stroke(rim, width), MARKERS[marker]
     ));
     name
-}
-
-/// Returns the outline of a histogram whose bins have these middles: each bin reaches halfway to its neighbours, the outermost are as
-/// wide on the outside as on the inside.
-fn steps(middles: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    let mut edges: Vec<f64> = middles.windows(2).map(|pair| 0.5 * (pair[0][0] + pair[1][0])).collect();
-    let [first, last] = [0, middles.len() - 1].map(|i| middles[i][0]);
-    let ends = [2.0 * first - edges.first().unwrap_or(&first), 2.0 * last - edges.last().unwrap_or(&last)];
-    edges.insert(0, ends[0]);
-    edges.push(ends[1]);
-    let bin = |(&[_, y], ends): (&[f64; 2], &[f64])| [[ends[0], y], [ends[1], y]];
-    middles.iter().zip(edges.windows(2)).flat_map(bin).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn bins_reach_halfway_to_their_neighbours() {
-        let outline = steps(&[[0.0, 1.0], [2.0, 3.0], [4.0, 2.0]]);
-        assert_eq!(outline, [[-1.0, 1.0], [1.0, 1.0], [1.0, 3.0], [3.0, 3.0], [3.0, 2.0], [5.0, 2.0]]);
-        assert_eq!(steps(&[[1.0, 2.0]]), [[1.0, 2.0], [1.0, 2.0]]);
-    }
 }

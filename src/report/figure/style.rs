@@ -125,7 +125,7 @@ pub(super) fn looks(all: &[&Series]) -> Vec<Look> {
         let dash = match series.style {
             Style::Line => LONG_DASHES[(series.hue + twins) % 5],
             Style::Dashed => SHORT_DASHES[(series.hue + twins) % 5],
-            Style::Joined | Style::Steps => LONG_DASHES[before % 5],
+            Style::Joined => LONG_DASHES[before % 5],
             Style::Ribbon => SHORT_DASHES[before % 5],
             Style::Points => "",
         };
@@ -215,7 +215,7 @@ mod tests {
 
     #[test]
     fn no_two_lines_have_one_colour_and_dash() {
-        for style in [Style::Line, Style::Dashed, Style::Joined, Style::Steps, Style::Ribbon] {
+        for style in [Style::Line, Style::Dashed, Style::Joined, Style::Ribbon] {
             let looks = looks_of((0..14).map(|hue| (style, hue)));
             for (i, look) in looks.iter().enumerate() {
                 let same =

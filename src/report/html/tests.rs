@@ -39,7 +39,10 @@ fn section(name: &str) -> Section {
         expected: HOSTILE.to_owned(),
         answer: format!("`{HOSTILE}` {HOSTILE}"),
         details: vec![HOSTILE.to_owned()],
-        figures: vec![figure("chart", Picture::Chart(chart)), figure("drawing", Picture::Drawing(drawing))],
+        figures: vec![
+            figure("chart", Picture::Charts(vec![(String::new(), chart)])),
+            figure("drawing", Picture::Drawing(drawing)),
+        ],
         tables: vec![Table {
             name: "table".to_owned(),
             title: HOSTILE.to_owned(),

@@ -51,16 +51,20 @@ function nearestOn(a, b, { x, y }) {
   return { x: a.x + along * dx, y: a.y + along * dy };
 }
 
-/** A series: its name, its places, whether these are marked, and the ends of their spreads by the place across. */
+/** A series: its name, its places, whether these are marked, and the ends of their spreads by the place on the other side. */
 function seriesOf(group) {
   const marks = group.querySelector("[style] > path");
-  const [bars, curve] = ["[d*=V]", ":not([d*=V])"].map((which) => group.querySelector(`:scope > path${which}`));
-  const spreads = [...(bars?.getAttribute("d") ?? "").matchAll(/M(-?[\d.]+) ?(-?[\d.]+)h9m-4.5 0V([\d.-]+)m/g)];
+  const [bars, curve] = [":is([d*=V], [d*=H])", ":not([d*=V], [d*=H])"].map((which) => group.querySelector(`:scope > path${which}`));
+  const bar = /M(-?[\d.]+) (-?[\d.]+)([hv])9m(?:-4.5 0V|0-4.5H)([\d.-]+)m/g;
+  const spreads = [...(bars?.getAttribute("d") ?? "").matchAll(bar)].map(([, left, up, way, end]) => {
+    const [side, at, begin] = way === "h" ? ["x", left, up] : ["y", up, left];
+    return { side, at: Number(at) + 4.5, ends: [begin, end].map(Number) };
+  });
   return {
     name: group.dataset.name,
     marked: marks !== null,
     places: marks || curve ? corners(marks ?? curve) : [],
-    spreads: spreads.map(([, left, low, high]) => ({ x: Number(left) + 4.5, ends: [low, high].map(Number) })),
+    spreads,
   };
 }
 
@@ -91,8 +95,9 @@ for (const plane of document.querySelectorAll(".picture [data-x]")) {
   };
   const values = (place) => [`${x.heading}: ${valueAt(x, place.x)}`, `${y.heading}: ${valueAt(y, place.y)}`];
   const showPoint = ({ of, place }) => {
-    const spread = of.spreads.find((each) => Math.abs(each.x - place.x) < 0.02);
-    const ends = spread ? [`between ${spread.ends.map((end) => valueAt(y, end)).join(" and ")}`] : [];
+    const spread = of.spreads.find(({ side, at }) => Math.abs(at - place[side]) < 0.02);
+    const along = spread?.side === "y" ? x : y;
+    const ends = spread ? [`between ${spread.ends.map((end) => valueAt(along, end)).join(" and ")}`] : [];
     show([of.name, ...values(place), ...ends], place, true);
   };
   const look = (at, target) => {

@@ -55,13 +55,8 @@ fn of_maps(maps: &Maps) -> Frame {
     let own = |data: &Stability| {
         data.schemes.iter().find(|scheme| data.way.split(' ').any(|part| part == scheme.scheme)).cloned()
     };
-    let number = |(name, _): &&(String, Stability)| {
-        let with_theory = maps.iter().filter(|(_, data)| of_theory(data).is_some());
-        with_theory.map(|(name, _)| name).position(|known| known == name).map(|at| at as u64 + 1)
-    };
     Rows::of(maps)
         .text("scene", |(name, _)| name)
-        .cell("number", number)
         .text("configuration", |(_, data)| &data.way)
         .text("own integrator", |(_, data)| own(data).map_or(String::new(), |it| it.scheme))
         .number("own step", 6, |(_, data)| data.step)

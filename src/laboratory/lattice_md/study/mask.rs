@@ -40,7 +40,7 @@ fn drawing(places: &[Offset]) -> Drawing {
         let right = if columns > 0 { 0.3 } else { -0.3 };
         let up = if rows < 0 { -0.33 } else { 0.33 };
         [
-            Shape::Rectangle { corners: [[x - 0.5, y - 0.5], [x + 0.5, y + 0.5]], tint, outlined: true },
+            Shape::Rectangle { corners: [[x - 0.5, y - 0.5], [x + 0.5, y + 0.5]], tint },
             Shape::Text { centre: [x + right, y + up], height: 0.16, words },
         ]
     };

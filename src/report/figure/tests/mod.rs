@@ -74,7 +74,7 @@ fn apart(a: [f32; 4], b: [f32; 4]) -> bool {
 
 fn chart_of(picture: &mut Picture) -> &mut Chart {
     match picture {
-        Picture::Chart(chart) => chart,
+        Picture::Charts(panels) => &mut panels[0].1,
         _ => unreachable!(),
     }
 }
@@ -269,7 +269,7 @@ fn faults_are_named() {
 
     let of_panels = |spoil: fn(&mut Vec<(String, Chart)>)| {
         let mut figure = samples::panels();
-        if let Picture::Panels(panels) = &mut figure.picture {
+        if let Picture::Charts(panels) = &mut figure.picture {
             spoil(panels);
         }
         svg(&figure).unwrap_err().problem

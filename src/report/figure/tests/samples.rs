@@ -24,6 +24,10 @@ fn figure(name: &str, title: &str, picture: Picture) -> Figure {
     picture.figure(name, title).caption("What a reader must also know.")
 }
 
+fn single(chart: Chart) -> Picture {
+    Picture::Charts(vec![(String::new(), chart)])
+}
+
 /// Models and measurements over decades, and a band.
 pub fn logarithmic() -> Figure {
     let models = ["clock of the paper: n + D", "clock with strips of 64", "chained, by level of memory"];
@@ -52,7 +56,7 @@ pub fn logarithmic() -> Figure {
     figure(
         "logarithmic",
         "Time of a vector instruction by its length: models and measurements",
-        Picture::Chart(chart),
+        single(chart),
     )
 }
 
@@ -68,7 +72,7 @@ pub fn linear() -> Figure {
         .series("seen", Style::Joined, 2, seen)
         .series("mean of what is seen", Style::Ribbon, 2, [(0.3, 9.0, [7.0, 11.0]), (0.9, 9.0, [7.0, 11.0])])
         .band(Band::of_x("no configuration is denser", [0.84, 0.9]));
-    figure("linear", "Flow through the pipe", Picture::Chart(chart))
+    figure("linear", "Flow through the pipe", single(chart))
 }
 
 /// Density waves.
@@ -100,14 +104,14 @@ pub fn panels() -> Figure {
             .series("list and queue", Style::Joined, 0, curve(0.1).step_by(5))
             .series("grid and tournament", Style::Joined, 1, curve(0.3).step_by(5))
             .series("n log n", Style::Dashed, 6, curve(0.2))
-            .band(Band::at_x("L1", 300.0))
-            .band(Band::at_x("L2", 9000.0))
-            .band(Band::at_x("L3", 11000.0))
-            .band(Band::at_y("as it stands", 3.0))
+            .band(Band::of_x("L1", [300.0; 2]))
+            .band(Band::of_x("L2", [9000.0; 2]))
+            .band(Band::of_x("L3", [11000.0; 2]))
+            .band(Band::of_y("as it stands", [3.0; 2]))
     };
     let all = [("5×5", 1.0), ("7×7", 2.0), ("round, 24 places", 0.4)]
         .map(|(name, factor)| (name.to_owned(), chart(factor)));
-    figure("panels", "Time of a collision by mask", Picture::Panels(all.to_vec()))
+    figure("panels", "Time of a collision by mask", Picture::Charts(all.to_vec()))
 }
 
 /// Points that belong to names.
@@ -125,18 +129,19 @@ pub fn names() -> Figure {
     let chart =
         Chart::of(Axis::names("map", maps), Axis::linear("edge of what works over the step of theory", None))
             .series("measured", Style::Points, 0, points)
-            .band(Band::at_y("theory", 1.0));
-    figure("names", "Edge over theory", Picture::Chart(chart))
+            .band(Band::of_y("theory", [1.0; 2]));
+    figure("names", "Edge over theory", single(chart))
 }
 
 /// Points that belong to names on the vertical axis.
 pub fn named_rows() -> Figure {
-    let Picture::Chart(Chart { x, y, mut series, .. }) = names().picture else { unreachable!() };
+    let Picture::Charts(mut charts) = names().picture else { unreachable!() };
+    let Chart { x, y, mut series, .. } = charts.remove(0).1;
     for point in &mut series[0].points {
         *point = Point::at(point.y, point.x);
     }
-    let chart = Chart { x: y, y: x, series, bands: vec![Band::at_x("theory", 1.0)] };
-    figure("named-rows", "Edge over theory", Picture::Chart(chart))
+    let chart = Chart { x: y, y: x, series, bands: vec![Band::of_x("theory", [1.0; 2])] };
+    figure("named-rows", "Edge over theory", single(chart))
 }
 
 /// Few cells, with values in them and one without.
@@ -168,7 +173,7 @@ pub fn mask() -> Figure {
                 }
             };
             let corners = [[x - 0.5, y - 0.5], [x + 0.5, y + 0.5]];
-            shapes.push(Shape::Rectangle { corners, tint, outlined: true });
+            shapes.push(Shape::Rectangle { corners, tint });
             shapes.push(Shape::Text { centre: [x, y], height: 0.26, words });
         }
     }
