@@ -34,7 +34,7 @@ fn lines(path: &Path) -> usize {
     if path.is_file() {
         let is_test = path.ends_with("tests.rs") || path.extension().is_none_or(|it| it != "rs");
         let text = if is_test { String::new() } else { text(path) };
-        return text.split("#[cfg(test)]\nmod tests").next().unwrap_or_default().lines().count();
+        return text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default().lines().count();
     }
     let entries = fs::read_dir(path).unwrap_or_else(|_| panic!("there is no {}", path.display()));
     let entries = entries.map(|entry| entry.unwrap().path());
