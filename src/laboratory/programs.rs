@@ -37,7 +37,7 @@ pub(crate) fn counted(scene: &str, programs: &[VectorProgram], machines: &[Machi
             .text("machine", |(machine, ..)| machine.title())
             .text("clock", |(_, clock, _)| clock.name())
             .number("clock periods", 0, |(.., clocks)| *clocks)
-            .number("ms", 3, |(machine, _, clocks)| 1e3 * (clocks * machine.clock_period_ns().value * 1e-9))
+            .number("ms", 3, |(machine, _, clocks)| 1e3 * (clocks * machine.clock_period_ns() * 1e-9))
             .frame("clocks", format!("{scene}: time of a step by every clock")),
     ]
 }

@@ -1,66 +1,133 @@
 //! A machine of the timing model.
 
-use super::quantity::{Fact, Provenance, Quantity};
-use super::units::{MemoryPorts, Occupied, Resource, Units};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use stripmine_kernels::isa::op::{OpClass, OpCounts};
 
-/// The vector registers of one processor.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct VectorRegisters {
-    /// How many there are.
-    pub count: Quantity,
-    /// Elements in each.
-    pub length: Quantity,
+/// Where a number comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Provenance {
+    /// Printed in the source that the note names.
+    Sourced,
+    /// Follows from sourced facts, by the argument in the note.
+    Derived,
+    /// Our choice, for the reason in the note; no source we could point to.
+    Assumed,
 }
 
-/// Executions per class of operations; classes that do not occur are absent.
-pub type ClassCounts = BTreeMap<OpClass, u64>;
-
-/// How a machine carries out one operation of a class that it lacks.
-///
-/// The counts come from one sequence of operations and so share one provenance.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Expansion {
-    /// Executions that replace one operation. The class itself, where it occurs, stands for the unit of the
-    /// machine that serves it (`divide` for the reciprocal approximation) and is not expanded again.
-    pub steps: ClassCounts,
-    /// Whether the sequence was printed somewhere, follows from something or is our choice.
+/// A number or a fact with its provenance; the unit is that of the entry it stands for.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table of value, provenance and note")]
+pub struct Known<T> {
+    /// The number, positive and finite, or the fact.
+    pub value: T,
+    /// Says whether it was printed somewhere, follows from something or is our choice.
     pub provenance: Provenance,
     /// The source, the derivation or the reason; never empty.
     pub note: String,
 }
 
-/// The provenance of one entry of a machine.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Entry<'a> {
-    /// The entry as its file writes it, such as `start_up.add`.
-    pub name: String,
-    /// Where its number or numbers come from.
-    pub provenance: Provenance,
-    /// The source, the derivation or the reason.
-    pub note: &'a str,
+/// A number with its provenance.
+pub type Quantity = Known<f64>;
+
+/// The vector registers of one processor.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct VectorRegisters {
+    pub(super) count: Quantity,
+    /// Elements in each.
+    pub(super) length: Quantity,
 }
 
-/// One processor of a vector machine: start-ups, registers and the operations it has to put together.
-#[derive(Clone, Debug, PartialEq)]
+/// Functional units of one kind.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Unit {
+    /// Names of the classes that they serve.
+    serves: Vec<String>,
+    /// Instructions of these classes that run at once.
+    count: Quantity,
+    /// Elements a clock period of each; 1 where nothing is said.
+    rate: Option<Quantity>,
+}
+
+/// The ports to memory.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct MemoryPorts {
+    /// Loads that run at once; loads and stores together where there are no ports for stores.
+    load_ports: Quantity,
+    /// Stores that run at once; none where they share the ports of the loads.
+    store_ports: Option<Quantity>,
+    /// Elements a clock period of each port; 1 where nothing is said.
+    rate: Option<Quantity>,
+    /// Elements a clock period through an index vector; as `rate` where nothing is said.
+    gather_rate: Option<Quantity>,
+}
+
+/// Executions per class of operations; classes that do not occur are absent.
+pub type ClassCounts = BTreeMap<OpClass, u64>;
+
+/// Executions that replace one operation of a class that a machine lacks.
+///
+/// The class itself, where it occurs, stands for the unit of the machine that serves it (`divide` for the reciprocal
+/// approximation) and is not expanded again. All counts come from one sequence of operations and so share one provenance.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Expansion {
+    pub(super) steps: BTreeMap<String, u64>,
+    provenance: Provenance,
+    #[serde(rename = "note")]
+    _note: String,
+}
+
+/// Something that instructions compete for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Resource<'m> {
+    /// Functional units of a kind, by name.
+    Unit(&'m str),
+    /// The ports of loads.
+    Loads,
+    /// The ports of stores.
+    Stores,
+}
+
+/// A resource that an instruction occupies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Occupied<'m> {
+    /// The resource.
+    pub resource: Resource<'m>,
+    /// Instructions that find place at once.
+    pub count: f64,
+    /// Elements a clock period.
+    pub rate: f64,
+}
+
+/// One processor of a vector machine, as its file states it. Classes of operations go by their names.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct MachineModel {
+    format: u32,
     pub(super) title: String,
-    pub(super) year: Quantity,
+    year: Quantity,
     pub(super) clock_period_ns: Quantity,
-    pub(super) vector_registers: Option<VectorRegisters>,
-    pub(super) chaining: Option<Fact>,
+    chaining: Option<Known<bool>>,
     pub(super) loop_overhead: Option<Quantity>,
-    pub(super) units: Units,
-    pub(super) memory: Option<MemoryPorts>,
-    pub(super) default_start_up: Option<Quantity>,
-    pub(super) class_start_ups: BTreeMap<OpClass, Quantity>,
-    pub(super) expansions: BTreeMap<OpClass, Expansion>,
+    pub(super) vector_registers: Option<VectorRegisters>,
+    pub(super) start_up: BTreeMap<String, Quantity>,
+    #[serde(default)]
+    units: BTreeMap<String, Unit>,
+    memory: Option<MemoryPorts>,
+    #[serde(default)]
+    pub(super) expansions: BTreeMap<String, Expansion>,
     /// The expansions followed to the end, down to classes that the machine executes.
+    #[serde(skip)]
     pub(super) executed: BTreeMap<OpClass, ClassCounts>,
 }
+
+/// The start-up of classes that are not named.
+pub(super) const DEFAULT: &str = "default";
 
 impl MachineModel {
     /// The name of the machine in a heading.
@@ -68,34 +135,17 @@ impl MachineModel {
         &self.title
     }
 
-    /// The year of the first delivery, or of publication where the machine is a model.
-    pub fn year(&self) -> &Quantity {
-        &self.year
-    }
-
     /// The clock period in nanoseconds.
-    pub fn clock_period_ns(&self) -> &Quantity {
-        &self.clock_period_ns
-    }
-
-    /// The vector registers; `None` where vectors of any length are worked on in one go.
-    pub fn vector_registers(&self) -> Option<&VectorRegisters> {
-        self.vector_registers.as_ref()
+    pub fn clock_period_ns(&self) -> f64 {
+        self.clock_period_ns.value
     }
 
     /// The start-up D of an operation of `class`, in clock periods: BP93 section 3, the pipeline depth.
     ///
     /// Zero for a class that never executes because its expansion does without it.
     pub fn start_up(&self, class: OpClass) -> f64 {
-        self.class_start_ups
-            .get(&class)
-            .or(self.default_start_up.as_ref())
-            .map_or(0.0, |start_up| start_up.value)
-    }
-
-    /// How the machine carries out an operation of `class`; `None` where it has the operation.
-    pub fn expansion(&self, class: OpClass) -> Option<&Expansion> {
-        self.expansions.get(&class)
+        let start_up = self.start_up.get(class.name()).or_else(|| self.start_up.get(DEFAULT));
+        start_up.map_or(0.0, |start_up| start_up.value)
     }
 
     /// The operations executed for one of `class`: itself, or its expansion followed to the end.
@@ -117,63 +167,45 @@ impl MachineModel {
         executed
     }
 
-    /// Every entry that carries numbers, in the order of a machine file.
-    pub fn entries(&self) -> Vec<Entry<'_>> {
-        let registers = self.vector_registers.iter();
-        let quantities =
-            [("year".to_owned(), &self.year), ("clock_period_ns".to_owned(), &self.clock_period_ns)]
-                .into_iter()
-                .chain(registers.flat_map(|registers| {
-                    [
-                        ("vector_registers.count".to_owned(), &registers.count),
-                        ("vector_registers.length".to_owned(), &registers.length),
-                    ]
-                }))
-                .chain(self.default_start_up.iter().map(|start_up| ("start_up.default".to_owned(), start_up)))
-                .chain(
-                    self.class_start_ups
-                        .iter()
-                        .map(|(class, start_up)| (format!("start_up.{}", class.name()), start_up)),
-                )
-                .chain(self.unit_quantities())
-                .map(|(name, quantity)| Entry {
-                    name,
-                    provenance: quantity.provenance,
-                    note: &quantity.note,
-                });
-        let chaining = self.chaining.iter().map(|fact| Entry {
-            name: "chaining".to_owned(),
-            provenance: fact.provenance,
-            note: &fact.note,
-        });
-        let expansions = self.expansions.iter().map(|(class, expansion)| Entry {
-            name: format!("expansions.{}", class.name()),
-            provenance: expansion.provenance,
-            note: &expansion.note,
-        });
-        quantities.chain(chaining).chain(expansions).collect()
-    }
-
     /// The same machine with every assumed start-up, and an assumed loop overhead, at zero: what a result keeps without
     /// them.
     #[must_use]
     pub fn without_assumed_start_ups(&self) -> MachineModel {
         let mut known = self.clone();
-        let start_ups = known.class_start_ups.values_mut().chain(&mut known.default_start_up);
-        let quantities = start_ups.chain(&mut known.loop_overhead);
+        let quantities = known.start_up.values_mut().chain(&mut known.loop_overhead);
         quantities
             .filter(|quantity| quantity.provenance == Provenance::Assumed)
             .for_each(|quantity| quantity.value = 0.0);
         known
     }
 
-    /// Names of the entries whose numbers are our own choice.
+    /// Names of the entries that are our own choice, such as `start_up.add`.
     pub fn assumed(&self) -> Vec<String> {
-        self.entries()
-            .into_iter()
-            .filter(|entry| entry.provenance == Provenance::Assumed)
-            .map(|entry| entry.name)
-            .collect()
+        let mut all: Vec<(String, Option<Provenance>)> = vec![];
+        let mut add = |name: String, it: Option<&Quantity>| all.push((name, it.map(|it| it.provenance)));
+        let (registers, memory) = (self.vector_registers.as_ref(), self.memory.as_ref());
+        add("year".to_owned(), Some(&self.year));
+        add("clock_period_ns".to_owned(), Some(&self.clock_period_ns));
+        add("vector_registers.count".to_owned(), registers.map(|it| &it.count));
+        add("vector_registers.length".to_owned(), registers.map(|it| &it.length));
+        for name in [DEFAULT].into_iter().chain(OpClass::ALL.iter().map(|class| class.name())) {
+            add(format!("start_up.{name}"), self.start_up.get(name));
+        }
+        add("loop_overhead".to_owned(), self.loop_overhead.as_ref());
+        for (name, unit) in &self.units {
+            add(format!("units.{name}.count"), Some(&unit.count));
+            add(format!("units.{name}.rate"), unit.rate.as_ref());
+        }
+        add("memory.load_ports".to_owned(), memory.map(|it| &it.load_ports));
+        add("memory.store_ports".to_owned(), memory.and_then(|it| it.store_ports.as_ref()));
+        add("memory.rate".to_owned(), memory.and_then(|it| it.rate.as_ref()));
+        add("memory.gather_rate".to_owned(), memory.and_then(|it| it.gather_rate.as_ref()));
+        all.push(("chaining".to_owned(), self.chaining.as_ref().map(|it| it.provenance)));
+        for name in OpClass::ALL.iter().map(|class| class.name()) {
+            all.push((format!("expansions.{name}"), self.expansions.get(name).map(|it| it.provenance)));
+        }
+        all.retain(|(_, provenance)| *provenance == Some(Provenance::Assumed));
+        all.into_iter().map(|(name, _)| name).collect()
     }
 
     /// Whether the machine says which operations can run at once.
@@ -186,17 +218,13 @@ impl MachineModel {
         self.chaining.as_ref().is_some_and(|chaining| chaining.value)
     }
 
-    /// Clock periods of the loop around the strips; none where nothing is said.
-    pub fn loop_overhead(&self) -> Option<&Quantity> {
-        self.loop_overhead.as_ref()
-    }
-
-    /// What an instruction of `class` occupies; none where the machine says nothing of it.
+    /// The resource that an instruction of `class` occupies; none where the machine says nothing of it.
     pub fn unit(&self, class: OpClass) -> Option<Occupied<'_>> {
         let number =
             |quantity: &Option<Quantity>, otherwise| quantity.as_ref().map_or(otherwise, |q| q.value);
         if !class.moves_data() {
-            let (name, unit) = self.units.iter().find(|(_, unit)| unit.serves.contains(&class))?;
+            let serves = |unit: &Unit| unit.serves.iter().any(|name| name == class.name());
+            let (name, unit) = self.units.iter().find(|(_, unit)| serves(unit))?;
             let rate = number(&unit.rate, 1.0);
             return Some(Occupied { resource: Resource::Unit(name), count: unit.count.value, rate });
         }
@@ -212,26 +240,6 @@ impl MachineModel {
             }
             _ => Occupied { resource: Resource::Loads, count: memory.load_ports.value, rate },
         })
-    }
-
-    /// The numbers of units, ports and strips, by the names of their entries in a machine file.
-    pub(super) fn unit_quantities(&self) -> Vec<(String, &Quantity)> {
-        let mut quantities: Vec<(String, &Quantity)> = vec![];
-        quantities.extend(self.loop_overhead.iter().map(|quantity| ("loop_overhead".to_owned(), quantity)));
-        for (name, unit) in &self.units {
-            quantities.push((format!("units.{name}.count"), &unit.count));
-            quantities.extend(unit.rate.iter().map(|rate| (format!("units.{name}.rate"), rate)));
-        }
-        if let Some(memory) = &self.memory {
-            quantities.push(("memory.load_ports".to_owned(), &memory.load_ports));
-            let rest = [
-                ("memory.store_ports", &memory.store_ports),
-                ("memory.rate", &memory.rate),
-                ("memory.gather_rate", &memory.gather_rate),
-            ];
-            quantities.extend(rest.into_iter().filter_map(|(name, q)| Some((name.to_owned(), q.as_ref()?))));
-        }
-        quantities
     }
 }
 

@@ -12,5 +12,3 @@ pub mod host;
 pub mod machine;
 pub mod machine_file;
 pub mod machines;
-pub mod quantity;
-pub mod units;

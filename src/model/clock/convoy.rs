@@ -1,8 +1,8 @@
 //! Convoys: sets of vector instructions that begin together, Hennessy and Patterson, *Computer Architecture*, vector
 //! processors.
 
+use crate::model::machine::Resource;
 use crate::model::machine::{ClassCounts, MachineModel};
-use crate::model::units::Resource;
 use std::collections::HashMap;
 use stripmine_kernels::backend::tape::{Outline, Place, RegisterName};
 use stripmine_kernels::isa::{Array, OpClass};

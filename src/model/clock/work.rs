@@ -25,11 +25,6 @@ impl Work {
         Work { counts, order }
     }
 
-    /// How often each operation is executed.
-    pub fn counts(&self) -> &OpCounts {
-        &self.counts
-    }
-
     /// The instructions in their order; none where only counts are known, which no clock can chain.
     pub fn order(&self) -> Option<&[Outline]> {
         (!self.order.is_empty()).then_some(&self.order)

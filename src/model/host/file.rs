@@ -1,15 +1,13 @@
 //! Host files: what `calibrate` writes, as TOML.
 
 use super::model::HostModel;
-use crate::model::file::{self, Entry, ModelFileError, Source, Table};
-use serde::Deserialize;
+use crate::model::file::{self, Entry, Kind, ModelFileError, Source};
 use std::path::Path;
 use stripmine_kernels::InstructionSet;
-use toml::de::DeValue;
 
 /// The version of the file format that this program reads.
 pub const FORMAT: u32 = 15;
-const KIND: &str = "host file";
+const KIND: Kind = Kind { name: "host file", format: FORMAT, remedy: ": calibrate again" };
 /// Above every number of a host file: with larger ones a sum of all that a step does might not be finite.
 const MOST: f64 = 1e15;
 
@@ -19,37 +17,15 @@ impl HostModel {
     /// # Errors
     /// [`ModelFileError`]: it cannot be read, or is bad.
     pub fn load(path: &Path) -> Result<HostModel, ModelFileError> {
-        HostModel::parse(&path.display().to_string(), &file::read(KIND, path)?)
+        HostModel::parse(&path.display().to_string(), &file::text(&KIND, path)?)
     }
 
     /// Reads a host file's text; `file` is the name that errors give it.
     ///
     /// # Errors
-    /// [`ModelFileError`]: another format, the grammar's first mistake, or every entry that cannot be.
+    /// [`ModelFileError`]: another format, or the grammar's first mistake with every number that cannot be.
     pub fn parse(file: &str, text: &str) -> Result<HostModel, ModelFileError> {
-        /// The version that a text states, whatever else it has.
-        #[derive(Deserialize)]
-        struct Version {
-            format: u32,
-        }
-        let source = Source { kind: KIND, file, text };
-        let model = match toml::from_str::<HostModel>(text) {
-            Ok(model) => Some(model),
-            // A file of another format has entries of other names: its format is the mistake.
-            Err(_) if toml::from_str::<Version>(text).is_ok_and(|it| it.format != FORMAT) => None,
-            Err(cause) => return Err(source.syntax(&cause)),
-        };
-        source.read(|table| {
-            let format = table.need("format", |it| match it.number()? {
-                found if found == f64::from(FORMAT) => Some(()),
-                found => {
-                    let remedy = format!("but this program reads {FORMAT}: calibrate again");
-                    it.wrong(format!("`format` is {found}, {remedy}"))
-                }
-            });
-            table.others::<(), ()>(|_, it| format.and_then(|()| numbers(it)))?;
-            model?.checked(table)
-        })
+        Source { kind: &KIND, file, text }.read(wrong, HostModel::checked)
     }
 
     /// The text of its file.
@@ -61,44 +37,40 @@ impl HostModel {
     }
 
     /// The model, if its entries agree with each other.
-    fn checked(self, table: &Table<'_>) -> Option<HostModel> {
+    fn checked(self) -> Result<HostModel, (String, String)> {
+        let wrong = |path: &str, what: String| Err((path.to_owned(), format!("`{path}` {what}")));
         let sets: Vec<&str> = InstructionSet::ALL.iter().map(|set| set.name()).collect();
         if !sets.contains(&&*self.instruction_set) {
             let what = format!("is \"{}\", but must be one of {}", self.instruction_set, sets.join(", "));
-            return table.wrong_at("instruction_set", format!("`instruction_set` {what}"));
+            return wrong("instruction_set", what);
         }
         for (path, list) in [("footprints", &self.footprints[..]), ("discs", &self.discs)] {
             if list.first().is_none_or(|&first| first <= 0.0) || list.windows(2).any(|two| two[0] >= two[1]) {
-                return table.wrong_at(path, format!("`{path}` must be positive and rise"));
+                return wrong(path, "must be positive and rise".to_owned());
             }
         }
+        let footprints = self.footprints.len();
         let prices = self.programs.values().flat_map(|of| [&of.interpreted, &of.chained]);
-        if let Some(of) = prices.map(|of| of.bytes.len()).find(|&of| of != self.footprints.len()) {
-            let what =
-                format!("has {of} prices of a byte, but there are {} footprints", self.footprints.len());
-            return table.wrong_at("programs", format!("`programs` {what}"));
+        if let Some(of) = prices.map(|of| of.bytes.len()).find(|of| *of != footprints) {
+            return wrong(
+                "programs",
+                format!("has {of} prices of a byte, but there are {footprints} footprints"),
+            );
         }
-        Some(self)
+        Ok(self)
     }
 }
 
-/// Notes every number of an entry that cannot be.
-fn numbers(entry: &Entry<'_>) -> Option<()> {
-    match entry.value {
-        DeValue::Table(_) => return entry.table(|table| table.others(|_, it| numbers(it))),
-        DeValue::Array(_) => return entry.list("numbers")?.iter().map(numbers).collect(),
-        DeValue::Integer(_) | DeValue::Float(_) => {}
-        _ => return Some(()),
-    }
-    let (number, path) = (entry.number()?, &entry.path);
-    let (range, words) = match path.rsplit('.').next() {
+/// Says what is wrong with the number of an entry.
+fn wrong(entry: &Entry<'_>) -> Option<String> {
+    let number = entry.number()?;
+    let (range, words) = match entry.names.last() {
         // Lanes of a register, and elements of a vector.
-        Some("lanes") => (1.0..=65_536.0, "a whole number from 1 to 65536".to_owned()),
-        Some("shortest" | "longest") => (1.0..=2_f64.powi(40), "a whole number from 1 to 2^40".to_owned()),
+        Some(&"lanes") => (1.0..=65_536.0, "a whole number from 1 to 65536".to_owned()),
+        Some(&"shortest" | &"longest") => (1.0..=2_f64.powi(40), "a whole number from 1 to 2^40".to_owned()),
         _ => (0.0..=MOST, format!("from 0 to {MOST:e}")),
     };
-    let what = || format!("`{path}` is {number}, but must be {words}");
-    if range.contains(&number) { Some(()) } else { entry.wrong(what()) }
+    (!range.contains(&number)).then(|| format!("`{}` is {number}, but must be {words}", entry.path()))
 }
 
 /// What stands above the numbers.

@@ -89,7 +89,7 @@ impl Ladder<'_> {
                 at.checked_sub(1).map(|before| step(**clock) / step(Clock::ALL[before]))
             })
             .number("a disc", 0, |(_, clock)| step(**clock) / self.discs as f64)
-            .number("ms", 3, |(_, clock)| 1e3 * (step(**clock) * self.machine.clock_period_ns().value * 1e-9))
+            .number("ms", 3, |(_, clock)| 1e3 * (step(**clock) * self.machine.clock_period_ns() * 1e-9))
             .frame(name, format!("Clock periods of one step by every clock: {}", self.machine.title()))
     }
 
@@ -116,7 +116,7 @@ fn summary(ladders: &[Ladder<'_>]) -> Frame {
         .text("machine", |it| it.machine.title())
         .count("NP", |it| it.discs)
         .count("LMAX", |it| it.cells)
-        .number("clock period (ns)", 3, |it| it.machine.clock_period_ns().value)
+        .number("clock period (ns)", 3, |it| it.machine.clock_period_ns())
         .number("chained over the paper's clock", 2, |it| it.of_paper(Clock::Chained))
         .number("with memory ports over the paper's clock", 2, |it| it.of_paper(Clock::Ports))
         .number("share of the last rung from assumed start-ups (%)", 1, |it| 100.0 * it.assumed_share())

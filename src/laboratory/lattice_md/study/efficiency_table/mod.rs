@@ -100,7 +100,7 @@ pub(crate) fn efficiency_table(question: &Question, machine: &MachineModel) -> R
         .count("LMAX", |()| cells)
         .number("occupancy", 4, |()| discs as f64 / cells as f64)
         .text("machine", |()| machine.title())
-        .number("clock period (ns)", 3, |()| machine.clock_period_ns().value)
+        .number("clock period (ns)", 3, |()| machine.clock_period_ns())
         .number("clocks of the printed text on a scalar machine", 0, |()| {
             printed.rows(Clock::Scalar).map(|(.., clocks)| clocks).sum::<f64>()
         })
