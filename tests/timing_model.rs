@@ -51,7 +51,7 @@ fn bad_machine_files_are_named_with_line_and_column() {
 fn all_wrong_values_of_a_machine_file_are_said_at_once() {
     let folder = tempfile::tempdir().unwrap();
     let text =
-        MACHINE.replace("value = 20", "value = -20").replace("2026", "2026.5").replace("\"Mine\"", "7");
+        MACHINE.replace("value = 20,", "value = -20,").replace("2026", "2026.5").replace("\"Mine\"", "7");
     let path = file(&folder, &text);
     let out = stripmine(&["table", "--machine", &path]).code(3);
     let complaint = String::from_utf8_lossy(&out.get_output().stderr).into_owned();

@@ -1,6 +1,7 @@
 //! Frames and tables, column by column.
 
 use super::{Cell, Frame, Table};
+use crate::statistics::Mean;
 
 /// A table while its columns are added. Each is its heading, and what its cell is of an item; an item is a row.
 #[derive(Debug)]
@@ -33,6 +34,20 @@ impl<T> Rows<T> {
         of: impl Fn(&T) -> N,
     ) -> Rows<T> {
         self.cell(heading, |item| of(item).into().map_or(Cell::Nothing, |it| Cell::Number(it, decimals)))
+    }
+
+    /// Two columns: a mean with a number of decimals, and its 95 % half-width; an item may have none.
+    pub fn mean<M: Into<Option<Mean>>>(
+        self,
+        heading: impl Into<String>,
+        decimals: usize,
+        of: impl Fn(&T) -> M,
+    ) -> Rows<T> {
+        let number = |it: Option<f64>| it.map_or(Cell::Nothing, |it| Cell::Number(it, decimals));
+        self.cells([heading.into(), "± (95 %)".to_owned()], |item| {
+            let mean: Option<Mean> = of(item).into();
+            [mean.map(|it| it.value), mean.map(|it| it.bar)].map(number)
+        })
     }
 
     /// A column of numbers of any size, shown with two digits; an item may have none.

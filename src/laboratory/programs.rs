@@ -43,9 +43,6 @@ pub(crate) fn counted(scene: &str, programs: &[VectorProgram], machines: &[Machi
 }
 
 /// Frames of some scenes, numbered in their order, with the listing of the first program.
-///
-/// # Errors
-/// [`Failure`] if there is no such machine.
 pub(crate) fn made(scenes: &[(&str, Prepared)]) -> Result<Made, Failure> {
     let machines: Vec<MachineModel> =
         MACHINES.iter().map(|name| machines::preset(name)).collect::<Result<_, _>>()?;

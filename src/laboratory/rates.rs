@@ -102,9 +102,6 @@ pub fn frame(
 }
 
 /// Measures cases in [`PROCESSES`] processes, one after the other.
-///
-/// # Errors
-/// [`Failure`] of a case, with the case's name.
 pub fn rates(lab: &Lab<'_>, cases: &[Case]) -> Result<Vec<Measured>, Failure> {
     rounds(cases, lab.progress, |cases, heard| match &lab.program {
         Some(program) => process::measure(program, cases, heard),

@@ -1,5 +1,6 @@
 //! A scene of a study that runs: by its preset and overrides, and seen by the names of what is observed.
 
+use crate::statistics::kolmogorov_smirnov;
 use crate::study::StudyError;
 use std::sync::atomic::AtomicBool;
 use stripmine_physics::domain::Domain;
@@ -7,23 +8,31 @@ use stripmine_physics::method::observed::{UnknownName, observed};
 use stripmine_physics::method::{self, Entry, METHODS, Prepared, Purpose, Quantity, Simulation, Until, load};
 
 /// A preset with overrides.
-///
-/// # Errors
-/// [`StudyError`] if the scene is bad.
 pub fn prepared(preset: &str, overrides: &[String]) -> Result<Prepared, StudyError> {
     Ok(load(preset, overrides, METHODS)?.0)
 }
 
 /// Does something on a number of threads.
-///
-/// # Errors
-/// [`StudyError`] if they cannot be had, or what is done fails.
 pub fn on_threads<T: Send>(
     threads: usize,
     work: impl FnOnce() -> Result<T, StudyError> + Send,
 ) -> Result<T, StudyError> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.map_err(StudyError::Threads)?.install(work)
+}
+
+/// Narrows a range, at whose lower end something holds and at whose upper end it does not, by the `middle` of both until it `is_narrow`.
+pub fn bisected<T: Copy, E>(
+    mut range: [T; 2],
+    is_narrow: impl Fn([T; 2]) -> bool,
+    middle: impl Fn(T, T) -> T,
+    mut holds: impl FnMut(T) -> Result<bool, E>,
+) -> Result<[T; 2], E> {
+    while !is_narrow(range) {
+        let middle = middle(range[0], range[1]);
+        range[usize::from(!holds(middle)?)] = middle;
+    }
+    Ok(range)
 }
 
 /// A scene that runs.
@@ -37,27 +46,18 @@ pub struct Running {
 
 impl Running {
     /// A preset with overrides, at its start, to be observed.
-    ///
-    /// # Errors
-    /// [`StudyError`] if the scene is bad, or the processor lacks what it asks for.
     pub fn begin(preset: &str, overrides: &[String]) -> Result<Running, StudyError> {
         let (prepared, method) = load(preset, overrides, METHODS)?;
         Running::of(method, &prepared, Purpose::Run)
     }
 
     /// A preset with overrides, at its start, of which nothing is followed that the motion does not need.
-    ///
-    /// # Errors
-    /// As of [`begin`](Self::begin).
     pub fn timed(preset: &str, overrides: &[String]) -> Result<Running, StudyError> {
         let (prepared, method) = load(preset, overrides, METHODS)?;
         Running::of(method, &prepared, Purpose::Measurement)
     }
 
     /// A scene of a method, at its start.
-    ///
-    /// # Errors
-    /// [`StudyError`] if the processor or the memory lacks what it asks for.
     pub fn of(method: &'static Entry, prepared: &Prepared, purpose: Purpose) -> Result<Running, StudyError> {
         prepared.memory.fits("scene")?;
         let (simulation, domain) = (prepared.start(purpose)?, prepared.domain);
@@ -65,33 +65,29 @@ impl Running {
     }
 
     /// Goes on for some steps.
-    ///
-    /// # Errors
-    /// [`method::Failure`] if the physics breaks.
     pub fn steps(&mut self, steps: u64) -> Result<(), method::Failure> {
         self.until(Until::Steps(steps).after(&self.simulation.clock()))
     }
 
     /// Lets some events happen.
-    ///
-    /// # Errors
-    /// [`method::Failure`] if the physics breaks.
     pub fn events(&mut self, events: u64) -> Result<(), method::Failure> {
         self.until(Until::Events(events).after(&self.simulation.clock()))
     }
 
     /// Goes on until a moment has come.
-    ///
-    /// # Errors
-    /// [`method::Failure`] if the physics breaks.
     pub fn until(&mut self, moment: Until) -> Result<(), method::Failure> {
         self.simulation.advance(&[moment], &AtomicBool::new(false))
     }
 
+    /// Probability by Kolmogorov and Smirnov that the components of the velocities are Maxwell's at a kT/m.
+    pub fn maxwell(&self, temperature: f64) -> f64 {
+        let particles = self.simulation.particles();
+        let components = particles.grains().iter().flat_map(|it| it.planar_velocity());
+        let scaled = components.map(|v| v / temperature.sqrt()).collect();
+        kolmogorov_smirnov(scaled, |x| 0.5 * libm::erfc(-x / 2f64.sqrt()))
+    }
+
     /// What is observed now, by its name.
-    ///
-    /// # Errors
-    /// [`UnknownName`] if it is not observed.
     pub fn observed<const N: usize>(&self, names: [&str; N]) -> Result<[f64; N], UnknownName> {
         observed(self.quantities, &self.simulation.observe(), names)
     }

@@ -11,7 +11,6 @@ pub struct Case {
     text: String,
     overrides: Vec<String>,
     methods: Methods,
-    /// Its method.
     pub entry: &'static Entry,
     /// The values of the scene as they were given.
     pub values: Values,
@@ -29,14 +28,6 @@ impl Case {
     pub fn load(what: &str, overrides: &[String], methods: Methods) -> Result<Case, SceneErrors> {
         let text = Values::text(what, &vocabularies(methods))?;
         Case::of(what, text, overrides, methods, None)
-    }
-
-    /// The scene of a text; `what` is the name that errors give it.
-    ///
-    /// # Errors
-    /// As [`load`](Self::load).
-    pub fn parse(what: &str, text: String, methods: Methods) -> Result<Case, SceneErrors> {
-        Case::of(what, text, &[], methods, None)
     }
 
     /// With the start file as another scene has read it, where one is given.
@@ -67,11 +58,6 @@ impl Case {
         })
     }
 
-    /// The name of the scene.
-    pub fn name(&self) -> &str {
-        &self.what
-    }
-
     /// The arguments that name it on a command line.
     pub fn arguments(&self) -> String {
         let set = self.overrides.iter().map(|text| format!(" --set {text}"));
@@ -93,17 +79,11 @@ impl Case {
     }
 
     /// The same scene with further overrides.
-    ///
-    /// # Errors
-    /// [`SceneErrors`]: why it cannot be run so.
     pub fn prepared_with(&self, more: &[String]) -> Result<Prepared, SceneErrors> {
         self.prepared_in(&Choice::own(&[], &self.prepared), more)
     }
 
     /// The same scene in a way to run it, with further overrides.
-    ///
-    /// # Errors
-    /// [`SceneErrors`]: why it cannot be run so.
     pub fn prepared_in(&self, choice: &Choice, more: &[String]) -> Result<Prepared, SceneErrors> {
         Ok(prepare(self.values_in(choice, more)?, self.methods)?.0)
     }
@@ -120,9 +100,6 @@ impl Case {
     }
 
     /// A scene by the same methods, from the same start file if it has one.
-    ///
-    /// # Errors
-    /// As [`parse`](Self::parse).
     pub fn beside(&self, text: String) -> Result<Case, SceneErrors> {
         Case::of(&self.what, text, &[], self.methods, Some(&self.values))
     }
@@ -174,8 +151,6 @@ mod tests {
         fs::remove_file(&start).unwrap();
         fs::remove_file(&scene).unwrap();
         assert_eq!(again(&case), checksum);
-        assert_eq!(again(&case.beside(text.clone()).unwrap()), checksum);
-        // Another scene reads its own.
-        assert!(Case::parse(scene.to_str().unwrap(), text, METHODS).is_err());
+        assert_eq!(again(&case.beside(text).unwrap()), checksum);
     }
 }

@@ -35,7 +35,6 @@ pub struct Collision {
 /// The error of the outcomes of a scheme with a step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OutcomeError {
-    /// The way to run it.
     pub choice: String,
     /// The step (time).
     pub step: f64,
@@ -48,9 +47,7 @@ pub struct OutcomeError {
 /// How the errors of a scheme fall with the step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OutcomeOrder {
-    /// The way to run it.
     pub choice: String,
-    /// The outcome.
     pub outcome: String,
     /// Of the root of the mean square over the phases.
     pub spread: Option<Fitted>,
@@ -66,9 +63,6 @@ pub fn is_collision(subject: &Subject) -> bool {
 
 /// Collisions by every scheme over `steps` (time, rising), each with `phases` starts. None where the discs do not part within
 /// the time of the scene.
-///
-/// # Errors
-/// [`JournalError`] if a finished run cannot be kept.
 pub fn collision(
     subject: &Subject,
     steps: &[f64],

@@ -25,7 +25,6 @@ pub enum StudyError {
     TooLittleTime {
         /// Processor seconds of the smallest map.
         needed: f64,
-        /// What was asked for.
         budget: f64,
     },
     /// Trajectories mean nothing.
@@ -64,29 +63,20 @@ pub enum StudyError {
          raise run.steps or run.time, or lower run.thermo_every"
     )]
     OverBeforeOutput {
-        /// Steps of the scene.
         steps: u64,
         /// Steps up to the first row.
         first: u64,
     },
     /// The method lets nothing of that name vary.
     #[error("`{name}` is nothing that may be varied beside the step\n  help: one of {}", known.join(", "))]
-    NoSuchParameter {
-        /// What was asked for.
-        name: String,
-        /// What there is.
-        known: Vec<&'static str>,
-    },
+    NoSuchParameter { name: String, known: Vec<&'static str> },
     /// The scene has no value of anything that its method varies, so that nothing suggests itself.
     #[error(
         "the scene has no value of its own of what may be varied beside the step\n  help: choose what and from where to where: --over \
          NAME --range LOW HIGH, with one of {}",
         known.join(", ")
     )]
-    NothingOfItsOwn {
-        /// What there is.
-        known: Vec<&'static str>,
-    },
+    NothingOfItsOwn { known: Vec<&'static str> },
     /// The scene has nothing of what is to be varied, so that no range suggests itself.
     #[error(
         "the scene has no {0} of its own to vary\n  help: choose a range: --range LOW HIGH; or something else: --over NAME"
@@ -97,14 +87,7 @@ pub enum StudyError {
         "--range {} {} is none for {name}: it rises, from {} at the least to {} at the most",
         range[0], range[1], significant(bounds[0], 3), significant(bounds[1], 3)
     )]
-    OutOfRange {
-        /// What is to be varied.
-        name: &'static str,
-        /// What was asked for.
-        range: [f64; 2],
-        /// What may be.
-        bounds: [f64; 2],
-    },
+    OutOfRange { name: &'static str, range: [f64; 2], bounds: [f64; 2] },
     /// No run came to its end.
     #[error(
         "no run of the scene came to its end as it should; tried were:{}\n  help: lower integrator.dt, or mend what the failures name",

@@ -27,7 +27,6 @@ pub const HALVINGS: i32 = 3;
 /// What came out.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Growth {
-    /// The way it was run.
     pub way: String,
     /// The step of the runs (time).
     pub step: f64,
@@ -41,7 +40,6 @@ pub struct Growth {
     pub rate: Option<f64>,
     /// Up to which time trajectories are comparable (time).
     pub window: f64,
-    /// What ends the window.
     pub ended_by: EndedBy,
 }
 
@@ -63,11 +61,9 @@ impl Growth {
 /// What ends the time in which trajectories are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum EndedBy {
-    /// The error grows too large.
     Growth,
     /// The scene does.
     Scene,
-    /// More would take too long.
     Budget,
 }
 

@@ -25,11 +25,9 @@ pub const REFERENCE: f64 = 0.25;
 pub struct Comparison {
     /// What is compared.
     pub observable: String,
-    /// The way to run it.
     pub choice: String,
     /// The step (time).
     pub step: f64,
-    /// The mean of the reference.
     pub reference: f64,
     /// The difference to it, relative to the reference; for the density profile the root of the mean square over the bins.
     pub difference: f64,
@@ -51,14 +49,10 @@ pub struct Observables {
     pub duration: f64,
     /// Every comparison; none of a mean that is itself not known to a tenth.
     pub comparisons: Vec<Comparison>,
-    /// What failed, and why.
     pub failed: Vec<(String, f64, String)>,
 }
 
 /// Runs every way to run the scene with every seed for `steps` own steps.
-///
-/// # Errors
-/// [`JournalError`] if a finished run cannot be kept.
 pub fn observables(
     subject: &Subject,
     choices: &[Choice],

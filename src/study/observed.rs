@@ -6,7 +6,6 @@ use stripmine_physics::method::{Quantity, Trials};
 /// A quantity that has a mean in a run.
 #[derive(Debug)]
 pub struct Watched {
-    /// Its name.
     pub name: &'static str,
     /// Its place among those observed.
     pub place: usize,
@@ -52,9 +51,6 @@ pub struct Observed {
 
 impl Observed {
     /// What the trials of a method name, among what the method observes.
-    ///
-    /// # Errors
-    /// [`UnknownName`] if it observes nothing of such a name.
     pub fn of(trials: &Trials, quantities: &[Quantity]) -> Result<Observed, UnknownName> {
         let places = |names: &[&str]| -> Result<Vec<usize>, UnknownName> {
             names.iter().map(|name| find(quantities, name)).collect()

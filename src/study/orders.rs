@@ -13,7 +13,6 @@ const LEAST: usize = 3;
 /// The power of the step with which an error falls.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Fitted {
-    /// The power.
     pub order: f64,
     /// The smallest and the largest step of the fit (time).
     pub range: [f64; 2],

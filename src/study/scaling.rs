@@ -16,7 +16,6 @@ const BESIDE: [&str; 4] = ["start", "row", "particles", "snapshot"];
 /// A bench on several numbers of threads.
 #[derive(Clone, Debug, Serialize)]
 pub struct Scaling {
-    /// What was measured.
     pub what: &'static str,
     /// Particles that move.
     pub particles: usize,
@@ -37,7 +36,6 @@ pub struct Scaling {
 /// How many ranks, and threads of each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Crew {
-    /// Ranks.
     pub ranks: usize,
     /// Threads of each.
     pub threads: usize,
@@ -65,7 +63,6 @@ pub struct OfThreads {
 /// A phase on all numbers of threads.
 #[derive(Clone, Debug, Serialize)]
 pub struct Phase {
-    /// Its name.
     pub name: String,
     /// Nanoseconds of a particle and step, of the best repeat, or of a particle, once, for what is done beside steps.
     pub nanoseconds: Vec<f64>,

@@ -14,13 +14,10 @@ const JOURNALED: &str = "3";
 /// A scene under study.
 pub struct Subject {
     case: Case,
-    /// What its method states.
     pub trials: &'static Trials,
-    /// What is observed of it.
     pub observed: Observed,
     /// Its own step (time).
     pub step: f64,
-    /// Its own number of steps.
     pub steps: u64,
 }
 
@@ -58,17 +55,11 @@ impl Subject {
     }
 
     /// The same scene in a way to run it, with a step (time) and further overrides.
-    ///
-    /// # Errors
-    /// [`SceneErrors`]: why it cannot be run so.
     pub fn prepared_as(&self, choice: &Choice, step: f64, more: &[String]) -> Result<Prepared, SceneErrors> {
         self.prepared_in(choice, &self.at_step(step, more))
     }
 
     /// The same, whatever is foreseen of the step.
-    ///
-    /// # Errors
-    /// [`SceneErrors`]: why it cannot be run so.
     pub fn prepared_at_any_step(
         &self,
         choice: &Choice,

@@ -13,7 +13,6 @@ const LONG_ENOUGH: Duration = Duration::from_millis(1);
 
 /// The end of a run.
 pub struct End {
-    /// The state.
     pub state: State,
     /// Clock periods of a step on a machine, the mean over the looks; none where no operations are counted.
     pub clocks: Option<f64>,
@@ -22,7 +21,6 @@ pub struct End {
 /// How far a run goes.
 #[derive(Clone, Copy, Debug)]
 pub struct Course {
-    /// Steps.
     pub steps: u64,
     /// Looks, evenly spread, the last one at the end.
     pub looks: u64,
@@ -31,9 +29,6 @@ pub struct Course {
 }
 
 /// Runs a scene; `look` sees it, the first time before the first step, with the quantities observed.
-///
-/// # Errors
-/// [`Failure`] if it breaks.
 pub fn follow(
     prepared: &Prepared,
     purpose: Purpose,
@@ -54,9 +49,6 @@ pub fn follow(
 }
 
 /// Goes on up to a step; what is done is heard at least twice a second, as far as steps take as long as expected.
-///
-/// # Errors
-/// [`Failure`] if it breaks.
 pub fn advance(
     simulation: &mut dyn Simulation,
     end: u64,
@@ -75,9 +67,6 @@ pub fn advance(
 }
 
 /// Processor seconds of a run of that many steps, over all threads; short runs are made again and again.
-///
-/// # Errors
-/// [`Failure`] if it breaks.
 pub fn timed(prepared: &Prepared, course: Course, meter: &Meter<'_>) -> Result<f64, Failure> {
     let (mut spent, mut runs) = (Duration::ZERO, 0);
     while spent < LONG_ENOUGH {

@@ -104,9 +104,6 @@ impl Case {
     }
 
     /// Measures the case; `all` are the works that are no scenes, for a case that another process sent.
-    ///
-    /// # Errors
-    /// [`Failure`] if the scene is bad or breaks while running.
     pub(super) fn measure(&self, all: &[&Own]) -> Result<Reading, Failure> {
         let threads = self.threads.unwrap_or(1);
         let measured = match &self.task {

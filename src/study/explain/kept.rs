@@ -91,11 +91,6 @@ impl Kept {
         Kept { folder, host }
     }
 
-    /// The folder.
-    pub fn folder(&self) -> Option<&Path> {
-        self.folder.as_deref()
-    }
-
     /// What a scene and a quantity are kept as: the error that is asked for does not matter.
     pub fn key(&self, case: &Case, target: &Target) -> String {
         let mut sum = Sha256::new();

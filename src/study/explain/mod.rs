@@ -39,11 +39,11 @@ mod words;
 
 pub use kept::{Kept, KeptError};
 pub use plan::in_unit;
-pub use precision::{Curve, Precision, precision};
-pub use recommended::{Beside, Decision, Expected, Interval, LeftOut, Need, Own, Plan};
-pub use sample::{Known, Sample, Span, sample};
+pub use precision::precision;
+pub use recommended::Plan;
+pub use sample::{Sample, Span, sample};
 pub use scenes::SCENES;
-pub use tuned::{Tuned, tuned};
+pub use tuned::tuned;
 pub use unreached::Unreached;
 pub use words::{page, seconds, with_unit};
 

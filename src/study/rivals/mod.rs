@@ -38,7 +38,6 @@ struct Rival {
     build: String,
     /// Instructions that ours used.
     instruction_set: String,
-    /// Unit of the rates.
     unit: String,
     contests: Vec<Contest>,
     /// Quantities in which both must agree.

@@ -10,7 +10,6 @@ pub enum Edge {
     Below,
     /// The largest step that was found to work and the smallest that was not (time), as far apart as the tolerance lets them.
     Between([f64; 2]),
-    /// The largest step works.
     Above,
 }
 
@@ -26,9 +25,6 @@ impl Edge {
 
 /// Finds the edge between rising steps, beginning at the place `guess` of the first that fails, until it lies within a part
 /// `tolerance` of the step.
-///
-/// # Errors
-/// Those of `works`.
 pub fn edge<E>(
     steps: &[f64],
     guess: usize,

@@ -9,11 +9,7 @@ use stripmine_physics::method::{Beyond, Parameter};
 /// The dataset.
 #[derive(Clone, Debug)]
 pub struct Stability {
-    /// The scene, as it is named on a command line.
-    pub scene: String,
-    /// How it is run.
     pub way: String,
-    /// The unit of time.
     pub time_unit: Option<String>,
     /// Its own step (time).
     pub step: f64,
@@ -48,9 +44,7 @@ pub struct Stability {
 /// What is varied.
 #[derive(Clone, Debug)]
 pub struct Varied {
-    /// Its name.
     pub name: &'static str,
-    /// What it is.
     pub label: &'static str,
     /// Its unit; none of a pure number.
     pub unit: Option<String>,
@@ -86,7 +80,6 @@ pub fn over_seeds(edges: &[Edge]) -> Option<[f64; 3]> {
 /// A limit that theory gives.
 #[derive(Clone, Debug)]
 pub struct Limit {
-    /// What it is called.
     pub name: &'static str,
     /// What becomes of longer steps.
     pub beyond: Beyond,
@@ -99,9 +92,7 @@ pub struct Limit {
 /// The edges of an integrator.
 #[derive(Clone, Debug)]
 pub struct SchemeLimit {
-    /// Its name.
     pub scheme: String,
-    /// The edges.
     pub edges: Boundary,
     /// What becomes of the first step that is no longer right, in the first seed.
     pub first: Option<Class>,
@@ -112,7 +103,6 @@ pub struct SchemeLimit {
 /// How many places of a class there are, and what was said of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Said {
-    /// Places.
     pub all: usize,
     /// Of which the program refuses to run the scene.
     pub refused: usize,

@@ -37,7 +37,6 @@ pub struct Extent {
     pub seeds: u64,
     /// Steps of the scene's own that each run lasts.
     pub own_steps: f64,
-    /// Seconds that it takes about.
     pub seconds: f64,
 }
 

@@ -13,10 +13,10 @@ mod outcome;
 mod reference;
 mod survey;
 
-pub use boundary::Edge;
-pub use dataset::{Boundary, Limit, Said, SchemeLimit, Stability, Varied, over_seeds};
 pub use frames::made;
-pub use outcome::{Cell, Class, Foreseen};
+
+use dataset::{Boundary, Limit, Stability, Varied};
+use outcome::{Cell, Class};
 
 use super::choice::Choice;
 use super::{StudyError, Subject};
@@ -153,7 +153,6 @@ pub fn stability(
     let scheme = |scheme: &Choice| survey.scheme(scheme, &known, &seeds, effort.tolerance);
     let schemes = journal.over(&schemes, scheme)?;
     Ok(Stability {
-        scene: subject.arguments(),
         way: subject.own.label(),
         time_unit: subject.unit("time"),
         step: subject.step,

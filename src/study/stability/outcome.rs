@@ -20,17 +20,14 @@ pub enum Class {
     EnergyLoss,
     /// It comes to its end with more energy than there should be.
     EnergyGrowth,
-    /// A contact is too deep.
     Penetration,
     /// A particle moves so far in a step that contacts pass unseen.
     MaskOutrun,
     /// Two particles are where one may be.
     SharedCell,
-    /// A particle leaves the box.
     ParticleLost,
     /// Numbers that are none.
     NonFinite,
-    /// Something else stops it.
     Stopped,
     /// The scene cannot be, whatever the step.
     Refused,
@@ -96,20 +93,15 @@ impl Class {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Foreseen {
-    /// Nothing.
     Nothing,
-    /// It warns.
     Warned,
-    /// It refuses to run it.
     Refused,
 }
 
 /// A run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ran {
-    /// What was said before.
     pub foreseen: Foreseen,
-    /// How it ended.
     pub end: End,
 }
 
@@ -118,7 +110,6 @@ pub struct Ran {
 pub enum End {
     /// It was never begun, or stopped, and why.
     Broken(Class, String),
-    /// It came to its end.
     Whole {
         /// Means over its second half.
         means: Means,
@@ -132,13 +123,11 @@ pub enum End {
 }
 
 /// A place of a map.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Cell {
-    /// What became of it.
     pub class: Class,
     /// What was seen, in a line.
     pub what: String,
-    /// What was said before.
     pub foreseen: Foreseen,
     /// Names of the checks that warned on the way.
     pub warned: Vec<String>,

@@ -12,11 +12,10 @@ mod front;
 mod measures;
 mod plan;
 
-pub use dataset::{Order, Reference, Run, Way, WorkPrecision};
+pub use dataset::{Way, WorkPrecision};
 pub use frames::made;
 pub use front::front;
 pub use measures::{Errors, Measure};
-pub use plan::Plan;
 
 use super::choice::Choice;
 use super::encounters::{Encounters, encounters};

@@ -37,20 +37,7 @@ struct Profile {
     highest: f64,
 }
 
-/// Memory of the source's look-up of occupied cells.
-struct LookUp {
-    scene: &'static str,
-    discs: usize,
-    entries: f64,
-    events: u64,
-    /// Whether every disc is where it is by the fast engine, to the bit.
-    agrees: bool,
-}
-
 /// Follows the gases, and counts the entries of the source's look-up.
-///
-/// # Errors
-/// [`StudyError`] if a scene breaks.
 pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let meter = Meter::new((GASES.len() + SCENES.len()) as f64, lab.progress);
     let profiles = meter.each(&GASES, profile)?;
@@ -61,18 +48,19 @@ pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
         Rows::of(&profiles)
             .text("discs", |it| it.name.clone())
             .count("how many", |_| DISCS)
-            .number("mean height over kT/(m g)", 3, |it| it.mean_height.value)
-            .number("± (95 %)", 3, |it| it.mean_height.bar)
-            .number("temperature over the floor's", 3, |it| it.temperature.value)
-            .number("± (95 %)", 3, |it| it.temperature.bar)
+            .mean("mean height over kT/(m g)", 3, |it| it.mean_height)
+            .mean("temperature over the floor's", 3, |it| it.temperature)
             .number("highest seen", 1, |it| it.highest)
             .frame("atmosphere", "Discs above a hot floor"),
         Rows::of(&look_ups)
-            .text("scene", |it| it.scene)
-            .count("discs (entries of A, BX, BY)", |it| it.discs)
-            .number("entries of C and D", 0, |it| it.entries)
-            .count("events", |it| it.events)
-            .text("same bits by the fast engine", |it| if it.agrees { "yes" } else { "no" })
+            .text("scene", |(scene, ..)| *scene)
+            .count("discs (entries of A, BX, BY)", |(_, [source, _], _)| source.simulation.particles().len())
+            .number("entries of C and D", 0, |(.., entries)| *entries)
+            .count("events", |(_, [source, _], _)| source.simulation.clock().events)
+            .text("same bits by the fast engine", |(_, runs, _)| {
+                let [source, fast] = runs.each_ref().map(|run| run.simulation.particles());
+                if source.all() == fast.all() { "yes" } else { "no" }
+            })
             .frame("look-up", "The source's look-up of occupied cells, as printed"),
         Rows::of(bins)
             .text("discs", |(it, _)| it.name.clone())
@@ -86,21 +74,16 @@ pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     .with_seeds([1]))
 }
 
-/// A scene by the source's engine, and beside it by the fast one.
-fn look_up(scene: &'static str) -> Result<LookUp, StudyError> {
+/// A scene by the source's engine and by the fast one, and the entries of the former's look-up of occupied cells.
+fn look_up(scene: &'static str) -> Result<(&'static str, [Running; 2], f64), StudyError> {
     let run = |engine: EngineChoice| {
         let mut gas = Running::begin(scene, &Overrides::new().set(&ENGINE, engine))?;
         gas.until(Until::Time(100.0))?;
         Ok::<_, StudyError>(gas)
     };
-    let [source, fast] = [run(EngineChoice::Reference)?, run(EngineChoice::Fast)?];
-    Ok(LookUp {
-        scene,
-        discs: source.simulation.particles().len(),
-        entries: summed_up(&source.simulation.summary(), "blocks")?,
-        events: source.simulation.clock().events,
-        agrees: source.simulation.particles().all() == fast.simulation.particles().all(),
-    })
+    let source = run(EngineChoice::Reference)?;
+    let entries = summed_up(&source.simulation.summary(), "blocks")?;
+    Ok((scene, [source, run(EngineChoice::Fast)?], entries))
 }
 
 /// Discs of diameter, mass and kT 1, and kT/(m g) of 20.

@@ -1,8 +1,9 @@
 //! Where the method fails: inelastic collapse over restitution and number of discs, in a row and in the plane.
 
+use super::followed;
 use crate::console::Failure;
 use crate::frame::{Cell, Rows};
-use crate::laboratory::running::{Running, prepared};
+use crate::laboratory::running::{Running, bisected, prepared};
 use crate::results::{Lab, Made, Meter, Size};
 use crate::study::StudyError;
 use rand::RngExt;
@@ -28,22 +29,6 @@ const COLLISIONS: f64 = 200.0;
 /// Packing fraction of the gases of the map.
 const PACKING: f64 = 0.25;
 
-/// Discs in a row that fly towards each other, without sides.
-struct Row {
-    discs: u32,
-    /// Largest restitution at which a start collapses and smallest found at which none does.
-    edge: [f64; 2],
-}
-
-/// Gases of a number of discs.
-struct Gases {
-    discs: usize,
-    /// Discs that lie across the box, whatever their place along it: N d/L.
-    across: f64,
-    /// Share of the seeds that collapse, by restitution.
-    collapsed: Vec<f64>,
-}
-
 /// The restitution below which discs in a row can collapse: tan²(π/4 (1 − 2/N)), exact for three (7 − 4√3) and an estimate for more,
 /// of which each half is taken for a column that meets a wall, after Bernu and Mazighi (1990).
 fn of_a_row(discs: f64) -> f64 {
@@ -51,40 +36,39 @@ fn of_a_row(discs: f64) -> f64 {
 }
 
 /// Surveys rows and gases.
-///
-/// # Errors
-/// [`StudyError`] if a scene breaks otherwise than by collapse.
 pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let places = DISCS.iter().flat_map(|&discs| RESTITUTIONS.map(|restitution| (discs, restitution)));
     let places: Vec<(u64, f64)> = places.collect();
     let meter = Meter::new((ROWS.len() + places.len()) as f64, lab.progress);
     let rows = meter.each(&ROWS, |&discs| row(discs))?;
     let shares = meter.each_from_last(&places, |&(discs, restitution)| share(discs, restitution))?;
-    let shares = shares.chunks(RESTITUTIONS.len());
-    let gases = DISCS.iter().zip(shares).map(|(&discs, collapsed)| gases(discs, collapsed.to_vec()));
-    let gases: Vec<Gases> = gases.collect::<Result<_, StudyError>>()?;
-    let places = gases.iter().flat_map(|it| it.collapsed.iter().zip(RESTITUTIONS).map(move |at| (it, at)));
+    let discs = DISCS.map(|discs| Ok(prepared("cooling-gas", &gas(discs))?.particles().grain_count()));
+    let discs: Vec<usize> = discs.into_iter().collect::<Result<_, StudyError>>()?;
+    let gases = || discs.iter().zip(shares.chunks(RESTITUTIONS.len()));
+    let places = gases().flat_map(|(discs, of)| of.iter().zip(RESTITUTIONS).map(move |at| (discs, at)));
+    // Discs that lie across the box, whatever their place along it: N d/L with N = ν L²/(π d²/4).
+    let across = |discs: usize| (discs as f64 * PACKING / FRAC_PI_4).sqrt();
     Ok(Made::of([
-        Rows::of(&rows)
-            .count("discs in the row", |row| row.discs)
-            .number("collapses at", 4, |row| row.edge[0])
-            .number("does not at", 4, |row| row.edge[1])
-            .number("theory", 4, |row| of_a_row(f64::from(row.discs)))
+        Rows::of(ROWS.iter().zip(rows))
+            .count("discs in the row", |(discs, _)| **discs)
+            .number("collapses at", 4, |(_, [low, _])| *low)
+            .number("does not at", 4, |(_, [_, high])| *high)
+            .number("theory", 4, |(discs, _)| of_a_row(f64::from(**discs)))
             .frame("rows", "Discs in a row"),
         Rows::of((30..=160).step_by(5).map(|tenths| f64::from(tenths) / 10.0))
             .number("discs in the row", 1, |discs| *discs)
             .number("restitution", 4, |discs| of_a_row(*discs))
             .frame("theory", "Estimate for discs in a row: tan²(π/4 (1 − 2/N))"),
-        Rows::of(&gases)
-            .count("discs", |gases| gases.discs)
-            .number("N d/L", 1, |gases| gases.across)
-            .number("theory of a row", 3, |gases| of_a_row(gases.across))
-            .cells(RESTITUTIONS.map(|e| format!("e = {e}")), |gases| {
-                gases.collapsed.iter().map(|&share| Cell::Number(share, 2)).collect::<Vec<_>>()
+        Rows::of(gases())
+            .count("discs", |(discs, _)| **discs)
+            .number("N d/L", 1, |(discs, _)| across(**discs))
+            .number("theory of a row", 3, |(discs, _)| of_a_row(across(**discs)))
+            .cells(RESTITUTIONS.map(|e| format!("e = {e}")), |(_, collapsed)| {
+                collapsed.iter().map(|&share| Cell::Number(share, 2)).collect::<Vec<_>>()
             })
             .frame("plane", "Share of the seeds that collapse"),
         Rows::of(places)
-            .count("discs", |(gases, _)| gases.discs)
+            .count("discs", |(discs, _)| **discs)
             .number("restitution", 1, |(_, (_, restitution))| *restitution)
             .number("share", 2, |(_, (share, _))| **share)
             .frame("gases", "Share of the seeds that collapse, a row for each restitution"),
@@ -100,14 +84,11 @@ fn collapses_before(
 ) -> Result<bool, StudyError> {
     let mut gas = Running::begin(preset, overrides)?;
     let end = end(gas.simulation.particles().grain_count());
-    match gas.until(end) {
-        Ok(()) => Ok(false),
-        Err(failure) if failure.kind == stripmine_physics::method::hard_disks::INELASTIC_COLLAPSE => Ok(true),
-        Err(failure) => Err(failure.into()),
-    }
+    Ok(followed(&mut gas, end)?.is_some())
 }
 
-fn row(discs: u32) -> Result<Row, StudyError> {
+/// Largest restitution at which a start of a row without sides collapses, and smallest found at which none does.
+fn row(discs: u32) -> Result<[f64; 2], StudyError> {
     let starts: Vec<Overrides> = (0..STARTS).map(|start| flying_together(discs, start)).collect();
     let some_collapses = |restitution: f64| {
         for start in &starts {
@@ -118,16 +99,8 @@ fn row(discs: u32) -> Result<Row, StudyError> {
         }
         Ok(false)
     };
-    let [mut low, mut high] = [0.001, 0.999];
-    while high - low > RESOLUTION {
-        let middle = 0.5 * (low + high);
-        if some_collapses(middle)? {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    Ok(Row { discs, edge: [low, high] })
+    let is_narrow = |[low, high]: [f64; 2]| high - low <= RESOLUTION;
+    bisected([0.001, 0.999], is_narrow, |low, high| 0.5 * (low + high), some_collapses)
 }
 
 /// Places and velocities of discs in a row: gaps of about a diameter, the faster inwards the farther out. The first start is
@@ -162,13 +135,6 @@ fn share(discs: u64, restitution: f64) -> Result<f64, StudyError> {
     Ok(count as f64 / SEEDS as f64)
 }
 
-fn gases(discs: u64, collapsed: Vec<f64>) -> Result<Gases, StudyError> {
-    let discs = prepared("cooling-gas", &gas(discs))?.particles().grain_count();
-    // N d/L with N = ν L²/(π d²/4).
-    let across = (discs as f64 * PACKING / FRAC_PI_4).sqrt();
-    Ok(Gases { discs, across, collapsed })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -182,7 +148,7 @@ mod tests {
     /// Three discs in a row, held against 7 − 4√3 = 0.0718.
     #[test]
     fn three_in_a_row_collapse_below_the_restitution_of_theory() {
-        let [low, high] = row(3).unwrap().edge;
+        let [low, high] = row(3).unwrap();
         assert!(low < 0.0719 && high > 0.0708, "{low} {high}");
     }
 }

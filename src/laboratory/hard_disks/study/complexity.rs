@@ -58,9 +58,6 @@ impl Fit {
 }
 
 /// Measures both engines.
-///
-/// # Errors
-/// [`Failure`] of a scene.
 pub fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     let grid = match size {
         Size::Quick => Grid {

@@ -1,13 +1,14 @@
 //! A granular gas cools: Haff's law while it is even, and inelastic collapse where it is too dissipative.
 
+use super::followed;
 use crate::console::Failure;
 use crate::frame::Rows;
 use crate::laboratory::running::Running;
 use crate::results::{Lab, Made, Meter, Size};
 use crate::study::{StudyError, first_line};
-use stripmine_physics::method::Until;
 use stripmine_physics::method::hard_disks::keys::{CONTACT_DURATION, RESTITUTION};
 use stripmine_physics::method::observed::summed_up;
+use stripmine_physics::method::{self, Until};
 use stripmine_physics::scene::{COUNT, Overrides};
 
 /// Discs, at least.
@@ -32,17 +33,6 @@ struct Gas {
     by_collisions: f64,
 }
 
-/// Fate of a very dissipative gas.
-struct Fate {
-    restitution: f64,
-    /// Collisions of a disc when it ended.
-    collisions: f64,
-    /// Message, if it collapsed.
-    collapse: Option<String>,
-    /// Share of the collisions that the contact duration made elastic in a run of the same length.
-    made_elastic: Option<f64>,
-}
-
 impl Gas {
     /// Haff's law: the temperature over that of the first look.
     fn haff(&self, time: f64) -> f64 {
@@ -55,9 +45,6 @@ impl Gas {
 }
 
 /// Follows gases that cool and gases that collapse.
-///
-/// # Errors
-/// [`StudyError`] if a scene breaks otherwise than by collapse.
 pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let meter = Meter::new((RESTITUTIONS.len() + COLLAPSING.len()) as f64, lab.progress);
     let gases = meter.each(&RESTITUTIONS, gas)?;
@@ -73,12 +60,14 @@ pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
             .number("off Haff by time (%)", 2, |gas| off(gas.last()[2], gas.haff(gas.last()[1])))
             .number("off Haff by collisions (%)", 2, |gas| off(gas.last()[2], gas.by_collisions))
             .frame("gases", "Temperatures beside Haff's law"),
-        Rows::of(&fates)
-            .number("restitution", 2, |fate| fate.restitution)
-            .number("collisions of a disc", 1, |fate| fate.collisions)
-            .text("what was found", |fate| fate.collapse.clone().unwrap_or_else(|| "no collapse".into()))
-            .number("made elastic by the contact duration (%)", 3, |fate| {
-                fate.made_elastic.map(|share| 100.0 * share)
+        Rows::of(COLLAPSING.iter().zip(&fates))
+            .number("restitution", 2, |(restitution, _)| **restitution)
+            .number("collisions of a disc", 1, |(_, (collisions, _))| *collisions)
+            .text("what was found", |(_, (_, collapse))| {
+                collapse.as_ref().map_or("no collapse", |(words, _)| words.as_str())
+            })
+            .number("made elastic by the contact duration (%)", 3, |(_, (_, collapse))| {
+                collapse.as_ref().map(|(_, made_elastic)| 100.0 * made_elastic)
             })
             .frame("collapse", "Fate of very dissipative gases in 200 collisions of a disc"),
         Rows::of(looks)
@@ -126,8 +115,9 @@ fn gas(&restitution: &f64) -> Result<Gas, StudyError> {
     })
 }
 
-/// Up to 200 collisions of a disc, or to the collapse.
-fn fate(&restitution: &f64) -> Result<Fate, StudyError> {
+/// Collisions of a disc: 200, or those up to a collapse; the collapse in words, and the share of the collisions that the contact duration
+/// makes elastic in a run of the same length.
+fn fate(&restitution: &f64) -> Result<(f64, Option<(String, f64)>), StudyError> {
     let scene = Overrides::new().set(&COUNT, DISCS).set(&RESTITUTION, restitution);
     let begin = |contact_duration: f64| {
         Running::begin("cooling-gas", &scene.clone().set(&CONTACT_DURATION, contact_duration))
@@ -135,22 +125,14 @@ fn fate(&restitution: &f64) -> Result<Fate, StudyError> {
     let mut gas = begin(0.0)?;
     let count = gas.simulation.particles().grain_count() as f64;
     let events = (100.0 * count) as u64;
-    let collapse = match gas.until(Until::Events(events)) {
-        Ok(()) => None,
-        Err(failure) if failure.kind == stripmine_physics::method::hard_disks::INELASTIC_COLLAPSE => {
-            Some(first_line(&failure.what()))
-        }
-        Err(failure) => return Err(failure.into()),
-    };
+    let collapse = followed(&mut gas, Until::Events(events))?;
     let [collisions] = gas.observed(["collisions"])?;
-    let made_elastic = match collapse {
-        None => None,
-        Some(_) => {
-            let mut cured = begin(CURE)?;
-            cured.events(events)?;
-            let summary = cured.simulation.summary();
-            Some(summed_up(&summary, "made_elastic")? / summed_up(&summary, "collisions")?)
-        }
+    let cured = |failure: method::Failure| {
+        let mut cured = begin(CURE)?;
+        cured.events(events)?;
+        let summary = cured.simulation.summary();
+        let share = summed_up(&summary, "made_elastic")? / summed_up(&summary, "collisions")?;
+        Ok::<_, StudyError>((first_line(&failure.what()), share))
     };
-    Ok(Fate { restitution, collisions: 2.0 * collisions / count, collapse, made_elastic })
+    Ok((2.0 * collisions / count, collapse.map(cured).transpose()?))
 }

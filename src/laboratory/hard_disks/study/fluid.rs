@@ -32,17 +32,6 @@ const COLLISIONS: u64 = 10_000_000;
 /// Parts of a run, each a measurement; their scatter and correlation give the error.
 const PARTS: u64 = 200;
 
-/// A fluid beside the known compressibility.
-struct State {
-    packing_fraction: f64,
-    known: f64,
-    reference: &'static str,
-    compressibility: Mean,
-    rate: Mean,
-    /// Kinetic energy at the end less that at the start, over the latter.
-    energy_error: f64,
-}
-
 /// Luding's compressibility, Z = 1 + 2 ν g₄ with g₄ = g − ν³/(128 (1 − ν)⁴) and g = (1 − 7ν/16)/(1 − ν)².
 pub(super) fn luding(nu: f64) -> f64 {
     let contact_value =
@@ -60,31 +49,33 @@ pub(super) fn collision_rate(compressibility: f64) -> f64 {
     4.0 * (compressibility - 1.0) / PI.sqrt()
 }
 
+/// Compressibility of discs, by the virial of their collisions in a time.
+pub(super) fn compressibility(discs: f64, [virial, time]: [f64; 2], temperature: f64) -> f64 {
+    1.0 + virial / (2.0 * discs * temperature * time)
+}
+
 /// Measures every packing fraction that is known.
-///
-/// # Errors
-/// [`StudyError`] if a scene breaks.
 pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let states = Meter::new(KNOWN.len() as f64, lab.progress).each_from_last(&KNOWN, state)?;
+    let states =
+        Meter::new(KNOWN.len() as f64, lab.progress).each_from_last(&KNOWN, |known| measured(known.0))?;
+    let states = KNOWN.iter().zip(states);
     let off = |mean: Mean, known: f64| {
         let off = mean.off(known).percent();
         Cell::with_error(off.value, Some(off.bar), 2)
     };
     Ok(Made::of([
-        Rows::of(&states)
-            .number("ν", 2, |it| it.packing_fraction)
-            .number("Z", 4, |it| it.compressibility.value)
-            .number("± (95 %)", 4, |it| it.compressibility.bar)
-            .number("Z known", 4, |it| it.known)
-            .text("reference", |it| it.reference)
-            .cell("off (%)", |it| off(it.compressibility, it.known))
-            .number("ω", 4, |it| it.rate.value)
-            .number("± (95 %)", 4, |it| it.rate.bar)
-            .number("ω known", 4, |it| collision_rate(it.known))
-            .cell("off (%)", |it| off(it.rate, collision_rate(it.known)))
-            .number("Henderson's Z", 4, |it| henderson(it.packing_fraction))
-            .number("Luding's Z", 4, |it| luding(it.packing_fraction))
-            .short("energy error", |it| it.energy_error)
+        Rows::of(states)
+            .number("ν", 2, |((nu, ..), _)| *nu)
+            .mean("Z", 4, |(_, (z, ..))| *z)
+            .number("Z known", 4, |((_, known, _), _)| *known)
+            .text("reference", |((.., reference), _)| *reference)
+            .cell("off (%)", |((_, known, _), (z, ..))| off(*z, *known))
+            .mean("ω", 4, |(_, (_, rate, _))| *rate)
+            .number("ω known", 4, |((_, known, _), _)| collision_rate(*known))
+            .cell("off (%)", |((_, known, _), (_, rate, _))| off(*rate, collision_rate(*known)))
+            .number("Henderson's Z", 4, |((nu, ..), _)| henderson(*nu))
+            .number("Luding's Z", 4, |((nu, ..), _)| luding(*nu))
+            .short("energy error", |(_, (.., energy_error))| *energy_error)
             .frame(
                 "fluid",
                 "Compressibility and collisions of a disc in a unit of time (diameter = m = kT = 1)",
@@ -97,7 +88,8 @@ pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     .with_seeds([1]))
 }
 
-fn state(&(packing_fraction, known, reference): &(f64, f64, &'static str)) -> Result<State, StudyError> {
+/// Compressibility, collision rate, and the relative change of the kinetic energy.
+fn measured(packing_fraction: f64) -> Result<(Mean, Mean, f64), StudyError> {
     let overrides = Overrides::new().set(&PACKING_FRACTION, packing_fraction).set(&COUNT, DISCS);
     let mut fluid = Running::begin("hard-disks", &overrides)?;
     let discs = fluid.simulation.particles().grain_count() as f64;
@@ -111,18 +103,11 @@ fn state(&(packing_fraction, known, reference): &(f64, f64, &'static str)) -> Re
         let after = fluid.observed(names)?;
         let [time, virial, collisions] = [0, 1, 2].map(|which| after[which] - before[which]);
         let temperature = after[3];
-        pressures.push(1.0 + virial / (2.0 * discs * temperature * time));
+        pressures.push(compressibility(discs, [virial, time], temperature));
         rates.push(2.0 * collisions / (discs * time * temperature.sqrt()));
         before = after;
     }
-    Ok(State {
-        packing_fraction,
-        known,
-        reference,
-        compressibility: Mean::of_course(&pressures),
-        rate: Mean::of_course(&rates),
-        energy_error: before[4],
-    })
+    Ok((Mean::of_course(&pressures), Mean::of_course(&rates), before[4]))
 }
 
 #[cfg(test)]

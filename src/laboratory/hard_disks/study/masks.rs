@@ -37,19 +37,10 @@ struct Cost {
     seconds: Spread,
 }
 
-/// Choice of `auto` at a packing fraction.
-struct Choice {
-    packing_fraction: f64,
-    cheapest: &'static str,
-    auto: String,
-    /// Cost by `auto` over that of the cheapest mask.
-    ratio: f64,
-}
+/// Packing fraction, cheapest mask, the choice of `auto`, and its cost over that of the cheapest.
+type Choice = (f64, &'static str, String, f64);
 
 /// Measures every mask.
-///
-/// # Errors
-/// [`Failure`] of a scene.
 pub fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     let (densities, collisions): (&[f64], _) = match size {
         Size::Quick => (&[0.10, 0.50], 3000),
@@ -81,8 +72,8 @@ pub fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
         let auto = auto["mask"].as_str().unwrap_or_default().to_owned();
         let cheapest = here.iter().min_by(|a, b| a.seconds.median.total_cmp(&b.seconds.median));
         if let (Some(cheapest), Some(chosen)) = (cheapest, here.iter().find(|it| it.mask == auto)) {
-            let (cheapest, ratio) = (cheapest.mask, chosen.seconds.median / cheapest.seconds.median);
-            choices.push(Choice { packing_fraction, cheapest, auto, ratio });
+            let ratio = chosen.seconds.median / cheapest.seconds.median;
+            choices.push((packing_fraction, cheapest.mask, auto, ratio));
         }
         costs.extend(here);
     }
@@ -110,10 +101,10 @@ fn frames(costs: &[Cost], choices: &[Choice], masks: &[(&str, Mask)]) -> [Frame;
             .number("nanoseconds", 2, |(_, constant)| constant / NANO)
             .frame("constants", "ISO99's formula of the cost, fitted"),
         Rows::of(choices)
-            .number("ν", 2, |it| it.packing_fraction)
-            .text("cheapest mask", |it| it.cheapest)
-            .text("choice of auto", |it| it.auto.clone())
-            .number("cost of auto over the cheapest", 2, |it| it.ratio)
+            .number("ν", 2, |(nu, ..)| *nu)
+            .text("cheapest mask", |(_, cheapest, ..)| *cheapest)
+            .text("choice of auto", |(.., auto, _)| auto)
+            .number("cost of auto over the cheapest", 2, |(.., ratio)| *ratio)
             .frame("choices", "Cheapest mask, and the choice of `mask = \"auto\"`"),
         Rows::of(masks)
             .text("mask", |(name, _)| *name)

@@ -1,6 +1,6 @@
 //! Speed against accuracy: the error of Z over the processor time that it takes.
 
-use super::fluid::Z_AT_HALF;
+use super::fluid::{Z_AT_HALF, compressibility};
 use super::rates::{ENGINES, fluid};
 use crate::console::Failure;
 use crate::frame::Rows;
@@ -32,9 +32,6 @@ struct Way {
 }
 
 /// Follows both engines with every number of discs and every seed, and measures their rates.
-///
-/// # Errors
-/// [`Failure`] of a scene.
 pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let runs = DISCS.iter().flat_map(|&discs| ENGINES.map(|engine| (discs, engine)));
     let runs: Vec<(u64, &str, u64)> =
@@ -87,7 +84,7 @@ fn errors(&(discs, engine, seed): &(u64, &str, u64)) -> Result<(usize, Vec<f64>)
         system.events(collisions - done)?;
         done = collisions;
         let [time, sum, temperature] = system.observed(names)?;
-        let z = 1.0 + (sum - virial) / (2.0 * discs as f64 * temperature * (time - begun));
+        let z = compressibility(discs as f64, [sum - virial, time - begun], temperature);
         all.push(z / Z_AT_HALF - 1.0);
     }
     Ok((discs, all))

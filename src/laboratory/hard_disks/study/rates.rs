@@ -22,9 +22,6 @@ pub(super) fn fluid(engine: &str, discs: u64, packing_fraction: f64) -> Override
 }
 
 /// Measures both engines.
-///
-/// # Errors
-/// [`Failure`] of a scene.
 pub fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     let (sizes, collisions): (&[u64], _) = match size {
         Size::Quick => (&[2500], 50_000),

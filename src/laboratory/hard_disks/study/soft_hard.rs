@@ -1,6 +1,6 @@
 //! Soft against hard: one scene by lattice MD with stiffer and stiffer discs, and by hard ones.
 
-use super::fluid::{collision_rate, luding};
+use super::fluid::{collision_rate, compressibility, luding};
 use crate::console::Failure;
 use crate::frame::{Cell, Rows};
 use crate::laboratory::running::Running;
@@ -65,9 +65,6 @@ struct Model {
 }
 
 /// The question of the report.
-///
-/// # Errors
-/// As of [`soft_hard`].
 pub fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     let question = match size {
         Size::Quick => {
@@ -79,9 +76,6 @@ pub fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
 }
 
 /// Runs soft models from the softest on, then the hard one, with every seed.
-///
-/// # Errors
-/// [`StudyError`] if a scene is refused or breaks.
 pub fn soft_hard(question: &Question, progress: Progress<'_>) -> Result<Made, Failure> {
     // A gas that keeps its temperature.
     let cooling_time = COOLING / collision_rate(luding(question.packing_fraction));
@@ -124,11 +118,9 @@ pub fn soft_hard(question: &Question, progress: Progress<'_>) -> Result<Made, Fa
             .number("damping γ_N", 3, |it| it.soft.as_ref().map(|it| it.damping))
             .number("step", 6, |it| it.soft.as_ref().map(|it| it.step))
             .number("depth of a contact of kT (%)", 2, |it| 100.0 * it.depth)
-            .number("Z", 4, |it| it.compressibility.value)
-            .number("± (95 %)", 4, |it| it.compressibility.bar)
+            .mean("Z", 4, |it| it.compressibility)
             .number("Z of the effective diameter", 4, |it| it.effective)
-            .number("T/T₀ cooled", 4, |it| it.cooled.value)
-            .number("± (95 %)", 4, |it| it.cooled.bar)
+            .mean("T/T₀ cooled", 4, |it| it.cooled)
             .number("cost (ms for a unit of time)", 2, |it| 1e3 * it.cost)
             .frame("soft_hard", "Soft discs and hard ones"),
         Rows::of(ends)
@@ -163,16 +155,13 @@ impl Soft {
     /// Discs of a stiffness, with the damping that gives a restitution at a speed.
     fn new(stiffness: f64, restitution: f64, speed: f64) -> Soft {
         let (mut low, mut high) = (0.0, 1.0);
-        while impact(stiffness, high, speed).restitution > restitution {
+        let is_too_elastic = |damping: f64| impact(stiffness, damping, speed).restitution > restitution;
+        while is_too_elastic(high) {
             high *= 2.0;
         }
         for _ in 0..50 {
             let middle = 0.5 * (low + high);
-            if impact(stiffness, middle, speed).restitution > restitution {
-                low = middle
-            } else {
-                high = middle
-            }
+            *(if is_too_elastic(middle) { &mut low } else { &mut high }) = middle;
         }
         let duration = impact(stiffness, 0.0, speed).duration;
         Soft { stiffness, damping: 0.5 * (low + high), step: duration / STEPS_A_CONTACT }
@@ -243,7 +232,7 @@ impl Discs {
             Some(_) => pressure / LOOKS as f64,
             None => {
                 let [temperature] = fluid.observed(["temperature"])?;
-                1.0 + (virial(&fluid)? - before) / (2.0 * discs as f64 * temperature * flown)
+                compressibility(discs as f64, [virial(&fluid)? - before, flown], temperature)
             }
         };
         let mut gas = self.begin(question, seed, false)?;

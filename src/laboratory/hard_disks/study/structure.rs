@@ -1,16 +1,16 @@
 //! Order, free times and speeds of hard discs on both sides of melting.
 
+use super::fluid::compressibility;
 use crate::console::Failure;
 use crate::frame::{Frame, Rows};
 use crate::laboratory::running::Running;
 use crate::report::figure::{Drawing, Guide, Picture, Shape, Tint};
 use crate::results::{Lab, Made, Meter, Size};
-use crate::statistics::{Mean, kolmogorov_smirnov};
+use crate::statistics::Mean;
 use crate::study::StudyError;
 use std::f64::consts::{PI, TAU};
 use stripmine_physics::domain::Domain;
 use stripmine_physics::method::hard_disks::keys::COLLISION_LOG;
-use stripmine_physics::method::observed::UnknownName;
 use stripmine_physics::method::{METHODS, Purpose, Until, load};
 use stripmine_physics::near::Near;
 use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
@@ -53,9 +53,6 @@ struct Structure {
 }
 
 /// Follows discs at every packing fraction, from a crystal in which all are equally fast.
-///
-/// # Errors
-/// [`StudyError`] if a scene breaks.
 pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let all = Meter::new(PACKING_FRACTIONS.len() as f64, lab.progress).each(&PACKING_FRACTIONS, structure)?;
     let dilute: Vec<f64> = (0..TIMES.1).map(|bin| dilute(middle(TIMES, bin))).collect();
@@ -89,8 +86,7 @@ pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
 fn table(all: &[Structure]) -> Frame {
     Rows::of(all)
         .number("ν", 2, |it| it.packing_fraction)
-        .number("|Ψ₆| of all", 3, |it| it.order[0].value)
-        .number("± (95 %)", 3, |it| it.order[0].bar)
+        .mean("|Ψ₆| of all", 3, |it| it.order[0])
         .number("mean |ψ₆|", 3, |it| it.order[1].value)
         .number("± (95 %)", 4, |it| it.order[1].bar)
         .number("g at contact, by the virial", 3, |it| it.contact)
@@ -134,6 +130,8 @@ fn structure(&packing_fraction: &f64) -> Result<Structure, StudyError> {
     }
     let mut running = Running::of(method, &scene.model.started_from(start), Purpose::Run)?;
     let count = running.simulation.particles().grain_count();
+    let maxwell =
+        |running: &Running| Ok::<_, StudyError>(running.maxwell(running.observed(["temperature"])?[0]));
     let begin = maxwell(&running)?;
     for _ in 0..SETTLING {
         running.events(count as u64 / 2)?;
@@ -161,7 +159,7 @@ fn structure(&packing_fraction: &f64) -> Result<Structure, StudyError> {
     }
     let after = running.observed(names)?;
     let [time, virial, collisions] = [0, 1, 2].map(|which| after[which] - before[which]);
-    let compressibility = 1.0 + virial / (2.0 * count as f64 * after[3] * time);
+    let compressibility = compressibility(count as f64, [virial, time], after[3]);
     let free_time = count as f64 * time / (2.0 * collisions);
     running.events(LOGGED)?;
     let looks = LOOKS.0 as f64;
@@ -219,15 +217,6 @@ fn count_pairs(domain: Domain, places: &[[f64; 2]], bins: &mut [f64]) {
             }
         }
     }
-}
-
-/// The probability that the components of the velocities are Maxwell's.
-fn maxwell(running: &Running) -> Result<f64, UnknownName> {
-    let [temperature] = running.observed(["temperature"])?;
-    let particles = running.simulation.particles();
-    let components = particles.grains().iter().flat_map(|disc| disc.planar_velocity());
-    let scaled = components.map(|v| v / temperature.sqrt()).collect();
-    Ok(kolmogorov_smirnov(scaled, |x| 0.5 * libm::erfc(-x / 2f64.sqrt())))
 }
 
 /// The density of the free times in rows of collisions, over their mean.

@@ -73,9 +73,6 @@ impl Fluid {
 }
 
 /// Measures every step.
-///
-/// # Errors
-/// [`StudyError`] if a scene is refused.
 pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let cases: Vec<(SchemeKind, f64)> =
         STEPS.iter().flat_map(|&dt| SCHEMES.map(|scheme| (scheme, dt))).collect();
@@ -88,20 +85,15 @@ pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
         Rows::of(&fluids)
             .text("scheme", |it| it.scheme.word())
             .number("dt", 4, |it| it.dt)
-            .number("energy", 4, |it| it.potential.value)
-            .number("± (95 %)", 4, |it| it.potential.bar)
-            .number("pressure", 4, |it| it.pressure.value)
-            .number("± (95 %)", 4, |it| it.pressure.bar)
-            .number("temperature", 4, |it| it.temperature.value)
-            .number("± (95 %)", 4, |it| it.temperature.bar)
+            .mean("energy", 4, |it| it.potential)
+            .mean("pressure", 4, |it| it.pressure)
+            .mean("temperature", 4, |it| it.temperature)
             .number("at the end of the step", 4, |it| it.at_end.value)
             .number("by theory", 4, |it| 1.0 - it.foreseen().value)
-            .number("colder by", 4, |it| it.cooling.value)
-            .number("± (95 %)", 4, |it| it.cooling.bar)
+            .mean("colder by", 4, |it| it.cooling)
             .number("by theory", 4, |it| it.foreseen().value)
             .number("standard errors off", 1, |it| it.off_theory())
-            .number("⟨F²⟩/⟨∇²U⟩", 3, |it| it.configurational.value)
-            .number("± (95 %)", 3, |it| it.configurational.bar)
+            .mean("⟨F²⟩/⟨∇²U⟩", 3, |it| it.configurational)
             .number("⟨∇²U⟩/2", 1, |it| it.curvature.value)
             .number("ms a unit of time", 1, |it| 1e3 * it.cost)
             .frame("accuracy", "Energy of the pairs a particle, pressure and temperatures"),
@@ -116,12 +108,9 @@ pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
             .cell("⟨F²⟩/⟨∇²U⟩", |it| cell(it.configurational))
             .frame("errors", "Error of the energy, and temperatures, of runs that lost no particle"),
         Rows::of([()])
-            .number("energy at short steps", 4, |()| limit.value)
-            .number("± (95 %)", 4, |()| limit.bar)
-            .number("order of stochastic", 1, |()| orders[0].map(|it| it.value))
-            .number("± (95 %)", 1, |()| orders[0].map(|it| it.bar))
-            .number("order of BAOAB", 1, |()| orders[1].map(|it| it.value))
-            .number("± (95 %)", 1, |()| orders[1].map(|it| it.bar))
+            .mean("energy at short steps", 4, |()| limit)
+            .mean("order of stochastic", 1, |()| orders[0])
+            .mean("order of BAOAB", 1, |()| orders[1])
             .frame("summary", "Limit of short steps, and orders of the errors"),
     ])
     .with_seeds([1]))

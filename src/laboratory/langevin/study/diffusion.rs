@@ -5,12 +5,11 @@ use crate::console::Failure;
 use crate::frame::{Cell, Rows};
 use crate::laboratory::running::Running;
 use crate::results::{Lab, Made, Meter, Size};
-use crate::statistics::{Mean, kolmogorov_smirnov};
+use crate::statistics::Mean;
 use crate::study::StudyError;
 use std::f64::consts::PI;
 use stripmine_physics::method::langevin::keys::{INTEGRATOR, LAW};
 use stripmine_physics::method::langevin::options::{PairLaw, SchemeKind};
-use stripmine_physics::particles::Particle;
 use stripmine_physics::scene::{COUNT, DT, Overrides, SIDES};
 use stripmine_physics::words::Words;
 
@@ -91,9 +90,6 @@ struct Heated {
 }
 
 /// Follows every system.
-///
-/// # Errors
-/// [`StudyError`] if a scene breaks.
 pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let schemes = [SchemeKind::Stochastic, SchemeKind::AsPrinted, SchemeKind::Baoab];
     let cases: Vec<(SchemeKind, f64)> =
@@ -182,14 +178,7 @@ fn followed(particles: u64, side: f64, has_pairs: bool) -> Result<Followed, Stud
         square.push([running.observed(["msd"])?[0], inside]);
     }
     let [temperature] = running.observed(["temperature"])?;
-    Ok(Followed { particles, side, has_pairs, times, square, maxwell: maxwell(&running), temperature })
-}
-
-/// Probability that the components of the velocities are those of a bath of kT = m = 1.
-fn maxwell(running: &Running) -> f64 {
-    let particles = running.simulation.particles();
-    let components = particles.all().iter().flat_map(Particle::planar_velocity);
-    kolmogorov_smirnov(components.collect(), |x| 0.5 * libm::erfc(-x / 2f64.sqrt()))
+    Ok(Followed { particles, side, has_pairs, times, square, maxwell: running.maxwell(1.0), temperature })
 }
 
 fn heated(scheme: SchemeKind, dt: f64) -> Result<Heated, StudyError> {
@@ -203,7 +192,7 @@ fn heated(scheme: SchemeKind, dt: f64) -> Result<Heated, StudyError> {
         running.steps(between)?;
         temperatures.push(running.observed(["temperature"])?[0]);
     }
-    Ok(Heated { scheme, dt, temperature: Mean::of_course(&temperatures), maxwell: maxwell(&running) })
+    Ok(Heated { scheme, dt, temperature: Mean::of_course(&temperatures), maxwell: running.maxwell(1.0) })
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use crate::console::Failure;
 use crate::frame::Rows;
-use crate::laboratory::running::{Running, prepared};
+use crate::laboratory::running::{Running, bisected, prepared};
 use crate::results::{Lab, Made, Meter, Size};
 use crate::study::StudyError;
 use std::f64::consts::PI;
@@ -31,16 +31,7 @@ const PART: u64 = 8;
 /// The longest step is known to this part of itself.
 const TOLERANCE: f64 = 0.05;
 
-/// Longest step without a loss, the source's bound, and the limit by the hardest collisions (time).
-struct Boundary {
-    dt: f64,
-    bounds: [f64; 2],
-}
-
 /// Counts losses and interactions, and searches for the longest steps without a loss.
-///
-/// # Errors
-/// [`StudyError`] if a scene is refused.
 pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let mut steps: Vec<f64> = SOURCE.iter().map(|(dt, ..)| *dt).chain(FINER).collect();
     steps.sort_by(|a, b| b.total_cmp(a));
@@ -76,11 +67,11 @@ pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
         Rows::of(choices.iter().zip(&boundaries))
             .number("ε", 1, |(choice, _)| choice[0])
             .number("kT", 1, |(choice, _)| choice[1])
-            .number("longest step", 5, |(_, it)| it.dt)
-            .number("source's bound", 5, |(_, it)| it.bounds[0])
-            .number("of it", 3, |(_, it)| it.dt / it.bounds[0])
-            .number("by hardest collisions", 5, |(_, it)| it.bounds[1])
-            .number("of it", 3, |(_, it)| it.dt / it.bounds[1])
+            .number("longest step", 5, |(_, [longest, ..])| *longest)
+            .number("source's bound", 5, |(_, [_, bound, _])| *bound)
+            .number("of it", 3, |(_, [longest, bound, _])| longest / bound)
+            .number("by hardest collisions", 5, |(_, [.., hardest])| *hardest)
+            .number("of it", 3, |(_, [longest, _, hardest])| longest / hardest)
             .frame("boundaries", format!("Longest step without a loss in {STEPS} steps, BAOAB, to 5 %")),
         Rows::of(choices.iter().zip(&chosen))
             .number("ε", 1, |(choice, _)| choice[0])
@@ -155,23 +146,22 @@ fn at_random(particles: u64) -> f64 {
     STEPS as f64 * (particles as f64).powi(2) / area * PI * DIAMETER.powi(2)
 }
 
-fn boundary(choice: [f64; 2]) -> Result<Boundary, StudyError> {
+/// Longest step without a loss, the source's bound, and the limit by the hardest collisions (time).
+fn boundary(choice: [f64; 2]) -> Result<[f64; 3], StudyError> {
     let limits = prepared("langevin-report", &chosen(PARTICLES, 0.001, choice))?.step_limits;
     let step = |name: &str| {
         let unknown = || UnknownName::new("limit of the step", name, limits.iter().map(|limit| limit.name));
         limits.iter().find(|limit| limit.name == name).map(|limit| limit.step).ok_or_else(unknown)
     };
-    let bounds = [step("source-bound")?, step("hardest-collision")?];
-    let (mut low, mut high) = (0.05 * bounds[1], 4.0 * bounds[1]);
-    while high / low > 1.0 + TOLERANCE {
-        let middle = (low * high).sqrt();
-        // The first loss ends it.
-        match lost(PARTICLES, &chosen(PARTICLES, middle, choice).set(&MOST_LOST, 0_u64))? {
-            0 => low = middle,
-            _ => high = middle,
-        }
-    }
-    Ok(Boundary { dt: (low * high).sqrt(), bounds })
+    let (bound, hardest) = (step("source-bound")?, step("hardest-collision")?);
+    // The first loss ends a run.
+    let keeps_all = |dt: f64| {
+        Ok::<_, StudyError>(lost(PARTICLES, &chosen(PARTICLES, dt, choice).set(&MOST_LOST, 0_u64))? == 0)
+    };
+    let is_narrow = |[low, high]: [f64; 2]| high / low <= 1.0 + TOLERANCE;
+    let middle = |low: f64, high: f64| (low * high).sqrt();
+    let [low, high] = bisected([0.05 * hardest, 4.0 * hardest], is_narrow, middle, keeps_all)?;
+    Ok([middle(low, high), bound, hardest])
 }
 
 #[cfg(test)]

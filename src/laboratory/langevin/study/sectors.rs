@@ -58,9 +58,6 @@ struct Fluid {
 }
 
 /// Measures every number of sectors, neighbour lists, and fluids by every search.
-///
-/// # Errors
-/// [`StudyError`] if a scene is refused.
 pub fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     let (fewest, seconds) = if size == Size::Quick { (100, 0.05) } else { (3, 0.06) };
     let counts = SOURCE.iter().filter(|(count, _)| *count >= fewest);

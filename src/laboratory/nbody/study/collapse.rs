@@ -79,9 +79,6 @@ impl Sphere {
 }
 
 /// Follows a sphere of each seed.
-///
-/// # Errors
-/// [`StudyError`] if a scene breaks.
 pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let all = Meter::new(SEEDS.len() as f64, lab.progress).each(&SEEDS, |&seed| sphere(seed))?;
     let mean = |of: &dyn Fn(&Sphere) -> f64, decimals: usize| {

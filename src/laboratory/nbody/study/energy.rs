@@ -2,7 +2,7 @@
 
 use crate::console::Failure;
 use crate::frame::{Cell, Frame, Rows};
-use crate::laboratory::running::Running;
+use crate::laboratory::running::{Running, bisected};
 use crate::results::{Lab, Made, Meter, Size};
 use crate::study::StudyError;
 use stripmine_physics::method::nbody::keys::{DAMPING, ECCENTRICITY, INTEGRATOR};
@@ -48,22 +48,12 @@ struct Orbit {
     drift: [f64; 2],
 }
 
-/// Fewest steps of an orbit that keep it; none where the most that are tried do not.
-struct Edge {
-    scheme: SchemeName,
-    eccentricity: f64,
-    steps: Option<u64>,
-}
-
 fn overrides(scheme: SchemeName, steps: u64, eccentricity: f64) -> Overrides {
     let orbit = Overrides::new().set(&INTEGRATOR, scheme).set(&DT, ORBIT / steps as f64);
     orbit.set(&ECCENTRICITY, eccentricity)
 }
 
 /// Measures every scheme.
-///
-/// # Errors
-/// [`StudyError`] if a scene is refused.
 pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let progress = lab.progress;
     let schemes: Vec<SchemeName> = SchemeName::ALL.iter().map(|(scheme, _)| *scheme).collect();
@@ -74,11 +64,11 @@ pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
         .iter()
         .rev()
         .filter(|scheme| !matches!(scheme, SchemeName::Euler | SchemeName::EulerWithHalf));
-    let edges: Vec<(SchemeName, f64)> =
+    let eccentric: Vec<(SchemeName, f64)> =
         kept.flat_map(|&scheme| ECCENTRICITIES.map(|eccentricity| (scheme, eccentricity))).collect();
-    let meter = Meter::new((orbits.len() + edges.len()) as f64, progress);
+    let meter = Meter::new((orbits.len() + eccentric.len()) as f64, progress);
     let orbits = meter.each_from_last(&orbits, |&(scheme, steps)| orbit(scheme, steps))?;
-    let edges = meter.each(&edges, |&(scheme, eccentricity)| edge(scheme, eccentricity))?;
+    let edges = meter.each(&eccentric, |&(scheme, eccentricity)| edge(scheme, eccentricity))?;
     let damped = STEPS.into_iter().map(|steps| damped_orbit(steps, 0.9999)).collect::<Result<Vec<_>, _>>()?;
     Ok(Made::of([
         errors(&orbits, schemes.iter().rev().copied()),
@@ -91,10 +81,10 @@ pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
             .short("largest momentum", |it| it.drift[0])
             .short("largest change of the angular momentum", |it| it.drift[1])
             .frame("orbits", "Energy error and drift of momenta along 100 orbits"),
-        Rows::of(&edges)
-            .text("scheme", |it| it.scheme.word())
-            .number("eccentricity", 1, |it| it.eccentricity)
-            .cell("steps of an orbit", |it| it.steps)
+        Rows::of(eccentric.iter().zip(edges))
+            .text("scheme", |((scheme, _), _)| scheme.word())
+            .number("eccentricity", 1, |((_, eccentricity), _)| *eccentricity)
+            .cell("steps of an orbit", |(_, steps)| *steps)
             .frame("edges", "Fewest steps that keep an orbit for 100 turns"),
         Rows::of(&damped)
             .count("steps of an orbit", |(steps, ..)| *steps)
@@ -190,22 +180,18 @@ fn keeps(scheme: SchemeName, steps: u64, eccentricity: f64) -> Result<bool, Stud
     Ok(true)
 }
 
-fn edge(scheme: SchemeName, eccentricity: f64) -> Result<Edge, StudyError> {
+/// Fewest steps of an orbit that keep it; none where the most that are tried do not.
+fn edge(scheme: SchemeName, eccentricity: f64) -> Result<Option<u64>, StudyError> {
     let (mut low, mut high) = (4, 8);
     while !keeps(scheme, high, eccentricity)? {
         if high >= MOST {
-            return Ok(Edge { scheme, eccentricity, steps: None });
+            return Ok(None);
         }
         (low, high) = (high, 2 * high);
     }
-    while high > low + low.div_ceil(16) {
-        let middle = low.midpoint(high);
-        match keeps(scheme, middle, eccentricity)? {
-            true => high = middle,
-            false => low = middle,
-        }
-    }
-    Ok(Edge { scheme, eccentricity, steps: Some(high) })
+    let is_narrow = |[low, high]: [u64; 2]| high <= low + low.div_ceil(16);
+    let loses = |steps: u64| Ok::<_, StudyError>(!keeps(scheme, steps, eccentricity)?);
+    Ok(Some(bisected([low, high], is_narrow, u64::midpoint, loses)?[1]))
 }
 
 /// Steps of an orbit, damping, and the energy after ten orbits over that of the start; none where bodies are at no finite place before.
