@@ -10,7 +10,7 @@ mod convoy;
 mod tests;
 mod work;
 
-pub use convoy::{Convoy, Memory, convoys};
+pub use convoy::{Memory, convoys};
 pub use work::Work;
 
 use super::machine::MachineModel;

@@ -8,8 +8,8 @@ mod model;
 mod out_of_range;
 mod rates;
 
-pub use costs::{Around, Charges, Costs, LaneCosts, charges};
+pub use costs::{Around, Costs, LaneCosts, charges};
 pub use file::{FORMAT, default_model};
 pub use model::{HostModel, Measured};
 pub use out_of_range::OutOfRange;
-pub use rates::{Amounts, MAKING, Rates, Units, phase};
+pub use rates::{Amounts, MAKING, Rates, Units};

@@ -142,7 +142,7 @@ fn schemes(maps: &Maps) -> Frame {
 fn said(maps: &Maps) -> Frame {
     let classes = maps
         .iter()
-        .flat_map(|(name, data)| Class::ALL.map(|class| (name, class, data.said(|it| it == class))));
+        .flat_map(|(name, data)| Class::ALL.map(|(class, _)| (name, class, data.said(|it| it == class))));
     let counted = classes.filter(|(_, class, said)| said.all > 0 && *class != Class::Refused);
     Rows::of(counted)
         .text("scene", |(name, ..)| *name)

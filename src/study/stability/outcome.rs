@@ -34,36 +34,24 @@ pub enum Class {
 }
 
 impl Class {
-    /// Every class, from what works on.
-    pub const ALL: [Class; 11] = [
-        Class::Works,
-        Class::Silent,
-        Class::EnergyLoss,
-        Class::EnergyGrowth,
-        Class::Penetration,
-        Class::MaskOutrun,
-        Class::SharedCell,
-        Class::ParticleLost,
-        Class::NonFinite,
-        Class::Stopped,
-        Class::Refused,
+    /// Every class with its name, from what works on.
+    pub const ALL: [(Class, &'static str); 11] = [
+        (Class::Works, "works"),
+        (Class::Silent, "wrong but silent"),
+        (Class::EnergyLoss, "energy lost"),
+        (Class::EnergyGrowth, "energy growth"),
+        (Class::Penetration, "penetration"),
+        (Class::MaskOutrun, "mask outrun"),
+        (Class::SharedCell, "two in a cell"),
+        (Class::ParticleLost, "particle lost"),
+        (Class::NonFinite, "non-finite"),
+        (Class::Stopped, "stopped otherwise"),
+        (Class::Refused, "no such scene"),
     ];
 
-    /// What it is called.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Class::Works => "works",
-            Class::Silent => "wrong but silent",
-            Class::EnergyLoss => "energy lost",
-            Class::EnergyGrowth => "energy growth",
-            Class::Penetration => "penetration",
-            Class::MaskOutrun => "mask outrun",
-            Class::SharedCell => "two in a cell",
-            Class::ParticleLost => "particle lost",
-            Class::NonFinite => "non-finite",
-            Class::Stopped => "stopped otherwise",
-            Class::Refused => "no such scene",
-        }
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        Class::ALL.iter().find(|(class, _)| *class == self).map_or("", |(_, name)| name)
     }
 
     /// Whether the run comes to its end.
