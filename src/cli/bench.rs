@@ -3,11 +3,12 @@
 use super::processes;
 use super::run::{MOST_RANKS, threads_of_ranks};
 use crate::console::{Common, Failure, clear_progress, count, print, print_json, progress};
+use crate::frame::Frame;
 use crate::provenance::built;
-use crate::report::{Cell, Rows, Table, terminal};
+use crate::report::{Rows, Table, terminal};
 use crate::study::scaling::{self, OfThreads, Scaling, scaling};
 use clap::{Arg, ArgAction, ArgMatches, Args, value_parser};
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use stripmine_physics::method::throughput::{Measurement, MeasurementError, Throughput, throughput};
 use stripmine_physics::method::{Bench, BenchOption, Entry, Methods, Purpose, Takes};
@@ -178,11 +179,15 @@ impl BenchVerb {
         let found = scaling(&|| self.measurement(entry, bench, given), &crews, show);
         clear_progress();
         let found = found.map_err(|error| refused(error, given))?;
+        let tables = [by_threads(&found), by_phases(&found)];
         if common.json {
-            return print_json(&found);
+            let [threads, phases] = tables.map(|table| Frame::from(&table).json());
+            let (settings, same_bits) = (&found.settings, found.same_bits);
+            return print_json(
+                &json!({ "settings": settings, "same_bits": same_bits, "threads": threads, "phases": phases }),
+            );
         }
-        print(&terminal::render(&by_threads(&found)))?;
-        print(&format!("\n{}", terminal::render(&by_phases(&found))))
+        print(&tables.map(|table| terminal::render(&table)).join("\n"))
     }
 }
 
@@ -197,14 +202,12 @@ fn by_threads(found: &Scaling) -> Table {
         format!("{gain} times on {threads}")
     });
     Rows::of(&found.by_threads)
-        .cell("ranks", |it| Cell::Number(it.crew.ranks as f64, 0))
-        .cell("threads of each", |it| Cell::Number(it.crew.threads as f64, 0))
-        .cell("million a second, best", |it| Cell::Number(1e-6 * it.rate[0], 2))
-        .cell("median", |it| Cell::Number(1e-6 * it.rate[1], 2))
-        .cell("gain", |it| Cell::Number(it.gain, 2))
-        .cell("efficiency", |it| {
-            Cell::Number(it.gain * found.by_threads[0].crew.all() as f64 / it.crew.all() as f64, 2)
-        })
+        .count("ranks", |it| it.crew.ranks)
+        .count("threads of each", |it| it.crew.threads)
+        .number("million a second, best", 2, |it| 1e-6 * it.rate[0])
+        .number("median", 2, |it| 1e-6 * it.rate[1])
+        .number("gain", 2, |it| it.gain)
+        .number("efficiency", 2, |it| it.gain * found.by_threads[0].crew.all() as f64 / it.crew.all() as f64)
         .table(
             "threads",
             format!(
@@ -223,9 +226,9 @@ fn by_phases(found: &Scaling) -> Table {
     let mut rows = Rows::of(&found.phases).text("phase", |it| it.name.clone());
     for (at, OfThreads { crew: scaling::Crew { ranks, threads }, .. }) in found.by_threads.iter().enumerate()
     {
-        rows = rows.cell(format!("ns, {ranks} × {threads}"), move |it| Cell::Number(it.nanoseconds[at], 2));
+        rows = rows.number(format!("ns, {ranks} × {threads}"), 2, move |it| it.nanoseconds[at]);
     }
-    rows.cell("serial part (%)", |it| it.serial.map_or(Cell::Nothing, |part| Cell::Number(100.0 * part, 1)))
+    rows.number("serial part (%)", 1, |it| it.serial.map(|part| 100.0 * part))
         .text("of", |it| if it.is_beside { "particle, each time" } else { "particle and step" })
         .table("phases", "Phases, ranks × threads of each, and the part of each phase that does not gain")
         .note("Best repeats. Below 0: it gains more than there are threads, by caches.".to_owned())

@@ -1,6 +1,5 @@
 //! One bench on several numbers of ranks and threads: what each phase gains, and which part of it does not.
 
-use serde::Serialize;
 use serde_json::{Map, Value};
 use std::collections::BTreeSet;
 use std::time::Instant;
@@ -14,7 +13,7 @@ const REST: &str = "in no phase";
 const BESIDE: [&str; 4] = ["start", "row", "particles", "snapshot"];
 
 /// A bench on several numbers of threads.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
 pub struct Scaling {
     pub what: &'static str,
     /// Particles that move.
@@ -34,7 +33,7 @@ pub struct Scaling {
 }
 
 /// How many ranks, and threads of each.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Crew {
     pub ranks: usize,
     /// Threads of each.
@@ -49,10 +48,9 @@ impl Crew {
 }
 
 /// The bench on some ranks and threads.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
 pub struct OfThreads {
     /// How many.
-    #[serde(flatten)]
     pub crew: Crew,
     /// Work in a second: the best repeat, and the median one.
     pub rate: [f64; 2],
@@ -61,7 +59,7 @@ pub struct OfThreads {
 }
 
 /// A phase on all numbers of threads.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
 pub struct Phase {
     pub name: String,
     /// Nanoseconds of a particle and step, of the best repeat, or of a particle, once, for what is done beside steps.

@@ -1,10 +1,7 @@
 //! Where a method ceases to work: by bisection between steps of a ladder.
 
-use serde::{Deserialize, Serialize};
-
 /// The edge of what works along the step.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Edge {
     /// Not even the smallest step works.
     Below,
