@@ -21,17 +21,17 @@ pub struct Own {
 }
 
 /// One case of a grid.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug)]
 pub struct Case {
-    #[serde(skip)]
     pub(super) labels: Vec<(String, Cell)>,
-    task: Task,
+    pub(super) task: Task,
     /// Threads, where wall time counts.
-    threads: Option<usize>,
+    pub(super) threads: Option<usize>,
 }
 
+/// Work of a case, which another process is told.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-enum Task {
+pub(super) enum Task {
     Scene {
         preset: String,
         overrides: Vec<String>,

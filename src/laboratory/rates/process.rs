@@ -1,7 +1,7 @@
 //! One round of measurements in a process of its own: the program calls itself, and the two speak through pipes, a line of JSON for each
 //! reading.
 
-use super::case::{Case, Own, Reading};
+use super::case::{Case, Own, Reading, Task};
 use crate::console::{Failure, print};
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::path::Path;
@@ -37,7 +37,8 @@ fn answered(command: &mut Command, cases: &[&Case], heard: &mut dyn FnMut(Readin
     });
     // The process ends where this pipe does: it is held until the process has ended by itself, or this one is gone.
     let mut asked = child.stdin.take();
-    let line = serde_json::to_string(cases).map_err(|cause| failed(cause.into()))? + "\n";
+    let cases: Vec<(&Task, Option<usize>)> = cases.iter().map(|case| (&case.task, case.threads)).collect();
+    let line = serde_json::to_string(&cases).map_err(|cause| failed(cause.into()))? + "\n";
     if let Some(asked) = &mut asked {
         // A process that is gone says why in its own words.
         drop(asked.write_all(line.as_bytes()).and_then(|()| asked.flush()));
@@ -81,15 +82,15 @@ fn failure(status: ExitStatus, words: &str) -> Failed {
 pub fn serve(all: &[&Own]) -> Result<(), Failure> {
     let mut line = String::new();
     let read = io::stdin().lock().read_line(&mut line);
-    let cases = read.and_then(|_| Ok(serde_json::from_str::<Vec<Case>>(&line)?));
+    let cases = read.and_then(|_| Ok(serde_json::from_str::<Vec<(Task, Option<usize>)>>(&line)?));
     let cases = cases.map_err(Failure::writing("cases on standard input"))?;
     thread::spawn(|| {
         // The process that asked holds the other end as long as it waits.
         drop(io::copy(&mut io::stdin().lock(), &mut io::sink()));
         std::process::exit(INTERRUPTED.into());
     });
-    for case in cases {
-        let reading = case.measure(all)?;
+    for (task, threads) in cases {
+        let reading = Case { labels: vec![], task, threads }.measure(all)?;
         print(
             &(serde_json::to_string(&reading).map_err(|cause| Failure::writing("JSON")(cause.into()))?
                 + "\n"),

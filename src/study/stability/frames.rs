@@ -2,7 +2,7 @@
 
 use super::boundary::Edge;
 use super::dataset::{Boundary, SchemeLimit, Stability, over_seeds};
-use super::outcome::{Cell as Place, Class, Foreseen};
+use super::outcome::{Class, Foreseen};
 use crate::frame::{Cell, Frame, Rows};
 use crate::results::Made;
 use crate::statistics::median;
@@ -21,7 +21,6 @@ pub fn made(maps: &Maps) -> Made {
         pairs(maps),
         said(maps),
         cells(maps),
-        fates(maps),
         boundaries(maps),
         edges(maps),
         lines(maps),
@@ -224,32 +223,6 @@ fn pairs(maps: &Maps) -> Frame {
         .text("integrator", |(_, scheme, _)| *scheme)
         .number("edge over theory", 3, |(.., ratio)| *ratio)
         .frame("pairs", "Longest step that works over the step beyond which theory says that errors grow")
-}
-
-/// Fate of a place, for the reader of a map.
-fn fate(cell: &Place) -> Option<&'static str> {
-    match cell.class {
-        Class::Works => Some("works"),
-        Class::Refused => None,
-        class if class.is_unseen() && cell.is_said() => Some("wrong, and the program says so"),
-        class if class.is_unseen() => Some("wrong, and nothing is said"),
-        _ => Some("stopped by the program"),
-    }
-}
-
-fn fates(maps: &Maps) -> Frame {
-    let places = maps.iter().flat_map(|(name, data)| {
-        data.values.iter().zip(&data.map).flat_map(move |(value, cells)| {
-            let with_steps = data.steps.iter().zip(cells);
-            with_steps.filter_map(move |(step, cell)| Some((name, *value, *step, fate(cell)?)))
-        })
-    });
-    Rows::of(places)
-        .text("scene", |(name, ..)| *name)
-        .number("value", 6, |(_, value, ..)| *value)
-        .number("step", 6, |(.., step, _)| *step)
-        .text("fate", |(.., fate)| *fate)
-        .frame("fates", "Fate of every place that a scene can have")
 }
 
 /// The edge of what works over the seeds, and the step of theory, at every value.

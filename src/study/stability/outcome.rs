@@ -121,13 +121,6 @@ pub struct Cell {
     pub warned: Vec<String>,
 }
 
-impl Cell {
-    /// Whether the program says something of it, before the run or after.
-    pub fn is_said(&self) -> bool {
-        self.foreseen != Foreseen::Nothing || !self.warned.is_empty()
-    }
-}
-
 impl Ran {
     /// The run held against what is expected of it.
     pub fn judged(&self, expected: Option<&Expected>) -> Cell {
