@@ -35,8 +35,6 @@ pub struct Curve {
 /// What was measured of a scene.
 #[derive(Clone, Debug)]
 pub struct Precision {
-    /// The scene, as it is named on a command line.
-    pub scene: String,
     /// The quantity.
     pub quantity: &'static str,
     /// Its unit, empty for a pure number.
@@ -125,7 +123,6 @@ pub fn precision(
         });
     }
     Ok(Precision {
-        scene: case.arguments(),
         quantity: target.quantity.name,
         unit: target.quantity.unit,
         reference: [mean, bar],

@@ -13,8 +13,6 @@ use serde::{Deserialize, Serialize};
 /// The dataset.
 #[derive(Clone, Debug)]
 pub struct WorkPrecision {
-    /// The scene, as it is named on a command line.
-    pub scene: String,
     /// Particles that move.
     pub particles: usize,
     /// What distances are measured in.
@@ -31,8 +29,6 @@ pub struct WorkPrecision {
     pub plan: Plan,
     /// The time that is compared (time).
     pub duration: f64,
-    /// The time of the scene (time).
-    pub scene_time: f64,
     /// What happens to a particle in the time that is compared.
     pub encounters: Encounters,
     /// Why no way is recommended: too little happens in the time that is compared; none where enough does.
@@ -43,8 +39,6 @@ pub struct WorkPrecision {
     pub ways: Vec<Way>,
     /// Every run.
     pub runs: Vec<Run>,
-    /// Places among the runs that no other beats in cost and error, for each measure.
-    pub fronts: Vec<(Measure, Vec<usize>)>,
     /// How errors fall with the step.
     pub orders: Vec<Order>,
     /// Means over time, where the scene has seeds.
@@ -75,8 +69,6 @@ pub struct Reference {
 /// A way to run the scene.
 #[derive(Clone, Debug)]
 pub struct Way {
-    /// Its settings, by axis.
-    pub settings: Vec<(&'static str, &'static str)>,
     /// Its settings in a line.
     pub label: String,
     /// The setting that decides the order.

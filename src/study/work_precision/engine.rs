@@ -1,7 +1,6 @@
 //! The runs of a diagram.
 
 use super::dataset::{Order, Reference, Run, Way};
-use super::front::front;
 use super::measures::{Errors, Measure, errors};
 use super::plan::{BELOW, COARSEST, Plan};
 use super::{Effort, MEANS_SHARE};
@@ -66,7 +65,6 @@ fn refusal(errors: &SceneErrors) -> String {
 pub fn way(choice: &Choice, own: &Choice, probe: &Result<f64, String>) -> Way {
     let agrees = |decides| choice.agrees(own, decides);
     Way {
-        settings: choice.settings().collect(),
         label: choice.label(),
         scheme: choice.names(Decides::Order).join(" "),
         digits: choice.names(Decides::Digits).join(" "),
@@ -328,17 +326,6 @@ impl Work<'_> {
         let steps: Vec<f64> =
             (-self.plan.finest..=COARSEST_COLLISION).map(|power| self.step(power)).collect();
         collision(self.subject, &steps, self.effort.phases, self.journal, self.meter)
-    }
-
-    /// Places among the runs that nothing speaks against and no other such run beats in cost and error; an error below the reference's own counts as that.
-    pub fn front(&self, runs: &[Run], reference: &Reference, measure: Measure) -> Vec<usize> {
-        let floor = reference.floor.get(&measure).copied().unwrap_or(0.0);
-        let points = runs.iter().enumerate().filter(|(_, run)| !run.is_lost() && run.is_sound());
-        let points = points
-            .filter_map(|(place, run)| Some((place, (run.cost()?, run.error(measure)?.max(floor)))))
-            .collect::<Vec<_>>();
-        let on_front = front(&points.iter().map(|(_, point)| *point).collect::<Vec<_>>());
-        on_front.into_iter().map(|place| points[place].0).collect()
     }
 
     /// How positions and energy converge, for every scheme in the digits of the reference.

@@ -12,10 +12,9 @@ mod front;
 mod measures;
 mod plan;
 
-pub use dataset::{Way, WorkPrecision};
+use dataset::WorkPrecision;
 pub use frames::made;
 pub use front::front;
-pub use measures::{Errors, Measure};
 
 use super::choice::Choice;
 use super::encounters::{Encounters, encounters};
@@ -111,17 +110,13 @@ pub fn work_precision(
     let observables = work.observables(own_rate)?;
     let collision = work.collision()?;
     work.time(&mut runs, start)?;
-    let fronts = Measure::ALL.into_iter().map(|measure| (measure, work.front(&runs, &reference, measure)));
-    let fronts = fronts.filter(|(_, places)| !places.is_empty()).collect();
     Ok(WorkPrecision {
-        scene: subject.arguments(),
         particles: subject.prepared.particles().grain_count(),
         unit: subject.trials.length.unit.to_owned(),
         time_unit: subject.unit("time"),
         step: subject.step,
         own: subject.own.label(),
         duration: work.duration(),
-        scene_time: subject.steps as f64 * subject.step,
         undecided: undecided(&encounters, work.duration(), subject),
         encounters,
         growth,
@@ -129,7 +124,6 @@ pub fn work_precision(
         reference,
         ways: choices.iter().zip(&probes).map(|(choice, probe)| way(choice, &subject.own, probe)).collect(),
         runs,
-        fronts,
         seeds: if observables.is_some() { SEEDS.to_vec() } else { vec![] },
         observables,
         collision,
