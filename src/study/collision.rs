@@ -11,7 +11,6 @@ use super::state::{State, displaced};
 use super::subject::Subject;
 use super::trial::{Course, follow};
 use crate::results::{Journal, JournalError, Meter};
-use serde::{Deserialize, Serialize};
 use stripmine_physics::method::{Decides, Purpose};
 
 /// Outcomes of a collision.
@@ -20,7 +19,7 @@ pub const OUTCOMES: [&str; 2] = ["restitution", "deflection"];
 const REFERENCE: f64 = 0.125;
 
 /// What came out.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Collision {
     /// Relative speed after over that before, and the angle by which the relative velocity turns (radian), of the reference.
     pub reference: [f64; 2],
@@ -33,7 +32,7 @@ pub struct Collision {
 }
 
 /// The error of the outcomes of a scheme with a step.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct OutcomeError {
     pub choice: String,
     /// The step (time).
@@ -45,7 +44,7 @@ pub struct OutcomeError {
 }
 
 /// How the errors of a scheme fall with the step.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct OutcomeOrder {
     pub choice: String,
     pub outcome: String,

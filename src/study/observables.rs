@@ -7,7 +7,6 @@ use super::subject::Subject;
 use super::trial::{Course, follow};
 use crate::results::{Journal, JournalError, Meter};
 use crate::statistics::{Mean, Spread};
-use serde::{Deserialize, Serialize};
 use stripmine_physics::method::{Purpose, Simulation};
 use stripmine_physics::scene::{Overrides, SEED};
 
@@ -21,7 +20,7 @@ pub const STEPS: [f64; 4] = [4.0, 2.0, 1.0, 0.5];
 pub const REFERENCE: f64 = 0.25;
 
 /// A mean over time held against that of the reference.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
     /// What is compared.
     pub observable: String,
@@ -43,7 +42,7 @@ impl Comparison {
 }
 
 /// What came out.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Observables {
     /// The time of each run (time).
     pub duration: f64,

@@ -1,7 +1,6 @@
 //! Orders of convergence from errors over steps.
 
 use crate::statistics::slope;
-use serde::{Deserialize, Serialize};
 
 /// Relative errors below this may be of rounding, added up over the steps of a run in double precision.
 const ROUNDING: f64 = 1e-11;
@@ -11,7 +10,7 @@ const MOST: usize = 5;
 const LEAST: usize = 3;
 
 /// The power of the step with which an error falls.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fitted {
     pub order: f64,
     /// The smallest and the largest step of the fit (time).

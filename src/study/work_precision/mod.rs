@@ -12,7 +12,7 @@ mod front;
 mod measures;
 mod plan;
 
-pub use dataset::WorkPrecision;
+use dataset::WorkPrecision;
 pub use frames::made;
 pub use front::front;
 
