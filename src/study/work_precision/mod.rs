@@ -11,6 +11,7 @@ mod frames;
 mod front;
 mod measures;
 mod plan;
+mod points;
 
 use dataset::WorkPrecision;
 pub use frames::made;

@@ -1,0 +1,193 @@
+//! Points of the charts, as frames.
+
+use super::dataset::{Run, Way, WorkPrecision};
+use super::frames::{Scenes, scheme};
+use super::front::front;
+use super::measures::Measure;
+use crate::frame::{Frame, Rows};
+use crate::statistics::median;
+use crate::study::growth::COMPARABLE;
+
+/// Factor between the places of points that have one step.
+const BESIDE: f64 = 1.05;
+/// Height of runs that broke, over the largest error that is drawn.
+const ABOVE: f64 = 10.0;
+/// Configurations with a name of their own in a chart; all others are drawn alike.
+const NAMED: usize = 4;
+/// A point of a chart of error over cost: chart, kind of series, name of the series, cost and error.
+type Drawn = (&'static str, &'static str, String, f64, f64);
+
+/// Points of the charts of error over cost.
+pub(super) fn drawn(scenes: &Scenes) -> Frame {
+    let all = scenes.iter().flat_map(|(name, data)| {
+        let mut points = vec![];
+        for (chart, measure) in [("position", Measure::Position), ("energy", Measure::Energy)] {
+            points.extend(diagram(data, chart, measure));
+        }
+        let [mut searches, mut clocks] = [const { vec![] }; 2];
+        for (at, way) in data.ways.iter().enumerate() {
+            let own = || data.runs.iter().filter(move |run| run.way == at);
+            if way.is_own_arithmetic {
+                searches
+                    .extend(points_of(own(), Measure::Position, Run::cost).map(|it| (way.cost.clone(), it)));
+            }
+            clocks.extend(
+                points_of(own(), Measure::Position, |run| run.clocks).map(|it| (way.label.clone(), it)),
+            );
+        }
+        // A single search has nothing to be held against.
+        if searches.iter().all(|(way, _)| *way == searches[0].0) {
+            searches.clear();
+        }
+        for (chart, all) in [("searches", searches), ("clocks", clocks)] {
+            points.extend(all.into_iter().map(|(series, (cost, error))| (chart, "way", series, cost, error)));
+        }
+        points.into_iter().map(move |point| (name, point))
+    });
+    Rows::of(all)
+        .text("scene", |(name, _)| *name)
+        .text("chart", |(_, (chart, ..))| *chart)
+        .text("kind", |(_, (_, kind, ..))| *kind)
+        .text("series", |(_, (_, _, series, ..))| series.clone())
+        .number("cost", 6, |(_, (.., cost, _))| *cost)
+        .number("error", 6, |(_, (.., error))| *error)
+        .frame("drawn", "Points of the charts: processor time, or clock periods, for a unit of time")
+}
+
+/// Cost and error of runs that came to their end, by rising cost.
+fn points_of<'d>(
+    runs: impl Iterator<Item = &'d Run>,
+    measure: Measure,
+    cost: impl Fn(&Run) -> Option<f64>,
+) -> impl Iterator<Item = (f64, f64)> {
+    let points = runs.filter_map(|run| Some((cost(run)?, run.error(measure)?)));
+    let mut points: Vec<_> = points.filter(|(_, error)| *error > 0.0).collect();
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    points.into_iter()
+}
+
+/// Error over cost of every scheme and precision with the scene's own search and execution. Below the error of the reference nothing is
+/// known. The scene's own configuration has a name, then those of the front, then the most accurate.
+fn diagram(data: &WorkPrecision, chart: &'static str, measure: Measure) -> Vec<Drawn> {
+    let floor = data.reference.floor.get(&measure).copied().unwrap_or(0.0);
+    let is_shown = |run: &&Run| data.ways[run.way].is_primary;
+    let known = |(_, error): &(f64, f64)| *error >= floor;
+    let sound = data.runs.iter().filter(is_shown).filter(|run| run.is_sound());
+    let sound: Vec<_> = points_of(sound, measure, Run::cost).filter(known).collect();
+    let best: Vec<(f64, f64)> = front(&sound).into_iter().map(|place| sound[place]).collect();
+    let of_way = |(at, way): (usize, &'_ Way)| {
+        let own = data.runs.iter().filter(|run| run.way == at);
+        let points: Vec<_> = points_of(own, measure, Run::cost).filter(known).collect();
+        let name = format!("{} {}", way.scheme, way.digits);
+        if way.label == data.own {
+            (0, format!("{name} (the scene's own)"), points)
+        } else {
+            (1, name, points)
+        }
+    };
+    let shown = data.ways.iter().enumerate().filter(|(_, way)| way.is_primary);
+    let mut all: Vec<_> = shown.map(of_way).filter(|(.., points)| !points.is_empty()).collect();
+    let on_front = |points: &[(f64, f64)]| points.iter().filter(|point| best.contains(point)).count();
+    let least = |points: &[(f64, f64)]| points.iter().map(|point| point.1).fold(f64::INFINITY, f64::min);
+    all.sort_by(|(a_own, _, a), (b_own, _, b)| {
+        a_own.cmp(b_own).then(on_front(b).cmp(&on_front(a))).then(least(a).total_cmp(&least(b)))
+    });
+    let highest = all.iter().flat_map(|(.., points)| points).map(|point| point.1).fold(0.0, f64::max);
+    let mut drawn: Vec<Drawn> = vec![];
+    for (place, (_, name, points)) in all.into_iter().enumerate() {
+        let (kind, name) = if place < NAMED { ("way", name) } else { ("others", "others".to_owned()) };
+        drawn.extend(points.into_iter().map(|(cost, error)| (chart, kind, name.clone(), cost, error)));
+    }
+    drawn.extend(
+        best.into_iter().map(|(cost, error)| (chart, "front", "Pareto front".to_owned(), cost, error)),
+    );
+    let warned = data.runs.iter().filter(is_shown).filter(|run| !run.is_sound());
+    let warned = points_of(warned, measure, Run::cost).filter(known);
+    drawn.extend(warned.map(|(cost, error)| (chart, "warned", "warned of".to_owned(), cost, error)));
+    let broken = data.runs.iter().filter(is_shown).filter(|run| run.outcome.is_err());
+    let broken = broken.filter_map(|run| Some(data.ways[run.way].each? / run.step)).filter(|_| highest > 0.0);
+    drawn.extend(broken.map(|cost| (chart, "failed", "failed: no error".to_owned(), cost, ABOVE * highest)));
+    if measure == Measure::Position && highest > COMPARABLE {
+        let ends = drawn
+            .iter()
+            .map(|it| it.3)
+            .fold([f64::INFINITY, 0.0], |[low, high], it| [it.min(low), it.max(high)]);
+        let line = ends.map(|cost| (chart, "parted", "parted".to_owned(), cost, COMPARABLE));
+        drawn.extend(line);
+    }
+    drawn
+}
+
+/// Differences of the first quantity in full digits. Points of one step stand beside each other.
+pub(super) fn drawn_means(scenes: &Scenes) -> Frame {
+    let all = scenes.iter().flat_map(|(name, data)| {
+        let full = data.ways.iter().find(|way| way.label == data.reference.ways[0]).map(|way| &way.digits);
+        let is_full =
+            |label: &str| data.ways.iter().any(|way| way.label == label && Some(&way.digits) == full);
+        let all: Vec<_> = data.observables.iter().flat_map(|all| &all.comparisons).collect();
+        let first = all.first().map_or("", |it| &it.observable);
+        let all: Vec<_> =
+            all.into_iter().filter(|it| it.observable == first && is_full(&it.choice)).collect();
+        let mut schemes: Vec<&str> = all.iter().map(|it| scheme(data, &it.choice)).collect();
+        schemes.dedup();
+        let middle = 0.5 * (schemes.len() as f64 - 1.0);
+        let shifted = all.into_iter().map(|it| {
+            let own = scheme(data, &it.choice);
+            let place = schemes.iter().position(|known| *known == own).unwrap_or(0);
+            (name, own, it.step * BESIDE.powf(place as f64 - middle), it)
+        });
+        shifted.collect::<Vec<_>>()
+    });
+    Rows::of(all)
+        .text("scene", |(name, ..)| *name)
+        .text("integrator", |(_, scheme, ..)| *scheme)
+        .number("place of the step", 6, |(.., place, _)| *place)
+        .number("difference (%)", 2, |(.., it)| 100.0 * it.difference)
+        .number("bar, 95 % (%)", 2, |(.., it)| 100.0 * it.bar)
+        .frame("drawn_means", "Differences of the first mean, by integrator")
+}
+
+/// Distance of a disturbed start, and of half the step, over time.
+pub(super) fn growth(scenes: &Scenes) -> Frame {
+    let all = scenes.iter().flat_map(|(name, data)| {
+        let disturbed = format!("start disturbed by 1e-9 {}", data.unit);
+        let grown = [(disturbed, &data.growth.separation), ("half the step".to_owned(), &data.growth.error)];
+        grown.into_iter().flat_map(move |(series, distances)| {
+            let points = data.growth.times.iter().zip(distances).filter(|(_, distance)| **distance > 0.0);
+            points.map(move |(time, distance)| (name, series.clone(), *time, *distance))
+        })
+    });
+    Rows::of(all)
+        .text("scene", |(name, ..)| *name)
+        .text("series", |(_, series, ..)| series.clone())
+        .number("time", 6, |(.., time, _)| *time)
+        .number("distance", 6, |(.., distance)| *distance)
+        .frame("growth", "Distance of trajectories over time, RMS")
+}
+
+/// Errors of the outcomes of a collision by step, and the processor time that a step of the configuration takes.
+pub(super) fn outcomes(scenes: &Scenes) -> Frame {
+    let of_a_step = |data: &WorkPrecision, label: &str| {
+        let own = data.runs.iter().filter(|run| data.ways[run.way].label == label);
+        let all: Vec<f64> = own.filter_map(|run| Some(run.cost()? * run.step)).collect();
+        (!all.is_empty()).then(|| median(all.into_iter()))
+    };
+    let all = scenes.iter().flat_map(|(name, data)| {
+        let collisions = data.collision.iter().flat_map(|collision| &collision.errors);
+        let each = collisions.map(move |it| (scheme(data, &it.choice), it, of_a_step(data, &it.choice)));
+        each.map(move |it| (name, it))
+    });
+    Rows::of(all)
+        .text("scene", |(name, _)| *name)
+        .text("integrator", |(_, (scheme, ..))| *scheme)
+        .number("step", 6, |(_, (_, it, _))| it.step)
+        .number("error of the restitution", 6, |(_, (_, it, _))| above_zero(it.spread[0]))
+        .number("error of the deflection", 6, |(_, (_, it, _))| above_zero(it.spread[1]))
+        .number("cost", 6, |(_, (_, it, cost))| cost.map(|cost| cost / it.step))
+        .frame("outcomes", "Errors of the outcomes of a collision")
+}
+
+/// A number that a logarithmic axis can show.
+fn above_zero(value: f64) -> Option<f64> {
+    Some(value).filter(|value| *value > 0.0)
+}
