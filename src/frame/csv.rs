@@ -149,7 +149,7 @@ pub fn read(resource: Resource, bytes: &[u8]) -> Result<Frame, String> {
 }
 
 /// Description of the columns as it stands in a package.
-pub fn described(frame: &Frame) -> serde_json::Value {
+fn described(frame: &Frame) -> serde_json::Value {
     json!(Resource::of(frame).schema.fields)
 }
 

@@ -181,11 +181,6 @@ impl Page {
         Ok(Page { name: name.to_owned(), header, text, body })
     }
 
-    /// Returns whether the results depend on the host.
-    pub fn depends_on_host(&self) -> bool {
-        self.header.host
-    }
-
     /// Title.
     pub fn title(&self) -> &str {
         &self.header.title

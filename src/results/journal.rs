@@ -242,11 +242,6 @@ impl Journal {
         notes
     }
 
-    /// Whether a run was finished before.
-    pub fn knows(&self, key: &str) -> bool {
-        self.found(key).is_some()
-    }
-
     /// What a run gave, if it was finished before and `fits` the study, and otherwise what it gives now, which is kept. A checksum tells damage, not whether a line
     /// is one of this study: a value that no run of it gives is measured again.
     ///
