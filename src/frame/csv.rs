@@ -2,7 +2,6 @@
 
 use super::{Column, Digits, Frame, Role, Value};
 use serde::{Deserialize, Serialize};
-use serde_json::json;
 
 /// First characters that a spreadsheet takes for the beginning of a formula.
 const FORMULA: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];
@@ -148,11 +147,6 @@ pub fn read(resource: Resource, bytes: &[u8]) -> Result<Frame, String> {
     Ok(Frame { name, title: resource.title, columns, rows })
 }
 
-/// Description of the columns as it stands in a package.
-fn described(frame: &Frame) -> serde_json::Value {
-    json!(Resource::of(frame).schema.fields)
-}
-
 fn text(value: &Value) -> String {
     match value {
         Value::Nothing => String::new(),
@@ -179,6 +173,7 @@ fn value(text: &str, role: Role) -> Option<Value> {
 mod tests {
     use super::*;
     use crate::frame::{Cell, Rows};
+    use serde_json::json;
 
     fn written(table: &Frame) -> Vec<Vec<String>> {
         let mut bytes = vec![];
@@ -226,7 +221,7 @@ mod tests {
         assert_eq!(rows[0], names);
         assert_eq!(rows[1], ["0.5", "", "1.5", "0.25", "1", "2", "0", "0"]);
         assert_eq!(rows[2], ["", "lost", "", "", "", "", "1", "1"]);
-        let fields = described(&table);
+        let fields = json!(Resource::of(&table).schema.fields);
         let energy = json!({
             "name": "energy", "title": "energy (J)", "type": "number", "unit": "J", "role": "number", "digits": { "decimals": 1 }
         });

@@ -51,6 +51,16 @@ pub struct WorkPrecision {
     pub seeds: Vec<u64>,
 }
 
+/// Diagrams, each with a name for its rows.
+pub type Scenes = [(String, WorkPrecision)];
+
+impl WorkPrecision {
+    /// The integrator of a configuration.
+    pub fn scheme(&self, label: &str) -> &str {
+        self.ways.iter().find(|way| way.label == label).map_or("", |way| &way.scheme)
+    }
+}
+
 /// What the runs are held against.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Reference {

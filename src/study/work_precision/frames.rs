@@ -1,7 +1,7 @@
 //! Diagrams as frames.
 
 use super::conclusions::{as_good, own_run, wishes as wishes_of};
-use super::dataset::{Run, Way, WorkPrecision};
+use super::dataset::{Run, Scenes, Way, WorkPrecision};
 use super::measures::{Errors, Measure};
 use super::points::{drawn, drawn_means, growth, outcomes};
 use crate::frame::{Cell, Frame, Rows};
@@ -10,8 +10,6 @@ use crate::statistics::median;
 use crate::study::growth::EndedBy;
 use crate::study::observables::CHANCE;
 use crate::study::orders::Fitted;
-
-pub(super) type Scenes = [(String, WorkPrecision)];
 
 /// Frames of diagrams, each with a name for its rows.
 pub fn made(scenes: &Scenes) -> Made {
@@ -157,17 +155,12 @@ fn of_collisions(scenes: &Scenes) -> Frame {
     });
     Rows::of(orders)
         .text("scene", |(name, ..)| *name)
-        .text("integrator", |(_, data, order)| scheme(data, &order.choice))
+        .text("integrator", |(_, data, order)| data.scheme(&order.choice))
         .text("outcome", |(.., order)| &order.outcome)
         .number("order of the RMS", 2, |(.., order)| order.spread.map(|it| it.order))
         .number("order of the mean", 2, |(.., order)| order.mean.map(|it| it.order))
         .cells(STEPS_OF, |(.., order)| steps_of(order.spread))
         .frame("collision", "One collision: how the error of what comes out falls")
-}
-
-/// The integrator of a configuration.
-pub(super) fn scheme<'d>(data: &'d WorkPrecision, label: &str) -> &'d str {
-    data.ways.iter().find(|way| way.label == label).map_or("", |way| &way.scheme)
 }
 
 fn means(name: &str, scenes: &Scenes, is_shown: fn(&WorkPrecision, &str) -> bool) -> Frame {

@@ -1,7 +1,6 @@
 //! Points of the charts, as frames.
 
-use super::dataset::{Run, Way, WorkPrecision};
-use super::frames::{Scenes, scheme};
+use super::dataset::{Run, Scenes, Way, WorkPrecision};
 use super::front::front;
 use super::measures::Measure;
 use crate::frame::{Frame, Rows};
@@ -128,11 +127,11 @@ pub(super) fn drawn_means(scenes: &Scenes) -> Frame {
         let first = all.first().map_or("", |it| &it.observable);
         let all: Vec<_> =
             all.into_iter().filter(|it| it.observable == first && is_full(&it.choice)).collect();
-        let mut schemes: Vec<&str> = all.iter().map(|it| scheme(data, &it.choice)).collect();
+        let mut schemes: Vec<&str> = all.iter().map(|it| data.scheme(&it.choice)).collect();
         schemes.dedup();
         let middle = 0.5 * (schemes.len() as f64 - 1.0);
         let shifted = all.into_iter().map(|it| {
-            let own = scheme(data, &it.choice);
+            let own = data.scheme(&it.choice);
             let place = schemes.iter().position(|known| *known == own).unwrap_or(0);
             (name, own, it.step * BESIDE.powf(place as f64 - middle), it)
         });
@@ -174,7 +173,7 @@ pub(super) fn outcomes(scenes: &Scenes) -> Frame {
     };
     let all = scenes.iter().flat_map(|(name, data)| {
         let collisions = data.collision.iter().flat_map(|collision| &collision.errors);
-        let each = collisions.map(move |it| (scheme(data, &it.choice), it, of_a_step(data, &it.choice)));
+        let each = collisions.map(move |it| (data.scheme(&it.choice), it, of_a_step(data, &it.choice)));
         each.map(move |it| (name, it))
     });
     Rows::of(all)
