@@ -306,7 +306,7 @@ fn case(events: u64, discs: u64) -> Value {
     let scene = serde_json::json!({
         "preset": "hard-disks", "overrides": overrides, "in_events": true, "amount": amount, "seconds": 0.0
     });
-    serde_json::json!({ "task": { "Scene": scene }, "threads": null })
+    serde_json::json!([{ "Scene": scene }, null])
 }
 
 /// A measuring process prints a line for each case, and ends at the first that fails, with the exit code of its failure.

@@ -3,7 +3,6 @@
 use super::processes;
 use super::run::{MOST_RANKS, threads_of_ranks};
 use crate::console::{Common, Failure, clear_progress, count, print, print_json, progress};
-use crate::frame::Frame;
 use crate::provenance::built;
 use crate::report::{Rows, Table, terminal};
 use crate::study::scaling::{self, OfThreads, Scaling, scaling};
@@ -179,16 +178,34 @@ impl BenchVerb {
         let found = scaling(&|| self.measurement(entry, bench, given), &crews, show);
         clear_progress();
         let found = found.map_err(|error| refused(error, given))?;
-        let tables = [by_threads(&found), by_phases(&found)];
         if common.json {
-            let [threads, phases] = tables.map(|table| Frame::from(&table).json());
-            let (settings, same_bits) = (&found.settings, found.same_bits);
-            return print_json(
-                &json!({ "settings": settings, "same_bits": same_bits, "threads": threads, "phases": phases }),
-            );
+            return print_json(&for_programs(&found));
         }
-        print(&tables.map(|table| terminal::render(&table)).join("\n"))
+        print(&[by_threads(&found), by_phases(&found)].map(|table| terminal::render(&table)).join("\n"))
     }
+}
+
+/// Figures of several numbers of ranks and threads, for programs.
+fn for_programs(found: &Scaling) -> Value {
+    let Scaling { what, particles, steps, repeats, settings, same_bits, by_threads, phases } = found;
+    let of_threads = |it: &OfThreads| {
+        let scaling::Crew { ranks, threads } = it.crew;
+        json!({ "ranks": ranks, "threads": threads, "rate": it.rate, "gain": it.gain })
+    };
+    let of_phase = |it: &scaling::Phase| {
+        let (name, nanoseconds, is_beside, serial) = (&it.name, &it.nanoseconds, it.is_beside, it.serial);
+        json!({ "name": name, "nanoseconds": nanoseconds, "is_beside": is_beside, "serial": serial })
+    };
+    json!({
+        "what": what,
+        "particles": particles,
+        "steps": steps,
+        "repeats": repeats,
+        "settings": settings,
+        "same_bits": same_bits,
+        "by_threads": by_threads.iter().map(of_threads).collect::<Vec<_>>(),
+        "phases": phases.iter().map(of_phase).collect::<Vec<_>>(),
+    })
 }
 
 /// The numbers of threads that a run on one core's figures is carried to.
