@@ -48,7 +48,7 @@ impl MachineModel {
     /// Reads a machine file.
     ///
     /// # Errors
-    /// [`ModelFileError`]: the system does not let it be read, or it is bad.
+    /// `ModelFileError`: the system does not let it be read, or it is bad.
     pub fn load(file: &str) -> Result<MachineModel, ModelFileError> {
         MachineModel::parse(file, &file::text(&KIND, file.as_ref())?)
     }
@@ -56,7 +56,7 @@ impl MachineModel {
     /// Reads a machine from the `text` of a machine file; `file` is the name that errors give it.
     ///
     /// # Errors
-    /// [`ModelFileError`]: not TOML, the grammar's first mistake with every value that cannot be, or, once every entry is right,
+    /// `ModelFileError`: not TOML, the grammar's first mistake with every value that cannot be, or, once every entry is right,
     /// a mistake that only the whole machine shows.
     pub fn parse(file: &str, text: &str) -> Result<MachineModel, ModelFileError> {
         Source { kind: &KIND, file, text }.read(wrong, MachineModel::completed)

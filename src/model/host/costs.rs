@@ -41,7 +41,7 @@ pub struct LaneCosts {
 pub type Charges = Vec<f64>;
 
 impl Costs {
-    /// Prices in the order of [`Charges`].
+    /// Prices in the order of `Charges`.
     pub fn of(prices: &[f64]) -> Costs {
         let [run, start, operation, indexed] =
             std::array::from_fn(|at| prices.get(at).copied().unwrap_or(0.0));

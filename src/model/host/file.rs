@@ -15,7 +15,7 @@ impl HostModel {
     /// Reads a host file.
     ///
     /// # Errors
-    /// [`ModelFileError`]: it cannot be read, or is bad.
+    /// `ModelFileError`: it cannot be read, or is bad.
     pub fn load(path: &Path) -> Result<HostModel, ModelFileError> {
         HostModel::parse(&path.display().to_string(), &file::text(&KIND, path)?)
     }
@@ -23,7 +23,7 @@ impl HostModel {
     /// Reads a host file's text; `file` is the name that errors give it.
     ///
     /// # Errors
-    /// [`ModelFileError`]: another format, or the grammar's first mistake with every number that cannot be.
+    /// `ModelFileError`: another format, or the grammar's first mistake with every number that cannot be.
     pub fn parse(file: &str, text: &str) -> Result<HostModel, ModelFileError> {
         Source { kind: &KIND, file, text }.read(wrong, HostModel::checked)
     }
@@ -105,7 +105,7 @@ fn readable(value: &mut toml::Value) {
 /// The host model that comes with the program: of the machine that it was developed on.
 ///
 /// # Errors
-/// [`ModelFileError`] never, as a test of the shipped text holds.
+/// `ModelFileError` never, as a test of the shipped text holds.
 pub fn default_model() -> Result<HostModel, ModelFileError> {
     HostModel::parse("the shipped host model", include_str!("default.toml"))
 }
