@@ -48,7 +48,7 @@ pub(super) struct Unit {
     serves: Vec<String>,
     /// Instructions of these classes that run at once.
     count: Quantity,
-    /// Elements a clock period of each; 1 where nothing is said.
+    /// Elements a clock period of each; 1 by default.
     rate: Option<Quantity>,
 }
 
@@ -60,9 +60,9 @@ pub(super) struct MemoryPorts {
     load_ports: Quantity,
     /// Stores that run at once; none where they share the ports of the loads.
     store_ports: Option<Quantity>,
-    /// Elements a clock period of each port; 1 where nothing is said.
+    /// Elements a clock period of each port; 1 by default.
     rate: Option<Quantity>,
-    /// Elements a clock period through an index vector; as `rate` where nothing is said.
+    /// Elements a clock period through an index vector; as `rate` by default.
     gather_rate: Option<Quantity>,
 }
 

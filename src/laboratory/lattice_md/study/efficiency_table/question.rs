@@ -30,7 +30,7 @@ pub(crate) struct Question {
 /// Parts of the method that a scene needs. BP93's programs have friction, different discs and absolute positions.
 #[derive(Args, Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Choice {
-    /// Whose programs: ours, or the source's own as printed
+    /// Programs: ours, or the source's own as printed
     #[arg(long, default_value = "ours", value_parser = text_parser())]
     pub(crate) text: ProgramText,
     /// Leave out friction, and with it rotation

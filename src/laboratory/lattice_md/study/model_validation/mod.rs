@@ -80,7 +80,7 @@ pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     Ok(model_validation(&host, whose, &effort, |share| progress(0.5 + 0.5 * share))?)
 }
 
-/// Whose model it is that was calibrated here.
+/// Title of the model that was calibrated here.
 pub(crate) fn calibrated_now(host: &HostModel) -> String {
     format!("the model of this host, {}, calibrated just before", host.title)
 }
