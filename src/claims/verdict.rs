@@ -141,6 +141,8 @@ pub(super) fn judge<'c>(
             let verdicts = values.iter().zip(&errors).zip(limits).map(|((v, e), ends)| verdict(*v, *e, ends));
             let verdict = verdicts.fold(Verdict::Reproduced, worse);
             let said = values.iter().zip(&errors).map(|(value, error)| match *error > 0.0 {
+                // Cells without a value are read as NaN.
+                _ if value.is_nan() => "none".to_owned(),
                 true => with_bar(*value, *error),
                 false => significant(*value, 5),
             });
