@@ -268,7 +268,7 @@ fn no_limit_of_memory_aborts_a_verb() {
         "bench lattice --particles 20000 --steps 5 --repeats 1 --ranks 4",
         "bench nbody --particles 512 --steps 5 --repeats 1",
         "compare dense-gas --set particles.count=100000 --set run.steps=5 --against machine.engine=programs",
-        "chart stability two-discs --over stiffness --size 3 --seeds 1 --budget 1 --out out",
+        "chart stability two-discs --over stiffness --size 3 --seeds 1 --budget 300 --set run.time=1 --out out",
         "table",
     ] {
         for mebibytes in [60, 80, 120, 200, 400, 4000] {
