@@ -1,5 +1,6 @@
 //! `stripmine chart`: studies as data and charts. Methods add studies of their own.
 
+use super::explain::width;
 use super::processes;
 use crate::console::{Common, Failure, clear_progress, print, print_json, progress, say, warn};
 use crate::model::machines;
@@ -7,8 +8,9 @@ use crate::provenance::{Provenance, built};
 use crate::results::Made;
 use crate::results::Progress;
 use crate::results::{Folder, Journal, Team};
-use crate::study::explain::{Target, precision, precision_frames};
+use crate::study::explain::{Target, accuracy};
 use crate::study::stability::{self, Over, stability};
+use crate::study::trial::{Stopwatch, Trial};
 use crate::study::work_precision::{self, work_precision};
 use crate::study::{Case, StudyError, Subject};
 use clap::{Args, Subcommand};
@@ -18,6 +20,7 @@ use stripmine_physics::method::Methods;
 use stripmine_physics::number::counted;
 use stripmine_physics::quoted;
 use stripmine_physics::ranks::Crew;
+use stripmine_physics::scene::Width;
 use stripmine_physics::signals;
 
 /// Seconds that a study may take.
@@ -45,6 +48,7 @@ pub(super) struct ChartVerb {
 
 #[derive(Subcommand)]
 enum Study {
+    Accuracy(AccuracyVerb),
     WorkPrecision(WorkPrecisionVerb),
     Stability(StabilityVerb),
 }
@@ -66,12 +70,33 @@ struct WorkPrecisionVerb {
     /// Timed runs of each way and step
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(REPEATS))]
     repeats: u16,
-    /// The error of the mean of a quantity, over the time of the runs; of positions by default where trajectories can be compared, elsewhere of what
-    /// the method is mostly asked for
+    /// The error of the mean of a quantity, as `chart accuracy` draws it; of positions by default where trajectories can be compared
     #[arg(long = "of", value_name = "QUANTITY", conflicts_with_all = ["machine", "repeats"])]
     quantity: Option<String>,
-    /// Folder for data, tables and figures; by default the scene's name with `.work-precision`, or `.work-precision-of-means` for the error of
-    /// a mean. A study that was interrupted goes on there
+    /// Folder for data, tables and figures; by default the scene's name with `.work-precision`, or `.accuracy` for the error of a mean. A study that was
+    /// interrupted goes on there
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
+/// The error of a mean over the wall time of a run, for each integrator and step: bias and chance added, the scene as it stands and the plan marked
+#[derive(Args)]
+struct AccuracyVerb {
+    /// A preset's name, or a scene file
+    scene: String,
+    /// Overrides a value; may be given several times
+    #[arg(long = "set", value_name = "SECTION.KEY=VALUE")]
+    overrides: Vec<String>,
+    /// The quantity whose mean it is; the first of the method by default
+    #[arg(long = "of", value_name = "QUANTITY")]
+    quantity: Option<String>,
+    /// Marks the plan for this error of the mean, such as 1% or 0.02
+    #[arg(long, value_parser = width)]
+    error: Option<Width>,
+    /// Processor seconds of trials, about
+    #[arg(long, default_value_t = 60, value_parser = clap::value_parser!(u32).range(BUDGET))]
+    budget: u32,
+    /// Folder for data, tables and figures; the scene's name with `.accuracy` by default
     #[arg(long)]
     out: Option<PathBuf>,
 }
@@ -122,6 +147,7 @@ fn part(text: &str) -> Result<f64, String> {
 impl ChartVerb {
     pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
         match &self.what {
+            Study::Accuracy(verb) => verb.run(common, methods),
             Study::WorkPrecision(verb) => verb.run(common, methods),
             Study::Stability(verb) => verb.run(common, methods),
         }
@@ -132,7 +158,15 @@ impl WorkPrecisionVerb {
     fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
         let case = Case::load(&self.scene, &self.overrides, methods)?;
         if self.quantity.is_some() || case.entry.trials.is_none_or(|trials| !trials.has_trajectories) {
-            return self.of_mean(&case, common);
+            return AccuracyVerb {
+                scene: self.scene.clone(),
+                overrides: self.overrides.clone(),
+                quantity: self.quantity.clone(),
+                error: None,
+                budget: self.budget,
+                out: self.out.clone(),
+            }
+            .run(common, methods);
         }
         let machine = self.machine.as_deref().map(machines::find).transpose()?;
         let subject = Subject::load(&self.scene, &self.overrides, methods)?;
@@ -148,23 +182,23 @@ impl WorkPrecisionVerb {
     }
 }
 
-impl WorkPrecisionVerb {
-    /// The error of a mean.
-    fn of_mean(&self, case: &Case, common: &Common) -> Result<(), Failure> {
-        // What is tried next depends on times: it is the first process's alone.
+impl AccuracyVerb {
+    fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
+        // The next trial depends on times: trials are the first process's alone.
         if processes::rank(common.crew) > 0 {
             return Ok(());
         }
         let own = |error| StudyError::Own(Box::new(error));
-        let target = Target::of(case, self.quantity.as_deref(), None).map_err(own)?;
-        let place = Place { name: precision_frames::NAME, scene: &self.scene, out: self.out.as_deref() };
+        let case = Case::load(&self.scene, &self.overrides, methods)?;
+        let target = Target::of(&case, self.quantity.as_deref(), self.error).map_err(own)?;
+        let place = Place { name: accuracy::NAME, scene: &self.scene, out: self.out.as_deref() };
         let (folder, stem) = place.folder()?;
-        let (bar, start) = (progress(common, place.name), Instant::now());
-        let show = |share: f64| bar.set_position((1e3 * share) as u64);
+        let start = Instant::now();
         let threads = rayon::current_num_threads() as f64;
         let seconds = f64::from(self.budget) / threads;
-        let data = precision(case, &target, seconds, signals::asked(), &show).map_err(own)?;
-        written(common, &folder, place.name, &precision_frames::made(&stem, &data), start)
+        let trial = Trial { watch: &Stopwatch::wall(), stop: signals::asked() };
+        let made = accuracy::accuracy(&case, &target, seconds, trial, &stem).map_err(own)?;
+        written(common, &folder, place.name, &made, start)
     }
 }
 

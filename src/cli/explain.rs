@@ -3,9 +3,9 @@
 use crate::console::{Common, Failure, clear_progress, print, print_json, say, warn};
 use crate::report::{Cell, Rows, terminal};
 use crate::study::explain::{
-    ExplainError, Kept, KeptError, Plan, SECONDS, Sample, Span, Target, explain, page, sample, seconds,
-    with_unit,
+    ExplainError, Kept, KeptError, LIMIT, Plan, SECONDS, Target, explain, page, seconds, with_unit,
 };
+use crate::study::trial::{Sample, Span, Stopwatch, Trial};
 use crate::study::{Case, StudyError};
 use clap::Args;
 use serde::Serialize;
@@ -40,6 +40,9 @@ pub(super) struct ExplainVerb {
     /// Wall seconds that the run may take: the plan of the least error that can be had in them
     #[arg(long = "time", value_name = "SECONDS", conflicts_with = "error", value_parser = above_zero)]
     within: Option<f64>,
+    /// The most wall seconds that a plan may take, an hour by default: a longer one is refused with the error that can be had in them
+    #[arg(long, value_name = "SECONDS", conflicts_with = "within", value_parser = above_zero)]
+    limit: Option<f64>,
     /// Runs nothing: by what is kept of the scene
     #[arg(long, conflicts_with = "patient")]
     estimate: bool,
@@ -106,7 +109,7 @@ const MEGABYTE: f64 = 1e6;
 /// Trials may take so much more memory than a run: several ways are prepared one after the other (bytes).
 const MORE: f64 = 16e6;
 
-fn width(text: &str) -> Result<Width, String> {
+pub(super) fn width(text: &str) -> Result<Width, String> {
     Width::parse(text).ok_or_else(|| "an error is a number above 0, or a part such as 1%".to_owned())
 }
 
@@ -154,7 +157,7 @@ impl ExplainVerb {
         self.may_write()?;
         let case = Case::load(scene, &self.overrides, methods)?;
         let target = Target::of(&case, self.quantity.as_deref(), self.error).map_err(failed)?;
-        let target = Target { within: self.within, ..target };
+        let target = Target { within: self.within, limit: self.limit.unwrap_or(LIMIT), ..target };
         let seconds = match (self.estimate, self.patient) {
             (true, _) => 0.0,
             (_, true) => SECONDS[1],
@@ -168,7 +171,8 @@ impl ExplainVerb {
                 warn(format_args!("trials are not kept, or not found again: {error}"));
             }
         };
-        let plan = explain(&case, &target, seconds, &kept, signals::asked(), &notice).map_err(failed)?;
+        let trial = Trial { watch: &Stopwatch::wall(), stop: signals::asked() };
+        let plan = explain(&case, &target, seconds, &kept, trial, &notice).map_err(failed)?;
         clear_progress();
         if !common.json {
             print(&page(&plan))?;
@@ -252,8 +256,9 @@ impl ExplainVerb {
         let observed = (case.entry.quantities, target.place);
         // Interrupted, it ends early and says so.
         let held = signals::hold();
-        let found: Sample = sample(&prepared, observed, Span::Time(plan.time, None), signals::asked())
-            .map_err(Failure::from)?;
+        let trial = Trial { watch: &Stopwatch::wall(), stop: signals::asked() };
+        let found: Sample =
+            trial.sample(&prepared, observed, Span::Time(plan.time, None)).map_err(Failure::from)?;
         drop(held);
         if let Some(cut_off) = found.cut_off(plan.time) {
             let wall = Compared {

@@ -18,7 +18,7 @@ mod shortened;
 pub mod stability;
 mod state;
 mod subject;
-mod trial;
+pub(crate) mod trial;
 pub mod work_precision;
 
 pub use case::Case;

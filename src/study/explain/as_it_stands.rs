@@ -27,8 +27,6 @@ impl Plan {
         let phases = of_own.map_or(vec![], |way| {
             way.phases.iter().map(|(name, cost)| (name.clone(), cost * slower * time)).collect()
         });
-        // The interval of the plan, about the time of the scene.
-        let around = (self.seconds.most / self.seconds.likely).max(TIME_WITHIN);
         let why = format!(
             "no plan reaches an error as small in less time: the best takes {}",
             seconds(self.seconds.likely)
@@ -42,11 +40,7 @@ impl Plan {
                 beside: vec![],
             }],
             expected: own.error,
-            seconds: Interval {
-                least: own.seconds / around,
-                likely: own.seconds,
-                most: own.seconds * around,
-            },
+            seconds: Interval::within(own.seconds, TIME_WITHIN),
             memory: case.prepared.memory.needed,
             phases,
             step: case.step(),

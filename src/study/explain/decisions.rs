@@ -56,17 +56,16 @@ pub(super) fn decisions(
     if let Some(longest) = best.way.step {
         all.push(step_decision(case, best, longest, wanted));
     }
-    let reference = &findings.reference;
     all.push(Decision {
         what: "run length".to_owned(),
-        chosen: significant(findings.whole.unwrap_or(length.time / length.seeds as f64 + reference.transient), 4),
+        chosen: significant(findings.whole.unwrap_or(length.time / length.seeds as f64 + findings.mean.transient), 4),
         why: if findings.whole.is_some() {
             "the scene's own: the quantity changes all along, and what is asked for is its mean over the whole run".to_owned()
         } else { format!(
             "{} to average over for a chance of ± {}, after a transient of {}",
             significant(length.time, 3),
             significant(findings.chance().over(length.time), 2),
-            significant(reference.transient, 3)
+            significant(findings.mean.transient, 3)
         ) },
         beside: vec![],
     });
@@ -95,13 +94,13 @@ fn step_decision(case: &Case, best: &Weighed<'_>, longest: f64, wanted: f64) -> 
     }
     let why = match best.way.bias {
         Some(bias) => format!(
-            "{own}bias at most {} of the {} allowed, as {} at {} was {} ± {} off",
-            significant(best.optimum.bias.most(), 2),
+            "{own}bias {} of the {} allowed; {}",
+            match bias.is_significant() {
+                true => significant(best.optimum.bias.shift, 2),
+                false => format!("below {}", significant(best.optimum.bias.below, 2)),
+            },
             significant(wanted, 2),
-            best.way.label,
-            significant(bias.step, 3),
-            significant(bias.difference, 2),
-            significant(bias.bar, 2)
+            bias.in_words()
         ),
         None => own,
     };
@@ -184,7 +183,7 @@ fn digits(findings: &Findings) -> Option<LeftOut> {
             Need::No,
             format!(
                 "not needed: with half of them the mean was {} ± {} off at a step of {}, that of the step among it",
-                significant(bias.difference, 2),
+                significant(bias.shift, 2),
                 significant(bias.bar, 2),
                 significant(bias.step, 3)
             ),

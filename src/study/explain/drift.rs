@@ -1,6 +1,6 @@
 //! What should keep its value and does not quite: by how much at two steps, and from that at others.
 
-use super::any_number;
+use crate::study::trial::any_number;
 use serde::{Deserialize, Serialize};
 
 /// The power of the step is taken to be no lower: noise in two values says nothing beyond.

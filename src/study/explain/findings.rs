@@ -1,24 +1,19 @@
 //! What is measured of a scene before anything is recommended, and the scene at work.
 
 use super::Target;
-use super::any_number;
 use super::bias::Bias;
 use super::drift::Drift;
-use super::sample::{Known, Sample, Span, sample};
+use crate::study::trial::{Known, Sample, Span, Trial, any_number};
 use crate::study::{Case, Choice, first_line};
 use serde::{Deserialize, Serialize};
-use std::sync::atomic::AtomicBool;
-use std::time::Instant;
 use stripmine_physics::method::Prepared;
 use stripmine_physics::scene::Overrides;
 
 /// How often a step that fails or is warned of is halved.
 pub(super) const HALVINGS: u32 = 6;
-/// The part of the time that trials may take before it is known what they do not tell: the rest is for that.
-pub(super) const FIRST: f64 = 0.5;
-/// Parts of the time that is given: to time the ways, to the reference, to those that are compared with it, to what may be left out, to another
+/// Parts of the time that is given: to time the configurations, to the mean, to the bias of steps, to twins that leave something out, to another
 /// start.
-pub(super) const SHARES: [f64; 5] = [0.15, 0.3, 0.25, 0.2, 0.1];
+pub(super) const SHARES: [f64; 5] = [0.15, 0.3, 0.35, 0.12, 0.08];
 
 /// A way to run the scene, as measured.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -53,12 +48,10 @@ pub struct Way {
 pub struct Findings {
     /// Ways, the cheapest first, those that were given up last.
     pub ways: Vec<Way>,
-    /// The mean by the reference.
-    pub reference: Known,
-    /// The way of the reference.
-    pub reference_way: String,
-    /// Its step (time).
-    pub reference_step: Option<f64>,
+    /// The mean.
+    pub mean: Known,
+    /// The label of the configuration that it was measured by.
+    pub mean_way: String,
     /// Where the quantity changes all along and its mean over the whole run is asked for: the scene's own time (time).
     pub whole: Option<f64>,
     /// By how much the mean of another start differs, where that is beyond both bars: what is kept of a start does not average out.
@@ -85,9 +78,9 @@ pub(super) struct Work<'w> {
     pub(super) target: &'w Target,
     /// Seconds of which [`SHARES`] are parts.
     pub(super) seconds: f64,
-    /// No trial begins later, and one that has begun ends then.
-    pub(super) end: Instant,
-    pub(super) stop: &'w AtomicBool,
+    /// No trial begins later, and one that has begun ends then (s of the watch).
+    pub(super) end: f64,
+    pub(super) trial: Trial<'w>,
     /// The scene's own time, where the quantity changes all along and its mean over the whole run is asked for (time).
     pub(super) whole: Option<f64>,
 }
@@ -113,7 +106,7 @@ pub(super) const NO_TIME: &str = "the time of the trials was over: --patient has
 impl Work<'_> {
     /// Seconds until the trials end.
     pub(super) fn left(&self) -> f64 {
-        self.end.saturating_duration_since(Instant::now()).as_secs_f64()
+        (self.end - self.trial.watch.now()).max(0.0)
     }
 
     pub(super) fn prepared(&self, overrides: &[String], step: Option<f64>) -> Result<Prepared, String> {
@@ -126,10 +119,6 @@ impl Work<'_> {
         })
     }
 
-    pub(super) fn sampled(&self, way: &Way, step: Option<f64>, seconds: f64) -> Result<Sample, String> {
-        self.sampled_over(way, step, Span::Seconds(seconds))
-    }
-
     pub(super) fn sampled_over(&self, way: &Way, step: Option<f64>, span: Span) -> Result<Sample, String> {
         if self.left() == 0.0 {
             return Err(NO_TIME.to_owned());
@@ -137,7 +126,7 @@ impl Work<'_> {
         let prepared = self.prepared(&way.overrides, step)?;
         let span = span.within(self.left());
         let observed = (self.case.entry.quantities, self.target.place);
-        sample(&prepared, observed, span, self.stop).map_err(|failure| first_line(&failure.what()))
+        self.trial.sample(&prepared, observed, span).map_err(|failure| first_line(&failure.what()))
     }
 
     pub(super) fn choice(&self, way: &Way) -> Choice {

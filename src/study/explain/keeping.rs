@@ -8,9 +8,9 @@ use super::lengths::{Length, Weighed};
 use super::optimum::Optimum;
 use super::plan::{TIME_WITHIN, in_unit, overrides, phases};
 use super::recommended::{Decision, Expected, Interval, Own, Plan};
-use super::sample::ROWS;
 use super::unreached::Unreached;
 use crate::study::Case;
+use crate::study::trial::ROWS;
 use stripmine_physics::number::significant;
 
 /// What is recommended for a quantity that should keep its value over the scene's own time.
@@ -44,7 +44,7 @@ pub fn keeping(case: &Case, target: &Target, findings: &Findings, origin: &str) 
     let Some(best) = weighed.first() else {
         let least = usable().filter_map(|way| Some(way.drift?.over(time).farthest[1]));
         let least = least.fold(f64::INFINITY, f64::min);
-        return Err(Unreached { wanted, least, takes: None, enough: None });
+        return Err(Unreached { wanted, known: f64::NAN, least, takes: None });
     };
     let step = best.way.step.map(|step| best.optimum.part * step);
     let likely = best.optimum.seconds;
@@ -75,7 +75,7 @@ pub fn keeping(case: &Case, target: &Target, findings: &Findings, origin: &str) 
         error,
         decisions,
         expected: Expected::of(best.optimum.bias, 0.0),
-        seconds: Interval { least: likely / TIME_WITHIN, likely, most: likely * TIME_WITHIN },
+        seconds: Interval::within(likely, TIME_WITHIN),
         memory: case.prepared.memory.needed,
         phases: phases(best, time),
         step,

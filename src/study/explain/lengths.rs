@@ -3,9 +3,9 @@
 use super::bias::Off;
 use super::findings::{Findings, Way};
 use super::margin::Bars;
-use super::optimum::{Optimum, Terms, optimum};
-use super::sample::ROWS;
+use super::optimum::{Optimum, SHORTEST, Terms, UNBIASED, optimum};
 use crate::study::Case;
+use crate::study::trial::ROWS;
 use stripmine_physics::method::Every;
 use stripmine_physics::number::significant;
 
@@ -20,11 +20,14 @@ pub(super) struct Weighed<'w> {
 
 /// The cheapest step and time of a way; a way that was not compared has the bias of none, and is not weighed where others were.
 pub(super) fn weigh(way: &Way, findings: &Findings, chance: &Chance, wanted: f64) -> Option<Optimum> {
-    let terms = Terms { cost: way.cost?, transient: findings.reference.transient };
+    let terms = Terms { cost: way.cost?, transient: findings.mean.transient };
     let time_for = |bar| chance.time_for(bar);
     match (way.step, way.bias) {
-        (None, _) => optimum(terms, wanted, |_| Off::default(), time_for).filter(|it| it.part == 1.0),
-        (Some(step), Some(bias)) => optimum(terms, wanted, |part| bias.at(part * step), time_for),
+        (None, _) => optimum(terms, (wanted, 1.0), |_| Off::default(), time_for),
+        (Some(step), Some(bias)) => {
+            let shortest = if bias.is_significant() { SHORTEST } else { UNBIASED };
+            optimum(terms, (wanted, shortest), |part| bias.at(part * step), time_for)
+        }
         (Some(_), None) => None,
     }
 }
@@ -41,7 +44,7 @@ pub(super) struct Chance {
 impl Findings {
     /// What chance leaves by the time.
     pub(super) fn chance(&self) -> Chance {
-        Chance { bars: self.reference.bars(), square: self.reference.square, whole: self.whole }
+        Chance { bars: self.mean.bars(), square: self.mean.square, whole: self.whole }
     }
 }
 
@@ -84,7 +87,7 @@ pub(super) fn length(case: &Case, best: &Weighed<'_>, findings: &Findings) -> Re
 /// Whole runs, as many as the error asks for.
 fn whole_runs(case: &Case, best: &Weighed<'_>, findings: &Findings, time: f64) -> Result<Length, f64> {
     let seeds = (best.optimum.time / time).ceil().max(1.0);
-    let chance = (findings.reference.square / time).sqrt();
+    let chance = (findings.mean.square / time).sqrt();
     if seeds > 1.0 && case.prepared.seed.is_none() {
         return Err(best.optimum.bias.with(chance));
     }
@@ -104,15 +107,15 @@ fn whole_runs(case: &Case, best: &Weighed<'_>, findings: &Findings, time: f64) -
 }
 
 fn length_of_stretches(case: &Case, best: &Weighed<'_>, findings: &Findings) -> Length {
-    let transient = findings.reference.transient;
+    let transient = findings.mean.transient;
     // So that each run has a mean of its own, with a bar; what does not vary is seen in a run of the scene's own time, or in some rows.
     let first = match case.prepared.schedule.rows {
         Every::Time(time) => SAMPLES * time,
         _ => 1.0,
     };
-    let least = match findings.reference.square {
+    let least = match findings.mean.square {
         0.0 => case.duration().unwrap_or(first),
-        _ => SAMPLES * findings.reference.apart,
+        _ => SAMPLES * findings.mean.apart,
     };
     let time = best.optimum.time.max(transient).max(least);
     let cost = best.way.cost.unwrap_or(0.0) / best.optimum.part;

@@ -1,7 +1,7 @@
 //! How long a run has to be so that its bar comes out as small as planned: the variance that a plan is made of is itself an estimate, and that of the run is
 //! another one.
 
-use super::sample::Known;
+use crate::study::trial::Known;
 use stripmine_physics::averages::{MOST_WAVES, variance_ratio};
 
 /// The probability with which a bar comes out as small as planned; that of bars themselves.

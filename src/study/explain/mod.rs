@@ -4,29 +4,27 @@
 //! mean scatters, and how far a long step takes it off (`bias`). From these follow the step and the run length that reach an error most cheaply
 //! (`optimum`), and with them a plan (`plan`). Nothing here is fitted: what trials could not see is counted as error, with its bar.
 
+pub mod accuracy;
 mod alike;
-mod any_number;
 mod as_it_stands;
 mod bias;
-mod comparison;
 mod decisions;
+mod differences;
 mod drift;
+mod drifts;
 mod findings;
 pub mod judged;
 mod keeping;
 mod kept;
 mod lengths;
 mod margin;
+mod mean;
 mod optimum;
 mod plan;
-pub mod precision;
-pub mod precision_frames;
 mod recommended;
-mod reference;
 pub mod regret;
 #[cfg(test)]
 mod rules;
-mod sample;
 mod scenes;
 mod seen;
 mod skin;
@@ -38,21 +36,17 @@ mod whole;
 mod words;
 
 pub use kept::{Kept, KeptError};
-pub use plan::in_unit;
-pub use precision::precision;
+use plan::in_unit;
 pub use recommended::Plan;
-pub use sample::{Sample, Span, sample};
 pub use scenes::SCENES;
 pub use tuned::tuned;
 pub use unreached::Unreached;
 pub use words::{page, seconds, with_unit};
 
 use super::Case;
+use crate::study::trial::Trial;
 use findings::Findings;
-use reference::LONGER;
 use seen::{planned, seen};
-use std::sync::atomic::AtomicBool;
-use std::time::Instant;
 use stripmine_physics::method::{Kind, Quantity};
 use stripmine_physics::number::significant;
 use stripmine_physics::reported::{Class, Reported};
@@ -60,6 +54,9 @@ use stripmine_physics::scene::Width;
 
 /// Seconds of trials at most, where nothing else is asked for, and where one is patient.
 pub const SECONDS: [f64; 2] = [10.0, 60.0];
+
+/// Wall seconds that a plan may take at most, where nothing else is said.
+pub const LIMIT: f64 = 3600.0;
 
 /// What is asked for.
 #[derive(Clone, Debug)]
@@ -72,6 +69,8 @@ pub struct Target {
     pub error: Option<Width>,
     /// Wall seconds in which the least error is to be had, in the place of an error.
     pub within: Option<f64>,
+    /// The most wall seconds that a plan may take.
+    pub limit: f64,
 }
 
 /// Why there is no plan.
@@ -106,9 +105,9 @@ pub enum ExplainError {
     },
     /// No way comes to the error.
     #[error(
-        "no configuration tried reaches an error of {} of {quantity}: {unreached}\n  help: {}; or ask for a larger error",
+        "no plan reaches an error of {} of {quantity}: {unreached}\n  help: accept a larger error{}",
         significant(unreached.wanted, 3),
-        unreached.enough.map_or_else(|| "--patient knows it better".to_owned(), |enough| longer_trials(Some(enough)))
+        if unreached.takes.is_some() { ", or raise --limit" } else { ", or look longer by --patient" }
     )]
     OutOfReach {
         /// The quantity.
@@ -193,7 +192,7 @@ impl Target {
         let name = name.unwrap_or_else(first);
         let place = quantities.iter().position(|it| it.name == name && is_judged(&it));
         let place = place.ok_or_else(|| ExplainError::NoSuchQuantity { name: name.to_owned(), known })?;
-        Ok(Target { quantity: quantities[place], place, error, within: None })
+        Ok(Target { quantity: quantities[place], place, error, within: None, limit: LIMIT })
     }
 
     /// Whether it should keep its value: its error is then how far it goes from the first.
@@ -212,7 +211,7 @@ pub fn explain(
     target: &Target,
     seconds: f64,
     kept: &Kept,
-    stop: &AtomicBool,
+    trial: Trial<'_>,
     notice: &dyn Fn(&KeptError),
 ) -> Result<Plan, ExplainError> {
     let key = kept.key(case, target);
@@ -224,9 +223,9 @@ pub fn explain(
         Some((findings, origin)) => (findings, origin),
         None if seconds == 0.0 => return Err(ExplainError::NothingKept),
         None => {
-            let begun = Instant::now();
-            let findings = seen(case, target, seconds, stop)?;
-            let taken = begun.elapsed().as_secs_f64();
+            let begun = trial.watch.now();
+            let findings = seen(case, target, seconds, trial)?;
+            let taken = trial.watch.now() - begun;
             if let Err(error) = kept.keep(case, &key, [seconds, taken], &findings) {
                 notice(&error);
             }
@@ -237,11 +236,8 @@ pub fn explain(
         return within_seconds(case, target, &findings, &origin, within);
     }
     let quantity = target.quantity.name;
-    planned(case, target, &findings, &origin).map_err(|unreached| {
-        // Trials of this length saw nothing.
-        let enough = unreached.enough.map(|enough| enough.max(LONGER * seconds));
-        ExplainError::OutOfReach { quantity, unreached: Unreached { enough, ..unreached } }
-    })
+    planned(case, target, &findings, &origin)
+        .map_err(|unreached| ExplainError::OutOfReach { quantity, unreached })
 }
 
 /// Errors are asked for within this factor of the least that can be had in a time.
@@ -260,9 +256,10 @@ fn within_seconds(
     origin: &str,
     within: f64,
 ) -> Result<Plan, ExplainError> {
-    let scale = if target.is_kept() { 1.0 } else { findings.reference.mean.abs() };
+    let scale = if target.is_kept() { 1.0 } else { findings.mean.mean.abs() };
     let asking = |error: f64| {
-        let target = Target { error: Some(Width::Absolute(error * scale)), ..target.clone() };
+        let target =
+            Target { error: Some(Width::Absolute(error * scale)), limit: f64::INFINITY, ..target.clone() };
         planned(case, &target, findings, origin)
     };
     let [mut low, mut high] = WEIGHED;

@@ -28,6 +28,8 @@ pub struct Optimum {
 const BETWEEN: i32 = 4;
 /// The shortest that is weighed, in parts of the longest.
 pub(super) const SHORTEST: f64 = 1.0 / 256.0;
+/// The shortest that is weighed where no bias is significant: the uncertainty of a bias is not bought off with smaller steps.
+pub(super) const UNBIASED: f64 = 0.25;
 
 /// The cheapest step and time for an error of at most `error`, of which `bias` (of the step in parts of the longest) is one part and chance the other, for
 /// which a run takes `time_for` it; none where bias alone is more.
@@ -35,7 +37,7 @@ pub(super) const SHORTEST: f64 = 1.0 / 256.0;
 /// A shorter step costs more for a unit of time and has less bias, which leaves more of the error to chance and so asks for a shorter time.
 pub fn optimum(
     terms: Terms,
-    error: f64,
+    (error, shortest): (f64, f64),
     bias: impl Fn(f64) -> Off,
     time_for: impl Fn(f64) -> f64,
 ) -> Option<Optimum> {
@@ -46,7 +48,7 @@ pub fn optimum(
         let seconds = terms.cost / part * (time + terms.transient);
         Some(Optimum { part, bias, time, seconds })
     };
-    parts.take_while(|part| *part >= SHORTEST).filter_map(of).min_by(|a, b| a.seconds.total_cmp(&b.seconds))
+    parts.take_while(|part| *part >= shortest).filter_map(of).min_by(|a, b| a.seconds.total_cmp(&b.seconds))
 }
 
 #[cfg(test)]
@@ -56,7 +58,7 @@ mod tests {
     const TERMS: Terms = Terms { cost: 2.0, transient: 0.0 };
 
     fn best(terms: Terms, bias: impl Fn(f64) -> Off) -> Option<Optimum> {
-        optimum(terms, 0.1, bias, |chance| 4.0 / (chance * chance))
+        optimum(terms, (0.1, SHORTEST), bias, |chance| 4.0 / (chance * chance))
     }
 
     /// Without bias the longest step; with b·part the cost 1/(part (e − b part)²) is least at part = e/(3 b): a third of the error.

@@ -1,43 +1,36 @@
 //! From what was measured to what is recommended.
 
 use super::Target;
-use super::bias::{Bias, Off};
-use super::comparison::COMPARED;
+use super::bias::Off;
 use super::decisions::{decisions, left_out};
-use super::findings::{FIRST, Findings, SHARES, Way};
+use super::findings::{Findings, Way};
 use super::lengths::{Weighed, length, weigh};
 use super::optimum::SHORTEST;
 use super::recommended::{Expected, Interval, Own, Plan};
-use super::sample::{Known, ROWS};
 use super::unreached::Unreached;
 use crate::study::Case;
-use stripmine_physics::averages::FEWEST_SAMPLES;
+use crate::study::trial::ROWS;
 use stripmine_physics::method::Every;
 use stripmine_physics::number::significant;
 use stripmine_physics::scene::{STEPS, Width};
 
-/// A time is foreseen within this factor, beside what the scatter is known to: other programs come and go.
+/// A time is foreseen within this factor: other programs come and go.
 pub(super) const TIME_WITHIN: f64 = 1.5;
 /// Rows that a mean is taken of, at least.
 const FEWEST_ROWS: f64 = 100.0;
-
-/// Independent samples with which a mean is known well beyond the fewest.
-const SEEN: f64 = 2.0 * FEWEST_SAMPLES;
-/// A plan that takes longer rests on what the trials saw of the bias, not on how it should fall with the step (s).
-const LONG: f64 = 3600.0;
 
 /// What is recommended for an error in the quantity's unit.
 ///
 /// # Errors
 /// [`Unreached`], where no way comes to what is asked for.
 pub fn plan(case: &Case, target: &Target, findings: &Findings, origin: &str) -> Result<Plan, Unreached> {
-    let reference = &findings.reference;
+    let mean = &findings.mean;
     let own_way = findings.ways.iter().find(|way| way.label == case.own.label());
     let own = own_way.and_then(|way| own(case, way, findings));
-    let error = target.error.map(|width| in_unit(width, reference.mean));
+    let error = target.error.map(|width| in_unit(width, mean.mean));
     // Without an error: as good as the scene's own values.
     let of_own = own.as_ref().map(|own| own.error.most).filter(|most| most.is_finite() && *most > 0.0);
-    let wanted = error.or(of_own).unwrap_or(0.01 * reference.mean.abs());
+    let wanted = error.or(of_own).unwrap_or(0.01 * mean.mean.abs());
     let usable = |way: &&Way| way.cost.is_some() && way.dropped.is_none();
     let chance = findings.chance();
     let mut weighed: Vec<Weighed<'_>> = findings
@@ -48,40 +41,35 @@ pub fn plan(case: &Case, target: &Target, findings: &Findings, origin: &str) -> 
         .collect();
     weighed.sort_by(|a, b| a.optimum.seconds.total_cmp(&b.optimum.seconds));
     let Some(best) = weighed.first() else {
-        // Bias at the shortest step that is weighed is all that is left.
-        let least = |way: &Way| Some(way.bias?.at(SHORTEST * way.step?).most());
+        // The bias at the shortest step that is weighed is all that is left.
+        let least = |way: &Way| Some(way.bias?.at(SHORTEST * way.step?).shift);
         let least = findings.ways.iter().filter(usable).filter_map(least).fold(f64::INFINITY, f64::min);
-        let enough = seen_in(findings).filter(|_| least.is_infinite());
-        return Err(Unreached { wanted, least, takes: None, enough });
+        return Err(Unreached { wanted, known: mean.bar, least, takes: None });
     };
-    let length = length(case, best, findings).map_err(|least| Unreached {
-        wanted,
-        least,
-        takes: None,
-        enough: None,
-    })?;
-    if length.seconds > LONG && best.way.bias.is_some_and(|bias| bias.is_unseen_for(wanted)) {
-        let seen = findings.ways.iter().filter(usable).filter_map(|way| Some(way.bias?.seen().most()));
-        let least = seen.fold(f64::INFINITY, f64::min);
-        return Err(Unreached { wanted, least, takes: Some(length.seconds), enough: None });
+    let unreached = |least: f64| Unreached { wanted, known: mean.bar, least, takes: None };
+    let length = length(case, best, findings).map_err(unreached)?;
+    if length.seconds > target.limit {
+        // Chance falls with the root of the time.
+        let left = target.limit * (length.time / length.seconds);
+        let least = best.optimum.bias.with(chance.over(left));
+        return Err(Unreached {
+            wanted,
+            known: mean.bar,
+            least,
+            takes: Some([length.seconds, target.limit]),
+        });
     }
     let step = best.way.step.map(|step| best.optimum.part * step);
-    let per_run = findings.whole.unwrap_or(length.time / length.seeds as f64 + reference.transient);
+    let per_run = findings.whole.unwrap_or(length.time / length.seeds as f64 + mean.transient);
     let expected = Expected::of(best.optimum.bias, chance.over(length.time));
-    // The square of a bar is known to its degrees of freedom.
-    let scatter = 1.0 + 2.0 * (2.0 / reference.freedoms.max(2.0)).sqrt();
-    let seconds = Interval {
-        least: length.seconds / (TIME_WITHIN * scatter),
-        likely: length.seconds,
-        most: length.seconds * TIME_WITHIN * scatter,
-    };
+    let seconds = Interval::within(length.seconds, TIME_WITHIN);
     Ok(Plan {
         scene: case.arguments(),
         method: case.entry.vocabulary.keys.method,
         way: best.way.label.clone(),
         quantity: target.quantity.name,
         unit: target.quantity.unit,
-        mean: Some([reference.mean, reference.bar]),
+        mean: Some([mean.mean, mean.bar]),
         error,
         decisions: decisions(case, findings, &weighed, &length, wanted),
         expected,
@@ -91,22 +79,14 @@ pub fn plan(case: &Case, target: &Target, findings: &Findings, origin: &str) -> 
         step,
         time: per_run,
         is_whole: findings.whole.is_some(),
-        transient: reference.transient,
+        transient: mean.transient,
         seeds: length.seeds,
         starts_differ: findings.starts_differ,
         overrides: overrides(case, best.way, step, Some(per_run)),
         own,
-        left_out: left_out(findings, wanted, reference.mean),
+        left_out: left_out(findings, wanted, mean.mean),
         origin: origin.to_owned(),
     })
-}
-
-/// Seconds of trials in which the mean of each configuration that is compared should be known, by the reference; none where nothing is known of that.
-fn seen_in(findings: &Findings) -> Option<f64> {
-    let Known { transient, apart, .. } = findings.reference;
-    let cost = findings.ways.iter().filter_map(|way| way.cost).reduce(f64::min)?;
-    let seconds = cost * (transient + SEEN * apart) * (COMPARED + 1) as f64;
-    Some(seconds / (SHARES[2] * FIRST)).filter(|seconds| seconds.is_finite() && *seconds > 0.0)
 }
 
 /// Wall seconds of a run in each phase.
@@ -167,21 +147,8 @@ pub fn in_unit(width: Width, mean: f64) -> f64 {
     }
 }
 
-/// What a plan takes, and what it would if all were known of the bias of its way (wall seconds), with the name of that way; none of what should keep
-/// its value, and where nothing was compared.
-pub(super) fn dear_for_what_is_unknown(plan: &Plan, findings: &Findings) -> Option<(String, [f64; 2])> {
-    let wanted = plan.expected.most;
-    let way = way_of(plan, findings).filter(|way| way.bias.is_some())?;
-    let exact = Way { bias: way.bias.map(|bias| Bias { bar: 0.0, ..bias }), ..way.clone() };
-    let chance = findings.chance();
-    let [with_bar, without] =
-        [weigh(way, findings, &chance, wanted)?, weigh(&exact, findings, &chance, wanted)?];
-    Some((way.label.clone(), [with_bar.seconds, without.seconds]))
-}
-
 fn own(case: &Case, way: &Way, findings: &Findings) -> Option<Own> {
     let (time, step) = (case.duration()?, case.step());
-    let reference = &findings.reference;
     let cost = way.cost? * way.step.zip(step).map_or(1.0, |(longest, own)| longest / own);
     // Of the scene's own integrator, in whatever digits it was compared.
     let is_alike = |it: &&Way| {
@@ -195,7 +162,7 @@ fn own(case: &Case, way: &Way, findings: &Findings) -> Option<Own> {
         (None, Some(_)) => Off::exactly(f64::NAN),
         (_, None) => Off::default(),
     };
-    let left = time - reference.transient;
+    let left = time - findings.mean.transient;
     let chance = if left > 0.0 { findings.chance().over(left) } else { f64::INFINITY };
     let seconds = findings.start + ROWS[1] * findings.row + cost * time;
     Some(Own { seconds, error: Expected::of(bias, chance) })

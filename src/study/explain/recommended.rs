@@ -3,7 +3,7 @@
 use super::bias::Off;
 use serde::Serialize;
 
-/// From the least to the most, with what is likely in between.
+/// A number with the least and the most that it may be.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Interval {
     /// The least.
@@ -12,6 +12,13 @@ pub struct Interval {
     pub likely: f64,
     /// The most.
     pub most: f64,
+}
+
+impl Interval {
+    /// About a likely value, within a factor.
+    pub(super) fn within(likely: f64, factor: f64) -> Interval {
+        Interval { least: likely / factor, likely, most: likely * factor }
+    }
 }
 
 /// Something that was chosen, and what stands beside it.
@@ -51,7 +58,7 @@ pub struct Plan {
     pub quantity: &'static str,
     /// Its unit, empty for a pure number.
     pub unit: &'static str,
-    /// Its mean by the reference, and half the width of its interval of 95 %; none of what should keep its value.
+    /// Its mean, and half the width of its interval of 95 %; none of what should keep its value.
     pub mean: Option<[f64; 2]>,
     /// The error that is asked for, in the quantity's unit.
     pub error: Option<f64>,

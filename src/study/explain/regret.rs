@@ -5,11 +5,10 @@ use super::bias::Off;
 use super::findings::Findings;
 use super::plan::way_of;
 use super::recommended::{LeftOut, Plan};
-use super::reference::no_mean;
-use super::sample::{ROWS, Sample, Span, sample};
 use super::seen::{planned, seen};
 use super::{Target, in_unit};
 use crate::results::{Meter, Progress};
+use crate::study::trial::{ROWS, Sample, Span, Stopwatch, Trial};
 use crate::study::{Case, StudyError, first_line};
 use rayon::ThreadPoolBuilder;
 use std::sync::atomic::AtomicBool;
@@ -107,9 +106,10 @@ fn judge(asked: &Asked, effort: Effort) -> Result<Judged, StudyError> {
         left_out: vec![],
         failed: None,
     };
-    let never = AtomicBool::new(false);
+    let (watch, never) = (Stopwatch::wall(), AtomicBool::new(false));
+    let trial = Trial { watch: &watch, stop: &never };
     let by_trials = |seconds: f64| -> Result<(Findings, Plan), String> {
-        let found = seen(&case, &target, seconds, &never).map_err(|error| error.to_string())?;
+        let found = seen(&case, &target, seconds, trial).map_err(|error| error.to_string())?;
         let made = planned(&case, &target, &found, "").map_err(|unreached| unreached.to_string())?;
         Ok((found, made))
     };
@@ -144,7 +144,7 @@ fn judge(asked: &Asked, effort: Effort) -> Result<Judged, StudyError> {
         judged.failed = Some(format!("not carried out: it would take {:.0} s", made.seconds.likely));
         return Ok(judged);
     }
-    match carried_out(&case, &target, &made) {
+    match carried_out(&case, &target, &made, trial) {
         Ok((value, seconds)) => {
             let [mean, bar] = best.mean.unwrap_or([0.0; 2]);
             judged.off = Some([value - mean, bar]);
@@ -171,7 +171,7 @@ fn cost_for(plan: &Plan, findings: &Findings, error: f64) -> Option<f64> {
     let part = way.step.zip(plan.step).map_or(1.0, |(longest, step)| step / longest);
     let bias = way.bias.zip(plan.step).map_or(Off::default(), |(bias, step)| bias.at(step));
     let chance = bias.leaves(error)?;
-    Some(way.cost? / part * (findings.chance().time_for(chance) + findings.reference.transient))
+    Some(way.cost? / part * (findings.chance().time_for(chance) + findings.mean.transient))
 }
 
 /// A plan in a line.
@@ -229,16 +229,16 @@ fn baselines(case: &Case, target: &Target, findings: &Findings) -> [Option<f64>;
 }
 
 /// Carries out a plan, its seeds side by side: the mean, or how far what should be kept went, and wall seconds.
-fn carried_out(case: &Case, target: &Target, plan: &Plan) -> Result<(f64, f64), String> {
+fn carried_out(case: &Case, target: &Target, plan: &Plan, trial: Trial<'_>) -> Result<(f64, f64), String> {
     let observed = (case.entry.quantities, target.place);
     let one = |seed: u64| -> Result<Sample, String> {
         let seeded =
             if case.prepared.seed.is_some() { Overrides::new().set(&SEED, seed) } else { Overrides::new() };
         let all = [&plan.overrides[..], &seeded].concat();
         let prepared = case.prepared_with(&all).map_err(|errors| errors.to_string())?;
-        let found =
-            sample(&prepared, observed, Span::Time(plan.time, Some(5.0 * LONGEST)), &AtomicBool::new(false))
-                .map_err(|failure| first_line(&failure.what()))?;
+        let found = trial
+            .sample(&prepared, observed, Span::Time(plan.time, Some(5.0 * LONGEST)))
+            .map_err(|failure| first_line(&failure.what()))?;
         match found.cut_off(plan.time) {
             Some(why) => Err(why),
             None => Ok(found),
@@ -269,7 +269,7 @@ fn carried_out(case: &Case, target: &Target, plan: &Plan) -> Result<(f64, f64), 
     let values = samples.iter().map(|sample| match sample.outcome {
         Outcome::Kept { farthest, .. } => Ok(farthest),
         _ if plan.is_whole => Ok(sample.whole_mean()),
-        _ => sample.known().map(|known| known.mean).ok_or_else(|| no_mean(sample)),
+        _ => sample.known().map(|known| known.mean).ok_or_else(|| sample.without_mean()),
     });
     let values: Vec<f64> = values.collect::<Result<_, String>>()?;
     Ok((values.iter().sum::<f64>() / values.len() as f64, seconds))

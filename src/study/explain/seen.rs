@@ -1,15 +1,13 @@
 //! The trials of a scene one after the other, and the plan that follows.
 
-use super::findings::{FIRST, Findings, Work};
+use super::findings::{Findings, Work};
 use super::keeping::keeping;
-use super::plan::{dear_for_what_is_unknown, plan};
+use super::plan::plan;
 use super::recommended::Plan;
-use super::reference::refined;
 use super::unreached::Unreached;
 use super::{ExplainError, Target};
 use crate::study::Case;
-use std::sync::atomic::AtomicBool;
-use std::time::{Duration, Instant};
+use crate::study::trial::Trial;
 
 /// Measures a scene.
 ///
@@ -20,22 +18,21 @@ fn findings(work: &mut Work<'_>) -> Result<Findings, ExplainError> {
     if work.target.is_kept() {
         return work.drifts(ways);
     }
-    let mut reference = work.reference(&ways)?;
-    work.compare(&mut ways, &mut reference);
+    let mut mean = work.mean(&mut ways)?;
+    work.biases(&mut ways, &mean);
     let best = &ways[0];
     let one_thread = work.one_thread(best);
-    let starts_differ = work.starts_differ(best, &mut reference);
-    // What finds the end of a transient errs by a part of the run that it looks at, mostly to the later side.
-    reference.known.transient = reference.transients.iter().copied().fold(f64::INFINITY, f64::min);
-    let without = work.without(best, &reference.known);
+    let starts_differ = work.starts_differ(best, &mut mean);
+    // The end of a transient is found a part of the run too late, mostly.
+    mean.known.transient = mean.transients.iter().copied().fold(f64::INFINITY, f64::min);
+    let without = work.without(best, &mean);
     Ok(Findings {
-        reference: reference.known,
-        reference_way: reference.way,
-        reference_step: reference.step,
+        mean: mean.known,
+        mean_way: mean.way,
         whole: work.whole,
         starts_differ,
-        start: reference.start,
-        row: reference.row,
+        start: mean.start,
+        row: mean.row,
         one_thread,
         threads: rayon::current_num_threads(),
         without,
@@ -43,20 +40,13 @@ fn findings(work: &mut Work<'_>) -> Result<Findings, ExplainError> {
     })
 }
 
-/// What is measured in some seconds; the second half of them is for plans that would be dear only for what the first does not tell.
+/// Measurements of a scene in trials of some seconds.
 ///
 /// # Errors
-/// [`ExplainError`] if every trial breaks, or the quantity comes to no mean.
-pub fn seen(case: &Case, target: &Target, seconds: f64, stop: &AtomicBool) -> Result<Findings, ExplainError> {
-    let end = Instant::now() + Duration::from_secs_f64(seconds);
-    let first = if target.is_kept() { seconds } else { FIRST * seconds };
-    let mut work = Work { case, target, seconds: first, end, stop, whole: None };
-    let mut found = findings(&mut work)?;
-    let plan = made(case, target, &found, "").ok();
-    if let Some((way, costs)) = plan.and_then(|plan| dear_for_what_is_unknown(&plan, &found)) {
-        refined(&work, &mut found, &way, costs);
-    }
-    Ok(found)
+/// [`ExplainError`] if every trial breaks, or the quantity has no mean.
+pub fn seen(case: &Case, target: &Target, seconds: f64, trial: Trial<'_>) -> Result<Findings, ExplainError> {
+    let end = trial.watch.now() + seconds;
+    findings(&mut Work { case, target, seconds, end, trial, whole: None })
 }
 
 /// A plan from what was measured: the scene as it stands, where that is as good and no plan is quicker.

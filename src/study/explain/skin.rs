@@ -1,7 +1,6 @@
 //! How wide the skin of lists is to be: by trials, as no constant knows how discs move.
 
 use super::findings::{Way, Work, sort};
-use super::sample::timed;
 use stripmine_physics::number::significant;
 
 /// Skins that are tried, in parts of the scene's own.
@@ -24,7 +23,7 @@ impl Work<'_> {
         let each = seconds / (TRIED.len() + 1) as f64;
         let cost = |skin: f64| {
             let overrides = [&best.overrides[..], &[over(skin)]].concat();
-            timed(&self.prepared(&overrides, best.step).ok()?, each, self.stop).ok().map(|it| it.seconds)
+            self.trial.timed(&self.prepared(&overrides, best.step).ok()?, each).ok().map(|it| it.seconds)
         };
         // Its own is timed again beside them.
         let Some(of_own) = cost(own) else { return };

@@ -2,10 +2,8 @@
 
 use super::ExplainError;
 use super::findings::{HALVINGS, NO_TIME, SHARES, Way, Work, sort};
-use super::sample::timed;
 use crate::study::{Choice, first_line};
 use rayon::ThreadPoolBuilder;
-use std::time::{Duration, Instant};
 use stripmine_physics::method::{Decides, StepLimit};
 use stripmine_physics::number::significant;
 
@@ -34,7 +32,7 @@ impl Work<'_> {
         // The scene's own is timed whatever that takes.
         searches.sort_by_key(|choice| *choice != own);
         let each = SHARES[0] * self.seconds / 2.0;
-        let end = |share: f64| self.end.min(Instant::now() + Duration::from_secs_f64(OVERHEAD * share));
+        let end = |share: f64| self.end.min(self.trial.watch.now() + OVERHEAD * share);
         let mut ways = self.timed(&searches, each, end(each));
         give_up(&mut ways);
         let Some(best) = ways.iter().position(|way| way.cost.is_some()).map(|at| ways[at].label.clone())
@@ -57,9 +55,9 @@ impl Work<'_> {
     ///
     /// Each is timed again after all the others: other programs come and go, and the faster time of both is the better one. None but the scene's own is begun after
     /// the end.
-    fn timed(&self, choices: &[&Choice], seconds: f64, end: Instant) -> Vec<Way> {
+    fn timed(&self, choices: &[&Choice], seconds: f64, end: f64) -> Vec<Way> {
         let each = seconds / (ROUNDS * choices.len().max(1)) as f64;
-        let is_over = || Instant::now() >= end;
+        let is_over = || self.trial.watch.now() >= end;
         let of = |choice: &&Choice| {
             if is_over() && **choice != self.case.own {
                 let dropped = Some(format!("not timed: {NO_TIME}"));
@@ -75,7 +73,7 @@ impl Work<'_> {
                     break;
                 }
                 let again = self.prepared(&way.overrides, way.step).ok();
-                let again = again.and_then(|prepared| timed(&prepared, each, self.stop).ok());
+                let again = again.and_then(|prepared| self.trial.timed(&prepared, each).ok());
                 let again = again.map(|it| it.seconds);
                 way.cost = way.cost.into_iter().chain(again).reduce(f64::min);
             }
@@ -102,7 +100,7 @@ impl Work<'_> {
         for _ in 0..HALVINGS {
             let tried = self.prepared(&way.overrides, step).map_err(|why| format!("refused: {why}"));
             let tried = tried.and_then(|prepared| {
-                timed(&prepared, seconds, self.stop).map_err(|failure| first_line(&failure.what()))
+                self.trial.timed(&prepared, seconds).map_err(|failure| first_line(&failure.what()))
             });
             match tried {
                 Ok(cost) => {
@@ -128,9 +126,9 @@ impl Work<'_> {
                 return None;
             }
             let prepared = self.prepared(&way.overrides, way.step).ok()?;
-            let all = timed(&prepared, seconds, self.stop).ok()?.seconds;
+            let all = self.trial.timed(&prepared, seconds).ok()?.seconds;
             let pool = ThreadPoolBuilder::new().num_threads(1).build().ok()?;
-            Some(pool.install(|| timed(&prepared, seconds, self.stop)).ok()?.seconds / all)
+            Some(pool.install(|| self.trial.timed(&prepared, seconds)).ok()?.seconds / all)
         };
         // Where that is not known, several runs side by side are no gain.
         let unknown = threads as f64;

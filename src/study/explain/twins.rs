@@ -2,18 +2,16 @@
 
 use super::Target;
 use super::findings::{NO_TIME, SHARES, Way, Without, Work};
-use super::reference::no_mean;
-use super::sample::{Known, Sample};
-use super::whole::Warned;
+use super::mean::Mean;
+use super::whole::Measured;
 use crate::study::first_line;
+use crate::study::trial::Known;
 use stripmine_physics::method::{Becomes, Prepared, Rewritten};
-
-/// What is measured of a twin.
-type Measured = Result<(Sample, Option<Known>), String>;
 
 impl Work<'_> {
     /// The scene without each of what it may be modelled without.
-    pub(super) fn without(&self, way: &Way, reference: &Known) -> Vec<Without> {
+    pub(super) fn without(&self, way: &Way, mean: &Mean) -> Vec<Without> {
+        let reference = &mean.known;
         let (case, quantity) = (self.case, self.target.quantity.name);
         let twins: Vec<(&str, Simpler)> = (case.entry.twins.iter())
             .filter_map(|twin| {
@@ -39,11 +37,13 @@ impl Work<'_> {
                 Simpler::Rewritten(scene) => self.rewritten(scene, seconds),
             };
             match measured {
-                Ok((sample, known)) => Without {
+                Ok(Measured { known, cost, .. }) => Without {
                     difference: known
+                        .as_ref()
+                        .ok()
                         .map(|known| [known.mean - reference.mean, known.bar.hypot(reference.bar)]),
-                    cost: way.cost.map(|cost| sample.cost / cost),
-                    ..of(known.is_none().then(|| no_mean(&sample)))
+                    cost: Some(cost / mean.cost),
+                    ..of(known.err())
                 },
                 Err(why) => of(Some(why)),
             }
@@ -52,7 +52,7 @@ impl Work<'_> {
     }
 
     /// By the same method.
-    fn overridden(&self, way: &Way, overrides: &[String], seconds: f64) -> Measured {
+    fn overridden(&self, way: &Way, overrides: &[String], seconds: f64) -> Result<Measured, String> {
         let shortest =
             |prepared: &Prepared| prepared.step_limits.iter().map(|limit| limit.step).reduce(f64::min);
         let of_scene = self.prepared(&way.overrides, None).ok().as_ref().and_then(shortest);
@@ -62,11 +62,11 @@ impl Work<'_> {
             .zip(of_scene)
             .map_or(1.0, |(own, of_scene)| own / of_scene);
         let twin = Way { overrides: more, ..way.clone() };
-        self.measured(&twin, way.step.map(|step| step * longer), seconds, Warned::GoesOn)
+        self.measured(&twin, way.step.map(|step| step * longer), seconds)
     }
 
     /// By another method, in its own cheapest way.
-    fn rewritten(&self, scene: Rewritten, seconds: f64) -> Measured {
+    fn rewritten(&self, scene: Rewritten, seconds: f64) -> Result<Measured, String> {
         let errors = |errors: stripmine_physics::scene::SceneErrors| {
             errors.0.first().map_or(String::new(), |error| first_line(&error.message))
         };
@@ -78,14 +78,14 @@ impl Work<'_> {
         let mut work = Work { case: &case, target: &target, seconds, ..*self };
         let ways = work.timed_ways().map_err(|error| error.to_string())?;
         work.seconds = self.seconds;
-        let (sample, known) = work.measured(&ways[0], ways[0].step, seconds, Warned::GoesOn)?;
+        let measured = work.measured(&ways[0], ways[0].step, seconds)?;
         let in_unit = |known: Known| Known {
             mean: scene.unit * known.mean,
             bar: scene.unit * known.bar,
             square: scene.unit * scene.unit * known.square,
             ..known
         };
-        Ok((sample, known.map(in_unit)))
+        Ok(Measured { known: measured.known.map(in_unit), ..measured })
     }
 }
 

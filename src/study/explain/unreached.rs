@@ -1,4 +1,4 @@
-//! Why an error is not reached, and which is known.
+//! Why an error is not reached, and the error that is.
 
 use super::words::seconds;
 use std::fmt::{self, Display, Formatter};
@@ -7,29 +7,33 @@ use stripmine_physics::number::significant;
 /// No plan reaches the error that is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unreached {
-    /// What was asked for (the quantity's unit).
+    /// The error that was asked for (the quantity's unit).
     pub wanted: f64,
+    /// The error to which the trials know the mean (the quantity's unit); not a number where it should keep its value.
+    pub known: f64,
     /// The least error that is known to be reached (the quantity's unit); infinite where none is.
     pub least: f64,
-    /// Wall seconds of the plan that would reach it if the bias fell with the step as it should, where the trials did not see that.
-    pub takes: Option<f64>,
-    /// Seconds of trials in which the bias of a step should be seen, where these saw none.
-    pub enough: Option<f64>,
+    /// Wall seconds of the plan that would reach it, and the most that a plan may take.
+    pub takes: Option<[f64; 2]>,
 }
 
 impl Display for Unreached {
     fn fmt(&self, out: &mut Formatter<'_>) -> fmt::Result {
-        if let Some(takes) = self.takes {
-            write!(
-                out,
-                "a run of about {} would, if the bias fell with the step as it should, which the trials did not see; ",
-                seconds(takes)
-            )?;
+        if self.known.is_finite() {
+            write!(out, "the trials know it to \u{b1} {}; ", significant(self.known, 2))?;
         }
-        if self.least.is_finite() {
-            write!(out, "the best error that is known is {}", significant(self.least, 2))
-        } else {
-            write!(out, "the trials saw the bias of no step")
+        match self.takes {
+            Some([takes, limit]) => write!(
+                out,
+                "a run of about {} would reach it, more than the limit of {}, in which the error is {}",
+                seconds(takes),
+                seconds(limit),
+                significant(self.least, 2)
+            ),
+            None if self.least.is_finite() => {
+                write!(out, "the least error that is known is {}", significant(self.least, 2))
+            }
+            None => write!(out, "the bias of no step is known"),
         }
     }
 }

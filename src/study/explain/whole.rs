@@ -2,10 +2,10 @@
 //! how far chance takes such a mean.
 
 use super::findings::{NO_TIME, Way, Work};
-use super::sample::{Known, Sample, Span, sample};
 use crate::study::first_line;
 use crate::study::state::displaced;
-use std::time::Instant;
+use crate::study::trial::{Known, Sample, Span};
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use stripmine_physics::averages::of_independent;
 use stripmine_physics::method::Prepared;
 use stripmine_physics::number::significant;
@@ -18,22 +18,22 @@ pub(super) const RUNS: [usize; 2] = [3, 16];
 /// more than rounding, and far less than matters before collisions have multiplied it.
 const DISPLACED: f64 = 1e-7;
 
-/// What becomes of runs of which a check warns.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Warned {
-    /// One is enough to know it.
-    Stops,
-    /// They are the best that there are.
-    GoesOn,
+/// A mean with its cost.
+pub(super) struct Measured {
+    /// The mean, or why there is none.
+    pub(super) known: Result<Known, String>,
+    /// Wall seconds of a unit of time.
+    pub(super) cost: f64,
 }
 
 impl Work<'_> {
-    /// Whether some runs of the scene's whole time can be had in some seconds, where a unit of time costs as much as in a sample.
+    /// The scene's own time, where enough whole runs can be had in some seconds and a unit of time costs as much as in a sample.
     pub(super) fn whole_in(&self, cost: f64, seconds: f64) -> Option<f64> {
-        self.case.duration().filter(|time| RUNS[0] as f64 * cost * time <= seconds)
+        let rounds = RUNS[0].div_ceil(rayon::current_num_threads()) as f64;
+        self.case.duration().filter(|time| rounds * cost * time <= seconds)
     }
 
-    /// What whole runs take, where these are too many seconds.
+    /// Time that whole runs take, where these are too many seconds.
     pub(super) fn too_dear(&self, cost: f64) -> String {
         self.case.duration().map_or(String::new(), |time| {
             format!(
@@ -44,77 +44,83 @@ impl Work<'_> {
         })
     }
 
-    /// A sample with what it says of the mean that is asked for: over a part of a run that has left its start behind, or over whole runs.
-    pub(super) fn measured(
-        &self,
-        way: &Way,
-        step: Option<f64>,
-        seconds: f64,
-        warned: Warned,
-    ) -> Result<(Sample, Option<Known>), String> {
+    /// The mean over a part of a run that has left its start behind, or over whole runs; with the cost of a unit of time.
+    pub(super) fn measured(&self, way: &Way, step: Option<f64>, seconds: f64) -> Result<Measured, String> {
         match self.whole {
-            Some(time) => self.whole_runs(way, step, [time, seconds], warned),
-            None => self.sampled(way, step, seconds).map(|sample| {
-                let known = sample.known();
-                (sample, known)
+            Some(time) => self.whole_runs(&way.overrides, step, time, seconds),
+            None => self.sampled_over(way, step, Span::Seconds(seconds)).map(|sample| Measured {
+                known: sample.known().ok_or_else(|| sample.without_mean()),
+                cost: sample.cost,
             }),
         }
     }
 
-    fn whole_runs(
+    /// Runs of the whole time from several starts, as many at once as there are threads, for about some seconds.
+    pub(super) fn whole_runs(
         &self,
-        way: &Way,
+        overrides: &[String],
         step: Option<f64>,
-        [time, seconds]: [f64; 2],
-        warned: Warned,
-    ) -> Result<(Sample, Option<Known>), String> {
-        let begun = Instant::now();
-        let cost = way.cost.zip(way.step).zip(step).map(|((cost, longest), step)| cost * longest / step);
-        let left = self.left();
-        if left == 0.0 {
-            return Err(NO_TIME.to_owned());
-        }
-        if let Some(run) = cost.map(|cost| cost * time).filter(|run| *run > left) {
-            return Err(format!("a whole run takes about {} s, and {NO_TIME}", significant(run, 2)));
-        }
-        let (mut first, mut means): (Option<Sample>, Vec<f64>) = (None, vec![]);
-        for run in 0..RUNS[1] {
-            let next = begun.elapsed().as_secs_f64() * (run + 1) as f64 / run as f64;
-            if run > 0 && next > left || run >= RUNS[0] && next > seconds {
+        time: f64,
+        seconds: f64,
+    ) -> Result<Measured, String> {
+        let begun = self.trial.watch.now();
+        let at_once = rayon::current_num_threads().min(RUNS[1]);
+        let observed = (self.case.entry.quantities, self.target.place);
+        let one = |number: usize| {
+            let prepared = self.another_start(overrides, step, number as u64)?;
+            let left = self.left();
+            if left == 0.0 {
+                return Err(NO_TIME.to_owned());
+            }
+            let sample = self.trial.sample(&prepared, observed, Span::Time(time, Some(left)));
+            let sample = sample.map_err(|failure| first_line(&failure.what()))?;
+            sample.cut_off(time).map_or(Ok(sample), Err)
+        };
+        let mut samples: Vec<Sample> = vec![];
+        loop {
+            let next: Vec<usize> = (samples.len()..samples.len() + at_once).collect();
+            let more: Result<Vec<Sample>, String> = next.into_par_iter().map(one).collect();
+            match more {
+                Ok(more) => samples.extend(more),
+                Err(why) if samples.len() < RUNS[0] => return Err(why),
+                Err(_) => break,
+            }
+            let spent = self.trial.watch.now() - begun;
+            let rounds = samples.len() / at_once;
+            let is_over = spent * (rounds + 1) as f64 / rounds as f64 > seconds;
+            if samples.len() >= RUNS[1] || samples.len() >= RUNS[0] && is_over {
                 break;
             }
-            let prepared = self.another_start(way, step, run as u64)?;
-            let observed = (self.case.entry.quantities, self.target.place);
-            let found = sample(&prepared, observed, Span::Time(time, None), self.stop);
-            let found = found.map_err(|failure| first_line(&failure.what()))?;
-            means.push(found.whole_mean());
-            let stops = warned == Warned::Stops && !found.warnings.is_empty();
-            first.get_or_insert(found);
-            if stops {
-                break;
-            }
         }
+        let means: Vec<f64> = samples.iter().map(Sample::whole_mean).collect();
+        let count = means.len() as f64;
         let known = of_independent(&means).map(|[mean, bar]| Known {
-            mean,
+            square: bar * bar * count * time,
+            freedoms: count - 1.0,
             bar,
-            square: bar * bar * means.len() as f64 * time,
-            transient: 0.0,
-            apart: 0.0,
-            freedoms: (means.len() - 1) as f64,
+            ..Known::exactly(mean)
         });
-        first.map(|sample| (sample, known)).ok_or_else(|| "no run was made".to_owned())
+        Ok(Measured {
+            known: known.ok_or_else(|| "there is a single run".to_owned()),
+            cost: samples.iter().map(|sample| sample.cost).sum::<f64>() / count,
+        })
     }
 
     /// The scene from a start of another number, the first its own.
-    fn another_start(&self, way: &Way, step: Option<f64>, number: u64) -> Result<Prepared, String> {
+    pub(super) fn another_start(
+        &self,
+        overrides: &[String],
+        step: Option<f64>,
+        number: u64,
+    ) -> Result<Prepared, String> {
         match self.case.prepared.seed {
             Some(seed) => {
                 let seeded = Overrides::new().set(&SEED, seed.wrapping_add(number));
-                self.prepared(&[&way.overrides[..], &seeded].concat(), step)
+                self.prepared(&[overrides, &seeded].concat(), step)
             }
-            None if number == 0 => self.prepared(&way.overrides, step),
+            None if number == 0 => self.prepared(overrides, step),
             None => {
-                let prepared = self.prepared(&way.overrides, step)?;
+                let prepared = self.prepared(overrides, step)?;
                 Ok(prepared.model.started_from(displaced_start(&prepared, number)))
             }
         }

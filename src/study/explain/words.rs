@@ -52,13 +52,12 @@ fn expected(plan: &Plan) -> String {
 /// An error with its parts, in parts of the mean where there is one.
 fn parts(plan: &Plan, error: Expected) -> String {
     let Expected { bias, chance, most } = error;
-    let of_step = |bar: f64| if bar > 0.0 { format!(" ± {}", share(plan, bar)) } else { String::new() };
     match plan.mean {
         Some(_) => format!(
-            "{} (by the step {}{}, by chance {})",
+            "{} (by the step {}, known to be below {}; by chance {})",
             share(plan, most),
             share(plan, bias.shift),
-            of_step(bias.bar),
+            share(plan, bias.below),
             share(plan, chance)
         ),
         None => share(plan, most),

@@ -15,7 +15,6 @@ mod points;
 
 use dataset::WorkPrecision;
 pub use frames::made;
-pub use front::front;
 
 use super::choice::Choice;
 use super::encounters::{Encounters, encounters};

@@ -1,4 +1,13 @@
-//! One run of a study: to a time, looked at on the way.
+//! Trials: runs of a scene that a study makes, looked at on the way.
+
+pub(super) mod any_number;
+mod pairs;
+mod sample;
+mod stopwatch;
+
+pub use pairs::{Compared, ENOUGH, Paired, pairs, part};
+pub use sample::{Known, ROWS, Sample, Span};
+pub use stopwatch::Stopwatch;
 
 use super::state::State;
 use crate::model::clock::{Clock, Work};
@@ -10,6 +19,15 @@ use stripmine_physics::method::{Failure, Prepared, Purpose, Simulation, Until};
 
 /// Repeats are timed over at least this long.
 const LONG_ENOUGH: Duration = Duration::from_millis(1);
+
+/// How trials are timed, and ended before their time.
+#[derive(Clone, Copy, Debug)]
+pub struct Trial<'t> {
+    /// Seconds that they take.
+    pub watch: &'t Stopwatch,
+    /// Set where a user asks for the end.
+    pub stop: &'t AtomicBool,
+}
 
 /// The end of a run.
 pub struct End {

@@ -1,0 +1,246 @@
+//! The mean of a scene and what chance makes of it, by the cheapest configuration at the longest step that nothing speaks against.
+
+use super::ExplainError;
+use super::findings::{HALVINGS, SHARES, Way, Work};
+use crate::study::trial::{Known, Sample, Span};
+use stripmine_physics::averages::Outcome;
+use stripmine_physics::method::Decides;
+use stripmine_physics::particles::Particles;
+use stripmine_physics::scene::{Overrides, SEED};
+
+/// Starts differ where their means are as many bars apart: about three standard errors.
+const SURE: f64 = 1.5;
+/// How often a run that is too short is made again, twice as long each time.
+const ATTEMPTS: usize = 4;
+/// The first run is this part of the time: it is made again for as long as steps are shortened.
+const SCOUT: f64 = 0.15;
+/// Another attempt is made where it may be this many times as long as the one before, at least.
+pub(super) const LONGER: f64 = 1.5;
+/// A mean whose bar is more than this part of it is hardly known.
+const ROUGH: f64 = 0.5;
+/// The check of a run that says that positions have too few digits.
+const ROUNDING: &str = "rounding";
+/// Remainder of a quantity that has died out, in parts of its largest value.
+const DEAD: f64 = 1e-3;
+
+/// The mean, as measured.
+pub(super) struct Mean {
+    pub(super) known: Known,
+    /// The label of the configuration.
+    pub(super) way: String,
+    /// Wall seconds until the first step, and of a row.
+    pub(super) start: f64,
+    pub(super) row: f64,
+    /// Wall seconds of a unit of time in the runs of the mean.
+    pub(super) cost: f64,
+    /// Transients of all samples: the start is the same, or alike, and they differ by the noise of their detection.
+    pub(super) transients: Vec<f64>,
+    /// States along the run after the transient.
+    pub(super) states: Vec<Particles>,
+}
+
+impl Work<'_> {
+    /// Runs the cheapest configuration for the mean. Configurations that break, or are warned of, get shorter steps or are dropped.
+    pub(super) fn mean(&mut self, ways: &mut [Way]) -> Result<Mean, ExplainError> {
+        let mut seconds = SHARES[1] * self.seconds;
+        let kept_back = SHARES[2] * self.seconds;
+        let mut enough = self.for_whole_run(&ways[0]);
+        let (mut attempt, mut halvings, mut is_scout) = (0, 0, true);
+        loop {
+            super::findings::sort(ways);
+            let best = ways[0].clone();
+            if best.dropped.is_some() {
+                let tried =
+                    ways.iter().map(|way| (way.label.clone(), way.dropped.clone().unwrap_or_default()));
+                return Err(ExplainError::EveryWayFails(tried.collect()));
+            }
+            let sample = match self.sampled_over(
+                &best,
+                best.step,
+                Span::Seconds(if is_scout { SCOUT * seconds } else { seconds }),
+            ) {
+                Ok(sample) => sample,
+                Err(failure) if halvings < HALVINGS && self.left() > kept_back => {
+                    self.shorten(ways, &best, &failure);
+                    halvings += 1;
+                    continue;
+                }
+                Err(failure) => return Err(self.no_mean(failure, enough)),
+            };
+            if !sample.warnings.is_empty() && halvings < HALVINGS && self.left() > kept_back {
+                let warned = format!("warned of: {}", sample.warned());
+                match sample.warnings.iter().any(|warning| warning.check == ROUNDING) {
+                    // A shorter step loses more of it.
+                    true => self.drop_digits(ways, &best, &warned),
+                    false => self.shorten(ways, &best, &warned),
+                }
+                halvings += 1;
+                continue;
+            }
+            if is_scout {
+                is_scout = false;
+                continue;
+            }
+            self.slow_down(ways, &best, &sample);
+            let mut why = sample.without_mean();
+            if changes(&sample) || is_hardly_known(&sample) {
+                enough = self.enough(&sample);
+                self.whole = self.whole_in(sample.cost, self.left() - kept_back);
+                if let Some(time) = self.whole {
+                    return self.over_whole_runs(&best, sample, time, seconds);
+                }
+                why.push_str(&self.too_dear(sample.cost));
+            } else if let Some(known) = sample.known() {
+                return Ok(found(&best, sample, known));
+            } else {
+                enough = self.enough(&sample);
+            }
+            attempt += 1;
+            let longer = (2.0 * seconds).min(self.left() - kept_back);
+            if attempt == ATTEMPTS || longer < LONGER * seconds {
+                return Err(self.no_mean(why, enough));
+            }
+            seconds = longer;
+        }
+    }
+
+    fn no_mean(&self, why: String, enough: Option<f64>) -> ExplainError {
+        ExplainError::NoMean { quantity: self.target.quantity.name, why, enough }
+    }
+
+    /// The mean over whole runs, with states along the sample that showed that the quantity changes.
+    fn over_whole_runs(
+        &self,
+        way: &Way,
+        sample: Sample,
+        time: f64,
+        seconds: f64,
+    ) -> Result<Mean, ExplainError> {
+        let runs = self.whole_runs(&way.overrides, way.step, time, seconds);
+        let known = runs.and_then(|runs| Ok((runs.known?, runs.cost)));
+        let (known, cost) = known.map_err(|why| self.no_mean(why, None))?;
+        Ok(Mean { cost, ..found(way, sample, known) })
+    }
+
+    /// Halves the step of every configuration with the integrator of one that broke or was warned of.
+    pub(super) fn shorten(&self, ways: &mut [Way], of: &Way, why: &str) {
+        let choice = self.choice(of);
+        let alike =
+            |way: &&mut Way| way.dropped.is_none() && self.choice(way).agrees(&choice, Decides::Order);
+        for way in ways.iter_mut().filter(alike) {
+            way.bound = Some(why.to_owned());
+            match way.step {
+                Some(step) if step > 0.7 * of.step.unwrap_or(step) => {
+                    (way.step, way.cost) = (Some(0.5 * step), way.cost.map(|cost| 2.0 * cost));
+                    way.phases.iter_mut().for_each(|(_, cost)| *cost *= 2.0);
+                }
+                Some(_) => {}
+                None => way.dropped = Some(why.to_owned()),
+            }
+        }
+    }
+
+    /// Drops every configuration with the digits and the integrator of one that loses motion.
+    fn drop_digits(&self, ways: &mut [Way], of: &Way, why: &str) {
+        let choice = self.choice(of);
+        for way in ways.iter_mut() {
+            let own = self.choice(way);
+            if own.agrees(&choice, Decides::Order) && own.agrees(&choice, Decides::Digits) {
+                way.dropped = Some(why.to_owned());
+            }
+        }
+    }
+
+    /// A run costs more, or less, than its first stretches; so does every other configuration.
+    fn slow_down(&self, ways: &mut [Way], best: &Way, sample: &Sample) {
+        let slower = sample.cost / best.cost.unwrap_or(sample.cost);
+        for way in ways.iter_mut() {
+            way.cost = way.cost.map(|cost| slower * cost);
+            match way.label == best.label {
+                true => way.phases.clone_from(&sample.phases),
+                false => way.phases.iter_mut().for_each(|(_, cost)| *cost *= slower),
+            }
+        }
+    }
+
+    /// Seconds of trials in which a run is as long as the scene's own; none where its end is no time, or nothing is known of the cost.
+    fn for_whole_run(&self, way: &Way) -> Option<f64> {
+        Some(trials_for(self.case.duration()? * way.cost?))
+    }
+
+    /// Seconds of trials that are long enough for a mean, by a sample that was too short.
+    fn enough(&self, sample: &Sample) -> Option<f64> {
+        let time = match sample.outcome {
+            Outcome::TooShort { enough_at, .. } => enough_at,
+            // The end of the change is not known before the end of the scene's own run.
+            Outcome::Changing { .. } if !sample.comes_beyond_end => {
+                self.case.duration()?.max(LONGER * sample.time)
+            }
+            // Whole runs have means of their own.
+            Outcome::Changing { .. } => super::whole::RUNS[0] as f64 * self.case.duration()?,
+            _ => return None,
+        };
+        // These were not enough, whatever a unit of time cost in them.
+        Some(trials_for(sample.cost * time).max(LONGER * self.seconds))
+    }
+
+    /// The mean of another start less that of the scene's own, where that is beyond both bars.
+    pub(super) fn starts_differ(&self, way: &Way, mean: &mut Mean) -> Option<f64> {
+        // Of whole runs each has another.
+        let seed = self.case.prepared.seed.filter(|_| self.whole.is_none())?;
+        let another = Way {
+            overrides: [&way.overrides[..], &Overrides::new().set(&SEED, seed.wrapping_add(1))].concat(),
+            ..way.clone()
+        };
+        let sample = self.sampled_over(&another, way.step, Span::Seconds(SHARES[4] * self.seconds)).ok()?;
+        let known = sample.known()?;
+        mean.transients.push(known.transient);
+        let difference = known.mean - mean.known.mean;
+        (difference.abs() > SURE * known.bar.hypot(mean.known.bar)).then_some(difference)
+    }
+}
+
+fn found(way: &Way, sample: Sample, known: Known) -> Mean {
+    let after = sample.states.into_iter().filter(|(time, _)| *time >= known.transient);
+    Mean {
+        known,
+        way: way.label.clone(),
+        start: sample.start,
+        row: sample.row,
+        cost: sample.cost,
+        transients: vec![known.transient],
+        states: after.map(|(_, state)| state).collect(),
+    }
+}
+
+/// Whether a mean is hardly known: the run may still be on its way from the start.
+fn is_hardly_known(sample: &Sample) -> bool {
+    match sample.outcome {
+        Outcome::TooShort { estimate, .. } => {
+            estimate.is_none_or(|estimate| estimate.bar > ROUGH * estimate.mean.abs())
+        }
+        _ => false,
+    }
+}
+
+/// Seconds of trials in which the run for the mean, doubled once, is as long as this (s).
+fn trials_for(seconds: f64) -> f64 {
+    seconds / (2.0 * SHARES[1])
+}
+
+/// Whether a quantity still changes beyond the end of the scene's own run, or has died out by then: a later mean is another one.
+fn changes(sample: &Sample) -> bool {
+    if !sample.comes_beyond_end {
+        return false;
+    }
+    let largest = sample.series.iter().fold(0.0_f64, |largest, [_, value]| largest.max(value.abs()));
+    // Too little of a quantity that has died out may be left for a mean.
+    let last = &sample.series[sample.series.len() * 3 / 4..];
+    let has_died_out = !last.is_empty() && last.iter().all(|[_, value]| value.abs() < DEAD * largest);
+    match sample.outcome {
+        Outcome::Changing { .. } => true,
+        _ => {
+            has_died_out || sample.known().is_some_and(|known| known.mean.abs() + known.bar < DEAD * largest)
+        }
+    }
+}

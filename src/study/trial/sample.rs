@@ -1,0 +1,347 @@
+//! A run of some seconds: what a unit of time costs, and what it says of a mean.
+
+use super::Trial;
+use super::any_number;
+use serde::{Deserialize, Serialize};
+use std::sync::atomic::Ordering;
+use stripmine_physics::averages::{Average, Estimate, Outcome, Rows};
+use stripmine_physics::method::{
+    Clock, Every, Failure, Prepared, Purpose, Quantity, RunWarning, Simulation, Until,
+};
+use stripmine_physics::number::significant;
+use stripmine_physics::particles::Particles;
+
+/// Rows of a sample of some seconds, about: as many as a correlation needs, and so few that they cost little; and of one whose time is known.
+pub const ROWS: [f64; 2] = [1000.0, 250.0];
+/// The first stretches, whose memory is cold and whose threads have not begun, are no part of the cost: this share of the time.
+const COLD: f64 = 0.1;
+/// States that a sample keeps at most, and particles of all of them together.
+const STATES: usize = 32;
+const KEPT: usize = 2_000_000;
+
+/// A run of some seconds.
+#[derive(Clone, Debug)]
+pub struct Sample {
+    /// Wall seconds of a unit of time, rows apart.
+    pub cost: f64,
+    /// Wall seconds of a row.
+    pub row: f64,
+    /// Wall seconds until the first step.
+    pub start: f64,
+    /// Wall seconds from the beginning to the end.
+    pub seconds: f64,
+    /// Time that it came to (time).
+    pub time: f64,
+    /// What it says of the quantity.
+    pub outcome: Outcome,
+    /// Whether it came beyond the end of the scene's own run.
+    pub comes_beyond_end: bool,
+    /// What its checks warn of.
+    pub warnings: Vec<RunWarning>,
+    /// The quantity from stretch to stretch: when each ends (time), and its value there.
+    pub series: Vec<[f64; 2]>,
+    /// Wall seconds of a unit of time in each phase, by name.
+    pub phases: Vec<(String, f64)>,
+    /// States along the run, evenly spread, each with its time (time).
+    pub states: Vec<(f64, Particles)>,
+}
+
+/// What a run says of a mean.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub struct Known {
+    /// The mean.
+    #[serde(with = "any_number")]
+    pub mean: f64,
+    /// Half the width of its interval of 95 %.
+    #[serde(with = "any_number")]
+    pub bar: f64,
+    /// Square of the bar of a mean over one unit of time.
+    #[serde(with = "any_number")]
+    pub square: f64,
+    /// Time that does not count (time).
+    #[serde(with = "any_number")]
+    pub transient: f64,
+    /// Time between independent samples (time).
+    #[serde(with = "any_number")]
+    pub apart: f64,
+    /// Degrees of freedom of the bar; infinite where it is exact.
+    #[serde(with = "any_number")]
+    pub freedoms: f64,
+}
+
+impl Known {
+    /// A mean that chance does not touch.
+    pub fn exactly(mean: f64) -> Known {
+        Known { mean, bar: 0.0, square: 0.0, transient: 0.0, apart: 0.0, freedoms: f64::INFINITY }
+    }
+}
+
+impl From<Estimate> for Known {
+    fn from(it: Estimate) -> Known {
+        Known {
+            mean: it.mean,
+            bar: it.bar,
+            square: it.bar * it.bar * it.span,
+            transient: it.equilibrated_at,
+            apart: it.span / it.independent_samples,
+            freedoms: it.freedoms,
+        }
+    }
+}
+
+impl Sample {
+    /// What it says of the mean, where there is one, however roughly.
+    pub fn known(&self) -> Option<Known> {
+        match self.outcome {
+            Outcome::Mean(estimate) | Outcome::TooShort { estimate: Some(estimate), .. } => {
+                Some(estimate.into())
+            }
+            Outcome::Constant { mean } => Some(Known::exactly(mean)),
+            Outcome::TooShort { estimate: None, .. }
+            | Outcome::Undefined
+            | Outcome::Changing { .. }
+            | Outcome::Kept { .. } => None,
+        }
+    }
+}
+
+impl Sample {
+    /// What its checks warn of, in words.
+    pub fn warned(&self) -> String {
+        self.warnings.iter().map(|warning| warning.message.as_str()).collect::<Vec<_>>().join("; ")
+    }
+
+    /// That it ended before a time, in words; none where it did not.
+    pub fn cut_off(&self, time: f64) -> Option<String> {
+        // The last stretch may end by rounding before.
+        (self.time < time * (1.0 - 1e-9)).then(|| {
+            format!(
+                "cut off at a time of {} of {}, after {} s",
+                significant(self.time, 3),
+                significant(time, 3),
+                significant(self.seconds, 3)
+            )
+        })
+    }
+
+    /// Why it has no mean.
+    pub fn without_mean(&self) -> String {
+        let time = significant(self.time, 3);
+        match self.outcome {
+            Outcome::Changing { first, last } => format!(
+                "still changing up to a time of {time}, from {} to {}",
+                significant(first, 3),
+                significant(last, 3)
+            ),
+            Outcome::TooShort { enough_at, .. } => {
+                format!("a time of {time} is too short, {} would do", significant(enough_at, 2))
+            }
+            _ => format!("there is none up to a time of {time}"),
+        }
+    }
+
+    /// The mean over the whole run, its beginning among it.
+    pub fn whole_mean(&self) -> f64 {
+        self.series.iter().map(|[_, value]| value).sum::<f64>() / self.series.len() as f64
+    }
+}
+
+/// How long a sample is.
+#[derive(Clone, Copy, Debug)]
+pub enum Span {
+    /// About so many wall seconds.
+    Seconds(f64),
+    /// A time (time), but no more wall seconds than these where they are given.
+    Time(f64, Option<f64>),
+}
+
+impl Span {
+    /// The same in no more than some wall seconds.
+    #[must_use]
+    pub fn within(self, left: f64) -> Span {
+        match self {
+            Span::Seconds(seconds) => Span::Seconds(seconds.min(left)),
+            Span::Time(time, seconds) => Span::Time(time, Some(seconds.map_or(left, |it| it.min(left)))),
+        }
+    }
+}
+
+impl Trial<'_> {
+    /// Runs a scene, observing a quantity.
+    ///
+    /// # Errors
+    /// [`Failure`] if it breaks.
+    pub fn sample(
+        &self,
+        prepared: &Prepared,
+        (quantities, place): (&'static [Quantity], usize),
+        span: Span,
+    ) -> Result<Sample, Failure> {
+        let begun = self.watch.now();
+        let mut simulation = prepared.start(Purpose::Run)?;
+        let simulation = simulation.as_mut();
+        let start = self.watch.now() - begun;
+        let mut rows = Rows::new(quantities);
+        rows.add(&simulation.row());
+        let (seconds, most) = match span {
+            Span::Seconds(seconds) => (Some(seconds), f64::INFINITY),
+            Span::Time(time, seconds) => (seconds, time),
+        };
+        let stride = match span {
+            Span::Seconds(seconds) => self.stride(simulation, prepared, seconds / ROWS[0])?,
+            Span::Time(time, _) => {
+                self.advance(simulation, first(prepared))?;
+                let Clock { steps, time: gone, .. } = simulation.clock();
+                match prepared.schedule.until {
+                    Until::Steps(_) => Until::Steps(((time / ROWS[1] * steps as f64 / gone) as u64).max(1)),
+                    _ => Until::Time(time / ROWS[1]),
+                }
+            }
+        };
+        // Rows are evenly spaced from here on.
+        rows.add(&simulation.row());
+        let running = self.watch.now();
+        // The start is a part of the time.
+        let limit = seconds.map_or(f64::INFINITY, |seconds| seconds - (running - begun));
+        let mut states = States::new(prepared.particles().len());
+        // Of the stretches once it is warm, and of all.
+        let (mut warm, mut all) = ((0.0, 0.0), (0.0, 0.0));
+        while self.watch.now() - running < limit
+            && simulation.clock().time < most
+            && !self.stop.load(Ordering::Relaxed)
+        {
+            let (from, before) = (simulation.clock().time, self.watch.now());
+            self.advance(simulation, stride)?;
+            let (gone, spent) = (simulation.clock().time - from, self.watch.now() - before);
+            all = (all.0 + gone, all.1 + spent);
+            let share = (self.watch.now() - running) / seconds.unwrap_or(f64::INFINITY);
+            if share.max(simulation.clock().time / most) > COLD {
+                warm = (warm.0 + gone, warm.1 + spent);
+            }
+            rows.add(&simulation.row());
+            states.look(simulation);
+        }
+        let (gone, spent) = if warm.0 > 0.0 { warm } else { all };
+        let row = self.timed_row(simulation);
+        let (time, series) = (simulation.clock().time, rows.course(place));
+        Ok(Sample {
+            cost: spent / gone,
+            row,
+            start,
+            seconds: self.watch.now() - begun,
+            time,
+            outcome: Average::of(&rows, place).outcome,
+            comes_beyond_end: prepared.schedule.until.has_come(&simulation.clock()),
+            warnings: simulation.warnings(),
+            series,
+            phases: phases(simulation),
+            states: states.kept,
+        })
+    }
+
+    /// Goes on for a stretch.
+    fn advance(&self, simulation: &mut dyn Simulation, stretch: Until) -> Result<(), Failure> {
+        self.watch.during(simulation, |it| it.advance(&[stretch.after(&it.clock())], self.stop))
+    }
+
+    /// Wall seconds of a row, the least of some.
+    fn timed_row(&self, simulation: &dyn Simulation) -> f64 {
+        let once = |_| {
+            let begun = self.watch.now();
+            let _row = simulation.observe();
+            self.watch.now() - begun
+        };
+        (0..3).map(once).fold(f64::INFINITY, f64::min)
+    }
+
+    /// A stretch that takes about some seconds: steps, or for a method without any a part of the time between rows.
+    fn stride(
+        &self,
+        simulation: &mut dyn Simulation,
+        prepared: &Prepared,
+        seconds: f64,
+    ) -> Result<Until, Failure> {
+        let mut stride = first(prepared);
+        loop {
+            let begun = self.watch.now();
+            self.advance(simulation, stride)?;
+            if self.watch.now() - begun > 0.5 * seconds || self.stop.load(Ordering::Relaxed) {
+                return Ok(stride);
+            }
+            stride = stride.doubled();
+        }
+    }
+
+    /// Runs a scene without rows to time it.
+    ///
+    /// # Errors
+    /// [`Failure`] if it breaks.
+    pub fn timed(&self, prepared: &Prepared, seconds: f64) -> Result<UnitCost, Failure> {
+        const STRETCHES: u32 = 4;
+        let mut simulation = prepared.start(Purpose::Run)?;
+        let simulation = simulation.as_mut();
+        let stride = self.stride(simulation, prepared, seconds / f64::from(STRETCHES))?;
+        let mut least = f64::INFINITY;
+        for _ in 0..STRETCHES {
+            let (from, begun) = (simulation.clock().time, self.watch.now());
+            self.advance(simulation, stride)?;
+            least = least.min((self.watch.now() - begun) / (simulation.clock().time - from));
+        }
+        Ok(UnitCost { seconds: least, phases: phases(simulation) })
+    }
+}
+
+/// States along a run whose length is not known: once there are too many, every other one goes, and half as many come.
+struct States {
+    most: usize,
+    every: usize,
+    seen: usize,
+    kept: Vec<(f64, Particles)>,
+}
+
+impl States {
+    fn new(particles: usize) -> States {
+        States { most: (KEPT / particles.max(1)).clamp(4, STATES), every: 1, seen: 0, kept: vec![] }
+    }
+
+    fn look(&mut self, simulation: &dyn Simulation) {
+        self.seen += 1;
+        if !self.seen.is_multiple_of(self.every) {
+            return;
+        }
+        self.kept.push((simulation.clock().time, simulation.particles()));
+        if self.kept.len() > self.most {
+            let mut number = 0;
+            self.kept.retain(|_| {
+                number += 1;
+                number % 2 == 0
+            });
+            self.every *= 2;
+        }
+    }
+}
+
+/// The shortest stretch: a step, or for a method without any a part of the time between rows.
+fn first(prepared: &Prepared) -> Until {
+    match (prepared.schedule.until, prepared.schedule.rows) {
+        (Until::Steps(_), _) => Until::Steps(1),
+        (_, Every::Time(time)) => Until::Time(time / 64.0),
+        (Until::Time(time), _) => Until::Time(1e-6 * time),
+        (Until::Events(_), _) => Until::Time(1e-6),
+    }
+}
+
+/// Cost of a unit of time.
+#[derive(Clone, Debug)]
+pub struct UnitCost {
+    /// Wall seconds, by the fastest of some stretches.
+    pub seconds: f64,
+    /// Wall seconds in each phase, by name, over all stretches.
+    pub phases: Vec<(String, f64)>,
+}
+
+/// Wall seconds of a unit of time in each phase of a run so far, by name.
+fn phases(simulation: &dyn Simulation) -> Vec<(String, f64)> {
+    let time = simulation.clock().time;
+    simulation.phases().into_iter().map(|(name, spent)| (name.to_owned(), spent / time)).collect()
+}

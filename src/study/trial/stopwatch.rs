@@ -1,0 +1,57 @@
+//! Time as trials see it: that of the wall, or, in tests, one that is made of the work done.
+
+#[cfg(test)]
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
+use stripmine_physics::method::Simulation;
+
+/// Seconds that trials take. A test makes them of work, so that a plan does not depend on how fast the machine is at that moment.
+#[derive(Debug)]
+pub struct Stopwatch(Kind);
+
+#[derive(Debug)]
+enum Kind {
+    Wall(Instant),
+    /// Nanoseconds so far, and those of a unit of work.
+    #[cfg(test)]
+    Made(AtomicU64, f64),
+}
+
+impl Stopwatch {
+    /// Of the wall; begins now.
+    pub fn wall() -> Stopwatch {
+        Stopwatch(Kind::Wall(Instant::now()))
+    }
+
+    /// Made of work: each unit of [`Simulation::work`] takes so many nanoseconds.
+    #[cfg(test)]
+    pub fn made(nanoseconds: f64) -> Stopwatch {
+        Stopwatch(Kind::Made(AtomicU64::new(0), nanoseconds))
+    }
+
+    /// Seconds since it began.
+    pub fn now(&self) -> f64 {
+        match &self.0 {
+            Kind::Wall(begun) => begun.elapsed().as_secs_f64(),
+            #[cfg(test)]
+            Kind::Made(nanoseconds, _) => 1e-9 * nanoseconds.load(Ordering::Relaxed) as f64,
+        }
+    }
+
+    /// Lets a simulation do something, and counts its work.
+    pub fn during<R>(
+        &self,
+        simulation: &mut dyn Simulation,
+        act: impl FnOnce(&mut dyn Simulation) -> R,
+    ) -> R {
+        #[cfg(test)]
+        if let Kind::Made(nanoseconds, each) = &self.0 {
+            let before = simulation.work();
+            let done = act(simulation);
+            let spent = each * (simulation.work() - before);
+            nanoseconds.fetch_add(spent.max(0.0) as u64, Ordering::Relaxed);
+            return done;
+        }
+        act(simulation)
+    }
+}
