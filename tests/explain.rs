@@ -257,7 +257,7 @@ fn a_run_may_be_tuned_by_what_was_measured_of_a_scene_that_is_alike() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let gas = |count: &'static str| ["dense-gas", "--set", count, "--set", "particles.packing_fraction=0.3"];
-    plan(&explain(folder, &[&gas("particles.count=100")[..], &["--seconds", "1", "--json"]].concat()));
+    plan(&explain(folder, &[&gas("particles.count=100")[..], &["--seconds", "4", "--json"]].concat()));
     let run = |count: &'static str, more: &[&str]| {
         let mut command = Command::cargo_bin("stripmine").unwrap();
         command.current_dir(folder).env("XDG_CACHE_HOME", folder.join("cache")).arg("run");

@@ -371,13 +371,14 @@ fn no_verb_writes_over_what_it_did_not_write() {
     let there = folder.path().join("there");
     succeed(run(&there, &["--set", "run.thermo_every=5"]));
     let there = there.to_str().unwrap();
-    let verbs: [(&[&str], &str); 9] = [
+    let verbs: [(&[&str], &str); 10] = [
         (&["run", "two-discs"], "thermo.csv"),
         (&["plot", there], "last-state.png"),
         (&["plot", there], "plot.files"),
         (&["reproduce", "--only", "mask"], "README.md"),
         (&["chart", "stability", "two-discs"], "journal.jsonl"),
         (&["chart", "work-precision", "two-discs"], "README.md"),
+        (&["chart", "accuracy", "hard-disks"], "README.md"),
         (&["chart", "density-cost"], "index.html"),
         (&["chart", "soft-hard"], "thesis.tex"),
         (&["validate-model"], "validation"),
@@ -398,7 +399,8 @@ fn no_verb_writes_over_what_it_did_not_write() {
     refused(command, 2, &["host.toml", "--force"]);
     // All there are: a verb with an --out that is not tried here fails this.
     let tried = ["run", "plot", "reproduce", "chart stability", "chart work-precision", "chart density-cost"];
-    let tried = [&tried[..], &["chart soft-hard", "validate-model", "calibrate"]].concat();
+    let more = ["chart soft-hard", "chart accuracy", "validate-model", "calibrate"];
+    let tried = [&tried[..], &more].concat();
     let help = |verb: &[&str]| {
         String::from_utf8(stripmine(&[verb, &["--help"]].concat()).output().unwrap().stdout).unwrap()
     };
@@ -410,7 +412,7 @@ fn no_verb_writes_over_what_it_did_not_write() {
     };
     let verbs = below(&help(&[]), "Commands:");
     let charts = below(&help(&["chart"]), "What to chart:");
-    assert!(verbs.len() > 8 && charts.len() == 4, "{verbs:?} {charts:?}");
+    assert!(verbs.len() > 8 && charts.len() == 5, "{verbs:?} {charts:?}");
     for verb in
         verbs.iter().map(|verb| vec![verb.as_str()]).chain(charts.iter().map(|name| vec!["chart", name]))
     {

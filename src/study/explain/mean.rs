@@ -85,7 +85,7 @@ impl Work<'_> {
             let mut why = sample.without_mean();
             if changes(&sample) || is_hardly_known(&sample) {
                 enough = self.enough(&sample);
-                self.whole = self.whole_in(sample.cost, self.left() - kept_back);
+                self.whole = self.whole_in(sample.cost, self.left());
                 if let Some(time) = self.whole {
                     return self.over_whole_runs(&best, sample, time, seconds);
                 }
