@@ -193,11 +193,12 @@ impl AccuracyVerb {
         let target = Target::of(&case, self.quantity.as_deref(), self.error).map_err(own)?;
         let place = Place { name: accuracy::NAME, scene: &self.scene, out: self.out.as_deref() };
         let (folder, stem) = place.folder()?;
-        let start = Instant::now();
+        let (bar, start) = (progress(common, place.name), Instant::now());
+        let show = |share: f64| bar.set_position((1e3 * share) as u64);
         let threads = rayon::current_num_threads() as f64;
         let seconds = f64::from(self.budget) / threads;
         let trial = Trial { watch: &Stopwatch::wall(), stop: signals::asked() };
-        let made = accuracy::accuracy(&case, &target, seconds, trial, &stem).map_err(own)?;
+        let made = accuracy::accuracy(&case, &target, seconds, trial, (&stem, &show)).map_err(own)?;
         written(common, &folder, place.name, &made, start)
     }
 }

@@ -142,7 +142,7 @@ fn in_convoys(machine: &MachineModel, work: &Work, memory: Memory) -> Charge {
     strip_mined(machine, charge)
 }
 
-/// The same charge for every strip instead of once, with the overhead of the loop if it has a pass.
+/// A charge for every strip instead of once, with the overhead of the loop if it has a pass.
 fn strip_mined(machine: &MachineModel, charge: Charge) -> Charge {
     let loop_overhead = machine.loop_overhead.as_ref().filter(|_| charge.each_element > 0.0);
     Charge {

@@ -1,6 +1,5 @@
-//! Error of a mean over the wall time of its run, for each integrator and some of its steps: bias and chance added.
+//! Least error of a mean over the wall time of its run, for each integrator: bias and chance added, by the best of some steps.
 
-use super::bias::Bias;
 use super::findings::{Findings, Way};
 use super::lengths::Chance;
 use super::recommended::Plan;
@@ -10,30 +9,39 @@ use crate::results::Made;
 use crate::study::trial::{ROWS, Trial};
 use crate::study::{Case, Choice};
 use stripmine_physics::method::Decides;
-use stripmine_physics::number::significant;
 
 /// Name of the item.
 pub const NAME: &str = "accuracy";
 
 /// Steps of a curve in parts of the longest.
 const STEPS: [f64; 3] = [1.0, 0.5, 0.25];
-/// Points of a curve between an interval of wall time and ten times that.
+/// Points of a curve between a wall time and ten times that.
 const POINTS: i32 = 8;
-/// Decades of wall time that curves cover: from the shortest run that has a mean.
+/// Decades of wall time that curves cover.
 const DECADES: i32 = 4;
+/// Independent samples of the shortest run.
+const SHORTEST: f64 = 5.0;
 /// Errors for which the cheapest point is named, in parts of the mean.
 const WISHES: [f64; 5] = [0.1, 0.03, 0.01, 0.003, 0.001];
 
-/// A curve: an integrator at a step.
+/// A configuration with the least error that one of its steps has in each wall time.
 struct Curve<'f> {
-    label: String,
     way: &'f Way,
-    step: Option<f64>,
-    /// Wall seconds, expected error, and the most that it is.
-    points: Vec<[f64; 3]>,
+    points: Vec<Point>,
 }
 
-/// Measures a scene in trials of some seconds, as frames. `ask` is the plan that is marked, where an error is asked for.
+/// An error in a wall time.
+struct Point {
+    /// Wall seconds of a run.
+    seconds: f64,
+    /// The step (time); none where the method takes none.
+    step: Option<f64>,
+    /// Expected bias and chance, and the most that they are.
+    error: f64,
+    most: f64,
+}
+
+/// Measures a scene in trials of some seconds, as frames. The plan is marked where an error is asked for.
 ///
 /// # Errors
 /// [`ExplainError`] if every trial breaks, or the quantity has no mean.
@@ -42,9 +50,9 @@ pub fn accuracy(
     target: &Target,
     seconds: f64,
     trial: Trial<'_>,
-    scene: &str,
+    (scene, progress): (&str, &dyn Fn(f64)),
 ) -> Result<Made, ExplainError> {
-    let findings = seen::seen(case, target, seconds, trial)?;
+    let findings = seen::seen(case, target, seconds, trial, progress)?;
     let quick = Target { limit: f64::INFINITY, ..target.clone() };
     let plan = seen::planned(case, &quick, &findings, "").ok();
     Ok(made(scene, target, &findings, plan.as_ref(), case))
@@ -64,14 +72,9 @@ fn made(scene: &str, target: &Target, findings: &Findings, plan: Option<&Plan>, 
 /// The cheapest configuration of each integrator; where there are none, of each engine.
 fn curves<'f>(case: &Case, findings: &'f Findings) -> Vec<Curve<'f>> {
     let chance = findings.chance();
-    let choice = |way: &Way| {
-        let settings: Vec<(&str, &str)> =
-            way.settings.iter().map(|(axis, name)| (axis.as_str(), name.as_str())).collect();
-        case.own.with(&settings)
-    };
     let mut chosen: Vec<(&Way, Choice)> = vec![];
     for way in findings.ways.iter().filter(|way| way.dropped.is_none() && way.cost.is_some()) {
-        let own = choice(way);
+        let own = way.choice(case);
         let is_another = |(_, other): &(&Way, Choice)| {
             !own.agrees(other, Decides::Order) || own.scheme().is_none() && !own.agrees(other, Decides::Cost)
         };
@@ -79,43 +82,30 @@ fn curves<'f>(case: &Case, findings: &'f Findings) -> Vec<Curve<'f>> {
             chosen.push((way, own));
         }
     }
-    let steps = |way: &Way| if way.step.is_some() { &STEPS[..] } else { &STEPS[..1] };
-    let of = |way: &'f Way| {
-        let chance = &chance;
-        steps(way).iter().map(move |part| {
-            let step = way.step.map(|step| part * step);
-            let label =
-                step.map_or(way.label.clone(), |it| format!("{}, dt {}", way.label, significant(it, 3)));
-            Curve { label, way, step, points: run_lengths(way, step, *part, findings, chance) }
-        })
-    };
-    chosen.iter().flat_map(|(way, _)| of(way)).collect()
+    chosen.iter().map(|(way, _)| Curve { way, points: least_errors(way, findings, &chance) }).collect()
 }
 
-/// Errors over wall times.
-fn run_lengths(
-    way: &Way,
-    step: Option<f64>,
-    part: f64,
-    findings: &Findings,
-    chance: &Chance,
-) -> Vec<[f64; 3]> {
-    let Some(cost) = way.cost.map(|cost| cost / part) else { return vec![] };
-    let off = way.bias.zip(step).map(|(bias, step): (Bias, f64)| bias.at(step)).unwrap_or_default();
+/// The least errors over wall times.
+fn least_errors(way: &Way, findings: &Findings, chance: &Chance) -> Vec<Point> {
+    let Some(cost) = way.cost else { return vec![] };
     let mean = &findings.mean;
-    // A mean that does not vary has no shortest run: one of the trials' is taken.
-    let shortest = findings.whole.unwrap_or(if mean.apart > 0.0 {
-        mean.apart
-    } else {
-        mean.transient.max(cost.recip())
-    });
-    let lengths = (0..=POINTS * DECADES).map(|at| shortest * 10f64.powf(f64::from(at) / f64::from(POINTS)));
-    let of = |time: f64| {
-        let seconds = findings.start + ROWS[1] * findings.row + cost * (time + mean.transient);
-        let chance = chance.over(time);
-        [seconds, off.shift + chance, off.below + chance]
+    let start = findings.start + ROWS[1] * findings.row;
+    // A mean that does not vary has no shortest run.
+    let shortest = findings.whole.unwrap_or(if mean.apart > 0.0 { SHORTEST * mean.apart } else { 1.0 });
+    let first = start + cost * (shortest + mean.transient);
+    let walls = (0..=POINTS * DECADES).map(|at| first * 10f64.powf(f64::from(at) / f64::from(POINTS)));
+    let steps = if way.step.is_some() { &STEPS[..] } else { &STEPS[..1] };
+    let least = |seconds: f64| {
+        let of = |part: &f64| {
+            let step = way.step.map(|step| part * step);
+            let off = way.bias.zip(step).map(|(bias, step)| bias.at(step)).unwrap_or_default();
+            let time = (seconds - start) * part / cost - mean.transient;
+            let chance = if time > 0.0 { chance.over(time) } else { f64::INFINITY };
+            Point { seconds, step, error: off.shift + chance, most: off.below + chance }
+        };
+        steps.iter().map(of).min_by(|a, b| a.error.total_cmp(&b.error))
     };
-    lengths.map(of).filter(|point| point[1].is_finite()).collect()
+    walls.filter_map(least).filter(|point| point.error.is_finite()).collect()
 }
 
 fn summary(scene: &str, target: &Target, findings: &Findings) -> Frame {
@@ -138,11 +128,15 @@ fn summary(scene: &str, target: &Target, findings: &Findings) -> Frame {
 
 fn points(curves: &[Curve<'_>]) -> Frame {
     Rows::of(curves.iter().flat_map(|curve| curve.points.iter().map(move |point| (curve, point))))
-        .text("curve", |(curve, _)| &curve.label)
-        .number("wall time (s)", 6, |(_, point)| point[0])
-        .number("error", 6, |(_, point)| point[1])
-        .number("most", 6, |(_, point)| point[2])
-        .frame("points", "Error of the mean over the wall time of a run: expected bias, and chance with a probability of 95 %")
+        .text("configuration", |(curve, _)| &curve.way.label)
+        .number("wall time (s)", 6, |(_, point)| point.seconds)
+        .short("dt", |(_, point)| point.step)
+        .number("error", 6, |(_, point)| point.error)
+        .number("most", 6, |(_, point)| point.most)
+        .frame(
+            "points",
+            "Least error over the wall time of a run: expected bias, and chance with a probability of 95 %",
+        )
 }
 
 /// The scene's own values and the plan.
@@ -164,16 +158,15 @@ fn marks(plan: Option<&Plan>, target: &Target) -> Frame {
 }
 
 fn biases(findings: &Findings, curves: &[Curve<'_>]) -> Frame {
-    let compared = curves.iter().filter_map(|curve| Some((curve.way, curve.way.bias?, curve.step?)));
+    let steps = |curve: &Curve<'_>| Some((curve.way.bias?, curve.way.step?));
+    let compared = curves.iter().filter_map(|curve| Some((curve.way, steps(curve)?)));
+    let compared = compared.flat_map(|(way, (bias, longest))| STEPS.map(|part| (way, bias, part * longest)));
     let mean = findings.mean.mean.abs();
     Rows::of(compared)
         .text("configuration", |it| &it.0.label)
         .short("dt", |it| it.2)
-        .short("bias", |it| {
-            it.1.shift.signum()
-                * it.1.at(it.2).below.min(it.1.shift.abs() * (it.2 / it.1.step).min(1.0).powf(it.1.power))
-        })
-        .short("± (95 %)", |it| it.1.bar * (it.2 / it.1.step).min(1.0).powf(it.1.power))
+        .short("bias", |it| it.1.measured_at(it.2)[0])
+        .short("± (95 %)", |it| it.1.measured_at(it.2)[1])
         .number("of the mean (%)", 3, |it| 100.0 * it.1.at(it.2).shift / mean)
         .text("significant", |it| if it.1.is_significant() { "yes" } else { "no" })
         .short("window", |it| it.1.window)
@@ -189,13 +182,14 @@ fn wishes(findings: &Findings, curves: &[Curve<'_>]) -> Frame {
     let mean = findings.mean.mean.abs();
     let cheapest = |wish: f64| {
         let all = curves.iter().flat_map(|curve| curve.points.iter().map(move |point| (curve, point)));
-        all.filter(|(_, point)| point[1] <= wish * mean).min_by(|a, b| a.1[0].total_cmp(&b.1[0]))
+        all.filter(|(_, point)| point.error <= wish * mean).min_by(|a, b| a.1.seconds.total_cmp(&b.1.seconds))
     };
     Rows::of(WISHES.map(|wish| (wish, cheapest(wish))))
         .short("error (%)", |(wish, _)| 100.0 * wish)
         .text("cheapest", |(_, found)| {
-            found.map_or("none of those drawn".to_owned(), |(curve, _)| curve.label.clone())
+            found.map_or("none of those drawn".to_owned(), |(curve, _)| curve.way.label.clone())
         })
-        .short("wall time (s)", |(_, found)| found.map(|(_, point)| point[0]))
+        .short("dt", |(_, found)| found.and_then(|(_, point)| point.step))
+        .short("wall time (s)", |(_, found)| found.map(|(_, point)| point.seconds))
         .frame("wishes", "The cheapest configuration and step for an error")
 }

@@ -1,7 +1,8 @@
 //! How far a step takes a mean off, by paired runs at a step and at half of it, and at other steps by the known order of the scheme.
 
-use crate::study::trial::any_number;
+use crate::study::trial::{Window, any_number, part, steady};
 use serde::{Deserialize, Serialize};
+use stripmine_physics::averages::of_independent;
 use stripmine_physics::number::significant;
 
 /// Part of the correction of a short window that is taken for its own uncertainty: the memory of a quantity is rarely a single exponential.
@@ -31,20 +32,46 @@ pub struct Bias {
     pub part: f64,
     /// States from which runs were compared.
     pub starts: usize,
-    /// Bias that the error of single contacts lets expect (the quantity's unit); none where particles have no contacts.
-    #[serde(with = "any_number")]
-    pub by_contacts: Option<f64>,
 }
 
-/// A difference at a step.
+/// A difference at a step, for a window.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seen {
     /// The step (time).
     pub(super) step: f64,
     /// The step of the reference, where it is of the same integrator (time); 0 where it is of a better one.
     pub(super) reference: f64,
-    /// The difference of the means, and half the width of its interval of 95 %.
+    /// The difference that the window shows.
+    pub(super) shown: f64,
+    /// The difference that it tells of the steady state, or of a whole run, and half the width of its interval of 95 %.
     pub(super) difference: [f64; 2],
+}
+
+impl Seen {
+    /// Of a configuration at a place, by a window and the one before, for a quantity with a memory (time); of the mean over a run that has a part of the
+    /// bias of the steady state.
+    pub(super) fn of(
+        [before, window]: [&Window; 2],
+        place: usize,
+        (memory, of_run): (f64, f64),
+        (step, reference): (f64, f64),
+    ) -> Seen {
+        let parts = [window, before].map(|it| part(it.time, memory));
+        let pairs = window.differences[place].iter().zip(&before.differences[place]);
+        let told: Vec<f64> = pairs
+            .map(|(now, before)| {
+                let [bias, at_once] = steady([*now, *before], parts);
+                of_run * bias + (1.0 - of_run) * at_once
+            })
+            .collect();
+        let shown = &window.differences[place];
+        Seen {
+            step,
+            reference,
+            shown: shown.iter().sum::<f64>() / shown.len() as f64,
+            difference: of_independent(&told).unwrap_or([f64::NAN, f64::INFINITY]),
+        }
+    }
 }
 
 /// The bias at the first step by one fit of β (h^p − h_r^p) through all differences, each with the weight of its bar.
@@ -71,24 +98,31 @@ pub(super) fn fitted(seen: &[Seen], power: f64) -> [f64; 2] {
 }
 
 impl Bias {
-    /// By the differences over a window (time) that shows a part of the bias.
+    /// By the differences at some steps over a window (time) that shows a part of the bias.
     pub(super) fn of(seen: &[Seen], power: f64, window: f64, part: f64, starts: usize) -> Bias {
-        let [drift, bar] = fitted(seen, power);
-        let shift = drift / part;
+        let [shift, bar] = fitted(seen, power);
+        let shown = seen.first().map_or(0.0, |it| it.shown);
         Bias {
             step: seen.first().map_or(0.0, |it| it.step),
             shift,
-            bar: (bar / part).hypot(OF_CORRECTION * (shift - drift)),
+            bar: bar.hypot(OF_CORRECTION * (shift - shown)),
             power,
             window,
             part,
             starts,
-            by_contacts: None,
         }
+    }
+
+    /// Of a step (time) whose means no pairs of runs compared: nothing is known of it.
+    pub(super) fn unknown(step: f64, power: f64) -> Bias {
+        Bias { step, shift: 0.0, bar: f64::INFINITY, power, window: 0.0, part: 0.0, starts: 0 }
     }
 
     /// The measurement, for a reader.
     pub(super) fn in_words(&self) -> String {
+        if self.bar.is_infinite() {
+            return "no pairs of runs ended in the time of the trials: --patient has more".to_owned();
+        }
         format!(
             "at {} it is {} ± {}, by {} pairs of runs over {}{}",
             significant(self.step, 3),
@@ -103,7 +137,7 @@ impl Bias {
         )
     }
 
-    /// Whether it is beyond its bar.
+    /// True if it is beyond its bar.
     pub fn is_significant(&self) -> bool {
         self.shift.abs() > self.bar
     }
@@ -115,20 +149,28 @@ impl Bias {
 
     /// The bias that is expected at the step that was compared (the quantity's unit).
     ///
-    /// A significant one as it was seen. Of one that is not, what was seen less what its error makes of it, or what single contacts let expect,
-    /// whichever is more, and never more than it is known to be below.
+    /// A significant one as it was measured; one that is not, less the part that its error makes of it.
     pub fn expected(&self) -> f64 {
         if self.is_significant() {
             return self.shift.abs();
         }
-        // The standard error is about half of the bar.
-        let left = (self.shift.powi(2) - 0.25 * self.bar.powi(2)).max(0.0).sqrt();
-        left.max(self.by_contacts.unwrap_or(0.0)).min(self.below())
+        // The standard error is about half of the bar. Of an unknown bias nothing is left.
+        (self.shift.powi(2) - 0.25 * self.bar.powi(2)).max(0.0).sqrt()
+    }
+
+    /// The part of the bias that a step has, no longer than the one that was compared.
+    fn part_at(&self, step: f64) -> f64 {
+        (step / self.step).min(1.0).powf(self.power)
+    }
+
+    /// The measured bias at a step (the quantity's unit), and half the width of its interval of 95 %.
+    pub(super) fn measured_at(&self, step: f64) -> [f64; 2] {
+        [self.shift, self.bar].map(|value| self.part_at(step) * value)
     }
 
     /// The bias that is expected at a step (the quantity's unit), and the most that it is.
     pub fn at(&self, step: f64) -> Off {
-        let part = (step / self.step).min(1.0).powf(self.power);
+        let part = self.part_at(step);
         Off { shift: part * self.expected(), below: part * self.below() }
     }
 }
@@ -163,46 +205,43 @@ impl Off {
 mod tests {
     use super::*;
 
+    fn seen(step: f64, reference: f64, difference: [f64; 2]) -> Seen {
+        Seen { step, reference, shown: difference[0], difference }
+    }
+
     /// By hand: β = 2 at the power 2 with steps 0.2 and 0.1 and a reference at 0.05: differences 2 (0.04 − 0.0025) = 0.075 and 2 (0.01 − 0.0025) = 0.015;
     /// the bias at 0.2 is 0.08.
     #[test]
     fn one_fit_goes_through_all_differences() {
-        let seen = [(0.2, 0.075, 0.001), (0.1, 0.015, 0.0005)].map(|(step, difference, bar)| Seen {
-            step,
-            reference: 0.05,
-            difference: [difference, bar],
-        });
-        let [shift, bar] = fitted(&seen, 2.0);
+        let [shift, bar] = fitted(&[seen(0.2, 0.05, [0.075, 0.001]), seen(0.1, 0.05, [0.015, 0.0005])], 2.0);
         assert!((shift - 0.08).abs() < 1e-12, "{shift}");
         // The better of 0.001/0.0375 and 0.0005/0.0075 times 0.04.
         assert!((bar - 0.04 * 0.001 / 0.0375).abs() < 1e-12, "{bar}");
     }
 
+    /// Half of the correction of a window is a part of the bar: here 0.5 (0.02 − 0.01).
     #[test]
-    fn a_short_window_shows_a_part() {
-        let seen = [Seen { step: 0.2, reference: 0.0, difference: [0.01, 0.002] }];
-        let part = 0.567_667_641_6;
-        let bias = Bias::of(&seen, 1.0, 2.0, part, 16);
-        assert!((bias.shift - 0.01 / part).abs() < 1e-9 && bias.is_significant());
-        let correction = 0.5 * (0.01 / part - 0.01);
-        assert!((bias.bar - f64::hypot(0.002 / part, correction)).abs() < 1e-9);
+    fn a_bias_falls_with_the_step() {
+        let bias = Bias::of(&[Seen { shown: 0.01, ..seen(0.2, 0.0, [0.02, 0.002]) }], 1.0, 2.0, 0.5, 16);
+        assert!((bias.shift - 0.02).abs() < 1e-12 && bias.is_significant());
+        assert!((bias.bar - f64::hypot(0.002, 0.005)).abs() < 1e-12);
         let half = bias.at(0.1);
-        assert!(
-            (half.shift - 0.5 * bias.shift).abs() < 1e-12 && (half.below - 0.5 * bias.below()).abs() < 1e-12
-        );
+        assert!((half.shift - 0.01).abs() < 1e-12 && (half.below - 0.5 * bias.below()).abs() < 1e-12);
         assert_eq!(bias.at(0.4), bias.at(0.2));
+    }
+
+    /// An unknown bias is neither bought off nor said to be small.
+    #[test]
+    fn an_unknown_bias_has_no_bound() {
+        let bias = Bias::unknown(0.2, 1.0);
+        assert!(!bias.is_significant() && bias.expected() == 0.0 && bias.at(0.1).below.is_infinite());
     }
 
     /// A bias that is not significant is not bought off: 0.1 ± 0.4 leaves an error of 0.3 whole.
     #[test]
     fn noise_is_no_bias() {
-        let seen = [Seen { step: 0.2, reference: 0.0, difference: [0.1, 0.4] }];
-        let bias = Bias::of(&seen, 1.0, 2.0, 1.0, 16);
+        let bias = Bias::of(&[seen(0.2, 0.0, [0.1, 0.4])], 1.0, 2.0, 1.0, 16);
         assert!(!bias.is_significant() && (bias.below() - 0.5).abs() < 1e-6);
         assert_eq!((bias.expected(), bias.at(0.2).leaves(0.3)), (0.0, Some(0.3)));
-        // Contacts let expect more, but no more than it is known to be below.
-        let of_contacts = |by_contacts| Bias { by_contacts: Some(by_contacts), ..bias }.expected();
-        assert_eq!(of_contacts(0.2), 0.2);
-        assert!((of_contacts(0.9) - 0.5).abs() < 1e-6);
     }
 }

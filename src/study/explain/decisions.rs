@@ -97,6 +97,7 @@ fn step_decision(case: &Case, best: &Weighed<'_>, longest: f64, wanted: f64) -> 
             "{own}bias {} of the {} allowed; {}",
             match bias.is_significant() {
                 true => significant(best.optimum.bias.shift, 2),
+                false if best.optimum.bias.below.is_infinite() => "unknown".to_owned(),
                 false => format!("below {}", significant(best.optimum.bias.below, 2)),
             },
             significant(wanted, 2),
@@ -177,7 +178,7 @@ fn digits(findings: &Findings) -> Option<LeftOut> {
         let cost = half.cost? * half.step? / (full.cost? * full.step?);
         Some((half, cost))
     })?;
-    let (need, says) = match (&half.dropped, half.bias) {
+    let (need, says) = match (&half.dropped, half.bias.filter(|bias| bias.bar.is_finite())) {
         (Some(why), _) => (Need::Yes, format!("needed: {why}")),
         (None, Some(bias)) => (
             Need::No,

@@ -2,20 +2,25 @@
 
 use super::bias::{Bias, Seen};
 use super::findings::{HALVINGS, SHARES, Way, Work, sort};
-use super::mean::Mean;
-use crate::study::trial::{Compared, ENOUGH, Paired, pairs, part};
+use super::mean::{FEWEST, Mean};
+use crate::study::trial::{Compared, Paired, TOGETHER, pairs, part};
 use crate::study::{Choice, first_line};
 use stripmine_physics::method::{Decides, Prepared, Purpose};
 
-/// States from which runs are compared, at least.
-const FEWEST: usize = 4;
 /// Integrators whose means are compared.
 const COMPARED: usize = 3;
 /// The step of the reference in parts of the shortest that is compared, and steps of each integrator in parts of its longest.
 const REFERENCE: f64 = 0.25;
 const STEPS: [f64; 2] = [1.0, 0.5];
-/// Rows are this many of the longest steps apart.
+/// Part of the time in which runs show whether their steps are warned of.
+const SCOUT: f64 = 0.1;
+/// Rows are this many of the longest steps apart, and so many are the first half of the first window; or, where forces depend on time, so many are
+/// a period.
 const APART: f64 = 8.0;
+const FIRST: u64 = 2;
+const A_PERIOD: u64 = 16;
+/// The mean over a run that remembers all of it has this part of the bias of a steady state: 1 − (1 − 1/e).
+const OF_WHOLE_RUN: f64 = 0.367_879_441_171_442_3;
 /// Windows that are weighed, in parts of the longest in which runs stay together: shorter ones have hardly any contacts in them.
 const SHORTER: f64 = 0.125;
 /// Errors of means fall with a power of the step between these: contacts have kinks.
@@ -32,6 +37,16 @@ struct Cases {
     reference: Choice,
 }
 
+/// Why there are no pairs of runs.
+enum Trouble {
+    /// There are too few states to begin from.
+    FewStates,
+    /// Two windows of all cases take longer than there is time.
+    TooDear,
+    /// A case, by its place, and why it broke.
+    Broken(usize, String),
+}
+
 impl Work<'_> {
     /// The bias of the cheapest configuration of each integrator, and of all that differ from it in digits or search alone: rounding is far below
     /// what can be seen of a mean.
@@ -39,12 +54,18 @@ impl Work<'_> {
         if self.case.entry.trials.is_none() {
             return;
         }
-        let seconds = SHARES[2] * self.seconds;
-        for _ in 0..=HALVINGS {
-            let Some(cases) = self.cases(ways) else { break };
+        let all = SHARES[2] * self.seconds;
+        // A few short pairs come first: they are made again for as long as steps are shortened. None is shorter than a period.
+        let mut seconds = if self.case.prepared.model.period().is_some() { all } else { SCOUT * all };
+        let mut most = COMPARED;
+        for _ in 0..=HALVINGS * COMPARED as u32 {
+            let Some(cases) = self.cases(ways, most) else { break };
             match self.paired(&cases, mean, seconds) {
-                Err(None) => break,
-                Err(Some((at, why))) => {
+                Err(Trouble::FewStates) => break,
+                // The best and the scene's own are enough; fewer there cannot be.
+                Err(Trouble::TooDear) if most > 1 => most -= 1,
+                Err(Trouble::TooDear) => break,
+                Err(Trouble::Broken(at, why)) => {
                     // The reference has the shortest step of all: its configuration cannot be run.
                     let Some(first) = at.checked_sub(1).map(|at| cases.firsts[at / STEPS.len()]) else {
                         break;
@@ -58,6 +79,10 @@ impl Work<'_> {
                     };
                     let (at, why) = match (0..cases.firsts.len()).find_map(|at| Some((at, warned(at)?))) {
                         Some(found) if self.left() > 0.0 => found,
+                        _ if seconds < all => {
+                            seconds = all;
+                            continue;
+                        }
                         _ => {
                             self.assign(ways, &cases, &paired, mean);
                             break;
@@ -67,21 +92,27 @@ impl Work<'_> {
                 }
             }
         }
-        for way in ways.iter_mut().filter(|way| way.bias.is_none() && way.step.is_some()) {
-            way.dropped.get_or_insert_with(|| "its means were not compared".to_owned());
+        let is_any_known = ways.iter().any(|way| way.dropped.is_none() && way.bias.is_some());
+        for way in ways.iter_mut().filter(|way| way.bias.is_none() && way.dropped.is_none()) {
+            match way.step {
+                None => {}
+                Some(_) if is_any_known => way.dropped = Some("its means were not compared".to_owned()),
+                // Limits and warnings alone then bound the step.
+                Some(step) => way.bias = Some(Bias::unknown(step, self.power(&self.choice(way)))),
+            }
         }
         sort(ways);
     }
 
     /// Configurations to compare; none where one cannot be prepared.
-    fn cases(&self, ways: &[Way]) -> Option<Cases> {
+    fn cases(&self, ways: &[Way], most: usize) -> Option<Cases> {
         let mut firsts: Vec<usize> = vec![];
         for (at, way) in ways.iter().enumerate().filter(|(_, way)| way.dropped.is_none()) {
             let own = self.choice(way);
             let is_another = firsts.iter().all(|&it| !self.choice(&ways[it]).agrees(&own, Decides::Order));
-            // The scene's own is always among them: the error of its own values is said.
+            // The scene's own is always among them: a plan states the error of the scene's own values.
             let is_own = own.agrees(&self.case.own, Decides::Order);
-            if is_another && (firsts.len() < COMPARED || is_own) {
+            if is_another && (firsts.len() < most || is_own) {
                 firsts.push(at);
             }
         }
@@ -90,7 +121,8 @@ impl Work<'_> {
         let longest = firsts.iter().filter_map(steps).reduce(f64::max)?;
         let shortest = firsts.iter().filter_map(steps).reduce(f64::min)?;
         let reference = self.choice(&ways[*firsts.first()?]).with(trials.references[0]);
-        let spacing = APART * longest;
+        let period = self.case.prepared.model.period();
+        let spacing = period.map_or(APART * longest, |period| period / A_PERIOD as f64);
         let of_firsts = firsts.iter().flat_map(|&at| {
             STEPS.map(|part| (ways[at].overrides.clone(), part * ways[at].step.unwrap_or(longest)))
         });
@@ -105,52 +137,60 @@ impl Work<'_> {
         Some(Cases { firsts, prepared, spacing, reference })
     }
 
-    /// Runs of all cases from the same states; no reason where there are too few of these, else the case that broke and why.
-    fn paired(&self, cases: &Cases, mean: &Mean, seconds: f64) -> Result<Paired, Option<(usize, String)>> {
+    /// Runs of all cases from the same states.
+    fn paired(&self, cases: &Cases, mean: &Mean, seconds: f64) -> Result<Paired, Trouble> {
         let steps: Vec<u64> =
             cases.prepared.iter().map(|(_, step)| (cases.spacing / step).round() as u64).collect();
+        if mean.states.len() < FEWEST {
+            return Err(Trouble::FewStates);
+        }
+        let first = self.case.prepared.model.period().map_or(FIRST, |_| A_PERIOD);
+        // From as many states as two windows can be had of.
+        let two_windows = 4 * first * steps.iter().sum::<u64>();
+        let seconds = seconds.min(self.left());
+        let fitting = seconds * rayon::current_num_threads() as f64 / (mean.step_cost * two_windows as f64);
+        if fitting < 0.5 * FEWEST as f64 {
+            return Err(Trouble::TooDear);
+        }
+        let starts = (fitting as usize).clamp(FEWEST, mean.states.len());
         let begin = |case: usize, start: usize| {
-            let prepared = cases.prepared[case].0.model.started_from(mean.states[start].clone());
+            let prepared = cases.prepared[case]
+                .0
+                .model
+                .started_from(mean.states[start * mean.states.len() / starts].clone());
             prepared.start(Purpose::Run).map_err(|failure| first_line(&failure.what()))
         };
-        if mean.states.len() < FEWEST {
-            return Err(None);
-        }
-        let compared = Compared { steps: &steps, starts: mean.states.len(), begin: &begin };
+        let compared = Compared { steps: &steps, first, starts, begin: &begin };
         let observed = (self.case.entry.quantities, self.target.place);
-        pairs(&self.trial, &compared, observed, seconds.min(self.left()))
-            .map_err(|broken| Some((broken.at, broken.why)))
+        pairs(&self.trial, &compared, observed, seconds)
+            .map_err(|broken| Trouble::Broken(broken.at, broken.why))
     }
 
     /// The biases that paired runs show.
     fn assign(&self, ways: &mut [Way], cases: &Cases, paired: &Paired, mean: &Mean) {
-        // A run that changes all along remembers all of it.
-        let memory = self.whole.unwrap_or(0.5 * mean.known.apart);
-        let run = self.whole.map_or(1.0, |time| part(time, memory));
+        // A run that changes all along remembers all of it. Values within a period make up for each other, which is no short memory.
+        let period = self.case.prepared.model.period().unwrap_or(0.0);
+        let memory = self.whole.unwrap_or((0.5 * mean.known.apart).max(period));
+        let of_run = self.whole.map_or(1.0, |_| OF_WHOLE_RUN);
         for (number, &first) in cases.firsts.iter().enumerate() {
             let choice = self.choice(&ways[first]);
             let power = self.power(&choice);
             let is_of_reference = choice.agrees(&cases.reference, Decides::Order);
-            let places: Vec<usize> = (0..STEPS.len()).map(|at| 1 + number * STEPS.len() + at).collect();
-            let longest =
-                paired.windows.iter().rev().find(|it| it.scatter() <= ENOUGH).or(paired.windows.first());
-            let shortest = SHORTER * longest.map_or(0.0, |window| window.time);
-            let bias = paired.windows.iter().filter(|window| window.time >= shortest).map(|window| {
-                let seen: Vec<Seen> = places
-                    .iter()
-                    .map(|&at| {
-                        let difference = window.differences[at - 1];
-                        Seen {
-                            step: cases.prepared[at].1,
-                            reference: if is_of_reference { cases.prepared[0].1 } else { 0.0 },
-                            difference: [difference.value, difference.bar],
-                        }
+            let longest = paired.windows.iter().rev().find(|it| it.scatter <= TOGETHER);
+            let shortest = SHORTER * longest.or(paired.windows.first()).map_or(0.0, |window| window.time);
+            let bias = paired.windows.windows(2).filter(|both| both[1].time >= shortest).map(|both| {
+                let seen: Vec<Seen> = (0..STEPS.len())
+                    .map(|at| {
+                        let place = number * STEPS.len() + at;
+                        let reference = if is_of_reference { cases.prepared[0].1 } else { 0.0 };
+                        let steps = (cases.prepared[1 + place].1, reference);
+                        Seen::of([&both[0], &both[1]], place, (memory, of_run), steps)
                     })
                     .collect();
-                Bias::of(&seen, power, window.time, part(window.time, memory) / run, paired.starts)
+                Bias::of(&seen, power, both[1].time, part(both[1].time, memory), paired.starts)
             });
-            // The window that tells most: longer ones show more of the bias, and scatter more.
-            let best = bias.min_by(|a, b| a.bar.total_cmp(&b.bar));
+            // Longer windows show more of the bias, and scatter more: the one of the smallest bar tells most.
+            let best = bias.filter(|it| it.below().is_finite()).min_by(|a, b| a.bar.total_cmp(&b.bar));
             for way in ways.iter_mut().filter(|way| self.choice(way).agrees(&choice, Decides::Order)) {
                 way.bias = best;
             }

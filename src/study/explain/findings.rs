@@ -72,6 +72,15 @@ pub struct Findings {
     pub without: Vec<Without>,
 }
 
+impl Way {
+    /// The settings of all axes.
+    pub(super) fn choice(&self, case: &Case) -> Choice {
+        let settings: Vec<(&str, &str)> =
+            self.settings.iter().map(|(axis, name)| (axis.as_str(), name.as_str())).collect();
+        case.own.with(&settings)
+    }
+}
+
 /// A scene at work.
 pub(super) struct Work<'w> {
     pub(super) case: &'w Case,
@@ -130,9 +139,7 @@ impl Work<'_> {
     }
 
     pub(super) fn choice(&self, way: &Way) -> Choice {
-        let settings: Vec<(&str, &str)> =
-            way.settings.iter().map(|(axis, name)| (axis.as_str(), name.as_str())).collect();
-        self.case.own.with(&settings)
+        way.choice(self.case)
     }
 }
 

@@ -8,6 +8,8 @@ use stripmine_physics::method::Decides;
 use stripmine_physics::particles::Particles;
 use stripmine_physics::scene::{Overrides, SEED};
 
+/// States from which runs are compared, at least.
+pub(super) const FEWEST: usize = 4;
 /// Starts differ where their means are as many bars apart: about three standard errors.
 const SURE: f64 = 1.5;
 /// How often a run that is too short is made again, twice as long each time.
@@ -33,6 +35,8 @@ pub(super) struct Mean {
     pub(super) row: f64,
     /// Wall seconds of a unit of time in the runs of the mean.
     pub(super) cost: f64,
+    /// Wall seconds of a step; not a number where the method takes none.
+    pub(super) step_cost: f64,
     /// Transients of all samples: the start is the same, or alike, and they differ by the noise of their detection.
     pub(super) transients: Vec<f64>,
     /// States along the run after the transient.
@@ -201,19 +205,25 @@ impl Work<'_> {
 }
 
 fn found(way: &Way, sample: Sample, known: Known) -> Mean {
-    let after = sample.states.into_iter().filter(|(time, _)| *time >= known.transient);
+    let after = |states: &&(f64, Particles)| states.0 >= known.transient;
+    // Where hardly any state is after the transient, those before it are better than none.
+    let first = match sample.states.iter().filter(after).count() {
+        0..FEWEST => 0,
+        count => sample.states.len() - count,
+    };
     Mean {
         known,
         way: way.label.clone(),
         start: sample.start,
         row: sample.row,
         cost: sample.cost,
+        step_cost: sample.cost * way.step.unwrap_or(f64::NAN),
         transients: vec![known.transient],
-        states: after.map(|(_, state)| state).collect(),
+        states: sample.states.into_iter().skip(first).map(|(_, state)| state).collect(),
     }
 }
 
-/// Whether a mean is hardly known: the run may still be on its way from the start.
+/// True if a mean is hardly known: the run may still be on its way from the start.
 fn is_hardly_known(sample: &Sample) -> bool {
     match sample.outcome {
         Outcome::TooShort { estimate, .. } => {
@@ -228,7 +238,7 @@ fn trials_for(seconds: f64) -> f64 {
     seconds / (2.0 * SHARES[1])
 }
 
-/// Whether a quantity still changes beyond the end of the scene's own run, or has died out by then: a later mean is another one.
+/// True if a quantity still changes beyond the end of the scene's own run, or has died out by then: a later mean is another one.
 fn changes(sample: &Sample) -> bool {
     if !sample.comes_beyond_end {
         return false;

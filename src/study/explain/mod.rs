@@ -55,7 +55,7 @@ use stripmine_physics::scene::Width;
 /// Seconds of trials at most, where nothing else is asked for, and where one is patient.
 pub const SECONDS: [f64; 2] = [10.0, 60.0];
 
-/// Wall seconds that a plan may take at most, where nothing else is said.
+/// The most wall seconds that a plan may take by default.
 pub const LIMIT: f64 = 3600.0;
 
 /// What is asked for.
@@ -224,7 +224,7 @@ pub fn explain(
         None if seconds == 0.0 => return Err(ExplainError::NothingKept),
         None => {
             let begun = trial.watch.now();
-            let findings = seen(case, target, seconds, trial)?;
+            let findings = seen(case, target, seconds, trial, &|_| {})?;
             let taken = trial.watch.now() - begun;
             if let Err(error) = kept.keep(case, &key, [seconds, taken], &findings) {
                 notice(&error);

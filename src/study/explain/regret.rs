@@ -109,7 +109,7 @@ fn judge(asked: &Asked, effort: Effort) -> Result<Judged, StudyError> {
     let (watch, never) = (Stopwatch::wall(), AtomicBool::new(false));
     let trial = Trial { watch: &watch, stop: &never };
     let by_trials = |seconds: f64| -> Result<(Findings, Plan), String> {
-        let found = seen(&case, &target, seconds, trial).map_err(|error| error.to_string())?;
+        let found = seen(&case, &target, seconds, trial, &|_| {}).map_err(|error| error.to_string())?;
         let made = planned(&case, &target, &found, "").map_err(|unreached| unreached.to_string())?;
         Ok((found, made))
     };

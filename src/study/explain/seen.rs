@@ -13,13 +13,18 @@ use crate::study::trial::Trial;
 ///
 /// # Errors
 /// [`ExplainError`] if every trial breaks, or the quantity comes to no mean.
-fn findings(work: &mut Work<'_>) -> Result<Findings, ExplainError> {
+fn findings(work: &mut Work<'_>, progress: &dyn Fn(f64)) -> Result<Findings, ExplainError> {
+    let begun = work.trial.watch.now();
+    let tell = |work: &Work<'_>| progress(((work.trial.watch.now() - begun) / work.seconds).min(1.0));
     let mut ways = work.timed_ways()?;
+    tell(work);
     if work.target.is_kept() {
         return work.drifts(ways);
     }
     let mut mean = work.mean(&mut ways)?;
+    tell(work);
     work.biases(&mut ways, &mean);
+    tell(work);
     let best = &ways[0];
     let one_thread = work.one_thread(best);
     let starts_differ = work.starts_differ(best, &mut mean);
@@ -44,9 +49,15 @@ fn findings(work: &mut Work<'_>) -> Result<Findings, ExplainError> {
 ///
 /// # Errors
 /// [`ExplainError`] if every trial breaks, or the quantity has no mean.
-pub fn seen(case: &Case, target: &Target, seconds: f64, trial: Trial<'_>) -> Result<Findings, ExplainError> {
+pub fn seen(
+    case: &Case,
+    target: &Target,
+    seconds: f64,
+    trial: Trial<'_>,
+    progress: &dyn Fn(f64),
+) -> Result<Findings, ExplainError> {
     let end = trial.watch.now() + seconds;
-    findings(&mut Work { case, target, seconds, end, trial, whole: None })
+    findings(&mut Work { case, target, seconds, end, trial, whole: None }, progress)
 }
 
 /// A plan from what was measured: the scene as it stands, where that is as good and no plan is quicker.

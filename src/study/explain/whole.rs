@@ -20,7 +20,7 @@ const DISPLACED: f64 = 1e-7;
 
 /// A mean with its cost.
 pub(super) struct Measured {
-    /// The mean, or why there is none.
+    /// The mean, or the reason why there is none.
     pub(super) known: Result<Known, String>,
     /// Wall seconds of a unit of time.
     pub(super) cost: f64,

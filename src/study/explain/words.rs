@@ -53,6 +53,9 @@ fn expected(plan: &Plan) -> String {
 fn parts(plan: &Plan, error: Expected) -> String {
     let Expected { bias, chance, most } = error;
     match plan.mean {
+        Some(_) if bias.below.is_infinite() => {
+            format!("{} by chance; the bias of the step is not known", share(plan, chance))
+        }
         Some(_) => format!(
             "{} (by the step {}, known to be below {}; by chance {})",
             share(plan, most),

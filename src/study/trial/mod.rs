@@ -5,7 +5,7 @@ mod pairs;
 mod sample;
 mod stopwatch;
 
-pub use pairs::{Compared, ENOUGH, Paired, pairs, part};
+pub use pairs::{Compared, Paired, TOGETHER, Window, pairs, part, steady};
 pub use sample::{Known, ROWS, Sample, Span};
 pub use stopwatch::Stopwatch;
 
@@ -18,7 +18,7 @@ use std::time::Duration;
 use stripmine_physics::method::{Failure, Prepared, Purpose, Simulation, Until};
 
 /// Repeats are timed over at least this long.
-const LONG_ENOUGH: Duration = Duration::from_millis(1);
+const LONG_TOGETHER: Duration = Duration::from_millis(1);
 
 /// How trials are timed, and ended before their time.
 #[derive(Clone, Copy, Debug)]
@@ -87,7 +87,7 @@ pub fn advance(
 /// Processor seconds of a run of that many steps, over all threads; short runs are made again and again.
 pub fn timed(prepared: &Prepared, course: Course, meter: &Meter<'_>) -> Result<f64, Failure> {
     let (mut spent, mut runs) = (Duration::ZERO, 0);
-    while spent < LONG_ENOUGH {
+    while spent < LONG_TOGETHER {
         let mut simulation = prepared.start(Purpose::Measurement)?;
         let before = cpu_time::ProcessTime::now();
         advance(simulation.as_mut(), course.steps, course.each, meter)?;

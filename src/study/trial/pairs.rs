@@ -1,50 +1,46 @@
-//! Runs of several configurations from the same states, held against each other.
+//! Pairs of runs: several configurations from common states, compared.
 //!
 //! Two runs from one state stay together for some Lyapunov times, so that the difference of their means over a short window scatters far less than
-//! the difference of two independent means. A window shows the drift away from the state of the reference; a steady state has all of it that the
-//! quantity's memory lets it have. With a correlation time τ the difference grows as 1 − exp(−t/τ), and its mean over a window w is the part
-//! g = 1 − (τ/w)(1 − exp(−w/τ)) of that in the steady state.
+//! the difference of two independent means. The change of the configuration moves a quantity at once by a, which it forgets with its memory τ, and in the
+//! course of that to its bias b in the steady state: d(t) = b (1 − exp(−t/τ)) + a exp(−t/τ). The mean over the second half of a window w is
+//! b g + a (1 − g) with g = 1 − (2τ/w)(exp(−w/2τ) − exp(−w/τ)), so that two windows tell both a and b.
 
 use super::Trial;
 use crate::study::first_line;
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
 use std::sync::atomic::Ordering;
-use stripmine_physics::averages::of_independent;
-use stripmine_physics::method::{Failure, Quantity, RunWarning, Simulation, Until};
+use stripmine_physics::method::{Failure, Kind, Quantity, RunWarning, Simulation, Until};
 
-/// Rows of the first window. Each next window is twice as long.
-const FIRST: u64 = 4;
-/// A window is long enough where differences scatter by this part of those of independent runs.
-pub const ENOUGH: f64 = 0.2;
+/// Windows at least: two tell a bias.
+const FEWEST: usize = 2;
+/// Runs end where they take this many times as long as they should.
+const LATE: f64 = 3.0;
+/// A window that shows a bias but for this part shows it whole.
+const ALL: f64 = 1e-3;
+/// Runs stay together where differences scatter by no more than this part of those of independent runs.
+pub const TOGETHER: f64 = 0.2;
 
 /// Configurations that are compared, the first of them the reference, and the states that each starts from.
 pub struct Compared<'c> {
     /// For each configuration its steps between two rows.
     pub steps: &'c [u64],
+    /// Rows of the first half of the first window. Each next window is twice as long.
+    pub first: u64,
     /// How many states there are.
     pub starts: usize,
     /// Begins a configuration from a state, by their numbers.
     pub begin: &'c (dyn Fn(usize, usize) -> Result<Box<dyn Simulation>, String> + Sync),
 }
 
-/// How a configuration differs from the reference over a window.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Difference {
-    /// Its mean less that of the reference.
-    pub value: f64,
-    /// Half the width of the interval of 95 %.
-    pub bar: f64,
-    /// Scatter of the difference over that of two independent runs.
-    pub scatter: f64,
-}
-
-/// Differences over a window.
+/// Differences from the reference over the second half of a window.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Window {
     /// Its length (time).
     pub time: f64,
-    /// One difference for each configuration after the reference.
-    pub differences: Vec<Difference>,
+    /// For each configuration after the reference and each start the mean less that of the reference.
+    pub differences: Vec<Vec<f64>>,
+    /// The largest scatter of these over that of independent runs.
+    pub scatter: f64,
 }
 
 /// Means over windows from the same states.
@@ -67,42 +63,44 @@ pub struct Broken {
     pub why: String,
 }
 
-/// A run with the mean of a quantity so far.
+/// A run with what it knows of a quantity at the end of a window, and at its middle.
 struct Course {
     simulation: Box<dyn Simulation>,
     rows: u64,
-    sum: f64,
-    first: f64,
-    mean: f64,
+    /// The time, and the sum of all rows, or the last value of a quantity that is counted.
+    end: [f64; 2],
+    middle: [f64; 2],
 }
 
 impl Course {
+    /// Goes on to a row, which ends a window; the end of the one before is its middle.
     fn advance(
         &mut self,
-        trial: &Trial<'_>,
-        steps: u64,
-        rows: u64,
+        (trial, is_over): (&Trial<'_>, &(dyn Fn() -> bool + Sync)),
+        (steps, rows): (u64, u64),
         (quantity, place): (Quantity, usize),
     ) -> Result<(), Failure> {
-        while self.rows < rows {
+        self.middle = self.end;
+        while self.rows < rows && !is_over() {
             self.rows += 1;
             let end = Until::Steps(self.rows * steps);
             trial.watch.during(self.simulation.as_mut(), |it| it.advance(&[end], trial.stop))?;
-            if trial.stop.load(Ordering::Relaxed) {
-                return Ok(());
-            }
             let value = self.simulation.row()[place];
-            self.sum += value;
-            self.mean = match quantity.kind.grows() {
-                true => (value - self.first) / self.simulation.clock().time,
-                false => self.sum / self.rows as f64,
-            };
+            let sum = if quantity.kind.grows() { value } else { self.end[1] + value };
+            self.end = [self.simulation.clock().time, sum];
         }
         Ok(())
     }
+
+    /// The mean over the second half of the window.
+    fn mean(&self, kind: Kind) -> f64 {
+        let [time, sum] = [0, 1].map(|at| self.end[at] - self.middle[at]);
+        if kind.grows() { sum / time } else { sum / (self.rows / 2) as f64 }
+    }
 }
 
-/// Runs configurations from the same states over windows that grow until differences scatter by [`ENOUGH`], or the next would end after some seconds.
+/// Runs configurations from the same states over at least two windows that grow until the next would end after some seconds: those in which runs
+/// stay together, and, where time is left, those of independent runs.
 ///
 /// # Errors
 /// [`Broken`] names the configuration that broke.
@@ -116,34 +114,34 @@ pub fn pairs(
     let quantity = (quantities[place], place);
     let begin = |at: usize, start: usize| {
         let mut simulation = (compared.begin)(at, start).map_err(|why| Broken { at, why })?;
-        let first = simulation.row()[place];
-        Ok(Course { simulation, rows: 0, sum: 0.0, first, mean: f64::NAN })
+        let value = simulation.row()[place];
+        let begun = [0.0, if quantity.0.kind.grows() { value } else { 0.0 }];
+        Ok(Course { simulation, rows: 0, end: begun, middle: begun })
     };
     let mut courses: Vec<Vec<Course>> = (0..compared.steps.len())
         .map(|at| (0..compared.starts).map(|start| begin(at, start)).collect::<Result<Vec<_>, Broken>>())
         .collect::<Result<_, Broken>>()?;
-    let mut windows: Vec<Window> = vec![];
-    let mut rows = FIRST;
-    loop {
+    let is_over = || trial.stop.load(Ordering::Relaxed) || trial.watch.now() - begun > LATE * seconds;
+    let mut advance = |rows: u64| {
         courses.par_iter_mut().enumerate().try_for_each(|(at, runs)| {
-            let run = |run: &mut Course| run.advance(trial, compared.steps[at], rows, quantity);
+            let run = |run: &mut Course| run.advance((trial, &is_over), (compared.steps[at], rows), quantity);
             let broken = |failure: Failure| Broken { at, why: first_line(&failure.what()) };
             runs.par_iter_mut().try_for_each(run).map_err(broken)
         })?;
-        if trial.stop.load(Ordering::Relaxed) {
-            break;
-        }
-        let means = means(&courses);
-        let time = courses[0].first().map_or(0.0, |run| run.simulation.clock().time);
-        let differences: Vec<Difference> = means[1..].iter().map(|own| difference(own, &means[0])).collect();
-        let window = Window { time, differences };
-        let largest = window.scatter();
-        windows.push(window);
-        // The next takes as long as all so far.
-        if largest > ENOUGH || 2.0 * (trial.watch.now() - begun) > seconds {
-            break;
-        }
+        let means = |runs: &Vec<Course>| runs.iter().map(|run| run.mean(quantity.0.kind)).collect();
+        let means: Vec<Vec<f64>> = courses.iter().map(means).collect();
+        Ok(Window::of(courses[0].first().map_or(0.0, |run| run.end[0]), &means))
+    };
+    let (mut windows, mut rows) = (vec![], compared.first);
+    advance(rows)?;
+    // The next takes as long as all so far.
+    while windows.len() < FEWEST || 2.0 * (trial.watch.now() - begun) <= seconds {
         rows *= 2;
+        let window = advance(rows)?;
+        if is_over() {
+            break;
+        }
+        windows.push(window);
     }
     let warned = |runs: &Vec<Course>| {
         let mut all: Vec<RunWarning> = vec![];
@@ -157,48 +155,58 @@ pub fn pairs(
     Ok(Paired { starts: compared.starts, windows, warnings: courses.iter().map(warned).collect() })
 }
 
-/// Means so far, for each configuration and start.
-fn means(courses: &[Vec<Course>]) -> Vec<Vec<f64>> {
-    courses.iter().map(|runs| runs.iter().map(|run| run.mean).collect()).collect()
-}
-
-/// The difference of means from the same states, and how it scatters beside two that are independent.
-fn difference(own: &[f64], reference: &[f64]) -> Difference {
-    let pairs: Vec<f64> = own.iter().zip(reference).map(|(own, other)| own - other).collect();
-    let [value, bar] = of_independent(&pairs).unwrap_or([f64::NAN, f64::INFINITY]);
-    let independent = variance(own) + variance(reference);
-    let scatter = if independent > 0.0 { (variance(&pairs) / independent).sqrt() } else { 0.0 };
-    Difference { value, bar, scatter }
-}
-
 fn variance(values: &[f64]) -> f64 {
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (values.len() as f64 - 1.0).max(1.0)
 }
 
 impl Window {
-    /// The largest scatter of a difference over that of independent runs.
-    pub fn scatter(&self) -> f64 {
-        self.differences.iter().map(|it| it.scatter).fold(0.0, f64::max)
+    /// Of means for each configuration, the reference first, and each start.
+    fn of(time: f64, means: &[Vec<f64>]) -> Window {
+        let reference = &means[0];
+        let less = |own: &Vec<f64>| own.iter().zip(reference).map(|(own, other)| own - other).collect();
+        let differences: Vec<Vec<f64>> = means[1..].iter().map(less).collect();
+        let scatters = differences.iter().zip(&means[1..]).map(|(pairs, own)| {
+            let independent = variance(own) + variance(reference);
+            if independent > 0.0 { (variance(pairs) / independent).sqrt() } else { 0.0 }
+        });
+        Window { time, scatter: scatters.fold(0.0, f64::max), differences }
     }
 }
 
-/// The part of the bias of a steady state that the mean over a window (time) has, for a quantity with a memory (time).
+/// The part of the bias of a steady state that the mean over the second half of a window (time) has, for a quantity with a memory (time).
 pub fn part(window: f64, memory: f64) -> f64 {
     let ratio = window / memory;
     // The expansion for short windows, whose terms cancel.
-    if ratio < 1e-4 { 0.5 * ratio } else { 1.0 + libm::expm1(-ratio) / ratio }
+    match ratio {
+        _ if ratio < 1e-4 => 0.75 * ratio,
+        _ if ratio.is_infinite() => 1.0,
+        _ => 1.0 + 2.0 / ratio * libm::exp(-0.5 * ratio) * libm::expm1(-0.5 * ratio),
+    }
+}
+
+/// The bias in the steady state and the change at once, by differences over a window and over the one before, of which each shows a part: `[b, a]`.
+pub fn steady([difference, before]: [f64; 2], [part, part_before]: [f64; 2]) -> [f64; 2] {
+    let more = part - part_before;
+    // A quantity without a memory shows all at once.
+    if 1.0 - part < ALL {
+        return [difference, 0.0];
+    }
+    [
+        (difference * (1.0 - part_before) - before * (1.0 - part)) / more,
+        (before * part - difference * part_before) / more,
+    ]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// By hand: 1 − (1 − e^{−2})/2 = 0.567668; half of the ratio for a window that is short; all of it for one that is long.
+    /// By hand: 1 − (e^{−1} − e^{−2}) = 0.767456; three quarters of the ratio for a window that is short; all of it for one that is long.
     #[test]
     fn a_window_has_a_part_of_the_difference() {
-        assert!((part(2.0, 1.0) - 0.567_667_641_6).abs() < 1e-10);
-        assert!((part(1e-6, 1.0) - 5e-7).abs() < 1e-12 && part(1e6, 1.0) > 0.999_99);
+        assert!((part(2.0, 1.0) - 0.767_455_842_1).abs() < 1e-9);
+        assert!((part(1e-6, 1.0) - 7.5e-7).abs() < 1e-12 && part(1e6, 1.0) > 0.999_99);
         assert_eq!(part(1.0, 0.0), 1.0);
         assert!((part(0.999e-4, 1.0) / part(1.001e-4, 1.0) - 0.999 / 1.001).abs() < 1e-4);
     }
@@ -206,8 +214,15 @@ mod tests {
     /// By hand: differences 0.1, 0.3 have a variance of 0.02; the means 1 and 3 one of 2, and 1.1 and 3.3 one of 2.42.
     #[test]
     fn a_difference_scatters_less_where_runs_stay_together() {
-        let found = difference(&[1.1, 3.3], &[1.0, 3.0]);
-        assert!((found.value - 0.2).abs() < 1e-12, "{found:?}");
+        let found = Window::of(1.0, &[vec![1.0, 3.0], vec![1.1, 3.3]]);
         assert!((found.scatter - f64::sqrt(0.02 / 4.42)).abs() < 1e-12, "{found:?}");
+        assert!((found.differences[0][1] - 0.3).abs() < 1e-12, "{found:?}");
+    }
+
+    /// By hand: b = 3 and a = −1 over windows that show a quarter and a half: 3/4 − 3/4 = 0 and 3/2 − 1/2 = 1.
+    #[test]
+    fn two_windows_tell_the_bias_and_the_change_at_once() {
+        assert_eq!(steady([1.0, 0.0], [0.5, 0.25]), [3.0, -1.0]);
+        assert_eq!(steady([1.0, 0.5], [1.0, 1.0]), [1.0, 0.0]);
     }
 }

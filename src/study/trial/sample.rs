@@ -32,11 +32,11 @@ pub struct Sample {
     pub seconds: f64,
     /// Time that it came to (time).
     pub time: f64,
-    /// What it says of the quantity.
+    /// Its mean of the quantity, or why there is none.
     pub outcome: Outcome,
-    /// Whether it came beyond the end of the scene's own run.
+    /// Set if it came beyond the end of the scene's own run.
     pub comes_beyond_end: bool,
-    /// What its checks warn of.
+    /// Warnings of its checks.
     pub warnings: Vec<RunWarning>,
     /// The quantity from stretch to stretch: when each ends (time), and its value there.
     pub series: Vec<[f64; 2]>,
@@ -46,7 +46,7 @@ pub struct Sample {
     pub states: Vec<(f64, Particles)>,
 }
 
-/// What a run says of a mean.
+/// A mean as a run knows it.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Known {
     /// The mean.
@@ -90,7 +90,7 @@ impl From<Estimate> for Known {
 }
 
 impl Sample {
-    /// What it says of the mean, where there is one, however roughly.
+    /// The mean, where there is one, however roughly known.
     pub fn known(&self) -> Option<Known> {
         match self.outcome {
             Outcome::Mean(estimate) | Outcome::TooShort { estimate: Some(estimate), .. } => {
@@ -106,7 +106,7 @@ impl Sample {
 }
 
 impl Sample {
-    /// What its checks warn of, in words.
+    /// Warnings of its checks, in words.
     pub fn warned(&self) -> String {
         self.warnings.iter().map(|warning| warning.message.as_str()).collect::<Vec<_>>().join("; ")
     }
@@ -203,7 +203,7 @@ impl Trial<'_> {
         let running = self.watch.now();
         // The start is a part of the time.
         let limit = seconds.map_or(f64::INFINITY, |seconds| seconds - (running - begun));
-        let mut states = States::new(prepared.particles().len());
+        let mut states = States::new(prepared);
         // Of the stretches once it is warm, and of all.
         let (mut warm, mut all) = ((0.0, 0.0), (0.0, 0.0));
         while self.watch.now() - running < limit
@@ -211,7 +211,11 @@ impl Trial<'_> {
             && !self.stop.load(Ordering::Relaxed)
         {
             let (from, before) = (simulation.clock().time, self.watch.now());
-            self.advance(simulation, stride)?;
+            let end = stride.after(&simulation.clock());
+            let moment = states.next(from);
+            self.advance_to(simulation, &[Until::Time(moment), end])?;
+            states.look(simulation, moment);
+            self.advance_to(simulation, &[end])?;
             let (gone, spent) = (simulation.clock().time - from, self.watch.now() - before);
             all = (all.0 + gone, all.1 + spent);
             let share = (self.watch.now() - running) / seconds.unwrap_or(f64::INFINITY);
@@ -219,7 +223,6 @@ impl Trial<'_> {
                 warm = (warm.0 + gone, warm.1 + spent);
             }
             rows.add(&simulation.row());
-            states.look(simulation);
         }
         let (gone, spent) = if warm.0 > 0.0 { warm } else { all };
         let row = self.timed_row(simulation);
@@ -241,7 +244,13 @@ impl Trial<'_> {
 
     /// Goes on for a stretch.
     fn advance(&self, simulation: &mut dyn Simulation, stretch: Until) -> Result<(), Failure> {
-        self.watch.during(simulation, |it| it.advance(&[stretch.after(&it.clock())], self.stop))
+        let end = stretch.after(&simulation.clock());
+        self.advance_to(simulation, &[end])
+    }
+
+    /// Goes on to the first of some moments.
+    fn advance_to(&self, simulation: &mut dyn Simulation, moments: &[Until]) -> Result<(), Failure> {
+        self.watch.during(simulation, |it| it.advance(moments, self.stop))
     }
 
     /// Wall seconds of a row, the least of some.
@@ -291,8 +300,10 @@ impl Trial<'_> {
     }
 }
 
-/// States along a run whose length is not known: once there are too many, every other one goes, and half as many come.
+/// States along a run whose length is not known: once there are too many, every other one goes, and half as many come. Where forces depend on
+/// time, they are taken at whole periods: a run from such a state begins at time 0, when forces are those of the state.
 struct States {
+    period: Option<f64>,
     most: usize,
     every: usize,
     seen: usize,
@@ -300,11 +311,21 @@ struct States {
 }
 
 impl States {
-    fn new(particles: usize) -> States {
-        States { most: (KEPT / particles.max(1)).clamp(4, STATES), every: 1, seen: 0, kept: vec![] }
+    fn new(prepared: &Prepared) -> States {
+        let most = (KEPT / prepared.particles().len().max(1)).clamp(4, STATES);
+        States { period: prepared.model.period(), most, every: 1, seen: 0, kept: vec![] }
     }
 
-    fn look(&mut self, simulation: &dyn Simulation) {
+    /// The moment of the next state (time): now, or the end of the period that runs.
+    fn next(&self, now: f64) -> f64 {
+        self.period.map_or(now, |period| period * (now / period).floor() + period)
+    }
+
+    /// Takes the state, if the run has come to the moment.
+    fn look(&mut self, simulation: &dyn Simulation, moment: f64) {
+        if simulation.clock().time < moment {
+            return;
+        }
         self.seen += 1;
         if !self.seen.is_multiple_of(self.every) {
             return;

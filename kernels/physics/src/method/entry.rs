@@ -355,4 +355,9 @@ pub trait Startable: Send + Sync {
 
     /// The same scene with other positions and velocities at the start: of the same particles in the same order.
     fn started_from(&self, particles: Particles) -> Prepared;
+
+    /// Period of the forces that depend on time (time): of walls or a floor that move. None where no force does.
+    fn period(&self) -> Option<f64> {
+        None
+    }
 }

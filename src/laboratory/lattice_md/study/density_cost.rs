@@ -40,7 +40,7 @@ pub(super) struct ListFigures {
 }
 
 impl ListFigures {
-    /// Elements of vectors of a length of lists, with so many discs; none if the length is not one of lists.
+    /// Elements of a vector as long as lists, by the number of discs; none of any other length.
     pub(super) fn length(&self, length: Length, discs: f64) -> Option<f64> {
         match length {
             Length::Candidates => Some(self.candidates * discs),
