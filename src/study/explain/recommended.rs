@@ -2,6 +2,7 @@
 
 use super::bias::Off;
 use serde::Serialize;
+use stripmine_physics::scene::Overrides;
 
 /// From the least to the most, with what is likely in between.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -78,7 +79,7 @@ pub struct Plan {
     /// By how much the mean of another start differs, where that was seen.
     pub starts_differ: Option<f64>,
     /// The overrides that make the plan of the scene.
-    pub overrides: Vec<String>,
+    pub overrides: Overrides,
     /// What the scene's own values cost and reach.
     pub own: Option<Own>,
     /// What the scene may be modelled without.

@@ -7,7 +7,7 @@ use super::sample::{Known, Sample};
 use super::whole::{RUNS, Warned};
 use stripmine_physics::averages::Outcome;
 use stripmine_physics::number::significant;
-use stripmine_physics::scene::{Overrides, SEED};
+use stripmine_physics::scene::SEED;
 
 /// Starts differ where their means are as many bars apart: about three standard errors.
 const SURE: f64 = 1.5;
@@ -112,10 +112,8 @@ impl Work<'_> {
     pub(super) fn starts_differ(&self, way: &Way, reference: &mut Reference) -> Option<f64> {
         // Of whole runs each has another.
         let seed = self.case.prepared.seed.filter(|_| self.whole.is_none())?;
-        let another = Way {
-            overrides: [&way.overrides[..], &Overrides::new().set(&SEED, seed.wrapping_add(1))].concat(),
-            ..way.clone()
-        };
+        let another =
+            Way { overrides: way.overrides.clone().set(&SEED, seed.wrapping_add(1)), ..way.clone() };
         let sample =
             self.sampled(&another, way.step.map(|step| 0.5 * step), SHARES[4] * self.seconds).ok()?;
         let known = sample.known()?;

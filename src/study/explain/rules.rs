@@ -27,7 +27,7 @@ fn findings(case: &Case, ways: &[Made<'_>], reference: Known) -> Findings {
     let way = |(choice, cost, bias): &Made<'_>| Way {
         label: choice.label(),
         settings: choice.settings().map(|(axis, name)| (axis.to_owned(), name.to_owned())).collect(),
-        overrides: choice.overrides().collect(),
+        overrides: choice.overrides(),
         cost: Some(*cost),
         step: case.step(),
         bound: None,
@@ -139,7 +139,8 @@ fn a_plan_expects_no_more_than_the_error_asked_for() {
                         let made = plan(&case, &asking(&case, error), &found, "trials").unwrap();
                         assert!(made.expected.most <= error * (1.0 + 1e-12), "{what}: {:?}", made.expected);
                         let given = |key: &str| {
-                            let text = made.overrides.iter().find_map(|it| it.strip_prefix(key));
+                            let texts = made.overrides.texts();
+                            let text = texts.iter().find_map(|it| it.strip_prefix(key));
                             text.map(|text| text.parse::<f64>().unwrap())
                         };
                         let steps = given("run.steps=").zip(given("integrator.dt="));

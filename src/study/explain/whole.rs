@@ -10,7 +10,7 @@ use stripmine_physics::averages::of_independent;
 use stripmine_physics::method::Prepared;
 use stripmine_physics::number::significant;
 use stripmine_physics::particles::Particles;
-use stripmine_physics::scene::{Overrides, SEED};
+use stripmine_physics::scene::SEED;
 
 /// Runs of which a mean and its scatter are, at least and at most.
 pub(super) const RUNS: [usize; 2] = [3, 16];
@@ -108,10 +108,7 @@ impl Work<'_> {
     /// The scene from a start of another number, the first its own.
     fn another_start(&self, way: &Way, step: Option<f64>, number: u64) -> Result<Prepared, String> {
         match self.case.prepared.seed {
-            Some(seed) => {
-                let seeded = Overrides::new().set(&SEED, seed.wrapping_add(number));
-                self.prepared(&[&way.overrides[..], &seeded].concat(), step)
-            }
+            Some(seed) => self.prepared(&way.overrides.clone().set(&SEED, seed.wrapping_add(number)), step),
             None if number == 0 => self.prepared(&way.overrides, step),
             None => {
                 let prepared = self.prepared(&way.overrides, step)?;
