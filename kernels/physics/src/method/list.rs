@@ -115,3 +115,17 @@ fn wrong_target(values: &Values, entry: &Entry) -> Option<SceneError> {
         None => error,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of all presets two have moving walls: a box shaken ten times a second, and a floor with 1.5 vibrations in a unit of time.
+    #[test]
+    fn periods_are_those_of_moving_walls() {
+        let presets = METHODS.iter().flat_map(|method| method.vocabulary.presets).map(|preset| preset.name);
+        let period = |name| Some((name, load(name, &[], METHODS).unwrap().0.model.period()?));
+        let found: Vec<(&str, f64)> = presets.filter_map(period).collect();
+        assert_eq!(found, [("shaken-box", 0.1), ("vibrating-floor", 1.0 / 1.5)]);
+    }
+}

@@ -162,4 +162,8 @@ impl Startable for Checked {
         debug_assert!(particles.all().iter().all(|disc| disc.kind == Kind::Grain));
         Checked { particles: Arc::new(particles), ..self.clone() }.prepared()
     }
+
+    fn period(&self) -> Option<f64> {
+        self.scene.law.floor.map(|floor| 1.0 / floor.frequency)
+    }
 }

@@ -26,7 +26,7 @@ use crate::method::{
 use crate::number::significant;
 use crate::observe::{Observation, Scenery, Sums};
 use crate::particles::{Particles, States};
-use crate::scene::{Precision, SceneErrors};
+use crate::scene::{Precision, SceneErrors, WallMotion};
 use crate::structure::PairForces;
 use crate::words::Words;
 use serde::Serialize;
@@ -164,6 +164,13 @@ impl Startable for Checked {
     fn started_from(&self, particles: Particles) -> Prepared {
         let estimates = Estimates::of(&self.scene, &particles);
         Checked { particles, estimates, ..self.clone() }.prepared()
+    }
+
+    fn period(&self) -> Option<f64> {
+        match self.scene.walls {
+            WallMotion::Oscillating { frequency, .. } => Some(1.0 / frequency),
+            WallMotion::Fixed => None,
+        }
     }
 }
 
