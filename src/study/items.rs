@@ -45,8 +45,11 @@ const TIMED: &[&[(&str, &str, &[&str])]] = &[
 /// A fluid of particles in a bath.
 const FLUID: &[&str] = &["law.kind=wca", "particles.count=300", "domain.sides=[20.7, 20.7]", "run.time=5"];
 
-/// Maps by name, preset, overrides and the parameter that is varied, the first of each method also where time is short.
-const MAPPED: &[&[(&str, &str, &[&str], &str)]] = &[
+/// Name, preset, overrides and the parameter that is varied.
+type Mapped = (&'static str, &'static str, &'static [&'static str], &'static str);
+
+/// Maps, the first of each method also where time is short.
+const MAPPED: &[&[Mapped]] = &[
     &[
         ("two-discs", "two-discs", &["run.time=3.2"], "damping"),
         ("dense-gas", "dense-gas", &["particles.count=100"], "speed"),
