@@ -4,7 +4,7 @@ use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Registers;
 use stripmine_kernels::integrator::langevin::{Baoab, Bath, Stochastic};
 use stripmine_kernels::integrator::{Context, DERIVATIVES, Draws, Inertia, Scheme};
-use stripmine_kernels::noise::{Purpose, draw};
+use stripmine_kernels::noise::{NoiseSource, Purpose, draw};
 use stripmine_kernels::sweep::fast::{Advance, DisplacementLimit, Motion};
 
 /// Moves discs by dt times noise, along x by the first number and along y by the second.
@@ -76,7 +76,7 @@ fn places<C: Scheme>(
 
 fn motion<C>(scheme: C, dt: f64) -> Motion<C> {
     let inertia = Inertia::Equal { inverse_mass: INVERSE_MASS, inverse_inertia: 1.0 };
-    Motion { scheme, dt, inertia, gravity: [0.0; 2], seed: SEED }
+    Motion { scheme, dt, inertia, gravity: [0.0; 2], noise: NoiseSource::new(SEED) }
 }
 
 #[test]
@@ -95,6 +95,39 @@ fn noise_depends_on_seed_disc_and_step_alone() {
         for ids in [&in_order, &backwards] {
             let found = places(&motion(Diffusion, DT), |_| 0.0, (ids, STEPS), set);
             assert!(found == expected, "{}", set.name());
+        }
+    }
+}
+
+/// Free discs with steps three times as long: each number is made of three, by hand as the recursion v' = c v + s ξ has them.
+#[test]
+fn numbers_of_a_long_step_are_made_of_those_of_its_parts() {
+    const PARTS: u32 = 3;
+    let ids: Vec<u32> = (0..600).collect();
+    let noise = NoiseSource { seed: SEED, parts: PARTS };
+    let numbers = |id: u32, step: u64| [3 * step - 2, 3 * step - 1, 3 * step].map(|part| normals(id, part));
+    for set in InstructionSet::available() {
+        let sums = Motion { noise, ..motion(Diffusion, DT) };
+        let exact = Motion { noise, ..motion(Baoab::new(BATH, DT, 1.0 / INVERSE_MASS), DT) };
+        let [sums, exact] =
+            [places(&sums, |_| 0.0, (&ids, STEPS), set), places(&exact, |_| 0.0, (&ids, STEPS), set)];
+        for &id in &ids {
+            let [decay, long] = [DT / 3.0, DT].map(|time| (-BATH.friction * INVERSE_MASS * time).exp());
+            let spread = |decay: f64| (BATH.temperature * INVERSE_MASS * (1.0 - decay * decay)).sqrt();
+            for axis in 0..2 {
+                let (mut place, mut r, mut v) = (0.0, 0.0, 0.0);
+                for step in 1..=STEPS {
+                    let [a, b, c] = numbers(id, step).map(|pair| pair[axis]);
+                    place += DT * (a + b + c) / 3f64.sqrt();
+                    r += 0.5 * DT * v;
+                    let of_parts = spread(decay) * (decay * decay * a + decay * b + c);
+                    v = long * v + of_parts;
+                    r += 0.5 * DT * v;
+                }
+                let (found, by_hand) = ([sums[id as usize][axis], exact[id as usize][axis]], [place, r]);
+                let is_near = |(found, by_hand): (f64, f64)| (found - by_hand).abs() < 1e-13;
+                assert!(found.into_iter().zip(by_hand).all(is_near), "{}: {found:?} {by_hand:?}", set.name());
+            }
         }
     }
 }

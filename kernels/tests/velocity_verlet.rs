@@ -4,6 +4,7 @@ use stripmine_kernels::integrator::gear::STATE;
 use stripmine_kernels::integrator::velocity_verlet::{Drift, Kick, VelocityVerlet};
 use stripmine_kernels::integrator::{Inertia, Scheme};
 use stripmine_kernels::isa::{Array, Memory, Slot};
+use stripmine_kernels::noise::NoiseSource;
 use stripmine_kernels::sweep::fast::{Advance, DisplacementLimit, Motion};
 use stripmine_kernels::{Execution, InstructionSet, Program};
 
@@ -71,7 +72,7 @@ fn by_programs(state: &mut State, dt: f64, gravity: [f64; 2], steps: usize, forc
 /// By the fast pass, which leaves predicted states; the last one is corrected as an observer does it.
 fn by_passes(state: &State, dt: f64, gravity: [f64; 2], steps: u64) -> [[Vec<f64>; 2]; FREEDOMS] {
     let discs = state[0][0].len();
-    let motion = Motion { scheme: VelocityVerlet, dt, inertia: INERTIA, gravity, seed: 0 };
+    let motion = Motion { scheme: VelocityVerlet, dt, inertia: INERTIA, gravity, noise: NoiseSource::new(0) };
     let mut columns: Vec<Vec<Vec<f64>>> = state.iter().map(|row| row[..2].to_vec()).collect();
     // At the start the discs have the accelerations given, and no force gives gravity back.
     let mut sums: Vec<Vec<f64>> = (0..FREEDOMS)

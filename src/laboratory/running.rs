@@ -6,10 +6,11 @@ use std::sync::atomic::AtomicBool;
 use stripmine_physics::domain::Domain;
 use stripmine_physics::method::observed::{UnknownName, observed};
 use stripmine_physics::method::{self, Entry, METHODS, Prepared, Purpose, Quantity, Simulation, Until, load};
+use stripmine_physics::scene::Overrides;
 
 /// A preset with overrides.
-pub fn prepared(preset: &str, overrides: &[String]) -> Result<Prepared, StudyError> {
-    Ok(load(preset, overrides, METHODS)?.0)
+pub fn prepared(preset: &str, overrides: &Overrides) -> Result<Prepared, StudyError> {
+    Ok(load(preset, &overrides.texts(), METHODS)?.0)
 }
 
 /// Does something on a number of threads.
@@ -46,14 +47,14 @@ pub struct Running {
 
 impl Running {
     /// A preset with overrides, at its start, to be observed.
-    pub fn begin(preset: &str, overrides: &[String]) -> Result<Running, StudyError> {
-        let (prepared, method) = load(preset, overrides, METHODS)?;
+    pub fn begin(preset: &str, overrides: &Overrides) -> Result<Running, StudyError> {
+        let (prepared, method) = load(preset, &overrides.texts(), METHODS)?;
         Running::of(method, &prepared, Purpose::Run)
     }
 
     /// A preset with overrides, at its start, of which nothing is followed that the motion does not need.
-    pub fn timed(preset: &str, overrides: &[String]) -> Result<Running, StudyError> {
-        let (prepared, method) = load(preset, overrides, METHODS)?;
+    pub fn timed(preset: &str, overrides: &Overrides) -> Result<Running, StudyError> {
+        let (prepared, method) = load(preset, &overrides.texts(), METHODS)?;
         Running::of(method, &prepared, Purpose::Measurement)
     }
 

@@ -2,17 +2,16 @@
 
 use super::Choice;
 use stripmine_physics::method::{Entry, Methods, Prepared, Until, prepare, vocabularies};
-use stripmine_physics::scene::{SceneErrors, Values};
+use stripmine_physics::scene::{Overrides, SceneErrors, Values};
 
 /// A scene with what its method states of the ways to run it.
 pub struct Case {
     what: String,
-    /// Its text, read once, as its start file is: all trials are of the same scene, whatever becomes of the files.
-    text: String,
+    /// Overrides as a user typed them; the values have them.
     overrides: Vec<String>,
     methods: Methods,
     pub entry: &'static Entry,
-    /// The values of the scene as they were given.
+    /// The values of the scene as they were given. Scene and start file are read once: all trials are of the same scene, whatever becomes of the files.
     pub values: Values,
     /// The scene as it was given.
     pub prepared: Prepared,
@@ -27,18 +26,18 @@ impl Case {
     /// [`SceneErrors`] if the scene is bad, or takes more memory than there is.
     pub fn load(what: &str, overrides: &[String], methods: Methods) -> Result<Case, SceneErrors> {
         let text = Values::text(what, &vocabularies(methods))?;
-        Case::of(what, text, overrides, methods, None)
+        Case::of(what, &text, overrides, methods, None)
     }
 
     /// With the start file as another scene has read it, where one is given.
     fn of(
         what: &str,
-        text: String,
+        text: &str,
         overrides: &[String],
         methods: Methods,
         start: Option<&Values>,
     ) -> Result<Case, SceneErrors> {
-        let values = Values::parse(what, &text, overrides, &vocabularies(methods))?;
+        let values = Values::parse(what, text, overrides, &vocabularies(methods))?;
         let values = match start {
             Some(other) => values.with_start_of(other),
             None => values.sharing_start(),
@@ -48,7 +47,6 @@ impl Case {
         let own = Choice::own(entry.axes, &prepared);
         Ok(Case {
             what: what.to_owned(),
-            text,
             overrides: overrides.to_vec(),
             methods,
             entry,
@@ -79,28 +77,12 @@ impl Case {
     }
 
     /// The same scene with further overrides.
-    pub fn prepared_with(&self, more: &[String]) -> Result<Prepared, SceneErrors> {
-        self.prepared_in(&Choice::own(&[], &self.prepared), more)
-    }
-
-    /// The same scene in a way to run it, with further overrides.
-    pub fn prepared_in(&self, choice: &Choice, more: &[String]) -> Result<Prepared, SceneErrors> {
-        Ok(prepare(self.values_in(choice, more)?, self.methods)?.0)
-    }
-
-    /// Its values in a way to run it, with further overrides.
-    ///
-    /// # Errors
-    /// [`SceneErrors`] if an override is none of the method's.
-    pub fn values_in(&self, choice: &Choice, more: &[String]) -> Result<Values, SceneErrors> {
-        let chosen: Vec<String> = choice.overrides().collect();
-        let overrides = [&self.overrides[..], &chosen, more].concat();
-        let values = Values::parse(&self.what, &self.text, &overrides, &vocabularies(self.methods))?;
-        Ok(values.with_start_of(&self.values))
+    pub fn prepared_with(&self, more: &Overrides) -> Result<Prepared, SceneErrors> {
+        Ok(prepare(self.values.with(more)?, self.methods)?.0)
     }
 
     /// A scene by the same methods, from the same start file if it has one.
-    pub fn beside(&self, text: String) -> Result<Case, SceneErrors> {
+    pub fn beside(&self, text: &str) -> Result<Case, SceneErrors> {
         Case::of(&self.what, text, &[], self.methods, Some(&self.values))
     }
 }
@@ -112,6 +94,7 @@ mod tests {
     use stripmine_physics::io::extxyz::{Frame, write};
     use stripmine_physics::method::{METHODS, load};
     use stripmine_physics::particles::Particles;
+    use stripmine_physics::scene::TIME;
 
     /// A scene and its start file may change or go once they are read: every preparation has the discs of the beginning, and so has a scene beside it.
     #[test]
@@ -140,8 +123,9 @@ mod tests {
         fs::write(&scene, &text).unwrap();
         let case = Case::load(scene.to_str().unwrap(), &[], METHODS).unwrap();
         let checksum = case.prepared.particles().checksum();
-        let again =
-            |case: &Case| case.prepared_with(&["run.time=2.0".to_owned()]).unwrap().particles().checksum();
+        let again = |case: &Case| {
+            case.prepared_with(&Overrides::new().set(&TIME, 2.0)).unwrap().particles().checksum()
+        };
         // Another frame, then none.
         let mut others = gas.particles().clone();
         others.all_mut()[0].velocity[0] += 1.0;
@@ -151,6 +135,6 @@ mod tests {
         fs::remove_file(&start).unwrap();
         fs::remove_file(&scene).unwrap();
         assert_eq!(again(&case), checksum);
-        assert_eq!(again(&case.beside(text).unwrap()), checksum);
+        assert_eq!(again(&case.beside(&text).unwrap()), checksum);
     }
 }

@@ -1,6 +1,7 @@
 //! A way to run a scene: a setting for each axis that its method states.
 
 use stripmine_physics::method::{Axis, Decides, Prepared, Setting};
+use stripmine_physics::scene::Overrides;
 
 /// A setting for each axis.
 #[derive(Clone, Debug)]
@@ -57,8 +58,8 @@ impl Choice {
     }
 
     /// The overrides that it makes in a scene.
-    pub fn overrides(&self) -> impl Iterator<Item = String> {
-        self.0.iter().flat_map(|(_, setting)| setting.overrides.iter().map(|&text| text.to_owned()))
+    pub fn overrides(&self) -> Overrides {
+        self.0.iter().fold(Overrides::new(), |made, (_, setting)| made.and(&(setting.overrides)()))
     }
 
     /// The setting that decides the order of convergence.

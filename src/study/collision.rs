@@ -12,6 +12,7 @@ use super::subject::Subject;
 use super::trial::{Course, follow};
 use crate::results::{Journal, JournalError, Meter};
 use stripmine_physics::method::{Decides, Purpose};
+use stripmine_physics::scene::Overrides;
 
 /// Outcomes of a collision.
 pub const OUTCOMES: [&str; 2] = ["restitution", "deflection"];
@@ -132,7 +133,7 @@ fn mean(values: &[[f64; 2]]) -> [f64; 2] {
 
 /// What comes out of a collision whose discs fly a part of a step longer before it; none where it breaks or does not end.
 fn outcome(subject: &Subject, choice: &Choice, step: f64, phase: f64, meter: &Meter<'_>) -> Option<[f64; 2]> {
-    let scene = subject.prepared_as(choice, step, &[]).ok()?;
+    let scene = subject.prepared_as(choice, step, &Overrides::new()).ok()?;
     let domain = scene.domain;
     let late = displaced(scene.particles(), &domain, |_, disc| {
         disc.planar_velocity().map(|part| -phase * step * part)

@@ -12,6 +12,7 @@ use stripmine_physics::domain::Domain;
 use stripmine_physics::method::{Purpose, Simulation};
 use stripmine_physics::near::Near;
 use stripmine_physics::particles::Particles;
+use stripmine_physics::scene::Overrides;
 
 /// Looks at a run at most: contacts that begin and end between two looks are not seen.
 const LOOKS: u64 = 1024;
@@ -44,7 +45,7 @@ pub fn encounters(
     let of_contacts = subject.trials.has_contacts;
     let domain = subject.prepared.domain;
     let (mut contacts, mut turns) = (Contacts::new(domain), Turns::default());
-    if let Ok(scene) = subject.prepared_as(choice, step, &[]) {
+    if let Ok(scene) = subject.prepared_as(choice, step, &Overrides::new()) {
         let steps = (duration / step).round() as u64;
         let course = Course { steps, looks: LOOKS.min(steps), each };
         let look = |simulation: &dyn Simulation| {

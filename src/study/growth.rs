@@ -10,6 +10,7 @@ use crate::statistics::slope;
 use serde::{Deserialize, Serialize};
 use stripmine_physics::method::{Decides, Failure, Prepared, Purpose, Simulation};
 use stripmine_physics::number::significant;
+use stripmine_physics::scene::Overrides;
 
 /// How far particles of the second run are moved at the start (the method's length).
 pub const DISTURBANCE: f64 = 1e-9;
@@ -122,7 +123,8 @@ fn at_step(
     each: f64,
     meter: &Meter<'_>,
 ) -> Result<Growth, String> {
-    let prepare = |step| subject.prepared_as(choice, step, &[]).map_err(|errors| errors.to_string());
+    let prepare =
+        |step| subject.prepared_as(choice, step, &Overrides::new()).map_err(|errors| errors.to_string());
     let (base, halved) = (prepare(step)?, prepare(0.5 * step)?);
     let domain = base.domain;
     let length = (subject.trials.length.of)(base.particles());

@@ -31,21 +31,66 @@ fn plans_judged(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
     Ok(judged::made(&all, effort))
 }
 
-/// The scenes that methods state for it.
+/// Scenes by name, preset and overrides as one types them, the first of each method also where time is short.
+const TIMED: &[&[(&str, &str, &[&str])]] = &[
+    &[
+        ("two-discs", "two-discs", &["run.time=3.2"]),
+        ("dense-gas", "dense-gas", &["particles.count=100"]),
+        ("pipe-small", "pipe-small", &[]),
+        ("shaken-box", "shaken-box", &[]),
+    ],
+    &[("kepler", "kepler", &["run.time=31.4"]), ("figure-eight", "figure-eight", &[])],
+];
+
+/// A fluid of particles in a bath.
+const FLUID: &[&str] = &["law.kind=wca", "particles.count=300", "domain.sides=[20.7, 20.7]", "run.time=5"];
+
+/// Name, preset, overrides and the parameter that is varied.
+type Mapped = (&'static str, &'static str, &'static [&'static str], &'static str);
+
+/// Maps, the first of each method also where time is short.
+const MAPPED: &[&[Mapped]] = &[
+    &[
+        ("two-discs", "two-discs", &["run.time=3.2"], "damping"),
+        ("dense-gas", "dense-gas", &["particles.count=100"], "speed"),
+        ("pipe-small", "pipe-small", &[], "damping"),
+        ("shaken-box", "shaken-box", &[], "stiffness"),
+        (
+            "wide-sizes",
+            "wide-sizes",
+            &[
+                "domain.sides=[14.0, 14.0]",
+                "search.by=lattice",
+                "search.mask=5",
+                "particles.radius_spread=0.02",
+                "particles.radius_cut=0.04",
+            ],
+            "size-ratio",
+        ),
+        (
+            "single-precision",
+            "dense-gas",
+            &["particles.count=100", "machine.precision=f32"],
+            "distance-from-origin",
+        ),
+    ],
+    &[
+        ("langevin-strength", "langevin-dense", FLUID, "strength"),
+        ("langevin-friction", "langevin-dense", FLUID, "friction"),
+    ],
+    &[("kepler", "kepler", &["run.time=62.8"], "eccentricity")],
+];
+
+/// Speed against accuracy of the scenes listed.
 fn speed_against_accuracy(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
     let progress = lab.progress;
-    // Of each method the first scene alone, where time is short.
     let most = if effort == Size::Quick { 1 } else { usize::MAX };
     let (budget, repeats, phases) = match effort {
         Size::Quick => (0.7, 1, 4),
         Size::Full | Size::All => (12.0, 3, 16),
     };
     let effort = work_precision::Effort { budget, repeats, phases, machine: None };
-    let shown: Vec<_> = METHODS
-        .iter()
-        .filter_map(|method| method.trials)
-        .flat_map(|trials| trials.shown.iter().take(most))
-        .collect();
+    let shown: Vec<_> = TIMED.iter().flat_map(|of_method| of_method.iter().take(most)).collect();
     let mut scenes = vec![];
     for (at, (name, preset, overrides)) in shown.iter().enumerate() {
         let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
@@ -56,7 +101,7 @@ fn speed_against_accuracy(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> 
     Ok(work_precision::made(&scenes))
 }
 
-/// The maps that methods state for it.
+/// Stability of the scenes listed.
 fn where_it_works(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
     let progress = lab.progress;
     let most = if effort == Size::Quick { 1 } else { usize::MAX };
@@ -64,18 +109,15 @@ fn where_it_works(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
         Size::Quick => stability::Effort { budget: 6.0, size: 6, seeds: 1, tolerance: 0.2 },
         Size::Full | Size::All => stability::Effort { budget: 16.0, size: 16, seeds: 2, tolerance: 0.05 },
     };
-    let mapped: Vec<_> = METHODS
-        .iter()
-        .filter_map(|method| method.trials)
-        .flat_map(|trials| trials.mapped.iter().take(most))
-        .collect();
     // Every scene is read before the first takes its time.
     let mut surveys = vec![];
-    for map in mapped {
-        let overrides: Vec<String> = map.overrides.iter().map(|&text| text.to_owned()).collect();
-        let subject = Subject::load(map.preset, &overrides, METHODS)?;
-        let over = Over::of(&subject, Some(map.parameter), None)?;
-        surveys.push((map.name.to_owned(), subject, over));
+    for &(name, preset, overrides, parameter) in
+        MAPPED.iter().flat_map(|of_method| of_method.iter().take(most))
+    {
+        let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
+        let subject = Subject::load(preset, &overrides, METHODS)?;
+        let over = Over::of(&subject, Some(parameter), None)?;
+        surveys.push((name.to_owned(), subject, over));
     }
     let (mut maps, all) = (vec![], surveys.len() as f64);
     for (at, (name, subject, over)) in surveys.into_iter().enumerate() {

@@ -55,8 +55,8 @@ impl Subject {
     }
 
     /// The same scene in a way to run it, with a step (time) and further overrides.
-    pub fn prepared_as(&self, choice: &Choice, step: f64, more: &[String]) -> Result<Prepared, SceneErrors> {
-        self.prepared_in(choice, &self.at_step(step, more))
+    pub fn prepared_as(&self, choice: &Choice, step: f64, more: &Overrides) -> Result<Prepared, SceneErrors> {
+        self.prepared_with(&self.as_of(choice, step, more))
     }
 
     /// The same, whatever is foreseen of the step.
@@ -64,14 +64,13 @@ impl Subject {
         &self,
         choice: &Choice,
         step: f64,
-        more: &[String],
+        more: &Overrides,
     ) -> Result<Prepared, SceneErrors> {
-        (self.trials.at_any_step)(self.values_in(choice, &self.at_step(step, more))?)
+        (self.trials.at_any_step)(self.values.with(&self.as_of(choice, step, more))?)
     }
 
-    fn at_step(&self, step: f64, more: &[String]) -> Vec<String> {
-        let step = Overrides::new().set(self.trials.step, step);
-        [&step, more].concat()
+    fn as_of(&self, choice: &Choice, step: f64, more: &Overrides) -> Overrides {
+        choice.overrides().set(self.trials.step, step).and(more)
     }
 
     /// The setting of the axis that decides the order, of a way to run it.

@@ -14,9 +14,9 @@ use stripmine_physics::method::{
 };
 use stripmine_physics::particles::Particles;
 use stripmine_physics::scene::{
-    self, Binding, DISC_RIVALS, DISCS, DT, DURATION, HEADING, KeySet, OUTPUT, Output, PLANAR_DOMAIN, Preset,
-    Read, Run, STEP, STEPPED_RUN, SceneErrors, Start, TARGETED, Values, Vocabulary, WallMotion, Write,
-    bind_heading, disagreements, too_many_steps,
+    self, Binding, DISC_RIVALS, DISCS, DT, DURATION, HEADING, KeySet, OUTPUT, Output, Overrides,
+    PLANAR_DOMAIN, Preset, Read, Run, STEP, STEPPED_RUN, SceneErrors, Start, TARGETED, Values, Vocabulary,
+    WallMotion, Write, bind_heading, disagreements, too_many_steps,
 };
 use stripmine_physics::start::{Stated, make, outside};
 
@@ -49,7 +49,7 @@ pub static ENTRY: Entry = Entry {
     axes: &[Axis {
         name: "integrator",
         decides: Decides::Order,
-        settings: &[Setting { name: "drift", overrides: &[] }],
+        settings: &[Setting { name: "drift", overrides: Overrides::new }],
         own: |_| Some("drift".to_owned()),
     }],
     twins: &[],
@@ -68,10 +68,8 @@ static TRIALS: Trials = Trials {
     fluctuating: &[],
     inertia: |_| None,
     theory: |_, _, _| None,
-    shown: &[],
     parameters: &[],
     at_any_step: ENTRY.prepare,
-    mapped: &[],
 };
 
 static VOCABULARY: Vocabulary = Vocabulary {

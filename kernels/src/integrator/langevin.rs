@@ -86,6 +86,14 @@ impl Scheme for Baoab {
     const CARRIED: usize = 2;
     const DRAWS: Draws = Draws::InPredictor;
 
+    /// The bath is exact, so the noise of a part has decayed by the end of the step: v' = c v + s Σ_j c^((p−1−j)/p) ξ_j / norm.
+    fn noise_weights(&self, parts: u32) -> Vec<f64> {
+        let of_part = libm::pow(self.kept, 1.0 / f64::from(parts));
+        let decayed: Vec<f64> = (0..parts).rev().map(|left| libm::pow(of_part, f64::from(left))).collect();
+        let norm = decayed.iter().map(|weight| weight * weight).sum::<f64>().sqrt();
+        decayed.into_iter().map(|weight| weight / norm).collect()
+    }
+
     #[inline(always)]
     fn scales(_: f64) -> [f64; DERIVATIVES] {
         [1.0; DERIVATIVES]

@@ -157,6 +157,10 @@ pub trait Scheme: Copy + Send + Sync {
     fn begin<R: Registers>(&self, context: &Context<R>, row: &mut [R::V; DERIVATIVES], acceleration: R::V);
     /// Corrects the predicted row with the acceleration found (length/time²).
     fn correct<R: Registers>(&self, context: &Context<R>, row: &mut [R::V; DERIVATIVES], acceleration: R::V);
+    /// The weights of the normal numbers of as many shorter steps in that of a step, the first first. Their squares add up to 1.
+    fn noise_weights(&self, parts: u32) -> Vec<f64> {
+        vec![1.0 / f64::from(parts).sqrt(); parts as usize]
+    }
     /// Predicts the row one step ahead.
     fn predict<R: Registers>(&self, context: &Context<R>, row: &mut [R::V; DERIVATIVES]);
 }

@@ -38,6 +38,25 @@ pub enum Purpose {
     Wall = 4,
 }
 
+/// Random numbers of a run, and which of them make those of a step.
+///
+/// A run with steps of h and `parts` p > 1 sees the Brownian path of a run with steps of h/p and one part: each of its normal numbers is a
+/// sum of the p that the other run draws in the same time, with the weights of the scheme.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NoiseSource {
+    /// The seed.
+    pub seed: u64,
+    /// How many normal numbers make one, at least 1.
+    pub parts: u32,
+}
+
+impl NoiseSource {
+    /// One number a step.
+    pub fn new(seed: u64) -> NoiseSource {
+        NoiseSource { seed, parts: 1 }
+    }
+}
+
 /// The seed that a state makes of another seed, so that what continues a run does not repeat its noise: each 128 bits of the state are
 /// a counter of Philox whose key is the seed so far.
 pub fn seed_of_state(seed: u64, state: impl IntoIterator<Item = [u64; 2]>) -> u64 {

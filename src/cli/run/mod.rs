@@ -165,7 +165,7 @@ impl RunVerb {
                 Err(error) => warn(format_args!("nothing is tuned: {error}")),
                 Ok(found) => match found {
                     Some(found) => {
-                        say(format_args!("tuned: {}: {}", found.overrides.join(", "), found.origin))
+                        say(format_args!("tuned: {}: {}", found.overrides.texts().join(", "), found.origin))
                     }
                     None => say(format_args!(
                         "tuned: nothing is open, or nothing is kept of a scene that is alike: stripmine explain {} measures it",
@@ -174,7 +174,7 @@ impl RunVerb {
                 },
             }
         }
-        let chosen = found.ok().flatten().map_or(vec![], |found| found.overrides);
+        let chosen = found.ok().flatten().map_or(vec![], |found| found.overrides.texts());
         Ok([&self.overrides[..], &chosen].concat())
     }
 

@@ -19,10 +19,10 @@ pub(super) const ITEMS: &[Item] = &[
 ];
 
 fn counted(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let scene = |overrides: &[String]| prepared("langevin-dense", overrides);
+    let scene = |overrides: &Overrides| prepared("langevin-dense", overrides);
     let repulsive = Overrides::new().set(&LAW, PairLaw::Wca);
     programs::made(&[
         ("langevin-dense, WCA", scene(&repulsive)?),
-        ("langevin-dense, cut off at 2.5", scene(&[])?),
+        ("langevin-dense, cut off at 2.5", scene(&Overrides::new())?),
     ])
 }

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::io;
 use std::time::Instant;
-use stripmine_physics::method;
+use stripmine_physics::method::{self, METHODS, Purpose, load};
 use stripmine_physics::scene::Overrides;
 
 /// Work that is no run of a scene: its name, and the function that measures it.
@@ -61,7 +61,7 @@ impl Case {
     }
 
     fn scene(preset: &str, overrides: &Overrides, in_events: bool, amount: [u64; 2]) -> Case {
-        let (preset, overrides) = (preset.to_owned(), overrides.to_vec());
+        let (preset, overrides) = (preset.to_owned(), overrides.texts());
         Case {
             labels: vec![],
             task: Task::Scene { preset, overrides, in_events, amount, seconds: 0.0 },
@@ -114,7 +114,8 @@ impl Case {
                 on_threads(threads, || (own.measure)(parameters))
             }
             Task::Scene { preset, overrides, in_events, amount, seconds } => on_threads(threads, || {
-                let mut running = Running::timed(preset, overrides)?;
+                let (prepared, method) = load(preset, overrides, METHODS)?;
+                let mut running = Running::of(method, &prepared, Purpose::Measurement)?;
                 let mut advance = |running: &mut Running, amount: u64| match in_events {
                     true => running.events(amount),
                     false => running.steps(amount),

@@ -5,6 +5,7 @@ use super::plan::TIME_WITHIN;
 use super::recommended::{Decision, Interval, Plan};
 use super::words::seconds;
 use crate::study::Case;
+use stripmine_physics::scene::Overrides;
 
 /// What the decision is about that leaves the scene as it stands.
 pub(super) const AS_IT_STANDS: &str = "the scene";
@@ -46,7 +47,7 @@ impl Plan {
             step: case.step(),
             time,
             seeds: 1,
-            overrides: vec![],
+            overrides: Overrides::new(),
             own: None,
             ..self
         }

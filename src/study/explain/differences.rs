@@ -6,6 +6,7 @@ use super::mean::{FEWEST, Mean};
 use crate::study::trial::{Compared, Paired, TOGETHER, pairs, part};
 use crate::study::{Choice, first_line};
 use stripmine_physics::method::{Decides, Prepared, Purpose};
+use stripmine_physics::scene::Overrides;
 
 /// Integrators whose means are compared.
 const COMPARED: usize = 3;
@@ -126,8 +127,8 @@ impl Work<'_> {
         let of_firsts = firsts.iter().flat_map(|&at| {
             STEPS.map(|part| (ways[at].overrides.clone(), part * ways[at].step.unwrap_or(longest)))
         });
-        let of_reference = (reference.overrides().collect::<Vec<String>>(), REFERENCE * shortest);
-        let (overrides, steps): (Vec<Vec<String>>, Vec<f64>) =
+        let of_reference = (reference.overrides(), REFERENCE * shortest);
+        let (overrides, steps): (Vec<Overrides>, Vec<f64>) =
             std::iter::once(of_reference).chain(of_firsts).unzip();
         let prepared = overrides.iter().zip(steps).map(|(overrides, step)| {
             let even = spacing / (spacing / step).ceil();

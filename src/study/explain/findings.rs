@@ -22,8 +22,9 @@ pub struct Way {
     pub label: String,
     /// Its settings, by axis.
     pub settings: Vec<(String, String)>,
-    /// The overrides that it makes.
-    pub overrides: Vec<String>,
+    /// The overrides that it makes, which its settings and its skin say.
+    #[serde(skip)]
+    pub overrides: Overrides,
     /// Wall seconds of a unit of time at `step`; none where it was given up.
     #[serde(with = "any_number")]
     pub cost: Option<f64>,
@@ -118,10 +119,10 @@ impl Work<'_> {
         (self.end - self.trial.watch.now()).max(0.0)
     }
 
-    pub(super) fn prepared(&self, overrides: &[String], step: Option<f64>) -> Result<Prepared, String> {
-        let trials = self.case.entry.trials;
-        let step = trials.zip(step).map(|(trials, step)| Overrides::new().set(trials.step, step));
-        let more = [overrides, step.as_deref().map_or(&[][..], |step| step)].concat();
+    pub(super) fn prepared(&self, overrides: &Overrides, step: Option<f64>) -> Result<Prepared, String> {
+        let step = self.case.entry.trials.zip(step);
+        let more = overrides.clone();
+        let more = step.map_or(more.clone(), |(trials, step)| more.set(trials.step, step));
         self.case.prepared_with(&more).map_err(|errors| {
             let messages: Vec<&str> = errors.0.iter().map(|error| error.message.as_str()).collect();
             messages.join("; ")

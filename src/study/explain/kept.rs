@@ -110,16 +110,24 @@ impl Kept {
     ///
     /// # Errors
     /// [`KeptError`] if it is there and cannot be read.
-    pub fn recall(&self, key: &str, seconds: f64) -> Result<Option<(Findings, String)>, KeptError> {
+    pub fn recall(
+        &self,
+        case: &Case,
+        key: &str,
+        seconds: f64,
+    ) -> Result<Option<(Findings, String)>, KeptError> {
         let Some(path) = self.path(key) else { return Ok(None) };
         let text = match regular_file::read(&path, LONGEST) {
             Ok(text) => text,
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
             Err(cause) => return Err(FileError::at(&path, "reading")(cause).into()),
         };
-        let Ok(file) = serde_json::from_slice::<File>(&text) else { return Ok(None) };
+        let Ok(mut file) = serde_json::from_slice::<File>(&text) else { return Ok(None) };
         if file.host != self.host || file.seconds < seconds {
             return Ok(None);
+        }
+        for way in &mut file.findings.ways {
+            way.overrides = way.overrides_in(case);
         }
         let taken = significant(file.taken, 2);
         let origin = format!("kept from {} ({taken} s of trials on {})", file.moment, file.host);

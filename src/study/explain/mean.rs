@@ -6,7 +6,7 @@ use crate::study::trial::{Known, Sample, Span};
 use stripmine_physics::averages::Outcome;
 use stripmine_physics::method::Decides;
 use stripmine_physics::particles::Particles;
-use stripmine_physics::scene::{Overrides, SEED};
+use stripmine_physics::scene::SEED;
 
 /// States from which runs are compared, at least.
 pub(super) const FEWEST: usize = 4;
@@ -192,10 +192,8 @@ impl Work<'_> {
     pub(super) fn starts_differ(&self, way: &Way, mean: &mut Mean) -> Option<f64> {
         // Of whole runs each has another.
         let seed = self.case.prepared.seed.filter(|_| self.whole.is_none())?;
-        let another = Way {
-            overrides: [&way.overrides[..], &Overrides::new().set(&SEED, seed.wrapping_add(1))].concat(),
-            ..way.clone()
-        };
+        let another =
+            Way { overrides: way.overrides.clone().set(&SEED, seed.wrapping_add(1)), ..way.clone() };
         let sample = self.sampled_over(&another, way.step, Span::Seconds(SHARES[4] * self.seconds)).ok()?;
         let known = sample.known()?;
         mean.transients.push(known.transient);

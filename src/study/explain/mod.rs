@@ -215,7 +215,7 @@ pub fn explain(
     notice: &dyn Fn(&KeptError),
 ) -> Result<Plan, ExplainError> {
     let key = kept.key(case, target);
-    let recalled = kept.recall(&key, seconds).unwrap_or_else(|error| {
+    let recalled = kept.recall(case, &key, seconds).unwrap_or_else(|error| {
         notice(&error);
         None
     });

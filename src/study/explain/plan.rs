@@ -12,7 +12,7 @@ use crate::study::Case;
 use crate::study::trial::ROWS;
 use stripmine_physics::method::Every;
 use stripmine_physics::number::significant;
-use stripmine_physics::scene::{STEPS, Width};
+use stripmine_physics::scene::{Overrides, STEPS, THERMO_EVERY, TIME, Width};
 
 /// A time is foreseen within this factor: other programs come and go.
 pub(super) const TIME_WITHIN: f64 = 1.5;
@@ -96,21 +96,20 @@ pub(super) fn phases(best: &Weighed<'_>, time: f64) -> Vec<(String, f64)> {
 }
 
 /// The overrides that make a plan of a scene.
-pub(super) fn overrides(case: &Case, way: &Way, step: Option<f64>, time: Option<f64>) -> Vec<String> {
+pub(super) fn overrides(case: &Case, way: &Way, step: Option<f64>, time: Option<f64>) -> Overrides {
     let mut overrides = way.overrides.clone();
-    let printed = step.map(|step| significant(step, 4));
-    if let (Some(trials), Some(step)) = (case.entry.trials, &printed) {
-        overrides.push(format!("{}={step}", trials.step.path()));
-    }
     // The run takes the step that is printed.
-    let step = printed.and_then(|step| step.parse::<f64>().ok());
+    let step = step.map(|step| printed(step, 4));
+    if let (Some(trials), Some(step)) = (case.entry.trials, step) {
+        overrides = overrides.set(trials.step, step);
+    }
     let time = time.or(case.duration());
     // The length of a run is given as the scene has it, in steps or as a time.
     let Some(time) = time else { return overrides };
-    overrides.push(match (case.values.gives(&STEPS), step) {
-        (true, Some(step)) => format!("{}={}", STEPS.path(), (time / step).ceil()),
-        _ => format!("run.time={}", no_shorter(time)),
-    });
+    overrides = match (case.values.gives(&STEPS), step) {
+        (true, Some(step)) => overrides.set(&STEPS, (time / step).ceil() as u64),
+        _ => overrides.set(&TIME, no_shorter(time)),
+    };
     // Its own rows, where these are enough for a mean with a bar.
     let apart = match case.prepared.schedule.rows {
         Every::Steps(steps) => step.map_or(f64::INFINITY, |step| steps as f64 * step),
@@ -119,19 +118,23 @@ pub(super) fn overrides(case: &Case, way: &Way, step: Option<f64>, time: Option<
     };
     if time < FEWEST_ROWS * apart {
         let every = time / ROWS[1];
-        let every = step.map_or(significant(every, 3), |step| (every / step).max(1.0).floor().to_string());
-        overrides.push(format!("run.thermo_every={every}"));
+        overrides = match step {
+            Some(step) => overrides.set(&THERMO_EVERY, (every / step).max(1.0) as u64),
+            None => overrides.set(&THERMO_EVERY, printed(every, 3)),
+        };
     }
     overrides
 }
 
 /// A time in six digits, or one more in the last of them where it would be shorter.
-fn no_shorter(time: f64) -> String {
-    let nearest = significant(time, 6);
-    match nearest.parse::<f64>() {
-        Ok(rounded) if rounded < time => significant(time * (1.0 + 5.1e-6), 6),
-        _ => nearest,
-    }
+fn no_shorter(time: f64) -> f64 {
+    let nearest = printed(time, 6);
+    if nearest < time { printed(time * (1.0 + 5.1e-6), 6) } else { nearest }
+}
+
+/// A number as it is printed to some digits.
+pub(super) fn printed(value: f64, digits: usize) -> f64 {
+    significant(value, digits).parse().unwrap_or(value)
 }
 
 /// The way of a plan among those of other findings.

@@ -2,6 +2,7 @@
 
 use super::bias::Off;
 use serde::Serialize;
+use stripmine_physics::scene::Overrides;
 
 /// A number with the least and the most that it may be.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -85,7 +86,7 @@ pub struct Plan {
     /// By how much the mean of another start differs, where that was seen.
     pub starts_differ: Option<f64>,
     /// The overrides that make the plan of the scene.
-    pub overrides: Vec<String>,
+    pub overrides: Overrides,
     /// What the scene's own values cost and reach.
     pub own: Option<Own>,
     /// What the scene may be modelled without.

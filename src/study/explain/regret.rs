@@ -15,7 +15,7 @@ use std::sync::atomic::AtomicBool;
 use std::thread;
 use stripmine_physics::averages::Outcome;
 use stripmine_physics::method::METHODS;
-use stripmine_physics::scene::{Overrides, SEED, Width};
+use stripmine_physics::scene::{SEED, Width};
 
 /// Plans that would take longer are not carried out (s).
 const LONGEST: f64 = 20.0;
@@ -232,9 +232,8 @@ fn baselines(case: &Case, target: &Target, findings: &Findings) -> [Option<f64>;
 fn carried_out(case: &Case, target: &Target, plan: &Plan, trial: Trial<'_>) -> Result<(f64, f64), String> {
     let observed = (case.entry.quantities, target.place);
     let one = |seed: u64| -> Result<Sample, String> {
-        let seeded =
-            if case.prepared.seed.is_some() { Overrides::new().set(&SEED, seed) } else { Overrides::new() };
-        let all = [&plan.overrides[..], &seeded].concat();
+        let all = plan.overrides.clone();
+        let all = if case.prepared.seed.is_some() { all.set(&SEED, seed) } else { all };
         let prepared = case.prepared_with(&all).map_err(|errors| errors.to_string())?;
         let found = trial
             .sample(&prepared, observed, Span::Time(plan.time, Some(5.0 * LONGEST)))

@@ -11,7 +11,7 @@ use crate::study::trial::{Compared, Stopwatch, Trial, pairs, part};
 use crate::study::{Case, Choice};
 use std::sync::atomic::AtomicBool;
 use stripmine_physics::method::{METHODS, Purpose};
-use stripmine_physics::scene::Width;
+use stripmine_physics::scene::{DT, Overrides, SEED, Width};
 
 /// Wall seconds of a unit of time, and the bias.
 type Made<'m> = (&'m Choice, f64, Option<Bias>);
@@ -29,7 +29,7 @@ fn findings(case: &Case, ways: &[Made<'_>], mean: Known) -> Findings {
     let way = |(choice, cost, bias): &Made<'_>| Way {
         label: choice.label(),
         settings: choice.settings().map(|(axis, name)| (axis.to_owned(), name.to_owned())).collect(),
-        overrides: choice.overrides().collect(),
+        overrides: choice.overrides(),
         cost: Some(*cost),
         step: case.step(),
         bound: None,
@@ -98,14 +98,11 @@ fn pairs_find_the_heat_of_the_printed_scheme() {
     let sets = ["particles.count=4000", "domain.sides=[100.0, 50.0]"].map(str::to_owned);
     let case = Case::load("langevin-free", &sets, METHODS).unwrap();
     let place = case.entry.quantities.iter().position(|it| it.name == "temperature").unwrap();
+    let integrator = case.entry.vocabulary.keys.key("integrator", "kind").unwrap();
     let kinds = [("baoab", 0.025), ("as-printed", 0.2), ("as-printed", 0.1)];
     let begin = |at: usize, start: usize| {
         let (kind, step) = kinds[at];
-        let more = [
-            format!("integrator.kind={kind}"),
-            format!("integrator.dt={step}"),
-            format!("particles.seed={}", start + 1),
-        ];
+        let more = Overrides::new().set(integrator, kind).set(&DT, step).set(&SEED, start as u64 + 1);
         Ok(case.prepared_with(&more).unwrap().start(Purpose::Run).unwrap())
     };
     let compared = Compared { steps: &[8, 1, 2], first: 2, starts: 24, begin: &begin };
@@ -200,7 +197,8 @@ fn a_plan_expects_no_more_than_the_error_asked_for() {
                         let made = plan(&case, &asking(&case, error), &found, "trials").unwrap();
                         assert!(made.expected.most <= error * (1.0 + 1e-12), "{what}: {:?}", made.expected);
                         let given = |key: &str| {
-                            let text = made.overrides.iter().find_map(|it| it.strip_prefix(key));
+                            let texts = made.overrides.texts();
+                            let text = texts.iter().find_map(|it| it.strip_prefix(key));
                             text.map(|text| text.parse::<f64>().unwrap())
                         };
                         let steps = given("run.steps=").zip(given("integrator.dt="));

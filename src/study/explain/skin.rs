@@ -1,7 +1,9 @@
 //! How wide the skin of lists is to be: by trials, as no constant knows how discs move.
 
 use super::findings::{Way, Work, sort};
-use stripmine_physics::number::significant;
+use super::plan::printed;
+use crate::study::Case;
+use stripmine_physics::scene::Overrides;
 
 /// Skins that are tried, in parts of the scene's own.
 const TRIED: [f64; 3] = [0.4, 0.65, 1.5];
@@ -22,7 +24,7 @@ impl Work<'_> {
         let Some(own) = own else { return };
         let each = seconds / (TRIED.len() + 1) as f64;
         let cost = |skin: f64| {
-            let overrides = [&best.overrides[..], &[over(skin)]].concat();
+            let overrides = with_skin(best.overrides.clone(), self.case, skin);
             self.trial.timed(&self.prepared(&overrides, best.step).ok()?, each).ok().map(|it| it.seconds)
         };
         // Its own is timed again beside them.
@@ -33,7 +35,7 @@ impl Work<'_> {
             return;
         }
         for way in ways.iter_mut().filter(|way| by_lists(way)) {
-            way.overrides.push(over(skin));
+            way.overrides = with_skin(way.overrides.clone(), self.case, skin);
             way.cost = way.cost.map(|cost| cost * least / of_own);
             way.skin = Some([own, skin, least / of_own]);
         }
@@ -44,6 +46,21 @@ impl Work<'_> {
 /// The setting of the search that has a skin.
 const LISTS: &str = "neighbor-list";
 
-fn over(skin: f64) -> String {
-    format!("search.skin={}", significant(skin, 3))
+/// Overrides with a skin, to as many digits as are printed.
+fn with_skin(overrides: Overrides, case: &Case, skin: f64) -> Overrides {
+    match case.entry.vocabulary.keys.key("search", "skin") {
+        Some(key) => overrides.set(key, printed(skin, 3)),
+        None => overrides,
+    }
+}
+
+impl Way {
+    /// The overrides by which a scene is run in this way.
+    pub(super) fn overrides_in(&self, case: &Case) -> Overrides {
+        let overrides = self.choice(case).overrides();
+        match self.skin {
+            Some([_, skin, _]) => with_skin(overrides, case, skin),
+            None => overrides,
+        }
+    }
 }

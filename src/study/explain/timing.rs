@@ -141,7 +141,7 @@ fn untimed(choice: &Choice) -> Way {
     Way {
         label: choice.label(),
         settings: choice.settings().map(|(axis, name)| (axis.to_owned(), name.to_owned())).collect(),
-        overrides: choice.overrides().collect(),
+        overrides: choice.overrides(),
         cost: None,
         step: None,
         bound: None,

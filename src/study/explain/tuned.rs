@@ -3,12 +3,13 @@
 use super::kept::{Kept, KeptError};
 use crate::study::Case;
 use stripmine_physics::method::Decides;
+use stripmine_physics::scene::{Key, Overrides, Value};
 
 /// What `auto` becomes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tuned {
     /// The overrides that say so.
-    pub overrides: Vec<String>,
+    pub overrides: Overrides,
     /// Where it comes from.
     pub origin: String,
 }
@@ -20,25 +21,17 @@ pub struct Tuned {
 /// [`KeptError`] if what is kept cannot be read.
 pub fn tuned(case: &Case, kept: &Kept) -> Result<Option<Tuned>, KeptError> {
     let Some((findings, origin)) = kept.alike(case)? else { return Ok(None) };
-    let stated = |text: &str| {
-        let (path, _) = text.split_once('=')?;
-        let key = case.entry.vocabulary.keys.keys().find(|key| key.path() == path)?;
-        case.values.choice(key)
-    };
-    let is_open = |text: &String| stated(text).as_deref() == Some("auto");
-    let holds = |text: &String| {
-        let now = stated(text);
-        now.as_deref() == text.split_once('=').map(|(_, word)| word) || now.is_none()
-    };
+    let is_open = |key: &Key| case.values.choice(key).as_deref() == Some("auto");
+    let holds =
+        |key: &Key, value: &Value| case.values.choice(key).is_none_or(|now| Value::Word(now) == *value);
     // Those that were timed come with the cheapest first.
     for way in findings.ways.iter().filter(|way| way.cost.is_some()) {
-        let settings: Vec<(&str, &str)> =
-            way.settings.iter().map(|(axis, name)| (axis.as_str(), name.as_str())).collect();
-        let choice = case.own.with(&settings);
+        let choice = way.choice(case);
         let is_own = [Decides::Order, Decides::Digits].iter().all(|&it| choice.agrees(&case.own, it));
-        let overrides: Vec<String> = choice.overrides().collect();
-        if is_own && overrides.iter().all(|text| is_open(text) || holds(text)) {
-            let overrides: Vec<String> = overrides.into_iter().filter(is_open).collect();
+        let overrides = choice.overrides();
+        if is_own && overrides.iter().all(|(key, value)| is_open(key) || holds(key, value)) {
+            let open = overrides.iter().filter(|(key, _)| is_open(key));
+            let overrides: Overrides = open.map(|(key, value)| (key, value.clone())).collect();
             return Ok((!overrides.is_empty()).then_some(Tuned { overrides, origin }));
         }
     }

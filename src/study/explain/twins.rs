@@ -7,6 +7,7 @@ use super::whole::Measured;
 use crate::study::first_line;
 use crate::study::trial::Known;
 use stripmine_physics::method::{Becomes, Prepared, Rewritten};
+use stripmine_physics::scene::{Overrides, SceneErrors};
 
 impl Work<'_> {
     /// The scene without each of what it may be modelled without.
@@ -16,7 +17,7 @@ impl Work<'_> {
         let twins: Vec<(&str, Simpler)> = (case.entry.twins.iter())
             .filter_map(|twin| {
                 let simpler = match twin.becomes {
-                    Becomes::Overridden(overrides) => Simpler::Overridden(overrides(&case.values)?.to_vec()),
+                    Becomes::Overridden(overrides) => Simpler::Overridden(overrides(&case.values)?),
                     Becomes::Rewritten(scene) => {
                         Simpler::Rewritten(scene(&case.values, &case.prepared, quantity)?)
                     }
@@ -52,11 +53,11 @@ impl Work<'_> {
     }
 
     /// By the same method.
-    fn overridden(&self, way: &Way, overrides: &[String], seconds: f64) -> Result<Measured, String> {
+    fn overridden(&self, way: &Way, overrides: &Overrides, seconds: f64) -> Result<Measured, String> {
         let shortest =
             |prepared: &Prepared| prepared.step_limits.iter().map(|limit| limit.step).reduce(f64::min);
         let of_scene = self.prepared(&way.overrides, None).ok().as_ref().and_then(shortest);
-        let more = [&way.overrides[..], overrides].concat();
+        let more = way.overrides.clone().and(overrides);
         // As far below its own limit as the way is below that of the scene.
         let longer = shortest(&self.prepared(&more, None)?)
             .zip(of_scene)
@@ -67,10 +68,9 @@ impl Work<'_> {
 
     /// By another method, in its own cheapest way.
     fn rewritten(&self, scene: Rewritten, seconds: f64) -> Result<Measured, String> {
-        let errors = |errors: stripmine_physics::scene::SceneErrors| {
-            errors.0.first().map_or(String::new(), |error| first_line(&error.message))
-        };
-        let case = self.case.beside(scene.text).map_err(errors)?;
+        let errors =
+            |errors: SceneErrors| errors.0.first().map_or(String::new(), |error| first_line(&error.message));
+        let case = self.case.beside(&scene.text).map_err(errors)?;
         let target = Target::of(&case, Some(scene.quantity), None).map_err(|error| error.to_string())?;
         if self.left() == 0.0 {
             return Err(NO_TIME.to_owned());
@@ -91,6 +91,6 @@ impl Work<'_> {
 
 /// A scene without something.
 enum Simpler {
-    Overridden(Vec<String>),
+    Overridden(Overrides),
     Rewritten(Rewritten),
 }

@@ -58,7 +58,7 @@ impl Work<'_> {
     /// Runs of the whole time from several starts, as many at once as there are threads, for about some seconds.
     pub(super) fn whole_runs(
         &self,
-        overrides: &[String],
+        overrides: &Overrides,
         step: Option<f64>,
         time: f64,
         seconds: f64,
@@ -109,15 +109,12 @@ impl Work<'_> {
     /// The scene from a start of another number, the first its own.
     pub(super) fn another_start(
         &self,
-        overrides: &[String],
+        overrides: &Overrides,
         step: Option<f64>,
         number: u64,
     ) -> Result<Prepared, String> {
         match self.case.prepared.seed {
-            Some(seed) => {
-                let seeded = Overrides::new().set(&SEED, seed.wrapping_add(number));
-                self.prepared(&[overrides, &seeded].concat(), step)
-            }
+            Some(seed) => self.prepared(&overrides.clone().set(&SEED, seed.wrapping_add(number)), step),
             None if number == 0 => self.prepared(overrides, step),
             None => {
                 let prepared = self.prepared(overrides, step)?;

@@ -27,7 +27,7 @@ pub fn page(plan: &Plan) -> String {
 
 /// Overrides that say the same as the scene itself are no news, but none is left out: the plan is the same where the scene changes.
 fn answer(plan: &Plan) -> String {
-    let set: String = plan.overrides.iter().map(|text| format!(" \\\n    --set {text}")).collect();
+    let set: String = plan.overrides.texts().iter().map(|text| format!(" \\\n    --set {text}")).collect();
     let seeds = if plan.seeds > 1 { format!(" --seeds {}", plan.seeds) } else { String::new() };
     format!("stripmine run {}{seeds}{set}", plan.scene)
 }

@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 use std::time::Instant;
 use stripmine_physics::method::{Decides, Prepared, Purpose, Simulation, probed};
 use stripmine_physics::number::significant;
-use stripmine_physics::scene::SceneErrors;
+use stripmine_physics::scene::{Overrides, SceneErrors};
 
 /// Looks at the energy in a run.
 const LOOKS: u64 = 16;
@@ -39,7 +39,9 @@ pub fn probes(
     journal: &Journal,
 ) -> Result<Vec<Result<f64, String>>, JournalError> {
     let probe = |choice: &Choice| {
-        let scene = subject.prepared_as(choice, subject.step, &[]).map_err(|errors| refusal(&errors))?;
+        let scene = subject
+            .prepared_as(choice, subject.step, &Overrides::new())
+            .map_err(|errors| refusal(&errors))?;
         probed(&scene, subject.steps.min(PROBED)).map_err(|failure| first_line(&failure.what()))
     };
     let of = |choice: &Choice| {
@@ -126,7 +128,7 @@ impl Work<'_> {
     }
 
     fn prepared(&self, choice: &Choice, power: i32) -> Result<Prepared, String> {
-        let prepared = self.subject.prepared_as(choice, self.step(power), &[]);
+        let prepared = self.subject.prepared_as(choice, self.step(power), &Overrides::new());
         prepared.map_err(|errors| refusal(&errors))
     }
 

@@ -356,6 +356,13 @@ pub trait Startable: Send + Sync {
     /// The same scene with other positions and velocities at the start: of the same particles in the same order.
     fn started_from(&self, particles: Particles) -> Prepared;
 
+    /// The same scene whose noise has a seed, and in each step is made of that of `parts` shorter steps: a run with steps of h and p parts
+    /// sees the Brownian path of one with steps of h/p and one part. It is for comparisons: no checkpoint and no scene says the parts. None
+    /// where there is no noise.
+    fn with_noise(&self, _seed: u64, _parts: u32) -> Option<Prepared> {
+        None
+    }
+
     /// Period of the forces that depend on time (time): of walls or a floor that move. None where no force does.
     fn period(&self) -> Option<f64> {
         None

@@ -30,14 +30,10 @@ pub struct Trials {
     pub inertia: fn(&Values) -> Option<f64>,
     /// The order of convergence of positions that theory gives for a setting of the axis that decides it.
     pub theory: fn(&Values, &Prepared, &Setting) -> Option<Theory>,
-    /// Scenes that `reproduce` shows: name, preset and overrides.
-    pub shown: &'static [(&'static str, &'static str, &'static [&'static str])],
     /// What a map of stability may vary beside the step.
     pub parameters: &'static [Parameter],
     /// As the entry's `prepare`, but whatever the step is: what theory foresees of it refuses nothing.
     pub at_any_step: fn(Values) -> Result<Prepared, SceneErrors>,
-    /// Maps that `reproduce` shows.
-    pub mapped: &'static [Mapped],
 }
 
 /// What distances between states are measured in.
@@ -83,19 +79,6 @@ pub struct Parameter {
     pub overrides: fn(&Values, f64) -> Overrides,
     /// Values that theory names, with what they are.
     pub marks: fn(&Values) -> Vec<(f64, String)>,
-}
-
-/// A map of stability that `reproduce` shows.
-#[derive(Debug)]
-pub struct Mapped {
-    /// Its name.
-    pub name: &'static str,
-    /// The preset.
-    pub preset: &'static str,
-    /// Overrides.
-    pub overrides: &'static [&'static str],
-    /// The parameter that is varied.
-    pub parameter: &'static str,
 }
 
 /// A simpler model of a scene, beside which its results show what it needs.
@@ -157,8 +140,19 @@ pub struct Setting {
     /// Its name.
     pub name: &'static str,
     /// The overrides that it makes in a scene.
-    pub overrides: &'static [&'static str],
+    pub overrides: fn() -> Overrides,
 }
+
+/// The settings of an axis, each with the values that it gives to keys.
+macro_rules! settings {
+    ($($name:literal [$($key:ident = $value:expr),*],)*) => {
+        &[$($crate::method::Setting {
+            name: $name,
+            overrides: || $crate::scene::Overrides::new()$(.set(&$key, $value))*,
+        }),*]
+    };
+}
+pub(super) use settings;
 
 /// What theory says of the error of positions at the end of a short run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -173,5 +167,90 @@ impl Axis {
     /// The setting of a name.
     pub fn setting(&self, name: &str) -> Option<&'static Setting> {
         self.settings.iter().find(|setting| setting.name == name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::method::{METHODS, method, prepare, vocabularies};
+    use crate::scene::{COUNT, DT, SEED, STEPS};
+
+    /// Presets with overrides that a user typed. Some of these put values of the text aside: the six values of a Gear scheme, how
+    /// programs are executed, a number of steps.
+    const SCENES: &[(&str, &[&str])] = &[
+        ("two-discs", &["run.time=3.2"]),
+        ("dense-gas", &["particles.count=100", "integrator.kind=velocity-verlet"]),
+        ("pipe-small-printed", &["machine.engine=fast"]),
+        ("wide-sizes", &["domain.sides=[14.0, 14.0]", "search.by=lattice", "search.mask=5"]),
+        ("hard-disks", &["particles.count=100"]),
+        ("langevin-dense", &["particles.count=300", "domain.sides=[20.7, 20.7]"]),
+        ("langevin-free", &["particles.count=30"]),
+        ("kepler", &[]),
+        ("plummer", &["particles.count=64"]),
+    ];
+
+    /// All overrides of studies, and some that a scene refuses or that no method has.
+    fn all_overrides(values: &Values) -> Vec<Overrides> {
+        let entry = method(METHODS, values.method()).unwrap();
+        let settings = entry.axes.iter().flat_map(|axis| axis.settings);
+        let mut all: Vec<Overrides> = settings.map(|setting| (setting.overrides)()).collect();
+        for parameter in entry.trials.iter().flat_map(|trials| trials.parameters) {
+            let range = (parameter.range)(values).into_iter().flatten();
+            all.extend(range.map(|value| (parameter.overrides)(values, value)));
+        }
+        all.extend(entry.twins.iter().filter_map(|twin| match twin.becomes {
+            Becomes::Overridden(overrides) => overrides(values),
+            Becomes::Rewritten(_) => None,
+        }));
+        assert!(!all.is_empty());
+        let one = Overrides::new;
+        all.extend([
+            one(),
+            one().set(&SEED, 7_u64).set(&SEED, 8_u64),
+            one().set(&STEPS, 12_u64),
+            one().set(&DT, 0.5).set(&DT, 1e-4),
+            one().set(&DT, -1.0).set(&COUNT, 3_u64),
+            one().set(&DT, f64::INFINITY),
+            one().set(entry.vocabulary.keys.key("machine", "engine").unwrap_or(&DT), "reverse"),
+            // Gear's scheme again, with the values that the text gives it.
+            one().set(entry.vocabulary.keys.key("integrator", "kind").unwrap_or(&DT), "gear"),
+        ]);
+        all
+    }
+
+    #[test]
+    fn typed_overrides_mean_the_same_as_typed_texts() {
+        let known = vocabularies(METHODS);
+        let outcome = |values: Result<Values, SceneErrors>| {
+            let prepared = values.and_then(|values| prepare(values, METHODS));
+            prepared.map(|(prepared, _)| (prepared.particles().checksum(), prepared.scene))
+        };
+        let (mut refused, mut compared) = (0, 0);
+        for (preset, given) in SCENES {
+            let given: Vec<String> = given.iter().map(|&text| text.to_owned()).collect();
+            let values = Values::load(preset, &given, &known).unwrap();
+            for overrides in all_overrides(&values) {
+                let all = [&given[..], &overrides.texts()].concat();
+                let by_texts = outcome(Values::load(preset, &all, &known));
+                assert_eq!(outcome(values.with(&overrides)), by_texts, "{preset} {all:?}");
+                refused += usize::from(by_texts.is_err());
+                compared += 1;
+            }
+        }
+        assert!(refused > 30 && compared - refused > 100, "{refused} of {compared}");
+    }
+
+    /// The values that overrides put aside come back by further ones: two-discs gives five values of Gear's scheme.
+    #[test]
+    fn values_put_aside_come_back() {
+        let known = vocabularies(METHODS);
+        let given = ["integrator.kind=velocity-verlet".to_owned()];
+        let values = Values::load("two-discs", &given, &known).unwrap();
+        let key = |name| method(METHODS, values.method()).unwrap().vocabulary.keys.key("integrator", name);
+        let (kind, carried) = (key("kind").unwrap(), key("values").unwrap());
+        assert!(!values.gives(carried));
+        let again = values.with(&Overrides::new().set(kind, "gear")).unwrap();
+        assert_eq!(again.given(carried), Some(&crate::scene::Value::Whole(5)));
     }
 }

@@ -2,7 +2,7 @@
 
 use super::error::{Place, Reason, SceneError, SceneErrors, Spot};
 use super::general::{FORMAT, FORMAT_VERSION};
-use super::vocabulary::Vocabulary;
+use super::values::Vocabulary;
 use toml::de::{DeTable, DeValue};
 
 /// Refuses a scene of format 1.

@@ -23,7 +23,6 @@ mod target;
 mod text;
 mod unknown;
 mod values;
-mod vocabulary;
 
 pub use binding::{Binding, Read, Write};
 pub use disc_keys::{
@@ -36,7 +35,8 @@ pub use domain::{Domain, GRAVITY, ORIGIN, PERIODIC, PLANAR_DOMAIN, SIDES};
 pub use error::{Place, Reason, SceneError, SceneErrors, Spot, Warning};
 pub use general::{
     DT, DURATION, FORMAT_VERSION, HEADING, LAMMPS_DATA, LAMMPS_DUMP, METHOD, OUTPUT, Output, Run, STEP,
-    STEPPED_RUN, STEPS, STRUCTURE, SUMMED, TARGET, TARGETED, UNITS, bind_heading, too_many_steps,
+    STEPPED_RUN, STEPS, STRUCTURE, SUMMED, TARGET, TARGETED, THERMO_EVERY, TIME, UNITS, bind_heading,
+    too_many_steps,
 };
 pub use key_set::{KeySet, Rivals, SECTIONS};
 pub use keys::{Bounds, Fallback, Key, Kind, Use, Value};
@@ -48,8 +48,7 @@ pub use overrides::Overrides;
 pub use rules::disagreements;
 pub use start_file::StartFile;
 pub use target::{Target, Width};
-pub use values::Values;
-pub use vocabulary::{Preset, Renamed, Vocabulary};
+pub use values::{Preset, Renamed, Values, Vocabulary};
 
 #[cfg(test)]
 mod tests;

@@ -1,47 +1,87 @@
-//! What a scene is to say otherwise, key by key.
+//! Values that a scene is to have in place of its own, key by key.
 
 use super::keys::{Key, Value};
 use crate::words::Words;
-use serde::Serialize;
-use std::ops::Deref;
+use serde::{Serialize, Serializer};
+use toml::Spanned;
+use toml::de::DeValue;
 
-/// Overrides of a scene, by their keys: a key that there is not does not compile. They come to texts `section.key=value`, as a command
-/// line gives them; a number reads back to the same bits.
+/// Overrides of a scene, by their keys: an unknown key does not compile. [`Values::with`](super::Values::with) takes them in;
+/// [`texts`](Overrides::texts) writes them as a command line gives them.
 ///
 /// ```
-/// use stripmine_physics::method::{METHODS, load};
-/// use stripmine_physics::scene::{COUNT, DT, Overrides};
+/// use stripmine_physics::method::{METHODS, prepare, vocabularies};
+/// use stripmine_physics::scene::{COUNT, DT, Overrides, Values};
 ///
 /// let overrides = Overrides::new().set(&COUNT, 100_u64).set(&DT, 5e-5);
-/// assert_eq!(*overrides, ["particles.count=100", "integrator.dt=5e-5"]);
-/// let (prepared, _) = load("dense-gas", &overrides, METHODS)?;
+/// assert_eq!(overrides.texts(), ["particles.count=100", "integrator.dt=5e-5"]);
+/// let values = Values::load("dense-gas", &[], &vocabularies(METHODS))?;
+/// let (prepared, _) = prepare(values.with(&overrides)?, METHODS)?;
 /// assert_eq!(prepared.particles().len(), 100);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Overrides(Vec<String>);
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Overrides(Vec<(&'static Key, Value)>);
 
 impl Overrides {
-    /// None.
+    /// No overrides.
     pub fn new() -> Overrides {
         Overrides::default()
     }
 
-    /// One more. Of two for the same key the later one holds.
+    /// Adds an override. Of two for the same key the later one holds.
     #[must_use]
-    pub fn set(mut self, key: &Key, value: impl Into<Value>) -> Overrides {
-        let value = value.into().to_toml();
-        // A whole number stands without a point, as one types it.
-        self.0.push(format!("{}={}", key.path(), value.strip_suffix(".0").unwrap_or(&value)));
+    pub fn set(mut self, key: &'static Key, value: impl Into<Value>) -> Overrides {
+        self.0.push((key, value.into()));
         self
+    }
+
+    /// Adds overrides after these.
+    #[must_use]
+    pub fn and(mut self, later: &Overrides) -> Overrides {
+        self.0.extend_from_slice(&later.0);
+        self
+    }
+
+    /// Is true if nothing is overridden.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Keys and values, in the order in which they were added.
+    pub fn iter(&self) -> impl Iterator<Item = (&'static Key, &Value)> {
+        self.0.iter().map(|(key, value)| (*key, value))
+    }
+
+    /// Texts `section.key=value`, as a command line gives them; a number reads back to the same bits.
+    pub fn texts(&self) -> Vec<String> {
+        self.iter().map(|(key, value)| format!("{}={}", key.path(), typed(value))).collect()
     }
 }
 
-impl Deref for Overrides {
-    type Target = [String];
+/// A value as one types it: whole numbers without a point, words without quotes where these are not needed.
+pub(super) fn typed(value: &Value) -> String {
+    let toml = value.to_toml();
+    match value {
+        Value::Word(word) if as_typed(word.trim()).get_ref().as_str() == Some(word) => word.clone(),
+        _ => toml.strip_suffix(".0").unwrap_or(&toml).to_owned(),
+    }
+}
 
-    fn deref(&self) -> &[String] {
-        &self.0
+/// The value that one types on a command line, where a word needs no quotes.
+pub(super) fn as_typed(text: &str) -> Spanned<DeValue<'_>> {
+    Spanned::new(0..0, DeValue::parse(text).map_or(DeValue::String(text.into()), Spanned::into_inner))
+}
+
+impl FromIterator<(&'static Key, Value)> for Overrides {
+    fn from_iter<I: IntoIterator<Item = (&'static Key, Value)>>(overrides: I) -> Overrides {
+        Overrides(overrides.into_iter().collect())
+    }
+}
+
+impl Serialize for Overrides {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.texts().serialize(serializer)
     }
 }
 
@@ -87,21 +127,35 @@ impl<W: Words> From<W> for Value {
 mod tests {
     use super::*;
     use crate::method::{METHODS, vocabularies};
-    use crate::scene::{DT, PRECISION, Precision, VELOCITIES, Values};
+    use crate::scene::{DT, FILE, PRECISION, Precision, VELOCITIES, Values};
 
-    /// What is set is what is read, to the bit.
+    /// Set values are read, typed and as texts, to the bit.
     #[test]
     fn values_come_back_as_they_were_set() {
+        let known = vocabularies(METHODS);
         let velocities = vec![[0.1, -1e-300], [2.0, 1.0 / 3.0]];
         for dt in [1.0, 0.1 + 0.2, 1e-9 / 3.0] {
             let overrides = Overrides::new()
                 .set(&DT, dt)
                 .set(&VELOCITIES, velocities.clone())
                 .set(&PRECISION, Precision::Mixed);
-            let values = Values::load("two-discs", &overrides, &vocabularies(METHODS)).unwrap();
-            assert_eq!(values.given(&DT), Some(&Value::Number(dt)));
-            assert_eq!(values.given(&VELOCITIES), Some(&Value::Pairs(velocities.clone())));
-            assert_eq!(values.choice(&PRECISION).as_deref(), Some("mixed"));
+            let typed = Values::load("two-discs", &[], &known).unwrap().with(&overrides).unwrap();
+            for values in [typed, Values::load("two-discs", &overrides.texts(), &known).unwrap()] {
+                assert_eq!(values.given(&DT), Some(&Value::Number(dt)));
+                assert_eq!(values.given(&VELOCITIES), Some(&Value::Pairs(velocities.clone())));
+                assert_eq!(values.choice(&PRECISION).as_deref(), Some("mixed"));
+            }
+        }
+    }
+
+    /// Words that read back as themselves need no quotes; `2024-01-01`, `12` and a word between blanks do.
+    #[test]
+    fn words_are_quoted_where_they_must_be() {
+        for (word, text) in
+            [("a b.xyz", "a b.xyz"), ("12", "\"12\""), (" a", "\" a\""), ("2024-01-01", "\"2024-01-01\"")]
+        {
+            let overrides = Overrides::new().set(&FILE, word);
+            assert_eq!(overrides.texts(), [format!("particles.file={text}")]);
         }
     }
 }

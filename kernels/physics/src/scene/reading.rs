@@ -1,8 +1,9 @@
 //! From a preset's name, a file or a text to values that have passed every rule.
 
 use super::error::{Place, Reason, SceneErrors, Spot};
-use super::values::Values;
-use super::vocabulary::{Preset, Vocabulary};
+use super::general::METHOD;
+use super::overrides::Overrides;
+use super::values::{Preset, Values, Vocabulary};
 use super::{rules, text};
 use crate::io::regular_file;
 use crate::words::nearest;
@@ -23,10 +24,33 @@ impl Values {
         overrides: &[String],
         methods: &[&'static Vocabulary],
     ) -> Result<Values, SceneErrors> {
-        let (mut values, vocabulary) = text::read(file, text, overrides, methods)?;
-        rules::apply(&mut values, vocabulary.rules);
-        std::mem::take(&mut values.errors).none_of(file)?;
-        Ok(values)
+        text::read(file, text, overrides, methods)?.checked()
+    }
+
+    /// The values of the scene with further overrides, as if its text were read again with all of them: of two for one key the later one holds.
+    ///
+    /// # Errors
+    /// [`SceneErrors`]: every mistake of the overrides, which cannot change the method.
+    pub fn with(&self, overrides: &Overrides) -> Result<Values, SceneErrors> {
+        let mut values = self.clone();
+        values.values.append(&mut values.set_aside);
+        for (key, value) in overrides.iter() {
+            text::set(&mut values, key, value);
+        }
+        if values.given(&METHOD) != self.given(&METHOD) {
+            let error = values
+                .spot(&METHOD)
+                .error(Reason::Contradiction, "the method of a scene that was read is fixed");
+            values.errors.push(error);
+        }
+        values.checked()
+    }
+
+    /// Holds all rules against the values.
+    fn checked(mut self) -> Result<Values, SceneErrors> {
+        rules::apply(&mut self);
+        std::mem::take(&mut self.errors).none_of(&self.file)?;
+        Ok(self)
     }
 
     /// Reads the scene that is a preset's name or a file's path, with overrides.

@@ -7,11 +7,11 @@ use super::keys::{Fallback, Key, Value};
 use super::values::Values;
 
 /// Holds all rules against the values, drops what overrides have made meaningless, and notes every mistake.
-pub(super) fn apply(values: &mut Values, further: &[fn(&Values) -> Vec<SceneError>]) {
+pub(super) fn apply(values: &mut Values) {
     rivals(values);
     unused(values);
     missing(values);
-    for rule in further {
+    for rule in values.vocabulary.rules {
         let errors = rule(values);
         values.errors.extend(errors);
     }
@@ -22,7 +22,7 @@ fn quoted(keys: &[&Key], between: &str) -> String {
 }
 
 fn rivals(values: &mut Values) {
-    for rivals in values.keys.rivals.iter().copied().flatten() {
+    for rivals in values.vocabulary.keys.rivals.iter().copied().flatten() {
         if values.applies(rivals.used) != Some(true) {
             continue;
         }
@@ -30,7 +30,7 @@ fn rivals(values: &mut Values) {
         if rivals.keys.iter().filter_map(|key| values.entry(key)).any(|entry| entry.overrides) {
             for key in rivals.keys {
                 if values.entry(key).is_some_and(|entry| !entry.overrides) {
-                    values.values.remove(&key.id());
+                    values.set_aside(key);
                 }
                 values.faulty.remove(&key.id());
             }
@@ -57,7 +57,7 @@ fn rivals(values: &mut Values) {
 }
 
 fn unused(values: &mut Values) {
-    for key in values.keys.keys() {
+    for key in values.vocabulary.keys.keys() {
         let Some((by, choices)) = key.used else { continue };
         let (Some(choice), Some(entry)) = (values.choice(by), values.entry(key)) else { continue };
         if choices.contains(&choice.as_str()) {
@@ -65,7 +65,7 @@ fn unused(values: &mut Values) {
         }
         // Another choice made on the command line leaves the file's keys for the old one behind.
         if !entry.overrides && values.is_chosen_by_override(by) {
-            values.values.remove(&key.id());
+            values.set_aside(key);
             continue;
         }
         let chosen = match values.implying(by).find(|other| values.gives(other)) {
@@ -81,7 +81,7 @@ fn unused(values: &mut Values) {
 }
 
 fn missing(values: &mut Values) {
-    for key in values.keys.keys() {
+    for key in values.vocabulary.keys.keys() {
         let absent = !values.gives(key) && !values.is_faulty(key);
         if key.fallback == Fallback::Required && absent && values.is_used(key) {
             let error = values

@@ -3,10 +3,10 @@
 use super::error::{Mistakes, Place, Reason, SceneError, SceneErrors, Spot};
 use super::general::{FORMAT, METHOD};
 use super::key_set::{KeySet, SECTIONS};
-use super::keys::{Fault, Key};
+use super::keys::{Fault, Key, Value};
+use super::overrides::{as_typed, typed};
 use super::unknown::{Help, Unknown};
-use super::values::{Entry, Values};
-use super::vocabulary::Vocabulary;
+use super::values::{Entry, Values, Vocabulary};
 use crate::quoted::quoted;
 use crate::words::nearest;
 use std::collections::BTreeSet;
@@ -89,7 +89,7 @@ pub(super) fn read(
     text: &str,
     overrides: &[String],
     methods: &[&'static Vocabulary],
-) -> Result<(Values, &'static Vocabulary), SceneErrors> {
+) -> Result<Values, SceneErrors> {
     let lines = Lines::new(file, text);
     let (table, syntax) = DeTable::parse_recoverable(text);
     if !syntax.is_empty() {
@@ -113,7 +113,7 @@ pub(super) fn read(
         // The rest of the file is read as if it were of the first method; that its name is missing is said too.
         None => methods.first().copied().ok_or_else(|| unknown_method("", &Spot::default(), methods))?,
     };
-    let mut values = Values::none(file, &vocabulary.keys);
+    let mut values = Values::none(file, vocabulary, methods);
     let source = Source { lines: Some(&lines), file, keys: &vocabulary.keys, methods };
     for (name, value) in table.get_ref() {
         source.top(&mut values, name, value);
@@ -126,7 +126,7 @@ pub(super) fn read(
     for text in overrides {
         override_with(&mut values, text, methods);
     }
-    Ok((values, vocabulary))
+    Ok(values)
 }
 
 fn unknown_method(name: &str, spot: &Spot, methods: &[&'static Vocabulary]) -> SceneErrors {
@@ -148,13 +148,8 @@ fn override_with(values: &mut Values, text: &str, methods: &[&'static Vocabulary
         let error = spot.error(Reason::Override, "an override needs a key and a value");
         return values.errors.push(error.expecting("section.key=value"));
     };
-    let (path, value) = (path.trim(), value.trim());
-    let value = match DeValue::parse(value) {
-        Ok(value) => Spanned::new(0..0, value.into_inner()),
-        // A word needs no quotes on a command line.
-        Err(_) => Spanned::new(0..0, DeValue::String(value.into())),
-    };
-    let source = Source { lines: None, file: &file, keys: values.keys, methods };
+    let (path, value) = (path.trim(), as_typed(value.trim()));
+    let source = Source { lines: None, file: &file, keys: &values.vocabulary.keys, methods };
     match path.split_once('.') {
         Some((section, key)) => match SECTIONS.iter().find(|(name, _)| *name == section) {
             Some((name, _)) => source.key(values, name, &Spanned::new(0..0, key.into()), &value),
@@ -162,6 +157,16 @@ fn override_with(values: &mut Values, text: &str, methods: &[&'static Vocabulary
         },
         None => source.top(values, &Spanned::new(0..0, path.into()), &value),
     }
+}
+
+/// Takes an override of a known key in, with the checks and the words of one that is typed.
+pub(super) fn set(values: &mut Values, key: &Key, value: &Value) {
+    let text = typed(value);
+    let file = format!("--set {}={text}", key.path());
+    let methods = values.methods.clone();
+    let source = Source { lines: None, file: &file, keys: &values.vocabulary.keys, methods: &methods };
+    let name = Spanned::new(0..0, key.name.into());
+    source.key(values, key.section, &name, &as_typed(&text));
 }
 
 /// A text that values come from: the file, or an option of the command line.

@@ -3,7 +3,7 @@
 use super::general::METHOD;
 use super::key_set::KeySet;
 use super::keys::Key;
-use super::vocabulary::Vocabulary;
+use super::values::Vocabulary;
 use crate::words::nearest;
 
 /// A key that a method does not have.

@@ -1,11 +1,49 @@
-//! The values of a scene, with their places.
+//! What the scenes of a method may say (its keys, what they demand of each other, scenes to start from), and the values of a scene, with their places.
 
-use super::error::{Mistakes, Place, Spot};
+use super::error::{Mistakes, Place, SceneError, Spot};
 use super::key_set::KeySet;
 use super::keys::{Fallback, Key, Use, Value};
 use super::start_file::SharedFrame;
 use std::collections::{BTreeMap, BTreeSet};
 use toml::de::DeValue;
+
+/// A scene that comes with the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Preset {
+    /// The name.
+    pub name: &'static str,
+    /// The file, with comments.
+    pub text: &'static str,
+}
+
+impl Preset {
+    /// What it shows: the first line of its text.
+    pub fn title(&self) -> &'static str {
+        self.text.lines().next().unwrap_or_default().trim_start_matches(['#', ' '])
+    }
+}
+
+/// A key of format 1, with what says the same in format 2.
+#[derive(Clone, Copy, Debug)]
+pub struct Renamed {
+    /// `section.key` of format 1.
+    pub old: &'static str,
+    /// What to write instead.
+    pub new: &'static str,
+}
+
+/// What the scenes of a method may say.
+#[derive(Debug)]
+pub struct Vocabulary {
+    /// Its keys.
+    pub keys: KeySet,
+    /// What else must agree; each gives every mistake that it finds.
+    pub rules: &'static [fn(&Values) -> Vec<SceneError>],
+    /// Scenes to start from.
+    pub presets: &'static [Preset],
+    /// What scenes of format 1 said otherwise.
+    pub renamed: &'static [Renamed],
+}
 
 pub(super) type Id = (&'static str, &'static str);
 
@@ -23,8 +61,12 @@ pub(super) struct Entry {
 #[derive(Clone, Debug)]
 pub struct Values {
     pub(super) file: String,
-    pub(super) keys: &'static KeySet,
+    pub(super) vocabulary: &'static Vocabulary,
+    /// The methods that the scene could have named, for help with unknown keys.
+    pub(super) methods: Vec<&'static Vocabulary>,
     pub(super) values: BTreeMap<Id, Entry>,
+    /// Values of the text that overrides have made meaningless; further overrides may give them their meaning back.
+    pub(super) set_aside: BTreeMap<Id, Entry>,
     pub(super) sections: BTreeMap<&'static str, Place>,
     /// Keys that were given, but not well.
     pub(super) faulty: BTreeSet<Id>,
@@ -47,15 +89,21 @@ impl Values {
     }
 
     /// Those of no text: everything is as the program that made the scene says.
-    pub fn of_no_text(keys: &'static KeySet) -> Values {
-        Values::none("scene", keys)
+    pub fn of_no_text(vocabulary: &'static Vocabulary) -> Values {
+        Values::none("scene", vocabulary, &[])
     }
 
-    pub(super) fn none(file: &str, keys: &'static KeySet) -> Values {
+    pub(super) fn none(
+        file: &str,
+        vocabulary: &'static Vocabulary,
+        methods: &[&'static Vocabulary],
+    ) -> Values {
         Values {
             file: file.to_owned(),
-            keys,
+            vocabulary,
+            methods: methods.to_vec(),
             values: BTreeMap::new(),
+            set_aside: BTreeMap::new(),
             sections: BTreeMap::new(),
             faulty: BTreeSet::new(),
             errors: Mistakes::default(),
@@ -65,7 +113,7 @@ impl Values {
 
     /// The method that the scene names.
     pub fn method(&self) -> &'static str {
-        self.keys.method
+        self.vocabulary.keys.method
     }
 
     /// The file, the preset, or what else errors call it.
@@ -86,6 +134,11 @@ impl Values {
         let place = self.entry(key).and_then(|entry| entry.items.get(item));
         let spot = self.spot(key);
         Spot { place: place.copied().or(spot.place), ..spot }
+    }
+
+    /// Puts the value of a key aside, as overrides have made it meaningless.
+    pub(super) fn set_aside(&mut self, key: &Key) {
+        self.set_aside.extend(self.values.remove_entry(&key.id()));
     }
 
     pub(super) fn entry(&self, key: &Key) -> Option<&Entry> {
@@ -159,7 +212,7 @@ impl Values {
     /// Keys that make a choice of another one by being given.
     pub(super) fn implying(&self, key: &Key) -> impl Iterator<Item = &'static Key> {
         let id = key.id();
-        self.keys.keys().filter(move |other| other.implies.is_some_and(|(of, _)| of.id() == id))
+        self.vocabulary.keys.keys().filter(move |other| other.implies.is_some_and(|(of, _)| of.id() == id))
     }
 
     /// Whether an override made the choice of a key.

@@ -23,7 +23,7 @@ use crate::backend::{Precision, Registers, Scalar};
 use crate::backend::{Task, dispatch_native};
 use crate::integrator::{Context, DERIVATIVES, Draws, Inertia, Scheme, acceleration};
 use crate::isa::{Element, Predicate, ProgramError, Vector, same};
-use crate::noise::{self, Purpose};
+use crate::noise::{self, NoiseSource, Purpose};
 use crate::threads::{on_threads, pieces};
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -45,8 +45,8 @@ pub struct Motion<C> {
     pub inertia: Inertia,
     /// Acceleration of gravity (length/time²).
     pub gravity: [f64; 2],
-    /// Seed of the random numbers, for a scheme that draws some.
-    pub seed: u64,
+    /// The random numbers, for a scheme that draws some.
+    pub noise: NoiseSource,
 }
 
 /// How far a disc may go before the search must know.
@@ -106,10 +106,30 @@ impl<C: Scheme> Motion<C> {
     /// The random numbers of some discs along x and y in the pass that corrects the step numbered `step`.
     #[inline(always)]
     fn draw<S: Element>(&self, step: u64, ids: &[u32], to: [&mut [S]; 2]) {
-        match C::DRAWS {
-            Draws::Never => {}
-            Draws::InCorrector => noise::draw(self.seed, Purpose::Thermostat, step, ids, to),
-            Draws::InPredictor => noise::draw(self.seed, Purpose::Thermostat, step + 1, ids, to),
+        let NoiseSource { seed, parts } = self.noise;
+        let first = match C::DRAWS {
+            Draws::Never => return,
+            Draws::InCorrector => step * u64::from(parts),
+            Draws::InPredictor => step * u64::from(parts) + 1,
+        };
+        match parts {
+            1 => noise::draw(seed, Purpose::Thermostat, first, ids, to),
+            _ => self.combine(first, ids, to),
+        }
+    }
+
+    /// The numbers of a step made of those of its parts, which are counted from `first` on.
+    #[inline(never)]
+    fn combine<S: Element>(&self, first: u64, ids: &[u32], [across, along]: [&mut [S]; 2]) {
+        let weights = self.scheme.noise_weights(self.noise.parts);
+        for ((id, x), y) in ids.iter().zip(across).zip(along) {
+            let mut sums = [0.0; 2];
+            for (step, weight) in (first..).zip(&weights) {
+                let [mut a, mut b] = [[0.0]; 2];
+                noise::draw(self.noise.seed, Purpose::Thermostat, step, &[*id], [&mut a, &mut b]);
+                sums = [sums[0] + weight * a[0], sums[1] + weight * b[0]];
+            }
+            [*x, *y] = sums.map(S::from_f64);
         }
     }
 

@@ -121,7 +121,7 @@ fn picture(domain: Domain, discs: Vec<([f64; 2], f64)>) -> Picture {
 fn structure(&packing_fraction: &f64) -> Result<Structure, StudyError> {
     let overrides = Overrides::new().set(&PACKING_FRACTION, packing_fraction).set(&COUNT, DISCS);
     let overrides = overrides.set(&COLLISION_LOG, true);
-    let (scene, method) = load("melting", &overrides, METHODS)?;
+    let (scene, method) = load("melting", &overrides.texts(), METHODS)?;
     let (domain, mut start) = (scene.domain, scene.particles().clone());
     for (disc, turn) in start.all_mut().iter_mut().zip(1..) {
         // Multiples of the golden section: directions that are even and in no order.

@@ -154,7 +154,7 @@ fn fluid(law: PairLaw, density: f64, seconds: f64, cases: &mut Vec<Case>) -> Res
 
 /// Writes the ten frames of the source's run as text.
 fn frames() -> Result<Reading, StudyError> {
-    let running = Running::timed("langevin-report", &[])?;
+    let running = Running::timed("langevin-report", &Overrides::new())?;
     let begun = Instant::now();
     for step in 0..10 {
         let frame = Frame {

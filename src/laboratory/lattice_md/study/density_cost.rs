@@ -247,7 +247,7 @@ pub(super) fn list_figures(occupancy: f64) -> Result<ListFigures, StudyError> {
     const STEPS: u64 = 1000;
     let scene = Overrides::new().set(&COUNT, 1024_u64).set(&PACKING_FRACTION, PI * occupancy);
     let overrides = scene.set(&SEARCH, By::NeighborList).set(&EXECUTION, "chained");
-    let mut method = assemble(&Document::load("bench", &overrides)?.check()?)?;
+    let mut method = assemble(&Document::load("bench", &overrides.texts())?.check()?)?;
     (0..EQUILIBRATION).try_for_each(|_| method.step())?;
     let made = method.lists().map_or(0, |(_, rebuilds)| rebuilds);
     let mut sums = [0; 2];

@@ -48,7 +48,7 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
 fn compared((_, preset, overrides, steps): &Scene) -> Result<Vec<(u64, [Particles; 2])>, StudyError> {
     let start = |search: By| {
         let overrides = overrides.clone().set(&SEARCH, search).set(&EXECUTION, "chained");
-        Ok::<_, StudyError>(assemble(&Document::load(preset, &overrides)?.check()?)?)
+        Ok::<_, StudyError>(assemble(&Document::load(preset, &overrides.texts())?.check()?)?)
     };
     let (mut lattice, mut lists) = (start(By::Lattice)?, start(By::NeighborList)?);
     let mut states = vec![];

@@ -52,7 +52,7 @@ impl Run {
             // As the source has it; the largest cell that the geometry allows would need fewer.
             false => scene.set(&SEARCH, "lattice").set(&CELL_EDGE, 0.5),
         };
-        Ok(Document::load("bench", &[&scene[..], further].concat())?.check()?)
+        Ok(Document::load("bench", &scene.and(further).texts())?.check()?)
     }
 
     /// Name of the rates of a run whose work depends on the data: a lattice with few discs is searched by another algorithm.

@@ -228,7 +228,7 @@ impl Measurements<'_> {
         let mut rows = vec![];
         for (discs, phi) in self.grid() {
             let scene = Overrides::new().set(&COUNT, discs).set(&PACKING_FRACTION, phi);
-            let auto = Document::load("bench", &fast(scene))?.check()?.scene.search.by.word();
+            let auto = Document::load("bench", &fast(scene).texts())?.check()?.scene.search.by.word();
             let ranked = self.ranked(discs, phi);
             let Some((first, best)) = ranked.first() else { continue };
             let own = ranked.iter().find(|(name, _)| *name == auto);

@@ -2,9 +2,11 @@
 
 use super::benches::BENCHES;
 use super::checked::prepare;
-use super::keys::VOCABULARY;
+use super::keys::{ENGINE, VOCABULARY};
+use super::options::EngineChoice;
 use super::quantities::QUANTITIES;
-use crate::method::{Axis, Decides, Entry, Setting};
+use crate::method::trials::settings;
+use crate::method::{Axis, Decides, Entry};
 
 /// Event-driven hard discs.
 pub static ENTRY: Entry = Entry {
@@ -22,9 +24,9 @@ pub static ENTRY: Entry = Entry {
 const AXES: &[Axis] = &[Axis {
     name: "engine",
     decides: Decides::Cost,
-    settings: &[
-        Setting { name: "fast", overrides: &["machine.engine=fast"] },
-        Setting { name: "reference", overrides: &["machine.engine=reference"] },
-    ],
+    settings: settings! {
+        "fast" [ENGINE = EngineChoice::Fast],
+        "reference" [ENGINE = EngineChoice::Reference],
+    },
     own: |prepared| Some(prepared.settings.get("engine")?.as_str()?.to_owned()),
 }];

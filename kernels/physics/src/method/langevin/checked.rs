@@ -12,6 +12,7 @@ use crate::scene::{
     DT, GENERATE, RADIUS, Read, Reason, SceneError, SceneErrors, Values, WallMotion, Warning,
 };
 use crate::start::{Stated, make, noise_seed, outside, overlaps};
+use stripmine_kernels::noise::NoiseSource;
 
 /// Particles may be nearer than a diameter by this part of it at the start: the potential is then 100 ε.
 const DEEPEST: f64 = 0.25;
@@ -28,9 +29,10 @@ pub(super) struct Checked {
     /// The cut-off (length); a diameter where there are no pairs.
     pub(super) reach: f64,
     pub(super) found: Found,
-    /// Seed of the noise, as the scene says, and with which the bath draws.
+    /// Seed of the noise, as the scene says.
     pub(super) seed: u64,
-    pub(super) noise_seed: u64,
+    /// Numbers that the bath draws.
+    pub(super) noise: NoiseSource,
     pub(super) warnings: Vec<Warning>,
     pub(super) choices: Vec<String>,
 }
@@ -89,20 +91,8 @@ pub(super) fn checked(values: Values) -> Result<Checked, SceneErrors> {
         scene.noise_seed.get_or_insert(1);
     }
     let seed = scene.noise_seed.or(scene.start.seed()).unwrap_or(1);
-    let noise_seed = noise_seed(&scene.start, seed, &particles);
-    Ok(Checked {
-        scene,
-        domain,
-        particles,
-        diameter,
-        mass,
-        reach,
-        found,
-        seed,
-        noise_seed,
-        warnings,
-        choices,
-    })
+    let noise = NoiseSource::new(noise_seed(&scene.start, seed, &particles));
+    Ok(Checked { scene, domain, particles, diameter, mass, reach, found, seed, noise, warnings, choices })
 }
 
 /// The first particle, if all are alike and move.

@@ -95,7 +95,7 @@ fn of_precision<S: backend::Precision, P: backend::Precision>(
         // Particles that do not act on each other may go as far as they like.
         crosses_any: scene.law == PairLaw::None,
         followed: [follows; 2],
-        seed: checked.noise_seed,
+        noise: checked.noise,
     };
     let count = particles.len();
     let set = scene.instructions();

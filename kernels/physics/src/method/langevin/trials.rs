@@ -1,19 +1,12 @@
 //! How particles in a bath may be run, and what a map of stability varies.
 
 use super::checked::prepare;
-use super::keys::{BATH_TEMPERATURE, DRAG, LAW, STRENGTH};
-use super::options::PairLaw;
-use crate::method::{
-    Axis, Becomes, Decides, Mapped, Parameter, Prepared, SMALLEST_RADIUS, Setting, Trials, Twin,
-};
-use crate::scene::{DT, Key, Overrides, Values};
+use super::keys::{BATH_TEMPERATURE, DRAG, INTEGRATOR, LAW, SEARCH, STRENGTH};
+use super::options::{By, PairLaw, SchemeKind};
+use crate::method::trials::settings;
+use crate::method::{Axis, Becomes, Decides, Parameter, Prepared, SMALLEST_RADIUS, Trials, Twin};
+use crate::scene::{DT, Key, Overrides, PRECISION, Precision, Values};
 use crate::words::Words;
-
-macro_rules! settings {
-    ($($name:literal [$($override:literal),*],)*) => {
-        &[$(Setting { name: $name, overrides: &[$($override),*] }),*]
-    };
-}
 
 /// Every way to run a scene of particles in a bath.
 pub(super) static TRIALS: Trials = Trials {
@@ -31,26 +24,9 @@ pub(super) static TRIALS: Trials = Trials {
     fluctuating: &[],
     inertia: |_| None,
     theory: |_, _, _| None,
-    shown: &[],
     parameters: PARAMETERS,
     at_any_step: prepare,
-    mapped: MAPPED,
 };
-
-const MAPPED: &[Mapped] = &[
-    Mapped {
-        name: "langevin-strength",
-        preset: "langevin-dense",
-        overrides: &["law.kind=wca", "particles.count=300", "domain.sides=[20.7, 20.7]", "run.time=5"],
-        parameter: "strength",
-    },
-    Mapped {
-        name: "langevin-friction",
-        preset: "langevin-dense",
-        overrides: &["law.kind=wca", "particles.count=300", "domain.sides=[20.7, 20.7]", "run.time=5"],
-        parameter: "friction",
-    },
-];
 
 /// What a scene may be modelled without.
 pub(super) const TWINS: &[Twin] = &[
@@ -75,8 +51,8 @@ pub(super) const AXES: &[Axis] = &[
         name: "integrator",
         decides: Decides::Order,
         settings: settings! {
-            "baoab" ["integrator.kind=baoab"],
-            "stochastic" ["integrator.kind=stochastic"],
+            "baoab" [INTEGRATOR = SchemeKind::Baoab],
+            "stochastic" [INTEGRATOR = SchemeKind::Stochastic],
         },
         own: |prepared| setting_of(prepared, "integrator"),
     },
@@ -84,9 +60,9 @@ pub(super) const AXES: &[Axis] = &[
         name: "precision",
         decides: Decides::Digits,
         settings: settings! {
-            "f64" ["machine.precision=f64"],
-            "mixed" ["machine.precision=mixed"],
-            "f32" ["machine.precision=f32"],
+            "f64" [PRECISION = Precision::F64],
+            "mixed" [PRECISION = Precision::Mixed],
+            "f32" [PRECISION = Precision::F32],
         },
         own: |prepared| setting_of(prepared, "precision"),
     },
@@ -94,9 +70,9 @@ pub(super) const AXES: &[Axis] = &[
         name: "search",
         decides: Decides::Cost,
         settings: settings! {
-            "neighbor-list" ["search.by=neighbor-list"],
-            "sectors" ["search.by=sectors"],
-            "lattice" ["search.by=lattice"],
+            "neighbor-list" [SEARCH = By::NeighborList],
+            "sectors" [SEARCH = By::Sectors],
+            "lattice" [SEARCH = By::Lattice],
         },
         own: |prepared| setting_of(prepared, "search"),
     },

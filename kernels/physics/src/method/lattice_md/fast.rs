@@ -21,6 +21,7 @@ use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::Storage;
 use stripmine_kernels::ledger::{Ledger, Length};
+use stripmine_kernels::noise::NoiseSource;
 
 /// How the fast engine finds contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -117,7 +118,7 @@ fn stepping<S: Precision, P: Precision, Q: Search<S, P> + 'static>(
         crosses_any: false,
         followed: model.counts_crossings(),
         // None of these schemes draws random numbers.
-        seed: 0,
+        noise: NoiseSource::new(0),
     };
     let granular = Granular { model: model.clone(), walls };
     pairwise::begin::<S, P, Q, _>((granular, system, set), search, particles)

@@ -3,14 +3,16 @@
 use super::document::Document;
 use super::hard::hard;
 use super::keys::{
-    COORDINATES, ENGINE, FRICTION, INERTIA, LAW, MAX_PENETRATION, NORMAL_DAMPING, SHEAR_DAMPING, STIFFNESS,
+    COORDINATES, ENGINE, EXECUTION, FRICTION, INERTIA, INTEGRATOR, LAW, MAX_PENETRATION, NORMAL_DAMPING,
+    SEARCH, SHEAR_DAMPING, STIFFNESS, VALUES,
 };
-use super::options::{EngineChoice, Inertia};
+use super::options::{By, EngineChoice, Inertia, IntegratorKind};
 use super::quantities::QUANTITIES;
 use crate::method::observed::place;
+use crate::method::trials::settings;
 use crate::method::{
-    Axis, Balance, Becomes, Decides, Mapped, Parameter, Prepared, Purpose, SMALLEST_RADIUS, Setting, Theory,
-    Trials, Twin,
+    Axis, Balance, Becomes, Decides, Parameter, Prepared, Purpose, SMALLEST_RADIUS, Setting, Theory, Trials,
+    Twin,
 };
 use crate::scene::{
     DT, ORIGIN, Overrides, PACKING_FRACTION, PRECISION, Precision, RADIUS_CUT, RADIUS_SPREAD, SPEED,
@@ -19,12 +21,6 @@ use crate::scene::{
 use crate::words::Words;
 use stripmine_kernels::law::spring::Spring;
 use stripmine_kernels::sweep::lattice::Coordinates;
-
-macro_rules! settings {
-    ($($name:literal [$($override:literal),*],)*) => {
-        &[$(Setting { name: $name, overrides: &[$($override),*] }),*]
-    };
-}
 
 /// Every way to run a scene of granular discs.
 pub(super) static TRIALS: Trials = Trials {
@@ -45,46 +41,9 @@ pub(super) static TRIALS: Trials = Trials {
     fluctuating: &["pressure"],
     inertia,
     theory,
-    shown: &[
-        ("two-discs", "two-discs", &["run.time=3.2"]),
-        ("dense-gas", "dense-gas", &["particles.count=100"]),
-        ("pipe-small", "pipe-small", &[]),
-        ("shaken-box", "shaken-box", &[]),
-    ],
     parameters: PARAMETERS,
     at_any_step: |values| Document::read(values)?.prepare_at_any_step(),
-    mapped: MAPPED,
 };
-
-const MAPPED: &[Mapped] = &[
-    Mapped { name: "two-discs", preset: "two-discs", overrides: &["run.time=3.2"], parameter: "damping" },
-    Mapped {
-        name: "dense-gas",
-        preset: "dense-gas",
-        overrides: &["particles.count=100"],
-        parameter: "speed",
-    },
-    Mapped { name: "pipe-small", preset: "pipe-small", overrides: &[], parameter: "damping" },
-    Mapped { name: "shaken-box", preset: "shaken-box", overrides: &[], parameter: "stiffness" },
-    Mapped {
-        name: "wide-sizes",
-        preset: "wide-sizes",
-        overrides: &[
-            "domain.sides=[14.0, 14.0]",
-            "search.by=lattice",
-            "search.mask=5",
-            "particles.radius_spread=0.02",
-            "particles.radius_cut=0.04",
-        ],
-        parameter: "size-ratio",
-    },
-    Mapped {
-        name: "single-precision",
-        preset: "dense-gas",
-        overrides: &["particles.count=100", "machine.precision=f32"],
-        parameter: "distance-from-origin",
-    },
-];
 
 /// What a map may vary. A value that a scene cannot have is refused by its check, and stands so in the map.
 const PARAMETERS: &[Parameter] = &[
@@ -240,10 +199,10 @@ pub(super) const AXES: &[Axis] = &[
         name: "integrator",
         decides: Decides::Order,
         settings: settings! {
-            "velocity-verlet" ["integrator.kind=velocity-verlet"],
-            "gear4" ["integrator.kind=gear", "integrator.values=4"],
-            "gear5" ["integrator.kind=gear", "integrator.values=5"],
-            "gear6" ["integrator.kind=gear", "integrator.values=6"],
+            "velocity-verlet" [INTEGRATOR = IntegratorKind::VelocityVerlet],
+            "gear4" [INTEGRATOR = IntegratorKind::Gear, VALUES = 4_u64],
+            "gear5" [INTEGRATOR = IntegratorKind::Gear, VALUES = 5_u64],
+            "gear6" [INTEGRATOR = IntegratorKind::Gear, VALUES = 6_u64],
         },
         own: |prepared| setting_of(prepared, "integrator"),
     },
@@ -251,9 +210,9 @@ pub(super) const AXES: &[Axis] = &[
         name: "precision",
         decides: Decides::Digits,
         settings: settings! {
-            "f64" ["machine.precision=f64"],
-            "mixed" ["machine.precision=mixed"],
-            "f32" ["machine.precision=f32"],
+            "f64" [PRECISION = Precision::F64],
+            "mixed" [PRECISION = Precision::Mixed],
+            "f32" [PRECISION = Precision::F32],
         },
         own: |prepared| setting_of(prepared, "precision"),
     },
@@ -261,9 +220,9 @@ pub(super) const AXES: &[Axis] = &[
         name: "search",
         decides: Decides::Cost,
         settings: settings! {
-            "lattice" ["search.by=lattice"],
-            "sectors" ["search.by=sectors"],
-            "neighbor-list" ["search.by=neighbor-list"],
+            "lattice" [SEARCH = By::Lattice],
+            "sectors" [SEARCH = By::Sectors],
+            "neighbor-list" [SEARCH = By::NeighborList],
         },
         own: |prepared| fact_of(prepared, "search"),
     },
@@ -271,9 +230,9 @@ pub(super) const AXES: &[Axis] = &[
         name: "execution",
         decides: Decides::Cost,
         settings: settings! {
-            "fast" ["machine.engine=fast"],
-            "chained" ["machine.engine=programs", "machine.execution=chained"],
-            "eager" ["machine.engine=programs", "machine.execution=eager"],
+            "fast" [ENGINE = EngineChoice::Fast],
+            "chained" [ENGINE = EngineChoice::Programs, EXECUTION = "chained"],
+            "eager" [ENGINE = EngineChoice::Programs, EXECUTION = "eager"],
         },
         own: |prepared| setting_of(prepared, "execution"),
     },

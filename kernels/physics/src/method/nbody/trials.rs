@@ -1,18 +1,13 @@
 //! How bodies may be run, and what theory says of the error.
 
 use super::checked::prepare;
-use super::keys::{ECCENTRICITY, SOFTENING};
-use crate::method::{
-    Axis, Balance, Decides, Length, Mapped, Parameter, Prepared, Setting, Theory, Trials, Twin,
-};
+use super::keys::{ECCENTRICITY, ENGINE, INTEGRATOR, SOFTENING};
+use super::options::Engine;
+use super::schemes::SchemeName;
+use crate::method::trials::settings;
+use crate::method::{Axis, Balance, Decides, Length, Parameter, Prepared, Setting, Theory, Trials, Twin};
 use crate::particles::{Particle, Particles};
-use crate::scene::{DT, Overrides, Values};
-
-macro_rules! settings {
-    ($($name:literal [$($override:literal),*],)*) => {
-        &[$(Setting { name: $name, overrides: &[$($override),*] }),*]
-    };
-}
+use crate::scene::{DT, Overrides, PRECISION, Precision, Values};
 
 /// Every way to run a scene of bodies. Studies see the plane of x and y: orbits of two and three bodies lie in it.
 pub(super) static TRIALS: Trials = Trials {
@@ -29,15 +24,8 @@ pub(super) static TRIALS: Trials = Trials {
     fluctuating: &[],
     inertia: |_| None,
     theory,
-    shown: &[("kepler", "kepler", &["run.time=31.4"]), ("figure-eight", "figure-eight", &[])],
     parameters: PARAMETERS,
     at_any_step: prepare,
-    mapped: &[Mapped {
-        name: "kepler",
-        preset: "kepler",
-        overrides: &["run.time=62.8"],
-        parameter: "eccentricity",
-    }],
 };
 
 /// What a scene may be modelled without.
@@ -48,14 +36,14 @@ pub(super) const AXES: &[Axis] = &[
         name: "integrator",
         decides: Decides::Order,
         settings: settings! {
-            "damped-euler" ["integrator.kind=damped-euler"],
-            "leapfrog" ["integrator.kind=leapfrog"],
-            "yoshida-4" ["integrator.kind=yoshida-4"],
-            "yoshida-6" ["integrator.kind=yoshida-6"],
-            "yoshida-8" ["integrator.kind=yoshida-8"],
-            "runge-kutta-4" ["integrator.kind=runge-kutta-4"],
-            "hermite-4" ["integrator.kind=hermite-4"],
-            "gear-6" ["integrator.kind=gear-6"],
+            "damped-euler" [INTEGRATOR = SchemeName::DampedEuler],
+            "leapfrog" [INTEGRATOR = SchemeName::Leapfrog],
+            "yoshida-4" [INTEGRATOR = SchemeName::Yoshida4],
+            "yoshida-6" [INTEGRATOR = SchemeName::Yoshida6],
+            "yoshida-8" [INTEGRATOR = SchemeName::Yoshida8],
+            "runge-kutta-4" [INTEGRATOR = SchemeName::RungeKutta4],
+            "hermite-4" [INTEGRATOR = SchemeName::Hermite4],
+            "gear-6" [INTEGRATOR = SchemeName::Gear6],
         },
         own: |prepared| setting_of(prepared, "integrator"),
     },
@@ -63,8 +51,8 @@ pub(super) const AXES: &[Axis] = &[
         name: "precision",
         decides: Decides::Digits,
         settings: settings! {
-            "f64" ["machine.precision=f64"],
-            "mixed" ["machine.precision=mixed"],
+            "f64" [PRECISION = Precision::F64],
+            "mixed" [PRECISION = Precision::Mixed],
         },
         own: |prepared| setting_of(prepared, "precision"),
     },
@@ -72,8 +60,8 @@ pub(super) const AXES: &[Axis] = &[
         name: "engine",
         decides: Decides::Cost,
         settings: settings! {
-            "fast" ["machine.engine=fast"],
-            "reference" ["machine.engine=reference"],
+            "fast" [ENGINE = Engine::Fast],
+            "reference" [ENGINE = Engine::Reference],
         },
         own: |prepared| setting_of(prepared, "engine"),
     },

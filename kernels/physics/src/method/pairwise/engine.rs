@@ -296,8 +296,8 @@ fn sums_of<P: Precision>(discs: usize) -> [AlignedColumn<P>; 4] {
 
 /// How discs move by a scheme.
 fn motion<C: Scheme>(system: &System, scheme: C) -> Motion<C> {
-    let System { dt, inertia, gravity, seed, .. } = *system;
-    Motion { scheme, dt, inertia, gravity, seed }
+    let System { dt, inertia, gravity, noise, .. } = *system;
+    Motion { scheme, dt, inertia, gravity, noise }
 }
 
 /// A pass over some discs.

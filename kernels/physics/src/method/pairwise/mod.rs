@@ -45,6 +45,7 @@ pub use unwrapped::{unwrapped, wrapped};
 use crate::domain::Domain;
 use stripmine_kernels::integrator::{Inertia, Scheme};
 use stripmine_kernels::law::Law;
+use stripmine_kernels::noise::NoiseSource;
 
 /// What moves, and where.
 #[derive(Clone, Debug)]
@@ -71,8 +72,8 @@ pub struct System {
     pub crosses_any: bool,
     /// Along which axes it is followed how many periods discs cross.
     pub followed: [bool; 2],
-    /// Seed of the random numbers, for a scheme that draws some.
-    pub seed: u64,
+    /// The random numbers, for a scheme that draws some.
+    pub noise: NoiseSource,
     /// When discs are put in the order of their cells.
     pub sort: Sort,
 }

@@ -101,7 +101,7 @@ pub(super) fn flow(
 ) -> Result<Flow, StudyError> {
     let overrides = overrides.clone().set(&SEED, seed);
     let overrides = overrides.set(&SEARCH, By::NeighborList).set(&EXECUTION, "chained");
-    let checked = Document::load(scene, &overrides)?.check()?;
+    let checked = Document::load(scene, &overrides.texts())?.check()?;
     let mut method = assemble(&checked)?;
     let scenery = Scenery::of(&model(&checked));
     let (length, origin) = (checked.domain.length(0), checked.domain.origin[0]);
@@ -165,7 +165,7 @@ impl Runs {
         });
         let mut flows: Vec<Flow> = flows.collect::<Result<_, _>>()?;
         let control = flows.remove(seeds.len());
-        let title = overrides.iter().map(|text| format!(", {text}")).collect::<String>();
+        let title = overrides.texts().iter().map(|text| format!(", {text}")).collect::<String>();
         Ok(Runs { title: format!("Runs of {scene}{title}"), flows, control })
     }
 

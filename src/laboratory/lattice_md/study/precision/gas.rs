@@ -37,7 +37,7 @@ impl Gas {
         overrides: &Overrides,
         discs: Option<&Particles>,
     ) -> Result<Gas, StudyError> {
-        let mut checked = Document::load("bench", overrides)?.check()?;
+        let mut checked = Document::load("bench", &overrides.texts())?.check()?;
         checked.scene.machine.coordinates = coordinates;
         if let Some(discs) = discs {
             checked.particles = discs.clone();

@@ -65,7 +65,7 @@ impl Checked {
     pub(super) fn on_lattice(&self) -> Option<Checked> {
         let mut scene = self.scene.clone();
         scene.search.by = By::Lattice;
-        let document = Document { scene, values: Values::of_no_text(&VOCABULARY.keys) };
+        let document = Document { scene, values: Values::of_no_text(&VOCABULARY) };
         let geometry =
             geometry::fit(&document, &self.domain, self.geometry.radii, self.particles.len()).ok()?;
         Some(Checked { scene: document.scene, geometry, ..self.clone() })
@@ -87,7 +87,7 @@ impl Scene {
     /// # Errors
     /// [`SceneErrors`]: every precondition that does not hold.
     pub fn check(&self) -> Result<Checked, SceneErrors> {
-        check(Document { scene: self.clone(), values: Values::of_no_text(&VOCABULARY.keys) }, Steps::Foreseen)
+        check(Document { scene: self.clone(), values: Values::of_no_text(&VOCABULARY) }, Steps::Foreseen)
     }
 }
 
