@@ -69,7 +69,8 @@ pub fn above_limits(prepared: &Prepared) -> Option<Warning> {
         limit.name,
         beyond(limit)
     );
-    Some(Warning { key, message, suggestion: format!("take dt <= {}", significant(limit.step, 3)) })
+    let suggestion = format!("take dt <= {}", significant(limit.step, 3));
+    Some(Warning { check: limit.name, share: limit.share, is_refusal: false, key, message, suggestion })
 }
 
 /// What there is to be said of the start of a run.

@@ -107,8 +107,24 @@ impl Estimates {
     }
 }
 
+/// A reason to refuse a scene for its step.
+pub(super) struct Refusal {
+    check: &'static str,
+    share: f64,
+    key: &'static Key,
+    /// What the user is told.
+    pub(super) error: SceneError,
+}
+
+impl From<Refusal> for Warning {
+    fn from(Refusal { check, share, key, error }: Refusal) -> Warning {
+        let suggestion = error.expected.unwrap_or_default();
+        Warning { check, share, is_refusal: true, key: key.path(), message: error.message, suggestion }
+    }
+}
+
 /// A damping at which even a single contact is unstable.
-pub(super) fn instability(document: &Document) -> Option<SceneError> {
+pub(super) fn instability(document: &Document) -> Option<Refusal> {
     let scene = &document.scene;
     let Integrator { dt, scheme, .. } = scene.integrator;
     let (gamma, limit) = (scene.law.contact.normal_damping, damping_limit(scheme));
@@ -120,14 +136,15 @@ pub(super) fn instability(document: &Document) -> Option<SceneError> {
             significant(gamma * dt, 4)
         );
         let error = document.values.spot(&DT).error(Reason::Stability, message);
-        error
+        let error = error
             .expecting(format!("dt below {} (time), {} where packings are dense", significant(limit / gamma, 5), significant({
                 limit / (NETWORK * gamma)
             }, 5)))
             .advising(match scheme {
                 Scheme::Gear(GearValues::Four) | Scheme::VelocityVerlet => "lower dt or law.normal_damping",
                 _ => "lower dt or law.normal_damping, or use fewer Gear values",
-            })
+            });
+        Refusal { check: "damping of a contact", share: gamma * dt / limit, key: &DT, error }
     })
 }
 
@@ -138,11 +155,11 @@ pub(super) fn long_steps(
     domain: &Domain,
     particles: &Particles,
     geometry: &Geometry,
-) -> Vec<SceneError> {
+) -> Vec<Refusal> {
     let scene = &document.scene;
     let dt = scene.integrator.dt;
     let estimates = Estimates::of(scene, particles);
-    let mut errors = Vec::new();
+    let mut refusals = Vec::new();
     let speed = |disc: &Particle| disc.velocity[0].hypot(disc.velocity[1]);
     let fastest = particles.all().iter().max_by(|a, b| speed(a).total_cmp(&speed(b)));
     let limit = longest_step(geometry.radii[0], scene.law.max_penetration);
@@ -161,9 +178,10 @@ pub(super) fn long_steps(
             limit = significant(limit, 5)
         );
         let error = document.values.spot(&DT).error(Reason::Stability, message);
-        errors.push(error.expecting(format!("dt below {} (time)", significant(limit / speed, 5))).advising(
+        let error = error.expecting(format!("dt below {} (time)", significant(limit / speed, 5))).advising(
             "lower dt, slow the discs, or count such steps instead: integrator.on_long_step = \"count\"",
-        ));
+        );
+        refusals.push(Refusal { check: "mask", share: speed * dt / limit, key: &DT, error });
     }
     if let (Some(steps), Some(duration)) = (estimates.steps_per_contact, estimates.contact_duration)
         && steps < FEWEST_STEPS
@@ -175,11 +193,12 @@ pub(super) fn long_steps(
             duration = significant(duration, 5)
         );
         let error = document.values.spot(&DT).error(Reason::Stability, message);
-        errors.push(error.expecting(format!(
+        let error = error.expecting(format!(
             "dt below {} (time), and below {} for {LEAST_STEPS} steps a contact",
             significant(duration / FEWEST_STEPS, 5),
             significant(duration / LEAST_STEPS, 5)
-        )));
+        ));
+        refusals.push(Refusal { check: "3 steps a contact", share: FEWEST_STEPS / steps, key: &DT, error });
     }
     if let Some((rounding, step)) = lost_motion(scene, domain, geometry, &estimates)
         && rounding > MOST_LOST * step
@@ -193,14 +212,18 @@ pub(super) fn long_steps(
             step = significant(step, 2)
         );
         let error = document.values.spot(&PRECISION).error(Reason::Geometry, message);
-        errors.push(error.expecting(format!("steps longer than {} (length)", significant(rounding / MOST_LOST, 2))).advising(
-            match absolute {
-                true => "set machine.coordinates = \"cell-relative\", or machine.precision = \"mixed\" or \"f64\"",
+        let error = error
+            .expecting(format!("steps longer than {} (length)", significant(rounding / MOST_LOST, 2)))
+            .advising(match absolute {
+                true => {
+                    "set machine.coordinates = \"cell-relative\", or machine.precision = \"mixed\" or \"f64\""
+                }
                 false => "set machine.precision = \"mixed\" or \"f64\"",
-            },
-        ));
+            });
+        let share = rounding / (MOST_LOST * step);
+        refusals.push(Refusal { check: "lost motion", share, key: &PRECISION, error });
     }
-    errors
+    refusals
 }
 
 /// Part of a step that rounding a position may take: more is refused.
@@ -249,14 +272,16 @@ pub(super) fn warnings(
     estimates: &Estimates,
 ) -> Vec<Warning> {
     let mut warnings = Vec::new();
-    let mut warn = |key: &Key, message: String, suggestion: String| {
-        warnings.push(Warning { key: key.path(), message, suggestion });
+    let mut warn = |check: &'static str, share: f64, key: &Key, message: String, suggestion: String| {
+        warnings.push(Warning { check, share, is_refusal: false, key: key.path(), message, suggestion });
     };
     let contact = &scene.law.contact;
     let Integrator { dt, scheme, .. } = scene.integrator;
     let limit = estimates.damping_limit;
     if estimates.network_damping > limit {
         warn(
+            "network damping",
+            estimates.network_damping / limit,
             &DT,
             format!(
                 "3·normal_damping·dt = {} in a dense packing, but {} is stable below about {limit:.2}",
@@ -275,6 +300,8 @@ pub(super) fn warnings(
         if rate * dt > limit {
             let words = if scene.law.inertia == Inertia::Disc { "3" } else { "3.5" };
             warn(
+                "drag of friction",
+                rate * dt / limit,
                 &SHEAR_DAMPING,
                 format!(
                     "{words}·shear_damping·dt = {} for a contact that rolls, stable below about {limit:.2}",
@@ -285,15 +312,29 @@ pub(super) fn warnings(
         }
     } else if contact.friction > 0.0 {
         let why = "law.friction bounds a shear force that law.shear_damping = 0 makes zero".to_owned();
-        warn(&FRICTION, why, "raise law.shear_damping, or set law.friction = 0".to_owned());
+        warn(
+            "no friction",
+            f64::INFINITY,
+            &FRICTION,
+            why,
+            "raise law.shear_damping, or set law.friction = 0".to_owned(),
+        );
     } else if contact.shear_damping > 0.0 {
         let why = "law.shear_damping has no effect while law.friction is 0".to_owned();
-        warn(&SHEAR_DAMPING, why, "raise law.friction, or set law.shear_damping = 0".to_owned());
+        warn(
+            "no friction",
+            f64::INFINITY,
+            &SHEAR_DAMPING,
+            why,
+            "raise law.friction, or set law.shear_damping = 0".to_owned(),
+        );
     }
     if let (Some(steps), Some(duration)) = (estimates.steps_per_contact, estimates.contact_duration)
         && steps < LEAST_STEPS
     {
         warn(
+            "15 steps a contact",
+            LEAST_STEPS / steps,
             &DT,
             format!(
                 "a contact at speed {} lasts {duration}, {steps:.1} steps",
@@ -308,7 +349,13 @@ pub(super) fn warnings(
     if (gx != 0.0 || gy != 0.0) && particles.grain_count() == particles.len() {
         let why =
             "there is gravity but there are no walls: discs fall for ever, or out of the box".to_owned();
-        warn(&GRAVITY, why, "add walls, or set domain.gravity = [0, 0]".to_owned());
+        warn(
+            "no walls",
+            f64::INFINITY,
+            &GRAVITY,
+            why,
+            "add walls, or set domain.gravity = [0, 0]".to_owned(),
+        );
     }
     // Along an open side a grain that meets nothing flies, or falls, out of the box before the run ends.
     let time = scene.duration();
@@ -322,12 +369,18 @@ pub(super) fn warnings(
     if has_no_walls && particles.grains().iter().any(leaves) {
         let why = "sides that are not periodic hold nothing back, and there are no wall discs: a grain that leaves the box ends the run";
         let what = "make them periodic, line them with wall discs (particles.wall_positions), or take method.kind = \"hard-disks\"";
-        warn(&PERIODIC, why.to_owned(), what.to_owned());
+        warn("open sides", f64::INFINITY, &PERIODIC, why.to_owned(), what.to_owned());
     }
     if scene.machine.precision != Precision::F64 && are_absolute(scene) {
         let why = "absolute coordinates in f32: forces are right to 3e-4 at best, to 1e-2 in large boxes"
             .to_owned();
-        warn(&COORDINATES, why, "use cell-relative coordinates, right to 4e-6".to_owned());
+        warn(
+            "absolute coordinates",
+            f64::INFINITY,
+            &COORDINATES,
+            why,
+            "use cell-relative coordinates, right to 4e-6".to_owned(),
+        );
     }
     if let Some((rounding, step)) = lost_motion(scene, domain, geometry, estimates)
         && rounding > MUCH_LOST * step
@@ -337,20 +390,32 @@ pub(super) fn warnings(
             significant(rounding / step, 2),
             rounding = significant(rounding, 2)
         );
-        warn(&PRECISION, message, "use \"mixed\" or \"f64\"".to_owned());
+        warn(
+            "rounding",
+            rounding / (MUCH_LOST * step),
+            &PRECISION,
+            message,
+            "use \"mixed\" or \"f64\"".to_owned(),
+        );
     }
     if let Some(set) = scene.machine.instruction_set.filter(|set| !set.is_available()) {
         let message = format!("this processor has no {}", set.name());
-        warn(&INSTRUCTION_SET, message, "use \"auto\"".to_owned());
+        warn("instruction set", f64::INFINITY, &INSTRUCTION_SET, message, "use \"auto\"".to_owned());
     }
     warnings
 }
 
-fn depth_warnings(scene: &Scene, estimates: &Estimates, warn: &mut impl FnMut(&Key, String, String)) {
+fn depth_warnings(
+    scene: &Scene,
+    estimates: &Estimates,
+    warn: &mut impl FnMut(&'static str, f64, &Key, String, String),
+) {
     let (law, most) = (&scene.law.contact, scene.law.max_penetration);
     let deepest = estimates.impact_penetration * law.depth_of_faster(FASTEST);
     if deepest > most {
         warn(
+            "depth of impact",
+            deepest / most,
             &STIFFNESS,
             format!(
                 "approaches {FASTEST} times as fast as {} reach a penetration of {}, above \
@@ -367,6 +432,8 @@ fn depth_warnings(scene: &Scene, estimates: &Estimates, warn: &mut impl FnMut(&K
     let rest = DEEPEST_REST * most / 0.1;
     if estimates.resting_depth > rest {
         warn(
+            "depth at rest",
+            estimates.resting_depth / rest,
             &STIFFNESS,
             format!(
                 "a grain sinks {} of its radius into another by its own weight; above {} columns of grains \
