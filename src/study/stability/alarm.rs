@@ -39,7 +39,7 @@ impl Alarm {
     pub fn before(scene: &Prepared) -> Vec<Alarm> {
         let mut alarms: Vec<Alarm> = vec![];
         let limits = scene.step_limits.iter().map(|limit| {
-            let finding = if limit.share > 1.0 { Finding::Warned } else { Finding::Within };
+            let finding = if limit.is_passed() { Finding::Warned } else { Finding::Within };
             (limit.name, finding, limit.share)
         });
         let warnings = scene.warnings.iter().map(|warning| {
