@@ -123,8 +123,12 @@ mod tests {
         assert_eq!([off(106.1), off(93.9)], [None, None]);
         assert_eq!(off(106.2).unwrap(), "the mean a is off by 6 %, and may be by 6 %");
         assert!(off(f64::NAN).is_some());
-        // ±4.07 and ±4.09 in 100: 24.95 and 25.07.
-        let decides = |apart: f64| Expected::of(&around([apart, -apart], 100.0), |_| 0.0).unwrap().decides();
+        // ±4 and ±4.2 alone: 24.5 and 25.8 of 100.
+        let decides = |apart: f64| {
+            let alone = (0..8).map(|run| vec![if run % 2 == 0 { 100.0 + apart } else { 100.0 - apart }]);
+            let runs: Vec<Means> = alone.map(|value| Means::from([("a".to_owned(), value)])).collect();
+            Expected::of(&runs, |_| 0.0).unwrap().decides()
+        };
         assert_eq!([decides(4.0), decides(4.2)], [true, false]);
         let certain = Expected::of(&runs([[100.0, 50.0]; 8]), |_| 0.0).unwrap();
         let off = |a: f64| certain.worst(&Means::from([("a".to_owned(), vec![a])]));

@@ -5,8 +5,9 @@ use super::balance::Balance;
 use crate::method::RunWarning;
 use crate::number::significant;
 
-/// The balance of energy may be off by this part of what passed through: as much as means over time may be off in a run that is right.
-const BALANCED: f64 = 0.05;
+/// The balance of energy may be off by this part of what passed through. An error that grows evenly to it is 5 % in the mean over the
+/// second half of a run, three quarters of what it is at the end.
+const BALANCED: f64 = 0.05 / 0.75;
 
 /// Warnings of counts. Contacts deeper than `law.max_penetration` are counted alone: every search finds them, and the run stops at
 /// `law.stop_penetration`.
