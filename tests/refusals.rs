@@ -201,9 +201,11 @@ fn single_precision_from_the_origin_is_refused_where_it_loses_motion() {
     assert!(said.contains("cell-relative") && said.contains("up to 6e-5"), "{said}");
     let near = discs([5.0, 4.0], "[[1.0, 2.0]]", "[[1.0, 0.0]]", 0.005);
     assert!(checked(&near, &[&absolute]).warnings.iter().all(|warning| warning.key != "machine.precision"));
-    // Cells help no longer where discs hardly move.
-    let slow = discs([5.0, 4.0], "[[1.0, 2.0]]", "[[1e-5, 0.0]]", 0.005);
-    assert!(refused(&slow, &["machine.precision=f32"]).contains("single precision"));
+    // Cells help no longer where discs hardly move: rounding takes up to 5e-8 of a place, these steps are 2.5e-8 and 1e-7 long.
+    let slow = |speed: &str| discs([5.0, 4.0], "[[1.0, 2.0]]", &format!("[[{speed}, 0.0]]"), 0.005);
+    assert!(refused(&slow("5e-6"), &["machine.precision=f32"]).contains("single precision"));
+    let warned = checked(&slow("2e-5"), &[&["machine.precision=f32"]]).warnings;
+    assert!(warned.iter().any(|warning| warning.key == "machine.precision"), "{warned:?}");
 }
 
 /// What contacts dissipate is counted where it happens: rare rows change nothing, and every engine counts the same.

@@ -9,7 +9,7 @@ use stripmine_physics::method::{Every, Methods, Prepared, Setting, Trials, Until
 use stripmine_physics::scene::{Overrides, SceneErrors, UNITS};
 
 /// The form in which studies keep finished runs; another one whenever these hold other things.
-const JOURNALED: &str = "3";
+const JOURNALED: &str = "4";
 
 /// A scene under study.
 pub struct Subject {

@@ -1,7 +1,8 @@
 //! What came out.
 
+use super::alarm::Finding;
 use super::boundary::Edge;
-use super::outcome::{Cell, Class, Foreseen};
+use super::outcome::{Cell, Class};
 use crate::statistics::median;
 use crate::study::Subject;
 use stripmine_physics::method::{Beyond, Parameter};
@@ -9,6 +10,8 @@ use stripmine_physics::method::{Beyond, Parameter};
 /// The dataset.
 #[derive(Clone, Debug)]
 pub struct Stability {
+    /// The name of the method.
+    pub method: &'static str,
     pub way: String,
     pub time_unit: Option<String>,
     /// Its own step (time).
@@ -128,15 +131,15 @@ impl Stability {
     }
 
     /// What was said of the places of some classes.
-    pub fn said(&self, belongs: impl Fn(Class) -> bool) -> Said {
-        self.cells().filter(|cell| belongs(cell.class)).fold(Said::default(), |mut said, cell| {
+    pub fn said(&self, belongs: impl Fn(&Cell) -> bool) -> Said {
+        self.cells().filter(|cell| belongs(cell)).fold(Said::default(), |mut said, cell| {
             said.all += 1;
-            let warned = !cell.warned.is_empty();
+            let warned = cell.warned_by_run();
             said.warned_by_run += usize::from(warned);
-            match cell.foreseen {
-                Foreseen::Refused => said.refused += 1,
-                Foreseen::Warned => said.warned_before += 1,
-                Foreseen::Nothing => said.warned_by_run_alone += usize::from(warned),
+            match cell.foreseen() {
+                Finding::Refused => said.refused += 1,
+                Finding::Warned => said.warned_before += 1,
+                _ => said.warned_by_run_alone += usize::from(warned),
             }
             said
         })

@@ -1,8 +1,10 @@
 //! Maps as frames.
 
+use super::alarm::{Alarm, Finding};
+use super::alarms::alarms;
 use super::boundary::Edge;
 use super::dataset::{Boundary, SchemeLimit, Stability, over_seeds};
-use super::outcome::{Class, Foreseen};
+use super::outcome::{self, Class};
 use crate::frame::{Cell, Frame, Rows};
 use crate::results::Made;
 use crate::statistics::median;
@@ -20,6 +22,7 @@ pub fn made(maps: &Maps) -> Made {
         schemes(maps),
         pairs(maps),
         said(maps),
+        alarms(maps),
         cells(maps),
         boundaries(maps),
         edges(maps),
@@ -57,6 +60,7 @@ fn of_maps(maps: &Maps) -> Frame {
     };
     Rows::of(maps)
         .text("scene", |(name, _)| name)
+        .text("method", |(_, data)| data.method)
         .text("configuration", |(_, data)| &data.way)
         .text("own integrator", |(_, data)| own(data).map_or(String::new(), |it| it.scheme))
         .number("own step", 6, |(_, data)| data.step)
@@ -71,20 +75,30 @@ fn of_maps(maps: &Maps) -> Frame {
         .count("seeds", |(_, data)| data.seeds.len())
         .number("tolerance of an edge", 3, |(_, data)| data.tolerance)
         .count("places", count(|data| data.cells().count()))
-        .count("right", count(|data| data.said(|class| class == Class::Works).all))
-        .count("right and refused", count(|data| data.said(|class| class == Class::Works).refused))
+        .count("right", count(|data| data.said(outcome::Cell::is_right).all))
+        .count("right and refused", count(|data| data.said(outcome::Cell::is_right).refused))
         .count(
             "right and warned of",
             count(|data| {
-                let said = data.said(|class| class == Class::Works);
+                let said = data.said(outcome::Cell::is_right);
                 said.all - said.unsaid() - said.refused
             }),
         )
-        .count("wrong", count(|data| data.said(Class::is_unseen).all))
-        .count("wrong and refused", count(|data| data.said(Class::is_unseen).refused))
-        .count("wrong and warned of before", count(|data| data.said(Class::is_unseen).warned_before))
-        .count("wrong and caught by the run", count(|data| data.said(Class::is_unseen).warned_by_run))
-        .count("wrong and silent", count(|data| data.said(Class::is_unseen).unsaid()))
+        .count(
+            "undecided",
+            count(|data| data.said(|cell| cell.class == Class::Works && !cell.is_decided).all),
+        )
+        .count("wrong", count(|data| data.said(|cell| cell.class.is_unseen()).all))
+        .count("wrong and refused", count(|data| data.said(|cell| cell.class.is_unseen()).refused))
+        .count(
+            "wrong and warned of before",
+            count(|data| data.said(|cell| cell.class.is_unseen()).warned_before),
+        )
+        .count(
+            "wrong and caught by the run",
+            count(|data| data.said(|cell| cell.class.is_unseen()).warned_by_run),
+        )
+        .count("wrong and silent", count(|data| data.said(|cell| cell.class.is_unseen()).unsaid()))
         .number("edge over theory", 3, theory(0))
         .number("edge over theory, lowest", 3, theory(1))
         .number("edge over theory, highest", 3, theory(2))
@@ -134,9 +148,9 @@ fn schemes(maps: &Maps) -> Frame {
 }
 
 fn said(maps: &Maps) -> Frame {
-    let classes = maps
-        .iter()
-        .flat_map(|(name, data)| Class::ALL.map(|(class, _)| (name, class, data.said(|it| it == class))));
+    let classes = maps.iter().flat_map(|(name, data)| {
+        Class::ALL.map(|(class, _)| (name, class, data.said(|cell| cell.class == class)))
+    });
     let counted = classes.filter(|(_, class, said)| said.all > 0 && *class != Class::Refused);
     Rows::of(counted)
         .text("scene", |(name, ..)| *name)
@@ -157,10 +171,10 @@ fn cells(maps: &Maps) -> Frame {
             data.steps.iter().zip(cells).map(move |(step, cell)| (name, data, value, step, cell))
         })
     });
-    let foreseen = |foreseen: Foreseen| match foreseen {
-        Foreseen::Nothing => "nothing",
-        Foreseen::Warned => "warned",
-        Foreseen::Refused => "refused",
+    let foreseen = |foreseen: Finding| match foreseen {
+        Finding::Warned => "warned",
+        Finding::Refused => "refused",
+        _ => "nothing",
     };
     Rows::of(cells)
         .text("scene", |(name, ..)| *name)
@@ -168,8 +182,10 @@ fn cells(maps: &Maps) -> Frame {
         .number("value", 6, |(_, _, value, ..)| **value)
         .number("step", 6, |(.., step, _)| **step)
         .text("class", |(.., cell)| cell.class.name())
-        .text("foreseen", |(.., cell)| foreseen(cell.foreseen))
-        .text("warned_by_run", |(.., cell)| cell.warned.join(" "))
+        .count("decided", |(.., cell)| u64::from(cell.is_decided))
+        .text("foreseen", |(.., cell)| foreseen(cell.foreseen()))
+        .text("warned_by_run", |(.., cell)| cell.checks(|it| it == Finding::WarnedByRun).join(", "))
+        .text("findings", |(.., cell)| cell.alarms.iter().map(Alarm::words).collect::<Vec<_>>().join(", "))
         .text("what", |(.., cell)| &cell.what)
         .frame("cells", "Every place")
 }

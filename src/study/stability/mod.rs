@@ -5,6 +5,8 @@
 //! seeds. What theory says of the step is drawn in, and what the program says of it, before and during a run, is held against
 //! what became of it.
 
+mod alarm;
+mod alarms;
 mod boundary;
 mod dataset;
 mod extent;
@@ -153,6 +155,7 @@ pub fn stability(
     let scheme = |scheme: &Choice| survey.scheme(scheme, &known, &seeds, effort.tolerance);
     let schemes = journal.over(&schemes, scheme)?;
     Ok(Stability {
+        method: subject.entry.vocabulary.keys.method,
         way: subject.own.label(),
         time_unit: subject.unit("time"),
         step: subject.step,

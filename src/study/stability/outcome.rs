@@ -1,5 +1,6 @@
 //! What becomes of a run, and which kind of failure that is.
 
+use super::alarm::{Alarm, Finding};
 use super::reference::Expected;
 use crate::study::averages::Means;
 use serde::{Deserialize, Serialize};
@@ -77,19 +78,11 @@ impl Class {
     }
 }
 
-/// What the program says of a step before it runs the scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Foreseen {
-    Nothing,
-    Warned,
-    Refused,
-}
-
 /// A run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ran {
-    pub foreseen: Foreseen,
+    /// Findings of the scene before the run.
+    pub foreseen: Vec<Alarm>,
     pub end: End,
 }
 
@@ -105,8 +98,8 @@ pub enum End {
         speed: f64,
         /// The error of its energy over the energy that passed through; none where that is not followed.
         energy: Option<f64>,
-        /// Names of the checks that warned.
-        warned: Vec<String>,
+        /// Warnings of the run.
+        warned: Vec<Alarm>,
     },
 }
 
@@ -116,19 +109,45 @@ pub struct Cell {
     pub class: Class,
     /// What was seen, in a line.
     pub what: String,
-    pub foreseen: Foreseen,
-    /// Names of the checks that warned on the way.
-    pub warned: Vec<String>,
+    /// Whether the class is certain: means of a run that works might have told it from a wrong one.
+    pub is_decided: bool,
+    /// Findings of every limit and check.
+    pub alarms: Vec<Alarm>,
+}
+
+impl Cell {
+    /// The gravest finding before the run.
+    pub fn foreseen(&self) -> Finding {
+        let before = self.alarms.iter().map(|alarm| alarm.finding).filter(|it| *it != Finding::WarnedByRun);
+        before.max().unwrap_or(Finding::Within)
+    }
+
+    /// Names of the checks that found something.
+    pub fn checks(&self, is_meant: impl Fn(Finding) -> bool) -> Vec<&str> {
+        let found = self.alarms.iter().filter(|alarm| is_meant(alarm.finding));
+        found.map(|alarm| alarm.check.as_str()).collect()
+    }
+
+    /// Whether the run itself warned.
+    pub fn warned_by_run(&self) -> bool {
+        self.alarms.iter().any(|alarm| alarm.finding == Finding::WarnedByRun)
+    }
+
+    /// Whether the run works for certain.
+    pub fn is_right(&self) -> bool {
+        self.class == Class::Works && self.is_decided
+    }
 }
 
 impl Ran {
     /// The run held against what is expected of it.
     pub fn judged(&self, expected: Option<&Expected>) -> Cell {
-        let cell = |class: Class, what: String, warned: &[String]| Cell {
+        let decides = || expected.is_some_and(Expected::decides);
+        let cell = |class: Class, what: String, warned: &[Alarm]| Cell {
             class,
             what,
-            foreseen: self.foreseen,
-            warned: warned.to_vec(),
+            is_decided: class != Class::Works || decides(),
+            alarms: [&self.foreseen[..], warned].concat(),
         };
         match &self.end {
             End::Broken(class, what) => cell(*class, what.clone(), &[]),
@@ -154,7 +173,7 @@ mod tests {
 
     fn whole(energy: f64) -> Ran {
         let end = End::Whole { means: Means::new(), speed: 1.0, energy: Some(energy), warned: vec![] };
-        Ran { foreseen: Foreseen::Nothing, end }
+        Ran { foreseen: vec![], end }
     }
 
     #[test]

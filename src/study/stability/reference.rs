@@ -11,6 +11,8 @@ const WITHIN: f64 = 0.999;
 pub const TOLERANCE: f64 = 0.05;
 /// A mean that is not known to this part of itself tells nothing.
 const KNOWN: f64 = 0.1;
+/// Means that may all be off by more than this part of themselves by chance do not tell a right run from a wrong one.
+const DECISIVE: f64 = 5.0 * TOLERANCE;
 
 /// Between which values the mean of a single run lies, in all but one of a thousand.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,6 +48,11 @@ impl Expected {
         let first = runs.first().filter(|_| runs.len() > 2)?;
         let interval = |name: &String| Interval::of(name, runs, at_least(name));
         Some(Expected(first.keys().filter_map(interval).collect()))
+    }
+
+    /// Whether a wrong mean would be seen: one of them at least is known well enough.
+    pub fn decides(&self) -> bool {
+        self.0.iter().any(|interval| interval.reach <= DECISIVE * interval.scale)
     }
 
     /// The mean that is farthest off by more than it may be, in words; none if none is.
@@ -116,6 +123,13 @@ mod tests {
         assert_eq!([off(106.1), off(93.9)], [None, None]);
         assert_eq!(off(106.2).unwrap(), "the mean a is off by 6 %, and may be by 6 %");
         assert!(off(f64::NAN).is_some());
+        // ±4 and ±4.2 alone: 24.5 and 25.8 of 100.
+        let decides = |apart: f64| {
+            let alone = (0..8).map(|run| vec![if run % 2 == 0 { 100.0 + apart } else { 100.0 - apart }]);
+            let runs: Vec<Means> = alone.map(|value| Means::from([("a".to_owned(), value)])).collect();
+            Expected::of(&runs, |_| 0.0).unwrap().decides()
+        };
+        assert_eq!([decides(4.0), decides(4.2)], [true, false]);
         let certain = Expected::of(&runs([[100.0, 50.0]; 8]), |_| 0.0).unwrap();
         let off = |a: f64| certain.worst(&Means::from([("a".to_owned(), vec![a])]));
         assert!(off(104.9).is_none() && off(105.1).is_some());

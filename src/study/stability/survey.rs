@@ -1,8 +1,9 @@
 //! The runs of a map.
 
+use super::alarm::Alarm;
 use super::boundary::{Edge, edge};
 use super::dataset::{Boundary, SchemeLimit};
-use super::outcome::{Cell, Class, End, Foreseen, Ran};
+use super::outcome::{Cell, Class, End, Ran};
 use super::reference::{Expected, SEEDS};
 use crate::results::{Journal, JournalError, Meter};
 use crate::statistics::Spread;
@@ -135,7 +136,7 @@ impl Survey<'_> {
     /// What theory says of the step of a case.
     pub fn limits(&self, case: Case<'_>) -> Vec<StepLimit> {
         let scene = self.prepared(case, self.subject.step, 1);
-        scene.map_or(vec![], |(scene, _)| scene.step_limits)
+        scene.map_or(vec![], |scene| scene.step_limits)
     }
 
     fn overrides(&self, case: Case<'_>, seed: u64) -> Overrides {
@@ -144,26 +145,19 @@ impl Survey<'_> {
         if self.subject.prepared.seed.is_some() { overrides.set(&SEED, seed) } else { overrides }
     }
 
-    /// The scene of a case, and what is said of its step before it runs.
-    fn prepared(&self, case: Case<'_>, step: f64, seed: u64) -> Result<(Prepared, Foreseen), SceneErrors> {
+    /// The scene of a case, whatever its step.
+    fn prepared(&self, case: Case<'_>, step: f64, seed: u64) -> Result<Prepared, SceneErrors> {
         let overrides = self.overrides(case, seed);
-        let (scene, foreseen) = match self.subject.prepared_as(case.choice, step, &overrides) {
-            Ok(scene) if scene.warnings.is_empty() => (scene, Foreseen::Nothing),
-            Ok(scene) => (scene, Foreseen::Warned),
-            Err(_) => {
-                let scene = self.subject.prepared_at_any_step(case.choice, step, &overrides)?;
-                (scene, Foreseen::Refused)
-            }
-        };
+        let scene = self.subject.prepared_at_any_step(case.choice, step, &overrides)?;
         if self.subject.prepared.seed.is_some() {
-            return Ok((scene, foreseen));
+            return Ok(scene);
         }
         // Where a start has no seed, contacts begin elsewhere in a step.
         let phase = (seed - 1) as f64 / (SEEDS as f64 + 0.5);
         let late = displaced(scene.particles(), &scene.domain, |_, disc| {
             disc.planar_velocity().map(|part| -phase * step * part)
         });
-        Ok((scene.model.started_from(late), foreseen))
+        Ok(scene.model.started_from(late))
     }
 
     fn run(&self, case: Case<'_>, step: f64, seed: u64) -> Result<Ran, JournalError> {
@@ -177,13 +171,14 @@ impl Survey<'_> {
     }
 
     fn ran(&self, case: Case<'_>, step: f64, seed: u64) -> Ran {
-        let (scene, foreseen) = match self.prepared(case, step, seed) {
-            Ok(prepared) => prepared,
+        let scene = match self.prepared(case, step, seed) {
+            Ok(scene) => scene,
             Err(errors) => {
                 let why = errors.0.first().map_or(String::new(), |error| error.message.clone());
-                return Ran { foreseen: Foreseen::Refused, end: End::Broken(Class::Refused, why) };
+                return Ran { foreseen: vec![], end: End::Broken(Class::Refused, why) };
             }
         };
+        let foreseen = Alarm::before(&scene);
         let steps = (self.duration / step).round() as u64;
         let course = Course { steps, looks: LOOKS, each: self.each };
         let mut averages = Averages::new(self.subject, scene.domain);
@@ -200,7 +195,7 @@ impl Survey<'_> {
                 energy = Some(balance.error(&values));
             }
             if looks == LOOKS {
-                warned = simulation.warnings().iter().map(|warning| warning.check.to_owned()).collect();
+                warned = simulation.warnings().iter().map(Alarm::of_run).collect();
             }
             looks += 1;
         };

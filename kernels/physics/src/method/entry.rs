@@ -211,10 +211,19 @@ pub struct StepLimit {
     pub step: f64,
     /// The scene's own step in parts of it.
     pub share: f64,
+    /// The share beyond which the user is warned; infinite where the limit is for information.
+    pub warned_beyond: f64,
     /// What becomes of longer ones.
     pub beyond: Beyond,
     /// Where it comes from, with its numbers.
     pub why: String,
+}
+
+impl StepLimit {
+    /// Whether the step is so far beyond the limit that the user is warned.
+    pub fn is_passed(&self) -> bool {
+        self.share > self.warned_beyond
+    }
 }
 
 /// What becomes of a step beyond a limit.

@@ -59,7 +59,7 @@ pub fn above_limits(prepared: &Prepared) -> Option<Warning> {
     if prepared.warnings.iter().any(|warning| warning.key == key) {
         return None;
     }
-    let above = prepared.step_limits.iter().filter(|limit| limit.share > 1.0);
+    let above = prepared.step_limits.iter().filter(|limit| limit.is_passed());
     let limit = above.max_by(|a, b| a.share.total_cmp(&b.share))?;
     let message = format!(
         "dt = {} is {} times the limit {} ({}); {}",
@@ -69,7 +69,8 @@ pub fn above_limits(prepared: &Prepared) -> Option<Warning> {
         limit.name,
         beyond(limit)
     );
-    Some(Warning { key, message, suggestion: format!("take dt <= {}", significant(limit.step, 3)) })
+    let suggestion = format!("take dt <= {}", significant(limit.step, 3));
+    Some(Warning { check: limit.name, share: limit.share, is_refusal: false, key, message, suggestion })
 }
 
 /// What there is to be said of the start of a run.

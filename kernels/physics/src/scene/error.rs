@@ -197,9 +197,15 @@ fn paragraphs(errors: &[SceneError]) -> String {
 }
 
 /// Something that a scene may do but that seldom ends well.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Serialize, thiserror::Error)]
 #[error("{key}: {message}\n  help: {suggestion}")]
 pub struct Warning {
+    /// The check that found it.
+    pub check: &'static str,
+    /// The value found over the largest one that is allowed; infinite where nothing of the kind is.
+    pub share: f64,
+    /// Whether it is a reason to refuse the scene. A scene that has such a warning was prepared for a study, at any step.
+    pub is_refusal: bool,
     /// The key that decides it.
     pub key: String,
     /// What was found, with the numbers.

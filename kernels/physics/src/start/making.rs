@@ -90,6 +90,9 @@ pub fn make(stated: &Stated<'_>) -> Result<Made, SceneError> {
     if let Some(first) = particles.all().iter().find(moving) {
         let count = particles.all().iter().filter(moving).count();
         warnings.push(Warning {
+            check: "walls-in-motion",
+            share: f64::INFINITY,
+            is_refusal: false,
             key: FILE.path(),
             message: format!(
                 "{count} wall discs have a velocity or spin in the start file, first wall disc {} with ({}, {}) and \
@@ -171,6 +174,9 @@ fn from_file(
     }
     if frame.has_raised_ids {
         warnings.push(Warning {
+            check: "raised-ids",
+            share: f64::INFINITY,
+            is_refusal: false,
             key: FILE.path(),
             message: format!(
                 "ids of the start file {} begin at 0; each is raised by one, in all files of the run too",

@@ -61,6 +61,9 @@ impl Squeeze {
         };
         let part = significant(self.deepest, 2);
         Some(Warning {
+            check: "overlaps",
+            share: f64::INFINITY,
+            is_refusal: false,
             key: key.path(),
             message: format!(
                 "discs overlap each other or closed sides in {} places, by up to {part} of their radii, as positions of few digits do: all \

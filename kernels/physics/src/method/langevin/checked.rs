@@ -125,6 +125,9 @@ fn of_one_kind(values: &Values, particles: &Particles) -> Result<Particle, Scene
 fn too_long(scene: &Scene, diameter: f64, mass: f64) -> Option<Warning> {
     let (step, _) = bound(scene, diameter, mass);
     (scene.law != PairLaw::None && scene.dt > step).then(|| Warning {
+        check: "source-bound",
+        share: scene.dt / step,
+        is_refusal: false,
         key: DT.path(),
         message: format!(
             "dt = {} is beyond √(2 m r_c/F) = {step}, in which a particle crosses the cut-off: particles will be lost",

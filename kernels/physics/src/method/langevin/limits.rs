@@ -11,8 +11,14 @@ const HARDEST: f64 = 10.0;
 /// The limits of a scene with particles of a diameter (length) and a mass.
 pub(super) fn step_limits(scene: &Scene, diameter: f64, mass: f64) -> Vec<StepLimit> {
     let dt = scene.dt;
-    let limit =
-        |name, step: f64, beyond, why: String| StepLimit { name, step, share: dt / step, beyond, why };
+    let limit = |name, step: f64, beyond, why: String| StepLimit {
+        name,
+        step,
+        share: dt / step,
+        warned_beyond: 1.0,
+        beyond,
+        why,
+    };
     let mut limits = vec![];
     if scene.law != PairLaw::None {
         let (step, force) = bound(scene, diameter, mass);

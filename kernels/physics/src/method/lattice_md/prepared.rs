@@ -182,7 +182,6 @@ struct Running {
     engine: Box<dyn Engine>,
     model: Model,
     scenery: Scenery,
-    max_penetration: f64,
     /// The balance of energy since the start.
     work: Work,
     /// What is seen of this moment, once somebody has asked.
@@ -216,7 +215,6 @@ impl Running {
             engine,
             model,
             scenery,
-            max_penetration: scene.law.max_penetration,
             work,
             seen: OnceCell::new(),
             observing: Cell::default(),
@@ -408,7 +406,7 @@ impl Simulation for Running {
         let energy =
             self.run_monitor.as_ref().and_then(|_| checks::energy(balance, self.work.passed(balance)));
         let looked = self.run_monitor.iter().flat_map(RunMonitor::warnings);
-        checks::counted(totals, self.max_penetration).into_iter().chain(looked).chain(energy).collect()
+        checks::counted(totals).into_iter().chain(looked).chain(energy).collect()
     }
 
     fn in_words(&self) -> String {

@@ -1,7 +1,7 @@
 //! What is looked at now and then in a run, because it costs too much to be looked at in every step: speeds, and with them how
 //! many steps a contact takes and what rounding takes of a step.
 
-use super::check::{Checked, LEAST_STEPS, MUCH_LOST, rounding};
+use super::check::{Checked, FEWEST_STEPS, MUCH_LOST, rounding};
 use super::theory::contact::HeadOn;
 use super::theory::limits;
 use crate::io::checkpoint::Counter;
@@ -84,18 +84,18 @@ impl RunMonitor {
         let contact = HeadOn { speed: most, ..self.contact };
         let steps = contact.duration() / self.dt;
         let mut warnings = vec![];
-        if steps < LEAST_STEPS {
+        if steps < FEWEST_STEPS {
             let message = format!(
-                "discs typically met at up to {most}, where a contact lasts {}, {steps:.1} steps: below {LEAST_STEPS} \
-                 collisions change the energy by percents; a dt of {} gives as many",
+                "discs typically met at up to {most}, where a contact lasts {}, {steps:.1} steps: a scene that begins \
+                 so fast is refused below {FEWEST_STEPS}; a dt of {} gives as many",
                 significant(contact.duration(), 4),
-                significant(contact.duration() / LEAST_STEPS, 4),
+                significant(contact.duration() / FEWEST_STEPS, 4),
                 most = significant(most, 4)
             );
             warnings.push(RunWarning {
                 check: "steps-per-contact",
                 value: steps,
-                limit: LEAST_STEPS,
+                limit: FEWEST_STEPS,
                 message,
             });
         }

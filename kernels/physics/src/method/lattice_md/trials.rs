@@ -38,7 +38,7 @@ pub(super) static TRIALS: Trials = Trials {
     length: SMALLEST_RADIUS,
     has_contacts: true,
     observables: &["temperature", "pressure", "flow", "contacts"],
-    fluctuating: &["pressure"],
+    fluctuating: &["pressure", "contacts"],
     inertia,
     theory,
     parameters: PARAMETERS,

@@ -68,7 +68,8 @@ impl Checked {
         let scene = &self.scene;
         match scene.start.kind {
             StartKind::Kepler => {
-                // At their nearest the bodies turn as on a circle of that radius.
+                // At their nearest the bodies turn as on a circle of that radius. Schemes of the fourth order follow it in ten steps:
+                // a warning begins there, and the error of the energy judges the run.
                 let orbit = ORBIT / scene.gravitational_constant.sqrt();
                 let step = orbit * (1.0 - scene.start.eccentricity).powf(1.5) / 20.0;
                 let why =
@@ -78,6 +79,7 @@ impl Checked {
                     name: "nearest-passage",
                     step,
                     share: scene.dt / step,
+                    warned_beyond: 2.0,
                     beyond: Beyond::Inaccurate,
                     why,
                 }]
@@ -93,6 +95,7 @@ impl Checked {
                     name: "closest-encounter",
                     step,
                     share: scene.dt / step,
+                    warned_beyond: 1.0,
                     beyond: Beyond::Inaccurate,
                     why,
                 }]

@@ -5,6 +5,7 @@ mod motion;
 
 pub use geometry::Geometry;
 pub use motion::Estimates;
+use motion::Refusal;
 pub(super) use motion::{FASTEST, FEWEST_STEPS, LEAST_STEPS, MUCH_LOST, NETWORK, rounding};
 
 use super::choice::{self, Choice};
@@ -51,7 +52,7 @@ impl Document {
         check(self, Steps::Foreseen)
     }
 
-    /// The same, but whatever the step is: for studies that try what is foreseen to fail.
+    /// The same, but whatever the step is: for studies that try what is foreseen to fail. Reasons to refuse the step are warnings.
     ///
     /// # Errors
     /// [`SceneErrors`]: every precondition that does not hold.
@@ -124,13 +125,15 @@ fn check(mut document: Document, steps: Steps) -> Result<Checked, SceneErrors> {
         }
         _ => None,
     };
-    let is_foreseen = steps == Steps::Foreseen;
-    errors.extend(is_foreseen.then(|| motion::instability(&document)).flatten());
+    let mut refusals: Vec<Refusal> = motion::instability(&document).into_iter().collect();
     if let (Some(Made { domain, particles, .. }), Some(geometry)) = (&made, &geometry) {
         errors.extend(numbered(&document, particles));
-        if is_foreseen {
-            errors.extend(motion::long_steps(&document, domain, particles, geometry));
-        }
+        refusals.extend(motion::long_steps(&document, domain, particles, geometry));
+    }
+    let mut tolerated: Vec<Warning> = vec![];
+    match steps {
+        Steps::Foreseen => errors.extend(refusals.into_iter().map(|refusal| refusal.error)),
+        Steps::Any => tolerated.extend(refusals.into_iter().map(Warning::from)),
     }
     SceneErrors::none_of(errors)?;
     let (Some(Made { domain, particles, mut warnings }), Some(geometry)) = (made, geometry) else {
@@ -140,6 +143,7 @@ fn check(mut document: Document, steps: Steps) -> Result<Checked, SceneErrors> {
     };
     let scene = document.scene;
     let estimates = Estimates::of(&scene, &particles);
+    warnings.append(&mut tolerated);
     warnings.extend(motion::warnings(&scene, &domain, &particles, &geometry, &estimates));
     let alike = all_alike(&particles);
     let left_out = not_modelled(&scene, &particles, alike);

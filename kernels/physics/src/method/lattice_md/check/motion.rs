@@ -3,9 +3,9 @@
 use super::Geometry;
 use crate::domain::Domain;
 use crate::method::lattice_md::document::Document;
-use crate::method::lattice_md::keys::{COORDINATES, FRICTION, SHEAR_DAMPING, STIFFNESS};
+use crate::method::lattice_md::keys::{FRICTION, SHEAR_DAMPING, STIFFNESS};
 use crate::method::lattice_md::model::{GearValues, OnLongStep, Scheme};
-use crate::method::lattice_md::scene::{Inertia, Integrator, Scene};
+use crate::method::lattice_md::scene::{Integrator, Scene};
 use crate::method::lattice_md::theory::contact::HeadOn;
 use crate::method::lattice_md::theory::step_matrix::largest_step;
 use crate::number::significant;
@@ -56,7 +56,7 @@ fn scheme_in_words(scheme: Scheme) -> String {
 /// A disc in a dense network of contacts feels up to this many times γ_N.
 pub(in crate::method::lattice_md) const NETWORK: f64 = 3.0;
 
-/// Fewer steps a contact follow it badly: `pipe` has 17, and half its dt changes no statistics.
+/// Steps of a contact that a scene is advised to take: `pipe` has 17, and half its dt changes no statistics.
 pub(in crate::method::lattice_md) const LEAST_STEPS: f64 = 15.0;
 
 /// With fewer steps a contact a collision changes the energy by tens of percent: 15 (Gear of 4 values), 18 (5), 9 (6) and 1 %
@@ -65,10 +65,6 @@ pub(in crate::method::lattice_md) const FEWEST_STEPS: f64 = 3.0;
 
 /// How much faster than typical the fastest approach is.
 pub(in crate::method::lattice_md) const FASTEST: f64 = 3.0;
-
-/// Deepest that a grain may rest in another, as a fraction of its radius, for columns of grains to stay within
-/// `max_penetration` of 0.1.
-const DEEPEST_REST: f64 = 0.003;
 
 impl Estimates {
     /// For a scene and its discs.
@@ -107,8 +103,24 @@ impl Estimates {
     }
 }
 
+/// A reason to refuse a scene for its step.
+pub(super) struct Refusal {
+    check: &'static str,
+    share: f64,
+    key: &'static Key,
+    /// What the user is told.
+    pub(super) error: SceneError,
+}
+
+impl From<Refusal> for Warning {
+    fn from(Refusal { check, share, key, error }: Refusal) -> Warning {
+        let suggestion = error.expected.unwrap_or_default();
+        Warning { check, share, is_refusal: true, key: key.path(), message: error.message, suggestion }
+    }
+}
+
 /// A damping at which even a single contact is unstable.
-pub(super) fn instability(document: &Document) -> Option<SceneError> {
+pub(super) fn instability(document: &Document) -> Option<Refusal> {
     let scene = &document.scene;
     let Integrator { dt, scheme, .. } = scene.integrator;
     let (gamma, limit) = (scene.law.contact.normal_damping, damping_limit(scheme));
@@ -120,14 +132,15 @@ pub(super) fn instability(document: &Document) -> Option<SceneError> {
             significant(gamma * dt, 4)
         );
         let error = document.values.spot(&DT).error(Reason::Stability, message);
-        error
+        let error = error
             .expecting(format!("dt below {} (time), {} where packings are dense", significant(limit / gamma, 5), significant({
                 limit / (NETWORK * gamma)
             }, 5)))
             .advising(match scheme {
                 Scheme::Gear(GearValues::Four) | Scheme::VelocityVerlet => "lower dt or law.normal_damping",
                 _ => "lower dt or law.normal_damping, or use fewer Gear values",
-            })
+            });
+        Refusal { check: "damping of a contact", share: gamma * dt / limit, key: &DT, error }
     })
 }
 
@@ -138,11 +151,11 @@ pub(super) fn long_steps(
     domain: &Domain,
     particles: &Particles,
     geometry: &Geometry,
-) -> Vec<SceneError> {
+) -> Vec<Refusal> {
     let scene = &document.scene;
     let dt = scene.integrator.dt;
     let estimates = Estimates::of(scene, particles);
-    let mut errors = Vec::new();
+    let mut refusals = Vec::new();
     let speed = |disc: &Particle| disc.velocity[0].hypot(disc.velocity[1]);
     let fastest = particles.all().iter().max_by(|a, b| speed(a).total_cmp(&speed(b)));
     let limit = longest_step(geometry.radii[0], scene.law.max_penetration);
@@ -161,9 +174,10 @@ pub(super) fn long_steps(
             limit = significant(limit, 5)
         );
         let error = document.values.spot(&DT).error(Reason::Stability, message);
-        errors.push(error.expecting(format!("dt below {} (time)", significant(limit / speed, 5))).advising(
+        let error = error.expecting(format!("dt below {} (time)", significant(limit / speed, 5))).advising(
             "lower dt, slow the discs, or count such steps instead: integrator.on_long_step = \"count\"",
-        ));
+        );
+        refusals.push(Refusal { check: "mask", share: speed * dt / limit, key: &DT, error });
     }
     if let (Some(steps), Some(duration)) = (estimates.steps_per_contact, estimates.contact_duration)
         && steps < FEWEST_STEPS
@@ -175,11 +189,12 @@ pub(super) fn long_steps(
             duration = significant(duration, 5)
         );
         let error = document.values.spot(&DT).error(Reason::Stability, message);
-        errors.push(error.expecting(format!(
+        let error = error.expecting(format!(
             "dt below {} (time), and below {} for {LEAST_STEPS} steps a contact",
             significant(duration / FEWEST_STEPS, 5),
             significant(duration / LEAST_STEPS, 5)
-        )));
+        ));
+        refusals.push(Refusal { check: "3 steps a contact", share: FEWEST_STEPS / steps, key: &DT, error });
     }
     if let Some((rounding, step)) = lost_motion(scene, domain, geometry, &estimates)
         && rounding > MOST_LOST * step
@@ -193,21 +208,26 @@ pub(super) fn long_steps(
             step = significant(step, 2)
         );
         let error = document.values.spot(&PRECISION).error(Reason::Geometry, message);
-        errors.push(error.expecting(format!("steps longer than {} (length)", significant(rounding / MOST_LOST, 2))).advising(
-            match absolute {
-                true => "set machine.coordinates = \"cell-relative\", or machine.precision = \"mixed\" or \"f64\"",
+        let error = error
+            .expecting(format!("steps longer than {} (length)", significant(rounding / MOST_LOST, 2)))
+            .advising(match absolute {
+                true => {
+                    "set machine.coordinates = \"cell-relative\", or machine.precision = \"mixed\" or \"f64\""
+                }
                 false => "set machine.precision = \"mixed\" or \"f64\"",
-            },
-        ));
+            });
+        let share = rounding / (MOST_LOST * step);
+        refusals.push(Refusal { check: "lost motion", share, key: &PRECISION, error });
     }
-    errors
+    refusals
 }
 
-/// Part of a step that rounding a position may take: more is refused.
-const MOST_LOST: f64 = 1e-2;
+/// Part of a step that rounding a position may take: more is refused, for most discs would not move.
+const MOST_LOST: f64 = 1.0;
 
-/// Part of a step that rounding a position may take: more is warned of.
-pub(in crate::method::lattice_md) const MUCH_LOST: f64 = 1e-3;
+/// Part of a step that rounding a position may take: more is warned of. Errors of up to ± r of a displacement of mean square s²/2 along
+/// an axis add a part 2 r²/(3 s²) to its mean square: 6 % here.
+pub(in crate::method::lattice_md) const MUCH_LOST: f64 = 0.3;
 
 /// Whether the state's positions are measured from the origin.
 fn are_absolute(scene: &Scene) -> bool {
@@ -249,66 +269,42 @@ pub(super) fn warnings(
     estimates: &Estimates,
 ) -> Vec<Warning> {
     let mut warnings = Vec::new();
-    let mut warn = |key: &Key, message: String, suggestion: String| {
-        warnings.push(Warning { key: key.path(), message, suggestion });
+    let mut warn = |check: &'static str, share: f64, key: &Key, message: String, suggestion: String| {
+        warnings.push(Warning { check, share, is_refusal: false, key: key.path(), message, suggestion });
     };
     let contact = &scene.law.contact;
-    let Integrator { dt, scheme, .. } = scene.integrator;
-    let limit = estimates.damping_limit;
-    if estimates.network_damping > limit {
-        warn(
-            &DT,
-            format!(
-                "3·normal_damping·dt = {} in a dense packing, but {} is stable below about {limit:.2}",
-                significant(estimates.network_damping, 4),
-                scheme_in_words(scheme)
-            ),
-            format!(
-                "dt below {}, or fewer Gear values",
-                significant(limit / (NETWORK * contact.normal_damping), 5)
-            ),
-        );
-    }
-    if scene.law.has_friction() {
-        // Both surfaces of a pair slow down: M_eff (1/m + 1/m + R²/I + R²/I).
-        let rate = contact.shear_damping * (1.0 + 1.0 / scene.law.inertia.factor());
-        if rate * dt > limit {
-            let words = if scene.law.inertia == Inertia::Disc { "3" } else { "3.5" };
-            warn(
-                &SHEAR_DAMPING,
-                format!(
-                    "{words}·shear_damping·dt = {} for a contact that rolls, stable below about {limit:.2}",
-                    significant(rate * dt, 4)
-                ),
-                format!("dt below {}, or a smaller shear_damping", significant(limit / rate, 5)),
-            );
-        }
-    } else if contact.friction > 0.0 {
+    let rubs = scene.law.has_friction();
+    if !rubs && contact.friction > 0.0 {
         let why = "law.friction bounds a shear force that law.shear_damping = 0 makes zero".to_owned();
-        warn(&FRICTION, why, "raise law.shear_damping, or set law.friction = 0".to_owned());
-    } else if contact.shear_damping > 0.0 {
-        let why = "law.shear_damping has no effect while law.friction is 0".to_owned();
-        warn(&SHEAR_DAMPING, why, "raise law.friction, or set law.shear_damping = 0".to_owned());
-    }
-    if let (Some(steps), Some(duration)) = (estimates.steps_per_contact, estimates.contact_duration)
-        && steps < LEAST_STEPS
-    {
         warn(
-            &DT,
-            format!(
-                "a contact at speed {} lasts {duration}, {steps:.1} steps",
-                significant(estimates.approach_speed, 5),
-                duration = significant(duration, 5)
-            ),
-            format!("dt below {} for {LEAST_STEPS} steps a contact", significant(duration / LEAST_STEPS, 5)),
+            "no friction",
+            f64::INFINITY,
+            &FRICTION,
+            why,
+            "raise law.shear_damping, or set law.friction = 0".to_owned(),
+        );
+    } else if !rubs && contact.shear_damping > 0.0 {
+        let why = "law.shear_damping has no effect while law.friction is 0".to_owned();
+        warn(
+            "no friction",
+            f64::INFINITY,
+            &SHEAR_DAMPING,
+            why,
+            "raise law.friction, or set law.shear_damping = 0".to_owned(),
         );
     }
-    depth_warnings(scene, estimates, &mut warn);
+    depth_warnings(scene, domain, particles, estimates, &mut warn);
     let [gx, gy] = scene.domain.gravity;
     if (gx != 0.0 || gy != 0.0) && particles.grain_count() == particles.len() {
         let why =
             "there is gravity but there are no walls: discs fall for ever, or out of the box".to_owned();
-        warn(&GRAVITY, why, "add walls, or set domain.gravity = [0, 0]".to_owned());
+        warn(
+            "no walls",
+            f64::INFINITY,
+            &GRAVITY,
+            why,
+            "add walls, or set domain.gravity = [0, 0]".to_owned(),
+        );
     }
     // Along an open side a grain that meets nothing flies, or falls, out of the box before the run ends.
     let time = scene.duration();
@@ -322,12 +318,7 @@ pub(super) fn warnings(
     if has_no_walls && particles.grains().iter().any(leaves) {
         let why = "sides that are not periodic hold nothing back, and there are no wall discs: a grain that leaves the box ends the run";
         let what = "make them periodic, line them with wall discs (particles.wall_positions), or take method.kind = \"hard-disks\"";
-        warn(&PERIODIC, why.to_owned(), what.to_owned());
-    }
-    if scene.machine.precision != Precision::F64 && are_absolute(scene) {
-        let why = "absolute coordinates in f32: forces are right to 3e-4 at best, to 1e-2 in large boxes"
-            .to_owned();
-        warn(&COORDINATES, why, "use cell-relative coordinates, right to 4e-6".to_owned());
+        warn("open sides", f64::INFINITY, &PERIODIC, why.to_owned(), what.to_owned());
     }
     if let Some((rounding, step)) = lost_motion(scene, domain, geometry, estimates)
         && rounding > MUCH_LOST * step
@@ -337,47 +328,83 @@ pub(super) fn warnings(
             significant(rounding / step, 2),
             rounding = significant(rounding, 2)
         );
-        warn(&PRECISION, message, "use \"mixed\" or \"f64\"".to_owned());
+        warn(
+            "rounding",
+            rounding / (MUCH_LOST * step),
+            &PRECISION,
+            message,
+            "use \"mixed\" or \"f64\"".to_owned(),
+        );
     }
     if let Some(set) = scene.machine.instruction_set.filter(|set| !set.is_available()) {
         let message = format!("this processor has no {}", set.name());
-        warn(&INSTRUCTION_SET, message, "use \"auto\"".to_owned());
+        warn("instruction set", f64::INFINITY, &INSTRUCTION_SET, message, "use \"auto\"".to_owned());
     }
     warnings
 }
 
-fn depth_warnings(scene: &Scene, estimates: &Estimates, warn: &mut impl FnMut(&Key, String, String)) {
-    let (law, most) = (&scene.law.contact, scene.law.max_penetration);
+fn depth_warnings(
+    scene: &Scene,
+    domain: &Domain,
+    particles: &Particles,
+    estimates: &Estimates,
+    warn: &mut impl FnMut(&'static str, f64, &Key, String, String),
+) {
+    let law = &scene.law.contact;
+    // Contacts deeper than law.max_penetration are counted, and exact; at law.stop_penetration the run ends.
+    let stop = scene.law.stop_penetration;
     let deepest = estimates.impact_penetration * law.depth_of_faster(FASTEST);
-    if deepest > most {
+    if deepest > stop {
         warn(
+            "depth of impact",
+            deepest / stop,
             &STIFFNESS,
             format!(
                 "approaches {FASTEST} times as fast as {} reach a penetration of {}, above \
-                 law.max_penetration = {most}",
+                 law.stop_penetration = {stop}: the run would stop",
                 significant(estimates.approach_speed, 5),
                 significant(deepest, 3)
             ),
             format!(
                 "a stiffness above {}, with a smaller dt, or slower discs",
-                significant(law.stiffness_for_impact(deepest / most), 5)
+                significant(law.stiffness_for_impact(deepest / stop), 5)
             ),
         );
     }
-    let rest = DEEPEST_REST * most / 0.1;
-    if estimates.resting_depth > rest {
+    let (most, column) = (scene.law.max_penetration, column(scene, domain, particles));
+    let bottom = 0.5 * law.depth_under(column) / smallest_radius(particles);
+    if bottom > most {
         warn(
+            "depth at rest",
+            bottom / most,
             &STIFFNESS,
             format!(
-                "a grain sinks {} of its radius into another by its own weight; above {} columns of grains \
-                 press each other deeper than law.max_penetration = {most}",
+                "a grain sinks {} of its radius into another by its own weight; under the weight of a column of this scene \
+                 grains reach a penetration of {}, above law.max_penetration = {most}",
                 significant(estimates.resting_depth, 4),
-                significant(rest, 4)
+                significant(bottom, 3)
             ),
             format!(
                 "a stiffness above {}, or lighter grains",
-                significant(law.stiffness_for_rest(estimates.resting_depth / rest), 5)
+                significant(law.stiffness_for_rest(bottom / most), 5)
             ),
         );
     }
+}
+
+fn smallest_radius(particles: &Particles) -> f64 {
+    particles.grains().iter().map(|disc| disc.radius).fold(f64::INFINITY, f64::min)
+}
+
+/// Weight of the highest column that the grains can make: all of them, spread over the box across gravity.
+fn column(scene: &Scene, domain: &Domain, particles: &Particles) -> f64 {
+    let diameter = 2.0 * smallest_radius(particles);
+    let heaviest = particles.grains().iter().map(|disc| disc.mass).fold(0.0, f64::max);
+    let total: f64 = particles.grains().iter().map(|disc| disc.mass).sum();
+    let along = |axis: usize| {
+        let gravity = scene.domain.gravity[axis].abs();
+        let across = (domain.length(1 - axis) / diameter).max(1.0);
+        gravity * (total / across).max(heaviest)
+    };
+    if particles.grain_count() == 0 { 0.0 } else { along(0).max(along(1)) }
 }

@@ -1,0 +1,119 @@
+//! Hits and false alarms of every limit and check over a map.
+
+use super::alarm::{Alarm, Finding};
+use super::dataset::Stability;
+use super::outcome::Cell;
+use crate::frame::{Frame, Rows};
+
+/// Record of a limit or check over a map.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Record {
+    /// Runs that are right, and that are wrong and come to their end, of which it warns.
+    right: usize,
+    wrong: usize,
+    /// Wrong runs of which nothing else warns.
+    alone: usize,
+    /// The largest value over the limit among right runs; a limit above it gives no false alarm.
+    largest_right: Option<f64>,
+    /// The smallest value over the limit among wrong runs of which nothing else warns; a limit above it misses one.
+    smallest_alone: Option<f64>,
+}
+
+/// Limits and checks in the order in which they are met; those of a run apart from those before it.
+fn checks<'c>(cells: impl Iterator<Item = &'c Cell>) -> Vec<(String, bool)> {
+    let mut all = vec![];
+    for alarm in cells.flat_map(|cell| &cell.alarms) {
+        let key = (alarm.check.clone(), alarm.finding == Finding::WarnedByRun);
+        if !all.contains(&key) {
+            all.push(key);
+        }
+    }
+    all
+}
+
+impl Record {
+    fn of<'c>(cells: impl Iterator<Item = &'c Cell>, check: &str, is_by_run: bool) -> Record {
+        let is_it =
+            |alarm: &Alarm| alarm.check == check && (alarm.finding == Finding::WarnedByRun) == is_by_run;
+        cells.fold(Record::default(), |mut record, cell| {
+            let Some(alarm) = cell.alarms.iter().find(|alarm| is_it(alarm)) else { return record };
+            let tells = alarm.finding.is_told();
+            if cell.is_right() {
+                record.right += usize::from(tells);
+                record.largest_right =
+                    [record.largest_right, alarm.share].into_iter().flatten().reduce(f64::max);
+            } else if cell.class.is_unseen() && tells {
+                record.wrong += 1;
+                if !cell.alarms.iter().any(|other| other.finding.is_told() && !is_it(other)) {
+                    record.alone += 1;
+                    record.smallest_alone =
+                        [record.smallest_alone, alarm.share].into_iter().flatten().reduce(f64::min);
+                }
+            }
+            record
+        })
+    }
+}
+
+/// A row for each limit and check of each map.
+pub fn alarms(maps: &[(String, Stability)]) -> Frame {
+    let rows = maps.iter().flat_map(|(name, data)| {
+        let [right, wrong] = [Cell::is_right, |cell: &Cell| cell.class.is_unseen()]
+            .map(|belongs: fn(&Cell) -> bool| data.cells().filter(|cell| belongs(cell)).count());
+        checks(data.cells()).into_iter().map(move |(check, is_by_run)| {
+            let record = Record::of(data.cells(), &check, is_by_run);
+            (name, data.method, check, is_by_run, [right, wrong], record)
+        })
+    });
+    Rows::of(rows)
+        .text("scene", |(name, ..)| *name)
+        .text("method", |(_, method, ..)| *method)
+        .text("limit or check", |(_, _, check, ..)| check.clone())
+        .text("when", |(_, _, _, is_by_run, ..)| if *is_by_run { "along the run" } else { "before" })
+        .count("right", |(.., [right, _], _)| *right)
+        .count("right, warned of", |(.., record)| record.right)
+        .count("wrong", |(.., [_, wrong], _)| *wrong)
+        .count("wrong, warned of", |(.., record)| record.wrong)
+        .count("wrong, by nothing else", |(.., record)| record.alone)
+        .number("largest value over limit, right", 3, |(.., record)| record.largest_right)
+        .number("smallest value over limit, wrong by nothing else", 3, |(.., record)| record.smallest_alone)
+        .frame("alarms", "Hits and false alarms of every limit of theory and every check")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::outcome::Class;
+    use super::*;
+
+    fn cell(class: Class, is_decided: bool, alarms: &[(&str, Finding, f64)]) -> Cell {
+        let alarm = |&(check, finding, share): &(&str, Finding, f64)| Alarm {
+            check: check.to_owned(),
+            finding,
+            share: Some(share),
+        };
+        Cell { class, what: String::new(), is_decided, alarms: alarms.iter().map(alarm).collect() }
+    }
+
+    #[test]
+    fn hits_and_false_alarms_are_counted_apart() {
+        use Finding::{Refused, Warned, WarnedByRun, Within};
+        let cells = [
+            cell(Class::Works, true, &[("a", Within, 0.5)]),
+            cell(Class::Works, true, &[("a", Warned, 1.5), ("b", WarnedByRun, 2.0)]),
+            // Neither right nor wrong for certain.
+            cell(Class::Works, false, &[("a", Warned, 9.0)]),
+            cell(Class::Silent, true, &[("a", Refused, 4.0), ("b", WarnedByRun, 3.0)]),
+            cell(Class::EnergyGrowth, true, &[("a", Warned, 3.0), ("c", Within, 0.9)]),
+            cell(Class::Penetration, true, &[("a", Warned, 1.1)]),
+        ];
+        let checks = checks(cells.iter());
+        let named = |name: &str, by_run: bool| (name.to_owned(), by_run);
+        assert_eq!(checks, [named("a", false), named("b", true), named("c", false)]);
+        let a = Record::of(cells.iter(), "a", false);
+        let expected =
+            Record { right: 1, wrong: 2, alone: 1, largest_right: Some(1.5), smallest_alone: Some(3.0) };
+        assert_eq!(a, expected);
+        let b = Record::of(cells.iter(), "b", true);
+        assert_eq!((b.right, b.wrong, b.alone, b.smallest_alone), (1, 1, 0, None));
+    }
+}
