@@ -34,6 +34,11 @@ impl Balanced {
         self.energies.iter().map(|&place| values[place].abs()).sum()
     }
 
+    /// The energies added up (energy).
+    pub fn energy(&self, values: &[f64]) -> f64 {
+        self.energies.iter().map(|&place| values[place]).sum()
+    }
+
     /// Magnitudes of the work from outside, added up (energy).
     pub fn inputs(&self, values: &[f64]) -> f64 {
         self.inputs.iter().map(|&place| values[place].abs()).sum()

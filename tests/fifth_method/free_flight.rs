@@ -61,6 +61,8 @@ static TRIALS: Trials = Trials {
     step: &DT,
     references: [&[("integrator", "drift")], &[("integrator", "drift")]],
     balance: None,
+    shadow: None,
+    encounter: |_, _| None,
     has_trajectories: true,
     length: SMALLEST_RADIUS,
     has_contacts: false,

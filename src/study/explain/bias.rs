@@ -8,6 +8,12 @@ use stripmine_physics::number::significant;
 /// Part of the correction of a short window that is taken for its own uncertainty: the memory of a quantity is rarely a single exponential.
 const OF_CORRECTION: f64 = 0.5;
 
+/// Two measurements disagree that are as many bars apart: about three standard errors.
+const SURE: f64 = 1.5;
+
+/// A significant bias disagrees with that of single collisions from so many times it on: these do not know how a quantity answers to them.
+const DISAGREES: f64 = 4.0;
+
 /// Windows that show as much of a bias show all of it.
 const FULL: f64 = 0.95;
 
@@ -32,6 +38,12 @@ pub struct Bias {
     pub part: f64,
     /// States from which runs were compared.
     pub starts: usize,
+    /// The bias by pairs of runs and its bar; none where none ended.
+    pub pairs: Option<[f64; 2]>,
+    /// The bias by the shadow energy and its bar; none where there is no such energy.
+    pub shadow: Option<[f64; 2]>,
+    /// The size of the bias by single collisions; none where particles do not touch.
+    pub collisions: Option<f64>,
 }
 
 /// A difference at a step, for a window.
@@ -110,31 +122,101 @@ impl Bias {
             window,
             part,
             starts,
+            pairs: None,
+            shadow: None,
+            collisions: None,
         }
+        .with_pairs()
+    }
+
+    fn with_pairs(self) -> Bias {
+        Bias { pairs: Some([self.shift, self.bar]), ..self }
+    }
+
+    /// With the bias at a step (time) by the shadow energy, and its bar: the mean of both, each with the weight of its bar. Where they disagree, pairs of runs
+    /// count, and the difference is a part of their bar.
+    #[must_use]
+    pub(super) fn with_shadow(self, step: f64, [shift, bar]: [f64; 2]) -> Bias {
+        let scale = (self.step / step).powf(self.power);
+        let shadow = [scale * shift, scale * bar];
+        let known = Bias { shadow: Some(shadow), ..self };
+        let Some([of_pairs, pairs_bar]) = self.pairs else {
+            return Bias { shift: shadow[0], bar: shadow[1], ..known };
+        };
+        if !known.agrees() {
+            return Bias { bar: pairs_bar.hypot(shadow[0] - of_pairs), ..known };
+        }
+        let weights = [pairs_bar, shadow[1]].map(|bar| bar.max(f64::MIN_POSITIVE).powi(-2));
+        let both = weights[0] + weights[1];
+        if !both.is_finite() {
+            return known;
+        }
+        Bias {
+            shift: (weights[0] * of_pairs + weights[1] * shadow[0]) / both,
+            bar: both.sqrt().recip(),
+            ..known
+        }
+    }
+
+    /// With the size of the bias by single collisions (the quantity's unit).
+    #[must_use]
+    pub(super) fn with_collisions(self, collisions: Option<f64>) -> Bias {
+        Bias { collisions, ..self }
+    }
+
+    /// True unless pairs of runs and the shadow energy differ by more than their bars.
+    fn agrees(&self) -> bool {
+        self.pairs
+            .zip(self.shadow)
+            .is_none_or(|(pairs, shadow)| (pairs[0] - shadow[0]).abs() <= SURE * pairs[1].hypot(shadow[1]))
     }
 
     /// Of a step (time) whose means no pairs of runs compared: nothing is known of it.
     pub(super) fn unknown(step: f64, power: f64) -> Bias {
-        Bias { step, shift: 0.0, bar: f64::INFINITY, power, window: 0.0, part: 0.0, starts: 0 }
+        Bias {
+            step,
+            shift: 0.0,
+            bar: f64::INFINITY,
+            power,
+            window: 0.0,
+            part: 0.0,
+            starts: 0,
+            pairs: None,
+            shadow: None,
+            collisions: None,
+        }
     }
 
     /// The measurement, for a reader.
     pub(super) fn in_words(&self) -> String {
-        if self.bar.is_infinite() {
-            return "no pairs of runs ended in the time of the trials: --patient has more".to_owned();
+        let both = |[shift, bar]: [f64; 2]| format!("{} ± {}", significant(shift, 2), significant(bar, 2));
+        let mut words = match self.pairs {
+            None => "no pairs of runs ended in the time of the trials: --patient has more".to_owned(),
+            Some(pairs) => format!(
+                "at {} it is {}, by {} pairs of runs over {}{}",
+                significant(self.step, 3),
+                both(pairs),
+                self.starts,
+                significant(self.window, 2),
+                match self.part < FULL {
+                    true => format!(", which show {} % of it", significant(100.0 * self.part, 2)),
+                    false => String::new(),
+                }
+            ),
+        };
+        if let Some(shadow) = self.shadow {
+            let but = if self.agrees() { "" } else { ", which disagrees" };
+            words.push_str(&format!("; {} by the shadow energy{but}", both(shadow)));
         }
-        format!(
-            "at {} it is {} ± {}, by {} pairs of runs over {}{}",
-            significant(self.step, 3),
-            significant(self.shift, 2),
-            significant(self.bar, 2),
-            self.starts,
-            significant(self.window, 2),
-            match self.part < FULL {
-                true => format!(", which show {} % of it", significant(100.0 * self.part, 2)),
-                false => String::new(),
-            }
-        )
+        if let Some(collisions) = self.collisions {
+            let but = match self.shift.abs() - self.bar > DISAGREES * collisions {
+                true => ", which is too little",
+                false if self.below() < collisions => ", which is too much",
+                false => "",
+            };
+            words.push_str(&format!("; about {} by single collisions{but}", significant(collisions, 2)));
+        }
+        words
     }
 
     /// True if it is beyond its bar.
@@ -154,13 +236,14 @@ impl Bias {
         if self.is_significant() {
             return self.shift.abs();
         }
-        // The standard error is about half of the bar. Of an unknown bias nothing is left.
-        (self.shift.powi(2) - 0.25 * self.bar.powi(2)).max(0.0).sqrt()
+        // The standard error is about half of the bar. Of an unknown bias nothing is left but that of collisions, which is no larger than what was measured.
+        let measured = (self.shift.powi(2) - 0.25 * self.bar.powi(2)).max(0.0).sqrt();
+        measured.max(self.collisions.unwrap_or(0.0).min(self.below()))
     }
 
-    /// The part of the bias that a step has, no longer than the one that was compared.
+    /// The bias of a step (time) over that of the one that was compared.
     fn part_at(&self, step: f64) -> f64 {
-        (step / self.step).min(1.0).powf(self.power)
+        (step / self.step).powf(self.power)
     }
 
     /// The measured bias at a step (the quantity's unit), and half the width of its interval of 95 %.
@@ -227,7 +310,7 @@ mod tests {
         assert!((bias.bar - f64::hypot(0.002, 0.005)).abs() < 1e-12);
         let half = bias.at(0.1);
         assert!((half.shift - 0.01).abs() < 1e-12 && (half.below - 0.5 * bias.below()).abs() < 1e-12);
-        assert_eq!(bias.at(0.4), bias.at(0.2));
+        assert!((bias.at(0.4).shift - 0.04).abs() < 1e-12);
     }
 
     /// An unknown bias is neither bought off nor said to be small.
@@ -243,5 +326,33 @@ mod tests {
         let bias = Bias::of(&[seen(0.2, 0.0, [0.1, 0.4])], 1.0, 2.0, 1.0, 16);
         assert!(!bias.is_significant() && (bias.below() - 0.5).abs() < 1e-6);
         assert_eq!((bias.expected(), bias.at(0.2).leaves(0.3)), (0.0, Some(0.3)));
+    }
+
+    /// By hand: bars of 0.3 and 0.1 have the weights 1 and 9; at twice the step with the power 2 the shadow energy says four times as much.
+    #[test]
+    fn pairs_and_the_shadow_energy_are_weighed() {
+        let pairs = Bias::of(&[seen(0.2, 0.0, [1.0, 0.3])], 2.0, 1.0, 1.0, 16);
+        let both = pairs.with_shadow(0.1, [0.3, 0.025]);
+        assert!((both.shift - (1.0 + 9.0 * 1.2) / 10.0).abs() < 1e-12, "{both:?}");
+        assert!((both.bar - (1.0 / (1.0 / 0.09 + 100.0_f64)).sqrt()).abs() < 1e-12, "{both:?}");
+        let apart = pairs.with_shadow(0.2, [2.0, 0.1]);
+        assert!(apart.shift == 1.0 && (apart.bar - 0.3_f64.hypot(1.0)).abs() < 1e-12, "{apart:?}");
+        assert!(apart.in_words().contains("which disagrees"), "{}", apart.in_words());
+        let alone = Bias::unknown(0.2, 2.0).with_shadow(0.2, [0.5, 0.1]);
+        assert_eq!([alone.shift, alone.bar], [0.5, 0.1]);
+    }
+
+    /// A bias that is not significant is that of single collisions, and no more than was measured.
+    #[test]
+    fn collisions_tell_the_bias_that_is_not_seen() {
+        let of = |collisions: f64| {
+            Bias::of(&[seen(0.2, 0.0, [0.1, 0.4])], 1.0, 2.0, 1.0, 16)
+                .with_collisions(Some(collisions))
+                .expected()
+        };
+        assert_eq!([of(0.3), of(2.0)], [0.3, 0.5]);
+        let significant = Bias::of(&[seen(0.2, 0.0, [0.8, 0.1])], 1.0, 2.0, 1.0, 16);
+        assert_eq!(significant.with_collisions(Some(3.0)).expected(), 0.8);
+        assert_eq!(Bias::unknown(0.2, 1.0).with_collisions(Some(0.25)).expected(), 0.25);
     }
 }

@@ -32,8 +32,8 @@ struct Cases {
     /// Integrators, by the place of their cheapest configuration.
     firsts: Vec<usize>,
     prepared: Vec<(Prepared, f64)>,
-    /// Time between rows (time).
-    spacing: f64,
+    /// Steps between two rows.
+    steps: Vec<u64>,
     /// The choice of the reference.
     reference: Choice,
 }
@@ -63,6 +63,8 @@ impl Work<'_> {
             let Some(cases) = self.cases(ways, most) else { break };
             match self.paired(&cases, mean, seconds) {
                 Err(Trouble::FewStates) => break,
+                // A scout has little time.
+                Err(Trouble::TooDear) if seconds < all => seconds = all,
                 // The best and the scene's own are enough; fewer there cannot be.
                 Err(Trouble::TooDear) if most > 1 => most -= 1,
                 Err(Trouble::TooDear) => break,
@@ -102,7 +104,32 @@ impl Work<'_> {
                 Some(step) => way.bias = Some(Bias::unknown(step, self.power(&self.choice(way)))),
             }
         }
+        self.without_pairs(ways, mean);
         sort(ways);
+    }
+
+    /// Adds to the biases of pairs those by the shadow energy and by single collisions.
+    fn without_pairs(&self, ways: &mut [Way], mean: &Mean) {
+        let of_mean =
+            ways.iter().find_map(|way| Some((self.choice(way), mean.step?, self.of_shadow(way, mean)?)));
+        let mut seen: Vec<(Choice, Option<f64>)> = vec![];
+        for way in ways.iter_mut().filter(|way| way.dropped.is_none()) {
+            let Some(bias) = way.bias else { continue };
+            let choice = self.choice(way);
+            let alike = |other: &Choice| other.agrees(&choice, Decides::Order);
+            let bias = match &of_mean {
+                Some((of_mean, step, shadow)) if alike(of_mean) => bias.with_shadow(*step, *shadow),
+                _ => bias,
+            };
+            let known = seen.iter().find(|(other, _)| alike(other)).map(|(_, known)| *known);
+            let of_collisions = known.unwrap_or_else(|| {
+                let part =
+                    (self.left() > 0.0).then(|| self.error_of_collisions(way, bias.step, mean)).flatten();
+                seen.push((choice, part));
+                part
+            });
+            way.bias = Some(bias.with_collisions(of_collisions.map(|part| part * mean.known.mean.abs())));
+        }
     }
 
     /// Configurations to compare; none where one cannot be prepared.
@@ -130,18 +157,21 @@ impl Work<'_> {
         let of_reference = (reference.overrides(), REFERENCE * shortest);
         let (overrides, steps): (Vec<Overrides>, Vec<f64>) =
             std::iter::once(of_reference).chain(of_firsts).unzip();
-        let prepared = overrides.iter().zip(steps).map(|(overrides, step)| {
-            let even = spacing / (spacing / step).ceil();
+        // Noise of a long step is made of that of whole short ones.
+        let is_noisy = self.case.prepared.model.with_noise(0, 1).is_some();
+        let whole = |steps: u64| if is_noisy { steps.next_power_of_two() } else { steps };
+        let steps: Vec<u64> = steps.iter().map(|step| whole((spacing / step).ceil() as u64)).collect();
+        let prepared = overrides.iter().zip(&steps).map(|(overrides, &steps)| {
+            let even = spacing / steps as f64;
             Some((self.prepared(overrides, Some(even)).ok()?, even))
         });
         let prepared = prepared.collect::<Option<Vec<_>>>()?;
-        Some(Cases { firsts, prepared, spacing, reference })
+        Some(Cases { firsts, prepared, steps, reference })
     }
 
     /// Runs of all cases from the same states.
     fn paired(&self, cases: &Cases, mean: &Mean, seconds: f64) -> Result<Paired, Trouble> {
-        let steps: Vec<u64> =
-            cases.prepared.iter().map(|(_, step)| (cases.spacing / step).round() as u64).collect();
+        let steps = &cases.steps;
         if mean.states.len() < FEWEST {
             return Err(Trouble::FewStates);
         }
@@ -155,13 +185,14 @@ impl Work<'_> {
         }
         let starts = (fitting as usize).clamp(FEWEST, mean.states.len());
         let begin = |case: usize, start: usize| {
-            let prepared = cases.prepared[case]
-                .0
-                .model
-                .started_from(mean.states[start * mean.states.len() / starts].clone());
+            let state = mean.states[start * mean.states.len() / starts].clone();
+            let prepared = cases.prepared[case].0.model.started_from(state);
+            // Of a start all runs see the same noise, and each start another.
+            let parts = (steps[0] / steps[case]) as u32;
+            let prepared = prepared.model.with_noise(start as u64, parts).unwrap_or(prepared);
             prepared.start(Purpose::Run).map_err(|failure| first_line(&failure.what()))
         };
-        let compared = Compared { steps: &steps, first, starts, begin: &begin };
+        let compared = Compared { steps, first, starts, begin: &begin };
         let observed = (self.case.entry.quantities, self.target.place);
         pairs(&self.trial, &compared, observed, seconds)
             .map_err(|broken| Trouble::Broken(broken.at, broken.why))

@@ -6,7 +6,7 @@ use super::decisions::decisions;
 use super::findings::{Findings, Way};
 use super::lengths::{Length, Weighed};
 use super::optimum::Optimum;
-use super::plan::{TIME_WITHIN, in_unit, overrides, phases};
+use super::plan::{TIME_WITHIN, in_unit, overrides, phases, prefer};
 use super::recommended::{Decision, Expected, Interval, Own, Plan};
 use super::unreached::Unreached;
 use crate::study::Case;
@@ -41,6 +41,7 @@ pub fn keeping(case: &Case, target: &Target, findings: &Findings, origin: &str) 
         })
         .collect();
     weighed.sort_by(|a, b| a.optimum.seconds.total_cmp(&b.optimum.seconds));
+    prefer(&mut weighed, case);
     let Some(best) = weighed.first() else {
         let least = usable().filter_map(|way| Some(way.drift?.over(time).farthest[1]));
         let least = least.fold(f64::INFINITY, f64::min);

@@ -35,12 +35,16 @@ pub(super) struct Mean {
     pub(super) row: f64,
     /// Wall seconds of a unit of time in the runs of the mean.
     pub(super) cost: f64,
+    /// The step (time); none where the method takes none.
+    pub(super) step: Option<f64>,
     /// Wall seconds of a step; not a number where the method takes none.
     pub(super) step_cost: f64,
     /// Transients of all samples: the start is the same, or alike, and they differ by the noise of their detection.
     pub(super) transients: Vec<f64>,
     /// States along the run after the transient.
     pub(super) states: Vec<Particles>,
+    /// Rows of the run, of all quantities.
+    pub(super) rows: Vec<Vec<f64>>,
 }
 
 impl Work<'_> {
@@ -215,9 +219,11 @@ fn found(way: &Way, sample: Sample, known: Known) -> Mean {
         start: sample.start,
         row: sample.row,
         cost: sample.cost,
+        step: way.step,
         step_cost: sample.cost * way.step.unwrap_or(f64::NAN),
         transients: vec![known.transient],
         states: sample.states.into_iter().skip(first).map(|(_, state)| state).collect(),
+        rows: sample.rows,
     }
 }
 

@@ -8,14 +8,16 @@ use super::lengths::{Weighed, length, weigh};
 use super::optimum::SHORTEST;
 use super::recommended::{Expected, Interval, Own, Plan};
 use super::unreached::Unreached;
-use crate::study::Case;
 use crate::study::trial::ROWS;
+use crate::study::{Case, Choice};
 use stripmine_physics::method::Every;
 use stripmine_physics::number::significant;
 use stripmine_physics::scene::{Overrides, STEPS, THERMO_EVERY, TIME, Width};
 
 /// A time is foreseen within this factor: other programs come and go.
 pub(super) const TIME_WITHIN: f64 = 1.5;
+/// Configurations tie that take no more than this many times as long as the quickest.
+const TIE: f64 = 1.1;
 /// Rows that a mean is taken of, at least.
 const FEWEST_ROWS: f64 = 100.0;
 
@@ -40,6 +42,7 @@ pub fn plan(case: &Case, target: &Target, findings: &Findings, origin: &str) -> 
         .filter_map(|way| Some(Weighed { way, optimum: weigh(way, findings, &chance, wanted)? }))
         .collect();
     weighed.sort_by(|a, b| a.optimum.seconds.total_cmp(&b.optimum.seconds));
+    prefer(&mut weighed, case);
     let Some(best) = weighed.first() else {
         // The bias at the shortest step that is weighed is all that is left.
         let least = |way: &Way| Some(way.bias?.at(SHORTEST * way.step?).shift);
@@ -87,6 +90,22 @@ pub fn plan(case: &Case, target: &Target, findings: &Findings, origin: &str) -> 
         left_out: left_out(findings, wanted, mean.mean),
         origin: origin.to_owned(),
     })
+}
+
+/// Puts first, of all that are as cheap within what can be timed, the scene's own configuration, or the first by the order of the settings: more trials then
+/// lead to the same one.
+pub(super) fn prefer(weighed: &mut [Weighed<'_>], case: &Case) {
+    let Some(cheapest) = weighed.first().map(|it| it.optimum.seconds) else { return };
+    let own = case.own.label();
+    let order: Vec<String> = Choice::all(case.entry.axes).iter().map(Choice::label).collect();
+    let place = |it: &Weighed<'_>| {
+        let label = &it.way.label;
+        (*label != own, order.iter().position(|known| known == label).unwrap_or(usize::MAX))
+    };
+    let tied = weighed.iter().take_while(|it| it.optimum.seconds <= TIE * cheapest).count();
+    if let Some(chosen) = (0..tied).min_by_key(|&at| place(&weighed[at])) {
+        weighed[..=chosen].rotate_right(1);
+    }
 }
 
 /// Wall seconds of a run in each phase.

@@ -59,7 +59,7 @@ fn known(square: f64, freedoms: f64) -> Known {
 
 fn biased(case: &Case, shift: f64, bar: f64) -> Option<Bias> {
     let step = case.step().unwrap();
-    Some(Bias { step, shift, bar, power: 2.0, window: 1.0, part: 1.0, starts: 16 })
+    Some(Bias { shift, bar, part: 1.0, pairs: Some([shift, bar]), ..Bias::unknown(step, 2.0) })
 }
 
 /// The scene's own configuration, which was not compared, reaches its error in less time than another: then the scene is left as it stands. Where the

@@ -13,8 +13,11 @@ const OF_LIMIT: f64 = 0.9;
 const TIMES_OWN: f64 = 4.0;
 /// A way that costs this many times the best is followed no further.
 const DEAR: f64 = 5.0;
-/// How often each way is timed.
-const ROUNDS: usize = 2;
+/// Rounds of a race at most, and those from which on bars tell a tie.
+const ROUNDS: usize = 5;
+const TIE_FROM: usize = 3;
+/// A race is over when the best leads by this factor.
+const LEAD: f64 = 1.25;
 /// Preparing and starting may take as long as the timing itself, and what is left after that is not timed.
 const OVERHEAD: f64 = 2.0;
 
@@ -51,12 +54,12 @@ impl Work<'_> {
         Ok(ways)
     }
 
-    /// Ways with their costs, the cheapest first.
+    /// Configurations with their costs, the cheapest first, by a race: all are timed, then the better half again for twice as long each, and so on until the
+    /// best leads or their bars overlap. None but the scene's own is begun after the end.
     ///
-    /// Each is timed again after all the others: other programs come and go, and the faster time of both is the better one. None but the scene's own is begun after
-    /// the end.
+    /// Other programs come and go: of several times the least counts.
     fn timed(&self, choices: &[&Choice], seconds: f64, end: f64) -> Vec<Way> {
-        let each = seconds / (ROUNDS * choices.len().max(1)) as f64;
+        let mut each = seconds / (2 * choices.len().max(1)) as f64;
         let is_over = || self.trial.watch.now() >= end;
         let of = |choice: &&Choice| {
             if is_over() && **choice != self.case.own {
@@ -66,16 +69,20 @@ impl Work<'_> {
             self.at_longest(choice, each)
         };
         let mut ways: Vec<Way> = choices.iter().map(of).collect();
+        let mut race = Race::of(&ways);
         for _ in 1..ROUNDS {
-            let limit = DEAR * least(&ways);
-            for way in ways.iter_mut().filter(|way| way.cost.is_some_and(|cost| cost < limit)) {
+            race.halve();
+            if race.is_decided() {
+                break;
+            }
+            each *= 2.0;
+            for (at, times) in &mut race.racing {
                 if is_over() {
                     break;
                 }
-                let again = self.prepared(&way.overrides, way.step).ok();
-                let again = again.and_then(|prepared| self.trial.timed(&prepared, each).ok());
-                let again = again.map(|it| it.seconds);
-                way.cost = way.cost.into_iter().chain(again).reduce(f64::min);
+                let again = self.prepared(&ways[*at].overrides, ways[*at].step).ok();
+                times.extend(again.and_then(|it| self.trial.timed(&it, each).ok()).map(|it| it.seconds));
+                ways[*at].cost = times.iter().copied().reduce(f64::min);
             }
         }
         sort(&mut ways);
@@ -136,6 +143,44 @@ impl Work<'_> {
     }
 }
 
+/// Configurations that race, by their places, each with its times.
+struct Race {
+    racing: Vec<(usize, Vec<f64>)>,
+}
+
+impl Race {
+    fn of(ways: &[Way]) -> Race {
+        let timed = ways.iter().enumerate().filter_map(|(at, way)| Some((at, vec![way.cost?])));
+        Race { racing: timed.collect() }
+    }
+
+    /// Leaves the better half, and all others that the best does not lead.
+    fn halve(&mut self) {
+        self.racing.sort_by(|a, b| least(&a.1).total_cmp(&least(&b.1)));
+        let half = self.racing.len().div_ceil(2);
+        let best = self.racing.first().map_or(f64::INFINITY, |(_, times)| least(times));
+        let mut place = 0;
+        self.racing.retain(|(_, times)| {
+            place += 1;
+            place <= half || least(times) < LEAD * best
+        });
+    }
+
+    /// True if the best leads, or the second is as good within the range of the best's two least times.
+    fn is_decided(&self) -> bool {
+        let [(_, best), (_, second), ..] = self.racing.as_slice() else { return true };
+        let is_tie = || {
+            let above = best.iter().copied().filter(|it| *it > least(best));
+            best.len() >= TIE_FROM && least(second) <= above.fold(f64::INFINITY, f64::min)
+        };
+        least(second) > LEAD * least(best) || is_tie()
+    }
+}
+
+fn least(times: &[f64]) -> f64 {
+    times.iter().copied().fold(f64::INFINITY, f64::min)
+}
+
 /// A way of which nothing is known.
 fn untimed(choice: &Choice) -> Way {
     Way {
@@ -153,17 +198,13 @@ fn untimed(choice: &Choice) -> Way {
     }
 }
 
-/// The cost of the cheapest.
-fn least(ways: &[Way]) -> f64 {
-    ways.iter().filter_map(|way| way.cost).fold(f64::INFINITY, f64::min)
-}
-
 /// Gives up those dearer than `DEAR` times the best: their results are the same.
 fn give_up(ways: &mut [Way]) {
-    let least = least(ways);
+    let costs: Vec<f64> = ways.iter().filter_map(|way| way.cost).collect();
+    let cheapest = least(&costs);
     for way in ways.iter_mut() {
-        if let Some(cost) = way.cost.filter(|cost| *cost > DEAR * least) {
-            way.dropped = Some(format!("costs {} times the cheapest", significant(cost / least, 2)));
+        if let Some(cost) = way.cost.filter(|cost| *cost > DEAR * cheapest) {
+            way.dropped = Some(format!("costs {} times the cheapest", significant(cost / cheapest, 2)));
         }
     }
     sort(ways);
@@ -171,4 +212,40 @@ fn give_up(ways: &mut [Way]) {
 
 fn bounded(limit: &StepLimit) -> String {
     format!("{}: {}", limit.name, limit.why)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn race(times: &[&[f64]]) -> Race {
+        Race { racing: times.iter().map(|times| times.to_vec()).enumerate().collect() }
+    }
+
+    /// By hand: of 1, 1.2, 2 and 4 the half is 1 and 1.2; of 1, 1.2, 1.24, 1.3 and 4 three are the half, and none beyond is within a quarter of the best.
+    #[test]
+    fn the_better_half_races_on() {
+        let places = |mut race: Race| {
+            race.halve();
+            race.racing.into_iter().map(|(at, _)| at).collect::<Vec<_>>()
+        };
+        assert_eq!(places(race(&[&[4.0], &[1.0], &[2.0], &[1.2]])), [1, 3]);
+        assert_eq!(places(race(&[&[1.3], &[1.2], &[4.0], &[1.0], &[1.24]])), [3, 1, 4]);
+        assert_eq!(places(race(&[&[1.0], &[1.1], &[1.2], &[1.24]])), [0, 1, 2, 3]);
+    }
+
+    /// Decided by a lead of a quarter, or, from three times on, where the second is no slower than the best was at its second-best.
+    #[test]
+    fn a_race_ends_by_a_lead_or_a_tie() {
+        for (times, is_decided) in [
+            (vec![&[1.0][..], &[1.26][..]], true),
+            (vec![&[1.0][..], &[1.2][..]], false),
+            (vec![&[1.0, 1.3][..], &[1.2, 1.2][..]], false),
+            (vec![&[1.0, 1.3, 1.25][..], &[1.2, 1.3, 1.2][..]], true),
+            (vec![&[1.0, 1.05, 1.1][..], &[1.2, 1.2, 1.2][..]], false),
+            (vec![&[1.0][..]], true),
+        ] {
+            assert_eq!(race(&times).is_decided(), is_decided, "{times:?}");
+        }
+    }
 }

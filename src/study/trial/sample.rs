@@ -44,6 +44,8 @@ pub struct Sample {
     pub phases: Vec<(String, f64)>,
     /// States along the run, evenly spread, each with its time (time).
     pub states: Vec<(f64, Particles)>,
+    /// Its rows, of all quantities.
+    pub rows: Vec<Vec<f64>>,
 }
 
 /// A mean as a run knows it.
@@ -204,6 +206,7 @@ impl Trial<'_> {
         // The start is a part of the time.
         let limit = seconds.map_or(f64::INFINITY, |seconds| seconds - (running - begun));
         let mut states = States::new(prepared);
+        let mut all_rows = vec![];
         // Of the stretches once it is warm, and of all.
         let (mut warm, mut all) = ((0.0, 0.0), (0.0, 0.0));
         while self.watch.now() - running < limit
@@ -222,7 +225,9 @@ impl Trial<'_> {
             if share.max(simulation.clock().time / most) > COLD {
                 warm = (warm.0 + gone, warm.1 + spent);
             }
-            rows.add(&simulation.row());
+            let row = simulation.row();
+            rows.add(&row);
+            all_rows.push(row);
         }
         let (gone, spent) = if warm.0 > 0.0 { warm } else { all };
         let row = self.timed_row(simulation);
@@ -239,6 +244,7 @@ impl Trial<'_> {
             series,
             phases: phases(simulation),
             states: states.kept,
+            rows: all_rows,
         })
     }
 

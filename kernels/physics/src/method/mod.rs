@@ -35,6 +35,6 @@ pub use simulation::{RunWarning, Simulation};
 pub use snapshot::Snapshot;
 pub use start_temperature::START_TEMPERATURE;
 pub use trials::{
-    Axis, Balance, Becomes, Decides, Length, Parameter, Rewritten, SMALLEST_RADIUS, Setting, Theory, Trials,
-    Twin,
+    Axis, Balance, Becomes, Decides, Encounter, Length, Parameter, Rewritten, SMALLEST_RADIUS, Setting,
+    Shadow, Theory, Trials, Twin,
 };

@@ -15,6 +15,10 @@ pub struct Trials {
     pub references: [&'static [(&'static str, &'static str)]; 2],
     /// The balance of energy, where the method observes one.
     pub balance: Option<Balance>,
+    /// Integrators that keep a shadow energy, where the method has such; none elsewhere.
+    pub shadow: Option<Shadow>,
+    /// Two particles as a scene has them, whose encounters say what a step changes in each; none where they do not touch.
+    pub encounter: fn(&Prepared, Encounter) -> Option<String>,
     /// Whether a run with another step follows the same trajectories; where noise moves particles it does not, and only means can be
     /// compared.
     pub has_trajectories: bool,
@@ -58,6 +62,25 @@ pub struct Balance {
     pub energies: &'static [&'static str],
     /// Work since the start, whose magnitudes add up to what has come from outside.
     pub inputs: &'static [&'static str],
+}
+
+/// Integrators that keep an energy that differs from the true one by a power of the step (Bond and Leimkuhler, Acta Numerica 16, 2007): without friction
+/// and driving the true one then fluctuates about it.
+#[derive(Clone, Copy, Debug)]
+pub struct Shadow {
+    /// The settings of the axis that decides the order.
+    pub integrators: &'static [&'static str],
+    /// The quantity that is the mean energy of a degree of freedom, twice.
+    pub temperature: &'static str,
+}
+
+/// How two particles meet.
+#[derive(Clone, Copy, Debug)]
+pub struct Encounter {
+    /// Speed of approach (length/time).
+    pub speed: f64,
+    /// Distance of the line of flight from the other's centre, in sums of the radii: 0 head on, 1 past each other.
+    pub offset: f64,
 }
 
 /// Something of a scene that a map of stability varies beside the step.

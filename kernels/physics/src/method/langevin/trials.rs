@@ -17,6 +17,8 @@ pub(super) static TRIALS: Trials = Trials {
     ],
     // A bath gives and takes energy.
     balance: None,
+    shadow: None,
+    encounter: |_, _| None,
     has_trajectories: false,
     length: SMALLEST_RADIUS,
     has_contacts: false,

@@ -22,6 +22,7 @@ mod check;
 mod checks;
 mod choice;
 mod document;
+mod encounter;
 mod engine;
 mod entry;
 mod facts;

@@ -1,6 +1,7 @@
 //! How granular discs may be run, and what theory says of the error.
 
 use super::document::Document;
+use super::encounter::encounter;
 use super::hard::hard;
 use super::keys::{
     COORDINATES, ENGINE, EXECUTION, FRICTION, INERTIA, INTEGRATOR, LAW, MAX_PENETRATION, NORMAL_DAMPING,
@@ -11,8 +12,8 @@ use super::quantities::QUANTITIES;
 use crate::method::observed::place;
 use crate::method::trials::settings;
 use crate::method::{
-    Axis, Balance, Becomes, Decides, Parameter, Prepared, Purpose, SMALLEST_RADIUS, Setting, Theory, Trials,
-    Twin,
+    Axis, Balance, Becomes, Decides, Parameter, Prepared, Purpose, SMALLEST_RADIUS, Setting, Shadow, Theory,
+    Trials, Twin,
 };
 use crate::scene::{
     DT, ORIGIN, Overrides, PACKING_FRACTION, PRECISION, Precision, RADIUS_CUT, RADIUS_SPREAD, SPEED,
@@ -34,6 +35,8 @@ pub(super) static TRIALS: Trials = Trials {
         energies: &["kinetic", "rotational", "elastic"],
         inputs: &["gravity_work", "wall_work"],
     }),
+    shadow: Some(Shadow { integrators: &["velocity-verlet"], temperature: "temperature" }),
+    encounter,
     has_trajectories: true,
     length: SMALLEST_RADIUS,
     has_contacts: true,

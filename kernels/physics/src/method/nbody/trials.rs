@@ -17,6 +17,8 @@ pub(super) static TRIALS: Trials = Trials {
         &[("integrator", "gear-6"), ("precision", "f64")],
     ],
     balance: Some(Balance { error: "balance_error", energies: &["kinetic", "potential"], inputs: &[] }),
+    shadow: None,
+    encounter: |_, _| None,
     has_trajectories: true,
     length: Length { unit: "sizes of the system", of: size },
     has_contacts: false,

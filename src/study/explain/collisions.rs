@@ -1,0 +1,113 @@
+//! Bias of a step in single collisions of two particles as the scene has them: by how much each changes less, or more, than at a far shorter step, in the
+//! mean over where in a step the contact begins. Collisions that err by a part let means err by about that part, which needs no long run.
+
+use super::findings::{Way, Work};
+use super::mean::Mean;
+use crate::study::Case;
+use crate::study::state::displaced;
+use std::sync::atomic::Ordering;
+use stripmine_physics::domain::Domain;
+use stripmine_physics::method::{Encounter, Prepared, Purpose, Until};
+use stripmine_physics::particles::{Particle, Particles};
+use stripmine_physics::scene::Overrides;
+
+/// Distances of the line of flight from the other's centre, in sums of the radii: all are as likely in a plane.
+const OFFSETS: [f64; 4] = [0.125, 0.375, 0.625, 0.875];
+/// Places within a step where contacts begin.
+const PHASES: u32 = 8;
+/// The step of the reference, in parts of the step.
+const REFERENCE: f64 = 1.0 / 32.0;
+/// Collisions that lose less than this part of the energy have no loss to err by.
+const LOSSLESS: f64 = 1e-3;
+
+/// A collision: the change of the first particle's velocity and of the speed of its surface (length/time), and the energy lost over that before.
+#[derive(Clone, Copy, Debug, Default)]
+struct Change {
+    impulse: [f64; 3],
+    lost: f64,
+}
+
+impl Work<'_> {
+    /// The part by which a step of a configuration changes what collisions do: impulses and spin, and the energy lost. None where particles do not touch or
+    /// a collision breaks.
+    pub(super) fn error_of_collisions(&self, way: &Way, step: f64, mean: &Mean) -> Option<f64> {
+        let trials = self.case.entry.trials?;
+        let speed = approach(mean.states.last()?, &self.case.prepared.domain);
+        let reference = self.choice(way).with(trials.references[0]).overrides();
+        let (mut off, mut all, mut lost) = ([0.0; 3], 0.0, [0.0; 2]);
+        for offset in OFFSETS {
+            let text = (trials.encounter)(&self.case.prepared, Encounter { speed, offset })?;
+            let case = self.case.beside(&text).ok()?;
+            let exact = self.changed(&case, reference.clone().set(trials.step, REFERENCE * step), 0.0)?;
+            let overrides = way.choice(&case).overrides().set(trials.step, step);
+            let mut own = Change::default();
+            for phase in 0..PHASES {
+                let late = f64::from(phase) / f64::from(PHASES) * step;
+                let change = self.changed(&case, overrides.clone(), late)?;
+                for (sum, part) in own.impulse.iter_mut().zip(change.impulse) {
+                    *sum += part / f64::from(PHASES);
+                }
+                own.lost += change.lost / f64::from(PHASES);
+            }
+            for axis in 0..3 {
+                off[axis] += (own.impulse[axis] - exact.impulse[axis]).abs();
+                all += exact.impulse[axis].abs();
+            }
+            lost = [lost[0] + own.lost - exact.lost, lost[1] + exact.lost];
+        }
+        let of_impulse = off.iter().sum::<f64>() / all;
+        let of_loss = if lost[1] > LOSSLESS * OFFSETS.len() as f64 { (lost[0] / lost[1]).abs() } else { 0.0 };
+        Some(of_impulse.max(of_loss)).filter(|part| part.is_finite())
+    }
+
+    /// A collision that begins later by a time.
+    fn changed(&self, case: &Case, overrides: Overrides, late: f64) -> Option<Change> {
+        let prepared = case.prepared_with(&overrides).ok()?;
+        let delayed = displaced(prepared.particles(), &prepared.domain, |_, disc| {
+            disc.planar_velocity().map(|part| -late * part)
+        });
+        let prepared: Prepared = prepared.model.started_from(delayed);
+        let mut simulation = prepared.start(Purpose::Run).ok()?;
+        let end = Until::Time(case.duration()?);
+        simulation.advance(&[end], self.trial.stop).ok()?;
+        let is_over = end.has_come(&simulation.clock()) && !self.trial.stop.load(Ordering::Relaxed);
+        // Particles that do not turn have no energy of it.
+        let inertia =
+            self.case.entry.trials.and_then(|trials| (trials.inertia)(&self.case.values)).unwrap_or(0.0);
+        let energy = |particles: &Particles| {
+            let of = |it: &Particle| {
+                let [x, y] = it.planar_velocity();
+                it.mass * (x * x + y * y + inertia * (it.omega * it.radius).powi(2))
+            };
+            particles.grains().iter().map(of).sum::<f64>()
+        };
+        let (before, after) = (prepared.particles(), simulation.particles());
+        let [own, now] = [before.grains().first()?, after.grains().first()?];
+        let [u, v] = [own.planar_velocity(), now.planar_velocity()];
+        is_over.then(|| Change {
+            impulse: [v[0] - u[0], v[1] - u[1], (now.omega - own.omega) * own.radius],
+            lost: 1.0 - energy(&after) / energy(before),
+        })
+    }
+}
+
+/// Particles whose next neighbours are looked for, at most.
+const LOOKED_AT: usize = 200;
+
+/// Speed at which neighbours approach (length/time): root of the mean square of the velocity of each relative to its next.
+fn approach(state: &Particles, domain: &Domain) -> f64 {
+    let grains = state.grains();
+    let every = grains.len().div_ceil(LOOKED_AT).max(1);
+    let relative = |own: &Particle| {
+        let distance = |other: &Particle| {
+            let [x, y] = domain.displacement(own.place(), other.place());
+            x.hypot(y) - other.radius
+        };
+        let others = grains.iter().filter(|other| other.id != own.id);
+        let next = others.min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+        let [u, v] = [own, next].map(Particle::planar_velocity);
+        Some((u[0] - v[0]).powi(2) + (u[1] - v[1]).powi(2))
+    };
+    let all: Vec<f64> = grains.iter().step_by(every).filter_map(relative).collect();
+    (all.iter().sum::<f64>() / all.len() as f64).sqrt()
+}

@@ -1,0 +1,62 @@
+//! Bias of the step of an integrator that keeps a shadow energy, from a single run.
+//!
+//! Such an integrator keeps H + h² H₂ up to higher powers of the step h, so that the energy H of a run without friction and driving fluctuates as −h² H₂.
+//! To leading order a mean of A at the step is that of short steps less β h² Cov(A, H₂), which is β Cov(A, H) along the run (Bond and Leimkuhler, Acta
+//! Numerica 16, 2007). The statistical error falls with h² as the bias does.
+
+use super::findings::{Way, Work};
+use super::mean::Mean;
+use crate::study::observed::Observed;
+use stripmine_physics::averages::of_independent;
+use stripmine_physics::method::Trials;
+use stripmine_physics::method::observed::find;
+
+/// Stretches of a run over which covariances are taken, each about its own means: a slow drift by rounding is no fluctuation.
+const STRETCHES: usize = 16;
+/// Rows of a stretch at least.
+const FEWEST: usize = 8;
+/// Energy that comes or goes, in parts of all that moves, above which a run is not conservative.
+const KEPT: f64 = 1e-9;
+
+impl Work<'_> {
+    /// The bias of the configuration and step that the mean was measured with, and half the width of its interval of 95 % (the quantity's unit); none where
+    /// its integrator keeps no shadow energy, or energy comes or goes.
+    pub(super) fn of_shadow(&self, way: &Way, mean: &Mean) -> Option<[f64; 2]> {
+        let trials = self.case.entry.trials?;
+        let keeps = trials.shadow?.integrators.contains(&self.choice(way).scheme()?.name);
+        (keeps && way.label == mean.way).then(|| self.covariance(trials, mean)).flatten()
+    }
+
+    fn covariance(&self, trials: &Trials, mean: &Mean) -> Option<[f64; 2]> {
+        let quantities = self.case.entry.quantities;
+        let balance = Observed::of(trials, quantities).ok()?.balance?;
+        let temperature = find(quantities, trials.shadow?.temperature).ok()?;
+        let rows: Vec<&Vec<f64>> = mean.rows.iter().filter(|row| row[0] >= mean.known.transient).collect();
+        let energies: Vec<f64> = rows.iter().map(|row| balance.energy(row)).collect();
+        // What is lost or put in is no error of the balance.
+        let [first, last] = [rows.first()?, rows.last()?];
+        let lost =
+            balance.energy(last) - balance.energy(first) - (balance.error(last) - balance.error(first));
+        if lost.abs() > KEPT * balance.energies(last) || balance.inputs(last) > 0.0 {
+            return None;
+        }
+        let twice = rows.iter().map(|row| row[temperature]).sum::<f64>() / rows.len() as f64;
+        let values: Vec<f64> = rows.iter().map(|row| row[self.target.place]).collect();
+        covariance(&values, &energies).map(|both| both.map(|value| value / twice))
+    }
+}
+
+/// Covariance of two series and half the width of its interval of 95 %.
+fn covariance(values: &[f64], others: &[f64]) -> Option<[f64; 2]> {
+    let length = values.len() / STRETCHES;
+    if length < FEWEST {
+        return None;
+    }
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let stretches = values.chunks_exact(length).zip(others.chunks_exact(length)).map(|(values, others)| {
+        let [value, other] = [values, others].map(mean);
+        let products = values.iter().zip(others).map(|(a, b)| (a - value) * (b - other)).sum::<f64>();
+        products / (length - 1) as f64
+    });
+    of_independent(&stretches.collect::<Vec<_>>())
+}
