@@ -1,6 +1,6 @@
 //! `stripmine chart`: studies as data and charts. Methods add studies of their own.
 
-use super::explain::width;
+use super::explain::{failed, width};
 use super::processes;
 use crate::console::{Common, Failure, clear_progress, print, print_json, progress, say, warn};
 use crate::model::machines;
@@ -12,7 +12,7 @@ use crate::study::explain::{Target, accuracy};
 use crate::study::stability::{self, Over, stability};
 use crate::study::trial::{Stopwatch, Trial};
 use crate::study::work_precision::{self, work_precision};
-use crate::study::{Case, StudyError, Subject};
+use crate::study::{Case, Subject};
 use clap::{Args, Subcommand};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -93,6 +93,9 @@ struct AccuracyVerb {
     /// Marks the plan for this error of the mean, such as 1% or 0.02
     #[arg(long, value_parser = width)]
     error: Option<Width>,
+    /// Averages over a part of each run, from one time to another, in the place of the steady state
+    #[arg(long, num_args = 2, value_names = ["FROM", "TO"])]
+    window: Option<Vec<f64>>,
     /// Processor seconds of trials, about
     #[arg(long, default_value_t = 60, value_parser = clap::value_parser!(u32).range(BUDGET))]
     budget: u32,
@@ -163,6 +166,7 @@ impl WorkPrecisionVerb {
                 overrides: self.overrides.clone(),
                 quantity: self.quantity.clone(),
                 error: None,
+                window: None,
                 budget: self.budget,
                 out: self.out.clone(),
             }
@@ -175,7 +179,7 @@ impl WorkPrecisionVerb {
         let (budget, repeats) = (f64::from(self.budget), self.repeats.into());
         let effort = work_precision::Effort { budget, repeats, phases: PHASES, machine };
         let place = Place { name: "work-precision", scene: &self.scene, out: self.out.as_deref() };
-        place.study(common, &subject, &options, |journal, progress, stem| {
+        place.study((common, common.crew), &subject, &options, |journal, progress, stem| {
             let data = work_precision(&subject, &effort, journal, progress)?;
             Ok(work_precision::made(&[(stem, data)]))
         })
@@ -188,18 +192,19 @@ impl AccuracyVerb {
         if processes::rank(common.crew) > 0 {
             return Ok(());
         }
-        let own = |error| StudyError::Own(Box::new(error));
         let case = Case::load(&self.scene, &self.overrides, methods)?;
-        let target = Target::of(&case, self.quantity.as_deref(), self.error).map_err(own)?;
+        let target = Target::of(&case, self.quantity.as_deref(), self.error);
+        let target = target.and_then(|target| target.over(self.window.as_deref())).map_err(failed)?;
         let place = Place { name: accuracy::NAME, scene: &self.scene, out: self.out.as_deref() };
-        let (folder, stem) = place.folder()?;
-        let (bar, start) = (progress(common, place.name), Instant::now());
-        let show = |share: f64| bar.set_position((1e3 * share) as u64);
-        let threads = rayon::current_num_threads() as f64;
-        let seconds = f64::from(self.budget) / threads;
-        let trial = Trial { watch: &Stopwatch::wall(), stop: signals::asked() };
-        let made = accuracy::accuracy(&case, &target, seconds, trial, (&stem, &show)).map_err(own)?;
-        written(common, &folder, place.name, &made, start)
+        let options =
+            format!("{} {:?} {:?} budget {}", target.quantity.name, self.error, target.window, self.budget);
+        place.study((common, Crew::One), &case, &options, |journal, progress, stem| {
+            let seconds = f64::from(self.budget) / rayon::current_num_threads() as f64;
+            let trial = Trial { watch: &Stopwatch::wall(), stop: signals::asked() };
+            let tell = |share: f64| progress(share);
+            let shown: (&str, &dyn Fn(f64), &Journal) = (&stem, &tell, journal);
+            accuracy::accuracy(&case, &target, seconds, trial, shown).map_err(failed)
+        })
     }
 }
 
@@ -224,7 +229,7 @@ impl StabilityVerb {
             self.budget
         );
         let place = Place { name: "stability", scene: &self.scene, out: self.out.as_deref() };
-        place.study(common, &subject, &options, |journal, progress, stem| {
+        place.study((common, common.crew), &subject, &options, |journal, progress, stem| {
             let data = stability(&subject, over, &effort, journal, progress)?;
             Ok(stability::made(&[(stem, data)]))
         })
@@ -276,17 +281,16 @@ impl Place<'_> {
     /// Makes a study of the finished runs in its folder, with progress and the scene's stem.
     fn study(
         &self,
-        common: &Common,
-        subject: &Subject,
+        (common, crew): (&Common, Crew),
+        case: &Case,
         options: &str,
         make: impl FnOnce(&Journal, Progress<'_>, String) -> Result<Made, Failure>,
     ) -> Result<(), Failure> {
-        if let Crew::Processes(join) = common.crew {
-            let same =
-                format!("{}\n{:?}\n{:?}", common.command, built(), subject.identity(self.name, options));
+        if let Crew::Processes(join) = crew {
+            let same = format!("{}\n{:?}\n{:?}", common.command, built(), case.identity(self.name, options));
             processes::begin(join().as_ref(), &same)?;
         }
-        let team = Team::of(common.crew);
+        let team = Team::of(crew);
         // The first of several processes writes there, and says what it does.
         let is_first = team.as_ref().is_none_or(Team::is_first);
         let (folder, stem) = if is_first {
@@ -295,7 +299,7 @@ impl Place<'_> {
             (None, self.stem())
         };
         let out = self.out(&stem);
-        let journal = Journal::open(&out, &subject.identity(self.name, options), team)?;
+        let journal = Journal::open(&out, &case.identity(self.name, options), team)?;
         journal.notes().iter().for_each(warn);
         if !common.quiet && !journal.is_empty() {
             let finished = counted(journal.len(), "finished run", "finished runs");

@@ -43,6 +43,9 @@ pub(super) struct ExplainVerb {
     /// The most wall seconds that a plan may take, an hour by default: a longer one is refused with the error that can be had in them
     #[arg(long, value_name = "SECONDS", conflicts_with = "within", value_parser = above_zero)]
     limit: Option<f64>,
+    /// Averages over a part of each run, from one time to another, in the place of the steady state
+    #[arg(long, num_args = 2, value_names = ["FROM", "TO"])]
+    window: Option<Vec<f64>>,
     /// Runs nothing: by what is kept of the scene
     #[arg(long, conflicts_with = "patient")]
     estimate: bool,
@@ -158,6 +161,7 @@ impl ExplainVerb {
         let case = Case::load(scene, &self.overrides, methods)?;
         let target = Target::of(&case, self.quantity.as_deref(), self.error).map_err(failed)?;
         let target = Target { within: self.within, limit: self.limit.unwrap_or(LIMIT), ..target };
+        let target = target.over(self.window.as_deref()).map_err(failed)?;
         let seconds = match (self.estimate, self.patient) {
             (true, _) => 0.0,
             (_, true) => SECONDS[1],
@@ -271,6 +275,7 @@ impl ExplainVerb {
             };
             return Ok(Analysis { rows: vec![wall], cut_off: Some(cut_off) });
         }
+        let from = target.window.map_or(0.0, |[from, _]| from);
         let seeds = plan.seeds as f64;
         let known = if plan.is_whole { None } else { found.known() };
         let mut rows = vec![Compared {
@@ -316,11 +321,11 @@ impl ExplainVerb {
         if let (true, Some([mean, bar])) = (plan.is_whole, plan.mean) {
             let chance = plan.expected.chance * seeds.sqrt();
             rows.push(Compared {
-                what: format!("{} over the whole run, less that of the reference", plan.quantity),
+                what: format!("{} over the run, less that of the reference", plan.quantity),
                 estimated: 0.0,
-                actual: found.whole_mean() - mean,
+                actual: found.mean_from(from) - mean,
                 unit: plan.unit.to_owned(),
-                is_within: (found.whole_mean() - mean).abs() <= plan.expected.bias.with(chance.hypot(bar)),
+                is_within: (found.mean_from(from) - mean).abs() <= plan.expected.bias.with(chance.hypot(bar)),
                 advice: "the step or the digits take it off: --patient",
             });
         }
@@ -366,6 +371,10 @@ fn table(rows: &[Compared], cut_off: Option<String>) -> String {
     terminal::render(&table)
 }
 
-fn failed(error: impl Into<ExplainError>) -> Failure {
-    StudyError::Own(Box::new(error.into())).into()
+/// The failure of a plan; trials that were stopped end as any command that was.
+pub(super) fn failed(error: impl Into<ExplainError>) -> Failure {
+    match error.into() {
+        ExplainError::Stopped => Failure::Stopped(signals::End::Whole),
+        error => StudyError::Own(Box::new(error)).into(),
+    }
 }

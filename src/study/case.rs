@@ -1,8 +1,13 @@
 //! A scene that may be run in several ways: what a study begins with.
 
 use super::Choice;
+use crate::results::Identity;
+use sha2::{Digest, Sha256};
 use stripmine_physics::method::{Entry, Methods, Prepared, Until, prepare, vocabularies};
 use stripmine_physics::scene::{Overrides, SceneErrors, Values};
+
+/// The form in which studies keep finished runs; another one whenever these hold other things.
+const JOURNALED: &str = "5";
 
 /// A scene with what its method states of the ways to run it.
 pub struct Case {
@@ -74,6 +79,18 @@ impl Case {
             Until::Steps(steps) => Some(steps as f64 * self.step()?),
             Until::Events(_) => None,
         }
+    }
+
+    /// What a study of it depends on: the resolved scene, the options and the version of the program.
+    pub fn identity(&self, study: &str, options: &str) -> Identity {
+        let mut sum = Sha256::new();
+        for part in [study, JOURNALED, options, env!("CARGO_PKG_VERSION"), &self.prepared.scene] {
+            sum.update(part.as_bytes());
+            sum.update([0]);
+        }
+        sum.update(self.prepared.particles().checksum().as_bytes());
+        let digest = sum.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
+        Identity { of: format!("{study} of {}", self.arguments()), digest }
     }
 
     /// The same scene with further overrides.

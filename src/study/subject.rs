@@ -2,14 +2,9 @@
 
 use super::observed::Observed;
 use super::{Case, Choice, StudyError};
-use crate::results::Identity;
-use sha2::{Digest, Sha256};
 use std::ops::Deref;
 use stripmine_physics::method::{Every, Methods, Prepared, Setting, Trials, Until};
 use stripmine_physics::scene::{Overrides, SceneErrors, UNITS};
-
-/// The form in which studies keep finished runs; another one whenever these hold other things.
-const JOURNALED: &str = "4";
 
 /// A scene under study.
 pub struct Subject {
@@ -96,17 +91,5 @@ impl Subject {
     /// Whether a mean is of a velocity: it means nothing but beside the speeds.
     pub fn is_velocity(&self, name: &str) -> bool {
         self.observed.means.iter().any(|watched| watched.name == name && watched.is_velocity)
-    }
-
-    /// What a study of it depends on: the resolved scene, the options and the version of the program.
-    pub fn identity(&self, study: &str, options: &str) -> Identity {
-        let mut sum = Sha256::new();
-        for part in [study, JOURNALED, options, env!("CARGO_PKG_VERSION"), &self.prepared.scene] {
-            sum.update(part.as_bytes());
-            sum.update([0]);
-        }
-        sum.update(self.prepared.particles().checksum().as_bytes());
-        let digest = sum.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
-        Identity { of: format!("{study} of {}", self.arguments()), digest }
     }
 }

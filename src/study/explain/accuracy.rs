@@ -1,11 +1,12 @@
 //! Least error of a mean over the wall time of its run, for each integrator: bias and chance added, by the best of some steps.
 
+use super::drift::Tried;
 use super::findings::{Findings, Way};
 use super::lengths::Chance;
 use super::recommended::Plan;
 use super::{ExplainError, Target, seen};
 use crate::frame::{Frame, Rows};
-use crate::results::Made;
+use crate::results::{Journal, Made};
 use crate::study::trial::{ROWS, Trial};
 use crate::study::{Case, Choice};
 use stripmine_physics::method::Decides;
@@ -50,9 +51,9 @@ pub fn accuracy(
     target: &Target,
     seconds: f64,
     trial: Trial<'_>,
-    (scene, progress): (&str, &dyn Fn(f64)),
+    (scene, progress, journal): (&str, &dyn Fn(f64), &Journal),
 ) -> Result<Made, ExplainError> {
-    let findings = seen::seen(case, target, seconds, trial, progress)?;
+    let findings = seen::seen(case, target, seconds, trial, (progress, journal))?;
     let quick = Target { limit: f64::INFINITY, ..target.clone() };
     let plan = seen::planned(case, &quick, &findings, "").ok();
     Ok(made(scene, target, &findings, plan.as_ref(), case))
@@ -82,12 +83,19 @@ fn curves<'f>(case: &Case, findings: &'f Findings) -> Vec<Curve<'f>> {
             chosen.push((way, own));
         }
     }
-    chosen.iter().map(|(way, _)| Curve { way, points: least_errors(way, findings, &chance) }).collect()
+    chosen.iter().map(|(way, _)| Curve { way, points: least_errors(way, case, findings, &chance) }).collect()
 }
 
 /// The least errors over wall times.
-fn least_errors(way: &Way, findings: &Findings, chance: &Chance) -> Vec<Point> {
+fn least_errors(way: &Way, case: &Case, findings: &Findings, chance: &Chance) -> Vec<Point> {
     let Some(cost) = way.cost else { return vec![] };
+    if let (Some(drift), Some(step), Some(time)) = (&way.drift, way.step, case.duration()) {
+        let of = |it: &Tried| {
+            let seconds = findings.start + ROWS[1] * findings.row + cost * step / it.step * time;
+            Point { seconds, step: Some(it.step), error: it.farthest, most: it.farthest }
+        };
+        return drift.tried.iter().map(of).filter(|it| it.error.is_finite() && it.error > 0.0).collect();
+    }
     let mean = &findings.mean;
     let start = findings.start + ROWS[1] * findings.row;
     // A mean that does not vary has no shortest run.

@@ -12,7 +12,7 @@ pub(super) fn decisions(
     findings: &Findings,
     weighed: &[Weighed<'_>],
     length: &Length,
-    wanted: f64,
+    (wanted, window): (f64, Option<[f64; 2]>),
 ) -> Vec<Decision> {
     let best = &weighed[0];
     let mut all = vec![];
@@ -58,15 +58,11 @@ pub(super) fn decisions(
     }
     all.push(Decision {
         what: "run length".to_owned(),
-        chosen: significant(findings.whole.unwrap_or(length.time / length.seeds as f64 + findings.mean.transient), 4),
-        why: if findings.whole.is_some() {
-            "the scene's own: the quantity changes all along, and what is asked for is its mean over the whole run".to_owned()
-        } else { format!(
-            "{} to average over for a chance of ± {}, after a transient of {}",
-            significant(length.time, 3),
-            significant(findings.chance().over(length.time), 2),
-            significant(findings.mean.transient, 3)
-        ) },
+        chosen: significant(
+            findings.whole.unwrap_or(length.time / length.seeds as f64 + findings.mean.transient),
+            4,
+        ),
+        why: run_length(findings, length, window),
         beside: vec![],
     });
     all.push(Decision {
@@ -76,6 +72,25 @@ pub(super) fn decisions(
         beside: vec![],
     });
     all
+}
+
+/// Reason of the length of a run.
+fn run_length(findings: &Findings, length: &Length, window: Option<[f64; 2]>) -> String {
+    if let Some([from, _]) = window {
+        return format!(
+            "to the end of the window that is asked for, which begins at {}",
+            significant(from, 4)
+        );
+    }
+    if findings.whole.is_some() {
+        return "the scene's own: the quantity changes all along, and what is asked for is its mean over the whole run".to_owned();
+    }
+    format!(
+        "{} to average over for a chance of ± {}, after a transient of {}",
+        significant(length.time, 3),
+        significant(findings.chance().over(length.time), 2),
+        significant(findings.mean.transient, 3)
+    )
 }
 
 fn step_decision(case: &Case, best: &Weighed<'_>, longest: f64, wanted: f64) -> Decision {
@@ -113,8 +128,16 @@ fn why_not(way: &Way, own: Option<&Weighed<'_>>, best: &Weighed<'_>) -> String {
         return why.clone();
     }
     let costs = |cost: f64| significant(cost / best.way.cost.unwrap_or(f64::NAN), 2);
-    if let Some(drift) = way.drift.filter(|_| own.is_none()) {
-        return format!("it is off by {} at half of its longest step", significant(drift.farthest[1], 2));
+    if let Some(drift) = way.drift.as_ref().filter(|_| own.is_none()) {
+        return match drift.least() {
+            least if least.is_finite() => {
+                format!(
+                    "off by {} at the best of the steps tried, and dearer at those that are enough",
+                    significant(least, 2)
+                )
+            }
+            _ => "no run of it came to the end".to_owned(),
+        };
     }
     match (own, way.cost) {
         (Some(own), _) if own.optimum.seconds > best.optimum.seconds => "for the same error".to_owned(),

@@ -1,86 +1,124 @@
-//! What should keep its value and does not quite: by how much at two steps, and from that at others.
+//! Quantities that should keep their value and do not quite: how far they go over a whole run, at the steps that were tried.
 
+use super::plan::printed;
 use crate::study::trial::any_number;
 use serde::{Deserialize, Serialize};
 
-/// The power of the step is taken to be no lower: noise in two values says nothing beyond.
-const LEAST_POWER: f64 = 0.5;
-/// A step is shortened so much that the error is this many times smaller than is asked for: two values tell its law roughly.
-const MARGIN: f64 = 2.0;
-/// Shorter steps than this part of the longest were not seen, and are not vouched for.
-const SHORTEST: f64 = 1.0 / 1024.0;
-
-/// How far a quantity goes from its first value in a run, at two steps.
+/// How far a quantity goes from its first value in a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Drift {
-    /// The longer step; the other is half of it (time).
+pub struct Tried {
+    /// The step (time).
     pub step: f64,
-    /// The farthest at both (the quantity's unit).
+    /// The farthest (the quantity's unit); infinite where the run breaks.
     #[serde(with = "any_number")]
-    pub farthest: [f64; 2],
-    /// The time that was seen (time).
-    pub time: f64,
-    /// The power that theory gives for positions, which is no lower: two long steps may show a steeper fall, that ends.
-    pub most_power: f64,
-    /// Whether it has all digits: with fewer, rounding ends the law at some step, and none below the shorter is vouched for.
-    pub is_full: bool,
+    pub farthest: f64,
+}
+
+/// Runs of a configuration at several steps.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Drift {
+    /// The longest step first.
+    pub tried: Vec<Tried>,
 }
 
 impl Drift {
-    /// The same over a longer time: it goes no farther than in proportion.
-    #[must_use]
-    pub fn over(self, time: f64) -> Drift {
-        let longer = (time / self.time).max(1.0);
-        Drift { farthest: self.farthest.map(|far| longer * far), ..self }
+    /// Adds a run.
+    pub(super) fn add(&mut self, step: f64, farthest: f64) {
+        self.tried.push(Tried { step, farthest });
+        self.tried.sort_by(|a, b| b.step.total_cmp(&a.step));
     }
 
-    /// The power of the step with which it falls.
-    pub fn power(&self) -> f64 {
-        let [long, short] = self.farthest;
-        let seen = if short > 0.0 { (long / short).log2() } else { f64::INFINITY };
-        seen.min(self.most_power).max(LEAST_POWER)
+    /// The longest step that was tried at which it goes no farther than an error, as at no shorter one; none where there is none.
+    pub fn step_for(&self, error: f64) -> Option<Tried> {
+        self.tried.iter().rev().take_while(|it| it.farthest <= error).last().copied()
     }
 
-    /// How far it goes at a step that is no longer than the first.
-    pub fn at(&self, step: f64) -> f64 {
-        let [long, short] = self.farthest;
-        let half = 0.5 * self.step;
-        if step >= self.step {
-            return long;
-        }
-        // From the shorter one on by the law, between both whichever is larger.
-        let by_law = short * (step / half).powf(self.power());
-        if step > half { by_law.max(short).min(long.max(short)) } else { by_law }
+    /// How far it goes at a step that was tried.
+    pub fn at(&self, step: f64) -> Option<f64> {
+        self.tried.iter().find(|it| printed(it.step, 4) == printed(step, 4)).map(|it| it.farthest)
     }
 
-    /// The longest step at which it goes no farther than an error; none where that was not seen.
-    pub fn step_for(&self, error: f64) -> Option<f64> {
-        let shortest = if self.is_full { SHORTEST } else { 0.5 };
-        let parts = (0..).map(|at| 2f64.powf(-0.25 * f64::from(at))).take_while(|part| *part >= shortest);
-        parts.map(|part| part * self.step).find(|&step| MARGIN * self.at(step) <= error)
+    /// The least that was seen (the quantity's unit); infinite where nothing was.
+    pub fn least(&self) -> f64 {
+        self.tried.iter().map(|it| it.farthest).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The step at which it is expected to go no farther than an error, by the two shortest steps; none where these tell nothing.
+    pub(super) fn expected_step(&self, error: f64) -> Option<f64> {
+        let [.., long, short] = self.tried.as_slice() else { return None };
+        let power = libm::log(long.farthest / short.farthest) / libm::log(long.step / short.step);
+        let power = if power.is_finite() { power.clamp(POWERS[0], POWERS[1]) } else { return None };
+        Some(short.step * libm::pow(error / short.farthest, power.recip()))
+    }
+
+    /// The next step to try for an error: half of the shortest until the error is reached, then between the longest that reaches it and the one above; none
+    /// where these are closer than [`CLOSE`], or half of a step is no better.
+    pub(super) fn next(&self, error: f64) -> Option<f64> {
+        let shortest = self.tried.last()?;
+        let Some(found) = self.step_for(error) else {
+            // Rounding is all that is left, or chaos: two halvings in a row that gain nothing.
+            let gains =
+                |pair: &[Tried]| pair[1].farthest < 0.5 * pair[0].farthest || pair[0].farthest.is_infinite();
+            let last = self.tried.windows(2).rev().take(2);
+            let is_stuck = self.tried.len() > 4 && last.filter(|pair| !gains(pair)).count() == 2;
+            return (!is_stuck).then_some(printed(0.5 * shortest.step, 4));
+        };
+        let above = self.tried.iter().rev().find(|it| it.step > found.step)?;
+        let middle = printed((above.step * found.step).sqrt(), 4);
+        (above.step / found.step > CLOSE).then_some(middle)
     }
 }
+
+/// Errors are expected to fall with a power of the step between these.
+const POWERS: [f64; 2] = [0.5, 9.0];
+
+/// Steps as close as this factor are not told apart.
+const CLOSE: f64 = 1.3;
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// An error of fourth order: a sixteenth at half the step.
+    fn tried(runs: &[[f64; 2]]) -> Drift {
+        let mut drift = Drift::default();
+        runs.iter().for_each(|&[step, farthest]| drift.add(step, farthest));
+        drift
+    }
+
+    /// A step counts only if all shorter ones reach the error too: one long step may do so by chance.
     #[test]
-    fn the_step_follows_from_the_law_of_two_errors() {
-        let drift = Drift { step: 0.4, farthest: [16e-4, 1e-4], time: 10.0, most_power: 8.0, is_full: true };
-        assert_eq!((drift.power(), drift.at(0.4), drift.at(0.2)), (4.0, 16e-4, 1e-4));
-        assert!((drift.at(0.1) - 1e-4 / 16.0).abs() < 1e-18);
-        let step = drift.step_for(2e-5).unwrap();
-        assert!(2.0 * drift.at(step) <= 2e-5 && 2.0 * drift.at(1.2 * step) > 2e-5, "{step}");
-        assert_eq!(drift.step_for(1.0), Some(0.4));
-        assert_eq!(drift.over(20.0).at(0.2), 2e-4);
-        assert_eq!(Drift { is_full: false, ..drift }.step_for(2e-5), None);
-        let kinks = Drift { most_power: 2.5, ..drift };
-        assert!(kinks.power() == 2.5 && kinks.at(0.1) > 2.0 * drift.at(0.1));
-        // Rounding alone, which no step lowers.
-        let rounding =
-            Drift { step: 0.4, farthest: [1e-13, 1e-13], time: 10.0, most_power: 8.0, is_full: true };
-        assert_eq!((rounding.power(), rounding.step_for(1e-20)), (0.5, None));
+    fn the_longest_step_reaches_the_error_as_all_shorter_ones_do() {
+        let drift = tried(&[[0.8, 1e-7], [0.4, 1e-5], [0.2, 1e-6], [0.1, 1e-8]]);
+        assert_eq!(drift.step_for(2e-6).map(|it| it.step), Some(0.2));
+        assert_eq!(drift.step_for(1e-9), None);
+        assert_eq!((drift.at(0.2), drift.at(0.3), drift.least()), (Some(1e-6), None, 1e-8));
+    }
+
+    /// Half of the step until the error is reached; then 0.2·√2 between 0.2 and 0.4, and between 0.2 and that, until they are closer than 1.3.
+    #[test]
+    fn steps_are_halved_and_then_bisected() {
+        let mut drift = tried(&[[0.8, f64::INFINITY], [0.4, 1e-5]]);
+        assert_eq!(drift.next(1e-6), Some(0.2));
+        drift.add(0.2, 1e-7);
+        assert_eq!(drift.next(1e-6), Some(0.2828));
+        drift.add(0.2828, 2e-6);
+        assert_eq!(drift.next(1e-6), Some(0.2378));
+        drift.add(0.2378, 9e-7);
+        assert_eq!((drift.next(1e-6), drift.step_for(1e-6).map(|it| it.step)), (None, Some(0.2378)));
+    }
+
+    /// By hand: from 16 at 0.4 to 1 at 0.2 it falls with the fourth power, and to 1/81 at a third of the step.
+    #[test]
+    fn the_step_that_is_enough_follows_from_two() {
+        let step = tried(&[[0.4, 16.0], [0.2, 1.0]]).expected_step(1.0 / 81.0).unwrap();
+        assert!((step - 0.2 / 3.0).abs() < 1e-12, "{step}");
+        assert_eq!(tried(&[[0.4, f64::INFINITY], [0.2, 1.0]]).expected_step(0.1), None);
+    }
+
+    #[test]
+    fn steps_that_gain_nothing_end_the_search() {
+        let stuck = [[1.6, 1.0], [0.8, 1e-6], [0.4, 1e-13], [0.2, 1e-13], [0.1, 2e-13]];
+        assert_eq!(tried(&stuck).next(1e-16), None);
+        assert_eq!(tried(&stuck[..3]).next(1e-16), Some(0.2));
     }
 }

@@ -1,66 +1,177 @@
-//! Distance of quantities that should keep their value, by the cheapest configuration of each integrator at two steps.
+//! Distance of quantities that should keep their value over the whole run, step by step: long steps are cheap and come first.
 
 use super::ExplainError;
 use super::drift::Drift;
-use super::findings::{Findings, SHARES, Way, Work, sort};
-use crate::study::trial::{Known, Sample, Span};
+use super::findings::{Findings, NoRun, Way, Work, sort};
+use super::plan::{in_unit, printed};
+use crate::study::trial::{Known, Span, any_number};
+use serde::{Deserialize, Serialize};
 use stripmine_physics::averages::Outcome;
 use stripmine_physics::method::Decides;
 
-/// The highest order of an integrator here.
-const MOST_POWER: f64 = 8.0;
+/// The longest step that is tried, in steps of the scene.
+const LONGEST: f64 = 64.0;
+/// Where starts are random, another one goes as far as that many times this one: two values of a start tell little.
+pub(super) const MARGIN: f64 = 2.0;
+/// The error that is looked for where none is asked for and the scene's own is not known.
+pub(super) const WANTED: f64 = 1e-3;
+
+/// A run to the end of the scene.
+#[derive(Serialize, Deserialize)]
+struct WholeRun {
+    #[serde(with = "any_number")]
+    farthest: f64,
+    costs: Option<Costs>,
+}
+
+/// Wall seconds until the first step, of a row, and of a unit of time, whole and in each phase.
+#[derive(Serialize, Deserialize)]
+struct Costs {
+    start: f64,
+    row: f64,
+    unit: f64,
+    phases: Vec<(String, f64)>,
+}
 
 impl Work<'_> {
-    /// How far what should keep its value goes, by the cheapest way of each integrator at two steps.
+    /// How far what should keep its value goes over the whole run: by one run after the other, of the configuration that is expected to reach the error at
+    /// the least cost, as long as one may be cheaper than the best that is known.
+    ///
+    /// A part of a run tells nothing of the rest: bodies may meet late.
     pub(super) fn drifts(&self, mut ways: Vec<Way>) -> Result<Findings, ExplainError> {
-        let usable = ways.iter().filter(|way| way.dropped.is_none()).count();
-        let seconds = (1.0 - SHARES[0]) * self.seconds / (2.0 * usable.max(1) as f64);
-        let span =
-            self.case.duration().map_or(Span::Seconds(seconds), |time| Span::Time(time, Some(seconds)));
+        let unknown = || ExplainError::NoMean {
+            quantity: self.target.quantity.name,
+            why: "the scene does not say how long it runs, or its method takes no steps".to_owned(),
+            enough: None,
+        };
+        let (time, own) = self.case.duration().zip(self.case.step()).ok_or_else(unknown)?;
         let (mut start, mut row) = (0.0, 0.0);
-        for way in ways.iter_mut().filter(|way| way.dropped.is_none()) {
-            let (Some(longest), trials) = (way.step, self.case.entry.trials) else { continue };
-            let both: Result<Vec<Sample>, String> = [1.0, 0.5]
-                .into_iter()
-                .map(|part| self.sampled_over(way, Some(part * longest), span))
-                .collect();
-            match both {
-                Ok(both) => {
-                    let far = |sample: &Sample| match sample.outcome {
-                        Outcome::Kept { farthest, .. } => farthest,
-                        _ => f64::NAN,
-                    };
-                    (start, row) = (both[0].start, both[0].row);
-                    way.cost = Some(both[0].cost);
-                    way.phases = both[0].phases.clone();
-                    way.drift = Some(Drift {
-                        step: longest,
-                        farthest: [far(&both[0]), far(&both[1])],
-                        time: both[0].time.min(both[1].time),
-                        most_power: self.theory(&self.choice(way)).unwrap_or(MOST_POWER),
-                        is_full: trials.is_none_or(|trials| {
-                            self.choice(way)
-                                .agrees(&self.case.own.with(trials.references[0]), Decides::Digits)
-                        }),
-                    });
-                }
-                Err(why) => way.dropped = Some(why),
+        while let Some((at, step)) = self.next_run(&ways, [time, own]) {
+            let key = format!("whole run|{}|{step}", ways[at].label);
+            let Ok(run) = self.journal.recall(&key, |_| true, || self.whole_run(&ways[at], step, time))
+            else {
+                break;
+            };
+            let way = &mut ways[at];
+            way.drift.get_or_insert_default().add(step, run.farthest);
+            if let Some(costs) = run.costs {
+                (start, row) = (costs.start, costs.row);
+                (way.step, way.cost, way.phases) = (Some(step), Some(costs.unit), costs.phases);
             }
         }
+        self.own_run(&mut ways, [time, own]);
+        for way in ways.iter_mut().filter(|way| way.dropped.is_none()) {
+            let why = match &way.drift {
+                None => "no run of it was expected to be the cheapest, or fitted in the time of the trials",
+                Some(drift) if drift.least().is_infinite() => {
+                    "its runs break at the steps that may be cheaper"
+                }
+                Some(_) => continue,
+            };
+            way.dropped = Some(why.to_owned());
+        }
+        if ways.iter().all(|way| way.dropped.is_some()) {
+            let cheapest =
+                ways.iter().filter_map(|way| Some(way.cost? * way.step?)).fold(f64::INFINITY, f64::min);
+            return Err(ExplainError::NoMean {
+                quantity: self.target.quantity.name,
+                why: "no run came to the end of the scene in the time of the trials".to_owned(),
+                enough: Some(2.0 * cheapest / own * time).filter(|seconds| seconds.is_finite()),
+            });
+        }
         sort(&mut ways);
-        let threads = rayon::current_num_threads();
-        let (without, mean_way) = (vec![], String::new());
-        Ok(Findings {
+        self.unless_stopped(Findings {
             ways,
             mean: Known::exactly(0.0),
-            mean_way,
+            mean_way: String::new(),
             whole: None,
             starts_differ: None,
             start,
             row,
             one_thread: 1.0,
-            threads,
-            without,
+            threads: rayon::current_num_threads(),
+            without: vec![],
         })
+    }
+
+    /// The scene as it stands, where time is left for it: a user knows its values.
+    fn own_run(&self, ways: &mut [Way], [time, own]: [f64; 2]) {
+        let label = self.case.own.label();
+        let Some(way) = ways.iter_mut().find(|way| way.label == label && way.dropped.is_none()) else {
+            return;
+        };
+        let seconds = way.cost.zip(way.step).map_or(f64::INFINITY, |(cost, step)| cost * step / own * time);
+        if way.drift.as_ref().is_some_and(|drift| drift.at(own).is_some()) || seconds > self.left() {
+            return;
+        }
+        let key = format!("whole run|{label}|{own}");
+        if let Ok(run) = self.journal.recall(&key, |_| true, || self.whole_run(way, own, time)) {
+            way.drift.get_or_insert_default().add(own, run.farthest);
+        }
+    }
+
+    /// A run of the whole scene: one that breaks goes infinitely far.
+    fn whole_run(&self, way: &Way, step: f64, time: f64) -> Result<WholeRun, NoRun> {
+        let sample = match self.sampled_over(way, Some(step), Span::Time(time, Some(self.left()))) {
+            Ok(sample) => sample,
+            Err(why) if self.left() == 0.0 => return Err(NoRun(why)),
+            Err(_) => return Ok(WholeRun { farthest: f64::INFINITY, costs: None }),
+        };
+        let farthest = match sample.outcome {
+            Outcome::Kept { farthest, .. } => farthest,
+            _ => f64::INFINITY,
+        };
+        let costs =
+            Costs { start: sample.start, row: sample.row, unit: sample.cost, phases: sample.phases.clone() };
+        sample.cut_off(time).map_or(Ok(WholeRun { farthest, costs: Some(costs) }), |why| Err(NoRun(why)))
+    }
+
+    /// The run of the configuration that is expected to reach the error at the least cost: its place and step; none where no time is left for it.
+    fn next_run(&self, ways: &[Way], [time, own]: [f64; 2]) -> Option<(usize, f64)> {
+        let wanted = self.wanted_drift(ways, own);
+        let seconds = |way: &Way, step: f64| Some(way.cost? * way.step? / step * time);
+        let reached = |way: &Way| seconds(way, way.drift.as_ref()?.step_for(wanted)?.step);
+        let best = ways.iter().filter_map(reached).fold(f64::INFINITY, f64::min);
+        // Of those that differ by what decides the cost alone the cheapest.
+        let is_dearer = |way: &Way, other: &Way| {
+            let [own, others] = [way, other].map(|it| self.choice(it));
+            let is_alike = own.agrees(&others, Decides::Order) && own.agrees(&others, Decides::Digits);
+            let cost = |it: &Way| Some(it.cost? * it.step?);
+            other.dropped.is_none() && is_alike && cost(other).zip(cost(way)).is_some_and(|(b, a)| b < a)
+        };
+        let is_cheapest = |way: &Way| way.drift.is_some() || !ways.iter().any(|other| is_dearer(way, other));
+        let tried = |it: &(usize, &Way)| it.1.dropped.is_none() && is_cheapest(it.1);
+        let runs = ways.iter().enumerate().filter(tried).filter_map(|(at, way)| {
+            let first = printed(LONGEST * own, 4);
+            let step = way.drift.as_ref().map_or(Some(first), |drift| drift.next(wanted))?;
+            let enough = way.drift.as_ref().and_then(|drift| drift.expected_step(wanted));
+            let [now, expected] = [step, enough.unwrap_or(step).min(step)].map(|step| seconds(way, step));
+            Some((at, step, now?, expected?))
+        });
+        let fits = |run: &(usize, f64, f64, f64)| run.3 < best && run.2 < best && run.2 <= self.left();
+        let next = runs.filter(fits).min_by(|a, b| a.3.total_cmp(&b.3))?;
+        Some((next.0, next.1))
+    }
+
+    /// The error of a run that is looked for: that which is asked for, or the scene's own as soon as it is known.
+    fn wanted_drift(&self, ways: &[Way], own: f64) -> f64 {
+        let of_own = || {
+            let own_way = ways.iter().find(|way| way.label == self.case.own.label());
+            own_way.and_then(|way| way.drift.as_ref()?.at(own))
+        };
+        let margin = margin(self.case.prepared.seed);
+        self.target.error.map(|width| in_unit(width, 1.0) / margin).or_else(of_own).unwrap_or(WANTED / margin)
+    }
+}
+
+/// How many times farther another start may go.
+pub(super) fn margin(seed: Option<u64>) -> f64 {
+    if seed.is_some() { MARGIN } else { 1.0 }
+}
+
+impl Drift {
+    /// How far it goes at most at a step that was tried, from any start.
+    pub(super) fn with_margin(&self, step: f64, seed: Option<u64>) -> Option<f64> {
+        Some(margin(seed) * self.at(step)?)
     }
 }

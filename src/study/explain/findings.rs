@@ -1,11 +1,14 @@
 //! What is measured of a scene before anything is recommended, and the scene at work.
 
+use super::ExplainError;
 use super::Target;
 use super::bias::Bias;
 use super::drift::Drift;
+use crate::results::{Journal, JournalError};
 use crate::study::trial::{Known, Sample, Span, Trial, any_number};
 use crate::study::{Case, Choice, first_line};
 use serde::{Deserialize, Serialize};
+use std::sync::atomic::Ordering;
 use stripmine_physics::method::Prepared;
 use stripmine_physics::scene::Overrides;
 
@@ -91,6 +94,8 @@ pub(super) struct Work<'w> {
     /// No trial begins later, and one that has begun ends then (s of the watch).
     pub(super) end: f64,
     pub(super) trial: Trial<'w>,
+    /// Finished trials: those of the same study that was interrupted are not made again.
+    pub(super) journal: &'w Journal,
     /// The scene's own time, where the quantity changes all along and its mean over the whole run is asked for (time).
     pub(super) whole: Option<f64>,
 }
@@ -108,6 +113,15 @@ pub struct Without {
     pub cost: Option<f64>,
     /// Why there is nothing to compare.
     pub failed: Option<String>,
+}
+
+/// Why a run gave nothing.
+pub(super) struct NoRun(pub(super) String);
+
+impl From<JournalError> for NoRun {
+    fn from(error: JournalError) -> NoRun {
+        NoRun(error.to_string())
+    }
 }
 
 /// Why a trial was not made.
@@ -137,6 +151,12 @@ impl Work<'_> {
         let span = span.within(self.left());
         let observed = (self.case.entry.quantities, self.target.place);
         self.trial.sample(&prepared, observed, span).map_err(|failure| first_line(&failure.what()))
+    }
+
+    /// # Errors
+    /// [`ExplainError::Stopped`], once the user stops the trials: those made since are shorter than they should be.
+    pub(super) fn unless_stopped<T>(&self, made: T) -> Result<T, ExplainError> {
+        if self.trial.stop.load(Ordering::Relaxed) { Err(ExplainError::Stopped) } else { Ok(made) }
     }
 
     pub(super) fn choice(&self, way: &Way) -> Choice {

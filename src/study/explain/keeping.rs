@@ -3,6 +3,8 @@
 use super::Target;
 use super::bias::Off;
 use super::decisions::decisions;
+use super::drift::Drift;
+use super::drifts::{WANTED, margin};
 use super::findings::{Findings, Way};
 use super::lengths::{Length, Weighed};
 use super::optimum::Optimum;
@@ -19,53 +21,47 @@ use stripmine_physics::number::significant;
 /// [`Unreached`], where no way comes to what is asked for.
 pub fn keeping(case: &Case, target: &Target, findings: &Findings, origin: &str) -> Result<Plan, Unreached> {
     let usable = || findings.ways.iter().filter(|way| way.dropped.is_none());
-    let time = case.duration().or_else(|| Some(usable().next()?.drift?.time)).unwrap_or(0.0);
-    let of_own = usable().find(|way| way.label == case.own.label());
-    let own_error = of_own.and_then(|way| Some(way.drift?.over(time).at(case.step()?)));
+    let time = case.duration().unwrap_or(0.0);
+    let seed = case.prepared.seed;
+    let of_own = findings.ways.iter().find(|way| way.label == case.own.label());
+    let own_error = of_own.and_then(|way| way.drift.as_ref()?.with_margin(case.step()?, seed));
     let error = target.error.map(|width| in_unit(width, 1.0));
-    let wanted = error.or(own_error.map(|error| 2.0 * error)).unwrap_or(1e-3);
+    let wanted = error.or(own_error).unwrap_or(WANTED);
     let costs = |way: &Way, step: f64| {
         Some(findings.start + ROWS[1] * findings.row + way.cost? * way.step? / step * time)
     };
     let mut weighed: Vec<Weighed<'_>> = usable()
         .filter_map(|way| {
-            let (drift, longest) = (way.drift?.over(time), way.step?);
-            let step = drift.step_for(wanted)?;
+            let found = way.drift.as_ref()?.step_for(wanted / margin(seed))?;
             let optimum = Optimum {
-                part: step / longest,
-                bias: Off::exactly(drift.at(step)),
+                part: found.step / way.step?,
+                bias: Off::exactly(margin(seed) * found.farthest),
                 time,
-                seconds: costs(way, step)?,
+                seconds: costs(way, found.step)?,
             };
             Some(Weighed { way, optimum })
         })
         .collect();
     weighed.sort_by(|a, b| a.optimum.seconds.total_cmp(&b.optimum.seconds));
     prefer(&mut weighed, case);
+    let least = usable().filter_map(|way| Some(margin(seed) * way.drift.as_ref()?.least()));
+    let least = least.fold(f64::INFINITY, f64::min);
     let Some(best) = weighed.first() else {
-        let least = usable().filter_map(|way| Some(way.drift?.over(time).farthest[1]));
-        let least = least.fold(f64::INFINITY, f64::min);
-        return Err(Unreached { wanted, known: f64::NAN, least, takes: None });
+        let expected =
+            usable().filter_map(|way| costs(way, way.drift.as_ref()?.expected_step(wanted / margin(seed))?));
+        let expected = expected.reduce(f64::min);
+        return Err(Unreached { expected, ..Unreached::of(wanted, least) });
     };
-    let step = best.way.step.map(|step| best.optimum.part * step);
     let likely = best.optimum.seconds;
+    if likely > target.limit {
+        return Err(Unreached { takes: Some([likely, target.limit]), ..Unreached::of(wanted, least) });
+    }
+    let step = best.way.step.map(|step| best.optimum.part * step);
     let length = Length { time, seeds: 1, seconds: likely, why: String::new() };
-    let mut decisions = decisions(case, findings, &weighed, &length, wanted);
+    let mut decisions = decisions(case, findings, &weighed, &length, (wanted, None));
     decisions.truncate(case.entry.axes.len());
-    let drift = best.way.drift;
-    decisions.extend(drift.zip(step).map(|(drift, step)| Decision {
-        what: "dt".to_owned(),
-        chosen: significant(step, 4),
-        why: format!(
-            "{} in a time of {} at {}, {} at half of it: it falls with the power {}",
-            significant(drift.farthest[0], 2),
-            significant(drift.time, 3),
-            significant(drift.step, 3),
-            significant(drift.farthest[1], 2),
-            significant(drift.power(), 2)
-        ),
-        beside: vec![],
-    }));
+    let drift = best.way.drift.as_ref();
+    decisions.extend(drift.zip(step).map(|(drift, step)| step_of(drift, step, time)));
     Ok(Plan {
         scene: case.arguments(),
         method: case.entry.vocabulary.keys.method,
@@ -87,12 +83,34 @@ pub fn keeping(case: &Case, target: &Target, findings: &Findings, origin: &str) 
         starts_differ: None,
         overrides: overrides(case, best.way, step, None),
         own: of_own.zip(case.step()).and_then(|(way, step)| {
-            Some(Own {
-                seconds: costs(way, step)?,
-                error: Expected::of(Off::exactly(way.drift?.over(time).at(step)), 0.0),
-            })
+            let error = Off::exactly(own_error.unwrap_or(f64::NAN));
+            Some(Own { seconds: costs(way, step)?, error: Expected::of(error, 0.0) })
         }),
         left_out: vec![],
         origin: origin.to_owned(),
     })
+}
+
+/// The step, with how far the quantity goes at it and at the next longer one.
+fn step_of(drift: &Drift, step: f64, time: f64) -> Decision {
+    let at = |step: f64| drift.at(step).map_or("unknown".to_owned(), |farthest| significant(farthest, 2));
+    let longer = drift.tried.iter().rev().find(|it| it.step > step * (1.0 + 1e-9));
+    let longer = longer.map_or(String::new(), |it| {
+        let farthest = if it.farthest.is_finite() {
+            significant(it.farthest, 2)
+        } else {
+            "a run that breaks".to_owned()
+        };
+        format!("; at {}: {farthest}", significant(it.step, 4))
+    });
+    Decision {
+        what: "dt".to_owned(),
+        chosen: significant(step, 4),
+        why: format!(
+            "off by at most {} in the whole run, a time of {}{longer}",
+            at(step),
+            significant(time, 3)
+        ),
+        beside: vec![],
+    }
 }

@@ -3,7 +3,9 @@
 use super::Target;
 use super::alike::Alike;
 use super::findings::Findings;
+use super::seen::restore;
 use crate::provenance::Provenance;
+use crate::results::{Identity, Journal, JournalError};
 use crate::study::Case;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -15,18 +17,27 @@ use std::time::SystemTime;
 use stripmine_physics::io::replace::replace;
 use stripmine_physics::io::{FileError, regular_file};
 use stripmine_physics::number::significant;
+use stripmine_physics::quoted;
 use stripmine_physics::reported::{Class, Reported};
 
 /// The folder of the user's caches, by the variables that name it.
 const PLACES: [(&str, &str); 2] = [("XDG_CACHE_HOME", "stripmine"), ("HOME", ".cache/stripmine")];
 /// Longer than any kept file (bytes).
 const LONGEST: u64 = 1 << 22;
+/// Between a key and the seconds of trials, in the name of the folder of their journal.
+const BEGUN: &str = ".trials-";
 /// Digits of a key.
 const KEY: usize = 24;
 
 /// Why what is kept is of no use.
 #[derive(Debug, thiserror::Error)]
 pub enum KeptError {
+    /// A file that is not as it was written.
+    #[error("{} is damaged: it is ignored, and written again after the trials", quoted::path(.0))]
+    Damaged(PathBuf),
+    /// The journal of trials that were interrupted.
+    #[error(transparent)]
+    Journal(#[from] JournalError),
     /// A file or folder that cannot be read, written or removed.
     #[error(transparent)]
     File(#[from] FileError),
@@ -34,7 +45,10 @@ pub enum KeptError {
 
 impl Reported for KeptError {
     fn class(&self) -> Class {
-        Class::InputOutput
+        match self {
+            KeptError::Journal(error) => error.class(),
+            KeptError::Damaged(_) | KeptError::File(_) => Class::InputOutput,
+        }
     }
 }
 
@@ -91,10 +105,13 @@ impl Kept {
         Kept { folder, host }
     }
 
-    /// What a scene and a quantity are kept as: the error that is asked for does not matter.
+    /// What a scene and a quantity are kept as: the error that is asked for matters only where it decides which runs are made.
     pub fn key(&self, case: &Case, target: &Target) -> String {
         let mut sum = Sha256::new();
-        for part in [target.quantity.name, &self.host, &case.prepared.scene] {
+        let error =
+            target.error.filter(|_| target.is_kept()).map_or(String::new(), |error| error.to_string());
+        let window = target.window.map_or(String::new(), |window| format!("{window:?}"));
+        for part in [target.quantity.name, &error, &window, &self.host, &case.prepared.scene] {
             sum.update(part.as_bytes());
             sum.update([0]);
         }
@@ -105,11 +122,10 @@ impl Kept {
         Some(self.folder.as_ref()?.join(format!("{key}.json")))
     }
 
-    /// What is kept, where trials were at least as long, and where it comes from. A file that is none of ours, or was measured on
-    /// another host, is as good as none.
+    /// What is kept, where trials were at least as long, and where it comes from. A file that was measured on another host is as good as none.
     ///
     /// # Errors
-    /// [`KeptError`] if it is there and cannot be read.
+    /// [`KeptError`] if it is there and cannot be read, or is damaged.
     pub fn recall(
         &self,
         case: &Case,
@@ -122,13 +138,11 @@ impl Kept {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
             Err(cause) => return Err(FileError::at(&path, "reading")(cause).into()),
         };
-        let Ok(mut file) = serde_json::from_slice::<File>(&text) else { return Ok(None) };
+        let mut file: File = serde_json::from_slice(&text).map_err(|_| KeptError::Damaged(path))?;
         if file.host != self.host || file.seconds < seconds {
             return Ok(None);
         }
-        for way in &mut file.findings.ways {
-            way.overrides = way.overrides_in(case);
-        }
+        restore(&mut file.findings.ways, case);
         let taken = significant(file.taken, 2);
         let origin = format!("kept from {} ({taken} s of trials on {})", file.moment, file.host);
         Ok(Some((file.findings, origin)))
@@ -151,6 +165,33 @@ impl Kept {
             let origin = format!("measured {} on {}", file.moment, file.host);
             (file.findings, origin)
         }))
+    }
+
+    /// The journal of trials of a scene, which goes on with those that were interrupted; one that forgets, where the user has no folder.
+    ///
+    /// # Errors
+    /// [`KeptError`] if it cannot be read or begun.
+    pub(super) fn journal(&self, case: &Case, target: &Target, seconds: f64) -> Result<Journal, KeptError> {
+        let Some(folder) = self.begun(case, target, seconds) else { return Ok(Journal::none()) };
+        fs::create_dir_all(&folder).map_err(FileError::at(&folder, "creating the folder"))?;
+        let of = format!("trials of {}", case.arguments());
+        let identity = Identity { of, digest: self.key(case, target) };
+        Ok(Journal::open(&folder, &identity, None)?)
+    }
+
+    /// Removes the journal: all that it knows is kept.
+    ///
+    /// # Errors
+    /// [`KeptError`] if it cannot be removed.
+    pub(super) fn close(&self, case: &Case, target: &Target, seconds: f64) -> Result<(), KeptError> {
+        let folder = self.begun(case, target, seconds).filter(|folder| folder.is_dir());
+        folder.map_or(Ok(()), |it| Ok(fs::remove_dir_all(&it).map_err(FileError::at(&it, "removing"))?))
+    }
+
+    /// The folder of the journal of trials of some seconds.
+    fn begun(&self, case: &Case, target: &Target, seconds: f64) -> Option<PathBuf> {
+        let name = format!("{}{BEGUN}{seconds}", self.key(case, target));
+        Some(self.folder.as_ref()?.join(name))
     }
 
     /// Keeps what was measured with the seconds of trials that were asked for and that they took.
@@ -189,7 +230,7 @@ impl Kept {
         format!("{} s of trials on {}", significant(taken, 2), self.host)
     }
 
-    /// Removes all that is kept, of whatever version, and says how many files that were. Files of others in the folder stay.
+    /// Removes all that is kept, of whatever version, journals among it, and says how many that were. Files of others in the folder stay.
     ///
     /// # Errors
     /// [`KeptError`] if one cannot be removed.
@@ -198,18 +239,26 @@ impl Kept {
         for file in &files {
             fs::remove_file(file).map_err(FileError::at(file, "removing"))?;
         }
-        Ok(files.len())
+        let journals = self.entries(|name| name.split_once(BEGUN).is_some_and(|(key, _)| is_key_of(key)))?;
+        for folder in &journals {
+            fs::remove_dir_all(folder).map_err(FileError::at(folder, "removing"))?;
+        }
+        Ok(files.len() + journals.len())
     }
 
     /// All files with the name of a key, in order.
     fn files(&self) -> Result<Vec<PathBuf>, KeptError> {
+        self.entries(is_key)
+    }
+
+    fn entries(&self, is_ours: fn(&str) -> bool) -> Result<Vec<PathBuf>, KeptError> {
         let Some(folder) = &self.folder else { return Ok(vec![]) };
         let files = match fs::read_dir(folder) {
             Ok(files) => files,
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(vec![]),
             Err(cause) => return Err(FileError::at(folder, "reading the folder")(cause).into()),
         };
-        let is_named = |file: &PathBuf| file.file_name().and_then(OsStr::to_str).is_some_and(is_key);
+        let is_named = |file: &PathBuf| file.file_name().and_then(OsStr::to_str).is_some_and(is_ours);
         let mut files: Vec<PathBuf> = files.flatten().map(|file| file.path()).filter(is_named).collect();
         files.sort();
         Ok(files)
@@ -224,8 +273,11 @@ fn place(variable: &OsStr, below: &str) -> Option<PathBuf> {
 
 /// Whether a file is called as kept ones are.
 fn is_key(name: &str) -> bool {
-    let is_digit = |byte: u8| matches!(byte, b'0'..=b'9' | b'a'..=b'f');
-    name.strip_suffix(".json").is_some_and(|key| key.len() == KEY && key.bytes().all(is_digit))
+    name.strip_suffix(".json").is_some_and(is_key_of)
+}
+
+fn is_key_of(key: &str) -> bool {
+    key.len() == KEY && key.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'))
 }
 
 /// Whether a file says that this program kept it, of whatever version: it holds its own name as its key. Links are not followed.

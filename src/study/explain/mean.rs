@@ -2,7 +2,8 @@
 
 use super::ExplainError;
 use super::findings::{HALVINGS, SHARES, Way, Work};
-use crate::study::trial::{Known, Sample, Span};
+use crate::study::trial::{Known, Sample, Span, any_number};
+use serde::{Deserialize, Serialize};
 use stripmine_physics::averages::Outcome;
 use stripmine_physics::method::Decides;
 use stripmine_physics::particles::Particles;
@@ -26,6 +27,7 @@ const ROUNDING: &str = "rounding";
 const DEAD: f64 = 1e-3;
 
 /// The mean, as measured.
+#[derive(Serialize, Deserialize)]
 pub(super) struct Mean {
     pub(super) known: Known,
     /// The label of the configuration.
@@ -38,12 +40,15 @@ pub(super) struct Mean {
     /// The step (time); none where the method takes none.
     pub(super) step: Option<f64>,
     /// Wall seconds of a step; not a number where the method takes none.
+    #[serde(with = "any_number")]
     pub(super) step_cost: f64,
     /// Transients of all samples: the start is the same, or alike, and they differ by the noise of their detection.
     pub(super) transients: Vec<f64>,
     /// States along the run after the transient.
+    #[serde(skip)]
     pub(super) states: Vec<Particles>,
     /// Rows of the run, of all quantities.
+    #[serde(skip)]
     pub(super) rows: Vec<Vec<f64>>,
 }
 
@@ -62,11 +67,10 @@ impl Work<'_> {
                     ways.iter().map(|way| (way.label.clone(), way.dropped.clone().unwrap_or_default()));
                 return Err(ExplainError::EveryWayFails(tried.collect()));
             }
-            let sample = match self.sampled_over(
-                &best,
-                best.step,
-                Span::Seconds(if is_scout { SCOUT * seconds } else { seconds }),
-            ) {
+            let share = if is_scout { SCOUT * seconds } else { seconds };
+            // Nothing is known of a scene beyond the window that is asked for.
+            let window = self.target.window.map(|[_, end]| Span::Time(end, Some(share)));
+            let sample = match self.sampled_over(&best, best.step, window.unwrap_or(Span::Seconds(share))) {
                 Ok(sample) => sample,
                 Err(failure) if halvings < HALVINGS && self.left() > kept_back => {
                     self.shorten(ways, &best, &failure);
@@ -91,7 +95,7 @@ impl Work<'_> {
             }
             self.slow_down(ways, &best, &sample);
             let mut why = sample.without_mean();
-            if changes(&sample) || is_hardly_known(&sample) {
+            if self.target.window.is_some() || changes(&sample) || is_hardly_known(&sample) {
                 enough = self.enough(&sample);
                 self.whole = self.whole_in(sample.cost, self.left());
                 if let Some(time) = self.whole {
@@ -185,6 +189,7 @@ impl Work<'_> {
                 self.case.duration()?.max(LONGER * sample.time)
             }
             // Whole runs have means of their own.
+            _ if self.target.window.is_some() => super::whole::RUNS[0] as f64 * self.whole_time()?,
             Outcome::Changing { .. } => super::whole::RUNS[0] as f64 * self.case.duration()?,
             _ => return None,
         };

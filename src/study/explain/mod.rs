@@ -46,6 +46,7 @@ pub use unreached::Unreached;
 pub use words::{page, seconds, with_unit};
 
 use super::Case;
+use crate::results::{Journal, JournalError};
 use crate::study::trial::Trial;
 use findings::Findings;
 use seen::{planned, seen};
@@ -73,6 +74,8 @@ pub struct Target {
     pub within: Option<f64>,
     /// The most wall seconds that a plan may take.
     pub limit: f64,
+    /// From when to when each run is averaged over (time); none for the steady state, or the whole run of a scene that changes all along.
+    pub window: Option<[f64; 2]>,
 }
 
 /// Why there is no plan.
@@ -107,9 +110,9 @@ pub enum ExplainError {
     },
     /// No way comes to the error.
     #[error(
-        "no plan reaches an error of {} of {quantity}: {unreached}\n  help: accept a larger error{}",
+        "no plan reaches an error of {} of {quantity}: {unreached}\n  help: accept a larger error, or {}",
         significant(unreached.wanted, 3),
-        if unreached.takes.is_some() { ", or raise --limit" } else { ", or look longer by --patient" }
+        unreached.advice()
     )]
     OutOfReach {
         /// The quantity.
@@ -131,6 +134,11 @@ pub enum ExplainError {
         /// Wall seconds of the quickest plan.
         least: f64,
     },
+    /// A window that is none.
+    #[error(
+        "{0:?} is no window\n  help: give the time from which and to which a run is averaged over, such as --window 2 8"
+    )]
+    NoWindow(Vec<f64>),
     /// Nothing was kept of the scene.
     #[error(
         "nothing is known here of this scene\n  help: run it without --estimate once; what is measured is kept"
@@ -139,6 +147,12 @@ pub enum ExplainError {
     /// What is kept.
     #[error(transparent)]
     Kept(#[from] KeptError),
+    /// The journal of trials.
+    #[error(transparent)]
+    Journal(#[from] JournalError),
+    /// The user stopped it.
+    #[error("the trials were stopped\n  help: the same command goes on with those that are finished")]
+    Stopped,
 }
 
 /// The longest that trials may be asked to take (s).
@@ -163,8 +177,9 @@ fn longer_trials(enough: Option<f64>) -> String {
 impl Reported for ExplainError {
     fn class(&self) -> Class {
         match self {
-            ExplainError::NoSuchQuantity { .. } => Class::Usage,
+            ExplainError::NoSuchQuantity { .. } | ExplainError::NoWindow(_) => Class::Usage,
             ExplainError::Kept(error) => error.class(),
+            ExplainError::Journal(error) => error.class(),
             _ => Class::Precondition,
         }
     }
@@ -172,6 +187,7 @@ impl Reported for ExplainError {
     fn passed_on(&self) -> Option<&dyn Reported> {
         match self {
             ExplainError::Kept(error) => Some(error),
+            ExplainError::Journal(error) => Some(error),
             _ => None,
         }
     }
@@ -194,7 +210,21 @@ impl Target {
         let name = name.unwrap_or_else(first);
         let place = quantities.iter().position(|it| it.name == name && is_judged(&it));
         let place = place.ok_or_else(|| ExplainError::NoSuchQuantity { name: name.to_owned(), known })?;
-        Ok(Target { quantity: quantities[place], place, error, within: None, limit: LIMIT })
+        Ok(Target { quantity: quantities[place], place, error, within: None, limit: LIMIT, window: None })
+    }
+
+    /// The same over a window, from one time to another, where one is given.
+    ///
+    /// # Errors
+    /// [`ExplainError::NoWindow`] if it does not end after it begins.
+    pub fn over(self, window: Option<&[f64]>) -> Result<Target, ExplainError> {
+        match window {
+            None => Ok(self),
+            Some(&[from, to]) if 0.0 <= from && from < to && to.is_finite() => {
+                Ok(Target { window: Some([from, to]), ..self })
+            }
+            Some(window) => Err(ExplainError::NoWindow(window.to_vec())),
+        }
     }
 
     /// Whether it should keep its value: its error is then how far it goes from the first.
@@ -226,9 +256,14 @@ pub fn explain(
         None if seconds == 0.0 => return Err(ExplainError::NothingKept),
         None => {
             let begun = trial.watch.now();
-            let findings = seen(case, target, seconds, trial, &|_| {})?;
+            let journal = kept.journal(case, target, seconds).unwrap_or_else(|error| {
+                notice(&error);
+                Journal::none()
+            });
+            let findings = seen(case, target, seconds, trial, (&|_| {}, &journal))?;
             let taken = trial.watch.now() - begun;
-            if let Err(error) = kept.keep(case, &key, [seconds, taken], &findings) {
+            let kept_now = kept.keep(case, &key, [seconds, taken], &findings);
+            if let Err(error) = kept_now.and_then(|()| kept.close(case, target, seconds)) {
                 notice(&error);
             }
             (findings, kept.origin(taken))

@@ -47,20 +47,15 @@ pub fn plan(case: &Case, target: &Target, findings: &Findings, origin: &str) -> 
         // The bias at the shortest step that is weighed is all that is left.
         let least = |way: &Way| Some(way.bias?.at(SHORTEST * way.step?).shift);
         let least = findings.ways.iter().filter(usable).filter_map(least).fold(f64::INFINITY, f64::min);
-        return Err(Unreached { wanted, known: mean.bar, least, takes: None });
+        return Err(Unreached { known: mean.bar, ..Unreached::of(wanted, least) });
     };
-    let unreached = |least: f64| Unreached { wanted, known: mean.bar, least, takes: None };
+    let unreached = |least: f64| Unreached { known: mean.bar, ..Unreached::of(wanted, least) };
     let length = length(case, best, findings).map_err(unreached)?;
     if length.seconds > target.limit {
         // Chance falls with the root of the time.
         let left = target.limit * (length.time / length.seconds);
         let least = best.optimum.bias.with(chance.over(left));
-        return Err(Unreached {
-            wanted,
-            known: mean.bar,
-            least,
-            takes: Some([length.seconds, target.limit]),
-        });
+        return Err(Unreached { takes: Some([length.seconds, target.limit]), ..unreached(least) });
     }
     let step = best.way.step.map(|step| best.optimum.part * step);
     let per_run = findings.whole.unwrap_or(length.time / length.seeds as f64 + mean.transient);
@@ -74,7 +69,7 @@ pub fn plan(case: &Case, target: &Target, findings: &Findings, origin: &str) -> 
         unit: target.quantity.unit,
         mean: Some([mean.mean, mean.bar]),
         error,
-        decisions: decisions(case, findings, &weighed, &length, wanted),
+        decisions: decisions(case, findings, &weighed, &length, (wanted, target.window)),
         expected,
         seconds,
         memory: case.prepared.memory.needed * length.seeds.min(findings.threads as u64).max(1),

@@ -7,7 +7,7 @@ use super::plan::way_of;
 use super::recommended::{LeftOut, Plan};
 use super::seen::{planned, seen};
 use super::{Target, in_unit};
-use crate::results::{Meter, Progress};
+use crate::results::{Journal, Meter, Progress};
 use crate::study::trial::{ROWS, Sample, Span, Stopwatch, Trial};
 use crate::study::{Case, StudyError, first_line};
 use rayon::ThreadPoolBuilder;
@@ -109,7 +109,8 @@ fn judge(asked: &Asked, effort: Effort) -> Result<Judged, StudyError> {
     let (watch, never) = (Stopwatch::wall(), AtomicBool::new(false));
     let trial = Trial { watch: &watch, stop: &never };
     let by_trials = |seconds: f64| -> Result<(Findings, Plan), String> {
-        let found = seen(&case, &target, seconds, trial, &|_| {}).map_err(|error| error.to_string())?;
+        let found = seen(&case, &target, seconds, trial, (&|_| {}, &Journal::none()))
+            .map_err(|error| error.to_string())?;
         let made = planned(&case, &target, &found, "").map_err(|unreached| unreached.to_string())?;
         Ok((found, made))
     };
@@ -267,7 +268,7 @@ fn carried_out(case: &Case, target: &Target, plan: &Plan, trial: Trial<'_>) -> R
     let seconds = samples.iter().map(|sample| sample.seconds).fold(0.0, f64::max);
     let values = samples.iter().map(|sample| match sample.outcome {
         Outcome::Kept { farthest, .. } => Ok(farthest),
-        _ if plan.is_whole => Ok(sample.whole_mean()),
+        _ if plan.is_whole => Ok(sample.mean_from(0.0)),
         _ => sample.known().map(|known| known.mean).ok_or_else(|| sample.without_mean()),
     });
     let values: Vec<f64> = values.collect::<Result<_, String>>()?;

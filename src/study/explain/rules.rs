@@ -6,6 +6,7 @@ use super::findings::{Findings, Way};
 use super::plan::plan;
 use super::seen::{planned, seen};
 use super::{ExplainError, Target, page};
+use crate::results::Journal;
 use crate::study::trial::Known;
 use crate::study::trial::{Compared, Stopwatch, Trial, pairs, part};
 use crate::study::{Case, Choice};
@@ -137,7 +138,9 @@ fn trials_by_a_made_time_come_out_the_same() {
         let stop = AtomicBool::new(false);
         let made = || {
             let watch = Stopwatch::made(each);
-            let mut found = seen(&case, &target, 6.0, Trial { watch: &watch, stop: &stop }, &|_| {}).unwrap();
+            let mut found =
+                seen(&case, &target, 6.0, Trial { watch: &watch, stop: &stop }, (&|_| {}, &Journal::none()))
+                    .unwrap();
             found.ways.iter_mut().for_each(|way| way.phases.clear());
             serde_json::to_string(&found).unwrap()
         };

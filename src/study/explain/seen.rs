@@ -1,13 +1,16 @@
 //! The trials of a scene one after the other, and the plan that follows.
 
-use super::findings::{Findings, Work};
+use super::findings::{Findings, Way, Work};
 use super::keeping::keeping;
+use super::mean::Mean;
 use super::plan::plan;
 use super::recommended::Plan;
 use super::unreached::Unreached;
 use super::{ExplainError, Target};
+use crate::results::Journal;
 use crate::study::Case;
 use crate::study::trial::Trial;
+use serde::{Deserialize, Serialize};
 
 /// Measures a scene.
 ///
@@ -16,14 +19,18 @@ use crate::study::trial::Trial;
 fn findings(work: &mut Work<'_>, progress: &dyn Fn(f64)) -> Result<Findings, ExplainError> {
     let begun = work.trial.watch.now();
     let tell = |work: &Work<'_>| progress(((work.trial.watch.now() - begun) / work.seconds).min(1.0));
-    let mut ways = work.timed_ways()?;
+    let journal = work.journal;
+    let timed = || work.unless_stopped(work.timed_ways()?);
+    let mut ways: Vec<Way> = journal.recall("costs", |_| true, timed)?;
+    restore(&mut ways, work.case);
     tell(work);
     if work.target.is_kept() {
         return work.drifts(ways);
     }
-    let mut mean = work.mean(&mut ways)?;
-    tell(work);
-    work.biases(&mut ways, &mean);
+    let known = journal.recall("means", |_| true, || work.compared(ways, &tell))?;
+    let Compared { mut ways, mut mean, whole } = known;
+    restore(&mut ways, work.case);
+    work.whole = whole;
     tell(work);
     let best = &ways[0];
     let one_thread = work.one_thread(best);
@@ -31,7 +38,7 @@ fn findings(work: &mut Work<'_>, progress: &dyn Fn(f64)) -> Result<Findings, Exp
     // The end of a transient is found a part of the run too late, mostly.
     mean.known.transient = mean.transients.iter().copied().fold(f64::INFINITY, f64::min);
     let without = work.without(best, &mean);
-    Ok(Findings {
+    work.unless_stopped(Findings {
         mean: mean.known,
         mean_way: mean.way,
         whole: work.whole,
@@ -45,7 +52,31 @@ fn findings(work: &mut Work<'_>, progress: &dyn Fn(f64)) -> Result<Findings, Exp
     })
 }
 
-/// Measurements of a scene in trials of some seconds.
+/// A mean, and the biases of configurations.
+#[derive(Serialize, Deserialize)]
+struct Compared {
+    ways: Vec<Way>,
+    mean: Mean,
+    whole: Option<f64>,
+}
+
+impl Work<'_> {
+    fn compared(&mut self, mut ways: Vec<Way>, tell: &dyn Fn(&Self)) -> Result<Compared, ExplainError> {
+        let mean = self.mean(&mut ways)?;
+        tell(self);
+        self.biases(&mut ways, &mean);
+        self.unless_stopped(Compared { ways, mean, whole: self.whole })
+    }
+}
+
+/// Overrides are not kept: settings and skins say them.
+pub(super) fn restore(ways: &mut [Way], case: &Case) {
+    for way in ways {
+        way.overrides = way.overrides_in(case);
+    }
+}
+
+/// Measurements of a scene in trials of some seconds. Those that a journal knows are not made again.
 ///
 /// # Errors
 /// [`ExplainError`] if every trial breaks, or the quantity has no mean.
@@ -54,10 +85,10 @@ pub fn seen(
     target: &Target,
     seconds: f64,
     trial: Trial<'_>,
-    progress: &dyn Fn(f64),
+    (progress, journal): (&dyn Fn(f64), &Journal),
 ) -> Result<Findings, ExplainError> {
     let end = trial.watch.now() + seconds;
-    findings(&mut Work { case, target, seconds, end, trial, whole: None }, progress)
+    findings(&mut Work { case, target, seconds, end, trial, journal, whole: None }, progress)
 }
 
 /// A plan from what was measured: the scene as it stands, where that is as good and no plan is quicker.

@@ -13,9 +13,32 @@ pub struct Unreached {
     pub known: f64,
     /// The least error that is known to be reached (the quantity's unit); infinite where none is.
     pub least: f64,
+    /// Wall seconds of a run that is expected to reach it, by the trend of the steps that were tried.
+    pub expected: Option<f64>,
     /// Wall seconds of the plan that would reach it, and the most that a plan may take.
     pub takes: Option<[f64; 2]>,
 }
+
+impl Unreached {
+    /// Of an error that was asked for, and the least that is known.
+    pub(super) fn of(wanted: f64, least: f64) -> Unreached {
+        Unreached { wanted, known: f64::NAN, least, expected: None, takes: None }
+    }
+
+    /// Advice: trials that are long enough for the run that is expected to reach it, or any that are longer.
+    pub(super) fn advice(&self) -> String {
+        match (self.takes, self.expected) {
+            (Some(_), _) => "raise --limit".to_owned(),
+            (None, Some(run)) => {
+                format!("look longer by --seconds {}", significant((TIMES_RUN * run).ceil(), 2))
+            }
+            (None, None) => "look longer by --patient".to_owned(),
+        }
+    }
+}
+
+/// Trials that take so many times as long as a run come to it, by way of runs with longer steps.
+const TIMES_RUN: f64 = 4.0;
 
 impl Display for Unreached {
     fn fmt(&self, out: &mut Formatter<'_>) -> fmt::Result {
@@ -31,7 +54,10 @@ impl Display for Unreached {
                 significant(self.least, 2)
             ),
             None if self.least.is_finite() => {
-                write!(out, "the least error that is known is {}", significant(self.least, 2))
+                write!(out, "the least error that is known is {}", significant(self.least, 2))?;
+                self.expected.map_or(Ok(()), |run| {
+                    write!(out, ", and a run of about {} is expected to reach it", seconds(run))
+                })
             }
             None => write!(out, "the bias of no step is known"),
         }

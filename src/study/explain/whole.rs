@@ -1,11 +1,12 @@
 //! Means over whole runs, of what changes all along: a hopper that empties, a gas that cools. Runs from starts that differ by next to nothing tell
 //! how far chance takes such a mean.
 
-use super::findings::{NO_TIME, Way, Work};
+use super::findings::{NO_TIME, NoRun, Way, Work};
 use crate::study::first_line;
 use crate::study::state::displaced;
-use crate::study::trial::{Known, Sample, Span};
+use crate::study::trial::{Known, Span, any_number};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
+use serde::{Deserialize, Serialize};
 use stripmine_physics::averages::of_independent;
 use stripmine_physics::method::Prepared;
 use stripmine_physics::number::significant;
@@ -26,16 +27,29 @@ pub(super) struct Measured {
     pub(super) cost: f64,
 }
 
+/// A whole run: its mean, and the wall seconds of a unit of time.
+#[derive(Clone, Copy, Serialize, Deserialize)]
+struct WholeRun {
+    #[serde(with = "any_number")]
+    mean: f64,
+    cost: f64,
+}
+
 impl Work<'_> {
-    /// The scene's own time, where enough whole runs can be had in some seconds and a unit of time costs as much as in a sample.
+    /// The time of a whole run: to the end of the window that is asked for, or the scene's own (time).
+    pub(super) fn whole_time(&self) -> Option<f64> {
+        self.target.window.map(|[_, end]| end).or_else(|| self.case.duration())
+    }
+
+    /// That time, where enough whole runs can be had in some seconds and a unit of time costs as much as in a sample.
     pub(super) fn whole_in(&self, cost: f64, seconds: f64) -> Option<f64> {
         let rounds = RUNS[0].div_ceil(rayon::current_num_threads()) as f64;
-        self.case.duration().filter(|time| rounds * cost * time <= seconds)
+        self.whole_time().filter(|time| rounds * cost * time <= seconds)
     }
 
     /// Time that whole runs take, where these are too many seconds.
     pub(super) fn too_dear(&self, cost: f64) -> String {
-        self.case.duration().map_or(String::new(), |time| {
+        self.whole_time().map_or(String::new(), |time| {
             format!(
                 "; a mean over the whole run takes {} runs of about {} s",
                 RUNS[0],
@@ -66,20 +80,30 @@ impl Work<'_> {
         let begun = self.trial.watch.now();
         let at_once = rayon::current_num_threads().min(RUNS[1]);
         let observed = (self.case.entry.quantities, self.target.place);
+        let from = self.target.window.map_or(0.0, |[from, _]| from);
         let one = |number: usize| {
-            let prepared = self.another_start(overrides, step, number as u64)?;
-            let left = self.left();
-            if left == 0.0 {
-                return Err(NO_TIME.to_owned());
-            }
-            let sample = self.trial.sample(&prepared, observed, Span::Time(time, Some(left)));
-            let sample = sample.map_err(|failure| first_line(&failure.what()))?;
-            sample.cut_off(time).map_or(Ok(sample), Err)
+            let key = format!("whole run|{}|{step:?}|{time}|{number}", overrides.texts().join(" "));
+            let run = self.journal.recall(
+                &key,
+                |_| true,
+                || {
+                    let prepared = self.another_start(overrides, step, number as u64).map_err(NoRun)?;
+                    let left = self.left();
+                    if left == 0.0 {
+                        return Err(NoRun(NO_TIME.to_owned()));
+                    }
+                    let sample = self.trial.sample(&prepared, observed, Span::Time(time, Some(left)));
+                    let sample = sample.map_err(|failure| NoRun(first_line(&failure.what())))?;
+                    let run = WholeRun { mean: sample.mean_from(from), cost: sample.cost };
+                    sample.cut_off(time).map_or(Ok(run), |why| Err(NoRun(why)))
+                },
+            );
+            run.map_err(|NoRun(why)| why)
         };
-        let mut samples: Vec<Sample> = vec![];
+        let mut samples: Vec<WholeRun> = vec![];
         loop {
             let next: Vec<usize> = (samples.len()..samples.len() + at_once).collect();
-            let more: Result<Vec<Sample>, String> = next.into_par_iter().map(one).collect();
+            let more: Result<Vec<WholeRun>, String> = next.into_par_iter().map(one).collect();
             match more {
                 Ok(more) => samples.extend(more),
                 Err(why) if samples.len() < RUNS[0] => return Err(why),
@@ -92,7 +116,7 @@ impl Work<'_> {
                 break;
             }
         }
-        let means: Vec<f64> = samples.iter().map(Sample::whole_mean).collect();
+        let means: Vec<f64> = samples.iter().map(|it| it.mean).collect();
         let count = means.len() as f64;
         let known = of_independent(&means).map(|[mean, bar]| Known {
             square: bar * bar * count * time,

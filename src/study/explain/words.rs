@@ -13,7 +13,12 @@ pub fn with_unit(value: &str, unit: &str) -> String {
 pub fn page(plan: &Plan) -> String {
     let mut page = vec![answer(plan), expected(plan)];
     page.extend(plan.own.as_ref().map(|own| {
-        format!("as it stands: {} for an error of at most {}", seconds(own.seconds), parts(plan, own.error))
+        let takes = seconds(own.seconds);
+        // A step that is dearer than the plan was not tried.
+        match own.error.most.is_nan() && plan.mean.is_none() {
+            true => format!("as it stands: {takes}, for an error that was not tried"),
+            false => format!("as it stands: {takes} for an error of at most {}", parts(plan, own.error)),
+        }
     }));
     page.push(String::new());
     page.extend(plan.decisions.iter().flat_map(decision));

@@ -6,13 +6,15 @@ use serde::{Deserialize, Serialize};
 use std::sync::atomic::Ordering;
 use stripmine_physics::averages::{Average, Estimate, Outcome, Rows};
 use stripmine_physics::method::{
-    Clock, Every, Failure, Prepared, Purpose, Quantity, RunWarning, Simulation, Until,
+    Clock, Every, Failure, Kind, Prepared, Purpose, Quantity, RunWarning, Simulation, Until,
 };
 use stripmine_physics::number::significant;
 use stripmine_physics::particles::Particles;
 
 /// Rows of a sample of some seconds, about: as many as a correlation needs, and so few that they cost little; and of one whose time is known.
 pub const ROWS: [f64; 2] = [1000.0, 250.0];
+/// Looks at a quantity that should keep its value.
+const LOOKS: f64 = 2000.0;
 /// The first stretches, whose memory is cold and whose threads have not begun, are no part of the cost: this share of the time.
 const COLD: f64 = 0.1;
 /// States that a sample keeps at most, and particles of all of them together.
@@ -44,8 +46,10 @@ pub struct Sample {
     pub phases: Vec<(String, f64)>,
     /// States along the run, evenly spread, each with its time (time).
     pub states: Vec<(f64, Particles)>,
-    /// Its rows, of all quantities.
+    /// Its rows, of all quantities, the time first.
     pub rows: Vec<Vec<f64>>,
+    /// The kind of the quantity, and its place in a row.
+    pub observed: (Kind, usize),
 }
 
 /// A mean as a run knows it.
@@ -142,9 +146,25 @@ impl Sample {
         }
     }
 
-    /// The mean over the whole run, its beginning among it.
-    pub fn whole_mean(&self) -> f64 {
-        self.series.iter().map(|[_, value]| value).sum::<f64>() / self.series.len() as f64
+    /// The mean from a time on to the end of the run; the whole run, its beginning among it, from 0.
+    ///
+    /// Values of moments count by the trapezoidal rule: of a quantity that changes, a sum of rows would lag by half of their spacing.
+    pub fn mean_from(&self, from: f64) -> f64 {
+        let first = self.rows.iter().rposition(|row| row[0] <= from).unwrap_or(0);
+        let rows = &self.rows[first..];
+        let (kind, place) = self.observed;
+        let gone = |rows: &[Vec<f64>]| rows[1][0] - rows[0][0];
+        let of = |rows: &[Vec<f64>]| {
+            let [before, now] = [&rows[0], &rows[1]].map(|row| row[place]);
+            match kind {
+                _ if kind.grows() => now - before,
+                Kind::Instant => 0.5 * (before + now) * gone(rows),
+                _ => now * gone(rows),
+            }
+        };
+        let (sum, time) =
+            rows.windows(2).fold((0.0, 0.0), |all, rows| (all.0 + of(rows), all.1 + gone(rows)));
+        sum / time
     }
 }
 
@@ -184,7 +204,8 @@ impl Trial<'_> {
         let simulation = simulation.as_mut();
         let start = self.watch.now() - begun;
         let mut rows = Rows::new(quantities);
-        rows.add(&simulation.row());
+        let mut all_rows = vec![simulation.row()];
+        rows.add(&all_rows[0]);
         let (seconds, most) = match span {
             Span::Seconds(seconds) => (Some(seconds), f64::INFINITY),
             Span::Time(time, seconds) => (seconds, time),
@@ -192,21 +213,23 @@ impl Trial<'_> {
         let stride = match span {
             Span::Seconds(seconds) => self.stride(simulation, prepared, seconds / ROWS[0])?,
             Span::Time(time, _) => {
+                // How far a quantity goes is seen only where it is looked at.
+                let rows = if quantities[place].kind == Kind::Kept { LOOKS } else { ROWS[1] };
                 self.advance(simulation, first(prepared))?;
                 let Clock { steps, time: gone, .. } = simulation.clock();
                 match prepared.schedule.until {
-                    Until::Steps(_) => Until::Steps(((time / ROWS[1] * steps as f64 / gone) as u64).max(1)),
-                    _ => Until::Time(time / ROWS[1]),
+                    Until::Steps(_) => Until::Steps(((time / rows * steps as f64 / gone) as u64).max(1)),
+                    _ => Until::Time(time / rows),
                 }
             }
         };
         // Rows are evenly spaced from here on.
-        rows.add(&simulation.row());
+        all_rows.push(simulation.row());
+        rows.add(&all_rows[1]);
         let running = self.watch.now();
         // The start is a part of the time.
         let limit = seconds.map_or(f64::INFINITY, |seconds| seconds - (running - begun));
         let mut states = States::new(prepared);
-        let mut all_rows = vec![];
         // Of the stretches once it is warm, and of all.
         let (mut warm, mut all) = ((0.0, 0.0), (0.0, 0.0));
         while self.watch.now() - running < limit
@@ -245,6 +268,7 @@ impl Trial<'_> {
             phases: phases(simulation),
             states: states.kept,
             rows: all_rows,
+            observed: (quantities[place].kind, place),
         })
     }
 
