@@ -456,8 +456,9 @@ fn the_error_of_a_mean_is_charted_over_its_cost() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     for (chart, scene, quantity, ways) in [
-        ("accuracy", "langevin-dense", "potential", 2),
-        ("work-precision", "hard-disks", "compressibility", 2),
+        ("accuracy", "langevin-dense", "potential", 2..=2),
+        // A configuration that costs several times as much is left out and named.
+        ("work-precision", "hard-disks", "compressibility", 1..=2),
     ] {
         let mut command = Command::cargo_bin("stripmine").unwrap();
         command.current_dir(folder).args(["chart", chart, scene, "--budget", "6", "--json", "--quiet"]);
@@ -468,7 +469,7 @@ fn the_error_of_a_mean_is_charted_over_its_cost() {
             let errors = curves.entry(point["configuration"].as_str().unwrap()).or_default();
             errors.push(point["error"].as_f64().unwrap());
         }
-        assert!(data["summary"][0]["quantity"] == quantity && curves.len() == ways, "{data:#}");
+        assert!(data["summary"][0]["quantity"] == quantity && ways.contains(&curves.len()), "{data:#}");
         for (curve, errors) in curves {
             assert!(errors.len() > 3 && errors.last() < errors.first(), "{curve}: {errors:?}");
         }

@@ -275,7 +275,7 @@ impl ExplainVerb {
             };
             return Ok(Analysis { rows: vec![wall], cut_off: Some(cut_off) });
         }
-        let from = target.window.map_or(0.0, |[from, _]| from);
+        let window = target.window.unwrap_or([0.0, f64::INFINITY]);
         let seeds = plan.seeds as f64;
         let known = if plan.is_whole { None } else { found.known() };
         let mut rows = vec![Compared {
@@ -323,9 +323,10 @@ impl ExplainVerb {
             rows.push(Compared {
                 what: format!("{} over the run, less that of the reference", plan.quantity),
                 estimated: 0.0,
-                actual: found.mean_from(from) - mean,
+                actual: found.mean_over(window) - mean,
                 unit: plan.unit.to_owned(),
-                is_within: (found.mean_from(from) - mean).abs() <= plan.expected.bias.with(chance.hypot(bar)),
+                is_within: (found.mean_over(window) - mean).abs()
+                    <= plan.expected.bias.with(chance.hypot(bar)),
                 advice: "the step or the digits take it off: --patient",
             });
         }

@@ -268,7 +268,7 @@ fn carried_out(case: &Case, target: &Target, plan: &Plan, trial: Trial<'_>) -> R
     let seconds = samples.iter().map(|sample| sample.seconds).fold(0.0, f64::max);
     let values = samples.iter().map(|sample| match sample.outcome {
         Outcome::Kept { farthest, .. } => Ok(farthest),
-        _ if plan.is_whole => Ok(sample.mean_from(0.0)),
+        _ if plan.is_whole => Ok(sample.mean_over([0.0, f64::INFINITY])),
         _ => sample.known().map(|known| known.mean).ok_or_else(|| sample.without_mean()),
     });
     let values: Vec<f64> = values.collect::<Result<_, String>>()?;

@@ -94,7 +94,7 @@ impl Work<'_> {
                     }
                     let sample = self.trial.sample(&prepared, observed, Span::Time(time, Some(left)));
                     let sample = sample.map_err(|failure| NoRun(first_line(&failure.what())))?;
-                    let run = WholeRun { mean: sample.mean_from(from), cost: sample.cost };
+                    let run = WholeRun { mean: sample.mean_over([from, time]), cost: sample.cost };
                     sample.cut_off(time).map_or(Ok(run), |why| Err(NoRun(why)))
                 },
             );

@@ -146,24 +146,30 @@ impl Sample {
         }
     }
 
-    /// The mean from a time on to the end of the run; the whole run, its beginning among it, from 0.
+    /// The mean from one time to another, or to the end of the run.
     ///
-    /// Values of moments count by the trapezoidal rule: of a quantity that changes, a sum of rows would lag by half of their spacing.
-    pub fn mean_from(&self, from: f64) -> f64 {
-        let first = self.rows.iter().rposition(|row| row[0] <= from).unwrap_or(0);
-        let rows = &self.rows[first..];
+    /// Values of moments lie on straight lines between rows: of a quantity that changes, a sum of rows would lag by half of their spacing.
+    pub fn mean_over(&self, [from, to]: [f64; 2]) -> f64 {
         let (kind, place) = self.observed;
-        let gone = |rows: &[Vec<f64>]| rows[1][0] - rows[0][0];
         let of = |rows: &[Vec<f64>]| {
-            let [before, now] = [&rows[0], &rows[1]].map(|row| row[place]);
-            match kind {
-                _ if kind.grows() => now - before,
-                Kind::Instant => 0.5 * (before + now) * gone(rows),
-                _ => now * gone(rows),
+            let [times, values] = [0, place].map(|at| [rows[0][at], rows[1][at]]);
+            let [begin, end] = [times[0].max(from), times[1].min(to)];
+            if begin >= end {
+                return [0.0; 2];
             }
+            let (gone, part) = (times[1] - times[0], end - begin);
+            let sum = match kind {
+                _ if kind.grows() => (values[1] - values[0]) * part / gone,
+                Kind::Instant => {
+                    let slope = (values[1] - values[0]) / gone;
+                    (values[0] + slope * (0.5 * (begin + end) - times[0])) * part
+                }
+                _ => values[1] * part,
+            };
+            [sum, part]
         };
-        let (sum, time) =
-            rows.windows(2).fold((0.0, 0.0), |all, rows| (all.0 + of(rows), all.1 + gone(rows)));
+        let add = |all: [f64; 2], one: [f64; 2]| [all[0] + one[0], all[1] + one[1]];
+        let [sum, time] = self.rows.windows(2).map(of).fold([0.0; 2], add);
         sum / time
     }
 }
