@@ -62,7 +62,7 @@ pub fn accuracy(
 fn made(scene: &str, target: &Target, findings: &Findings, plan: Option<&Plan>, case: &Case) -> Made {
     let curves = curves(case, findings);
     Made::of([
-        summary(scene, target, findings),
+        summary(scene, target, findings, &curves),
         points(&curves),
         marks(plan, target),
         biases(findings, &curves),
@@ -116,7 +116,11 @@ fn least_errors(way: &Way, case: &Case, findings: &Findings, chance: &Chance) ->
     walls.filter_map(least).filter(|point| point.error.is_finite()).collect()
 }
 
-fn summary(scene: &str, target: &Target, findings: &Findings) -> Frame {
+fn summary(scene: &str, target: &Target, findings: &Findings, curves: &[Curve<'_>]) -> Frame {
+    let least = |values: &mut dyn Iterator<Item = f64>| values.reduce(f64::min);
+    let first = least(&mut curves.iter().filter_map(|curve| Some(curve.points.first()?.seconds)));
+    let longest = curves.iter().filter(|curve| curve.way.bound.is_some()).filter_map(|curve| curve.way.step);
+    let longest = longest.reduce(f64::max);
     let mean = &findings.mean;
     let not_compared =
         findings.ways.iter().filter_map(|way| Some(format!("{}: {}", way.label, way.dropped.as_ref()?)));
@@ -129,6 +133,8 @@ fn summary(scene: &str, target: &Target, findings: &Findings) -> Frame {
         .text("configuration of the mean", |()| &findings.mean_way)
         .short("transient", |()| mean.transient)
         .short("time between independent samples", |()| mean.apart)
+        .short("shortest wall time (s)", |()| first)
+        .short("longest step", |()| longest)
         .text("over the whole run", |()| if findings.whole.is_some() { "yes" } else { "no" })
         .text("not compared", |()| not_compared.clone().collect::<Vec<_>>().join("; "))
         .frame("summary", "Mean of the scene")
@@ -136,11 +142,11 @@ fn summary(scene: &str, target: &Target, findings: &Findings) -> Frame {
 
 fn points(curves: &[Curve<'_>]) -> Frame {
     Rows::of(curves.iter().flat_map(|curve| curve.points.iter().map(move |point| (curve, point))))
-        .text("configuration", |(curve, _)| &curve.way.label)
-        .number("wall time (s)", 6, |(_, point)| point.seconds)
-        .short("dt", |(_, point)| point.step)
-        .number("error", 6, |(_, point)| point.error)
-        .number("most", 6, |(_, point)| point.most)
+        .text("configuration", |(curve, ..)| &curve.way.label)
+        .number("wall time (s)", 6, |(.., point)| point.seconds)
+        .short("dt", |(.., point)| point.step)
+        .number("error", 6, |(.., point)| point.error)
+        .number("most", 6, |(.., point)| point.most)
         .frame(
             "points",
             "Least error over the wall time of a run: expected bias, and chance with a probability of 95 %",
