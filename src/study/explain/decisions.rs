@@ -62,7 +62,7 @@ pub(super) fn decisions(
             findings.whole.unwrap_or(length.time / length.seeds as f64 + findings.mean.transient),
             4,
         ),
-        why: run_length(findings, length, window),
+        why: run_length(case, findings, length, window),
         beside: vec![],
     });
     all.push(Decision {
@@ -75,7 +75,7 @@ pub(super) fn decisions(
 }
 
 /// Reason of the length of a run.
-fn run_length(findings: &Findings, length: &Length, window: Option<[f64; 2]>) -> String {
+fn run_length(case: &Case, findings: &Findings, length: &Length, window: Option<[f64; 2]>) -> String {
     if let Some([from, _]) = window {
         return format!(
             "to the end of the window that is asked for, which begins at {}",
@@ -85,12 +85,21 @@ fn run_length(findings: &Findings, length: &Length, window: Option<[f64; 2]>) ->
     if findings.whole.is_some() {
         return "the scene's own: the quantity changes all along, and what is asked for is its mean over the whole run".to_owned();
     }
-    format!(
+    let mut why = format!(
         "{} to average over for a chance of ± {}, after a transient of {}",
         significant(length.time, 3),
         significant(findings.chance().over(length.time), 2),
         significant(findings.mean.transient, 3)
-    )
+    );
+    let apart = findings.mean.apart;
+    if let Some(own) = case.duration().filter(|own| apart > *own) {
+        why.push_str(&format!(
+            "; values stay alike for a time of {}, longer than the scene's own run of {}, which is one sample",
+            significant(apart, 2),
+            significant(own, 3)
+        ));
+    }
+    why
 }
 
 fn step_decision(case: &Case, best: &Weighed<'_>, longest: f64, wanted: f64) -> Decision {

@@ -43,6 +43,7 @@ impl Work<'_> {
             quantity: self.target.quantity.name,
             why: "the scene does not say how long it runs, or its method takes no steps".to_owned(),
             enough: None,
+            run: None,
         };
         let (time, own) = self.case.duration().zip(self.case.step()).ok_or_else(unknown)?;
         let (mut start, mut row) = (0.0, 0.0);
@@ -77,6 +78,7 @@ impl Work<'_> {
                 quantity: self.target.quantity.name,
                 why: "no run came to the end of the scene in the time of the trials".to_owned(),
                 enough: Some(2.0 * cheapest / own * time).filter(|seconds| seconds.is_finite()),
+                run: self.run_as_it_stands(&ways),
             });
         }
         sort(&mut ways);

@@ -96,6 +96,8 @@ pub(super) struct Work<'w> {
     pub(super) trial: Trial<'w>,
     /// Finished trials: those of the same study that was interrupted are not made again.
     pub(super) journal: &'w Journal,
+    /// Wall seconds of the scene as it stands, once they are known.
+    pub(super) as_it_stands: Option<f64>,
     /// The scene's own time, where the quantity changes all along and its mean over the whole run is asked for (time).
     pub(super) whole: Option<f64>,
 }

@@ -58,6 +58,7 @@ impl Work<'_> {
         let mut seconds = SHARES[1] * self.seconds;
         let kept_back = SHARES[2] * self.seconds;
         let mut enough = self.for_whole_run(&ways[0]);
+        self.as_it_stands = self.run_as_it_stands(ways);
         let (mut attempt, mut halvings, mut is_scout) = (0, 0, true);
         loop {
             super::findings::sort(ways);
@@ -117,7 +118,8 @@ impl Work<'_> {
     }
 
     fn no_mean(&self, why: String, enough: Option<f64>) -> ExplainError {
-        ExplainError::NoMean { quantity: self.target.quantity.name, why, enough }
+        let run = self.as_it_stands;
+        ExplainError::NoMean { quantity: self.target.quantity.name, why, enough, run }
     }
 
     /// The mean over whole runs, with states along the sample that showed that the quantity changes.
@@ -173,6 +175,13 @@ impl Work<'_> {
                 false => way.phases.iter_mut().for_each(|(_, cost)| *cost *= slower),
             }
         }
+    }
+
+    /// Wall seconds of the scene as it stands; none where that is not known.
+    pub(super) fn run_as_it_stands(&self, ways: &[Way]) -> Option<f64> {
+        let way = ways.iter().find(|way| way.label == self.case.own.label())?;
+        let longer = way.step.zip(self.case.step()).map_or(1.0, |(longest, own)| longest / own);
+        Some(way.cost? * longer * self.case.duration()?)
     }
 
     /// Seconds of trials in which a run is as long as the scene's own; none where its end is no time, or nothing is known of the cost.

@@ -98,7 +98,7 @@ pub enum ExplainError {
     /// The quantity comes to no mean.
     #[error(
         "{quantity} did not become stationary during the trials: {why}\n  help: {}; or choose another quantity with --of",
-        longer_trials(*enough)
+        longer_trials(*enough, *run)
     )]
     NoMean {
         /// The quantity.
@@ -107,6 +107,8 @@ pub enum ExplainError {
         why: String,
         /// Seconds of trials that would be enough, as far as these tell.
         enough: Option<f64>,
+        /// Wall seconds of a run of the scene as it stands.
+        run: Option<f64>,
     },
     /// No way comes to the error.
     #[error(
@@ -158,9 +160,14 @@ pub enum ExplainError {
 /// The longest that trials may be asked to take (s).
 const LONGEST: f64 = 3600.0;
 
-/// Advice that makes trials long enough.
-fn longer_trials(enough: Option<f64>) -> String {
+/// Advice that makes trials long enough, or spares them where the scene itself takes less time.
+fn longer_trials(enough: Option<f64>, run: Option<f64>) -> String {
     match enough.map(f64::ceil) {
+        Some(enough) if run.is_some_and(|run| run < enough) => format!(
+            "trials of about {} s would be enough, and a run of the scene as it stands takes about {}: run it instead, and average",
+            significant(enough, 2),
+            seconds(run.unwrap_or(enough))
+        ),
         Some(seconds) if seconds <= LONGEST => {
             format!("trials of about {seconds:.0} s should be enough: --seconds {seconds:.0}")
         }

@@ -88,7 +88,10 @@ pub fn seen(
     (progress, journal): (&dyn Fn(f64), &Journal),
 ) -> Result<Findings, ExplainError> {
     let end = trial.watch.now() + seconds;
-    findings(&mut Work { case, target, seconds, end, trial, journal, whole: None }, progress)
+    findings(
+        &mut Work { case, target, seconds, end, trial, journal, as_it_stands: None, whole: None },
+        progress,
+    )
 }
 
 /// A plan from what was measured: the scene as it stands, where that is as good and no plan is quicker.
