@@ -91,13 +91,18 @@ fn speed_against_accuracy(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> 
     let (watch, mut scenes) = (Stopwatch::processor(), vec![]);
     let trial = Trial { watch: &watch, stop: signals::asked() };
     for (at, (name, preset, overrides)) in shown.iter().enumerate() {
-        let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
-        let subject = Subject::load(preset, &overrides, METHODS)?;
+        let subject = subject(preset, overrides)?;
         let share = |part: f64| progress((at as f64 + part) / shown.len() as f64);
-        scenes
-            .push(((*name).to_owned(), work_precision(&subject, &effort, trial, &Journal::none(), &share)?));
+        let data = work_precision(&subject, &effort, trial, &Journal::none(), &share)?;
+        scenes.push(((*name).to_owned(), data));
     }
     Ok(work_precision::made(&scenes))
+}
+
+/// Scene of a preset, with overrides as one types them.
+fn subject(preset: &str, overrides: &[&str]) -> Result<Subject, Failure> {
+    let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
+    Ok(Subject::load(preset, &overrides, METHODS)?)
 }
 
 /// Stability of the scenes listed.
@@ -113,8 +118,7 @@ fn where_it_works(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
     for &(name, preset, overrides, parameter) in
         MAPPED.iter().flat_map(|of_method| of_method.iter().take(most))
     {
-        let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
-        let subject = Subject::load(preset, &overrides, METHODS)?;
+        let subject = subject(preset, overrides)?;
         let over = Over::of(&subject, Some(parameter), None)?;
         surveys.push((name.to_owned(), subject, over));
     }

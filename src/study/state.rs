@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use stripmine_physics::domain::Domain;
+use stripmine_physics::method::Prepared;
 use stripmine_physics::particles::{Kind, Particle, Particles, in_space};
 
 /// A particle that moves.
@@ -105,6 +106,14 @@ pub fn displaced(
         grain.position = in_space(domain.wrapped(position));
     }
     moved
+}
+
+/// A scene whose particles fly for a time longer before what happens first.
+pub fn delayed(scene: &Prepared, late: f64) -> Prepared {
+    let begin = displaced(scene.particles(), &scene.domain, |_, disc| {
+        disc.planar_velocity().map(|part| -late * part)
+    });
+    scene.model.started_from(begin)
 }
 
 #[cfg(test)]

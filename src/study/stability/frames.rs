@@ -161,7 +161,7 @@ fn said(maps: &Maps) -> Frame {
         .number("refused before", 0, |(.., said)| said.refused as f64)
         .number("warned of before", 0, |(.., said)| said.warned_before as f64)
         .number("warned of by the run", 0, |(.., said)| said.warned_by_run as f64)
-        .number("nothing said", 0, |(_, class, said)| class.ends().then(|| said.unsaid as f64))
+        .number("nothing said", 0, |(_, class, said)| class.ends().then_some(said.unsaid as f64))
         .frame("said", "What the program says of it")
 }
 

@@ -10,7 +10,7 @@ use crate::study::StudyError;
 use crate::study::alarm::Alarm;
 use crate::study::choice::Choice;
 use crate::study::runs::Runs;
-use crate::study::state::displaced;
+use crate::study::state::delayed;
 use crate::study::trial::{Course, RunFailure};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use stripmine_physics::method::{Beyond, Decides, Parameter, Prepared, Purpose, Simulation, StepLimit};
@@ -146,10 +146,7 @@ impl Survey<'_> {
         let scene = subject.prepared_at_any_step(variant.choice, step, &overrides)?;
         // A start without a seed is varied by the part of a step at which contacts begin.
         let phase = (seed - 1) as f64 / (SEEDS as f64 + 0.5);
-        let late = displaced(scene.particles(), &scene.domain, |_, disc| {
-            disc.planar_velocity().map(|part| -phase * step * part)
-        });
-        Ok(scene.model.started_from(late))
+        Ok(delayed(&scene, phase * step))
     }
 
     fn run(&self, variant: Variant<'_>, step: f64, seed: u64) -> Result<Ran, StudyError> {

@@ -8,7 +8,7 @@
 use super::orders::{Fitted, fit};
 use crate::study::choice::Choice;
 use crate::study::runs::Runs;
-use crate::study::state::{State, displaced};
+use crate::study::state::{State, delayed};
 use crate::study::trial::{Course, RunFailure};
 use crate::study::{StudyError, Subject};
 use stripmine_physics::method::{Decides, Purpose};
@@ -120,11 +120,8 @@ fn mean(values: &[[f64; 2]]) -> [f64; 2] {
 
 /// Outcomes of a collision before which the discs fly for a time longer; none where they do not touch and part.
 fn outcome(runs: &Runs<'_>, choice: &Choice, step: f64, late: f64) -> Result<Option<[f64; 2]>, RunFailure> {
-    let scene = runs.subject.prepared_as(choice, step, &Overrides::new())?;
+    let scene = delayed(&runs.subject.prepared_as(choice, step, &Overrides::new())?, late);
     let domain = scene.domain;
-    let begin =
-        displaced(scene.particles(), &domain, |_, disc| disc.planar_velocity().map(|part| -late * part));
-    let scene = scene.model.started_from(begin);
     let steps = (runs.subject.duration() / step).round() as u64;
     let course = Course { steps, looks: 1, each: 1e-6 };
     let end = runs.follow(&scene, Purpose::Measurement, course, |_| {})?;
