@@ -70,20 +70,6 @@ fn forged_lines_are_measured_again() {
             ][..],
         ),
         (
-            "means",
-            &[
-                "chart",
-                "work-precision",
-                "dense-gas",
-                "--budget",
-                "4",
-                "--repeats",
-                "1",
-                "--set",
-                "particles.count=16",
-            ],
-        ),
-        (
             "stability",
             &[
                 "chart",

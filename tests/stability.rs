@@ -147,18 +147,6 @@ fn every_method_with_steps_has_a_map_without_an_axis() {
     assert!(String::from_utf8_lossy(&help.stdout).contains("Scenes of hard-disks take no steps"));
 }
 
-/// A map that does not fit into its time is refused with the time that it takes.
-#[test]
-fn a_map_for_which_there_is_too_little_time_is_refused() {
-    let folder = tempfile::tempdir().unwrap();
-    let large = ["--set", "particles.count=100000", "--set", "run.time=100"];
-    let out = folder.path().join("map");
-    let begin = ["chart", "stability", "dense-gas", "--budget", "1", "--out", out.to_str().unwrap()];
-    let refused = stripmine(&[&begin[..], &large].concat());
-    assert_eq!(refused.status.code(), Some(2), "{}", said(&refused));
-    assert!(said(&refused).contains("the smallest map of the scene takes about"), "{}", said(&refused));
-}
-
 /// Discs so soft that they pass through each other, whatever the step.
 #[test]
 fn a_scene_that_fails_at_every_step_says_what_was_tried() {

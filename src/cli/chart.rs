@@ -53,7 +53,7 @@ enum Study {
     Stability(StabilityVerb),
 }
 
-/// The error of a scene over its cost, for every way to run it and every step; which way for which wish
+/// The error of positions and energy of a scene over its cost, for every configuration and step, where trajectories can be compared; which is the cheapest for an error
 #[derive(Args)]
 struct WorkPrecisionVerb {
     /// A preset's name, or a scene file
@@ -61,20 +61,20 @@ struct WorkPrecisionVerb {
     /// Overrides a value; may be given several times
     #[arg(long = "set", value_name = "SECTION.KEY=VALUE")]
     overrides: Vec<String>,
-    /// Also clock periods on a machine, for ways whose operations are counted: a preset of `table`, or a machine file
+    /// Also clock periods on a machine, for configurations whose operations are counted: a preset of `table`, or a machine file
     #[arg(long)]
     machine: Option<String>,
-    /// Processor seconds that it may take about; what does not fit is left out and named
+    /// Processor seconds that it may take about; runs that do not fit are left out and named
     #[arg(long, default_value_t = 150, value_parser = clap::value_parser!(u32).range(BUDGET))]
     budget: u32,
-    /// Timed runs of each way and step
+    /// Timed runs of each configuration and step
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(REPEATS))]
     repeats: u16,
-    /// The error of the mean of a quantity, as `chart accuracy` draws it; of positions by default where trajectories can be compared
+    /// Charts the error of the mean of a quantity, as `chart accuracy` does, and not that of positions
     #[arg(long = "of", value_name = "QUANTITY", conflicts_with_all = ["machine", "repeats"])]
     quantity: Option<String>,
     /// Folder for data, tables and figures; by default the scene's name with `.work-precision`, or `.accuracy` for the error of a mean. A study that was
-    /// interrupted goes on there
+    /// interrupted resumes there
     #[arg(long)]
     out: Option<PathBuf>,
 }
@@ -132,7 +132,7 @@ struct StabilityVerb {
     /// Processor seconds that it may take; where these are not enough, there are fewer seeds, values and steps, and shorter runs
     #[arg(long, default_value_t = 300, value_parser = clap::value_parser!(u32).range(BUDGET))]
     budget: u32,
-    /// Folder for data, tables and figures; the scene's name with `.stability` by default. A study that was interrupted goes on
+    /// Folder for data, tables and figures; the scene's name with `.stability` by default. A study that was interrupted resumes
     /// there
     #[arg(long)]
     out: Option<PathBuf>,
@@ -179,8 +179,8 @@ impl WorkPrecisionVerb {
         let (budget, repeats) = (f64::from(self.budget), self.repeats.into());
         let effort = work_precision::Effort { budget, repeats, phases: PHASES, machine };
         let place = Place { name: "work-precision", scene: &self.scene, out: self.out.as_deref() };
-        place.study((common, common.crew), &subject, &options, |journal, progress, stem| {
-            let data = work_precision(&subject, &effort, journal, progress)?;
+        place.study((common, common.crew), &subject, &options, |trial, journal, progress, stem| {
+            let data = work_precision(&subject, &effort, trial, journal, progress)?;
             Ok(work_precision::made(&[(stem, data)]))
         })
     }
@@ -198,7 +198,7 @@ impl AccuracyVerb {
         let place = Place { name: accuracy::NAME, scene: &self.scene, out: self.out.as_deref() };
         let options =
             format!("{} {:?} {:?} budget {}", target.quantity.name, self.error, target.window, self.budget);
-        place.study((common, Crew::One), &case, &options, |journal, progress, stem| {
+        place.study((common, Crew::One), &case, &options, |_, journal, progress, stem| {
             let seconds = f64::from(self.budget) / rayon::current_num_threads() as f64;
             let trial = Trial { watch: &Stopwatch::wall(), stop: signals::asked() };
             let tell = |share: f64| progress(share);
@@ -229,8 +229,8 @@ impl StabilityVerb {
             self.budget
         );
         let place = Place { name: "stability", scene: &self.scene, out: self.out.as_deref() };
-        place.study((common, common.crew), &subject, &options, |journal, progress, stem| {
-            let data = stability(&subject, over, &effort, journal, progress)?;
+        place.study((common, common.crew), &subject, &options, |trial, journal, progress, stem| {
+            let data = stability(&subject, over, &effort, trial, journal, progress)?;
             Ok(stability::made(&[(stem, data)]))
         })
     }
@@ -284,7 +284,7 @@ impl Place<'_> {
         (common, crew): (&Common, Crew),
         case: &Case,
         options: &str,
-        make: impl FnOnce(&Journal, Progress<'_>, String) -> Result<Made, Failure>,
+        make: impl FnOnce(Trial<'_>, &Journal, Progress<'_>, String) -> Result<Made, Failure>,
     ) -> Result<(), Failure> {
         if let Crew::Processes(join) = crew {
             let same = format!("{}\n{:?}\n{:?}", common.command, built(), case.identity(self.name, options));
@@ -308,7 +308,8 @@ impl Place<'_> {
         let bar = progress(common, self.name);
         let start = Instant::now();
         let show = |share: f64| bar.set_position((1e3 * share) as u64);
-        let made = make(&journal, &show, stem)?;
+        let trial = Trial { watch: &Stopwatch::processor(), stop: signals::asked() };
+        let made = make(trial, &journal, &show, stem)?;
         folder.map_or(Ok(()), |folder| written(common, &folder, self.name, &made, start))
     }
 }

@@ -1,4 +1,4 @@
-//! A scene that may be run in several ways: what a study begins with.
+//! A scene that a study begins with, and its configurations.
 
 use super::Choice;
 use crate::results::Identity;
@@ -6,10 +6,10 @@ use sha2::{Digest, Sha256};
 use stripmine_physics::method::{Entry, Methods, Prepared, Until, prepare, vocabularies};
 use stripmine_physics::scene::{Overrides, SceneErrors, Values};
 
-/// The form in which studies keep finished runs; another one whenever these hold other things.
-const JOURNALED: &str = "5";
+/// Format of finished runs in journals; raised whenever their contents change.
+const JOURNALED: &str = "6";
 
-/// A scene with what its method states of the ways to run it.
+/// A scene, its method, and its own configuration.
 pub struct Case {
     what: String,
     /// Overrides as a user typed them; the values have them.
@@ -20,7 +20,7 @@ pub struct Case {
     pub values: Values,
     /// The scene as it was given.
     pub prepared: Prepared,
-    /// How the scene itself is run.
+    /// Its own configuration.
     pub own: Choice,
 }
 
@@ -72,7 +72,7 @@ impl Case {
         self.values.number(self.entry.trials?.step)
     }
 
-    /// How long the scene runs (time); none where its end is a number of events.
+    /// Duration of the scene (time); none where its end is a number of events.
     pub fn duration(&self) -> Option<f64> {
         match self.prepared.schedule.until {
             Until::Time(time) => Some(time),
@@ -81,7 +81,7 @@ impl Case {
         }
     }
 
-    /// What a study of it depends on: the resolved scene, the options and the version of the program.
+    /// Identity of a study: digest of the resolved scene, the options and the version of the program.
     pub fn identity(&self, study: &str, options: &str) -> Identity {
         let mut sum = Sha256::new();
         for part in [study, JOURNALED, options, env!("CARGO_PKG_VERSION"), &self.prepared.scene] {
@@ -93,7 +93,7 @@ impl Case {
         Identity { of: format!("{study} of {}", self.arguments()), digest }
     }
 
-    /// The same scene with further overrides.
+    /// The scene with further overrides.
     pub fn prepared_with(&self, more: &Overrides) -> Result<Prepared, SceneErrors> {
         Ok(prepare(self.values.with(more)?, self.methods)?.0)
     }

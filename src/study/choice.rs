@@ -1,4 +1,4 @@
-//! A way to run a scene: a setting for each axis that its method states.
+//! Configuration of a scene: a setting for each axis of its method.
 
 use stripmine_physics::method::{Axis, Decides, Prepared, Setting};
 use stripmine_physics::scene::Overrides;
@@ -27,7 +27,7 @@ impl Choice {
         })
     }
 
-    /// How a scene itself is run; the first setting where its own is not among those of an axis.
+    /// Configuration of a scene itself; the first setting where its own is not among those of an axis.
     pub fn own(axes: &'static [Axis], prepared: &Prepared) -> Choice {
         let of = |axis: &'static Axis| {
             let own = (axis.own)(prepared).and_then(|name| axis.setting(&name));
@@ -36,7 +36,7 @@ impl Choice {
         Choice(axes.iter().filter_map(of).collect())
     }
 
-    /// The same with some settings, by axis and name.
+    /// Replaces some settings, by axis and name.
     #[must_use]
     pub fn with(&self, settings: &[(&str, &str)]) -> Choice {
         let mut changed = self.clone();
@@ -47,7 +47,7 @@ impl Choice {
         changed
     }
 
-    /// What it is called: the names of its settings.
+    /// Names of its settings.
     pub fn label(&self) -> String {
         self.0.iter().map(|(_, setting)| setting.name).collect::<Vec<_>>().join(" ")
     }
@@ -76,7 +76,7 @@ impl Choice {
         self.of(decides).map(|setting| setting.name).collect()
     }
 
-    /// Whether the settings of a kind are those of another choice.
+    /// True if the settings of a kind are those of another choice.
     pub fn agrees(&self, other: &Choice, decides: Decides) -> bool {
         self.names(decides) == other.names(decides)
     }

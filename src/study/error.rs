@@ -1,4 +1,4 @@
-//! Why a study has no result.
+//! Reasons why a study has no result.
 
 use crate::results::JournalError;
 use stripmine_physics::method::Failure;
@@ -8,7 +8,7 @@ use stripmine_physics::number::significant;
 use stripmine_physics::reported::{Class, Reported};
 use stripmine_physics::scene::SceneErrors;
 
-/// Why a study has no result.
+/// Reason why a study has no result.
 #[derive(Debug, thiserror::Error)]
 pub enum StudyError {
     /// The method states no trials.
@@ -27,12 +27,19 @@ pub enum StudyError {
         needed: f64,
         budget: f64,
     },
-    /// Trajectories mean nothing.
+    /// Errors of positions say nothing of the scene.
     #[error(
-        "noise moves the particles of {0}: runs with different steps follow different trajectories, and errors of positions mean \
-         nothing\n  help: stripmine chart stability judges means; stripmine reproduce --only langevin-accuracy has errors of means over cost"
+        "positions of {scene} cannot be compared: {why}\n  help: chart the error of a mean: stripmine chart accuracy {scene} --of {quantity}"
     )]
-    NoTrajectories(String),
+    NoTrajectories {
+        scene: String,
+        why: String,
+        /// A quantity that has a mean.
+        quantity: &'static str,
+    },
+    /// The user asked for the end. Finished runs are kept.
+    #[error("interrupted; the same command resumes with the runs that were finished")]
+    Interrupted,
     /// The scene is run without vector programs.
     #[error(
         "a step of {0} has no vector programs: discs fly from event to event, nothing acts between particles, or they fit no \
@@ -54,7 +61,7 @@ pub enum StudyError {
     /// Threads that the system does not give.
     #[error("the threads cannot be had: {0}; ask for fewer with --threads")]
     Threads(rayon::ThreadPoolBuildError),
-    /// What the studies of one method are asked and cannot answer.
+    /// Error of the studies of one method.
     #[error("{0}")]
     Own(Box<dyn Reported>),
     /// The scene ends before anything is seen of it.
@@ -94,10 +101,10 @@ pub enum StudyError {
         tried.iter().map(|(what, why)| format!("\n  {what}: {why}")).collect::<String>()
     )]
     EveryRunFails {
-        /// What was tried, and why it failed.
+        /// Runs that were tried, and why they failed.
         tried: Vec<(String, String)>,
     },
-    /// What was finished before cannot be read, or is another scene's.
+    /// The journal cannot be read, or is another scene's.
     #[error(transparent)]
     Journal(#[from] JournalError),
 }
@@ -105,7 +112,9 @@ pub enum StudyError {
 impl Reported for StudyError {
     fn class(&self) -> Class {
         match self {
-            StudyError::OverBeforeOutput { .. } | StudyError::EveryRunFails { .. } => Class::Precondition,
+            StudyError::OverBeforeOutput { .. }
+            | StudyError::EveryRunFails { .. }
+            | StudyError::Interrupted => Class::Precondition,
             StudyError::Threads(_) => Class::InputOutput,
             _ => self.passed_on().map_or(Class::Usage, Reported::class),
         }

@@ -1,18 +1,14 @@
 //! Studies that any method joins by stating its trials: speed against accuracy. They know methods by their entries alone.
 
-mod averages;
+mod alarm;
 mod case;
 mod choice;
-mod collision;
-mod encounters;
 mod error;
 pub mod explain;
-mod growth;
 mod items;
-mod observables;
 mod observed;
-mod orders;
 pub mod rivals;
+mod runs;
 pub mod scaling;
 mod shortened;
 pub mod stability;

@@ -1,4 +1,4 @@
-//! What studies observe of a scene: places of the quantities that its method names in its trials, looked up once.
+//! Quantities that studies observe of a scene: places of those that its method names in its trials, looked up once.
 
 use stripmine_physics::method::observed::{UnknownName, find};
 use stripmine_physics::method::{Quantity, Trials};
@@ -7,11 +7,11 @@ use stripmine_physics::method::{Quantity, Trials};
 #[derive(Debug)]
 pub struct Watched {
     pub name: &'static str,
-    /// Its place among those observed.
+    /// Place among those observed.
     pub place: usize,
-    /// Whether it comes and goes with single contacts, so that it has a mean over independent seeds alone.
+    /// True if it comes and goes with single contacts, so that it has a mean over independent seeds alone.
     pub fluctuates: bool,
-    /// Whether it is a velocity: a mean of it means nothing but beside the speeds.
+    /// True if it is a velocity: a mean of it means nothing but beside the speeds.
     pub is_velocity: bool,
 }
 
@@ -24,7 +24,7 @@ pub struct Balanced {
 }
 
 impl Balanced {
-    /// Its error (energy).
+    /// Error of the balance (energy).
     pub fn error(&self, values: &[f64]) -> f64 {
         values[self.error]
     }
@@ -45,7 +45,7 @@ impl Balanced {
     }
 }
 
-/// What is observed of a scene.
+/// Quantities of a scene.
 #[derive(Debug)]
 pub struct Observed {
     /// Quantities that have a mean in a run.
@@ -55,7 +55,7 @@ pub struct Observed {
 }
 
 impl Observed {
-    /// What the trials of a method name, among what the method observes.
+    /// Quantities that the trials of a method name, among those that it observes.
     pub fn of(trials: &Trials, quantities: &[Quantity]) -> Result<Observed, UnknownName> {
         let places = |names: &[&str]| -> Result<Vec<usize>, UnknownName> {
             names.iter().map(|name| find(quantities, name)).collect()

@@ -24,7 +24,7 @@ pub struct Scaling {
     pub repeats: usize,
     /// How: precision, integrator and the like.
     pub settings: Map<String, Value>,
-    /// Whether the final state has the same bits on all of them.
+    /// True if the final state has the same bits on all of them.
     pub same_bits: bool,
     /// By rising number of threads in all.
     pub by_threads: Vec<OfThreads>,
@@ -64,7 +64,7 @@ pub struct Phase {
     pub name: String,
     /// Nanoseconds of a particle and step, of the best repeat, or of a particle, once, for what is done beside steps.
     pub nanoseconds: Vec<f64>,
-    /// Whether it is done beside steps.
+    /// True if it is done beside steps.
     pub is_beside: bool,
     /// The part of it that does not gain by threads, by Amdahl's law from the fewest and the most threads; below 0 where it gains more than there are
     /// threads. None where there is one number of them, or nothing to be seen.

@@ -1,7 +1,8 @@
-//! A state of a run as studies compare it: particles by id, and what differs between two states of one scene.
+//! A state of a run as studies compare it: particles by id, and differences between two states of one scene.
 
 use serde::{Deserialize, Serialize};
 use stripmine_physics::domain::Domain;
+use stripmine_physics::method::Prepared;
 use stripmine_physics::particles::{Kind, Particle, Particles, in_space};
 
 /// A particle that moves.
@@ -30,7 +31,7 @@ impl State {
         State(grains.iter().map(body).collect())
     }
 
-    /// How many particles move.
+    /// Number of particles that move.
     pub fn len(&self) -> usize {
         self.0.len()
     }
@@ -47,7 +48,7 @@ impl State {
             way.iter().map(|part| part * part).sum::<f64>()
         });
         let (sum, largest) = squares.fold((0.0, 0.0), |(sum, largest): (f64, f64), square| {
-            // A number that is none is the largest distance there is.
+            // NaN is the largest distance there is.
             (sum + square, if square <= largest || largest.is_nan() { largest } else { square })
         });
         [(sum / self.0.len().max(1) as f64).sqrt(), largest.sqrt()]
@@ -92,7 +93,7 @@ impl State {
     }
 }
 
-/// Particles moved along x and y by what `by` says of each that moves (length), by its place among all.
+/// Particles with each that moves displaced along x and y by `by` (length), which is given its place among all.
 pub fn displaced(
     particles: &Particles,
     domain: &Domain,
@@ -105,6 +106,14 @@ pub fn displaced(
         grain.position = in_space(domain.wrapped(position));
     }
     moved
+}
+
+/// A scene whose particles fly for a time longer before what happens first.
+pub fn delayed(scene: &Prepared, late: f64) -> Prepared {
+    let begin = displaced(scene.particles(), &scene.domain, |_, disc| {
+        disc.planar_velocity().map(|part| -late * part)
+    });
+    scene.model.started_from(begin)
 }
 
 #[cfg(test)]
@@ -131,7 +140,7 @@ mod tests {
         let mut domain = Domain::planar([0.0; 2], [10.0; 2], [true, false]);
         let [a, b] = [[[9.5, 1.0], [4.0, 4.0]], [[0.5, 1.0], [4.0, 4.0]]].map(|at| State::of(&particles(at)));
         assert_eq!(a.distance(&b, &domain), [0.5f64.sqrt(), 1.0]);
-        // What is nowhere is as far as can be, whatever comes after it.
+        // A particle that is nowhere is as far as can be.
         let lost = State::of(&particles([[9.5, 1.0], [f64::NAN, 4.0]]));
         assert!(a.distance(&lost, &domain).iter().all(|distance| distance.is_nan()));
         assert_eq!((a.momentum(), a.angular_momentum(&domain, None)), (([6.0, 0.0], 6.0), None));

@@ -1,9 +1,9 @@
-//! The scene of a study, and what its method states of the trials that may be made of it.
+//! Scene of a study, with the trials that its method allows.
 
-use super::observed::Observed;
+use super::observed::{Observed, Watched};
 use super::{Case, Choice, StudyError};
 use std::ops::Deref;
-use stripmine_physics::method::{Every, Methods, Prepared, Setting, Trials, Until};
+use stripmine_physics::method::{Every, Methods, Prepared, Setting, Theory, Trials, Until};
 use stripmine_physics::scene::{Overrides, SceneErrors, UNITS};
 
 /// A scene under study.
@@ -49,31 +49,41 @@ impl Subject {
         Ok(Subject { case, trials, observed, step, steps })
     }
 
-    /// The same scene in a way to run it, with a step (time) and further overrides.
+    /// The scene in a configuration, with a step (time) and further overrides.
     pub fn prepared_as(&self, choice: &Choice, step: f64, more: &Overrides) -> Result<Prepared, SceneErrors> {
-        self.prepared_with(&self.as_of(choice, step, more))
+        self.prepared_with(&self.overrides(choice, step, more))
     }
 
-    /// The same, whatever is foreseen of the step.
+    /// The scene in a configuration, even where theory refuses the step.
     pub fn prepared_at_any_step(
         &self,
         choice: &Choice,
         step: f64,
         more: &Overrides,
     ) -> Result<Prepared, SceneErrors> {
-        (self.trials.at_any_step)(self.values.with(&self.as_of(choice, step, more))?)
+        (self.trials.at_any_step)(self.values.with(&self.overrides(choice, step, more))?)
     }
 
-    fn as_of(&self, choice: &Choice, step: f64, more: &Overrides) -> Overrides {
+    fn overrides(&self, choice: &Choice, step: f64, more: &Overrides) -> Overrides {
         choice.overrides().set(self.trials.step, step).and(more)
     }
 
-    /// The setting of the axis that decides the order, of a way to run it.
-    pub fn theory(&self, setting: &Setting) -> Option<stripmine_physics::method::Theory> {
+    /// Configuration of the reference, or of the second one (1).
+    pub fn reference(&self, number: usize) -> Choice {
+        self.own.with(self.trials.references[number])
+    }
+
+    /// The time of the scene (time).
+    pub fn duration(&self) -> f64 {
+        self.steps as f64 * self.step
+    }
+
+    /// Order of convergence by theory, for a setting of the axis that decides it.
+    pub fn theory(&self, setting: &Setting) -> Option<Theory> {
         (self.trials.theory)(&self.values, &self.prepared, setting)
     }
 
-    /// The unit of a dimension, such as `1/time`, in the units that the scene names; none of a pure number.
+    /// Unit of a dimension, such as `1/time`, in the units that the scene names; none of a pure number.
     pub fn unit(&self, dimension: &str) -> Option<String> {
         let label = self.values.choice(&UNITS).unwrap_or_default();
         match (dimension, label.as_str()) {
@@ -83,12 +93,13 @@ impl Subject {
         }
     }
 
-    /// What distances are measured in (length).
-    pub fn length(&self) -> f64 {
-        (self.trials.length.of)(self.prepared.particles())
+    /// Quantities that have a mean in a run of the scene.
+    pub fn watched(&self) -> impl Iterator<Item = &Watched> {
+        let has_seeds = self.prepared.seed.is_some();
+        self.observed.means.iter().filter(move |watched| has_seeds || !watched.fluctuates)
     }
 
-    /// Whether a mean is of a velocity: it means nothing but beside the speeds.
+    /// True if a mean is of a velocity, which means nothing but beside the speeds.
     pub fn is_velocity(&self, name: &str) -> bool {
         self.observed.means.iter().any(|watched| watched.name == name && watched.is_velocity)
     }

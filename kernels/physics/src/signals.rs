@@ -103,6 +103,11 @@ pub fn whole<R, E>(work: impl FnOnce() -> Result<R, E>) -> Result<R, E> {
     Ok(done)
 }
 
+/// Waits for the end of the process, if a signal is ending it.
+pub fn await_end() {
+    drop(holders());
+}
+
 fn holders() -> MutexGuard<'static, usize> {
     HOLDERS.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -1,9 +1,9 @@
 //! Hits and false alarms of every limit and check over a map.
 
-use super::alarm::{Alarm, Finding};
 use super::dataset::Stability;
 use super::outcome::Cell;
 use crate::frame::{Frame, Rows};
+use crate::study::alarm::{Alarm, Finding};
 
 /// Record of a limit or check over a map.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -84,12 +84,14 @@ pub fn alarms(maps: &[(String, Stability)]) -> Frame {
 mod tests {
     use super::super::outcome::Class;
     use super::*;
+    use crate::study::trial::Cause;
 
     fn cell(class: Class, is_decided: bool, alarms: &[(&str, Finding, f64)]) -> Cell {
         let alarm = |&(check, finding, share): &(&str, Finding, f64)| Alarm {
             check: check.to_owned(),
             finding,
             share: Some(share),
+            message: String::new(),
         };
         Cell { class, what: String::new(), is_decided, alarms: alarms.iter().map(alarm).collect() }
     }
@@ -104,7 +106,7 @@ mod tests {
             cell(Class::Works, false, &[("a", Warned, 9.0)]),
             cell(Class::Silent, true, &[("a", Refused, 4.0), ("b", WarnedByRun, 3.0)]),
             cell(Class::EnergyGrowth, true, &[("a", Warned, 3.0), ("c", Within, 0.9)]),
-            cell(Class::Penetration, true, &[("a", Warned, 1.1)]),
+            cell(Class::Failed(Cause::Penetration), true, &[("a", Warned, 1.1)]),
         ];
         let checks = checks(cells.iter());
         let named = |name: &str, by_run: bool| (name.to_owned(), by_run);

@@ -1,57 +1,56 @@
-//! What came out.
+//! Map of a scene.
 
-use super::alarm::Finding;
 use super::boundary::Edge;
 use super::outcome::{Cell, Class};
 use crate::statistics::median;
 use crate::study::Subject;
+use crate::study::alarm::Finding;
 use stripmine_physics::method::{Beyond, Parameter};
 
-/// The dataset.
+/// Runs of a scene over the step and a parameter, with the edges between classes.
 #[derive(Clone, Debug)]
 pub struct Stability {
-    /// The name of the method.
+    /// Name of the method.
     pub method: &'static str,
-    pub way: String,
+    pub configuration: String,
     pub time_unit: Option<String>,
     /// Its own step (time).
     pub step: f64,
     /// The time of each run (time).
     pub duration: f64,
-    /// What is left out for want of time, in words.
+    /// Parts left out for want of time, in words.
     pub left_out: Option<String>,
-    /// What is varied beside the step.
     pub parameter: Varied,
-    /// Its values, rising.
+    /// Values of the parameter, rising.
     pub values: Vec<f64>,
     /// The steps, rising (time).
     pub steps: Vec<f64>,
-    /// `map[i][j]`: what became of value i with step j, from the first seed.
+    /// `map[i][j]`: value i with step j, from the first seed.
     pub map: Vec<Vec<Cell>>,
     /// Edges at each value.
     pub boundaries: Vec<Boundary>,
-    /// How far apart the two ends of an edge are at most, in parts of the step.
+    /// Largest distance of the two ends of an edge, in parts of the step.
     pub tolerance: f64,
-    /// What theory says of the step.
+    /// Limits of the step by theory.
     pub limits: Vec<Limit>,
     /// Values of the parameter that theory names.
     pub marks: Vec<(f64, String)>,
-    /// The edges of every integrator, at the scene's own value.
+    /// Edges of every integrator, at the scene's own value.
     pub schemes: Vec<SchemeLimit>,
-    /// Values at which nothing is known of what is right, and why.
+    /// Values without a reference, and why.
     pub unjudged: Vec<(f64, String)>,
     /// Seeds of the edges.
     pub seeds: Vec<u64>,
 }
 
-/// What is varied.
+/// Parameter that is varied beside the step.
 #[derive(Clone, Debug)]
 pub struct Varied {
     pub name: &'static str,
     pub label: &'static str,
     /// Its unit; none of a pure number.
     pub unit: Option<String>,
-    /// Whether equal ratios lie at equal distances.
+    /// True if equal ratios lie at equal distances.
     pub is_logarithmic: bool,
 }
 
@@ -63,16 +62,16 @@ impl Varied {
     }
 }
 
-/// The edges at a value, for each seed.
+/// Edges at a value, for each seed.
 #[derive(Clone, Debug)]
 pub struct Boundary {
-    /// Up to which step runs are right.
+    /// Longest steps with which runs are right.
     pub works: Vec<Edge>,
-    /// Up to which step runs come to their end.
+    /// Longest steps with which runs come to their end.
     pub ends: Vec<Edge>,
 }
 
-/// The middle of edges over seeds, with the lowest and the highest (time); none unless every seed has one.
+/// Middle of edges over seeds, with the lowest and the highest (time); none unless every seed has one.
 pub fn over_seeds(edges: &[Edge]) -> Option<[f64; 3]> {
     let steps: Option<Vec<f64>> = edges.iter().map(|edge| edge.step()).collect();
     let mut steps = steps.filter(|steps| !steps.is_empty())?;
@@ -80,48 +79,39 @@ pub fn over_seeds(edges: &[Edge]) -> Option<[f64; 3]> {
     Some([median(steps.iter().copied()), steps[0], steps[steps.len() - 1]])
 }
 
-/// A limit that theory gives.
+/// Limit of the step by theory.
 #[derive(Clone, Debug)]
 pub struct Limit {
     pub name: &'static str,
-    /// What becomes of longer steps.
+    /// Effect of longer steps.
     pub beyond: Beyond,
-    /// Where it comes from, at the last value.
-    pub why: String,
     /// Value and step (time).
     pub points: Vec<(f64, f64)>,
 }
 
-/// The edges of an integrator.
+/// Edges of an integrator.
 #[derive(Clone, Debug)]
 pub struct SchemeLimit {
     pub scheme: String,
     pub edges: Boundary,
-    /// What becomes of the first step that is no longer right, in the first seed.
+    /// Class of the first step that is no longer right, in the first seed.
     pub first: Option<Class>,
-    /// The step beyond which theory says that errors grow (time), and its name.
+    /// Step beyond which theory says that errors grow (time), and its name.
     pub theory: Option<(f64, &'static str)>,
 }
 
-/// How many places of a class there are, and what was said of them.
+/// Places of some classes, counted by the warnings that users get of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Said {
     pub all: usize,
-    /// Of which the program refuses to run the scene.
+    /// The program refuses to run the scene.
     pub refused: usize,
-    /// Of which it warns before the run.
+    /// The program warns before the run.
     pub warned_before: usize,
-    /// Of which the run itself warns, and nothing was said before.
-    pub warned_by_run_alone: usize,
-    /// Of which the run itself warns.
+    /// The run itself warns.
     pub warned_by_run: usize,
-}
-
-impl Said {
-    /// Places of which nothing is said.
-    pub fn unsaid(self) -> usize {
-        self.all - self.refused - self.warned_before - self.warned_by_run_alone
-    }
+    /// No warning, neither before nor by the run.
+    pub unsaid: usize,
 }
 
 impl Stability {
@@ -130,22 +120,22 @@ impl Stability {
         self.map.iter().flatten()
     }
 
-    /// What was said of the places of some classes.
+    /// Counts the places of some classes.
     pub fn said(&self, belongs: impl Fn(&Cell) -> bool) -> Said {
         self.cells().filter(|cell| belongs(cell)).fold(Said::default(), |mut said, cell| {
             said.all += 1;
-            let warned = cell.warned_by_run();
-            said.warned_by_run += usize::from(warned);
+            let is_warned = !cell.warned_by_run().is_empty();
+            said.warned_by_run += usize::from(is_warned);
             match cell.foreseen() {
                 Finding::Refused => said.refused += 1,
                 Finding::Warned => said.warned_before += 1,
-                _ => said.warned_by_run_alone += usize::from(warned),
+                _ => said.unsaid += usize::from(!is_warned),
             }
             said
         })
     }
 
-    /// The smallest step of theory beyond which errors grow, at a value (time), and its name.
+    /// Smallest step of theory beyond which errors grow, at a value (time), and its name.
     pub fn unstable_beyond(&self, value: f64) -> Option<(f64, &'static str)> {
         let unstable = self.limits.iter().filter(|limit| limit.beyond == Beyond::Unstable);
         let at = unstable.filter_map(|limit| {

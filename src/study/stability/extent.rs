@@ -1,4 +1,4 @@
-//! How large a map is, and how long its runs: as much as fits into the time that is given.
+//! Size of a map and length of its runs: as much as fits into the time that is given.
 
 use super::STEPS;
 use super::reference;
@@ -17,7 +17,7 @@ const EDGE: [f64; 2] = [8.0, 8.0 / 4.0];
 /// these were is not recorded. A test holds what is planned (`no_map_takes_more_than_its_time`); none holds what a map takes by the clock.
 const PLANNED: f64 = 0.38;
 
-/// What runs cost.
+/// Costs of runs.
 #[derive(Clone, Copy, Debug)]
 pub struct Costs {
     /// Seconds of a step.
@@ -83,7 +83,7 @@ impl Costs {
 }
 
 impl Extent {
-    /// What is left out for want of time, in words; none where nothing is.
+    /// Parts left out for want of time, in words; none where nothing is.
     pub fn left_out(&self, (size, seeds): (usize, u64), scene: f64) -> Option<String> {
         let mut all = vec![];
         if self.size < size {
@@ -93,7 +93,7 @@ impl Extent {
             all.push(format!("{seeds} seeds of the edges: there are {}", self.seeds));
         }
         if self.own_steps < 0.99 * scene {
-            all.push(format!("what comes after {:.0} of the scene's {scene:.0} steps", self.own_steps));
+            all.push(format!("the time after {:.0} of the scene's {scene:.0} steps", self.own_steps));
         }
         (!all.is_empty()).then(|| all.join("; "))
     }

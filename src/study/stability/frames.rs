@@ -1,6 +1,5 @@
 //! Maps as frames.
 
-use super::alarm::{Alarm, Finding};
 use super::alarms::alarms;
 use super::boundary::Edge;
 use super::dataset::{Boundary, SchemeLimit, Stability, over_seeds};
@@ -8,6 +7,7 @@ use super::outcome::{self, Class};
 use crate::frame::{Cell, Frame, Rows};
 use crate::results::Made;
 use crate::statistics::median;
+use crate::study::alarm::{Alarm, Finding};
 
 type Maps = [(String, Stability)];
 
@@ -56,12 +56,15 @@ fn of_maps(maps: &Maps) -> Frame {
         spreads.collect::<Vec<f64>>()
     };
     let own = |data: &Stability| {
-        data.schemes.iter().find(|scheme| data.way.split(' ').any(|part| part == scheme.scheme)).cloned()
+        data.schemes
+            .iter()
+            .find(|scheme| data.configuration.split(' ').any(|part| part == scheme.scheme))
+            .cloned()
     };
     Rows::of(maps)
         .text("scene", |(name, _)| name)
         .text("method", |(_, data)| data.method)
-        .text("configuration", |(_, data)| &data.way)
+        .text("configuration", |(_, data)| &data.configuration)
         .text("own integrator", |(_, data)| own(data).map_or(String::new(), |it| it.scheme))
         .number("own step", 6, |(_, data)| data.step)
         .text("unit of time", |(_, data)| data.time_unit.clone().unwrap_or_default())
@@ -81,7 +84,7 @@ fn of_maps(maps: &Maps) -> Frame {
             "right and warned of",
             count(|data| {
                 let said = data.said(outcome::Cell::is_right);
-                said.all - said.unsaid() - said.refused
+                said.all - said.unsaid - said.refused
             }),
         )
         .count(
@@ -98,7 +101,7 @@ fn of_maps(maps: &Maps) -> Frame {
             "wrong and caught by the run",
             count(|data| data.said(|cell| cell.class.is_unseen()).warned_by_run),
         )
-        .count("wrong and silent", count(|data| data.said(|cell| cell.class.is_unseen()).unsaid()))
+        .count("wrong and silent", count(|data| data.said(|cell| cell.class.is_unseen()).unsaid))
         .number("edge over theory", 3, theory(0))
         .number("edge over theory, lowest", 3, theory(1))
         .number("edge over theory, highest", 3, theory(2))
@@ -149,17 +152,16 @@ fn schemes(maps: &Maps) -> Frame {
 
 fn said(maps: &Maps) -> Frame {
     let classes = maps.iter().flat_map(|(name, data)| {
-        Class::ALL.map(|(class, _)| (name, class, data.said(|cell| cell.class == class)))
+        Class::BEGUN.map(|class| (name, class, data.said(|cell| cell.class == class)))
     });
-    let counted = classes.filter(|(_, class, said)| said.all > 0 && *class != Class::Refused);
-    Rows::of(counted)
+    Rows::of(classes.filter(|(.., said)| said.all > 0))
         .text("scene", |(name, ..)| *name)
         .text("what becomes of it", |(_, class, _)| class.name())
         .number("places", 0, |(.., said)| said.all as f64)
         .number("refused before", 0, |(.., said)| said.refused as f64)
         .number("warned of before", 0, |(.., said)| said.warned_before as f64)
         .number("warned of by the run", 0, |(.., said)| said.warned_by_run as f64)
-        .number("nothing said", 0, |(_, class, said)| class.ends().then(|| said.unsaid() as f64))
+        .number("nothing said", 0, |(_, class, said)| class.ends().then_some(said.unsaid as f64))
         .frame("said", "What the program says of it")
 }
 
@@ -184,7 +186,7 @@ fn cells(maps: &Maps) -> Frame {
         .text("class", |(.., cell)| cell.class.name())
         .count("decided", |(.., cell)| u64::from(cell.is_decided))
         .text("foreseen", |(.., cell)| foreseen(cell.foreseen()))
-        .text("warned_by_run", |(.., cell)| cell.checks(|it| it == Finding::WarnedByRun).join(", "))
+        .text("warned_by_run", |(.., cell)| cell.warned_by_run().join(", "))
         .text("findings", |(.., cell)| cell.alarms.iter().map(Alarm::words).collect::<Vec<_>>().join(", "))
         .text("what", |(.., cell)| &cell.what)
         .frame("cells", "Every place")

@@ -1,12 +1,11 @@
-//! Where a method works: over the step and a second parameter.
+//! Map of the steps with which a scene works, over a second parameter.
 //!
-//! Every place of a grid is run and judged: what stops it, whether energy comes from nowhere, and whether means over time are
-//! those of runs with a fine step. The edges of what works and of what comes to its end are found by bisection, from several
-//! seeds. What theory says of the step is drawn in, and what the program says of it, before and during a run, is held against
-//! what became of it.
+//! Every place of a grid is run and judged: by the failure that stops it, by energy from nowhere, and by means over time beside
+//! those of runs with a fine step. The edges between classes are found by bisection, from several seeds. Limits of the step by
+//! theory, and warnings before and during a run, are compared with the class of each place.
 
-mod alarm;
 mod alarms;
+mod averages;
 mod boundary;
 mod dataset;
 mod extent;
@@ -14,6 +13,8 @@ mod frames;
 mod outcome;
 mod reference;
 mod survey;
+#[cfg(test)]
+mod tests;
 
 pub use frames::made;
 
@@ -21,24 +22,25 @@ use dataset::{Boundary, Limit, Stability, Varied};
 use outcome::{Cell, Class};
 
 use super::choice::Choice;
+use super::runs::Runs;
+use super::trial::{RunFailure, Trial};
 use super::{StudyError, Subject};
-use crate::results::{Journal, JournalError, Meter, Progress};
+use crate::results::{Journal, Meter, Progress};
 use crate::statistics::median;
-use cpu_time::ProcessTime;
 use extent::Costs;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
-use stripmine_physics::method::{Decides, Parameter, Purpose, probed};
+use stripmine_physics::method::{Decides, Parameter, Purpose};
 use stripmine_physics::number::significant;
-use survey::{Case, Known, Survey};
+use survey::{Survey, Variant};
 
 /// Steps go from this part of the scene's own to this multiple.
 const STEPS: [f64; 2] = [0.5, 128.0];
-/// Steps of a probe at most.
-const PROBED: u64 = 4096;
+/// Seconds of a step and before the first, where none could be timed.
+const SLOW: [f64; 2] = [1e-3, 1e-2];
 /// Failures that an error names at most.
 const TRIED: usize = 8;
 
-/// How much is done.
+/// Extent and accuracy of a map.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
     /// Processor seconds that it may take.
@@ -47,11 +49,11 @@ pub struct Effort {
     pub size: usize,
     /// Seeds of the edges, at most.
     pub seeds: u64,
-    /// How far apart the two ends of an edge are at most, in parts of the step.
+    /// Largest distance of the two ends of an edge, in parts of the step.
     pub tolerance: f64,
 }
 
-/// What is varied, and from where to where.
+/// Parameter that is varied, and its range.
 #[derive(Clone, Copy, Debug)]
 pub struct Over {
     parameter: &'static Parameter,
@@ -59,7 +61,7 @@ pub struct Over {
 }
 
 impl Over {
-    /// What a scene lets vary, by name, or the first that it has a value of; over a range that is asked for, or about the scene's own value.
+    /// Parameter of a name, or the first that the scene has a value of; over a range that is asked for, or about the scene's own value.
     ///
     /// # Errors
     /// [`StudyError`] if it has nothing of that name, or the range is none.
@@ -87,7 +89,7 @@ impl Over {
         Ok(Over { parameter, range })
     }
 
-    /// The name of what is varied.
+    /// Name of the parameter.
     pub fn name(&self) -> &'static str {
         self.parameter.name
     }
@@ -105,40 +107,41 @@ fn ladder([low, high]: [f64; 2], count: usize, is_logarithmic: bool) -> Vec<f64>
     (0..count).map(at).collect()
 }
 
-/// Surveys a scene.
+/// Surveys a scene. Runs that are finished are kept in the journal.
 ///
 /// # Errors
-/// [`StudyError`] if nothing works anywhere, or finished runs cannot be kept.
+/// [`StudyError`] if nothing works anywhere, the user asks for the end, or finished runs cannot be kept.
 pub fn stability(
     subject: &Subject,
     Over { parameter, range }: Over,
     effort: &Effort,
+    trial: Trial<'_>,
     journal: &Journal,
     progress: Progress<'_>,
 ) -> Result<Stability, StudyError> {
     let meter = Meter::new(effort.budget, progress);
+    let runs = Runs { subject, trial, journal, meter: &meter };
     let schemes = schemes(subject);
-    let probed = || Ok::<_, JournalError>(probe(subject, parameter, range));
-    let fits = |costs: &[f64; 2]| costs.iter().all(|cost| cost.is_finite() && *cost > 0.0);
-    let [each, start] = journal.once(|| journal.recall("probe", fits, probed))?;
+    let [each, start] = journal.once(|| probe(&runs, parameter, range))?;
     let (asked, scene) = ((effort.size, effort.seeds), subject.steps as f64);
     let extent = Costs { each, start, schemes: schemes.len() }.extent(effort.budget, asked, scene)?;
     meter.expect(extent.seconds);
     let values = ladder(range, extent.size, parameter.is_logarithmic);
     let steps = ladder(STEPS.map(|factor| factor * subject.step), extent.size, true);
     let duration = extent.own_steps * subject.step;
-    let survey = Survey { subject, parameter, journal, meter: &meter, steps: &steps, duration, each };
     let seeds: Vec<u64> = (1..=extent.seeds).collect();
-    let own = |value: f64| Case { choice: &subject.own, value: Some(value) };
-    let column = |&value: &f64| -> Result<(Vec<Cell>, Boundary, Option<String>), JournalError> {
+    let (runs, tolerance) = (&runs, effort.tolerance);
+    let survey = Survey { runs, parameter, steps: &steps, duration, each, seeds: &seeds, tolerance };
+    let own = |value: f64| Variant { choice: &subject.own, value: Some(value) };
+    let column = |&value: &f64| -> Result<(Vec<Cell>, Boundary, Option<String>), StudyError> {
         let known = survey.known(Some(value))?;
         let cells = steps.par_iter().map(|&step| survey.cell(own(value), &known, step, 1));
-        let cells: Vec<Cell> = cells.collect::<Result<_, JournalError>>()?;
+        let cells: Vec<Cell> = cells.collect::<Result<_, StudyError>>()?;
         let first = |is_so: fn(Class) -> bool| {
             cells.iter().position(|cell| !is_so(cell.class)).unwrap_or(cells.len())
         };
         let guesses = [first(|class| class == Class::Works), first(Class::ends)];
-        let boundary = survey.boundary(own(value), &known, guesses, &seeds, effort.tolerance)?;
+        let boundary = survey.boundary(own(value), &known, guesses)?;
         Ok((cells, boundary, known.err()))
     };
     let columns: Vec<_> = journal.over(&values, column)?;
@@ -151,96 +154,83 @@ pub fn stability(
     if map.iter().flatten().all(|cell| cell.class != Class::Works) {
         return Err(StudyError::EveryRunFails { tried: tried(&values, &steps, &map, parameter) });
     }
-    let known: Known = journal.once(|| survey.known(None))?;
-    let scheme = |scheme: &Choice| survey.scheme(scheme, &known, &seeds, effort.tolerance);
-    let schemes = journal.over(&schemes, scheme)?;
+    let known = journal.once(|| survey.known(None))?;
+    let schemes = journal.over(&schemes, |scheme| survey.scheme(scheme, &known))?;
+    let is_inside = |value: f64| range[0] <= value && value <= range[1];
     Ok(Stability {
         method: subject.entry.vocabulary.keys.method,
-        way: subject.own.label(),
+        configuration: subject.own.label(),
         time_unit: subject.unit("time"),
         step: subject.step,
         duration,
         left_out: extent.left_out(asked, scene),
         parameter: Varied::of(parameter, subject),
         limits: limits(&survey, &values, own),
-        marks: (parameter.marks)(&subject.values).into_iter().filter(|(at, _)| inside(*at, range)).collect(),
+        marks: (parameter.marks)(&subject.values).into_iter().filter(|(at, _)| is_inside(*at)).collect(),
         values,
         steps: steps.clone(),
         map,
         boundaries,
-        tolerance: effort.tolerance,
+        tolerance,
         schemes,
         unjudged,
-        seeds,
+        seeds: seeds.clone(),
     })
 }
 
-fn inside(value: f64, [low, high]: [f64; 2]) -> bool {
-    low <= value && value <= high
-}
-
-/// The scene's own way to run, with every integrator.
+/// Configurations of the scene with every integrator.
 fn schemes(subject: &Subject) -> Vec<Choice> {
     let axes = subject.entry.axes.iter().filter(|axis| axis.decides == Decides::Order);
     axes.flat_map(|axis| axis.settings.iter().map(|setting| subject.own.with(&[(axis.name, setting.name)])))
         .collect()
 }
 
-/// Seconds of a step, and those before the first: the middle over the ends and the middle of what is varied.
-fn probe(subject: &Subject, parameter: &Parameter, range: [f64; 2]) -> [f64; 2] {
-    let of = |value: f64| {
+/// Seconds of a step, and those before the first: the middle over the ends and the middle of the range.
+fn probe(runs: &Runs<'_>, parameter: &Parameter, range: [f64; 2]) -> Result<[f64; 2], StudyError> {
+    let (subject, watch) = (runs.subject, runs.trial.watch);
+    let of = |value: f64| -> Result<[f64; 2], RunFailure> {
         let overrides = (parameter.overrides)(&subject.values, value);
-        let before = ProcessTime::now();
-        let scene = subject.prepared_at_any_step(&subject.own, subject.step, &overrides).ok()?;
-        drop(scene.start(Purpose::Run).ok()?);
-        let start = before.elapsed().as_secs_f64();
-        Some((probed(&scene, subject.steps.min(PROBED)).ok()?, start))
+        let begun = watch.now();
+        let scene = subject.prepared_at_any_step(&subject.own, subject.step, &overrides)?;
+        drop(scene.start(Purpose::Run)?);
+        let start = watch.now() - begun;
+        Ok([runs.probe(&scene)?, start])
     };
-    let found: Vec<(f64, f64)> =
-        ladder(range, 3, parameter.is_logarithmic).into_iter().filter_map(of).collect();
+    let fits =
+        |[each, start]: &[f64; 2]| each.is_finite() && *each > 0.0 && start.is_finite() && *start >= 0.0;
+    let found = ladder(range, 3, parameter.is_logarithmic)
+        .into_iter()
+        .map(|value| runs.recall(&format!("probe|{value:?}"), fits, || of(value)));
+    let found: Vec<Result<[f64; 2], RunFailure>> = found.collect::<Result<_, StudyError>>()?;
+    let found: Vec<[f64; 2]> = found.into_iter().flatten().collect();
     if found.is_empty() {
-        return SLOW;
+        return Ok(SLOW);
     }
-    [median(found.iter().map(|it| it.0)), median(found.iter().map(|it| it.1))]
+    Ok([0, 1].map(|place| median(found.iter().map(|it| it[place]))))
 }
 
-/// Seconds of a step and before the first, where none could be timed.
-const SLOW: [f64; 2] = [1e-3, 1e-2];
-
-fn limits<'c>(survey: &Survey<'_>, values: &[f64], own: impl Fn(f64) -> Case<'c>) -> Vec<Limit> {
+/// Limits of the step by theory, over the values.
+fn limits<'v>(survey: &Survey<'_>, values: &[f64], own: impl Fn(f64) -> Variant<'v>) -> Vec<Limit> {
     let mut limits: Vec<Limit> = vec![];
     for &value in values {
         for found in survey.limits(own(value)) {
             let point = (value, found.step);
             match limits.iter_mut().find(|limit| limit.name == found.name) {
-                Some(limit) => {
-                    limit.points.push(point);
-                    limit.why = found.why;
-                }
-                None => limits.push(Limit {
-                    name: found.name,
-                    beyond: found.beyond,
-                    why: found.why,
-                    points: vec![point],
-                }),
+                Some(limit) => limit.points.push(point),
+                None => limits.push(Limit { name: found.name, beyond: found.beyond, points: vec![point] }),
             }
         }
     }
     limits
 }
 
-/// What was tried, one run a value.
+/// Failures to name, one run a value.
 fn tried(values: &[f64], steps: &[f64], map: &[Vec<Cell>], parameter: &Parameter) -> Vec<(String, String)> {
     let every = values.len().div_ceil(TRIED).max(1);
     let first = |(value, cells): (&f64, &Vec<Cell>)| {
         let Cell { class, what, .. } = cells.first()?;
-        let tried = format!(
-            "{} = {value}, step {}",
-            parameter.name,
-            significant(steps[0], 6),
-            value = significant(*value, 6)
-        );
-        Some((tried, format!("{}: {what}", class.name())))
+        let [value, step] = [*value, steps[0]].map(|it| significant(it, 6));
+        Some((format!("{} = {value}, step {step}", parameter.name), format!("{}: {what}", class.name())))
     };
     values.iter().zip(map).step_by(every).filter_map(first).collect()
 }

@@ -1,80 +1,63 @@
-//! What becomes of a run, and which kind of failure that is.
+//! Outcome of a run, and the class of its failure.
 
-use super::alarm::{Alarm, Finding};
+use super::averages::Means;
 use super::reference::Expected;
-use crate::study::averages::Means;
+use crate::study::alarm::{Alarm, Finding};
+use crate::study::trial::{Cause, RunFailure};
 use serde::{Deserialize, Serialize};
-use stripmine_physics::method::FailureKind;
 
 /// The energy is wrong where its balance is off by more than this part of the energy that passed through.
 pub const DRIFT: f64 = 0.1;
 
-/// What becomes of a run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+/// Class of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
-    /// It comes to its end, and its means are those of the reference.
+    /// Ends, with the means of the reference.
     Works,
-    /// It comes to its end with means that are wrong, and nothing stops it.
+    /// Ends with wrong means, and nothing stops it.
     Silent,
-    /// It comes to its end with less energy than there should be.
+    /// Ends with less energy than there should be.
     EnergyLoss,
-    /// It comes to its end with more energy than there should be.
+    /// Ends with more energy than there should be.
     EnergyGrowth,
-    Penetration,
-    /// A particle moves so far in a step that contacts pass unseen.
-    MaskOutrun,
-    /// Two particles are where one may be.
-    SharedCell,
-    ParticleLost,
-    /// Numbers that are none.
-    NonFinite,
-    Stopped,
-    /// The scene cannot be, whatever the step.
-    Refused,
+    /// Does not end.
+    Failed(Cause),
 }
 
 impl Class {
-    /// Every class with its name, from what works on.
-    pub const ALL: [(Class, &'static str); 11] = [
-        (Class::Works, "works"),
-        (Class::Silent, "wrong but silent"),
-        (Class::EnergyLoss, "energy lost"),
-        (Class::EnergyGrowth, "energy growth"),
-        (Class::Penetration, "penetration"),
-        (Class::MaskOutrun, "mask outrun"),
-        (Class::SharedCell, "two in a cell"),
-        (Class::ParticleLost, "particle lost"),
-        (Class::NonFinite, "non-finite"),
-        (Class::Stopped, "stopped otherwise"),
-        (Class::Refused, "no such scene"),
+    /// Every class of a run that is begun, from `Works` on.
+    pub const BEGUN: [Class; 10] = [
+        Class::Works,
+        Class::Silent,
+        Class::EnergyLoss,
+        Class::EnergyGrowth,
+        Class::Failed(Cause::Penetration),
+        Class::Failed(Cause::MaskOutrun),
+        Class::Failed(Cause::SharedCell),
+        Class::Failed(Cause::ParticleLost),
+        Class::Failed(Cause::NonFinite),
+        Class::Failed(Cause::Other),
     ];
 
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        Class::ALL.iter().find(|(class, _)| *class == self).map_or("", |(_, name)| name)
+    /// Name for a reader.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Class::Works => "works",
+            Class::Silent => "wrong but silent",
+            Class::EnergyLoss => "energy lost",
+            Class::EnergyGrowth => "energy growth",
+            Class::Failed(cause) => cause.name(),
+        }
     }
 
-    /// Whether the run comes to its end.
+    /// True if the run comes to its end.
     pub const fn ends(self) -> bool {
-        matches!(self, Class::Works | Class::Silent | Class::EnergyLoss | Class::EnergyGrowth)
+        !matches!(self, Class::Failed(_))
     }
 
-    /// Whether the run comes to its end and is wrong: what a user may take for a result.
+    /// True if the run comes to its end and is wrong: a user may take it for a result.
     pub const fn is_unseen(self) -> bool {
         self.ends() && !matches!(self, Class::Works)
-    }
-
-    /// The class of what stops a run.
-    pub fn of(kind: FailureKind) -> Class {
-        match kind {
-            FailureKind::NOT_FINITE | FailureKind::OVERFLOW => Class::NonFinite,
-            FailureKind::OUT_OF_BOX => Class::ParticleLost,
-            FailureKind::CONFLICT => Class::SharedCell,
-            FailureKind::TOO_DEEP => Class::Penetration,
-            FailureKind::LONG_STEP => Class::MaskOutrun,
-            _ => Class::Stopped,
-        }
     }
 }
 
@@ -83,33 +66,29 @@ impl Class {
 pub struct Ran {
     /// Findings of the scene before the run.
     pub foreseen: Vec<Alarm>,
-    pub end: End,
+    pub end: Result<Whole, RunFailure>,
 }
 
-/// How a run ended.
+/// A run that came to its end.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub enum End {
-    /// It was never begun, or stopped, and why.
-    Broken(Class, String),
-    Whole {
-        /// Means over its second half.
-        means: Means,
-        /// The root mean square speed over it (length/time).
-        speed: f64,
-        /// The error of its energy over the energy that passed through; none where that is not followed.
-        energy: Option<f64>,
-        /// Warnings of the run.
-        warned: Vec<Alarm>,
-    },
+pub struct Whole {
+    /// Means over its second half.
+    pub means: Means,
+    /// Root mean square speed over it (length/time).
+    pub speed: f64,
+    /// Error of its energy over the energy that passed through; none where that is not followed.
+    pub energy: Option<f64>,
+    /// Warnings of the run.
+    pub warned: Vec<Alarm>,
 }
 
 /// A place of a map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cell {
     pub class: Class,
-    /// What was seen, in a line.
+    /// Reason for the class, in a line.
     pub what: String,
-    /// Whether the class is certain: means of a run that works might have told it from a wrong one.
+    /// True if the class is certain: means of a run that works might have told it from a wrong one.
     pub is_decided: bool,
     /// Findings of every limit and check.
     pub alarms: Vec<Alarm>,
@@ -122,47 +101,45 @@ impl Cell {
         before.max().unwrap_or(Finding::Within)
     }
 
-    /// Names of the checks that found something.
-    pub fn checks(&self, is_meant: impl Fn(Finding) -> bool) -> Vec<&str> {
-        let found = self.alarms.iter().filter(|alarm| is_meant(alarm.finding));
-        found.map(|alarm| alarm.check.as_str()).collect()
+    /// Names of the checks that warned along the run.
+    pub fn warned_by_run(&self) -> Vec<&str> {
+        let warned = self.alarms.iter().filter(|alarm| alarm.finding == Finding::WarnedByRun);
+        warned.map(|alarm| alarm.check.as_str()).collect()
     }
 
-    /// Whether the run itself warned.
-    pub fn warned_by_run(&self) -> bool {
-        self.alarms.iter().any(|alarm| alarm.finding == Finding::WarnedByRun)
-    }
-
-    /// Whether the run works for certain.
+    /// True if the run works for certain.
     pub fn is_right(&self) -> bool {
         self.class == Class::Works && self.is_decided
     }
 }
 
 impl Ran {
-    /// The run held against what is expected of it.
+    /// Compares the run with the means that are expected of it.
     pub fn judged(&self, expected: Option<&Expected>) -> Cell {
-        let decides = || expected.is_some_and(Expected::decides);
-        let cell = |class: Class, what: String, warned: &[Alarm]| Cell {
+        let (class, what) = match &self.end {
+            Err(failure) => (Class::Failed(failure.cause), failure.why.clone()),
+            Ok(whole) => whole.judged(expected),
+        };
+        let warned = self.end.as_ref().map_or(&[][..], |whole| &whole.warned);
+        Cell {
             class,
             what,
-            is_decided: class != Class::Works || decides(),
+            is_decided: class != Class::Works || expected.is_some_and(Expected::decides),
             alarms: [&self.foreseen[..], warned].concat(),
-        };
-        match &self.end {
-            End::Broken(class, what) => cell(*class, what.clone(), &[]),
-            End::Whole { means, energy, warned, .. } => {
-                let drift = energy.unwrap_or(0.0);
-                if drift.abs() > DRIFT || drift.is_nan() {
-                    let class = if drift < 0.0 { Class::EnergyLoss } else { Class::EnergyGrowth };
-                    let what = format!("the energy is off by {:.0} % of what passed through", 100.0 * drift);
-                    return cell(class, what, warned);
-                }
-                match expected.and_then(|expected| expected.worst(means)) {
-                    Some(off) => cell(Class::Silent, off, warned),
-                    None => cell(Class::Works, String::new(), warned),
-                }
-            }
+        }
+    }
+}
+
+impl Whole {
+    fn judged(&self, expected: Option<&Expected>) -> (Class, String) {
+        let drift = self.energy.unwrap_or(0.0);
+        if drift.abs() > DRIFT || drift.is_nan() {
+            let class = if drift < 0.0 { Class::EnergyLoss } else { Class::EnergyGrowth };
+            return (class, format!("the energy is off by {:.0} % of what passed through", 100.0 * drift));
+        }
+        match expected.and_then(|expected| expected.worst(&self.means)) {
+            Some(off) => (Class::Silent, off),
+            None => (Class::Works, String::new()),
         }
     }
 }
@@ -172,8 +149,8 @@ mod tests {
     use super::*;
 
     fn whole(energy: f64) -> Ran {
-        let end = End::Whole { means: Means::new(), speed: 1.0, energy: Some(energy), warned: vec![] };
-        Ran { foreseen: vec![], end }
+        let end = Whole { means: Means::new(), speed: 1.0, energy: Some(energy), warned: vec![] };
+        Ran { foreseen: vec![], end: Ok(end) }
     }
 
     #[test]

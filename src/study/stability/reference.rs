@@ -1,30 +1,30 @@
-//! What is expected of the means of a run that is right: by runs with a fine step, over seeds.
+//! Means that are expected of a run that is right, by runs with a fine step, over seeds.
 
+use super::averages::Means;
 use crate::statistics::{Spread, student};
-use crate::study::averages::Means;
 
 /// Runs that the expectation is made of, each from a seed of its own.
 pub const SEEDS: u64 = 8;
-/// The share of runs that are right and lie within what is expected.
+/// Share of the runs that are right and lie within the interval.
 const WITHIN: f64 = 0.999;
-/// What is off by less than this part of the mean is not called wrong.
+/// A mean that is off by less than this part of itself is not called wrong.
 pub const TOLERANCE: f64 = 0.05;
 /// A mean that is not known to this part of itself tells nothing.
 const KNOWN: f64 = 0.1;
 /// Means that may all be off by more than this part of themselves by chance do not tell a right run from a wrong one.
 const DECISIVE: f64 = 5.0 * TOLERANCE;
 
-/// Between which values the mean of a single run lies, in all but one of a thousand.
+/// Interval in which the mean of a single run lies, in all but one of a thousand.
 #[derive(Clone, Debug, PartialEq)]
 struct Interval {
     observable: String,
     middle: Vec<f64>,
-    /// Of a single value: how far it may be off. Of several: how large the root of the mean square may be.
+    /// Largest distance from the middle: of a single value, or the root of the mean square of several.
     reach: f64,
     scale: f64,
 }
 
-/// What is expected of a run.
+/// Intervals of all means of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expected(Vec<Interval>);
 
@@ -43,14 +43,14 @@ fn middle<'m>(runs: impl Iterator<Item = &'m Vec<f64>>) -> Vec<f64> {
 }
 
 impl Expected {
-    /// By the means of several runs; none of fewer than three. `at_least` is what a mean is held against if it is itself smaller.
+    /// By the means of several runs; none of fewer than three. A mean is compared with itself, or with `at_least` where that is larger.
     pub fn of(runs: &[Means], at_least: impl Fn(&str) -> f64) -> Option<Expected> {
         let first = runs.first().filter(|_| runs.len() > 2)?;
         let interval = |name: &String| Interval::of(name, runs, at_least(name));
         Some(Expected(first.keys().filter_map(interval).collect()))
     }
 
-    /// Whether a wrong mean would be seen: one of them at least is known well enough.
+    /// True if a wrong mean would be seen: one of them at least is known well enough.
     pub fn decides(&self) -> bool {
         self.0.iter().any(|interval| interval.reach <= DECISIVE * interval.scale)
     }
@@ -60,7 +60,7 @@ impl Expected {
         let off = self.0.iter().filter_map(|interval| {
             let value = means.get(&interval.observable)?;
             let off = distance(value, &interval.middle);
-            // What is no number is off, too.
+            // NaN is off, too.
             let is_inside = off <= interval.reach.max(TOLERANCE * interval.scale);
             (!is_inside).then_some((interval, off))
         });
@@ -88,7 +88,7 @@ impl Interval {
             let error = spread.error.filter(|error| *error < KNOWN * scale)?;
             reach_of_one * error
         } else {
-            // How far each is from the middle of the others.
+            // Distance of each from the middle of the others.
             let apart: Vec<f64> = (0..values.len())
                 .map(|own| {
                     let others = values.iter().enumerate().filter(|(other, _)| *other != own);
@@ -133,7 +133,7 @@ mod tests {
         let certain = Expected::of(&runs([[100.0, 50.0]; 8]), |_| 0.0).unwrap();
         let off = |a: f64| certain.worst(&Means::from([("a".to_owned(), vec![a])]));
         assert!(off(104.9).is_none() && off(105.1).is_some());
-        // What is about zero by chance alone tells nothing, but beside what it may be held against.
+        // A mean that is about zero by chance alone tells nothing, but beside a larger value that it is compared with.
         let off = |at_least: f64| {
             let expected = Expected::of(&around([1.0, -1.0], 0.0), |_| at_least).unwrap();
             expected.worst(&Means::from([("a".to_owned(), vec![50.0])])).is_some()

@@ -1,104 +1,107 @@
-//! The runs of a map.
+//! Runs of a map.
 
-use super::alarm::Alarm;
+use super::averages::{self, Averages, LOOKS, Means};
 use super::boundary::{Edge, edge};
 use super::dataset::{Boundary, SchemeLimit};
-use super::outcome::{Cell, Class, End, Ran};
+use super::outcome::{Cell, Class, Ran, Whole};
 use super::reference::{Expected, SEEDS};
-use crate::results::{Journal, JournalError, Meter};
 use crate::statistics::Spread;
-use crate::study::averages::{self, Averages, LOOKS, Means};
+use crate::study::StudyError;
+use crate::study::alarm::Alarm;
 use crate::study::choice::Choice;
-use crate::study::first_line;
-use crate::study::state::displaced;
-use crate::study::subject::Subject;
-use crate::study::trial::{Course, follow};
+use crate::study::runs::Runs;
+use crate::study::state::delayed;
+use crate::study::trial::{Course, RunFailure};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use stripmine_physics::method::{Beyond, Decides, Parameter, Prepared, Purpose, Simulation, StepLimit};
 use stripmine_physics::scene::{Overrides, SEED, SceneErrors};
 
-/// From a seed to the one that confirms what it shows.
+/// Distance from a seed to the one that confirms it.
 const ANOTHER: u64 = 1000;
 
 /// A map under way.
 pub struct Survey<'s> {
-    pub subject: &'s Subject,
+    pub runs: &'s Runs<'s>,
     pub parameter: &'static Parameter,
-    pub journal: &'s Journal,
-    pub meter: &'s Meter<'s>,
     /// The steps, rising (time).
     pub steps: &'s [f64],
-    /// The time of each run (time).
+    /// Time of each run (time).
     pub duration: f64,
     /// Seconds that a step is expected to take.
     pub each: f64,
+    /// Seeds of the edges.
+    pub seeds: &'s [u64],
+    /// Largest distance of the two ends of an edge, in parts of the step.
+    pub tolerance: f64,
 }
 
-/// A scene of a map: the way it is run, and the value of the parameter, none for the scene's own.
+/// Scene of a map: its configuration, and the value of the parameter, none for the scene's own.
 #[derive(Clone, Copy)]
-pub struct Case<'c> {
-    pub choice: &'c Choice,
+pub struct Variant<'v> {
+    pub choice: &'v Choice,
     pub value: Option<f64>,
 }
 
-/// What is held against runs of a case, or why there is nothing.
+/// Means that are expected of the runs of a variant, or the reason why there are none.
 pub type Known = Result<Expected, String>;
 
 impl Survey<'_> {
-    /// The reference of a value: the most accurate way with the smallest step, over seeds.
-    pub fn known(&self, value: Option<f64>) -> Result<Known, JournalError> {
+    /// Reference of a value: the most accurate configuration with the smallest step, over seeds.
+    pub fn known(&self, value: Option<f64>) -> Result<Known, StudyError> {
+        let subject = self.runs.subject;
         let mut why = String::new();
-        for settings in self.subject.trials.references {
-            let choice = self.subject.own.with(settings);
-            let runs = (0..SEEDS)
-                .into_par_iter()
-                .map(|seed| self.run(Case { choice: &choice, value }, self.steps[0], seed + 1));
-            let runs: Vec<Ran> = runs.collect::<Result<_, JournalError>>()?;
-            let means = |ran: &Ran| match &ran.end {
-                End::Whole { means, speed, .. } => Ok((means.clone(), *speed)),
-                End::Broken(_, what) => Err(what.clone()),
-            };
-            match runs.iter().map(means).collect::<Result<(Vec<Means>, Vec<f64>), String>>() {
-                Ok((means, speeds)) => {
+        for number in 0..subject.trials.references.len() {
+            let choice = subject.reference(number);
+            let run = |seed| self.run(Variant { choice: &choice, value }, self.steps[0], seed + 1);
+            let runs: Vec<Ran> = (0..SEEDS).into_par_iter().map(run).collect::<Result<_, StudyError>>()?;
+            let whole: Result<Vec<Whole>, RunFailure> = runs.into_iter().map(|ran| ran.end).collect();
+            match whole {
+                Ok(whole) => {
+                    let (means, speeds): (Vec<Means>, Vec<f64>) =
+                        whole.into_iter().map(|whole| (whole.means, whole.speed)).unzip();
                     let speed = Spread::of(&speeds).mean;
-                    let at_least = |name: &str| if self.subject.is_velocity(name) { speed } else { 0.0 };
+                    let at_least = |name: &str| if subject.is_velocity(name) { speed } else { 0.0 };
                     return Ok(Expected::of(&means, at_least).ok_or_else(|| "too few runs".to_owned()));
                 }
-                Err(what) => why = what,
+                Err(failure) => why = failure.why,
             }
         }
         Ok(Err(why))
     }
 
-    /// What becomes of a case. Means that are off in one run alone may be so by chance: they count if those of another seed are
+    /// Place of a variant and a step. Means that are off in one run alone may be so by chance: they count if those of another seed are
     /// off, too.
-    pub fn cell(&self, case: Case<'_>, known: &Known, step: f64, seed: u64) -> Result<Cell, JournalError> {
+    pub fn cell(
+        &self,
+        variant: Variant<'_>,
+        known: &Known,
+        step: f64,
+        seed: u64,
+    ) -> Result<Cell, StudyError> {
         let expected = known.as_ref().ok();
-        let cell = self.run(case, step, seed)?.judged(expected);
+        let cell = self.run(variant, step, seed)?.judged(expected);
         if cell.class != Class::Silent {
             return Ok(cell);
         }
-        let other = self.run(case, step, seed + ANOTHER)?.judged(expected);
+        let other = self.run(variant, step, seed + ANOTHER)?.judged(expected);
         let is_chance = other.class == Class::Works;
         Ok(if is_chance { Cell { class: Class::Works, what: String::new(), ..cell } } else { cell })
     }
 
-    /// The edges of a case over seeds; `guesses` are the places of the first step that does not work, and that does not end.
+    /// Edges of a variant over seeds; `guesses` are the places of the first step that does not work, and that does not end.
     pub fn boundary(
         &self,
-        case: Case<'_>,
+        variant: Variant<'_>,
         known: &Known,
         guesses: [usize; 2],
-        seeds: &[u64],
-        tolerance: f64,
-    ) -> Result<Boundary, JournalError> {
-        let edges = |guess: usize, is_so: fn(Class) -> bool| -> Result<Vec<Edge>, JournalError> {
+    ) -> Result<Boundary, StudyError> {
+        let edges = |guess: usize, is_so: fn(Class) -> bool| -> Result<Vec<Edge>, StudyError> {
             let of = |&seed: &u64| {
-                edge(self.steps, guess, tolerance, |step| {
-                    self.cell(case, known, step, seed).map(|cell| is_so(cell.class))
+                edge(self.steps, guess, self.tolerance, |step| {
+                    self.cell(variant, known, step, seed).map(|cell| is_so(cell.class))
                 })
             };
-            seeds.iter().map(of).collect()
+            self.seeds.iter().map(of).collect()
         };
         Ok(Boundary {
             works: edges(guesses[0], |class| class == Class::Works)?,
@@ -106,24 +109,17 @@ impl Survey<'_> {
         })
     }
 
-    /// The edges of an integrator at the scene's own value.
-    pub fn scheme(
-        &self,
-        choice: &Choice,
-        known: &Known,
-        seeds: &[u64],
-        tolerance: f64,
-    ) -> Result<SchemeLimit, JournalError> {
-        let case = Case { choice, value: None };
-        let middle = [self.steps.len() / 2; 2];
-        let edges = self.boundary(case, known, middle, seeds, tolerance)?;
-        let first = match (edges.works.first(), seeds.first()) {
+    /// Edges of an integrator at the scene's own value.
+    pub fn scheme(&self, choice: &Choice, known: &Known) -> Result<SchemeLimit, StudyError> {
+        let variant = Variant { choice, value: None };
+        let edges = self.boundary(variant, known, [self.steps.len() / 2; 2])?;
+        let first = match (edges.works.first(), self.seeds.first()) {
             (Some(Edge::Between([_, fails])), Some(&seed)) => {
-                Some(self.cell(case, known, *fails, seed)?.class)
+                Some(self.cell(variant, known, *fails, seed)?.class)
             }
             _ => None,
         };
-        let unstable = self.limits(case).into_iter().filter(|limit| limit.beyond == Beyond::Unstable);
+        let unstable = self.limits(variant).into_iter().filter(|limit| limit.beyond == Beyond::Unstable);
         let least = unstable.min_by(|a, b| a.step.total_cmp(&b.step));
         Ok(SchemeLimit {
             scheme: choice.names(Decides::Order).join(" "),
@@ -133,79 +129,63 @@ impl Survey<'_> {
         })
     }
 
-    /// What theory says of the step of a case.
-    pub fn limits(&self, case: Case<'_>) -> Vec<StepLimit> {
-        let scene = self.prepared(case, self.subject.step, 1);
+    /// Limits of the step of a variant by theory.
+    pub fn limits(&self, variant: Variant<'_>) -> Vec<StepLimit> {
+        let scene = self.prepared(variant, self.runs.subject.step, 1);
         scene.map_or(vec![], |scene| scene.step_limits)
     }
 
-    fn overrides(&self, case: Case<'_>, seed: u64) -> Overrides {
-        let varied = |value| (self.parameter.overrides)(&self.subject.values, value);
-        let overrides = case.value.map_or_else(Overrides::new, varied);
-        if self.subject.prepared.seed.is_some() { overrides.set(&SEED, seed) } else { overrides }
-    }
-
-    /// The scene of a case, whatever its step.
-    fn prepared(&self, case: Case<'_>, step: f64, seed: u64) -> Result<Prepared, SceneErrors> {
-        let overrides = self.overrides(case, seed);
-        let scene = self.subject.prepared_at_any_step(case.choice, step, &overrides)?;
-        if self.subject.prepared.seed.is_some() {
-            return Ok(scene);
+    /// Scene of a variant, even where theory refuses the step.
+    fn prepared(&self, variant: Variant<'_>, step: f64, seed: u64) -> Result<Prepared, SceneErrors> {
+        let subject = self.runs.subject;
+        let varied = |value| (self.parameter.overrides)(&subject.values, value);
+        let overrides = variant.value.map_or_else(Overrides::new, varied);
+        if subject.prepared.seed.is_some() {
+            return subject.prepared_at_any_step(variant.choice, step, &overrides.set(&SEED, seed));
         }
-        // Where a start has no seed, contacts begin elsewhere in a step.
+        let scene = subject.prepared_at_any_step(variant.choice, step, &overrides)?;
+        // A start without a seed is varied by the part of a step at which contacts begin.
         let phase = (seed - 1) as f64 / (SEEDS as f64 + 0.5);
-        let late = displaced(scene.particles(), &scene.domain, |_, disc| {
-            disc.planar_velocity().map(|part| -phase * step * part)
-        });
-        Ok(scene.model.started_from(late))
+        Ok(delayed(&scene, phase * step))
     }
 
-    fn run(&self, case: Case<'_>, step: f64, seed: u64) -> Result<Ran, JournalError> {
-        let value = case.value.map_or("own".to_owned(), |value| format!("{value:?}"));
-        let key = format!("run|{}|{value}|{step:?}|{seed}", case.choice.label());
-        let fits = |ran: &Ran| match &ran.end {
-            End::Broken(..) => true,
-            End::Whole { means, speed, .. } => averages::are_of(self.subject, means) && speed.is_finite(),
+    fn run(&self, variant: Variant<'_>, step: f64, seed: u64) -> Result<Ran, StudyError> {
+        let value = variant.value.map_or("own".to_owned(), |value| format!("{value:?}"));
+        let key = format!("run|{}|{value}|{step:?}|{seed}", variant.choice.label());
+        let fits = |ran: &Ran| {
+            let is_ours =
+                |whole: &Whole| averages::are_of(self.runs.subject, &whole.means) && whole.speed.is_finite();
+            ran.end.as_ref().map_or(true, is_ours)
         };
-        self.journal.recall(&key, fits, || Ok(self.ran(case, step, seed)))
+        let ran = self.runs.recall(&key, fits, || self.ran(variant, step, seed))?;
+        Ok(ran.unwrap_or_else(|refused| Ran { foreseen: vec![], end: Err(refused) }))
     }
 
-    fn ran(&self, case: Case<'_>, step: f64, seed: u64) -> Ran {
-        let scene = match self.prepared(case, step, seed) {
-            Ok(scene) => scene,
-            Err(errors) => {
-                let why = errors.0.first().map_or(String::new(), |error| error.message.clone());
-                return Ran { foreseen: vec![], end: End::Broken(Class::Refused, why) };
-            }
-        };
+    fn ran(&self, variant: Variant<'_>, step: f64, seed: u64) -> Result<Ran, RunFailure> {
+        let subject = self.runs.subject;
+        let scene = self.prepared(variant, step, seed)?;
         let foreseen = Alarm::before(&scene);
-        let steps = (self.duration / step).round() as u64;
-        let course = Course { steps, looks: LOOKS, each: self.each };
-        let mut averages = Averages::new(self.subject, scene.domain);
-        let (mut energy, mut scale, mut warned, mut looks) = (None, 0.0, vec![], 0);
-        let see = |simulation: &dyn Simulation| {
+        let course = Course { steps: (self.duration / step).round() as u64, looks: LOOKS, each: self.each };
+        let mut averages = Averages::new(subject, scene.domain);
+        let (mut energy, mut scale) = (None, 0.0);
+        let look = |simulation: &dyn Simulation| {
             let values = simulation.observe();
-            if averages.are_due() {
-                averages.add(simulation, &values);
-            } else {
-                averages.pass();
-            }
-            if let Some(balance) = &self.subject.observed.balance {
+            averages.look(simulation, &values);
+            if let Some(balance) = &subject.observed.balance {
                 scale = f64::max(scale, balance.energies(&values) + balance.inputs(&values));
                 energy = Some(balance.error(&values));
             }
-            if looks == LOOKS {
-                warned = simulation.warnings().iter().map(Alarm::of_run).collect();
-            }
-            looks += 1;
         };
-        let end = match follow(&scene, Purpose::Run, course, None, self.meter, see) {
-            Ok(_) => {
-                let energy = energy.filter(|_| scale > 0.0).map(|error| error / scale);
-                End::Whole { speed: averages.speed(), means: averages.means(), energy, warned }
-            }
-            Err(failure) => End::Broken(Class::of(failure.kind), first_line(&failure.what())),
+        let end = match self.runs.follow(&scene, Purpose::Run, course, look) {
+            Err(failure) if failure.is_interruption() => return Err(failure),
+            Err(failure) => Err(failure),
+            Ok(end) => Ok(Whole {
+                energy: energy.filter(|_| scale > 0.0).map(|error| error / scale),
+                speed: averages.speed,
+                means: averages.means,
+                warned: end.warnings().iter().map(Alarm::of_run).collect(),
+            }),
         };
-        Ran { foreseen, end }
+        Ok(Ran { foreseen, end })
     }
 }

@@ -1,26 +1,26 @@
-//! Trials: runs of a scene that a study makes, looked at on the way.
+//! Trials: runs of a scene that a study makes, observed on the way.
 
 pub(super) mod any_number;
+mod failure;
 mod pairs;
 mod sample;
 mod stopwatch;
 
+pub use failure::{Cause, RunFailure};
 pub use pairs::{Compared, Paired, TOGETHER, Window, pairs, part, steady};
 pub use sample::{Known, ROWS, Sample, Span};
 pub use stopwatch::Stopwatch;
 
-use super::state::State;
-use crate::model::clock::{Clock, Work};
-use crate::model::machine::MachineModel;
 use crate::results::Meter;
-use std::sync::atomic::AtomicBool;
-use std::time::Duration;
-use stripmine_physics::method::{Failure, Prepared, Purpose, Simulation, Until};
+use std::sync::atomic::{AtomicBool, Ordering};
+use stripmine_physics::method::{Prepared, Purpose, Simulation, Until};
 
-/// Repeats are timed over at least this long.
-const LONG_TOGETHER: Duration = Duration::from_millis(1);
+/// Seconds of a probe at least.
+const PROBE: f64 = 2e-3;
+/// Seconds that the repeats of a short run take together at least.
+const TOGETHER_AT_LEAST: f64 = 1e-3;
 
-/// How trials are timed, and ended before their time.
+/// Clock of trials, and the flag that ends them before their time.
 #[derive(Clone, Copy, Debug)]
 pub struct Trial<'t> {
     /// Seconds that they take.
@@ -29,14 +29,7 @@ pub struct Trial<'t> {
     pub stop: &'t AtomicBool,
 }
 
-/// The end of a run.
-pub struct End {
-    pub state: State,
-    /// Clock periods of a step on a machine, the mean over the looks; none where no operations are counted.
-    pub clocks: Option<f64>,
-}
-
-/// How far a run goes.
+/// Length of a run, and the moments at which it is observed.
 #[derive(Clone, Copy, Debug)]
 pub struct Course {
     pub steps: u64,
@@ -46,62 +39,71 @@ pub struct Course {
     pub each: f64,
 }
 
-/// Runs a scene; `look` sees it, the first time before the first step, with the quantities observed.
-pub fn follow(
-    prepared: &Prepared,
-    purpose: Purpose,
-    course: Course,
-    machine: Option<&MachineModel>,
-    meter: &Meter<'_>,
-    mut look: impl FnMut(&dyn Simulation),
-) -> Result<End, Failure> {
-    let mut simulation = prepared.start(purpose)?;
-    let mut clocks = vec![];
-    for at in 0..=course.looks {
-        advance(simulation.as_mut(), course.steps * at / course.looks.max(1), course.each, meter)?;
-        look(simulation.as_ref());
-        clocks.extend(machine.and_then(|machine| clock_periods(machine, simulation.as_ref())));
+impl Trial<'_> {
+    /// Runs a scene and returns its end. `look` sees it at every look, and before the first step.
+    ///
+    /// # Errors
+    /// [`RunFailure`] if it breaks, or the user asks for the end.
+    pub fn follow(
+        &self,
+        prepared: &Prepared,
+        purpose: Purpose,
+        course: Course,
+        meter: &Meter<'_>,
+        mut look: impl FnMut(&dyn Simulation),
+    ) -> Result<Box<dyn Simulation>, RunFailure> {
+        let mut simulation = prepared.start(purpose)?;
+        let mut done = 0;
+        for at in 0..=course.looks {
+            let step = course.steps * at / course.looks.max(1);
+            self.advance_to_step(simulation.as_mut(), step)?;
+            meter.add(course.each * (step - done) as f64);
+            done = step;
+            look(simulation.as_ref());
+        }
+        Ok(simulation)
     }
-    let mean = clocks.iter().sum::<f64>() / clocks.len() as f64;
-    Ok(End { state: State::of(&simulation.particles()), clocks: (!clocks.is_empty()).then_some(mean) })
-}
 
-/// Goes on up to a step; what is done is heard at least twice a second, as far as steps take as long as expected.
-pub fn advance(
-    simulation: &mut dyn Simulation,
-    end: u64,
-    each: f64,
-    meter: &Meter<'_>,
-) -> Result<(), Failure> {
-    let stride = ((0.3 / each.max(1e-12)) as u64).max(1);
-    let mut done = simulation.clock().steps;
-    while done < end {
-        let next = (done + stride).min(end);
-        simulation.advance(&[Until::Steps(next)], &AtomicBool::new(false))?;
-        meter.add(each * (next - done) as f64);
-        done = next;
+    /// Advances a simulation to a step, counted from its start.
+    ///
+    /// # Errors
+    /// [`RunFailure`] if it breaks, or the user asks for the end.
+    pub fn advance_to_step(&self, simulation: &mut dyn Simulation, step: u64) -> Result<(), RunFailure> {
+        self.watch.during(simulation, |it| it.advance(&[Until::Steps(step)], self.stop))?;
+        if self.stop.load(Ordering::Relaxed) { Err(RunFailure::interrupted()) } else { Ok(()) }
     }
-    Ok(())
-}
 
-/// Processor seconds of a run of that many steps, over all threads; short runs are made again and again.
-pub fn timed(prepared: &Prepared, course: Course, meter: &Meter<'_>) -> Result<f64, Failure> {
-    let (mut spent, mut runs) = (Duration::ZERO, 0);
-    while spent < LONG_TOGETHER {
+    /// Seconds of a step, over the first steps of a run, `most` at most.
+    ///
+    /// # Errors
+    /// [`RunFailure`] if it breaks, or the user asks for the end.
+    pub fn seconds_of_a_step(&self, prepared: &Prepared, most: u64) -> Result<f64, RunFailure> {
         let mut simulation = prepared.start(Purpose::Measurement)?;
-        let before = cpu_time::ProcessTime::now();
-        advance(simulation.as_mut(), course.steps, course.each, meter)?;
-        spent += before.elapsed();
-        runs += 1;
+        let begun = self.watch.now();
+        let mut steps = 1;
+        loop {
+            self.advance_to_step(simulation.as_mut(), steps)?;
+            let spent = self.watch.now() - begun;
+            if spent > PROBE || steps >= most {
+                return Ok(spent / steps as f64);
+            }
+            steps = (2 * steps).min(most);
+        }
     }
-    Ok(spent.as_secs_f64() / f64::from(runs))
-}
 
-/// Clock periods of the last step by the source's clock; none where operations are not counted.
-fn clock_periods(machine: &MachineModel, simulation: &dyn Simulation) -> Option<f64> {
-    let operations = simulation.operations();
-    let is_counted = !operations.is_empty();
-    let clocks =
-        operations.into_iter().map(|(counts, n)| Clock::Paper.clocks(machine, &Work::from(counts), n));
-    is_counted.then(|| clocks.sum())
+    /// Seconds of a run of some steps without its start; short runs are repeated.
+    ///
+    /// # Errors
+    /// [`RunFailure`] if it breaks, or the user asks for the end.
+    pub fn seconds_of_a_run(&self, prepared: &Prepared, steps: u64) -> Result<f64, RunFailure> {
+        let (mut spent, mut runs) = (0.0, 0);
+        while spent < TOGETHER_AT_LEAST {
+            let mut simulation = prepared.start(Purpose::Measurement)?;
+            let begun = self.watch.now();
+            self.advance_to_step(simulation.as_mut(), steps)?;
+            spent += self.watch.now() - begun;
+            runs += 1;
+        }
+        Ok(spent / f64::from(runs))
+    }
 }

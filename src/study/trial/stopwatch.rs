@@ -1,5 +1,6 @@
-//! Time as trials see it: that of the wall, or, in tests, one that is made of the work done.
+//! Time as trials see it: that of the wall, of the processor, or, in tests, one that is made of the work done.
 
+use cpu_time::ProcessTime;
 #[cfg(test)]
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
@@ -12,6 +13,7 @@ pub struct Stopwatch(Kind);
 #[derive(Debug)]
 enum Kind {
     Wall(Instant),
+    Processor(ProcessTime),
     /// Nanoseconds so far, and those of a unit of work.
     #[cfg(test)]
     Made(AtomicU64, f64),
@@ -21,6 +23,11 @@ impl Stopwatch {
     /// Of the wall; begins now.
     pub fn wall() -> Stopwatch {
         Stopwatch(Kind::Wall(Instant::now()))
+    }
+
+    /// Of the processor, over all threads of this process; begins now.
+    pub fn processor() -> Stopwatch {
+        Stopwatch(Kind::Processor(ProcessTime::now()))
     }
 
     /// Made of work: each unit of [`Simulation::work`] takes so many nanoseconds.
@@ -33,6 +40,7 @@ impl Stopwatch {
     pub fn now(&self) -> f64 {
         match &self.0 {
             Kind::Wall(begun) => begun.elapsed().as_secs_f64(),
+            Kind::Processor(begun) => begun.elapsed().as_secs_f64(),
             #[cfg(test)]
             Kind::Made(nanoseconds, _) => 1e-9 * nanoseconds.load(Ordering::Relaxed) as f64,
         }

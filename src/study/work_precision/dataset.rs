@@ -1,119 +1,116 @@
-//! What came out.
+//! Errors and costs of a scene.
 
+use super::collision::Collision;
+use super::encounters::Encounters;
+use super::growth::{COMPARABLE, Growth};
 use super::measures::{Errors, Measure};
+use super::orders::Fitted;
 use super::plan::Plan;
 use crate::statistics::median;
-use crate::study::collision::Collision;
-use crate::study::encounters::Encounters;
-use crate::study::growth::{COMPARABLE, Growth};
-use crate::study::observables::Observables;
-use crate::study::orders::Fitted;
+use crate::study::trial::RunFailure;
 use serde::{Deserialize, Serialize};
 
-/// The dataset.
+/// Error over cost of a scene, for its configurations and steps.
 #[derive(Clone, Debug)]
 pub struct WorkPrecision {
     /// Particles that move.
     pub particles: usize,
-    /// What distances are measured in.
+    /// Unit of distances.
     pub unit: String,
-    /// The unit of time.
     pub time_unit: Option<String>,
     /// Its own step (time).
     pub step: f64,
-    /// How it runs itself.
+    /// Label of its own configuration.
     pub own: String,
-    /// How long its trajectories are comparable.
     pub growth: Growth,
-    /// What was run.
     pub plan: Plan,
     /// The time that is compared (time).
     pub duration: f64,
-    /// What happens to a particle in the time that is compared.
+    /// Events of a particle in that time.
     pub encounters: Encounters,
-    /// Why no way is recommended: too little happens in the time that is compared; none where enough does.
+    /// Reason why no configuration is recommended: too little happens in the time that is compared; none where enough does.
     pub undecided: Option<String>,
-    /// The reference.
     pub reference: Reference,
-    /// Every way to run it.
-    pub ways: Vec<Way>,
-    /// Every run.
+    pub configurations: Vec<Configuration>,
     pub runs: Vec<Run>,
-    /// How errors fall with the step.
     pub orders: Vec<Order>,
-    /// Means over time, where the scene has seeds.
-    pub observables: Option<Observables>,
-    /// What comes out of a collision, where the scene is one of two discs.
+    /// Outcomes of the collision, where the scene is one of two discs.
     pub collision: Option<Collision>,
-    /// The machine of the clock periods.
+    /// Machine of the clock periods.
     pub machine: Option<String>,
-    /// Seeds of the means.
-    pub seeds: Vec<u64>,
 }
 
 /// Diagrams, each with a name for its rows.
 pub type Scenes = [(String, WorkPrecision)];
 
 impl WorkPrecision {
-    /// The integrator of a configuration.
+    /// Integrator of a configuration.
     pub fn scheme(&self, label: &str) -> &str {
-        self.ways.iter().find(|way| way.label == label).map_or("", |way| &way.scheme)
+        self.configurations.iter().find(|it| it.label == label).map_or("", |it| &it.scheme)
+    }
+
+    /// Configuration of a run.
+    pub fn of(&self, run: &Run) -> &Configuration {
+        &self.configurations[run.configuration]
     }
 }
 
-/// What the runs are held against.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+/// Runs that the others are compared with.
+#[derive(Clone, Debug)]
 pub struct Reference {
-    /// The way it is run, and the one of the second.
-    pub ways: [String; 2],
+    /// Labels of its configuration, and of the second one.
+    pub configurations: [String; 2],
     /// Its step (time).
     pub step: f64,
-    /// By how much it differs from one with twice the step.
+    /// Difference to a run with twice the step.
     pub halving: Errors,
-    /// By how much it differs from the second one.
+    /// Difference to the second configuration.
     pub second: Errors,
     /// Its own error: the larger of the two, and its own error of the balance.
     pub floor: Errors,
 }
 
-/// A way to run the scene.
+/// A setting for each axis of the method.
 #[derive(Clone, Debug)]
-pub struct Way {
-    /// Its settings in a line.
+pub struct Configuration {
+    /// All settings.
     pub label: String,
-    /// The setting that decides the order.
+    /// Settings that decide the order.
     pub scheme: String,
-    /// The settings that decide the digits.
+    /// Settings that decide the precision.
     pub digits: String,
-    /// The settings that decide the cost alone.
+    /// Settings that decide the cost alone.
     pub cost: String,
-    /// Whether it costs what the scene's own does: search and execution are the scene's own.
+    /// True if search and execution are the scene's own.
     pub is_primary: bool,
-    /// Whether it has the scene's own scheme and digits.
+    /// True if integrator and precision are the scene's own.
     pub is_own_arithmetic: bool,
-    /// Processor seconds of a step, by its first steps.
-    pub each: Option<f64>,
-    /// Why the scene cannot be run so.
-    pub refused: Option<String>,
+    /// Seconds of a step, by its first steps, or the reason why the scene cannot be run so.
+    pub each: Result<f64, RunFailure>,
 }
 
 /// A run.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug)]
 pub struct Run {
-    /// The place of its way.
-    pub way: usize,
+    /// Place of its configuration.
+    pub configuration: usize,
     /// The step (time).
     pub step: f64,
     /// The step is the scene's own times two to this power.
     pub power: i32,
-    /// Its errors, or why it broke.
-    pub outcome: Result<Errors, String>,
-    /// What speaks against it: a limit of the step by theory, a check, a warning of the run.
+    pub outcome: Result<Finished, RunFailure>,
+    /// Processor seconds for a unit of time in each repeat.
+    pub costs: Vec<f64>,
+}
+
+/// Findings of a run that came to its end.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Finished {
+    pub errors: Errors,
+    /// Objections to it: a limit of the step by theory, a check, a warning of the run.
     pub objections: Vec<String>,
     /// Clock periods for a unit of time; none where no operations are counted.
     pub clocks: Option<f64>,
-    /// Processor seconds for a unit of time in each repeat.
-    pub costs: Vec<f64>,
 }
 
 impl Run {
@@ -124,29 +121,33 @@ impl Run {
 
     /// An error.
     pub fn error(&self, measure: Measure) -> Option<f64> {
-        self.outcome.as_ref().ok()?.get(&measure).copied()
+        self.outcome.as_ref().ok()?.errors.get(&measure).copied()
     }
 
-    /// Whether nothing speaks against it.
+    /// Objections to it, in words; empty where there are none.
+    pub fn objections(&self) -> String {
+        self.outcome.as_ref().map_or(String::new(), |finished| finished.objections.join("; "))
+    }
+
+    /// True if it came to its end and there is no objection.
     pub fn is_sound(&self) -> bool {
-        self.objections.is_empty()
+        self.outcome.as_ref().is_ok_and(|finished| finished.objections.is_empty())
     }
 
-    /// Whether its trajectories have parted from the reference's.
+    /// True if its trajectories have parted from the reference's.
     pub fn is_lost(&self) -> bool {
         self.error(Measure::Position).is_some_and(|error| error > COMPARABLE)
     }
 }
 
-/// How an error falls with the step.
+/// Power of the step with which an error falls.
 #[derive(Clone, Debug)]
 pub struct Order {
-    /// The way.
-    pub way: usize,
-    /// The error.
+    /// Place of the configuration.
+    pub configuration: usize,
     pub measure: Measure,
-    /// What was fitted; none through too few points.
+    /// Through the measured errors; none through too few points.
     pub fitted: Option<Fitted>,
-    /// What theory says, with the reason.
+    /// By theory, with the reason.
     pub theory: Option<(f64, &'static str)>,
 }

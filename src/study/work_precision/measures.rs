@@ -1,4 +1,4 @@
-//! How wrong a run is.
+//! Errors of a run.
 
 use crate::study::state::State;
 use serde::{Deserialize, Serialize};
@@ -30,7 +30,7 @@ impl Measure {
         Measure::AngularMomentum,
     ];
 
-    /// What it is called, with its unit.
+    /// Name with its unit.
     pub const fn name(self) -> &'static str {
         match self {
             Measure::Position => "position, RMS",
@@ -42,10 +42,10 @@ impl Measure {
     }
 }
 
-/// The errors of a run by measure; those that the scene does not have are not in it.
+/// Errors of a run by measure, without those that the scene does not have.
 pub type Errors = std::collections::BTreeMap<Measure, f64>;
 
-/// The errors of a state that can be seen from the reference's; distances are given in a `length`.
+/// Errors of a state that follow from the reference's; distances are given in a `length`.
 pub fn errors(
     state: &State,
     reference: &State,

@@ -1,174 +1,168 @@
-//! Speed against accuracy: the error of a scene over its cost, for every way to run it and every step.
+//! Speed against accuracy: the error of positions and energy of a scene over its cost, for every configuration and every step.
 //!
-//! First the growth of a small disturbance says up to which time trajectories are comparable. A reference with halved steps,
-//! and one by another integrator, say what the error of the reference is. Then every way is run with the scene's own step, with
+//! The growth of a small disturbance gives the time up to which trajectories are comparable. A reference with a fraction of the
+//! step, compared with one by another integrator, has a known error. Then every configuration is run with the scene's own step, with
 //! smaller ones down to the reference's error and with larger ones until it breaks, and timed in alternating repeats.
 
+mod collision;
 mod conclusions;
 mod dataset;
+mod encounters;
 mod engine;
 mod frames;
 mod front;
+mod growth;
 mod measures;
+mod orders;
 mod plan;
 mod points;
+#[cfg(test)]
+mod tests;
 
-use dataset::WorkPrecision;
+use dataset::{Configuration, Run, WorkPrecision};
 pub use frames::made;
 
 use super::choice::Choice;
-use super::encounters::{Encounters, encounters};
-use super::growth::{EndedBy, Growth, HALVINGS, growth, own_in_full_digits};
-use super::observables::SEEDS;
+use super::runs::Runs;
+use super::trial::Trial;
 use super::{StudyError, Subject};
 use crate::model::machine::MachineModel;
-use crate::results::{Journal, JournalError, Meter, Progress};
+use crate::results::{Journal, Meter, Progress};
 use crate::statistics::median;
-use engine::{Work, probes, way};
+use collision::collision;
+use encounters::{Encounters, encounters};
+use engine::{Planned, configurations};
+use growth::{EndedBy, Growth, growth};
 use plan::{COARSEST, plan};
-use std::time::Instant;
 use stripmine_physics::number::significant;
 
-/// The share of the time that the growth takes at most.
+/// Share of the time that the growth takes at most.
 const GROWTH_SHARE: f64 = 0.1;
-/// The share that means over seeds take at most.
-const MEANS_SHARE: f64 = 0.2;
-/// Contacts, or turns of its motion, that a particle has at least in a time from which a way is recommended.
+/// Contacts, or turns of its motion, that a particle has at least in a time from which a configuration is recommended.
 const FEW: f64 = 3.0;
+/// Part of the time of a scene for which its trajectories are comparable at least, lest they part at once.
+const USEFUL: f64 = 0.1;
+/// Steps of a collision go up to this power of two times the scene's own.
+const COARSEST_COLLISION: i32 = 2;
 /// Failures that an error names at most.
 const TRIED: usize = 8;
 
-/// How much is done.
+/// Extent of a diagram.
 #[derive(Clone, Debug)]
 pub struct Effort {
-    /// Processor seconds that it may take about.
+    /// Seconds that it may take about.
     pub budget: f64,
     /// Timed runs of each.
     pub repeats: usize,
-    /// Starts a step of a collision.
+    /// Starts of each step of a collision.
     pub phases: u32,
-    /// The machine whose clock periods are asked for.
+    /// Machine whose clock periods are asked for.
     pub machine: Option<MachineModel>,
 }
 
-/// Measures a scene.
+/// Measures a scene. Runs that are finished are kept in the journal.
 ///
 /// # Errors
-/// [`StudyError`] if no run of the scene comes to its end, or finished runs cannot be kept.
+/// [`StudyError`] if trajectories cannot be compared, no run of the scene comes to its end, the user asks for the end, or finished runs cannot be
+/// kept.
 pub fn work_precision(
     subject: &Subject,
     effort: &Effort,
+    trial: Trial<'_>,
     journal: &Journal,
     progress: Progress<'_>,
 ) -> Result<WorkPrecision, StudyError> {
     if !subject.trials.has_trajectories {
-        return Err(StudyError::NoTrajectories(subject.arguments()));
+        return Err(parted(subject, "noise moves the particles, by other paths for each step".to_owned()));
     }
-    let start = Instant::now();
+    let begun = trial.watch.now();
     let meter = Meter::new(effort.budget, progress);
+    let runs = &Runs { subject, trial, journal, meter: &meter };
     let choices = Choice::all(subject.entry.axes);
-    let probes = journal.once(|| probes(subject, &choices, journal))?;
-    let rates: Vec<Option<f64>> = probes.iter().map(|probe| probe.as_ref().ok().copied()).collect();
-    let own_place = choices.iter().position(|choice| *choice == subject.own).unwrap_or(0);
+    let configurations = journal.once(|| configurations(runs, &choices))?;
+    let rates: Vec<Option<f64>> = configurations.iter().map(|it| it.each.as_ref().ok().copied()).collect();
     let all_rates = || rates.iter().flatten().copied();
     if all_rates().next().is_none() {
-        let tried = choices.iter().zip(&probes);
-        let tried = tried.filter_map(|(choice, probe)| Some((choice.label(), probe.clone().err()?)));
-        return Err(StudyError::EveryRunFails { tried: tried.take(TRIED).collect() });
+        let failed = |it: &Configuration| Some((it.label.clone(), it.each.clone().err()?.why));
+        let tried = configurations.iter().filter_map(failed).take(TRIED).collect();
+        return Err(StudyError::EveryRunFails { tried });
     }
-    let own_rate = rates[own_place].unwrap_or_else(|| median(all_rates()));
+    let own_rate = choices.iter().position(|choice| *choice == subject.own).and_then(|place| rates[place]);
+    let own_rate = own_rate.unwrap_or_else(|| median(all_rates()));
     let most = (GROWTH_SHARE * effort.budget / (4.0 * own_rate)) as u64;
     let most = subject.steps.min(most.max(1 << COARSEST));
-    let growth = journal.once(|| longest_growth(subject, most, own_rate, journal, &meter))?;
+    let growth = journal.once(|| growth(runs, most, own_rate))?;
     let comparable = (growth.window / subject.step).round() as u64;
-    let seconds = effort.budget;
-    // It follows from what is recalled.
-    let plan = plan(&choices, &rates, &subject.own, comparable, seconds, effort.repeats);
-    let work =
-        Work { subject, effort, journal, meter: &meter, choices: &choices, rates: &rates, plan: &plan };
-    meter.expect(plan.seconds + MEANS_SHARE * effort.budget);
-    let (reference, state) = work.reference(own_rate)?;
-    let mut runs = work.runs(&reference, &state)?;
-    if runs.iter().all(|run| run.outcome.is_err()) {
-        let tried = runs.iter().filter_map(|run| {
-            Some((
-                format!("{}, step {}", choices[run.way].label(), significant(run.step, 6)),
-                run.outcome.clone().err()?,
-            ))
-        });
-        return Err(StudyError::EveryRunFails { tried: tried.take(TRIED).collect() });
-    }
-    let counted = (&own_in_full_digits(subject), growth.step);
-    let encounters: Encounters = journal.once(|| {
-        let fits = |it: &Encounters| {
-            it.of_contacts == subject.trials.has_contacts && it.each.is_finite() && it.each >= 0.0
+    let plan = plan(&choices, &rates, &subject.own, comparable, effort.budget, effort.repeats);
+    let planned = Planned { runs, effort, choices: &choices, rates: &rates, plan: &plan };
+    meter.expect(plan.seconds);
+    let duration = planned.duration();
+    let encounters = journal.once(|| encounters(runs, growth.step, duration, own_rate))?;
+    let undecided = undecided(subject, &growth, &encounters, duration)?;
+    let (reference, state) = planned.reference(own_rate)?;
+    let mut all = planned.all(&reference, &state)?;
+    if all.iter().all(|run| run.outcome.is_err()) {
+        let failed = |run: &Run| {
+            let label = choices[run.configuration].label();
+            let why = run.outcome.as_ref().err()?.why.clone();
+            Some((format!("{label}, step {}", significant(run.step, 6)), why))
         };
-        journal.recall("encounters", fits, || {
-            Ok::<_, JournalError>(encounters(subject, counted, work.duration(), own_rate, &meter))
-        })
-    })?;
-    let observables = work.observables(own_rate)?;
-    let collision = work.collision()?;
-    work.time(&mut runs, start)?;
+        return Err(StudyError::EveryRunFails { tried: all.iter().filter_map(failed).take(TRIED).collect() });
+    }
+    let steps: Vec<f64> = (-plan.finest..=COARSEST_COLLISION).map(|power| planned.step(power)).collect();
+    let collision = collision(runs, &steps, effort.phases)?;
+    planned.time(&mut all, begun)?;
     Ok(WorkPrecision {
         particles: subject.prepared.particles().grain_count(),
         unit: subject.trials.length.unit.to_owned(),
         time_unit: subject.unit("time"),
         step: subject.step,
         own: subject.own.label(),
-        duration: work.duration(),
-        undecided: undecided(&encounters, work.duration(), subject),
+        duration,
+        undecided,
         encounters,
         growth,
-        orders: work.orders(&runs, &reference),
+        orders: planned.orders(&all, &reference),
         reference,
-        ways: choices.iter().zip(&probes).map(|(choice, probe)| way(choice, &subject.own, probe)).collect(),
-        runs,
-        seeds: if observables.is_some() { SEEDS.to_vec() } else { vec![] },
-        observables,
+        configurations,
+        runs: all,
         collision,
         machine: effort.machine.as_ref().map(|machine| machine.title().to_owned()),
         plan,
     })
 }
 
-/// How long trajectories are comparable: those of the scene's own way, or, where its error alone ends the time, those of the reference's.
-fn longest_growth(
-    subject: &Subject,
-    most: u64,
-    each: f64,
-    journal: &Journal,
-    meter: &Meter<'_>,
-) -> Result<Growth, StudyError> {
-    let own = own_in_full_digits(subject);
-    let fits = |growth: &Growth| growth.is_of(subject);
-    let first: Growth = journal.recall("growth", fits, || {
-        growth(subject, (&own, HALVINGS), most, each, meter)
-            .map_err(|tried| StudyError::EveryRunFails { tried })
-    })?;
-    let reference = subject.own.with(subject.trials.references[0]);
-    if first.ended_by != EndedBy::Growth || reference == own {
-        return Ok(first);
-    }
-    let fits = |found: &Option<Growth>| found.as_ref().is_none_or(|growth| growth.is_of(subject));
-    let second: Option<Growth> = journal.recall("growth of the reference", fits, || {
-        Ok::<_, JournalError>(growth(subject, (&reference, 0), most, each, meter).ok())
-    })?;
-    Ok(second.filter(|second| second.window > first.window).unwrap_or(first))
+fn parted(subject: &Subject, why: String) -> StudyError {
+    let quantity = subject.trials.observables.first().copied().unwrap_or_default();
+    StudyError::NoTrajectories { scene: subject.arguments(), why, quantity }
 }
 
-/// Why nothing is decided: hardly anything happens in the time that is compared.
-fn undecided(encounters: &Encounters, duration: f64, subject: &Subject) -> Option<String> {
-    let whole = subject.steps as f64 * subject.step;
-    // Of a scene that is compared as a whole nothing is left out; something must happen in it.
+/// Reason why nothing is decided, where hardly anything happens in the time that is compared.
+///
+/// # Errors
+/// [`StudyError::NoTrajectories`] where more time would not help, because trajectories part at once.
+fn undecided(
+    subject: &Subject,
+    growth: &Growth,
+    encounters: &Encounters,
+    duration: f64,
+) -> Result<Option<String>, StudyError> {
+    let whole = subject.duration();
+    // A scene that is compared as a whole has to show something, no more.
     let least = if duration > 0.95 * whole { 1.0 } else { FEW };
-    (encounters.each < least).then(|| {
+    let is_little = encounters.each < least;
+    let is_cut_by_growth = growth.ended_by == EndedBy::Growth;
+    let is_all_of_window = duration > 0.9 * growth.window;
+    if is_cut_by_growth && (growth.window < USEFUL * whole || is_little && is_all_of_window) {
+        let [window, whole] = [growth.window, whole].map(|time| significant(time, 3));
+        return Err(parted(subject, format!("trajectories part after a time of {window} of {whole}")));
+    }
+    let [time, whole] = [duration, whole].map(|time| significant(time, 3));
+    let [each, events] = [&significant(encounters.each, 2), encounters.name()];
+    let little = || {
         format!(
-            "in the time that is compared, {} of {}, a particle has {} {} in the mean, fewer than {least}",
-            significant(duration, 3),
-            significant(whole, 3),
-            significant(encounters.each, 2),
-            encounters.name(),
+            "in the time that is compared, {time} of {whole}, a particle has {each} {events} in the mean, fewer than {least}"
         )
-    })
+    };
+    Ok(is_little.then(little))
 }

@@ -1,4 +1,4 @@
-//! Which runs a diagram is made of: as many as fit into the time that is given.
+//! Runs of a diagram that fit into the time that is given.
 
 use crate::study::choice::Choice;
 use stripmine_physics::method::Decides;
@@ -7,42 +7,43 @@ use stripmine_physics::method::Decides;
 pub const COARSEST: i32 = 4;
 /// The reference's step is this power of two below the smallest that is tried.
 pub const BELOW: i32 = 3;
-/// The share of the time that is given to runs of the ladder and their references; the rest is for the growth, for means over
-/// seeds and for collisions.
+/// Share of the time for the runs of the ladder and their references; the rest is for the growth of a disturbance and for collisions.
 const SHARE: f64 = 0.6;
 
-/// How much is run.
+/// Selection of configurations and steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Scope {
-    /// Whether ways that cost otherwise but give the same are run in every scheme and precision.
+    /// True if configurations that differ in cost alone are run in every scheme and precision.
     every_cost: bool,
-    /// Whether every scheme is run in every precision.
+    /// True if every scheme is run in every precision.
     every_precision: bool,
     /// The smallest step is this power of two below the scene's own.
     finest: i32,
 }
 
+/// From the largest to the smallest.
 const SCOPES: [Scope; 6] = [
     Scope { every_cost: true, every_precision: true, finest: 4 },
     Scope { every_cost: false, every_precision: true, finest: 4 },
     Scope { every_cost: false, every_precision: true, finest: 3 },
     Scope { every_cost: false, every_precision: true, finest: 2 },
     Scope { every_cost: false, every_precision: false, finest: 2 },
-    Scope { every_cost: false, every_precision: false, finest: 1 },
+    SMALLEST,
 ];
+const SMALLEST: Scope = Scope { every_cost: false, every_precision: false, finest: 1 };
 
-/// What is run.
+/// Runs of a diagram.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     /// Steps of the scene's own that the runs last; divided by the coarsest step.
     pub own_steps: u64,
     /// The smallest step is this power of two below the scene's own.
     pub finest: i32,
-    /// Places of the ways that are run, among all.
+    /// Places of the configurations that are run, among all.
     pub choices: Vec<usize>,
     /// Seconds that it takes about.
     pub seconds: f64,
-    /// What is left out, in words.
+    /// Parts that are left out, in words.
     pub left_out: Vec<String>,
 }
 
@@ -57,31 +58,25 @@ pub fn plan(
     repeats: usize,
 ) -> Plan {
     let multiple = 1 << COARSEST;
-    let mut best = None;
-    for scope in SCOPES {
-        let places: Vec<usize> =
-            (0..choices.len()).filter(|&i| rates[i].is_some() && is_run(&choices[i], own, scope)).collect();
-        let own_rate = |i: &usize| rates[*i].unwrap_or(0.0);
-        let ladder: f64 = (-scope.finest..=COARSEST).map(|k| 0.5f64.powi(k)).sum();
-        let runs: f64 = places.iter().map(own_rate).sum::<f64>() * ladder * (1 + repeats) as f64;
-        let place = choices.iter().position(|choice| choice == own);
-        let reference = place.and_then(|i| rates[i]).unwrap_or(0.0) * 2.5 * 2f64.powi(scope.finest + BELOW);
-        let each = runs + reference;
-        let affordable = (SHARE * budget / each.max(1e-12)) as u64;
-        let steps = own_steps.min(affordable) / multiple * multiple;
-        let is_whole = affordable >= own_steps;
-        best = Some((scope, places, steps.max(multiple), each, is_whole));
-        if is_whole {
-            break;
-        }
-    }
-    let Some((scope, places, steps, each, is_whole)) = best else {
-        return Plan { own_steps: 0, finest: 0, choices: vec![], seconds: 0.0, left_out: vec![] };
+    let own_rate = choices.iter().position(|choice| choice == own).and_then(|place| rates[place]);
+    // Configurations, seconds for each step of the scene's own, and the steps that fit.
+    let sized = |scope: Scope| {
+        let is_meant = |place: &usize| rates[*place].is_some() && is_run(&choices[*place], own, scope);
+        let places: Vec<usize> = (0..choices.len()).filter(is_meant).collect();
+        let ladder: f64 = (-scope.finest..=COARSEST).map(|power| 0.5f64.powi(power)).sum();
+        let runs: f64 = places.iter().filter_map(|place| rates[*place]).sum::<f64>() * (1 + repeats) as f64;
+        let reference = own_rate.unwrap_or(0.0) * 2.5 * 2f64.powi(scope.finest + BELOW);
+        let each = runs * ladder + reference;
+        (places, each, (SHARE * budget / each.max(1e-12)) as u64)
     };
+    let is_whole = |scope: &Scope| sized(*scope).2 >= own_steps;
+    let scope = SCOPES.into_iter().find(is_whole).unwrap_or(SMALLEST);
+    let (places, each, affordable) = sized(scope);
+    let steps = (own_steps.min(affordable) / multiple * multiple).max(multiple);
     let mut left_out = vec![];
     if !scope.every_cost {
         left_out.push(
-            "ways that differ in cost alone are run with the scene's own integrator and precision only"
+            "configurations that differ in cost alone, in other integrators and precisions than the scene's own"
                 .to_owned(),
         );
     }
@@ -91,9 +86,9 @@ pub fn plan(
     if scope.finest < SCOPES[0].finest {
         left_out.push(format!("steps below 1/{} of the scene's own", 1 << scope.finest));
     }
-    if !is_whole {
+    if affordable < own_steps {
         left_out.push(format!(
-            "what comes after {steps} of the {own_steps} own steps for which trajectories are comparable"
+            "the time after {steps} of the {own_steps} own steps for which trajectories are comparable"
         ));
     }
     Plan { own_steps: steps, finest: scope.finest, choices: places, seconds: each * steps as f64, left_out }

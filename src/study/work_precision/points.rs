@@ -1,14 +1,12 @@
 //! Points of the charts, as frames.
 
-use super::dataset::{Run, Scenes, Way, WorkPrecision};
+use super::dataset::{Configuration, Run, Scenes, WorkPrecision};
 use super::front::front;
+use super::growth::COMPARABLE;
 use super::measures::Measure;
 use crate::frame::{Frame, Rows};
 use crate::statistics::median;
-use crate::study::growth::COMPARABLE;
 
-/// Factor between the places of points that have one step.
-const BESIDE: f64 = 1.05;
 /// Height of runs that broke, over the largest error that is drawn.
 const ABOVE: f64 = 10.0;
 /// Configurations with a name of their own in a chart; all others are drawn alike.
@@ -24,22 +22,23 @@ pub(super) fn drawn(scenes: &Scenes) -> Frame {
             points.extend(diagram(data, chart, measure));
         }
         let [mut searches, mut clocks] = [const { vec![] }; 2];
-        for (at, way) in data.ways.iter().enumerate() {
-            let own = || data.runs.iter().filter(move |run| run.way == at);
-            if way.is_own_arithmetic {
-                searches
-                    .extend(points_of(own(), Measure::Position, Run::cost).map(|it| (way.cost.clone(), it)));
+        for (at, configuration) in data.configurations.iter().enumerate() {
+            let own = || data.runs.iter().filter(move |run| run.configuration == at);
+            if configuration.is_own_arithmetic {
+                let points = points_of(own(), Measure::Position, Run::cost);
+                searches.extend(points.map(|it| (configuration.cost.clone(), it)));
             }
-            clocks.extend(
-                points_of(own(), Measure::Position, |run| run.clocks).map(|it| (way.label.clone(), it)),
-            );
+            let points = points_of(own(), Measure::Position, |run| run.outcome.as_ref().ok()?.clocks);
+            clocks.extend(points.map(|it| (configuration.label.clone(), it)));
         }
-        // A single search has nothing to be held against.
-        if searches.iter().all(|(way, _)| *way == searches[0].0) {
+        // A single search has nothing to be compared with.
+        if searches.iter().all(|(search, _)| *search == searches[0].0) {
             searches.clear();
         }
         for (chart, all) in [("searches", searches), ("clocks", clocks)] {
-            points.extend(all.into_iter().map(|(series, (cost, error))| (chart, "way", series, cost, error)));
+            points.extend(
+                all.into_iter().map(|(series, (cost, error))| (chart, "configuration", series, cost, error)),
+            );
         }
         points.into_iter().map(move |point| (name, point))
     });
@@ -69,23 +68,23 @@ fn points_of<'d>(
 /// known. The scene's own configuration has a name, then those of the front, then the most accurate.
 fn diagram(data: &WorkPrecision, chart: &'static str, measure: Measure) -> Vec<Drawn> {
     let floor = data.reference.floor.get(&measure).copied().unwrap_or(0.0);
-    let is_shown = |run: &&Run| data.ways[run.way].is_primary;
+    let shown = || data.runs.iter().filter(|run| data.of(run).is_primary);
     let known = |(_, error): &(f64, f64)| *error >= floor;
-    let sound = data.runs.iter().filter(is_shown).filter(|run| run.is_sound());
-    let sound: Vec<_> = points_of(sound, measure, Run::cost).filter(known).collect();
+    let sound: Vec<_> =
+        points_of(shown().filter(|run| run.is_sound()), measure, Run::cost).filter(known).collect();
     let best: Vec<(f64, f64)> = front(&sound).into_iter().map(|place| sound[place]).collect();
-    let of_way = |(at, way): (usize, &'_ Way)| {
-        let own = data.runs.iter().filter(|run| run.way == at);
+    let of_configuration = |(at, it): (usize, &'_ Configuration)| {
+        let own = data.runs.iter().filter(|run| run.configuration == at);
         let points: Vec<_> = points_of(own, measure, Run::cost).filter(known).collect();
-        let name = format!("{} {}", way.scheme, way.digits);
-        if way.label == data.own {
+        let name = format!("{} {}", it.scheme, it.digits);
+        if it.label == data.own {
             (0, format!("{name} (the scene's own)"), points)
         } else {
             (1, name, points)
         }
     };
-    let shown = data.ways.iter().enumerate().filter(|(_, way)| way.is_primary);
-    let mut all: Vec<_> = shown.map(of_way).filter(|(.., points)| !points.is_empty()).collect();
+    let primary = data.configurations.iter().enumerate().filter(|(_, it)| it.is_primary);
+    let mut all: Vec<_> = primary.map(of_configuration).filter(|(.., points)| !points.is_empty()).collect();
     let on_front = |points: &[(f64, f64)]| points.iter().filter(|point| best.contains(point)).count();
     let least = |points: &[(f64, f64)]| points.iter().map(|point| point.1).fold(f64::INFINITY, f64::min);
     all.sort_by(|(a_own, _, a), (b_own, _, b)| {
@@ -94,17 +93,17 @@ fn diagram(data: &WorkPrecision, chart: &'static str, measure: Measure) -> Vec<D
     let highest = all.iter().flat_map(|(.., points)| points).map(|point| point.1).fold(0.0, f64::max);
     let mut drawn: Vec<Drawn> = vec![];
     for (place, (_, name, points)) in all.into_iter().enumerate() {
-        let (kind, name) = if place < NAMED { ("way", name) } else { ("others", "others".to_owned()) };
+        let (kind, name) =
+            if place < NAMED { ("configuration", name) } else { ("others", "others".to_owned()) };
         drawn.extend(points.into_iter().map(|(cost, error)| (chart, kind, name.clone(), cost, error)));
     }
     drawn.extend(
         best.into_iter().map(|(cost, error)| (chart, "front", "Pareto front".to_owned(), cost, error)),
     );
-    let warned = data.runs.iter().filter(is_shown).filter(|run| !run.is_sound());
-    let warned = points_of(warned, measure, Run::cost).filter(known);
+    let warned = points_of(shown().filter(|run| !run.is_sound()), measure, Run::cost).filter(known);
     drawn.extend(warned.map(|(cost, error)| (chart, "warned", "warned of".to_owned(), cost, error)));
-    let broken = data.runs.iter().filter(is_shown).filter(|run| run.outcome.is_err());
-    let broken = broken.filter_map(|run| Some(data.ways[run.way].each? / run.step)).filter(|_| highest > 0.0);
+    let broken = shown().filter(|run| run.outcome.is_err() && highest > 0.0);
+    let broken = broken.filter_map(|run| Some(data.of(run).each.as_ref().ok()? / run.step));
     drawn.extend(broken.map(|cost| (chart, "failed", "failed: no error".to_owned(), cost, ABOVE * highest)));
     if measure == Measure::Position && highest > COMPARABLE {
         let ends = drawn
@@ -115,35 +114,6 @@ fn diagram(data: &WorkPrecision, chart: &'static str, measure: Measure) -> Vec<D
         drawn.extend(line);
     }
     drawn
-}
-
-/// Differences of the first quantity in full digits. Points of one step stand beside each other.
-pub(super) fn drawn_means(scenes: &Scenes) -> Frame {
-    let all = scenes.iter().flat_map(|(name, data)| {
-        let full = data.ways.iter().find(|way| way.label == data.reference.ways[0]).map(|way| &way.digits);
-        let is_full =
-            |label: &str| data.ways.iter().any(|way| way.label == label && Some(&way.digits) == full);
-        let all: Vec<_> = data.observables.iter().flat_map(|all| &all.comparisons).collect();
-        let first = all.first().map_or("", |it| &it.observable);
-        let all: Vec<_> =
-            all.into_iter().filter(|it| it.observable == first && is_full(&it.choice)).collect();
-        let mut schemes: Vec<&str> = all.iter().map(|it| data.scheme(&it.choice)).collect();
-        schemes.dedup();
-        let middle = 0.5 * (schemes.len() as f64 - 1.0);
-        let shifted = all.into_iter().map(|it| {
-            let own = data.scheme(&it.choice);
-            let place = schemes.iter().position(|known| *known == own).unwrap_or(0);
-            (name, own, it.step * BESIDE.powf(place as f64 - middle), it)
-        });
-        shifted.collect::<Vec<_>>()
-    });
-    Rows::of(all)
-        .text("scene", |(name, ..)| *name)
-        .text("integrator", |(_, scheme, ..)| *scheme)
-        .number("place of the step", 6, |(.., place, _)| *place)
-        .number("difference (%)", 2, |(.., it)| 100.0 * it.difference)
-        .number("bar, 95 % (%)", 2, |(.., it)| 100.0 * it.bar)
-        .frame("drawn_means", "Differences of the first mean, by integrator")
 }
 
 /// Distance of a disturbed start, and of half the step, over time.
@@ -167,7 +137,7 @@ pub(super) fn growth(scenes: &Scenes) -> Frame {
 /// Errors of the outcomes of a collision by step, and the processor time that a step of the configuration takes.
 pub(super) fn outcomes(scenes: &Scenes) -> Frame {
     let of_a_step = |data: &WorkPrecision, label: &str| {
-        let own = data.runs.iter().filter(|run| data.ways[run.way].label == label);
+        let own = data.runs.iter().filter(|run| data.of(run).label == label);
         let all: Vec<f64> = own.filter_map(|run| Some(run.cost()? * run.step)).collect();
         (!all.is_empty()).then(|| median(all.into_iter()))
     };

@@ -11,7 +11,6 @@ mod list;
 pub mod nbody;
 pub mod observed;
 mod pairwise;
-mod probe;
 mod restored;
 mod several;
 mod simulation;
@@ -29,7 +28,6 @@ pub use entry::{
 pub use failure::{Culprit, Failure, FailureKind};
 pub use hard_disks::compress;
 pub use list::{METHODS, Methods, load, method, observer, prepare, vocabularies};
-pub use probe::probed;
 pub use several::{DISMISSED, refuse_several_ranks};
 pub use simulation::{RunWarning, Simulation};
 pub use snapshot::Snapshot;

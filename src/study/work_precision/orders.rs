@@ -9,7 +9,7 @@ const MOST: usize = 5;
 /// Points that it needs.
 const LEAST: usize = 3;
 
-/// The power of the step with which an error falls.
+/// Power of the step with which an error falls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fitted {
     pub order: f64,

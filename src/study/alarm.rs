@@ -19,7 +19,7 @@ pub enum Finding {
 }
 
 impl Finding {
-    /// Whether the user is told.
+    /// True if the user is told.
     pub fn is_told(self) -> bool {
         self != Finding::Within
     }
@@ -32,6 +32,8 @@ pub struct Alarm {
     pub finding: Finding,
     /// The value over its limit, above 1 where the user is told; none where nothing of the kind is allowed.
     pub share: Option<f64>,
+    /// Sentence for a reader.
+    pub message: String,
 }
 
 impl Alarm {
@@ -40,17 +42,19 @@ impl Alarm {
         let mut alarms: Vec<Alarm> = vec![];
         let limits = scene.step_limits.iter().map(|limit| {
             let finding = if limit.is_passed() { Finding::Warned } else { Finding::Within };
-            (limit.name, finding, limit.share)
+            let share = significant(limit.share, 3);
+            let message = format!("the step is {share} times the limit \"{}\" of theory", limit.name);
+            (limit.name, finding, limit.share, message)
         });
         let warnings = scene.warnings.iter().map(|warning| {
             let finding = if warning.is_refusal { Finding::Refused } else { Finding::Warned };
-            (warning.check, finding, warning.share)
+            (warning.check, finding, warning.share, format!("checked: {}", warning.message))
         });
-        for (check, finding, share) in limits.chain(warnings) {
+        for (check, finding, share, message) in limits.chain(warnings) {
             let share = Some(share).filter(|share| share.is_finite());
             match alarms.iter_mut().find(|alarm| alarm.check == check) {
                 Some(known) => known.finding = known.finding.max(finding),
-                None => alarms.push(Alarm { check: check.to_owned(), finding, share }),
+                None => alarms.push(Alarm { check: check.to_owned(), finding, share, message }),
             }
         }
         alarms
@@ -76,6 +80,7 @@ impl Alarm {
             check: warning.check.to_owned(),
             finding: Finding::WarnedByRun,
             share: Some(share).filter(|share| share.is_finite()),
+            message: format!("warned of: {}", warning.message),
         }
     }
 }

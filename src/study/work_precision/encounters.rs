@@ -1,10 +1,10 @@
-//! What happens to particles in a time: contacts that begin, or, where nothing touches, turns of the motion. A comparison over a time
+//! Events of a particle in a time: contacts that begin, or, where nothing touches, turns of the motion. A comparison over a time
 //! in which hardly anything happens says nothing of a scene.
 
-use super::choice::Choice;
-use super::subject::Subject;
-use super::trial::{Course, follow};
-use crate::results::Meter;
+use super::growth::own_in_full_digits;
+use crate::study::StudyError;
+use crate::study::runs::Runs;
+use crate::study::trial::Course;
 use serde::{Deserialize, Serialize};
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::{PI, TAU};
@@ -17,47 +17,48 @@ use stripmine_physics::scene::Overrides;
 /// Looks at a run at most: contacts that begin and end between two looks are not seen.
 const LOOKS: u64 = 1024;
 
-/// How much happens to a particle, in the mean.
+/// Events of a particle, in the mean.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Encounters {
-    /// Whether contacts are counted, or turns of the motion.
+    /// True if contacts are counted, or turns of the motion.
     pub of_contacts: bool,
     /// Contacts of a particle that begin, those of the start among them; or whole turns of its velocity.
     pub each: f64,
 }
 
 impl Encounters {
-    /// What is counted.
+    /// Name of the events.
     pub fn name(&self) -> &'static str {
         if self.of_contacts { "contacts" } else { "turns of the velocity" }
     }
 }
 
-/// Counts along a run of the scene in some way with some step (time), over `duration` (time). Where the run breaks, what came before
-/// is counted.
-pub fn encounters(
-    subject: &Subject,
-    (choice, step): (&Choice, f64),
-    duration: f64,
-    each: f64,
-    meter: &Meter<'_>,
-) -> Encounters {
-    let of_contacts = subject.trials.has_contacts;
-    let domain = subject.prepared.domain;
-    let (mut contacts, mut turns) = (Contacts::new(domain), Turns::default());
-    if let Ok(scene) = subject.prepared_as(choice, step, &Overrides::new()) {
+/// Counts along a run of the scene's own configuration with some step (time), over `duration` (time). Of a run that breaks, the time before counts.
+///
+/// # Errors
+/// [`StudyError`] as of [`Runs::recall`].
+pub fn encounters(runs: &Runs<'_>, step: f64, duration: f64, each: f64) -> Result<Encounters, StudyError> {
+    let of_contacts = runs.subject.trials.has_contacts;
+    let fits = |it: &Encounters| it.of_contacts == of_contacts && it.each.is_finite() && it.each >= 0.0;
+    let counted = runs.recall("encounters", fits, || {
+        let mut counts = (Contacts::new(runs.subject.prepared.domain), Turns::default());
+        let scene = runs.subject.prepared_as(&own_in_full_digits(runs.subject), step, &Overrides::new())?;
         let steps = (duration / step).round() as u64;
         let course = Course { steps, looks: LOOKS.min(steps), each };
         let look = |simulation: &dyn Simulation| {
             let particles = simulation.particles();
-            if of_contacts { contacts.look(&particles) } else { turns.look(&particles) }
+            if of_contacts { counts.0.look(&particles) } else { counts.1.look(&particles) }
         };
-        // A run that breaks has been seen up to there.
-        let _ended = follow(&scene, Purpose::Measurement, course, None, meter, look);
-    }
-    let grains = subject.prepared.particles().grain_count().max(1) as f64;
-    let all = if of_contacts { contacts.begun as f64 } else { turns.angle / TAU };
-    Encounters { of_contacts, each: all / grains }
+        match runs.follow(&scene, Purpose::Measurement, course, look) {
+            Err(failure) if failure.is_interruption() => return Err(failure),
+            Ok(_) | Err(_) => {}
+        }
+        let grains = runs.subject.prepared.particles().grain_count().max(1) as f64;
+        let all = if of_contacts { counts.0.begun as f64 } else { counts.1.angle / TAU };
+        Ok(Encounters { of_contacts, each: all / grains })
+    })?;
+    // A scene that is refused has no events.
+    Ok(counted.unwrap_or(Encounters { of_contacts, each: 0.0 }))
 }
 
 /// Contacts as they begin.

@@ -1,0 +1,64 @@
+//! Runs of a scene for a study: made now, or found in its journal.
+
+use super::trial::{Course, RunFailure, Trial};
+use super::{StudyError, Subject};
+use crate::results::{Journal, Meter};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use stripmine_physics::method::{Prepared, Purpose, Simulation};
+use stripmine_physics::signals;
+
+/// Steps of a probe at most.
+const PROBED: u64 = 4096;
+
+/// A study under way.
+pub struct Runs<'r> {
+    pub subject: &'r Subject,
+    pub trial: Trial<'r>,
+    pub journal: &'r Journal,
+    pub meter: &'r Meter<'r>,
+}
+
+impl Runs<'_> {
+    /// Result of a run, or its failure: from the journal, if it was finished before and `fits`; otherwise made now and kept.
+    ///
+    /// # Errors
+    /// [`StudyError::Interrupted`], of which nothing is kept, and [`StudyError::Journal`].
+    pub fn recall<T: Serialize + DeserializeOwned>(
+        &self,
+        key: &str,
+        fits: impl FnOnce(&T) -> bool,
+        run: impl FnOnce() -> Result<T, RunFailure>,
+    ) -> Result<Result<T, RunFailure>, StudyError> {
+        let fits = |found: &Result<T, RunFailure>| found.as_ref().map_or(true, fits);
+        self.journal.recall(key, fits, || match run() {
+            Err(failure) if failure.is_interruption() => {
+                signals::await_end();
+                Err(StudyError::Interrupted)
+            }
+            finished => Ok(finished),
+        })
+    }
+
+    /// Runs a scene and returns its end; `look` sees it at every look, and before the first step.
+    ///
+    /// # Errors
+    /// [`RunFailure`] if it breaks, or the user asks for the end.
+    pub fn follow(
+        &self,
+        scene: &Prepared,
+        purpose: Purpose,
+        course: Course,
+        look: impl FnMut(&dyn Simulation),
+    ) -> Result<Box<dyn Simulation>, RunFailure> {
+        self.trial.follow(scene, purpose, course, self.meter, look)
+    }
+
+    /// Seconds of a step, by the first steps of a scene.
+    ///
+    /// # Errors
+    /// [`RunFailure`] if it breaks, or the user asks for the end.
+    pub fn probe(&self, scene: &Prepared) -> Result<f64, RunFailure> {
+        self.trial.seconds_of_a_step(scene, self.subject.steps.min(PROBED))
+    }
+}

@@ -1,0 +1,82 @@
+//! Failures of runs, by kind.
+
+use crate::study::first_line;
+use serde::{Deserialize, Serialize};
+use stripmine_physics::method::{Failure, FailureKind};
+use stripmine_physics::scene::SceneErrors;
+
+/// Kind of a failure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Cause {
+    Penetration,
+    /// A particle moves so far in a step that contacts pass unseen.
+    MaskOutrun,
+    /// Two particles are where one may be.
+    SharedCell,
+    ParticleLost,
+    NonFinite,
+    Other,
+    /// The scene cannot be run so, whatever the step.
+    Refused,
+    /// The user asked for the end: no result of the run, which is kept nowhere.
+    #[serde(skip)]
+    Interrupted,
+}
+
+impl Cause {
+    /// Name for a reader.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Cause::Penetration => "penetration",
+            Cause::MaskOutrun => "mask outrun",
+            Cause::SharedCell => "two in a cell",
+            Cause::ParticleLost => "particle lost",
+            Cause::NonFinite => "non-finite",
+            Cause::Other => "stopped otherwise",
+            Cause::Refused => "no such scene",
+            Cause::Interrupted => "interrupted",
+        }
+    }
+}
+
+/// Reason why a run has no result.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RunFailure {
+    pub cause: Cause,
+    /// One line, without advice.
+    pub why: String,
+}
+
+impl RunFailure {
+    /// The user asked for the end.
+    pub(super) fn interrupted() -> RunFailure {
+        RunFailure { cause: Cause::Interrupted, why: String::new() }
+    }
+
+    /// True if the user asked for the end.
+    pub fn is_interruption(&self) -> bool {
+        self.cause == Cause::Interrupted
+    }
+}
+
+impl From<Failure> for RunFailure {
+    fn from(failure: Failure) -> RunFailure {
+        let cause = match failure.kind {
+            FailureKind::NOT_FINITE | FailureKind::OVERFLOW => Cause::NonFinite,
+            FailureKind::OUT_OF_BOX => Cause::ParticleLost,
+            FailureKind::CONFLICT => Cause::SharedCell,
+            FailureKind::TOO_DEEP => Cause::Penetration,
+            FailureKind::LONG_STEP => Cause::MaskOutrun,
+            _ => Cause::Other,
+        };
+        RunFailure { cause, why: first_line(&failure.what()) }
+    }
+}
+
+impl From<SceneErrors> for RunFailure {
+    fn from(errors: SceneErrors) -> RunFailure {
+        let messages: Vec<String> = errors.0.iter().map(|error| first_line(&error.message)).collect();
+        RunFailure { cause: Cause::Refused, why: messages.join("; ") }
+    }
+}

@@ -1,0 +1,138 @@
+//! One collision of two discs: errors of its outcomes, over the step and over the part of a step at which the contact begins.
+//!
+//! A step that holds the beginning or the end of a contact makes an error that depends on where in the step it falls: for a
+//! force that sets in as ξ^s it is dt^(s+1) ζ(−s, phase), Hurwitz's zeta function, whose mean over all phases is zero. A
+//! single run therefore lies on no line over the step; the root of the mean square over the phases does, and so does the
+//! mean, which falls faster.
+
+use super::orders::{Fitted, fit};
+use crate::study::choice::Choice;
+use crate::study::runs::Runs;
+use crate::study::state::{State, delayed};
+use crate::study::trial::{Course, RunFailure};
+use crate::study::{StudyError, Subject};
+use stripmine_physics::method::{Decides, Purpose};
+use stripmine_physics::scene::Overrides;
+
+/// Outcomes of a collision: relative speed after it over that before, and the angle by which the relative velocity turns (radian).
+const OUTCOMES: [&str; 2] = ["restitution", "deflection"];
+/// Step of the reference, in the smallest of the steps that are tried.
+const REFERENCE: f64 = 0.125;
+/// Larger errors are not those of convergence.
+const LARGE: f64 = 0.1;
+
+/// Errors of a collision.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Collision {
+    /// Starts of each step, each a part of a step later than the one before.
+    pub phases: u32,
+    /// Errors by scheme and step.
+    pub errors: Vec<OutcomeError>,
+    /// Orders fitted through them.
+    pub orders: Vec<OutcomeOrder>,
+}
+
+/// Error of the outcomes of a scheme with a step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OutcomeError {
+    pub choice: String,
+    /// The step (time).
+    pub step: f64,
+    /// Root of the mean square over the phases, for each outcome.
+    pub spread: [f64; 2],
+    /// Magnitude of the mean over the phases.
+    pub mean: [f64; 2],
+}
+
+/// Power of the step with which the errors of a scheme fall.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OutcomeOrder {
+    pub choice: String,
+    pub outcome: &'static str,
+    /// Of the root of the mean square over the phases.
+    pub spread: Option<Fitted>,
+    /// Of the mean over the phases.
+    pub mean: Option<Fitted>,
+}
+
+/// True if a scene is a collision of two discs.
+fn is_collision(subject: &Subject) -> bool {
+    let particles = subject.prepared.particles();
+    subject.trials.has_contacts && particles.grain_count() == 2 && particles.len() == 2
+}
+
+/// Collides by every scheme with some steps (time, rising), each from as many starts as there are phases. None unless the scene is a collision of two
+/// discs that part within its time.
+///
+/// # Errors
+/// [`StudyError`] as of [`Runs::recall`].
+pub fn collision(runs: &Runs<'_>, steps: &[f64], phases: u32) -> Result<Option<Collision>, StudyError> {
+    let Some(&smallest) = steps.first().filter(|_| is_collision(runs.subject)) else { return Ok(None) };
+    let over_phases = |choice: &Choice, step: f64| -> Result<Option<Vec<[f64; 2]>>, StudyError> {
+        let outcome = |phase: u32| {
+            let key = format!("collision|{}|{step:?}|{phase}/{phases}", choice.label());
+            let fits = |found: &Option<[f64; 2]>| found.iter().flatten().all(|value| value.is_finite());
+            let late = f64::from(phase) / f64::from(phases) * step;
+            let outcome = runs.recall(&key, fits, || outcome(runs, choice, step, late));
+            outcome.map(|outcome| outcome.ok().flatten())
+        };
+        (0..phases).map(outcome).collect()
+    };
+    let first = runs.subject.reference(0);
+    let Some(reference) = over_phases(&first, REFERENCE * smallest)? else { return Ok(None) };
+    let reference = mean(&reference);
+    let is_alike = |choice: &Choice| {
+        [Decides::Digits, Decides::Cost].iter().all(|&decides| choice.agrees(&first, decides))
+    };
+    let schemes: Vec<Choice> = Choice::all(runs.subject.entry.axes).into_iter().filter(is_alike).collect();
+    let cases: Vec<(&Choice, f64)> =
+        schemes.iter().flat_map(|choice| steps.iter().map(move |step| (choice, *step))).collect();
+    let found = runs.journal.over(&cases, |&(choice, step)| {
+        let error = |outcomes: Vec<[f64; 2]>| {
+            let off: Vec<[f64; 2]> =
+                outcomes.iter().map(|outcome| [0, 1].map(|i| outcome[i] - reference[i])).collect();
+            let squares: Vec<[f64; 2]> = off.iter().map(|off| off.map(|off| off * off)).collect();
+            let (spread, mean) = (mean(&squares).map(f64::sqrt), mean(&off).map(f64::abs));
+            OutcomeError { choice: choice.label(), step, spread, mean }
+        };
+        Ok::<_, StudyError>(over_phases(choice, step)?.map(error))
+    })?;
+    let errors: Vec<OutcomeError> = found.into_iter().flatten().collect();
+    let order = |choice: &Choice, i: usize| {
+        let of = |error: fn(&OutcomeError) -> [f64; 2]| {
+            let own = errors.iter().filter(|error| error.choice == choice.label());
+            fit(&own.map(|it| (it.step, error(it)[i])).collect::<Vec<_>>(), 0.0, LARGE)
+        };
+        OutcomeOrder {
+            choice: choice.label(),
+            outcome: OUTCOMES[i],
+            spread: of(|error| error.spread),
+            mean: of(|error| error.mean),
+        }
+    };
+    let orders = schemes.iter().flat_map(|choice| [0, 1].map(|i| order(choice, i))).collect();
+    Ok(Some(Collision { phases, errors, orders }))
+}
+
+fn mean(values: &[[f64; 2]]) -> [f64; 2] {
+    [0, 1].map(|i| values.iter().map(|value| value[i]).sum::<f64>() / values.len().max(1) as f64)
+}
+
+/// Outcomes of a collision before which the discs fly for a time longer; none where they do not touch and part.
+fn outcome(runs: &Runs<'_>, choice: &Choice, step: f64, late: f64) -> Result<Option<[f64; 2]>, RunFailure> {
+    let scene = delayed(&runs.subject.prepared_as(choice, step, &Overrides::new())?, late);
+    let domain = scene.domain;
+    let steps = (runs.subject.duration() / step).round() as u64;
+    let course = Course { steps, looks: 1, each: 1e-6 };
+    let end = runs.follow(&scene, Purpose::Measurement, course, |_| {})?;
+    let pair = |particles| State::of(particles).pair(&domain);
+    let (Some((before, gap)), Some((after, apart))) = (pair(scene.particles()), pair(&end.particles()))
+    else {
+        return Ok(None);
+    };
+    let speed = |[u, v]: [f64; 2]| u.hypot(v);
+    let turned =
+        libm::atan2(before[0] * after[1] - before[1] * after[0], before[0] * after[0] + before[1] * after[1]);
+    let is_over = gap > 0.0 && apart > 0.0 && before != after;
+    Ok(is_over.then(|| [speed(after) / speed(before), turned]))
+}

@@ -1,0 +1,206 @@
+//! Growth of a small disturbance, and the time up to which trajectories are therefore comparable.
+
+use crate::statistics::slope;
+use crate::study::choice::Choice;
+use crate::study::runs::Runs;
+use crate::study::state::{State, displaced};
+use crate::study::trial::RunFailure;
+use crate::study::{StudyError, Subject};
+use serde::{Deserialize, Serialize};
+use stripmine_physics::method::{Decides, Prepared, Purpose};
+use stripmine_physics::number::significant;
+use stripmine_physics::scene::Overrides;
+
+/// Distance by which the particles of the disturbed run are moved at the start (the method's length).
+pub const DISTURBANCE: f64 = 1e-9;
+/// Trajectories are comparable while the error is below this (the method's length).
+pub const COMPARABLE: f64 = 0.1;
+/// Multiple of the scene's own step up to which trajectories are to be comparable.
+const COARSER: f64 = 4.0;
+/// Looks at the runs.
+const LOOKS: u64 = 64;
+/// A window that ends after fewer looks is looked at again, more closely.
+const FEW: usize = 8;
+/// Number of halvings where the scene's own step fails.
+const HALVINGS: i32 = 3;
+
+/// Distances over time, and the window in which trajectories are comparable.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Growth {
+    /// Step of the runs (time).
+    pub step: f64,
+    /// Times of the looks (time).
+    pub times: Vec<f64>,
+    /// Root mean square distance of the disturbed run (the method's length).
+    pub separation: Vec<f64>,
+    /// Root mean square distance of a run with half the step (the method's length).
+    pub error: Vec<f64>,
+    /// Rate of the exponential growth (1/time); none where nothing grows.
+    pub rate: Option<f64>,
+    /// End of the window (time).
+    pub window: f64,
+    pub ended_by: EndedBy,
+}
+
+/// End of the window in which trajectories are comparable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum EndedBy {
+    Growth,
+    Scene,
+    Budget,
+}
+
+impl Growth {
+    /// True if it may come from runs of the scene: as many distances as times, within the time of the scene.
+    fn is_of(&self, subject: &Subject) -> bool {
+        let Growth { step, times, separation, error, rate, window, .. } = self;
+        let whole = subject.duration() * (1.0 + 1e-9);
+        let least = subject.step * 0.5f64.powi(HALVINGS);
+        let all = times.iter().chain(separation).chain(error).chain(rate).chain([step, window]);
+        [separation.len(), error.len()] == [times.len(); 2]
+            && (least..=subject.step).contains(step)
+            && (0.0..=whole).contains(window)
+            && times.iter().all(|time| (0.0..=whole).contains(time))
+            && all.copied().all(f64::is_finite)
+    }
+}
+
+/// Follows the scene's own configuration beside a disturbed start and half the step, for at most `most` own steps, each of which takes `each` seconds.
+/// A step that fails is halved. Where the error of the step alone may end the window, the configuration of the reference is followed, too.
+///
+/// # Errors
+/// [`StudyError::EveryRunFails`] if no step works.
+pub fn growth(runs: &Runs<'_>, most: u64, each: f64) -> Result<Growth, StudyError> {
+    let own = own_in_full_digits(runs.subject);
+    let mut tried = vec![];
+    for halvings in 0..=HALVINGS {
+        match of_step(runs, &own, halvings, (most, each))? {
+            Ok(growth) => return longer_by_reference(runs, &own, growth, (most, each)),
+            Err(failure) => {
+                let step = runs.subject.step * 0.5f64.powi(halvings);
+                tried.push((format!("{} with step {}", own.label(), significant(step, 6)), failure.why));
+            }
+        }
+    }
+    Err(StudyError::EveryRunFails { tried })
+}
+
+fn longer_by_reference(
+    runs: &Runs<'_>,
+    own: &Choice,
+    first: Growth,
+    course: (u64, f64),
+) -> Result<Growth, StudyError> {
+    let reference = runs.subject.reference(0);
+    if first.ended_by != EndedBy::Growth || reference == *own {
+        return Ok(first);
+    }
+    let second = of_step(runs, &reference, 0, course)?.ok();
+    Ok(second.filter(|second| second.window > first.window).unwrap_or(first))
+}
+
+/// Growth with the scene's own step, halved some times, over a number of own steps.
+fn of_step(
+    runs: &Runs<'_>,
+    choice: &Choice,
+    halvings: i32,
+    (most, each): (u64, f64),
+) -> Result<Result<Growth, RunFailure>, StudyError> {
+    let step = runs.subject.step * 0.5f64.powi(halvings);
+    let fits = |growth: &Growth| growth.is_of(runs.subject);
+    runs.recall(&format!("growth|{}|{halvings}", choice.label()), fits, || {
+        let mut growth = observed(runs, choice, step, (most << halvings, each))?;
+        while growth.ended_by == EndedBy::Growth && (2..FEW).contains(&growth.times.len()) {
+            let steps = growth.times.last().map_or(0.0, |time| (time / step).round());
+            if steps < LOOKS as f64 {
+                break;
+            }
+            growth = observed(runs, choice, step, (steps as u64, each))?;
+        }
+        Ok(growth)
+    })
+}
+
+/// The scene's own configuration with the digits of the reference: a small disturbance must not be lost in rounding.
+pub fn own_in_full_digits(subject: &Subject) -> Choice {
+    let is_of_digits = |name: &str| {
+        subject.entry.axes.iter().any(|axis| axis.name == name && axis.decides == Decides::Digits)
+    };
+    let [first, _] = subject.trials.references;
+    subject.own.with(&first.iter().copied().filter(|(axis, _)| is_of_digits(axis)).collect::<Vec<_>>())
+}
+
+fn observed(
+    runs: &Runs<'_>,
+    choice: &Choice,
+    step: f64,
+    (most, each): (u64, f64),
+) -> Result<Growth, RunFailure> {
+    let subject = runs.subject;
+    let prepared = |step| subject.prepared_as(choice, step, &Overrides::new());
+    let (base, halved) = (prepared(step)?, prepared(0.5 * step)?);
+    let domain = base.domain;
+    let length = (subject.trials.length.of)(base.particles());
+    let disturbed = base.model.started_from(displaced(base.particles(), &domain, |place, _| {
+        // Directions without a pattern, equal on every machine.
+        let angle = 2.399_963_229_728_653 * (place as f64 + 1.0);
+        [libm::cos(angle), libm::sin(angle)].map(|part| DISTURBANCE * length * part)
+    }));
+    let begin = |scene: &Prepared| scene.start(Purpose::Measurement);
+    let mut all = [(begin(&base)?, 1), (begin(&disturbed)?, 1), (begin(&halved)?, 2)];
+    let looks = LOOKS.min(most);
+    let mut growth = Growth {
+        step,
+        times: vec![],
+        separation: vec![],
+        error: vec![],
+        rate: None,
+        window: 0.0,
+        ended_by: if most < subject.steps { EndedBy::Budget } else { EndedBy::Scene },
+    };
+    for look in 1..=looks {
+        let steps = most * look / looks;
+        for (simulation, times) in &mut all {
+            runs.trial.advance_to_step(simulation.as_mut(), *times * steps)?;
+        }
+        runs.meter.add(4.0 * each * (steps - most * (look - 1) / looks) as f64);
+        let [base, disturbed, halved] = all.each_ref().map(|(run, _)| State::of(&run.particles()));
+        let apart = |other: &State| base.distance(other, &domain)[0] / length;
+        let error = apart(&halved);
+        growth.times.push(steps as f64 * step);
+        growth.separation.push(apart(&disturbed));
+        growth.error.push(error);
+        if error * COARSER.min(COARSER * step / subject.step) > COMPARABLE && look > 1 {
+            growth.ended_by = EndedBy::Growth;
+            break;
+        }
+        growth.window = steps as f64 * step;
+    }
+    growth.rate = rate(&growth.times, &growth.separation);
+    Ok(growth)
+}
+
+/// Rate of exponential growth between the disturbance itself and loss; none where nothing grows.
+fn rate(times: &[f64], separation: &[f64]) -> Option<f64> {
+    const GROWN: f64 = 3.0 * DISTURBANCE;
+    const LOST: f64 = 0.01;
+    let growing = times.iter().zip(separation).filter(|(_, distance)| (GROWN..LOST).contains(distance));
+    let (times, logarithms): (Vec<f64>, Vec<f64>) =
+        growing.map(|(time, distance)| (*time, libm::log(*distance))).unzip();
+    let rate = slope(&times, &logarithms);
+    (times.len() > 2 && rate > 0.0).then_some(rate)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn growth_is_exponential_between_the_disturbance_and_loss() {
+        let times: Vec<f64> = (0..60).map(f64::from).collect();
+        let separation: Vec<f64> =
+            times.iter().map(|t| (DISTURBANCE * (0.5 * t).exp()).clamp(DISTURBANCE, 0.3)).collect();
+        assert!((rate(&times, &separation).unwrap() - 0.5).abs() < 1e-9);
+        assert_eq!(rate(&times, &vec![DISTURBANCE; 60]), None);
+    }
+}

@@ -1,0 +1,263 @@
+//! Diagrams by a made clock: no result depends on how fast the machine is.
+
+use super::{Effort, made, work_precision};
+use crate::model::machines;
+use crate::results::{Identity, Journal};
+use crate::study::explain::Target;
+use crate::study::trial::{Stopwatch, Trial};
+use crate::study::{StudyError, Subject};
+use serde_json::Value;
+use std::fs;
+use std::sync::atomic::{AtomicBool, Ordering};
+use stripmine_physics::method::METHODS;
+use stripmine_physics::reported::{Class, Reported};
+
+/// Nanoseconds for each particle and step.
+const NANOSECONDS: f64 = 20_000.0;
+
+fn subject(scene: &str, sets: &[&str]) -> Subject {
+    let sets: Vec<String> = sets.iter().map(|&set| set.to_owned()).collect();
+    Subject::load(scene, &sets, METHODS).unwrap()
+}
+
+/// Scene of a text, with overrides.
+fn written(text: &str, sets: &[&str]) -> Subject {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    fs::write(&path, text).unwrap();
+    subject(path.to_str().unwrap(), sets)
+}
+
+fn effort(budget: f64) -> Effort {
+    Effort { budget, repeats: 1, phases: 16, machine: None }
+}
+
+/// Frames by name.
+fn measured(subject: &Subject, effort: &Effort) -> Result<Value, StudyError> {
+    let (watch, stop) = (Stopwatch::made(NANOSECONDS), AtomicBool::new(false));
+    let trial = Trial { watch: &watch, stop: &stop };
+    let data = work_precision(subject, effort, trial, &Journal::none(), &|_| {})?;
+    Ok(made(&[("scene".to_owned(), data)]).json())
+}
+
+fn rows<'d>(data: &'d Value, frame: &str) -> &'d Vec<Value> {
+    data[frame].as_array().unwrap()
+}
+
+/// Two discs that are pressed together for the whole time: forces without a kink.
+const PRESSED: &str = r#"format = 2
+units = "reduced"
+[method]
+kind = "lattice-md"
+[domain]
+sides = [12.0, 8.0]
+periodic = [false, false]
+[particles]
+generate = "list"
+positions = [[5.0, 4.0], [5.94, 4.0]]
+velocities = [[0.2, 0.0], [-0.2, 0.0]]
+radius = 0.5
+mass = 1.0
+[law]
+stiffness = 100.0
+[integrator]
+values = 5
+dt = 2e-3
+[run]
+time = 0.1
+thermo_every = 10
+"#;
+
+/// Positions converge as theory says; velocity Verlet by its own order, Gear's schemes as their start allows. Energy of discs that
+/// begin at rest converges with the orders of the schemes.
+#[test]
+fn orders_in_smooth_forces_are_those_of_theory() {
+    let orders = |sets: &[&str], measure: &str| -> Vec<(String, f64, Option<f64>)> {
+        let data = measured(&written(PRESSED, sets), &effort(4.0)).unwrap();
+        let own = rows(&data, "orders").iter().filter(|order| order["error"] == measure);
+        own.map(|order| {
+            let scheme = order["scheme"].as_str().unwrap().to_owned();
+            (scheme, order["order"].as_f64().unwrap(), order["theory"].as_f64())
+        })
+        .collect()
+    };
+    let moving = orders(&[], "position, RMS");
+    assert_eq!(moving.len(), 4);
+    for (scheme, order, theory) in moving {
+        assert!((order - theory.unwrap()).abs() < 0.2, "{scheme}: {order}, {theory:?}");
+    }
+    let at_rest = orders(&["particles.velocities=[[0.0,0.0],[0.0,0.0]]"], "energy balance (relative)");
+    let expected = [("velocity-verlet", 2.0), ("gear4", 3.0), ("gear5", 4.0)];
+    for (name, theory) in expected {
+        let (_, order, _) = at_rest.iter().find(|(scheme, ..)| scheme == name).unwrap();
+        assert!((order - theory).abs() < 0.2, "{name}: {order}");
+    }
+}
+
+/// One collision: over all phases of a step the error has the order of the kink or of the jump, and its mean falls faster.
+#[test]
+fn a_collision_errs_by_the_phase_of_its_step() {
+    let orders = |more: &[&str]| -> Vec<f64> {
+        let sets = [&["run.time=2.6", "law.friction=0"], more].concat();
+        let data = measured(&subject("two-discs", &sets), &Effort { repeats: 0, ..effort(30.0) }).unwrap();
+        let own = rows(&data, "collision").iter().filter(|order| order["outcome"] == "restitution");
+        own.map(|it| it["order_of_the_rms"].as_f64().unwrap()).collect()
+    };
+    let damped = orders(&[]);
+    assert!(damped.len() == 4 && damped.iter().all(|spread| (spread - 1.0).abs() < 0.2), "{damped:?}");
+    // The first is velocity Verlet, which keeps an energy; Gear's schemes lose some of it in a smooth contact, too.
+    let elastic = orders(&["law.normal_damping=0"]);
+    assert!((elastic[0] - 2.5).abs() < 0.2, "{elastic:?}");
+}
+
+/// Programs have clock periods on any machine; configurations whose work depends on the data have none.
+#[test]
+fn clock_periods_are_those_of_programs() {
+    let machine = Some(machines::find("cray-1").unwrap());
+    let data = measured(&written(PRESSED, &[]), &Effort { machine, ..effort(2.0) }).unwrap();
+    assert!(data["scenes"][0]["machine"].as_str().is_some_and(|name| name.contains("CRAY-1")));
+    for run in rows(&data, "runs").iter().filter(|run| run["failed"].is_null()) {
+        let (label, clocks) = (run["configuration"].as_str().unwrap(), run["clock_periods"].as_f64());
+        assert_eq!(
+            clocks.is_some_and(|clocks| clocks > 1e3),
+            !label.ends_with("fast"),
+            "{label}: {clocks:?}"
+        );
+    }
+    assert!(rows(&data, "drawn").iter().any(|point| point["chart"] == "clocks"));
+}
+
+/// Discs that fall for a hundredth of a scene in which they lie on a floor at last: in the time that is compared nothing touches.
+const FALLING: &str = r#"format = 2
+units = "reduced"
+[method]
+kind = "lattice-md"
+[domain]
+sides = [40.0, 400.0]
+periodic = [true, false]
+gravity = [0.0, -1.0]
+[particles]
+generate = "box"
+count = 300
+fill_height = 300.0
+radius = 0.5
+wall_radius = 0.45
+wall_spacing = 1.25
+mass = 1.0
+speed = 0.0
+[law]
+stiffness = 1e6
+normal_damping = 10.0
+[integrator]
+dt = 2e-4
+[run]
+time = 200.0
+"#;
+
+/// A scene of which the compared time shows nothing gets no recommendation, neither for an error nor beside its own configuration.
+#[test]
+fn where_hardly_anything_happens_nothing_is_decided() {
+    let data = measured(&written(FALLING, &[]), &effort(2.0)).unwrap();
+    let scene = &data["scenes"][0];
+    let why = scene["why_nothing_is_decided"].as_str().unwrap();
+    assert!(why.contains("contacts in the mean, fewer than 3"), "{why}");
+    assert!(data["references"][0]["in_that_time_a_particle_has"].as_f64().unwrap() < 3.0);
+    assert!(scene["compared"].as_f64().unwrap() < 0.1 * 200.0);
+    assert!(scene["as_accurate"] == "" && scene["its_cost_over_the_own_cost"].is_null(), "{scene}");
+    let wishes = rows(&data, "wishes");
+    assert!(!wishes.is_empty());
+    for wish in wishes {
+        let said = wish["cheapest_configuration"].as_str().unwrap();
+        assert!(said.starts_with("not decided: in the time that is compared"), "{wish}");
+        assert!(wish["step"].is_null(), "{wish}");
+    }
+}
+
+/// Trajectories of shaken grains part within a fiftieth of the scene, and those in a bath at once: both errors name a chart that answers.
+#[test]
+fn scenes_whose_trajectories_part_at_once_are_refused() {
+    for (scene, why) in
+        [("shaken-box", "part after a time of"), ("langevin-dense", "noise moves the particles")]
+    {
+        let error = measured(&subject(scene, &[]), &effort(2000.0)).err().unwrap();
+        let said = error.to_string();
+        assert!(
+            matches!(error, StudyError::NoTrajectories { .. }) && error.class() == Class::Usage,
+            "{said}"
+        );
+        assert!(said.contains(why), "{said}");
+        assert!(said.contains(&format!("stripmine chart accuracy {scene} --of temperature")), "{said}");
+        assert!(Target::of(&subject(scene, &[]), Some("temperature"), None).is_ok());
+    }
+}
+
+/// Runs that theory, a check or a warning speaks against are cheaper, and none of them is recommended or on a front.
+#[test]
+fn no_run_with_an_objection_is_recommended() {
+    // Near enough to meet at once, and so damped that every integrator errs by more than is warned of at sixteen times the step.
+    let near = ["particles.positions=[[3.0, 4.0], [4.05, 4.25]]", "run.time=0.3", "law.normal_damping=20"];
+    let data = measured(&subject("two-discs", &near), &effort(6.0)).unwrap();
+    assert_eq!(data["scenes"][0]["why_nothing_is_decided"], "");
+    assert!(data["references"][0]["in_that_time_a_particle_has"].as_f64().unwrap() >= 1.0);
+    let runs = rows(&data, "runs");
+    let objection = |run: &Value| run["what_speaks_against_it"].as_str().unwrap_or_default().to_owned();
+    // Sixteen times its own step would be the cheapest for some error.
+    let own = data["scenes"][0]["own_step"].as_f64().unwrap();
+    let is_coarse = |run: &&Value| {
+        let multiple = run["step"].as_f64().unwrap() / own;
+        (multiple - 16.0).abs() < 1e-6 && run["position_rms"].is_number()
+    };
+    let coarse: Vec<&Value> = runs.iter().filter(is_coarse).collect();
+    assert!(coarse.iter().any(|run| run["position_rms"].as_f64().unwrap() < 3e-2), "{coarse:?}");
+    assert!(coarse.iter().all(|run| !objection(run).is_empty()), "{coarse:?}");
+    assert!(runs.iter().any(|run| objection(run).contains("of theory")));
+    let named: Vec<&Value> = rows(&data, "wishes").iter().filter(|wish| wish["step"].is_number()).collect();
+    assert!(!named.is_empty(), "{data}");
+    for wish in named {
+        let is_it = |run: &&Value| {
+            run["configuration"] == wish["cheapest_configuration"] && run["step"] == wish["step"]
+        };
+        let run = runs.iter().find(is_it).unwrap();
+        assert!(objection(run).is_empty(), "{wish}: {run}");
+    }
+    let front: Vec<&Value> = rows(&data, "drawn").iter().filter(|point| point["kind"] == "front").collect();
+    assert!(!front.is_empty());
+    for point in front {
+        let measure = if point["chart"] == "position" { "position_rms" } else { "energy_balance" };
+        let mut own =
+            runs.iter().filter(|run| run["cost"] == point["cost"] && run[measure] == point["error"]);
+        assert!(own.all(|run| objection(run).is_empty()), "{point}");
+    }
+}
+
+/// A study that is interrupted keeps its finished runs, and comes out the same when it is resumed.
+#[test]
+fn an_interrupted_study_resumes() {
+    let folder = tempfile::tempdir().unwrap();
+    let identity = Identity { of: "pressed".to_owned(), digest: "12345678".to_owned() };
+    let subject = written(PRESSED, &[]);
+    let run = |stop: &AtomicBool, until: f64| {
+        let watch = Stopwatch::made(NANOSECONDS);
+        let journal = Journal::open(folder.path(), &identity, None).unwrap();
+        let progress = |share: f64| stop.fetch_or(share > until, Ordering::Relaxed);
+        let trial = Trial { watch: &watch, stop };
+        let data = work_precision(&subject, &effort(2.0), trial, &journal, &|share| _ = progress(share));
+        (journal.len(), data.map(|data| made(&[("scene".to_owned(), data)]).json()))
+    };
+    let (before, interrupted) = run(&AtomicBool::new(false), 0.02);
+    assert!(before == 0 && matches!(interrupted, Err(StudyError::Interrupted)), "{interrupted:?}");
+    let (kept, resumed) = run(&AtomicBool::new(false), 2.0);
+    assert!(kept > 4, "{kept}");
+    let (all, again) = run(&AtomicBool::new(false), 2.0);
+    assert!(all > kept, "{kept} of {all}");
+    let all = [measured(&subject, &effort(2.0)), resumed, again].map(Result::unwrap);
+    // Recalled runs leave more of the made time for repeats, so that costs differ.
+    for frame in ["orders", "references", "errors", "growth"] {
+        let [whole, resumed, again] = all.each_ref().map(|data| {
+            let mut rows = rows(data, frame).clone();
+            rows.iter_mut().for_each(|row| _ = row.as_object_mut().unwrap().remove("cost_of_a_unit_of_time"));
+            rows
+        });
+        assert!(!whole.is_empty() && whole == resumed && whole == again, "{frame}");
+    }
+}
