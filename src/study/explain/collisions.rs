@@ -4,10 +4,10 @@
 use super::findings::{Way, Work};
 use super::mean::Mean;
 use crate::study::Case;
-use crate::study::state::displaced;
+use crate::study::state::delayed;
 use std::sync::atomic::Ordering;
 use stripmine_physics::domain::Domain;
-use stripmine_physics::method::{Encounter, Prepared, Purpose, Until};
+use stripmine_physics::method::{Encounter, Purpose, Until};
 use stripmine_physics::particles::{Particle, Particles};
 use stripmine_physics::scene::Overrides;
 
@@ -49,9 +49,9 @@ impl Work<'_> {
                 }
                 own.lost += change.lost / f64::from(PHASES);
             }
-            for axis in 0..3 {
-                off[axis] += (own.impulse[axis] - exact.impulse[axis]).abs();
-                all += exact.impulse[axis].abs();
+            for ((off, own), exact) in off.iter_mut().zip(own.impulse).zip(exact.impulse) {
+                *off += (own - exact).abs();
+                all += exact.abs();
             }
             lost = [lost[0] + own.lost - exact.lost, lost[1] + exact.lost];
         }
@@ -63,10 +63,7 @@ impl Work<'_> {
     /// A collision that begins later by a time.
     fn changed(&self, case: &Case, overrides: Overrides, late: f64) -> Option<Change> {
         let prepared = case.prepared_with(&overrides).ok()?;
-        let delayed = displaced(prepared.particles(), &prepared.domain, |_, disc| {
-            disc.planar_velocity().map(|part| -late * part)
-        });
-        let prepared: Prepared = prepared.model.started_from(delayed);
+        let prepared = delayed(&prepared, late);
         let mut simulation = prepared.start(Purpose::Run).ok()?;
         let end = Until::Time(case.duration()?);
         simulation.advance(&[end], self.trial.stop).ok()?;
