@@ -21,5 +21,5 @@ pub use case::Case;
 pub use choice::Choice;
 pub use error::StudyError;
 pub use items::ITEMS;
-pub(crate) use shortened::first_line;
+pub(crate) use shortened::{first_line, rounded};
 pub use subject::Subject;

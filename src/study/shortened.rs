@@ -1,4 +1,4 @@
-//! Messages of failures as sentences of a study quote them.
+//! Messages and numbers as studies quote them.
 
 use stripmine_physics::number::significant;
 
@@ -8,6 +8,11 @@ const DIGITS: usize = 4;
 /// A failure in the words of its first line, without its advice, with numbers for a reader.
 pub(crate) fn first_line(message: &str) -> String {
     shortened(message.lines().next().unwrap_or_default())
+}
+
+/// A number as it is printed to some digits.
+pub(crate) fn rounded(value: f64, digits: usize) -> f64 {
+    significant(value, digits).parse().unwrap_or(value)
 }
 
 /// A text whose decimal numbers have at most four significant digits. Whole numbers (steps, discs) and versions stay.

@@ -251,6 +251,21 @@ impl Bias {
         [self.shift, self.bar].map(|value| self.part_at(step) * value)
     }
 
+    /// The bias at a step by pairs of runs (the quantity's unit), and its bar.
+    pub(super) fn pairs_at(&self, step: f64) -> Option<[f64; 2]> {
+        self.pairs.map(|both| both.map(|value| self.part_at(step) * value))
+    }
+
+    /// The bias at a step by the shadow energy (the quantity's unit), and its bar.
+    pub(super) fn shadow_at(&self, step: f64) -> Option<[f64; 2]> {
+        self.shadow.map(|both| both.map(|value| self.part_at(step) * value))
+    }
+
+    /// The size of the bias at a step by single collisions (the quantity's unit).
+    pub(super) fn collisions_at(&self, step: f64) -> Option<f64> {
+        self.collisions.map(|size| self.part_at(step) * size)
+    }
+
     /// The bias that is expected at a step (the quantity's unit), and the most that it is.
     pub fn at(&self, step: f64) -> Off {
         let part = self.part_at(step);

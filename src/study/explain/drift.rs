@@ -1,6 +1,6 @@
 //! Quantities that should keep their value and do not quite: how far they go over a whole run, at the steps that were tried.
 
-use super::plan::printed;
+use crate::study::rounded;
 use crate::study::trial::any_number;
 use serde::{Deserialize, Serialize};
 
@@ -35,7 +35,7 @@ impl Drift {
 
     /// How far it goes at a step that was tried.
     pub fn at(&self, step: f64) -> Option<f64> {
-        self.tried.iter().find(|it| printed(it.step, 4) == printed(step, 4)).map(|it| it.farthest)
+        self.tried.iter().find(|it| rounded(it.step, 4) == rounded(step, 4)).map(|it| it.farthest)
     }
 
     /// The least that was seen (the quantity's unit); infinite where nothing was.
@@ -61,10 +61,10 @@ impl Drift {
                 |pair: &[Tried]| pair[1].farthest < 0.5 * pair[0].farthest || pair[0].farthest.is_infinite();
             let last = self.tried.windows(2).rev().take(2);
             let is_stuck = self.tried.len() > 4 && last.filter(|pair| !gains(pair)).count() == 2;
-            return (!is_stuck).then_some(printed(0.5 * shortest.step, 4));
+            return (!is_stuck).then_some(rounded(0.5 * shortest.step, 4));
         };
         let above = self.tried.iter().rev().find(|it| it.step > found.step)?;
-        let middle = printed((above.step * found.step).sqrt(), 4);
+        let middle = rounded((above.step * found.step).sqrt(), 4);
         (above.step / found.step > CLOSE).then_some(middle)
     }
 }

@@ -3,7 +3,8 @@
 use super::ExplainError;
 use super::drift::Drift;
 use super::findings::{Findings, NoRun, Way, Work, sort};
-use super::plan::{in_unit, printed};
+use super::plan::in_unit;
+use crate::study::rounded;
 use crate::study::trial::{Known, Span, any_number};
 use serde::{Deserialize, Serialize};
 use stripmine_physics::averages::Outcome;
@@ -144,7 +145,7 @@ impl Work<'_> {
         let is_cheapest = |way: &Way| way.drift.is_some() || !ways.iter().any(|other| is_dearer(way, other));
         let tried = |it: &(usize, &Way)| it.1.dropped.is_none() && is_cheapest(it.1);
         let runs = ways.iter().enumerate().filter(tried).filter_map(|(at, way)| {
-            let first = printed(LONGEST * own, 4);
+            let first = rounded(LONGEST * own, 4);
             let step = way.drift.as_ref().map_or(Some(first), |drift| drift.next(wanted))?;
             let enough = way.drift.as_ref().and_then(|drift| drift.expected_step(wanted));
             let [now, expected] = [step, enough.unwrap_or(step).min(step)].map(|step| seconds(way, step));

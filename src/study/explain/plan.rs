@@ -9,9 +9,8 @@ use super::optimum::SHORTEST;
 use super::recommended::{Expected, Interval, Own, Plan};
 use super::unreached::Unreached;
 use crate::study::trial::ROWS;
-use crate::study::{Case, Choice};
+use crate::study::{Case, Choice, rounded};
 use stripmine_physics::method::Every;
-use stripmine_physics::number::significant;
 use stripmine_physics::scene::{Overrides, STEPS, THERMO_EVERY, TIME, Width};
 
 /// A time is foreseen within this factor: other programs come and go.
@@ -113,7 +112,7 @@ pub(super) fn phases(best: &Weighed<'_>, time: f64) -> Vec<(String, f64)> {
 pub(super) fn overrides(case: &Case, way: &Way, step: Option<f64>, time: Option<f64>) -> Overrides {
     let mut overrides = way.overrides.clone();
     // The run takes the step that is printed.
-    let step = step.map(|step| printed(step, 4));
+    let step = step.map(|step| rounded(step, 4));
     if let (Some(trials), Some(step)) = (case.entry.trials, step) {
         overrides = overrides.set(trials.step, step);
     }
@@ -134,7 +133,7 @@ pub(super) fn overrides(case: &Case, way: &Way, step: Option<f64>, time: Option<
         let every = time / ROWS[1];
         overrides = match step {
             Some(step) => overrides.set(&THERMO_EVERY, (every / step).max(1.0) as u64),
-            None => overrides.set(&THERMO_EVERY, printed(every, 3)),
+            None => overrides.set(&THERMO_EVERY, rounded(every, 3)),
         };
     }
     overrides
@@ -142,13 +141,8 @@ pub(super) fn overrides(case: &Case, way: &Way, step: Option<f64>, time: Option<
 
 /// A time in six digits, or one more in the last of them where it would be shorter.
 fn no_shorter(time: f64) -> f64 {
-    let nearest = printed(time, 6);
-    if nearest < time { printed(time * (1.0 + 5.1e-6), 6) } else { nearest }
-}
-
-/// A number as it is printed to some digits.
-pub(super) fn printed(value: f64, digits: usize) -> f64 {
-    significant(value, digits).parse().unwrap_or(value)
+    let nearest = rounded(time, 6);
+    if nearest < time { rounded(time * (1.0 + 5.1e-6), 6) } else { nearest }
 }
 
 /// The way of a plan among those of other findings.

@@ -1,8 +1,8 @@
 //! How wide the skin of lists is to be: by trials, as no constant knows how discs move.
 
 use super::findings::{Way, Work, sort};
-use super::plan::printed;
 use crate::study::Case;
+use crate::study::rounded;
 use stripmine_physics::scene::Overrides;
 
 /// Skins that are tried, in parts of the scene's own.
@@ -49,7 +49,7 @@ const LISTS: &str = "neighbor-list";
 /// Overrides with a skin, to as many digits as are printed.
 fn with_skin(overrides: Overrides, case: &Case, skin: f64) -> Overrides {
     match case.entry.vocabulary.keys.key("search", "skin") {
-        Some(key) => overrides.set(key, printed(skin, 3)),
+        Some(key) => overrides.set(key, rounded(skin, 3)),
         None => overrides,
     }
 }

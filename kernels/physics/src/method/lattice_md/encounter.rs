@@ -6,11 +6,11 @@ use toml::{Table, Value};
 /// Tables of a scene that an encounter shares with it. Gravity and walls that move are not among them.
 const SHARED: [&str; 6] = ["format", "units", "method", "law", "integrator", "machine"];
 /// Distance of the surfaces at the start, in sums of the radii.
-const GAP: f64 = 0.5;
+const GAP: f64 = 0.1;
 /// Side of the box, and the place of the disc at rest, in sums of the radii.
 const SIDE: f64 = 40.0;
 /// The discs have parted when the first could have flown so many sums of the radii.
-const FLIGHT: f64 = 6.0;
+const FLIGHT: f64 = 3.0;
 
 /// The scene of an encounter of two discs of mean radius and mass; none where nothing moves.
 pub(super) fn encounter(prepared: &Prepared, Encounter { speed, offset }: Encounter) -> Option<String> {
@@ -48,4 +48,55 @@ pub(super) fn encounter(prepared: &Prepared, Encounter { speed, offset }: Encoun
     );
     table("run", &[("time", Value::from(FLIGHT * both / speed))]);
     Some(scene.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::method::lattice_md::keys::STIFFNESS;
+    use crate::method::{METHODS, Purpose, prepare, vocabularies};
+    use crate::scene::Values;
+    use std::sync::atomic::AtomicBool;
+    use stripmine_kernels::law::spring::Spring;
+
+    /// Speeds before and after of an encounter in a scene with a damping, followed with a step.
+    fn speeds(damping: f64, encounter: Encounter, step: f64) -> [[f64; 2]; 2] {
+        let known = vocabularies(METHODS);
+        let overrides = ["particles.count=100".to_owned(), format!("law.normal_damping={damping}")];
+        let (gas, _) = prepare(Values::load("dense-gas", &overrides, &known).unwrap(), METHODS).unwrap();
+        let text = super::encounter(&gas, encounter).unwrap();
+        let step = format!("integrator.dt={step}");
+        let values = Values::parse("encounter", &text, &[step], &known).unwrap();
+        let (scene, _) = prepare(values, METHODS).unwrap();
+        let mut simulation = scene.start(Purpose::Run).unwrap();
+        simulation.advance(&[scene.schedule.until], &AtomicBool::new(false)).unwrap();
+        [scene.particles().clone(), simulation.particles()].map(|particles| {
+            let [a, b] = [0, 1].map(|at| particles.grains()[at].planar_velocity());
+            [a[0] - b[0], a[1] - b[1]]
+        })
+    }
+
+    /// Head on the discs part with the restitution of the law, which another solver has; past each other they fly on; an elastic encounter keeps the speed.
+    #[test]
+    fn two_discs_meet_as_the_law_says() {
+        let known = vocabularies(METHODS);
+        let gas = Values::load("dense-gas", &["particles.count=100".to_owned()], &known).unwrap();
+        let stiffness = gas.number(&STIFFNESS).unwrap();
+        let (prepared, _) = prepare(gas, METHODS).unwrap();
+        let mass = prepared.particles().grains()[0].mass;
+        let head_on = Encounter { speed: 0.3, offset: 0.0 };
+        for damping in [0.0, 1.0, 4.0] {
+            let [before, after] = speeds(damping, head_on, 1e-4);
+            let expected = match damping {
+                0.0 => 1.0,
+                _ => Spring::Hertz.impact(2.0 * stiffness / mass, damping, 0.3).restitution,
+            };
+            assert!((before[0] - 0.3).abs() < 1e-12 && before[1] == 0.0, "{before:?}");
+            assert!((-after[0] / 0.3 - expected).abs() < 1e-3, "{damping}: {after:?}, {expected}");
+        }
+        let [before, after] = speeds(1.0, Encounter { offset: 1.01, ..head_on }, 1e-3);
+        assert_eq!(before, after);
+        let [_, after] = speeds(0.0, Encounter { offset: 0.5, ..head_on }, 1e-4);
+        assert!((after[0].hypot(after[1]) / 0.3 - 1.0).abs() < 1e-6 && after[1].abs() > 0.1, "{after:?}");
+    }
 }
