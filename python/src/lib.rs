@@ -26,11 +26,11 @@ mod _stripmine {
     #[pymodule_export]
     use crate::computing::_forked;
     #[pymodule_export]
-    use crate::frames::{Frame, Frames, _frame};
+    use crate::frames::{_frame, Frame, Frames};
     #[pymodule_export]
     use crate::lists::{keys, methods, presets};
     #[pymodule_export]
-    use crate::particles::{Particles, _particles};
+    use crate::particles::{_particles, Particles};
     #[pymodule_export]
     use crate::run::{Run, average, read};
     #[pymodule_export]
@@ -38,7 +38,7 @@ mod _stripmine {
     #[pymodule_export]
     use crate::simulation::Simulation;
     #[pymodule_export]
-    use crate::table::Table;
+    use crate::table::{_table, Table};
     use pyo3::prelude::*;
 
     #[pymodule_init]

@@ -8,11 +8,12 @@ use serde_json::Value;
 /// Lists within lists are read as deep as this.
 const DEEPEST: usize = 8;
 
-/// The overrides of a dict: its keys are `section.key`, or sections that hold dicts of their keys.
+/// The overrides of a dict, whose keys are `section.key`, or sections that hold dicts of their keys; or those of a list of texts.
 ///
 /// # Errors
 /// `TypeError` where a key is no text, or a value has no form in a scene.
-pub(crate) fn overrides(given: &Bound<'_, PyDict>) -> PyResult<Vec<String>> {
+pub(crate) fn overrides(given: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
+    let Ok(given) = given.cast::<PyDict>() else { return given.extract() };
     let mut found = vec![];
     for (name, value) in given {
         let name = text(&name)?;

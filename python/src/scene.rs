@@ -10,7 +10,7 @@ use crate::running::{begin_scratch, carry_out};
 use crate::simulation::Simulation;
 use crate::table::{Column, Table};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyTuple};
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -78,11 +78,11 @@ pub(crate) struct Scene {
 /// Reads and checks a scene, and makes its particles.
 ///
 /// `source` is a preset's name, a file's path, or the scene itself as a text in TOML of several lines. `overrides` says what is to be
-/// otherwise: `{"particles.count": 400}`, or section by section `{"particles": {"count": 400}}`. All mistakes come at once, as
-/// `SceneError`.
+/// otherwise: `{"particles.count": 400}`, section by section `{"particles": {"count": 400}}`, or a list of texts as the command line
+/// takes them, `["particles.count=400"]`. All mistakes come at once, as `SceneError`.
 #[pyfunction]
 #[pyo3(signature = (source, overrides = None))]
-pub(crate) fn scene(source: &Bound<'_, PyAny>, overrides: Option<&Bound<'_, PyDict>>) -> PyResult<Scene> {
+pub(crate) fn scene(source: &Bound<'_, PyAny>, overrides: Option<&Bound<'_, PyAny>>) -> PyResult<Scene> {
     let py = source.py();
     let named: String = py.import("os")?.call_method1("fspath", (source,))?.extract()?;
     let source = if named.contains('\n') { Source::Text(named) } else { Source::Named(named) };
@@ -212,8 +212,46 @@ impl Scene {
         Ok(Run::in_folder(folder))
     }
 
+    /// The plan of `stripmine explain --json`.
+    #[pyo3(
+        signature = (*given, **options),
+        text_signature = "($self, of=None, error=None, *, time=None, limit=None, window=None, seconds=None, command=None)"
+    )]
+    fn explain<'py>(
+        slf: &Bound<'py, Self>,
+        given: &Bound<'py, PyTuple>,
+        options: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        study(slf, "explain", given, options)
+    }
+
+    /// The tables of `stripmine chart accuracy`, by name.
+    #[pyo3(
+        signature = (*given, **options),
+        text_signature = "($self, of=None, error=None, *, window=None, budget=60, out=None, command=None)"
+    )]
+    fn accuracy<'py>(
+        slf: &Bound<'py, Self>,
+        given: &Bound<'py, PyTuple>,
+        options: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        study(slf, "accuracy", given, options)
+    }
+
     fn __repr__(&self) -> String {
         let particles = self.checked.prepared.particles().len();
         format!("<Scene {}: {}, {particles} particles>", self.source.name(), self.method())
     }
+}
+
+/// A study of `stripmine/_studies.py`, which knows its options.
+fn study<'py>(
+    scene: &Bound<'py, Scene>,
+    name: &str,
+    given: &Bound<'py, PyTuple>,
+    options: Option<&Bound<'py, PyDict>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let py = scene.py();
+    let whole = PyTuple::new(py, [scene.as_any()])?.add(given)?;
+    py.import("stripmine._studies")?.getattr(name)?.call(whole.cast_into::<PyTuple>()?, options)
 }

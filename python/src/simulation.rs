@@ -149,7 +149,11 @@ impl Simulation {
         let running = computed(py, || checked.prepared.start(Purpose::Run))?;
         let running = running.map_err(|failure| exceptions::of(py, &failure))?;
         let pause = pulse::flag().map_err(|cause| exceptions::without_threads(py, &cause))?;
-        Ok(Simulation { checked, state: Mutex::new(State { running, broken: None, is_slow: false, asked: None }), pause })
+        Ok(Simulation {
+            checked,
+            state: Mutex::new(State { running, broken: None, is_slow: false, asked: None }),
+            pause,
+        })
     }
 
     /// The state, unless another thread has it.

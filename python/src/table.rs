@@ -81,6 +81,23 @@ impl Column {
     }
 }
 
+/// A table of columns, each with its name, its unit, its type ("counts", "numbers" or "words") and its values. None is no number or no word.
+#[pyfunction]
+pub(crate) fn _table(columns: Vec<(String, String, String, Bound<'_, PyAny>)>) -> PyResult<Table> {
+    let columns = columns.into_iter().map(|(name, unit, kind, values)| {
+        let numbers =
+            |values: Vec<Option<f64>>| values.into_iter().map(|it| it.unwrap_or(f64::NAN)).collect();
+        let words = |values: Vec<Option<String>>| values.into_iter().map(Option::unwrap_or_default).collect();
+        let values = match kind.as_str() {
+            "counts" => Values::Counts(values.extract()?),
+            "numbers" => Values::Numbers(numbers(values.extract()?)),
+            _ => Values::Words(words(values.extract()?)),
+        };
+        Ok(Column { name, unit, values })
+    });
+    Ok(Table::new(columns.collect::<PyResult<_>>()?))
+}
+
 /// A table: `table["name"]` is a column, and pandas, polars and pyarrow read all of it.
 #[pyclass(frozen, module = "stripmine")]
 pub(crate) struct Table {

@@ -43,12 +43,13 @@ __all__ = [
 
 __version__: str
 
-def scene(source: str | os.PathLike[str], overrides: dict[str, Any] | None = None) -> Scene:
+def scene(source: str | os.PathLike[str], overrides: dict[str, Any] | list[str] | None = None) -> Scene:
     """Reads and checks a scene, and makes its particles.
 
     `source` is a preset's name, a file's path, or the scene itself as a text in TOML of several lines. `overrides` says what is to be
     otherwise: `{"particles.count": 400}`, or section by section `{"particles": {"count": 400}}`. Values are numbers, texts, True
-    and False, lists and arrays; `{"particles.positions": xy}` takes an array of shape (N, 2) (length).
+    and False, lists and arrays; `{"particles.positions": xy}` takes an array of shape (N, 2) (length). A list holds texts as the
+    command line takes them: `["particles.count=400"]`, as the `overrides` of a plan.
 
     Raises `SceneError` with every mistake at once; `TypeError` for a value that no scene can have.
     """
@@ -126,6 +127,54 @@ class Scene:
         Other threads go on meanwhile. Ctrl-C ends it with `KeyboardInterrupt` and a checkpoint, from which `resume` goes on where `out` was
         given.
         Raises `SimulationError` where the physics fails, `RunError` where the folder is not free or cannot be written.
+        """
+
+    def explain(
+        self,
+        of: str | None = None,
+        error: float | str | None = None,
+        *,
+        time: float | None = None,
+        limit: float | None = None,
+        window: tuple[float, float] | None = None,
+        seconds: int | None = None,
+        command: str | os.PathLike[str] | None = None,
+    ) -> dict[str, Any]:
+        """The cheapest run that gives a mean within an error, by trials: what `stripmine explain --json` prints.
+
+        `of` is the quantity, by default what the method is mostly asked for. `error` is the target error of its mean with a probability of
+        95 %: a number in the quantity's unit, or a text such as "1%"; by default that of the scene's own values. `time` (s) asks for the
+        least error within a wall time instead. `limit` (s) is the longest wall time of a plan, by default an hour; longer plans are refused.
+        `window` is a pair of times (time) between which each run is averaged, in place of the steady state. `seconds` (s) is what the trials
+        take at most, by default 10; their results are kept for the next call.
+
+        Keys of the plan: `overrides` are what the scene needs, for `stripmine.scene(scene.toml(), plan["overrides"])`; `step` and `time`
+        (time) of each run; `seeds`, the number of runs that differ in their seeds; `mean` and half of its interval of 95 %; `expected`, the error with `bias` and
+        `chance`; `seconds` (s, wall time of the runs) from `least` to `most`; `decisions` with reasons.
+
+        The command carries it out: `command`, or that of the environment variable STRIPMINE, or `stripmine` on the path; it must have the
+        version of this package. Ctrl-C stops it with `KeyboardInterrupt`; trials that are finished are used by the next call. Raises
+        `Error` where there is no such command, or it finds no plan.
+        """
+
+    def accuracy(
+        self,
+        of: str | None = None,
+        error: float | str | None = None,
+        *,
+        window: tuple[float, float] | None = None,
+        budget: int = 60,
+        out: str | os.PathLike[str] | None = None,
+        command: str | os.PathLike[str] | None = None,
+    ) -> dict[str, Table]:
+        """The error of a mean over the wall time of a run, for each integrator and step: the tables of `stripmine chart accuracy`.
+
+        `points` has the curves: `configuration`, `wall_time` (s), `step` (time), and the expected `error` and the `most` that it is, both
+        in the quantity's unit. `marks` has the scene as it stands and, where an `error` is asked for, its plan; `biases` the bias of the
+        mean by the step; `wishes` the cheapest run for each of some errors; `summary` one row with the mean.
+
+        `budget` (s) is the processor time of the trials. `out` is a folder for the tables and the chart, in which trials that Ctrl-C
+        stopped are resumed; without it nothing is kept. `of`, `error`, `window`, `command` and errors are as those of `explain`.
         """
 
 @final

@@ -1,0 +1,194 @@
+"""Plans and the accuracy of means, which the command finds."""
+
+import inspect
+import os
+import signal
+import stat
+import tempfile
+import threading
+import time
+import unittest
+from pathlib import Path
+from unittest import mock
+
+import numpy as np
+
+import stripmine
+from stripmine import _studies
+
+from . import scenes
+
+# Discs as dense as half of the area. p A / (N k T) of very many is 4.125 by Henderson, (1 + ν²/8) / (1 - ν)² (Mol. Phys. 30, 971, 1975).
+DISCS = {"particles.count": 400, "particles.packing_fraction": 0.5}
+HENDERSON = 1.03125 / 0.25
+# Relative difference that is allowed to 400 discs and a mean of a few seconds.
+CLOSE = 0.012
+
+# For tests with a program of the shell in place of the command.
+SHELL = unittest.skipUnless(os.name == "posix", "this system has no sh")
+COMMAND = unittest.skipUnless(scenes.command(), "there is no command `stripmine`: set STRIPMINE, or the path")
+
+# First line of a program that claims to be the command.
+VERSION = f'[ "$1" = --version ] && echo stripmine {stripmine.__version__} && exit\n'
+
+
+def program(folder, lines):
+    """A program of some lines of the shell."""
+    path = Path(folder, "command")
+    path.write_text(f"#!/bin/sh\n{lines}\n")
+    path.chmod(path.stat().st_mode | stat.S_IXUSR)
+    return path
+
+
+class InFolder(unittest.TestCase):
+    """Tests with a folder, in which the command keeps what it measures."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        kept = mock.patch.dict(os.environ, {"XDG_CACHE_HOME": folder.name})
+        kept.start()
+        self.addCleanup(kept.stop)
+
+
+class Commands(InFolder):
+    scene = stripmine.scene("hard-disks", {"particles.count": 100})
+
+    def refused(self, words, **options):
+        for study in (self.scene.explain, self.scene.accuracy):
+            with self.assertRaisesRegex(stripmine.Error, words) as caught:
+                study(**options)
+        return caught.exception
+
+    def test_without_the_command_a_study_says_how_to_get_it(self):
+        with mock.patch.dict(os.environ, {"PATH": str(self.folder), "STRIPMINE": ""}):
+            error = self.refused("the command stripmine is needed.* not found\n.*cargo install --path")
+        self.assertIn("command=", error.remedy)
+        with mock.patch.dict(os.environ, {"STRIPMINE": "/no/such/program"}):
+            self.refused("the command /no/such/program is needed")
+        self.refused("no-such-command is needed", command="no-such-command")
+
+    @SHELL
+    def test_a_command_of_another_version_is_refused(self):
+        other = program(self.folder, "echo stripmine 0.0.1")
+        self.refused(f"'stripmine 0.0.1', and .* needs stripmine {stripmine.__version__}\n.*cargo install", command=other)
+        self.refused("is '', and this package needs", command=program(self.folder, "exit 1"))
+
+    @SHELL
+    def test_options_are_passed_to_the_command(self):
+        command = program(self.folder, VERSION + """printf '{"arguments": "%s"}' "$*" """)
+        plan = self.scene.explain("q", np.float64(0.5), time=2, limit=3.5, window=(4, 5), seconds=6, command=command)
+        options = "--of=q --error=0.5 --time=2 --limit=3.5 --seconds=6 --window 4 5 --json"
+        self.assertEqual(plan, {"arguments": f"explain scene.toml {options}"})
+        self.assertEqual(self.scene.explain(command=command), {"arguments": "explain scene.toml --json"})
+
+    @SHELL
+    def test_a_command_that_breaks_is_an_error_with_what_it_said(self):
+        for lines in ("echo broken >&2; exit 3", "echo '{\"error\": 0.5}'; echo broken >&2; exit 3", "echo '['; echo broken >&2; exit 3"):
+            self.refused("ended with 3: broken", command=program(self.folder, VERSION + lines))
+        program(self.folder, "").write_bytes(b"\x7fELF")
+        self.refused("cannot be run", command=self.folder / "command")
+
+    def test_signatures_are_those_of_the_studies(self):
+        for name in ("explain", "accuracy"):
+            ours = list(inspect.signature(getattr(_studies, name)).parameters.values())[1:]
+            shown = list(inspect.signature(getattr(stripmine.Scene, name)).parameters.values())[1:]
+            self.assertEqual(ours, shown)
+        with self.assertRaisesRegex(TypeError, "budgte"):
+            self.scene.accuracy(budgte=3)
+
+
+@COMMAND
+class Studies(InFolder):
+    def test_a_plan_of_discs_reaches_its_error(self):
+        scene = stripmine.scene("hard-disks", DISCS)
+        plan = scene.explain("compressibility", "2%", seconds=4)
+        self.assertEqual((plan["quantity"], plan["method"]), ("compressibility", "hard-disks"))
+        self.assertAlmostEqual(plan["mean"][0], HENDERSON, delta=CLOSE * HENDERSON)
+        self.assertAlmostEqual(plan["error"], 0.02 * plan["mean"][0])
+        seeds = [f"particles.seed={1 + run}" for run in range(plan["seeds"])]
+        means = stripmine.average(*(stripmine.scene(scene.toml(), [*plan["overrides"], seed]).run() for seed in seeds))
+        mean = means["mean"][means["quantity"] == "compressibility"]
+        # The error of the plan, and that of 400 discs.
+        np.testing.assert_allclose(mean, [HENDERSON], rtol=0.02 + CLOSE)
+        # The second plan uses the trials of the first.
+        self.assertIn("kept from", scene.explain("compressibility", 0.1, seconds=4)["origin"])
+
+    def test_the_error_of_a_mean_falls_by_the_root_of_the_time(self):
+        out = self.folder / "out"
+        tables = stripmine.scene("hard-disks", DISCS).accuracy("compressibility", "2%", budget=6, out=out)
+        self.assertEqual(set(tables), {"summary", "points", "marks", "biases", "wishes"})
+        self.assertAlmostEqual(tables["summary"]["mean"][0], HENDERSON, delta=CLOSE * HENDERSON)
+        points = tables["points"]
+        self.assertEqual(points.columns[:2], ["configuration", "wall_time"])
+        self.assertEqual((points.units["wall_time"], points["step"].dtype), ("s", np.float64))
+        self.assertTrue(np.isnan(points["step"]).all())
+        chosen = points["configuration"] == "fast"
+        error, seconds = points["error"][chosen], points["wall_time"][chosen]
+        # Eight points a decade: errors of long runs a decade apart.
+        self.assertAlmostEqual(seconds[-1] / seconds[-9], 10, delta=1e-3)
+        self.assertAlmostEqual(error[-9] / error[-1], 10**0.5, delta=0.05)
+        self.assertIn("the plan", tables["marks"]["mark"])
+        self.assertEqual(len(tables["biases"]), 0)
+        self.assertIn("bias", tables["biases"])
+        self.assertTrue([*out.glob("host/accuracy/*.svg")])
+
+    def test_steps_have_counts_and_words(self):
+        tables = stripmine.scene("dense-gas", {"particles.count": 200}).accuracy("kinetic", budget=6, window=(0.0, 1.0))
+        biases = tables["biases"]
+        self.assertEqual((biases["step"].dtype, biases["pairs_of_runs"].dtype), (np.float64, np.uint64))
+        self.assertTrue(set(biases["significant"]) <= {"yes", "no"})
+        self.assertTrue((tables["points"]["step"] > 0).all())
+
+    def test_wrong_options_are_errors_in_the_words_of_the_command(self):
+        scene = stripmine.scene("hard-disks", DISCS)
+        for options, message, remedy in [
+            ({"of": "presure"}, "`presure` is nothing that this scene observes\n  help: one of", "compressibility"),
+            ({"of": "compressibility", "error": "-1%"}, "'-1%' for '--error", ""),
+            ({"of": "compressibility", "error": 0}, "'0' for '--error", ""),
+            ({"window": (1,)}, "window", ""),
+        ]:
+            for study in (scene.explain, scene.accuracy):
+                with self.subTest(options=options), self.assertRaisesRegex(stripmine.Error, message) as caught:
+                    study(**options)
+                self.assertEqual(caught.exception.kind, "usage")
+                self.assertIn(remedy, caught.exception.remedy or "")
+        with self.assertRaises(stripmine.Error):
+            scene.explain(error="1%", time=3)
+        with self.assertRaises(TypeError):
+            scene.explain(window=3)
+
+    @SHELL
+    def test_interrupted_trials_are_kept_and_the_command_ends(self):
+        number = self.folder / "number"
+        command = program(self.folder, f'echo $$ > "{number}"; exec "{os.path.abspath(scenes.command())}" "$@"')
+
+        groups = []
+
+        def trials():
+            return [*self.folder.glob("stripmine/explain/*.trials-*/*")]
+
+        def interrupt():
+            while not trials():
+                time.sleep(0.01)
+            groups.append(os.getpgid(int(number.read_text())))
+            os.kill(os.getpid(), signal.SIGINT)
+
+        threading.Thread(target=interrupt, daemon=True).start()
+        with self.assertRaises(KeyboardInterrupt):
+            stripmine.scene("dense-gas").explain("kinetic", "0.1%", seconds=60, command=command)
+        # A terminal's Ctrl-C, which goes to the group of this process, reaches the command once.
+        self.assertEqual(groups, [int(number.read_text())])
+        with self.assertRaises(ProcessLookupError):
+            os.kill(int(number.read_text()), 0)
+        self.assertTrue(trials())
+
+    def test_warnings_of_the_command_are_warnings_of_python(self):
+        (self.folder / "stripmine").touch()
+        with self.assertWarnsRegex(UserWarning, "trials are not kept"):
+            stripmine.scene("hard-disks", DISCS).explain("compressibility", "5%", seconds=1)
+
+
+if __name__ == "__main__":
+    unittest.main()
