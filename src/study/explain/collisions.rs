@@ -131,7 +131,7 @@ mod tests {
     fn the_speed_of_approach_is_that_of_neighbours() {
         let (prepared, _) = load("two-discs", &[], METHODS).unwrap();
         let fast = prepared.particles().clone();
-        assert!((approach(&[fast.clone()], &prepared.domain) - 1.0).abs() < 1e-12);
+        assert!((approach(std::slice::from_ref(&fast), &prepared.domain) - 1.0).abs() < 1e-12);
         let mut slow = fast.clone();
         slow.all_mut()[0].velocity[0] = 0.5;
         let both = approach(&[fast, slow], &prepared.domain);
