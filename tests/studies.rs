@@ -24,28 +24,7 @@ fn said(output: &Output) -> String {
 }
 
 /// Two discs that are pressed together for the whole time: forces without a kink.
-const PRESSED: &str = r#"format = 2
-units = "reduced"
-[method]
-kind = "lattice-md"
-[domain]
-sides = [12.0, 8.0]
-periodic = [false, false]
-[particles]
-generate = "list"
-positions = [[5.0, 4.0], [5.94, 4.0]]
-velocities = [[0.2, 0.0], [-0.2, 0.0]]
-radius = 0.5
-mass = 1.0
-[law]
-stiffness = 100.0
-[integrator]
-values = 5
-dt = 2e-3
-[run]
-time = 0.1
-thermo_every = 10
-"#;
+const PRESSED: &str = include_str!("pressed.toml");
 
 fn pressed(folder: &Path) -> std::path::PathBuf {
     let scene = folder.join("pressed.toml");

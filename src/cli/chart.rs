@@ -93,7 +93,7 @@ struct AccuracyVerb {
     /// Marks the plan for this error of the mean, such as 1% or 0.02
     #[arg(long, value_parser = width)]
     error: Option<Width>,
-    /// Averages over a part of each run, from one time to another, in the place of the steady state
+    /// Averages each run from one time to another, instead of over its steady state
     #[arg(long, num_args = 2, value_names = ["FROM", "TO"])]
     window: Option<Vec<f64>>,
     /// Processor seconds of trials, about

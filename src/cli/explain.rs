@@ -43,7 +43,7 @@ pub(super) struct ExplainVerb {
     /// The most wall seconds that a plan may take, an hour by default: a longer one is refused with the error that can be had in them
     #[arg(long, value_name = "SECONDS", conflicts_with = "within", value_parser = above_zero)]
     limit: Option<f64>,
-    /// Averages over a part of each run, from one time to another, in the place of the steady state
+    /// Averages each run from one time to another, instead of over its steady state
     #[arg(long, num_args = 2, value_names = ["FROM", "TO"])]
     window: Option<Vec<f64>>,
     /// Runs nothing: by what is kept of the scene

@@ -45,28 +45,7 @@ fn rows<'d>(data: &'d Value, frame: &str) -> &'d Vec<Value> {
 }
 
 /// Two discs that are pressed together for the whole time: forces without a kink.
-const PRESSED: &str = r#"format = 2
-units = "reduced"
-[method]
-kind = "lattice-md"
-[domain]
-sides = [12.0, 8.0]
-periodic = [false, false]
-[particles]
-generate = "list"
-positions = [[5.0, 4.0], [5.94, 4.0]]
-velocities = [[0.2, 0.0], [-0.2, 0.0]]
-radius = 0.5
-mass = 1.0
-[law]
-stiffness = 100.0
-[integrator]
-values = 5
-dt = 2e-3
-[run]
-time = 0.1
-thermo_every = 10
-"#;
+const PRESSED: &str = include_str!("../../../tests/pressed.toml");
 
 /// Positions converge as theory says; velocity Verlet by its own order, Gear's schemes as their start allows. Energy of discs that
 /// begin at rest converges with the orders of the schemes.

@@ -9,7 +9,7 @@ const SHARED: [&str; 6] = ["format", "units", "method", "law", "integrator", "ma
 const GAP: f64 = 0.1;
 /// Side of the box, and the place of the disc at rest, in sums of the radii.
 const SIDE: f64 = 40.0;
-/// The discs have parted when the first could have flown so many sums of the radii.
+/// Duration, in flights of one disc over the sum of the radii: the discs have parted by then.
 const FLIGHT: f64 = 3.0;
 
 /// The scene of an encounter of two discs of mean radius and mass; none where nothing moves.
