@@ -1,7 +1,8 @@
 //! What `reproduce` makes of studies.
 
 use super::Subject;
-use super::explain::{SCENES, SECONDS, judged, regret};
+use super::explain::SECONDS;
+use super::explain::certified::{self, Effort, QUICK, SCENES, certified};
 use super::rivals;
 use super::stability::{self, Over, stability};
 use super::work_precision::{self, work_precision};
@@ -17,18 +18,17 @@ pub const ITEMS: &[Item] = &[
     Item::of("rivals", rivals::made),
 ];
 
-/// Plans, judged.
-fn plans_judged(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
-    let progress = lab.progress;
-    // One scene of each method, where time is short.
-    let (scenes, effort) = match effort {
+/// Plans, carried out and judged.
+fn plans_judged(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
+    let (scenes, effort) = match size {
         Size::Quick => {
-            (SCENES.iter().step_by(11).copied().collect(), regret::Effort { plan: 0.6, best: 1.2 })
+            (QUICK, Effort { trials: [0.5; 2], limit: 0.3, estimates: 4, reference: 0.3, grid: 1.0 })
         }
-        Size::Full | Size::All => (SCENES.to_vec(), regret::Effort { plan: SECONDS[0], best: 30.0 }),
+        Size::Full | Size::All => {
+            (SCENES, Effort { trials: SECONDS, limit: 10.0, estimates: 20, reference: 40.0, grid: 40.0 })
+        }
     };
-    let all = regret::judged(&scenes, effort, progress)?;
-    Ok(judged::made(&all, effort))
+    Ok(certified::made(&certified(scenes, effort, lab.progress)?))
 }
 
 /// Scenes by name, preset and overrides as one types them, the first of each method also where time is short.

@@ -151,11 +151,6 @@ pub(super) fn printed(value: f64, digits: usize) -> f64 {
     significant(value, digits).parse().unwrap_or(value)
 }
 
-/// The way of a plan among those of other findings.
-pub(super) fn way_of<'f>(plan: &Plan, findings: &'f Findings) -> Option<&'f Way> {
-    findings.ways.iter().find(|way| way.label == plan.way)
-}
-
 /// An error in the quantity's unit.
 pub fn in_unit(width: Width, mean: f64) -> f64 {
     match width {
