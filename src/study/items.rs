@@ -1,8 +1,8 @@
 //! What `reproduce` makes of studies.
 
 use super::Subject;
-use super::explain::SECONDS;
 use super::explain::certified::{self, Effort, QUICK, SCENES, certified};
+use super::explain::{SECONDS, left_out};
 use super::rivals;
 use super::stability::{self, Over, stability};
 use super::work_precision::{self, work_precision};
@@ -15,6 +15,7 @@ pub const ITEMS: &[Item] = &[
     Item::of("work-precision", speed_against_accuracy),
     Item::of("stability", where_it_works),
     Item::of("plans", plans_judged),
+    Item::of("left-out", left_out_compared),
     Item::of("rivals", rivals::made),
 ];
 
@@ -22,13 +23,21 @@ pub const ITEMS: &[Item] = &[
 fn plans_judged(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     let (scenes, effort) = match size {
         Size::Quick => {
-            (QUICK, Effort { trials: [0.5; 2], limit: 0.3, estimates: 4, reference: 0.3, grid: 1.0 })
+            (QUICK, Effort { trials: [0.5; 2], limit: 0.6, estimates: 4, reference: 0.3, grid: 1.0 })
         }
         Size::Full | Size::All => {
             (SCENES, Effort { trials: SECONDS, limit: 10.0, estimates: 20, reference: 40.0, grid: 40.0 })
         }
     };
     Ok(certified::made(&certified(scenes, effort, lab.progress)?))
+}
+
+/// Scenes without parts of their models.
+fn left_out_compared(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
+    Ok(match size {
+        Size::Quick => left_out::compared(Some(&["shaken-box", "langevin-dense"]), 2.0, lab.progress)?,
+        Size::Full | Size::All => left_out::compared(None, SECONDS[0], lab.progress)?,
+    })
 }
 
 /// Scenes by name, preset and overrides as one types them, the first of each method also where time is short.

@@ -17,6 +17,7 @@ mod drifts;
 mod findings;
 mod keeping;
 mod kept;
+pub mod left_out;
 mod lengths;
 mod margin;
 mod mean;
