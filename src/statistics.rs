@@ -100,6 +100,16 @@ pub fn kolmogorov_smirnov(mut values: Vec<f64>, distribution: impl Fn(f64) -> f6
     (1..=100).map(term).sum::<f64>().clamp(0.0, 1.0)
 }
 
+/// Ends of the interval of 95 % of a probability that so many of some independent trials, at least one, came true by (Wilson's score).
+pub fn wilson(came_true: usize, trials: usize) -> [f64; 2] {
+    // The quantile of the normal distribution.
+    const Z: f64 = 1.959_963_984_540_054;
+    let (count, share) = (trials as f64, came_true as f64 / trials as f64);
+    let middle = share + Z * Z / (2.0 * count);
+    let half = Z * (share * (1.0 - share) / count + (Z / (2.0 * count)).powi(2)).sqrt();
+    [-1.0, 1.0].map(|sign| ((middle + sign * half) / (1.0 + Z * Z / count)).clamp(0.0, 1.0))
+}
+
 /// The value below which a share of rising values lies; none of none.
 pub fn quantile(rising: &[f64], share: f64) -> Option<f64> {
     let last = rising.len().checked_sub(1)?;
@@ -201,6 +211,22 @@ mod tests {
             kolmogorov_smirnov((0..100).map(|at| (f64::from(at) + 0.5) / 100.0).collect(), |x| x),
             1.0
         );
+    }
+
+    /// Newcombe, Statistics in Medicine 17 (1998) 857, table I, method 3.
+    #[test]
+    fn wilson_intervals_are_the_published_ones() {
+        for (came_true, trials, published) in [
+            (81, 263, [0.2553, 0.3662]),
+            (15, 148, [0.0624, 0.1605]),
+            (0, 20, [0.0, 0.1611]),
+            (1, 29, [0.0061, 0.1718]),
+            (29, 29, [0.8830, 1.0]),
+        ] {
+            for (end, published) in wilson(came_true, trials).into_iter().zip(published) {
+                assert!((end - published).abs() < 5.1e-5, "{came_true} of {trials}: {end}");
+            }
+        }
     }
 
     #[test]

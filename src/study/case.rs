@@ -31,7 +31,20 @@ impl Case {
     /// [`SceneErrors`] if the scene is bad, or takes more memory than there is.
     pub fn load(what: &str, overrides: &[String], methods: Methods) -> Result<Case, SceneErrors> {
         let text = Values::text(what, &vocabularies(methods))?;
-        Case::of(what, &text, overrides, methods, None)
+        Case::parse(what, &text, overrides, methods)
+    }
+
+    /// The scene of a text, under a name, with overrides.
+    ///
+    /// # Errors
+    /// As of [`load`](Case::load).
+    pub fn parse(
+        what: &str,
+        text: &str,
+        overrides: &[String],
+        methods: Methods,
+    ) -> Result<Case, SceneErrors> {
+        Case::of(what, text, overrides, methods, None)
     }
 
     /// With the start file as another scene has read it, where one is given.

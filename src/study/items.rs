@@ -1,7 +1,8 @@
 //! Items of the report that studies make.
 
 use super::Subject;
-use super::explain::{SCENES, SECONDS, judged, regret};
+use super::explain::certified::{self, Effort, QUICK, SCENES, certified};
+use super::explain::{SECONDS, left_out};
 use super::rivals;
 use super::stability::{self, Over, stability};
 use super::trial::{Stopwatch, Trial};
@@ -16,21 +17,29 @@ pub const ITEMS: &[Item] = &[
     Item::of("work-precision", speed_against_accuracy),
     Item::of("stability", where_it_works),
     Item::of("plans", plans_judged),
+    Item::of("left-out", left_out_compared),
     Item::of("rivals", rivals::made),
 ];
 
-/// Plans, judged.
-fn plans_judged(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
-    let progress = lab.progress;
-    // One scene of each method, where time is short.
-    let (scenes, effort) = match effort {
+/// Plans, carried out and judged.
+fn plans_judged(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
+    let (scenes, effort) = match size {
         Size::Quick => {
-            (SCENES.iter().step_by(11).copied().collect(), regret::Effort { plan: 0.6, best: 1.2 })
+            (QUICK, Effort { trials: [0.5; 2], limit: 0.6, estimates: 4, reference: 0.3, grid: 1.0 })
         }
-        Size::Full | Size::All => (SCENES.to_vec(), regret::Effort { plan: SECONDS[0], best: 30.0 }),
+        Size::Full | Size::All => {
+            (SCENES, Effort { trials: SECONDS, limit: 10.0, estimates: 20, reference: 40.0, grid: 40.0 })
+        }
     };
-    let all = regret::judged(&scenes, effort, progress)?;
-    Ok(judged::made(&all, effort))
+    Ok(certified::made(&certified(scenes, effort, lab.progress)?))
+}
+
+/// Scenes without parts of their models.
+fn left_out_compared(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
+    Ok(match size {
+        Size::Quick => left_out::compared(Some(&["shaken-box", "langevin-dense"]), 2.0, lab.progress)?,
+        Size::Full | Size::All => left_out::compared(None, SECONDS[0], lab.progress)?,
+    })
 }
 
 /// Scenes whose trajectories are comparable, by name, preset and overrides as one types them, the first of each method also where time is short.

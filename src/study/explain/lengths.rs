@@ -5,12 +5,12 @@ use super::findings::{Findings, Way};
 use super::margin::Bars;
 use super::optimum::{Optimum, SHORTEST, Terms, UNBIASED, optimum};
 use crate::study::Case;
-use crate::study::trial::ROWS;
+use crate::study::trial::{Known, ROWS};
 use stripmine_physics::method::Every;
 use stripmine_physics::number::significant;
 
 /// Independent samples that a run has at least: enough that it knows the error of its own mean.
-const SAMPLES: f64 = 30.0;
+pub(super) const SAMPLES: f64 = 30.0;
 
 /// A way with what it takes for the error.
 pub(super) struct Weighed<'w> {
@@ -44,11 +44,16 @@ pub(super) struct Chance {
 impl Findings {
     /// What chance leaves by the time.
     pub(super) fn chance(&self) -> Chance {
-        Chance { bars: self.mean.bars(), square: self.mean.square, whole: self.whole }
+        Chance::of(&self.mean, self.whole)
     }
 }
 
 impl Chance {
+    /// By a mean, and the time of a whole run where these are averaged over (time).
+    pub(super) fn of(mean: &Known, whole: Option<f64>) -> Chance {
+        Chance { bars: mean.bars(), square: mean.square, whole }
+    }
+
     /// The time of all runs together that leaves no more than this to chance (time).
     pub(super) fn time_for(&self, bar: f64) -> f64 {
         let alone = self.square / (bar * bar);

@@ -145,11 +145,6 @@ fn no_shorter(time: f64) -> f64 {
     if nearest < time { rounded(time * (1.0 + 5.1e-6), 6) } else { nearest }
 }
 
-/// The way of a plan among those of other findings.
-pub(super) fn way_of<'f>(plan: &Plan, findings: &'f Findings) -> Option<&'f Way> {
-    findings.ways.iter().find(|way| way.label == plan.way)
-}
-
 /// An error in the quantity's unit.
 pub fn in_unit(width: Width, mean: f64) -> f64 {
     match width {

@@ -149,15 +149,3 @@ pub enum Need {
     /// There is nothing to compare.
     NotCompared,
 }
-
-impl Need {
-    /// As a word.
-    pub fn word(self) -> &'static str {
-        match self {
-            Need::Yes => "yes",
-            Need::No => "no",
-            Need::Undecided => "not decided",
-            Need::NotCompared => "not compared",
-        }
-    }
-}

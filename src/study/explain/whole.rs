@@ -149,7 +149,7 @@ impl Work<'_> {
 }
 
 /// The particles of a start of a number, grains displaced by next to nothing.
-fn displaced_start(prepared: &Prepared, number: u64) -> Particles {
+pub(super) fn displaced_start(prepared: &Prepared, number: u64) -> Particles {
     let largest = prepared.particles().radii().map_or(0.0, |[_, largest]| largest);
     let scale = if largest > 0.0 { largest } else { prepared.domain.length(0) };
     displaced(prepared.particles(), &prepared.domain, |place, _| {

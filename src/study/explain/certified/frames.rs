@@ -1,0 +1,229 @@
+//! Judged plans as frames.
+
+use super::grid::Costs;
+use super::scenes::Class;
+use super::verdict::{Cause, Verdict};
+use super::{Carried, Certified, Judged};
+use crate::frame::{Cell, Frame, Rows};
+use crate::results::Made;
+use crate::statistics::{quantile, wilson};
+
+/// Factor within which time is to be foreseen.
+const TIME: f64 = 1.5;
+/// Configurations that plans are compared with, in the order of the baselines.
+const BASELINES: [&str; 3] = ["the scene's own values", "always lists", "f64 at the limit of stability"];
+/// Errors of a curve, in parts of the error asked for: so many steps up to this one.
+const PARTS: (u32, f64) = (40, 2.0);
+
+/// The frames of judged plans.
+pub fn made(certified: &Certified) -> Made {
+    let plans = &certified.plans;
+    let frames =
+        [within(plans), table(plans), costs(plans), errors(plans), cost_curves(plans), summary(certified)];
+    Made::of(frames).with_seeds([1, 1001, 11001, 21001])
+}
+
+impl Judged {
+    fn carried(&self) -> Option<&Carried> {
+        self.outcome.as_ref().ok()
+    }
+
+    /// The verdict, where there is one.
+    fn decided(&self) -> Option<&Verdict> {
+        self.carried()?.verdict.as_ref().filter(|verdict| verdict.is_decided)
+    }
+
+    /// What became of it, in a word.
+    fn fate(&self) -> &'static str {
+        match (&self.outcome, self.decided()) {
+            (Err(_), _) => "refused",
+            (Ok(_), None) => "undecided",
+            (Ok(_), Some(_)) => "judged",
+        }
+    }
+}
+
+/// Runs of the plans of a class, or of all.
+struct Of<'j> {
+    name: &'static str,
+    plans: Vec<&'j Judged>,
+}
+
+impl Of<'_> {
+    fn plans_that(&self, fate: &str) -> usize {
+        self.plans.iter().filter(|it| it.fate() == fate).count()
+    }
+
+    fn runs(&self, count: impl Fn(&Verdict) -> usize) -> usize {
+        self.plans.iter().filter_map(|it| it.decided()).map(count).sum()
+    }
+
+    /// The share of the runs that are within the error, and its interval; none without runs.
+    fn share(&self) -> Option<[f64; 3]> {
+        let runs = self.runs(|it| it.runs);
+        let within = self.runs(|it| it.within);
+        let [lowest, highest] = wilson(within, runs);
+        (runs > 0).then(|| [within as f64 / runs as f64, lowest, highest])
+    }
+}
+
+/// Runs within the error, and the causes of misses, of each class and of all.
+fn within(plans: &[Judged]) -> Frame {
+    let all = Of { name: "all", plans: plans.iter().collect() };
+    let of_class = |class: Class| Of {
+        name: class.name(),
+        plans: plans.iter().filter(|it| it.class == class).collect(),
+    };
+    let classes = Class::ALL.into_iter().map(of_class).filter(|of| !of.plans.is_empty());
+    let part = |at: usize| move |of: &Of<'_>| Some(of.share()?[at]);
+    Rows::of(classes.chain([all]))
+        .text("class", |of| of.name)
+        .count("plans asked for", |of| of.plans.len())
+        .count("refused", |of| of.plans_that("refused"))
+        .count("undecided", |of| of.plans_that("undecided"))
+        .count("runs", |of| of.runs(|it| it.runs))
+        .count("within the error", |of| of.runs(|it| it.within))
+        .number("share within", 3, part(0))
+        .number("lower end (95 %)", 3, part(1))
+        .number("upper end (95 %)", 3, part(2))
+        .count("missed by bias", |of| of.runs(|it| it.missed_by(Cause::Bias)))
+        .count("missed by statistics", |of| of.runs(|it| it.missed_by(Cause::Statistics)))
+        .count("broken", |of| of.runs(|it| it.broken))
+        .frame("within", "Runs within the error that was asked for")
+}
+
+/// The reason why a plan was refused or is undecided; else the cause of its misses.
+fn because(it: &Judged) -> String {
+    match (&it.outcome, it.decided()) {
+        (Err(why), _) => why.clone(),
+        (Ok(Carried { reference: Err(why), .. }), _) => format!("no reference: {why}"),
+        (Ok(_), None) => "the bar of the reference is more than a third of the error".to_owned(),
+        (Ok(_), Some(verdict)) if verdict.within + verdict.broken < verdict.runs => {
+            verdict.cause.word().to_owned()
+        }
+        _ => String::new(),
+    }
+}
+
+fn count(of: Option<usize>) -> Cell {
+    of.map_or(Cell::Nothing, |of| Cell::Count(of as u64))
+}
+
+fn table(plans: &[Judged]) -> Frame {
+    let verdict = |it: &&Judged| it.carried().and_then(|it| it.verdict.clone());
+    let reference = |it: &&Judged| it.carried().and_then(|it| it.reference.as_ref().ok().copied());
+    let seconds =
+        |at: usize| move |it: &&Judged| it.carried().map(|it| it.seconds[at]).filter(|it| it.is_finite());
+    Rows::of(plans)
+        .text("class", |it| it.class.name())
+        .text("scene", |it| it.scene.clone())
+        .text("quantity", |it| it.quantity)
+        .text("asked", |it| it.asked)
+        .text("outcome", |it| it.fate())
+        .text("because", |it| because(it))
+        .cell("runs", |it| count(it.decided().map(|it| it.runs)))
+        .cell("within", |it| count(it.decided().map(|it| it.within)))
+        .number("bias over the error", 2, move |it| Some(verdict(it)?.bias.value))
+        .number("± (95 %)", 2, move |it| Some(verdict(it)?.bias.bar))
+        .number("scatter over the error", 2, move |it| verdict(it)?.scatter)
+        .short("error", |it| Some(it.carried()?.error))
+        .short("reference", move |it| Some(reference(it)?.known.mean))
+        .short("± (95 %) of the reference", move |it| Some(reference(it)?.known.bar))
+        .short("step of the reference", move |it| reference(it)?.step)
+        .short("foreseen (s)", seconds(0))
+        .short("taken (s)", seconds(1))
+        .number("trials (s)", 1, |it| it.trials)
+        .text("plan", |it| it.carried().map_or(String::new(), |it| it.plan.clone()))
+        .frame("plans", "Plans, carried out")
+}
+
+/// A plan with its costs over the best of a grid.
+type Compared<'j> = (&'j Judged, &'j Carried, &'j Costs);
+
+fn compared(plans: &[Judged]) -> Vec<Compared<'_>> {
+    let of = |it| {
+        let carried = Judged::carried(it)?;
+        Some((it, carried, carried.costs.as_ref()?))
+    };
+    plans.iter().filter_map(of).collect()
+}
+
+fn costs(plans: &[Judged]) -> Frame {
+    let baseline = |at: usize| move |(.., costs): &Compared<'_>| costs.baselines[at];
+    Rows::of(compared(plans))
+        .text("scene", |(it, ..)| it.scene.clone())
+        .text("class", |(it, ..)| it.class.name())
+        .text("quantity", |(it, ..)| it.quantity)
+        .text("asked", |(it, ..)| it.asked)
+        .number("plan", 2, |(.., costs)| costs.plan)
+        .number(BASELINES[0], 2, baseline(0))
+        .number(BASELINES[1], 2, baseline(1))
+        .number(BASELINES[2], 2, baseline(2))
+        .number("plan over the scene's own values", 2, |(.., costs)| Some(costs.plan / costs.baselines[0]?))
+        .short("best (s)", |(.., costs)| costs.seconds)
+        .text("the best", |(.., costs)| costs.best.clone())
+        .text("the plan", |(_, carried, _)| carried.plan.clone())
+        .frame("costs", "Wall time over that of the best of the grid, for the same error")
+}
+
+/// Share of runs whose error is at most a part of the one asked for.
+fn errors(plans: &[Judged]) -> Frame {
+    let of_class = |class: Class| {
+        let decided = plans.iter().filter(|it| it.class == class).filter_map(Judged::decided);
+        let mut all: Vec<f64> = decided.flat_map(|it| it.errors.iter().copied()).collect();
+        all.sort_by(f64::total_cmp);
+        let (steps, last) = PARTS;
+        let point = move |step: u32| {
+            let part = last * f64::from(step) / f64::from(steps);
+            let below = all.partition_point(|error| *error <= part);
+            (class.name(), part, 100.0 * below as f64 / all.len() as f64)
+        };
+        (0..=steps).map(point).filter(|(.., share)| share.is_finite()).collect::<Vec<_>>()
+    };
+    Rows::of(Class::ALL.into_iter().flat_map(of_class))
+        .text("class", |(class, ..)| *class)
+        .number("error over the one asked for", 3, |(_, part, _)| *part)
+        .number("runs with at most that (%)", 2, |(.., share)| *share)
+        .frame("errors", "Errors of runs over those that were asked for")
+}
+
+/// Share of plans whose cost is at most so many times the best. A curve that ends below 100 % does not reach the error in some.
+fn cost_curves(plans: &[Judged]) -> Frame {
+    let compared = compared(plans);
+    let curve = |name: &'static str, of: &dyn Fn(&Costs) -> Option<f64>| {
+        let mut ratios: Vec<f64> = compared.iter().filter_map(|(.., costs)| of(costs)).collect();
+        ratios.sort_by(f64::total_cmp);
+        let points = ratios.into_iter().zip(1_u32..);
+        let all = compared.len() as f64;
+        points.map(|(ratio, count)| (name, ratio, 100.0 * f64::from(count) / all)).collect::<Vec<_>>()
+    };
+    let plans = curve("plans", &|it| Some(it.plan));
+    let baselines = BASELINES.iter().enumerate().map(|(at, name)| curve(name, &move |it| it.baselines[at]));
+    Rows::of(std::iter::once(plans).chain(baselines).flatten())
+        .text("configuration", |(name, ..)| *name)
+        .number("wall time over that of the best", 3, |(_, ratio, _)| *ratio)
+        .number("plans that cost at most that (%)", 1, |(.., share)| *share)
+        .frame("cost-curves", "Plans by wall time over the best")
+}
+
+fn summary(certified: &Certified) -> Frame {
+    let (plans, effort) = (&certified.plans, certified.effort);
+    let times: Vec<[f64; 2]> = plans.iter().filter_map(|it| Some(it.carried()?.seconds)).collect();
+    let timely = times.iter().filter(|[foreseen, taken]| (taken / foreseen).max(foreseen / taken) <= TIME);
+    let timely = timely.count();
+    let mut costs: Vec<f64> = compared(plans).iter().map(|(.., costs)| costs.plan).collect();
+    costs.sort_by(f64::total_cmp);
+    Rows::of([()])
+        .count("plans", |()| plans.len())
+        .count("carried out", |()| times.len())
+        .count("within the time foreseen", |()| timely)
+        .number("share within the time foreseen", 3, |()| timely as f64 / times.len() as f64)
+        .number("median cost over the best", 3, |()| quantile(&costs, 0.5))
+        .count("runs of a plan", |()| effort.estimates)
+        .number("trials of a plan (s)", 1, |()| effort.trials[0])
+        .number("longer trials (s)", 1, |()| effort.trials[1])
+        .number("most that a plan may take (s)", 1, |()| effort.limit)
+        .number("most that a reference takes (s)", 1, |()| effort.reference)
+        .number("grid (s)", 1, |()| effort.grid)
+        .frame("summary", "Plans in numbers")
+}

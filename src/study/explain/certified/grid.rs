@@ -1,0 +1,383 @@
+//! Wall time of a plan over that of the best of a grid: every integrator and precision, at the longest step and shorter ones, with the cheapest search.
+
+use super::super::lengths::{Chance, SAMPLES};
+use super::super::recommended::Plan;
+use super::reference::Reference;
+use super::runs::{Ensemble, WHOLE, side_by_side};
+use super::verdict::Verdict;
+use crate::study::Choice;
+use crate::study::trial::{ROWS, Span};
+use rayon::ThreadPoolBuilder;
+use stripmine_physics::averages::{Outcome, of_independent};
+use stripmine_physics::method::{Decides, Prepared};
+use stripmine_physics::number::significant;
+use stripmine_physics::scene::Overrides;
+
+/// Steps in parts of the longest.
+const STEPS: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
+/// The longest step in parts of the shortest limit of theory, and in multiples of the scene's own where theory has none.
+const OF_LIMIT: f64 = 0.9;
+const TIMES_OWN: f64 = 4.0;
+/// Part of the time in which searches are timed.
+const SEARCHES: f64 = 0.1;
+/// A run of what should be kept is given up after so many times its share of the time.
+const LATE: f64 = 5.0;
+/// The first number of its starts.
+const STARTS: usize = 20_000;
+
+/// A configuration at a step, as measured in one thread.
+#[derive(Clone, Debug)]
+struct Point {
+    choice: Choice,
+    step: Option<f64>,
+    /// Wall seconds of a unit of time, and of what a run takes beside it.
+    cost: f64,
+    start: f64,
+    /// The mean less the reference, and the bar of both; or how far it went from what should be kept.
+    off: [f64; 2],
+}
+
+/// Wall times over that of the best of the grid.
+#[derive(Clone, Debug)]
+pub struct Costs {
+    /// Of the plan.
+    pub plan: f64,
+    /// Of the scene's own values, of lists always, and of the scene's own integrator in f64 at its longest step; none where the error is not reached,
+    /// or the method has none.
+    pub baselines: [Option<f64>; 3],
+    /// The best of the grid, and its wall seconds.
+    pub best: String,
+    pub seconds: f64,
+}
+
+/// A scene with every configuration measured.
+pub struct Grid<'g> {
+    of: &'g Ensemble<'g>,
+    reference: Reference,
+    chance: Chance,
+    points: Vec<Point>,
+    /// Measured as the points of the grid are, in the order of the plans; none where the run broke.
+    plans: Vec<Option<Point>>,
+    /// The longest step of the scene's own integrator in f64 (time).
+    limit: Option<f64>,
+    /// Time by lists over time by the cheapest search; none without lists.
+    lists: Option<f64>,
+    /// Time in one thread over time in all of them.
+    speedup: f64,
+}
+
+impl<'g> Grid<'g> {
+    /// Measures the grid, and plans, in about some wall seconds.
+    pub fn of(
+        of: &'g Ensemble<'g>,
+        reference: Reference,
+        plans: &[&Plan],
+        seconds: f64,
+    ) -> Result<Grid<'g>, String> {
+        let case = of.case;
+        let all = Choice::all(case.entry.axes);
+        let (search, lists) = of.cheapest_search(&all, SEARCHES * seconds)?;
+        let is_of_search = |choice: &&Choice| choice.agrees(&search, Decides::Cost);
+        let mut asked: Vec<(Choice, Overrides, Option<f64>)> = vec![];
+        for choice in all.iter().filter(is_of_search) {
+            let longest = of.longest(choice);
+            let own = case.step().filter(|_| choice.agrees(&case.own, Decides::Order));
+            let steps: Vec<Option<f64>> = match longest {
+                Some(longest) => STEPS.map(|part| part * longest).into_iter().chain(own).map(Some).collect(),
+                None => vec![None],
+            };
+            asked.extend(
+                steps.into_iter().map(|step| (choice.clone(), of.at(&choice.overrides(), step), step)),
+            );
+        }
+        let of_grid = asked.len();
+        asked.extend(plans.iter().map(|plan| {
+            let choice = all.iter().find(|choice| choice.label() == plan.way).unwrap_or(&case.own);
+            (choice.clone(), plan.overrides.clone(), plan.step)
+        }));
+        let share = seconds * rayon::current_num_threads() as f64 / asked.len() as f64;
+        let measured = side_by_side(asked.len(), |at| {
+            let (choice, overrides, step) = &asked[at];
+            of.point(choice, *step, overrides, STARTS + at, share, &reference)
+        });
+        let mut points: Vec<Option<Point>> =
+            measured.map_err(|error| error.to_string())?.into_iter().map(Result::ok).collect();
+        let plans = points.split_off(of_grid);
+        let in_f64 = case.own.with(&[("precision", "f64")]);
+        Ok(Grid {
+            reference,
+            chance: Chance::of(&reference.known, of.asking.whole),
+            points: points.into_iter().flatten().collect(),
+            plans,
+            limit: of.longest(&in_f64),
+            lists,
+            speedup: of.speedup(&search, SEARCHES * seconds)?,
+            of,
+        })
+    }
+
+    /// Costs of a plan of a number, by its runs, for an error; none where nothing reaches it or the plan was not measured.
+    pub fn costs(&self, number: usize, plan: &Plan, verdict: &Verdict, error: f64) -> Option<Costs> {
+        let all: Vec<(&Point, f64)> = (self.points.iter())
+            .filter_map(|point| Some((point, self.seconds(point, bias(point.off), error)?)))
+            .collect();
+        let cheapest = |of: &dyn Fn(&Point) -> bool| {
+            let all = all.iter().filter(|(point, _)| of(point));
+            all.min_by(|a, b| a.1.total_cmp(&b.1)).copied()
+        };
+        let (best, seconds) = cheapest(&|_| true)?;
+        let own = &self.of.case.own;
+        let is_near = |point: &Point, step: Option<f64>| match (point.step, step) {
+            (Some(own), Some(other)) => (own / other - 1.0).abs() < 1e-9,
+            (own, other) => own.is_none() && other.is_none(),
+        };
+        let has_own = |point: &Point, decides: Decides| point.choice.agrees(own, decides);
+        let of_own = cheapest(&|point| {
+            has_own(point, Decides::Order)
+                && has_own(point, Decides::Digits)
+                && is_near(point, self.of.case.step())
+        });
+        let in_f64 = own.with(&[("precision", "f64")]);
+        let at_limit = cheapest(&|point| {
+            has_own(point, Decides::Order)
+                && point.choice.agrees(&in_f64, Decides::Digits)
+                && is_near(point, self.limit)
+        });
+        let planned = self.plans[number].as_ref()?;
+        // Bias by the runs of the plan: they know it better than one of a share of the grid's time.
+        let known = match self.of.target.is_kept() {
+            true => bias(planned.off),
+            false => bias([verdict.bias.value * error, verdict.bias.bar * error]),
+        };
+        let needed = self.seconds(planned, known, error);
+        let taken = self.as_planned(planned, plan);
+        Some(Costs {
+            plan: needed.map_or(taken, |needed| needed.max(taken)) / seconds,
+            baselines: [of_own.map(|(_, it)| it / seconds), self.lists, at_limit.map(|(_, it)| it / seconds)],
+            best: in_words(best),
+            seconds,
+        })
+    }
+
+    /// Wall seconds of a plan as it is.
+    fn as_planned(&self, point: &Point, plan: &Plan) -> f64 {
+        match plan.seeds {
+            1 => point.start + point.cost / self.speedup * plan.time,
+            seeds => {
+                let rounds = (seeds as f64 / rayon::current_num_threads() as f64).ceil();
+                rounds * (point.start + point.cost * plan.time)
+            }
+        }
+    }
+
+    /// Wall seconds in which a configuration reaches an error, by the rules of plans; none where its bias is more.
+    fn seconds(&self, point: &Point, bias: f64, error: f64) -> Option<f64> {
+        let left = Some(error - bias).filter(|left| *left > 0.0)?;
+        let cores = rayon::current_num_threads() as f64;
+        let alone = |time: f64| point.start + point.cost / self.speedup * time;
+        if self.of.target.is_kept() {
+            return Some(alone(self.of.case.duration()?));
+        }
+        let known = &self.reference.known;
+        let time = self.chance.time_for(left);
+        if let Some(whole) = self.of.asking.whole {
+            let runs = (time / whole).ceil().max(1.0);
+            return Some(if runs == 1.0 {
+                alone(whole)
+            } else {
+                (runs / cores).ceil() * (point.start + point.cost * whole)
+            });
+        }
+        let least = known.transient.max(SAMPLES * known.apart);
+        let time = time.max(least);
+        let apart =
+            (time / cores > least).then(|| point.start + point.cost * (time / cores + known.transient));
+        Some(apart.into_iter().fold(alone(time + known.transient), f64::min))
+    }
+}
+
+/// The bias that is expected of a difference and its bar: noise is none.
+fn bias([off, bar]: [f64; 2]) -> f64 {
+    if off.abs() > bar { off.abs() } else { (off * off - 0.25 * bar * bar).max(0.0).sqrt() }
+}
+
+/// The configuration and its step.
+fn in_words(point: &Point) -> String {
+    let step = point.step.map(|step| format!(", dt {}", significant(step, 2)));
+    point.choice.label() + &step.unwrap_or_default()
+}
+
+impl Ensemble<'_> {
+    /// A configuration with a step (time).
+    fn at(&self, overrides: &Overrides, step: Option<f64>) -> Overrides {
+        match self.case.entry.trials.zip(step) {
+            Some((trials, step)) => overrides.clone().set(trials.step, step),
+            None => overrides.clone(),
+        }
+    }
+
+    /// The longest step of a configuration that theory allows (time).
+    fn longest(&self, choice: &Choice) -> Option<f64> {
+        let own = self.case.step()?;
+        let prepared = self.case.prepared_with(&choice.overrides()).ok()?;
+        let limit = prepared.step_limits.iter().map(|limit| limit.step).reduce(f64::min);
+        Some(limit.map_or(TIMES_OWN * own, |limit| OF_LIMIT * limit))
+    }
+
+    /// Wall seconds of a unit of time in one thread.
+    fn timed(&self, prepared: &Prepared, seconds: f64) -> Result<f64, String> {
+        let pool = ThreadPoolBuilder::new().num_threads(1).build().map_err(|error| error.to_string())?;
+        pool.install(|| self.trial.timed(prepared, seconds))
+            .map(|cost| cost.seconds)
+            .map_err(|it| it.to_string())
+    }
+
+    /// The cheapest search by the scene's own integrator, precision and step, and the time by lists over the time by it.
+    fn cheapest_search(&self, all: &[Choice], seconds: f64) -> Result<(Choice, Option<f64>), String> {
+        let own = &self.case.own;
+        let is_alike = |it: &&Choice| it.agrees(own, Decides::Order) && it.agrees(own, Decides::Digits);
+        let searches: Vec<&Choice> = all.iter().filter(is_alike).collect();
+        let each = seconds / searches.len() as f64;
+        let mut timed: Vec<(&Choice, f64)> = searches
+            .into_iter()
+            .filter_map(|choice| {
+                let prepared = self.case.prepared_with(&choice.overrides()).ok()?;
+                Some((choice, self.timed(&prepared, each).ok()?))
+            })
+            .collect();
+        timed.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let (best, least) = timed.first().ok_or("no search runs the scene")?;
+        let by_lists = |it: &&(&Choice, f64)| it.0.settings().any(|it| it == ("search", "neighbor-list"));
+        let lists = timed.iter().find(by_lists).map(|(_, cost)| cost / least);
+        Ok(((*best).clone(), lists))
+    }
+
+    /// Time in one thread over time in all of them.
+    fn speedup(&self, choice: &Choice, seconds: f64) -> Result<f64, String> {
+        let prepared = self.case.prepared_with(&choice.overrides()).map_err(|errors| errors.to_string())?;
+        let all = self.trial.timed(&prepared, 0.5 * seconds).map_err(|failure| failure.to_string())?;
+        Ok(self.timed(&prepared, 0.5 * seconds)? / all.seconds)
+    }
+
+    /// Measures a configuration in about some seconds.
+    fn point(
+        &self,
+        choice: &Choice,
+        step: Option<f64>,
+        overrides: &Overrides,
+        number: usize,
+        seconds: f64,
+        reference: &Reference,
+    ) -> Result<Point, String> {
+        let prepared = self.start(overrides, number)?;
+        let span = match (self.target.is_kept(), self.asking.whole) {
+            (true, _) => Span::Time(self.case.duration().ok_or("it has no end")?, Some(LATE * seconds)),
+            (_, Some(time)) => Span::Time(time, None),
+            _ => Span::Seconds(seconds),
+        };
+        let begun = self.trial.watch.now();
+        let first = self.sample(&prepared, span)?;
+        if !first.warnings.is_empty() {
+            return Err(first.warned());
+        }
+        let off = match (first.outcome, self.asking.whole) {
+            (Outcome::Kept { farthest, .. }, _) => [farthest, 0.0],
+            (_, None) => {
+                let known = first.known().ok_or_else(|| first.without_mean())?;
+                [known.mean - reference.known.mean, known.bar.hypot(reference.known.bar)]
+            }
+            (_, Some(_)) => {
+                let mut means = vec![first.mean_over(WHOLE)];
+                while means.len() < 2 || self.trial.watch.now() - begun < seconds {
+                    let next = self.start(overrides, number + STARTS * means.len())?;
+                    means.push(self.sample(&next, span)?.mean_over(WHOLE));
+                }
+                let [mean, bar] = of_independent(&means).ok_or("there is one run")?;
+                [mean - reference.known.mean, bar.hypot(reference.known.bar)]
+            }
+        };
+        Ok(Point {
+            choice: choice.clone(),
+            step,
+            cost: first.cost,
+            start: first.start + ROWS[1] * first.row,
+            off,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::runs::Asking;
+    use super::*;
+    use crate::study::Case;
+    use crate::study::explain::{Target, certified::by_trials};
+    use crate::study::trial::{Known, Stopwatch, Trial};
+    use std::sync::atomic::AtomicBool;
+    use stripmine_physics::method::METHODS;
+    use stripmine_physics::scene::Width;
+
+    #[test]
+    fn noise_is_no_bias() {
+        assert_eq!([bias([-0.3, 0.2]), bias([0.1, 0.4])], [0.3, 0.0]);
+        assert!((bias([0.3, 0.4]) - (0.09f64 - 0.04).sqrt()).abs() < 1e-15);
+    }
+
+    /// By hand. The square of a bar is 16 in a unit of time, known exactly; the transient is 3, so that an error of 0.5 without bias takes 64 + 3, with a
+    /// bias of 0.1 100 + 3. A hundred threads' worth of speed leaves no plan of several runs cheaper.
+    #[test]
+    fn costs_are_over_the_cheapest_that_reaches_the_error() {
+        let case = Case::load("dense-gas", &["particles.count=100".to_owned()], METHODS).unwrap();
+        let (watch, stop) = (Stopwatch::made(400.0), AtomicBool::new(false));
+        let trial = Trial { watch: &watch, stop: &stop };
+        let target = Target::of(&case, Some("pressure"), Some(Width::Percent(20.0))).unwrap();
+        let plan = by_trials(&case, &target, 2.0, trial).unwrap();
+        let plan = Plan { seeds: 1, time: 100.0, is_whole: false, starts_differ: None, ..plan };
+        let asking = Asking::from(&plan);
+        let of = Ensemble { case: &case, target: &target, trial, asking };
+        let known = Known { square: 16.0, transient: 3.0, apart: 1.0, ..Known::exactly(7.0) };
+        let point = |choice: &Choice, step: f64, cost: f64, off: [f64; 2]| Point {
+            choice: choice.clone(),
+            step: Some(step),
+            cost: 100.0 * cost,
+            start: 1.0,
+            off,
+        };
+        let (own, step) = (case.own.clone(), case.step().unwrap());
+        let other = own.with(&[("integrator", "velocity-verlet")]);
+        let grid = |points: Vec<Point>, planned: Point| Grid {
+            of: &of,
+            reference: Reference { known, step: None },
+            chance: Chance::of(&known, None),
+            points,
+            plans: vec![Some(planned)],
+            limit: Some(2.0 * step),
+            lists: Some(1.5),
+            speedup: 100.0,
+        };
+        let points = vec![
+            point(&own, step, 0.1, [0.0, 0.0]),
+            point(&own, 2.0 * step, 0.05, [0.1, 0.01]),
+            // Cheaper, and off by more than the error.
+            point(&other, 4.0 * step, 0.01, [0.6, 0.1]),
+        ];
+        let [of_own, best] = [1.0 + 0.1 * 67.0, 1.0 + 0.05 * 103.0];
+        let verdict = |bias: f64| Verdict::of(&[Ok(7.0 + bias), Ok(7.0 + bias)], [7.0, 0.0], 0.5);
+        let costs = |cost: f64, bias: f64| {
+            let found = grid(points.clone(), point(&own, 2.0 * step, cost, [0.0, 0.0]));
+            found.costs(0, &plan, &verdict(bias), 0.5).unwrap()
+        };
+        let found = costs(0.08, 0.0);
+        assert!((found.seconds - best).abs() < 1e-12 && found.best.contains("dt"), "{found:?}");
+        // As planned for a time of 100, more than the 67 that it takes.
+        assert!((found.plan - 9.0 / best).abs() < 1e-12, "{found:?}");
+        let [by_own, lists, at_limit] = found.baselines.map(Option::unwrap);
+        assert!((by_own - of_own / best).abs() < 1e-12 && (at_limit - 1.0).abs() < 1e-12 && lists == 1.5);
+        // A bias of 0.2 asks for a time of 16/0.09 = 177.8, more than was planned.
+        let biased = costs(0.08, 0.2);
+        assert!((biased.plan - (1.0 + 0.08 * (16.0 / 0.09 + 3.0)) / best).abs() < 1e-9, "{biased:?}");
+        // Nothing reaches an error below every bias.
+        let none = grid(points[1..].to_vec(), points[1].clone());
+        assert!(none.costs(0, &plan, &verdict(0.0), 0.05).is_none());
+    }
+}

@@ -1,0 +1,218 @@
+//! Plans, carried out from many starts and judged: by the error that was asked for, the time foreseen, and the cost of the best of a grid.
+
+mod frames;
+mod grid;
+mod reference;
+mod runs;
+mod scenes;
+#[cfg(test)]
+mod tests;
+mod verdict;
+
+pub use frames::made;
+pub use scenes::{Asked, QUICK, SCENES};
+
+use super::recommended::Plan;
+use super::seen::{planned, seen};
+use super::{Target, in_unit};
+use crate::results::{Journal, Meter, Progress};
+use crate::study::trial::{Stopwatch, Trial};
+use crate::study::{Case, StudyError, first_line};
+use grid::{Costs, Grid};
+use reference::Reference;
+use runs::{Asking, Ensemble};
+use scenes::Class;
+use std::sync::atomic::AtomicBool;
+use stripmine_physics::number::significant;
+use stripmine_physics::scene::Width;
+use verdict::Verdict;
+
+/// Effort of a judgement, in wall seconds but for the runs.
+#[derive(Clone, Copy, Debug)]
+pub struct Effort {
+    /// Trials of a plan; and where these give none, for scenes whose trials may be made again.
+    pub trials: [f64; 2],
+    /// The most that a plan may take: a longer one is refused.
+    pub limit: f64,
+    /// Estimates by each plan, from starts of their own.
+    pub estimates: usize,
+    /// The most that a reference takes.
+    pub reference: f64,
+    /// A grid.
+    pub grid: f64,
+}
+
+/// Plans, judged.
+#[derive(Clone, Debug)]
+pub struct Certified {
+    plans: Vec<Judged>,
+    effort: Effort,
+}
+
+/// A plan, judged.
+#[derive(Clone, Debug)]
+struct Judged {
+    class: Class,
+    scene: String,
+    quantity: &'static str,
+    /// The error as it was asked for.
+    asked: &'static str,
+    /// Wall seconds of its trials.
+    trials: f64,
+    /// What came of it, or why there is no plan.
+    outcome: Result<Carried, String>,
+}
+
+/// A plan that was carried out.
+#[derive(Clone, Debug)]
+struct Carried {
+    /// The plan in a line.
+    plan: String,
+    /// The error that was asked for, in the quantity's unit.
+    error: f64,
+    reference: Result<Reference, String>,
+    /// None without a reference.
+    verdict: Option<Verdict>,
+    /// Wall seconds: foreseen, and taken by the first estimate.
+    seconds: [f64; 2],
+    /// None where it was not compared.
+    costs: Option<Costs>,
+}
+
+/// A plan for an error.
+struct Planned {
+    asked: &'static str,
+    error: Width,
+    /// Wall seconds of its trials.
+    trials: f64,
+    plan: Result<Plan, String>,
+}
+
+/// Judges plans for some scenes.
+///
+/// # Errors
+/// [`StudyError`] if a scene is bad, or there are no threads.
+pub fn certified(asked: &[Asked], effort: Effort, progress: Progress<'_>) -> Result<Certified, StudyError> {
+    let meter = Meter::new(asked.iter().map(|it| it.errors.len() as f64).sum(), progress);
+    let (watch, never) = (Stopwatch::wall(), AtomicBool::new(false));
+    let trial = Trial { watch: &watch, stop: &never };
+    let mut plans = vec![];
+    for it in asked {
+        plans.extend(judged(it, effort, trial, &meter)?);
+    }
+    Ok(Certified { plans, effort })
+}
+
+/// Judges the plans of a scene. Plans for the same mean share its reference and its grid.
+fn judged(
+    asked: &Asked,
+    effort: Effort,
+    trial: Trial<'_>,
+    meter: &Meter<'_>,
+) -> Result<Vec<Judged>, StudyError> {
+    let case = asked.load()?;
+    let target = Target::of(&case, Some(asked.quantity), None).map_err(|it| StudyError::Own(Box::new(it)))?;
+    let target = Target { limit: effort.limit, ..target };
+    let parsed = asked.errors.iter().filter_map(|error| Some((*error, Width::parse(error)?)));
+    let planned: Vec<Planned> = parsed
+        .map(|(text, error)| {
+            let target = Target { error: Some(error), ..target.clone() };
+            let attempts = if asked.is_patient { &effort.trials[..] } else { &effort.trials[..1] };
+            let mut planned = Planned { asked: text, error, trials: 0.0, plan: Err(String::new()) };
+            for &seconds in attempts {
+                if planned.plan.is_err() {
+                    planned.trials = seconds;
+                    planned.plan = by_trials(&case, &target, seconds, trial);
+                }
+            }
+            meter.add(0.5);
+            planned
+        })
+        .collect();
+    let mut askings: Vec<Asking> = vec![];
+    for asking in planned.iter().flat_map(|it| &it.plan).map(Asking::from) {
+        if !askings.contains(&asking) {
+            askings.push(asking);
+        }
+    }
+    let refused = |it: &Planned| Err(it.plan.as_ref().err().cloned().unwrap_or_default());
+    let mut outcomes: Vec<Result<Carried, String>> = planned.iter().map(refused).collect();
+    for asking in askings {
+        let ensemble = Ensemble { case: &case, target: &target, trial, asking };
+        let alike: Vec<(usize, &Planned, &Plan)> = (planned.iter().enumerate())
+            .filter_map(|(at, it)| Some((at, it, it.plan.as_ref().ok()?)))
+            .filter(|(.., plan)| Asking::from(*plan) == asking)
+            .collect();
+        for (at, carried) in carried_out(&ensemble, &alike, asked.is_compared, effort)? {
+            outcomes[at] = Ok(carried);
+        }
+    }
+    meter.add(0.5 * planned.len() as f64);
+    let all = planned.iter().zip(outcomes).map(|(it, outcome)| Judged {
+        class: asked.class,
+        scene: case.arguments(),
+        quantity: target.quantity.name,
+        asked: it.asked,
+        trials: it.trials,
+        outcome,
+    });
+    Ok(all.collect())
+}
+
+/// A plan by trials of some seconds.
+fn by_trials(case: &Case, target: &Target, seconds: f64, trial: Trial<'_>) -> Result<Plan, String> {
+    let found = seen(case, target, seconds, trial, (&|_| {}, &Journal::none()))
+        .map_err(|error| first_line(&error.to_string()))?;
+    planned(case, target, &found, "").map_err(|unreached| unreached.to_string())
+}
+
+/// Carries out plans for the same mean.
+fn carried_out(
+    ensemble: &Ensemble<'_>,
+    plans: &[(usize, &Planned, &Plan)],
+    is_compared: bool,
+    effort: Effort,
+) -> Result<Vec<(usize, Carried)>, StudyError> {
+    let in_parts = |it: &Planned| in_unit(it.error, 1.0);
+    let finest = plans.iter().map(|(_, it, _)| *it).min_by(|a, b| in_parts(a).total_cmp(&in_parts(b)));
+    let Some(finest) = finest else { return Ok(vec![]) };
+    let reference = ensemble.reference(finest.error, effort.reference);
+    let mut all = vec![];
+    for (at, planned, plan) in plans {
+        let (runs, taken) = ensemble.estimates(plan, effort.estimates).map_err(StudyError::Threads)?;
+        let of = |mean: f64| in_unit(planned.error, mean);
+        let error = match &reference {
+            Ok(reference) => of(reference.known.mean),
+            Err(_) => of(plan.mean.map_or(f64::NAN, |[mean, _]| mean)),
+        };
+        let verdict = reference.as_ref().ok().map(|it| Verdict::of(&runs, it.mean(), error));
+        let seconds = [plan.seconds.likely, taken];
+        let carried = Carried {
+            plan: in_a_line(plan),
+            error,
+            reference: reference.clone(),
+            verdict,
+            seconds,
+            costs: None,
+        };
+        all.push((*at, carried));
+    }
+    let (true, Ok(reference)) = (is_compared, reference) else { return Ok(all) };
+    let only: Vec<&Plan> = plans.iter().map(|(.., plan)| *plan).collect();
+    // A scene that breaks at its own step has no grid.
+    if let Ok(grid) = Grid::of(ensemble, reference, &only, effort.grid) {
+        for (number, ((_, carried), plan)) in all.iter_mut().zip(only).enumerate() {
+            let verdict = carried.verdict.as_ref();
+            carried.costs = verdict.and_then(|verdict| grid.costs(number, plan, verdict, carried.error));
+        }
+    }
+    Ok(all)
+}
+
+/// A plan in a line.
+fn in_a_line(plan: &Plan) -> String {
+    let step = plan.step.map(|step| format!(", dt {}", significant(step, 3)));
+    let seeds = (plan.seeds > 1).then(|| format!(", {} seeds", plan.seeds));
+    let time = format!(", time {}", significant(plan.time, 3));
+    [Some(plan.way.clone()), step, Some(time), seeds].into_iter().flatten().collect()
+}

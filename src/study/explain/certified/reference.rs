@@ -1,0 +1,170 @@
+//! The true mean of a scene, by runs of its reference configuration at a short step: nothing of the planner is in it.
+
+use super::super::in_unit;
+use super::runs::{Ensemble, WHOLE, side_by_side};
+use crate::study::trial::{Known, Sample, Span};
+use stripmine_physics::averages::of_independent;
+use stripmine_physics::scene::{Overrides, Width};
+
+/// The step in parts of the scene's own.
+const STEP: f64 = 0.25;
+/// A reference that breaks or is warned of is made again with half of the step, so often.
+const HALVINGS: usize = 2;
+/// The bar that is enough, in parts of the error.
+const ENOUGH: f64 = 1.0 / 3.0;
+/// Part of the time after which the rest is foreseen.
+const SCOUT: f64 = 0.2;
+/// Runs are longer by so much than foreseen: bars are known roughly.
+const LONGER: f64 = 1.3;
+/// Whole runs at least.
+const FEWEST: usize = 4;
+/// The first number of its starts: estimates have those before.
+const STARTS: usize = 10_000;
+
+/// The true mean.
+#[derive(Clone, Copy, Debug)]
+pub struct Reference {
+    /// The mean of all its runs; exactly 0 for the change of what should be kept.
+    pub known: Known,
+    /// Its step (time); none where the method takes none.
+    pub step: Option<f64>,
+}
+
+impl Reference {
+    /// The mean, and half the width of its interval of 95 %.
+    pub fn mean(&self) -> [f64; 2] {
+        [self.known.mean, self.known.bar]
+    }
+}
+
+impl Ensemble<'_> {
+    /// The true mean, to a third of an error where some wall seconds are enough for that.
+    pub fn reference(&self, error: Width, seconds: f64) -> Result<Reference, String> {
+        if self.target.is_kept() {
+            return Ok(Reference { known: Known::exactly(0.0), step: None });
+        }
+        let mut step = self.case.step().map(|own| STEP * own);
+        let mut halvings = if step.is_some() { HALVINGS } else { 0 };
+        loop {
+            let overrides = self.reference_at(step);
+            // The last one is as it is, warnings and all.
+            match self.mean_by(&overrides, error, seconds, halvings == 0) {
+                Ok(known) => return Ok(Reference { known, step }),
+                Err(why) if halvings == 0 => return Err(why),
+                Err(_) => (halvings, step) = (halvings - 1, step.map(|step| 0.5 * step)),
+            }
+        }
+    }
+
+    /// The overrides of the reference at a step (time).
+    fn reference_at(&self, step: Option<f64>) -> Overrides {
+        let Some((trials, step)) = self.case.entry.trials.zip(step) else { return Overrides::new() };
+        self.case.own.with(trials.references[0]).overrides().set(trials.step, step)
+    }
+
+    fn mean_by(
+        &self,
+        overrides: &Overrides,
+        error: Width,
+        seconds: f64,
+        bears_warnings: bool,
+    ) -> Result<Known, String> {
+        let begun = self.trial.watch.now();
+        let mut samples: Vec<Sample> = vec![];
+        let mut span = SCOUT * seconds;
+        loop {
+            let first = STARTS + samples.len();
+            let more = side_by_side(rayon::current_num_threads(), |at| {
+                let prepared = self.start(overrides, first + at)?;
+                self.sample(
+                    &prepared,
+                    self.asking.whole.map_or(Span::Seconds(span), |time| Span::Time(time, None)),
+                )
+            });
+            for sample in more.map_err(|error| error.to_string())? {
+                let sample = sample?;
+                if !bears_warnings && !sample.warnings.is_empty() {
+                    return Err(format!("warned of: {}", sample.warned()));
+                }
+                samples.push(sample);
+            }
+            let spent = self.trial.watch.now() - begun;
+            let known = match self.asking.whole {
+                Some(time) => of_whole(&samples, time),
+                None => joined(&samples.iter().filter_map(Sample::known).collect::<Vec<_>>()),
+            };
+            let excess = |known: &Known| (known.bar / (ENOUGH * in_unit(error, known.mean))).powi(2);
+            // The square of the bar falls with the time.
+            let needed = known.as_ref().map_or(spent, |known| (LONGER * excess(known) - 1.0) * spent);
+            span = needed.min(seconds - spent);
+            let is_whole_enough = self.asking.whole.is_none() || samples.len() >= FEWEST;
+            match known {
+                Some(known) if is_whole_enough && (excess(&known) <= 1.0 || span <= 0.0) => return Ok(known),
+                None if span <= 0.0 => return Err(samples[0].without_mean()),
+                _ => span = span.max(SCOUT * seconds),
+            }
+        }
+    }
+}
+
+/// The mean over whole runs of a time.
+fn of_whole(samples: &[Sample], time: f64) -> Option<Known> {
+    let means: Vec<f64> = samples.iter().map(|sample| sample.mean_over(WHOLE)).collect();
+    let count = means.len() as f64;
+    of_independent(&means).map(|[mean, bar]| Known {
+        square: bar * bar * count * time,
+        freedoms: count - 1.0,
+        bar,
+        ..Known::exactly(mean)
+    })
+}
+
+/// The mean over independent runs, each with the weight of the time that it is over. Where they scatter by more than their bars, the bar is larger
+/// by Birge's ratio.
+pub(super) fn joined(runs: &[Known]) -> Option<Known> {
+    let first = runs.first()?;
+    if runs.iter().any(|run| run.bar == 0.0) {
+        return Some(*first);
+    }
+    let spans: Vec<f64> = runs.iter().map(|run| run.square / run.bar.powi(2)).collect();
+    let all = spans.iter().sum::<f64>();
+    let sum = |of: &dyn Fn(&Known, f64) -> f64| {
+        runs.iter().zip(&spans).map(|(run, span)| of(run, span / all)).sum::<f64>()
+    };
+    let mean = sum(&|run, weight| weight * run.mean);
+    let bar = sum(&|run, weight| (weight * run.bar).powi(2)).sqrt();
+    // Bars are about two standard errors.
+    let chi_square = sum(&|run, _| (2.0 * (run.mean - mean) / run.bar).powi(2));
+    let ratio = (chi_square / (runs.len() as f64 - 1.0).max(1.0)).sqrt().max(1.0);
+    Some(Known {
+        mean,
+        bar: ratio * bar,
+        square: (ratio * bar).powi(2) * all,
+        transient: runs.iter().map(|run| run.transient).fold(f64::INFINITY, f64::min),
+        apart: sum(&|run, weight| weight * run.apart),
+        freedoms: runs.iter().map(|run| run.freedoms).sum(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn run(mean: f64, bar: f64, span: f64) -> Known {
+        Known { mean, bar, square: bar * bar * span, transient: span, apart: 1.0, freedoms: 5.0 }
+    }
+
+    /// By hand: weights 1/4 and 3/4, bar √(0.25² 0.4² + 0.75² 0.2²) = 0.18028; runs two bars apart have χ² = 4 of one degree of freedom.
+    #[test]
+    fn runs_are_joined_by_their_time() {
+        let known = joined(&[run(1.0, 0.4, 10.0), run(1.2, 0.2, 30.0)]).unwrap();
+        assert!((known.mean - 1.15).abs() < 1e-12 && (known.bar - 0.180_277_56).abs() < 1e-8, "{known:?}");
+        assert!((known.square - known.bar.powi(2) * 40.0).abs() < 1e-12);
+        assert_eq!((known.transient, known.freedoms), (10.0, 10.0));
+        let apart = joined(&[run(0.0, 0.1, 1.0), run(0.2, 0.1, 1.0)]).unwrap();
+        assert!((apart.mean - 0.1).abs() < 1e-12);
+        // Each is one bar, two standard errors, from the mean: χ² = 8.
+        assert!((apart.bar - 0.1 / 2f64.sqrt() * 8f64.sqrt()).abs() < 1e-12, "{apart:?}");
+        assert!(joined(&[]).is_none());
+    }
+}

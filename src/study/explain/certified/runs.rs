@@ -1,0 +1,140 @@
+//! Runs of a scene from starts of their own: side by side, one thread each.
+
+use super::super::Target;
+use super::super::recommended::Plan;
+use super::super::whole::displaced_start;
+use crate::study::trial::{Sample, Span, Trial};
+use crate::study::{Case, first_line};
+use rayon::{ThreadPoolBuildError, ThreadPoolBuilder};
+use std::panic::resume_unwind;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+use stripmine_physics::averages::Outcome;
+use stripmine_physics::method::Prepared;
+use stripmine_physics::scene::{Overrides, SEED};
+
+/// A run is ended where it takes this many times as long as a plan may.
+const LATE: f64 = 5.0;
+/// A whole run, from one time to another (time).
+pub const WHOLE: [f64; 2] = [0.0, f64::INFINITY];
+/// Seeds from the scene's own on that trials may have used.
+const OF_TRIALS: u64 = 1000;
+
+/// The mean that is asked for: of which runs, over which part of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Asking {
+    /// The scene's own time, where the mean is that over whole runs (time).
+    pub whole: Option<f64>,
+    /// Set where the mean is that of the scene's own start: another seed has another mean.
+    pub is_of_own_start: bool,
+}
+
+impl From<&Plan> for Asking {
+    fn from(plan: &Plan) -> Asking {
+        Asking { whole: plan.is_whole.then_some(plan.time), is_of_own_start: plan.starts_differ.is_some() }
+    }
+}
+
+/// Runs of a scene from any number of starts.
+pub struct Ensemble<'e> {
+    pub case: &'e Case,
+    pub target: &'e Target,
+    pub trial: Trial<'e>,
+    pub asking: Asking,
+}
+
+impl Ensemble<'_> {
+    /// The scene from a start of a number: another seed, or, without seeds, particles displaced by next to nothing.
+    pub fn start(&self, overrides: &Overrides, number: usize) -> Result<Prepared, String> {
+        let prepared = |overrides: &Overrides| {
+            self.case.prepared_with(overrides).map_err(|errors| first_line(&errors.to_string()))
+        };
+        match self.case.prepared.seed.filter(|_| !self.asking.is_of_own_start) {
+            Some(own) => {
+                let seed = own.wrapping_add(OF_TRIALS).wrapping_add(number as u64);
+                prepared(&overrides.clone().set(&SEED, seed))
+            }
+            None => {
+                let own = prepared(overrides)?;
+                Ok(own.model.started_from(displaced_start(&own, number as u64 + 1)))
+            }
+        }
+    }
+
+    /// A run that comes to the end of its span.
+    pub fn sample(&self, prepared: &Prepared, span: Span) -> Result<Sample, String> {
+        let observed = (self.case.entry.quantities, self.target.place);
+        let sample = self.trial.sample(prepared, observed, span);
+        let sample = sample.map_err(|failure| first_line(&failure.what()))?;
+        match span {
+            Span::Time(time, _) => sample.cut_off(time).map_or(Ok(sample), Err),
+            Span::Seconds(_) => Ok(sample),
+        }
+    }
+
+    /// The result of a run: its mean, or how far it went from the first value of what should be kept.
+    pub fn value(&self, sample: &Sample) -> Result<f64, String> {
+        match sample.outcome {
+            Outcome::Kept { farthest, .. } => Ok(farthest),
+            _ if self.asking.whole.is_some() => Ok(sample.mean_over(WHOLE)),
+            _ => sample.known().map(|known| known.mean).ok_or_else(|| sample.without_mean()),
+        }
+    }
+
+    /// A plan carried out from starts that no other number has, seeds side by side where it is alone, one after the other where it is not: the mean
+    /// of all seeds, and wall seconds.
+    fn carried_out(&self, plan: &Plan, number: usize, is_alone: bool) -> Result<[f64; 2], String> {
+        let seeds = plan.seeds as usize;
+        let starts = (0..seeds).map(|seed| self.start(&plan.overrides, number * seeds + seed));
+        let starts: Vec<Prepared> = starts.collect::<Result<_, _>>()?;
+        let most = LATE * self.target.limit;
+        let one = |at: usize| self.value(&self.sample(&starts[at], Span::Time(plan.time, Some(most)))?);
+        let begun = self.trial.watch.now();
+        let values: Vec<Result<f64, String>> = match is_alone && seeds > 1 {
+            true => side_by_side(seeds, one).map_err(|error| error.to_string())?,
+            false => (0..seeds).map(one).collect(),
+        };
+        let seconds = self.trial.watch.now() - begun;
+        let values: Vec<f64> = values.into_iter().collect::<Result<_, _>>()?;
+        Ok([values.iter().sum::<f64>() / seeds as f64, seconds])
+    }
+
+    /// Estimates by a plan, each with starts of its own: values, and the wall seconds of the first, which is alone and has all threads.
+    ///
+    /// # Errors
+    /// [`ThreadPoolBuildError`] if there are no threads.
+    pub fn estimates(
+        &self,
+        plan: &Plan,
+        count: usize,
+    ) -> Result<(Vec<Result<f64, String>>, f64), ThreadPoolBuildError> {
+        let first = self.carried_out(plan, 0, true);
+        let seconds = first.as_ref().map_or(f64::NAN, |[_, seconds]| *seconds);
+        let others = side_by_side(count - 1, |at| self.carried_out(plan, at + 1, false));
+        let all = std::iter::once(first).chain(others?);
+        Ok((all.map(|it| it.map(|[value, _]| value)).collect(), seconds))
+    }
+}
+
+/// Does some work for each number, on all cores, one thread each: results in order.
+pub fn side_by_side<T: Send>(
+    count: usize,
+    work: impl Fn(usize) -> T + Sync,
+) -> Result<Vec<T>, ThreadPoolBuildError> {
+    let next = AtomicUsize::new(0);
+    let worker = || {
+        let pool = ThreadPoolBuilder::new().num_threads(1).build()?;
+        let numbers = std::iter::repeat_with(|| next.fetch_add(1, Ordering::Relaxed));
+        let numbers = numbers.take_while(|number| *number < count);
+        Ok(numbers.map(|number| (number, pool.install(|| work(number)))).collect::<Vec<_>>())
+    };
+    let done: Vec<Result<Vec<(usize, T)>, ThreadPoolBuildError>> = thread::scope(|scope| {
+        let workers: Vec<_> =
+            (0..rayon::current_num_threads().min(count)).map(|_| scope.spawn(worker)).collect();
+        workers.into_iter().map(|worker| worker.join().unwrap_or_else(|why| resume_unwind(why))).collect()
+    });
+    let mut all: Vec<(usize, T)> =
+        done.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect();
+    all.sort_by_key(|(number, _)| *number);
+    Ok(all.into_iter().map(|(_, result)| result).collect())
+}
