@@ -126,6 +126,8 @@ pub enum Style {
     Dashed,
     /// Points alone, for measurements.
     Points,
+    /// Large points, for a few that stand out from curves.
+    Marks,
     /// Points joined by a line.
     Joined,
     /// A dashed line on a ground between the ends of the spreads: a mean with its error.

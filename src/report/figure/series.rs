@@ -1,10 +1,12 @@
 //! Series on a plane: curves, error bars, markers; and their samples in a legend.
 
 use super::plane::Plane;
-use super::style::{CURVE, Look, MARKERS, PAPER, has_markers};
+use super::style::{CURVE, Look, MARKERS, PAPER, has_markers, is_scattered};
 use super::writer::{Svg, bends, stroke, tenths, through};
 use super::{Point, Scale, Series, Style};
 
+/// Size of a mark over that of a point.
+const LARGE: &str = "1.8";
 /// Half the width of the ends of an error bar (pixels). A script of the page knows it.
 const CAP: f64 = 4.5;
 /// Height of a ground's sample in a legend (pixels).
@@ -24,7 +26,7 @@ pub fn ground(svg: &mut Svg, plane: &Plane, look: &Look, series: &Series) {
 
 /// Adds the curve of a series, if it has one. It bears the series' name where no markers do.
 pub fn curve(svg: &mut Svg, plane: &Plane, look: &Look, series: &Series) {
-    if look.style == Style::Points || series.points.len() < 2 {
+    if is_scattered(look.style) || series.points.len() < 2 {
         return;
     }
     let places: Vec<_> = series.points.iter().map(|it| plane.place(it.x, it.y)).collect();
@@ -77,7 +79,7 @@ pub fn sample(svg: &mut Svg, look: &Look, [left, y]: [f64; 2], length: f64) {
     }
     let marker = if has_markers(look.style) { marker(svg, look) } else { String::new() };
     let markers = if marker.is_empty() { marker } else { format!(" style=\"marker-mid:url(#{marker})\"") };
-    if look.style == Style::Points { svg.path(&markers, &d) } else { line(svg, look, &markers, &d) }
+    if is_scattered(look.style) { svg.path(&markers, &d) } else { line(svg, look, &markers, &d) }
 }
 
 fn light(svg: &mut Svg, look: &Look, outline: &str) {
@@ -96,9 +98,13 @@ fn marker(svg: &mut Svg, look: &Look) -> String {
     let Look { colour, marker, is_hollow, .. } = *look;
     let (fill, rim, width) = if is_hollow { (PAPER, colour, 1.6) } else { (colour, PAPER, 0.7) };
     let hollow = if is_hollow { "-hollow" } else { "" };
-    let name = format!("m{marker}-{}{hollow}", colour.to_string().trim_start_matches('#'));
+    let (large, scaled) = match look.style {
+        Style::Marks => ("-large", format!(" transform=\"scale({LARGE})\"")),
+        _ => ("", String::new()),
+    };
+    let name = format!("m{marker}-{}{hollow}{large}", colour.to_string().trim_start_matches('#'));
     svg.define(format!(
-        "<marker id=\"{name}\" markerUnits=\"userSpaceOnUse\" overflow=\"visible\"><path fill=\"{fill}\"{} d=\"{}\"/></marker>",
+        "<marker id=\"{name}\" markerUnits=\"userSpaceOnUse\" overflow=\"visible\"><path fill=\"{fill}\"{}{scaled} d=\"{}\"/></marker>",
         stroke(rim, width), MARKERS[marker]
     ));
     name

@@ -107,9 +107,14 @@ pub(super) struct Look {
     pub is_hollow: bool,
 }
 
+/// Reports if points of a style stand alone, without a line.
+pub(super) fn is_scattered(style: Style) -> bool {
+    matches!(style, Style::Points | Style::Marks)
+}
+
 /// Reports if points of a style have markers.
 pub(super) fn has_markers(style: Style) -> bool {
-    matches!(style, Style::Points | Style::Joined)
+    is_scattered(style) || style == Style::Joined
 }
 
 /// Returns a different look for each of some series: lines of one hue differ by their dashes, markers of one hue are full,
@@ -127,7 +132,7 @@ pub(super) fn looks(all: &[&Series]) -> Vec<Look> {
             Style::Dashed => SHORT_DASHES[(series.hue + twins) % 5],
             Style::Joined => LONG_DASHES[before % 5],
             Style::Ribbon => SHORT_DASHES[before % 5],
-            Style::Points => "",
+            Style::Points | Style::Marks => "",
         };
         let marker = (series.hue + twins / 2) % MARKERS.len();
         Look { style: series.style, colour: hue(series.hue), marker, dash, is_hollow: twins % 2 == 1 }

@@ -106,8 +106,9 @@ fn least_errors(way: &Way, case: &Case, findings: &Findings, chance: &Chance) ->
     let least = |seconds: f64| {
         let of = |part: &f64| {
             let step = way.step.map(|step| part * step);
-            let off = way.bias.zip(step).map(|(bias, step)| bias.at(step)).unwrap_or_default();
             let time = (seconds - start) * part / cost - mean.transient;
+            let off =
+                way.bias.zip(step).map(|(bias, step)| bias.over(step, time.max(0.0))).unwrap_or_default();
             let chance = if time > 0.0 { chance.over(time) } else { f64::INFINITY };
             Point { seconds, step, error: off.shift + chance, most: off.below + chance }
         };

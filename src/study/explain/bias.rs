@@ -44,6 +44,9 @@ pub struct Bias {
     pub shadow: Option<[f64; 2]>,
     /// The size of the bias by single collisions; none where particles do not touch.
     pub collisions: Option<f64>,
+    /// Its growth by the drift of energy, where that adds up along a run (per unit of time).
+    #[serde(with = "any_number")]
+    pub creep: f64,
 }
 
 /// A difference at a step, for a window.
@@ -125,6 +128,7 @@ impl Bias {
             pairs: None,
             shadow: None,
             collisions: None,
+            creep: 0.0,
         }
         .with_pairs()
     }
@@ -164,6 +168,12 @@ impl Bias {
         Bias { collisions, ..self }
     }
 
+    /// With the growth of the bias at a step (time) by the drift of energy (per unit of time).
+    #[must_use]
+    pub(super) fn with_creep(self, step: f64, creep: f64) -> Bias {
+        Bias { creep: (self.step / step).powf(self.power) * creep, ..self }
+    }
+
     /// True unless pairs of runs and the shadow energy differ by more than their bars.
     fn agrees(&self) -> bool {
         self.pairs
@@ -184,6 +194,7 @@ impl Bias {
             pairs: None,
             shadow: None,
             collisions: None,
+            creep: 0.0,
         }
     }
 
@@ -215,6 +226,12 @@ impl Bias {
                 false => "",
             };
             words.push_str(&format!("; about {} by single collisions{but}", significant(collisions, 2)));
+        }
+        if self.creep > 0.0 {
+            words.push_str(&format!(
+                "; the drift of energy adds {} per unit of time",
+                significant(self.creep, 2)
+            ));
         }
         words
     }
@@ -268,8 +285,13 @@ impl Bias {
 
     /// The bias that is expected at a step (the quantity's unit), and the most that it is.
     pub fn at(&self, step: f64) -> Off {
-        let part = self.part_at(step);
-        Off { shift: part * self.expected(), below: part * self.below() }
+        self.over(step, 0.0)
+    }
+
+    /// The same of a run of some time (time), which grows as energy drifts.
+    pub fn over(&self, step: f64, time: f64) -> Off {
+        let [part, creep] = [1.0, self.creep * time].map(|it| self.part_at(step) * it);
+        Off { shift: part * self.expected() + creep, below: part * self.below() + creep }
     }
 }
 
@@ -355,6 +377,15 @@ mod tests {
         assert!(apart.in_words().contains("which disagrees"), "{}", apart.in_words());
         let alone = Bias::unknown(0.2, 2.0).with_shadow(0.2, [0.5, 0.1]);
         assert_eq!([alone.shift, alone.bar], [0.5, 0.1]);
+    }
+
+    /// By hand: 10⁻³ per unit of time at the step 0.1 is 4·10⁻³ at 0.2 with the power 2, and adds 0.04 in a time of 10.
+    #[test]
+    fn a_drift_of_energy_adds_up() {
+        let bias = Bias::of(&[seen(0.2, 0.0, [1.0, 0.1])], 2.0, 1.0, 1.0, 16).with_creep(0.1, 1e-3);
+        assert!((bias.over(0.2, 10.0).shift - 1.04).abs() < 1e-12 && bias.at(0.2).shift == 1.0);
+        assert!((bias.over(0.1, 10.0).shift - 0.26).abs() < 1e-12);
+        assert!(bias.in_words().contains("the drift of energy adds 0.004 "), "{}", bias.in_words());
     }
 
     /// A bias that is not significant is that of single collisions, and no more than was measured.

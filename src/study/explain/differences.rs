@@ -55,6 +55,7 @@ impl Work<'_> {
         if self.case.entry.trials.is_none() {
             return;
         }
+        let creeps = self.creeps(ways, mean);
         let all = SHARES[2] * self.seconds;
         // A few short pairs come first: they are made again for as long as steps are shortened. None is shorter than a period.
         let mut seconds = if self.case.prepared.model.period().is_some() { all } else { SCOUT * all };
@@ -105,6 +106,11 @@ impl Work<'_> {
             }
         }
         self.without_pairs(ways, mean);
+        for (choice, step, creep) in creeps {
+            for way in ways.iter_mut().filter(|way| self.choice(way).agrees(&choice, Decides::Order)) {
+                way.bias = way.bias.map(|bias| bias.with_creep(step, creep));
+            }
+        }
         sort(ways);
     }
 
@@ -121,7 +127,7 @@ impl Work<'_> {
                 Some((of_mean, step, shadow)) if alike(of_mean) => bias.with_shadow(*step, *shadow),
                 _ => bias,
             };
-            let known = seen.iter().find(|(other, _)| alike(other)).map(|(_, known)| *known);
+            let known = seen.iter().find(|(other, _)| alike(other)).map(|(_, part)| *part);
             let of_collisions = known.unwrap_or_else(|| {
                 let part =
                     (self.left() > 0.0).then(|| self.error_of_collisions(way, bias.step, mean)).flatten();

@@ -1,19 +1,23 @@
 //! Distance of quantities that should keep their value over the whole run, step by step: long steps are cheap and come first.
 
 use super::ExplainError;
-use super::drift::Drift;
-use super::findings::{Findings, NoRun, Way, Work, sort};
+use super::findings::{Findings, NO_TIME, NoRun, Way, Work, sort};
 use super::plan::in_unit;
 use crate::study::rounded;
 use crate::study::trial::{Known, Span, any_number};
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde::{Deserialize, Serialize};
-use stripmine_physics::averages::Outcome;
+use stripmine_physics::averages::{Outcome, student};
 use stripmine_physics::method::Decides;
 
 /// The longest step that is tried, in steps of the scene.
 const LONGEST: f64 = 64.0;
-/// Where starts are random, another one goes as far as that many times this one: two values of a start tell little.
-pub(super) const MARGIN: f64 = 2.0;
+/// Starts of which each goes its own way: where a scene has a seed.
+const STARTS: u64 = 6;
+/// Where there is no time for several, another start goes as far as that many times this one.
+const MARGIN: f64 = 2.0;
+/// Another start goes no farther than the bound of so many with this probability.
+const SURE: f64 = 0.95;
 /// The error that is looked for where none is asked for and the scene's own is not known.
 pub(super) const WANTED: f64 = 1e-3;
 
@@ -50,7 +54,9 @@ impl Work<'_> {
         let (mut start, mut row) = (0.0, 0.0);
         while let Some((at, step)) = self.next_run(&ways, [time, own]) {
             let key = format!("whole run|{}|{step}", ways[at].label);
-            let Ok(run) = self.journal.recall(&key, |_| true, || self.whole_run(&ways[at], step, time))
+            let wanted = self.wanted_drift(&ways, own);
+            let Ok(run) =
+                self.journal.recall(&key, |_| true, || self.whole_run(&ways[at], step, [time, wanted]))
             else {
                 break;
             };
@@ -108,17 +114,41 @@ impl Work<'_> {
             return;
         }
         let key = format!("whole run|{label}|{own}");
-        if let Ok(run) = self.journal.recall(&key, |_| true, || self.whole_run(way, own, time)) {
+        let run = || self.whole_run(way, own, [time, f64::INFINITY]);
+        if let Ok(run) = self.journal.recall(&key, |_| true, run) {
             way.drift.get_or_insert_default().add(own, run.farthest);
         }
     }
 
-    /// A run of the whole scene: one that breaks goes infinitely far.
-    fn whole_run(&self, way: &Way, step: f64, time: f64) -> Result<WholeRun, NoRun> {
-        let sample = match self.sampled_over(way, Some(step), Span::Time(time, Some(self.left()))) {
-            Ok(sample) => sample,
-            Err(why) if self.left() == 0.0 => return Err(NoRun(why)),
-            Err(_) => return Ok(WholeRun { farthest: f64::INFINITY, costs: None }),
+    /// A run of the whole scene: how far it goes, and, where that is no farther than wanted and starts are random, how far another start goes at most with a
+    /// probability of 95 %.
+    fn whole_run(&self, way: &Way, step: f64, [time, wanted]: [f64; 2]) -> Result<WholeRun, NoRun> {
+        let first = self.run_of_start(way, step, time, 0)?;
+        if self.case.prepared.seed.is_none() || first.farthest > wanted {
+            return Ok(first);
+        }
+        let others = (1..STARTS).into_par_iter().map(|number| self.run_of_start(way, step, time, number));
+        let others: Result<Vec<WholeRun>, NoRun> = others.collect();
+        let Ok(others) = others else { return Ok(WholeRun { farthest: MARGIN * first.farthest, ..first }) };
+        let all: Vec<f64> = others.iter().chain([&first]).map(|it| it.farthest).collect();
+        Ok(WholeRun { farthest: farthest_of_another(&all), ..first })
+    }
+
+    /// A run from a start of a number: one that breaks goes infinitely far.
+    fn run_of_start(&self, way: &Way, step: f64, time: f64, number: u64) -> Result<WholeRun, NoRun> {
+        let left = self.left();
+        if left == 0.0 {
+            return Err(NoRun(NO_TIME.to_owned()));
+        }
+        let observed = (self.case.entry.quantities, self.target.place);
+        let sample = self
+            .another_start(&way.overrides, Some(step), number)
+            .ok()
+            .and_then(|prepared| self.trial.sample(&prepared, observed, Span::Time(time, Some(left))).ok());
+        let sample = match sample {
+            Some(sample) => sample,
+            None if self.left() == 0.0 => return Err(NoRun(NO_TIME.to_owned())),
+            None => return Ok(WholeRun { farthest: f64::INFINITY, costs: None }),
         };
         let farthest = match sample.outcome {
             Outcome::Kept { farthest, .. } => farthest,
@@ -162,19 +192,39 @@ impl Work<'_> {
             let own_way = ways.iter().find(|way| way.label == self.case.own.label());
             own_way.and_then(|way| way.drift.as_ref()?.at(own))
         };
-        let margin = margin(self.case.prepared.seed);
-        self.target.error.map(|width| in_unit(width, 1.0) / margin).or_else(of_own).unwrap_or(WANTED / margin)
+        self.target.error.map(|width| in_unit(width, 1.0)).or_else(of_own).unwrap_or(WANTED)
     }
 }
 
-/// How many times farther another start may go.
-pub(super) fn margin(seed: Option<u64>) -> f64 {
-    if seed.is_some() { MARGIN } else { 1.0 }
+/// How far another start goes at most with a probability of 95 %, by how far some went: logarithms scatter evenly, as distances of runs that differ in their
+/// closest encounter do by factors.
+fn farthest_of_another(all: &[f64]) -> f64 {
+    let largest = all.iter().copied().fold(0.0, f64::max);
+    if largest == 0.0 || !largest.is_finite() {
+        return largest;
+    }
+    let count = all.len() as f64;
+    let logarithms: Vec<f64> = all.iter().map(|&it| libm::log(it.max(f64::MIN_POSITIVE))).collect();
+    let mean = logarithms.iter().sum::<f64>() / count;
+    let variance = logarithms.iter().map(|it| (it - mean).powi(2)).sum::<f64>() / (count - 1.0);
+    // On one side: twice as much is left out as between both ends.
+    let t = student(2.0 * SURE - 1.0, all.len() - 1);
+    largest.max(libm::exp(mean + t * (variance * (1.0 + count.recip())).sqrt()))
 }
 
-impl Drift {
-    /// How far it goes at most at a step that was tried, from any start.
-    pub(super) fn with_margin(&self, step: f64, seed: Option<u64>) -> Option<f64> {
-        Some(margin(seed) * self.at(step)?)
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By hand: logarithms 1, 2 and 3 have the mean 2 and the variance 1; t of 90 % and 2 degrees of freedom is 2.9200, and 2.92·√(4/3) = 3.3717.
+    #[test]
+    fn another_start_goes_as_far_as_scatter_says() {
+        let all = [1.0, 2.0, 3.0].map(libm::exp);
+        assert!((libm::log(farthest_of_another(&all)) - 5.3717).abs() < 1e-3);
+        assert_eq!(farthest_of_another(&[2.0; 6]), 2.0);
+        assert_eq!(
+            [farthest_of_another(&[0.0; 6]), farthest_of_another(&[1.0, f64::INFINITY])],
+            [0.0, f64::INFINITY]
+        );
     }
 }

@@ -4,7 +4,7 @@ use super::Target;
 use super::bias::Off;
 use super::decisions::decisions;
 use super::drift::Drift;
-use super::drifts::{WANTED, margin};
+use super::drifts::WANTED;
 use super::findings::{Findings, Way};
 use super::lengths::{Length, Weighed};
 use super::optimum::Optimum;
@@ -22,9 +22,8 @@ use stripmine_physics::number::significant;
 pub fn keeping(case: &Case, target: &Target, findings: &Findings, origin: &str) -> Result<Plan, Unreached> {
     let usable = || findings.ways.iter().filter(|way| way.dropped.is_none());
     let time = case.duration().unwrap_or(0.0);
-    let seed = case.prepared.seed;
     let of_own = findings.ways.iter().find(|way| way.label == case.own.label());
-    let own_error = of_own.and_then(|way| way.drift.as_ref()?.with_margin(case.step()?, seed));
+    let own_error = of_own.and_then(|way| way.drift.as_ref()?.at(case.step()?));
     let error = target.error.map(|width| in_unit(width, 1.0));
     let wanted = error.or(own_error).unwrap_or(WANTED);
     let costs = |way: &Way, step: f64| {
@@ -32,10 +31,10 @@ pub fn keeping(case: &Case, target: &Target, findings: &Findings, origin: &str) 
     };
     let mut weighed: Vec<Weighed<'_>> = usable()
         .filter_map(|way| {
-            let found = way.drift.as_ref()?.step_for(wanted / margin(seed))?;
+            let found = way.drift.as_ref()?.step_for(wanted)?;
             let optimum = Optimum {
                 part: found.step / way.step?,
-                bias: Off::exactly(margin(seed) * found.farthest),
+                bias: Off::exactly(found.farthest),
                 time,
                 seconds: costs(way, found.step)?,
             };
@@ -44,11 +43,10 @@ pub fn keeping(case: &Case, target: &Target, findings: &Findings, origin: &str) 
         .collect();
     weighed.sort_by(|a, b| a.optimum.seconds.total_cmp(&b.optimum.seconds));
     prefer(&mut weighed, case);
-    let least = usable().filter_map(|way| Some(margin(seed) * way.drift.as_ref()?.least()));
+    let least = usable().filter_map(|way| Some(way.drift.as_ref()?.least()));
     let least = least.fold(f64::INFINITY, f64::min);
     let Some(best) = weighed.first() else {
-        let expected =
-            usable().filter_map(|way| costs(way, way.drift.as_ref()?.expected_step(wanted / margin(seed))?));
+        let expected = usable().filter_map(|way| costs(way, way.drift.as_ref()?.expected_step(wanted)?));
         let expected = expected.reduce(f64::min);
         return Err(Unreached { expected, ..Unreached::of(wanted, least) });
     };

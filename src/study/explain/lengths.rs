@@ -6,11 +6,12 @@ use super::margin::Bars;
 use super::optimum::{Optimum, SHORTEST, Terms, UNBIASED, optimum};
 use crate::study::Case;
 use crate::study::trial::{Known, ROWS};
+use stripmine_physics::averages::LIKELY_ENOUGH;
 use stripmine_physics::method::Every;
 use stripmine_physics::number::significant;
 
-/// Independent samples that a run has at least: enough that it knows the error of its own mean.
-pub(super) const SAMPLES: f64 = 30.0;
+/// Independent samples that a run has at least: enough that it is likely to know the error of its own mean.
+pub(super) const SAMPLES: f64 = LIKELY_ENOUGH;
 
 /// A way with what it takes for the error.
 pub(super) struct Weighed<'w> {
@@ -23,10 +24,10 @@ pub(super) fn weigh(way: &Way, findings: &Findings, chance: &Chance, wanted: f64
     let terms = Terms { cost: way.cost?, transient: findings.mean.transient };
     let time_for = |bar| chance.time_for(bar);
     match (way.step, way.bias) {
-        (None, _) => optimum(terms, (wanted, 1.0), |_| Off::default(), time_for),
+        (None, _) => optimum(terms, (wanted, 1.0), |_, _| Off::default(), time_for),
         (Some(step), Some(bias)) => {
-            let shortest = if bias.is_significant() { SHORTEST } else { UNBIASED };
-            optimum(terms, (wanted, shortest), |part| bias.at(part * step), time_for)
+            let shortest = if bias.is_significant() || bias.creep > 0.0 { SHORTEST } else { UNBIASED };
+            optimum(terms, (wanted, shortest), |part, time| bias.over(part * step, time), time_for)
         }
         (Some(_), None) => None,
     }

@@ -19,6 +19,10 @@ const ATTEMPTS: usize = 4;
 const SCOUT: f64 = 0.15;
 /// Another attempt is made where it may be this many times as long as the one before, at least.
 pub(super) const LONGER: f64 = 1.5;
+/// A run that breaks at so many halves of a step breaks whatever the step.
+const ALIKE: u32 = 2;
+/// A sample that is to come to the end of a run is given this many times the seconds that the run should take.
+const BEYOND: f64 = 1.1;
 /// A mean whose bar is more than this part of it is hardly known.
 const ROUGH: f64 = 0.5;
 /// The check of a run that says that positions have too few digits.
@@ -60,6 +64,9 @@ impl Work<'_> {
         let mut enough = self.for_whole_run(&ways[0]);
         self.as_it_stands = self.run_as_it_stands(ways);
         let (mut attempt, mut halvings, mut is_scout) = (0, 0, true);
+        let as_timed = ways.to_vec();
+        // Nothing is known of a scene beyond the window that is asked for; or beyond its own end, where longer runs break whatever the step.
+        let mut end = self.target.window.map(|[_, end]| end);
         loop {
             super::findings::sort(ways);
             let best = ways[0].clone();
@@ -68,11 +75,18 @@ impl Work<'_> {
                     ways.iter().map(|way| (way.label.clone(), way.dropped.clone().unwrap_or_default()));
                 return Err(ExplainError::EveryWayFails(tried.collect()));
             }
+            if !is_scout {
+                seconds = self.to_end(&best, seconds);
+            }
             let share = if is_scout { SCOUT * seconds } else { seconds };
-            // Nothing is known of a scene beyond the window that is asked for.
-            let window = self.target.window.map(|[_, end]| Span::Time(end, Some(share)));
-            let sample = match self.sampled_over(&best, best.step, window.unwrap_or(Span::Seconds(share))) {
+            let span = end.map_or(Span::Seconds(share), |end| Span::Time(end, Some(share)));
+            let sample = match self.sampled_over(&best, best.step, span) {
                 Ok(sample) => sample,
+                Err(_) if halvings == ALIKE && end.is_none() && self.goes_beyond(&best, share) => {
+                    ways.clone_from_slice(&as_timed);
+                    (end, halvings) = (self.case.duration(), halvings + 1);
+                    continue;
+                }
                 Err(failure) if halvings < HALVINGS && self.left() > kept_back => {
                     self.shorten(ways, &best, &failure);
                     halvings += 1;
@@ -90,15 +104,15 @@ impl Work<'_> {
                 halvings += 1;
                 continue;
             }
+            self.slow_down(ways, &best, &sample);
             if is_scout {
                 is_scout = false;
                 continue;
             }
-            self.slow_down(ways, &best, &sample);
             let mut why = sample.without_mean();
-            if self.target.window.is_some() || changes(&sample) || is_hardly_known(&sample) {
+            if end.is_some() || changes(&sample) || is_hardly_known(&sample) {
                 enough = self.enough(&sample);
-                self.whole = self.whole_in(sample.cost, self.left());
+                self.whole = self.whole_in(&sample, self.left());
                 if let Some(time) = self.whole {
                     return self.over_whole_runs(&best, sample, time, seconds);
                 }
@@ -117,6 +131,17 @@ impl Work<'_> {
         }
     }
 
+    /// True if a run of some seconds goes beyond the end of the scene's own.
+    fn goes_beyond(&self, way: &Way, seconds: f64) -> bool {
+        self.case.duration().zip(way.cost).is_some_and(|(time, cost)| cost * time < seconds)
+    }
+
+    /// Seconds of a sample: where one of so many nearly comes to the end of the scene's own run, as many as take it there.
+    fn to_end(&self, way: &Way, seconds: f64) -> f64 {
+        let whole = self.case.duration().zip(way.cost).map(|(time, cost)| BEYOND * cost * time);
+        whole.filter(|&whole| seconds < whole && whole <= LONGER * seconds).unwrap_or(seconds)
+    }
+
     fn no_mean(&self, why: String, enough: Option<f64>) -> ExplainError {
         let run = self.as_it_stands;
         ExplainError::NoMean { quantity: self.target.quantity.name, why, enough, run }
@@ -130,7 +155,7 @@ impl Work<'_> {
         time: f64,
         seconds: f64,
     ) -> Result<Mean, ExplainError> {
-        let runs = self.whole_runs(&way.overrides, way.step, time, seconds);
+        let runs = self.whole_runs(&way.overrides, way.step, (time, Some(&sample)), seconds);
         let known = runs.and_then(|runs| Ok((runs.known?, runs.cost)));
         let (known, cost) = known.map_err(|why| self.no_mean(why, None))?;
         Ok(Mean { cost, ..found(way, sample, known) })

@@ -10,6 +10,7 @@ mod as_it_stands;
 mod bias;
 pub mod certified;
 mod collisions;
+mod creep;
 mod decisions;
 mod differences;
 mod drift;

@@ -11,6 +11,11 @@ pub struct Terms {
     pub transient: f64,
 }
 
+/// A run length has settled that grows by no more than this factor.
+const SETTLED: f64 = 1.0 + 1e-6;
+/// Repeats of a run length after which it has settled, or never does.
+const REPEATS: usize = 64;
+
 /// What reaches an error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Optimum {
@@ -31,20 +36,32 @@ pub(super) const SHORTEST: f64 = 1.0 / 256.0;
 /// The shortest that is weighed where no bias is significant: the uncertainty of a bias is not bought off with smaller steps.
 pub(super) const UNBIASED: f64 = 0.25;
 
-/// The cheapest step and time for an error of at most `error`, of which `bias` (of the step in parts of the longest) is one part and chance the other, for
-/// which a run takes `time_for` it; none where bias alone is more.
+/// The cheapest step and time for an error of at most `error`, of which `bias` (of the step in parts of the longest, and the time of the run) is one part and
+/// chance the other, for which a run takes `time_for` it; none where bias alone is more.
 ///
-/// A shorter step costs more for a unit of time and has less bias, which leaves more of the error to chance and so asks for a shorter time.
+/// A shorter step costs more for a unit of time and has less bias, which leaves more of the error to chance and so asks for a shorter time. A bias that grows
+/// with the time asks for a longer one, which is found by repetition from below.
 pub fn optimum(
     terms: Terms,
     (error, shortest): (f64, f64),
-    bias: impl Fn(f64) -> Off,
+    bias: impl Fn(f64, f64) -> Off,
     time_for: impl Fn(f64) -> f64,
 ) -> Option<Optimum> {
+    let settled = |part: f64| {
+        let mut time = 0.0;
+        for _ in 0..REPEATS {
+            let bias = bias(part, time);
+            let needed = time_for(bias.leaves(error)?);
+            if needed <= time * SETTLED {
+                return Some((bias, needed));
+            }
+            time = needed;
+        }
+        None
+    };
     let parts = (0..).map(|at| 2f64.powf(-f64::from(at) / f64::from(BETWEEN)));
     let of = |part: f64| {
-        let bias = bias(part);
-        let time = time_for(bias.leaves(error)?);
+        let (bias, time) = settled(part)?;
         let seconds = terms.cost / part * (time + terms.transient);
         Some(Optimum { part, bias, time, seconds })
     };
@@ -58,7 +75,21 @@ mod tests {
     const TERMS: Terms = Terms { cost: 2.0, transient: 0.0 };
 
     fn best(terms: Terms, bias: impl Fn(f64) -> Off) -> Option<Optimum> {
-        optimum(terms, (0.1, SHORTEST), bias, |chance| 4.0 / (chance * chance))
+        optimum(terms, (0.1, SHORTEST), |part, _| bias(part), |chance| 4.0 / (chance * chance))
+    }
+
+    /// By hand: with a bias of 2e-5 of each unit of time, 4/(0.1 − 2e-5 t)² = t has its first root at t = 492.10; with 1e-4 it has none, as the
+    /// largest t (0.1 − 1e-4 t)² is 1000/3 · 0.00444 = 1.48, less than 4.
+    #[test]
+    fn a_bias_that_grows_with_the_time_is_met_by_a_shorter_step_or_not_at_all() {
+        let of = |creep: f64, shortest: f64| {
+            let bias = |part: f64, time: f64| Off::exactly(creep * part * time);
+            optimum(TERMS, (0.1, shortest), bias, |chance| 4.0 / (chance * chance))
+        };
+        let found = of(2e-5, 1.0).unwrap();
+        assert!((found.time - 492.10).abs() < 0.01 && found.part == 1.0, "{found:?}");
+        assert_eq!(of(1e-4, 1.0), None);
+        assert!(of(1e-4, SHORTEST).unwrap().part < 1.0);
     }
 
     /// Without bias the longest step; with b·part the cost 1/(part (e − b part)²) is least at part = e/(3 b): a third of the error.

@@ -164,7 +164,7 @@ fn own(case: &Case, way: &Way, findings: &Findings) -> Option<Own> {
     };
     let bias = findings.ways.iter().filter(is_alike).find_map(|it| it.bias);
     let bias = match (bias, step) {
-        (Some(bias), Some(step)) => bias.at(step),
+        (Some(bias), Some(step)) => bias.over(step, time),
         (None, Some(_)) => Off::exactly(f64::NAN),
         (_, None) => Off::default(),
     };

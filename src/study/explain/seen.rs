@@ -1,16 +1,21 @@
 //! The trials of a scene one after the other, and the plan that follows.
 
-use super::findings::{Findings, Way, Work};
+use super::findings::{Findings, HALVINGS, Way, Work};
 use super::keeping::keeping;
 use super::mean::Mean;
 use super::plan::plan;
 use super::recommended::Plan;
+use super::timing::{OF_LIMIT, bounded};
 use super::unreached::Unreached;
 use super::{ExplainError, Target};
 use crate::results::Journal;
 use crate::study::Case;
 use crate::study::trial::Trial;
 use serde::{Deserialize, Serialize};
+use stripmine_physics::method::StepLimit;
+
+/// Steps of a plan are printed with so many digits that they exceed a limit by this part of it.
+const ROUNDING: f64 = 1e-3;
 
 /// Measures a scene.
 ///
@@ -99,10 +104,36 @@ pub fn seen(
 /// # Errors
 /// [`Unreached`], where no way comes to what is asked for.
 pub fn planned(case: &Case, target: &Target, findings: &Findings, origin: &str) -> Result<Plan, Unreached> {
-    Ok(made(case, target, findings, origin)?.or_as_it_stands(case, findings))
+    if target.is_kept() {
+        return Ok(keeping(case, target, findings, origin)?.or_as_it_stands(case, findings));
+    }
+    let mut findings = findings.clone();
+    let mut made = plan(case, target, &findings, origin)?;
+    // A run that is longer than the scene's own has harder collisions, and with a shorter step it is longer still.
+    for _ in 0..HALVINGS {
+        let Some(limit) = limit_of(case, &made) else { break };
+        findings.limit_steps(&limit);
+        made = plan(case, target, &findings, origin)?;
+    }
+    Ok(made.or_as_it_stands(case, &findings))
 }
 
-fn made(case: &Case, target: &Target, findings: &Findings, origin: &str) -> Result<Plan, Unreached> {
-    let make = if target.is_kept() { keeping } else { plan };
-    make(case, target, findings, origin)
+/// The limit of theory on the step of a plan's run, where the plan is beyond it.
+fn limit_of(case: &Case, plan: &Plan) -> Option<StepLimit> {
+    let limits = case.prepared_with(&plan.overrides).ok()?.step_limits;
+    let limit = limits.into_iter().min_by(|a, b| a.step.total_cmp(&b.step))?;
+    (plan.step? > OF_LIMIT * limit.step * (1.0 + ROUNDING)).then_some(limit)
+}
+
+impl Findings {
+    /// Shortens the longest steps to a limit of theory.
+    fn limit_steps(&mut self, limit: &StepLimit) {
+        let longest = OF_LIMIT * limit.step;
+        for way in &mut self.ways {
+            let Some(step) = way.step.filter(|step| *step > longest) else { continue };
+            (way.step, way.cost) = (Some(longest), way.cost.map(|cost| cost * step / longest));
+            way.phases.iter_mut().for_each(|(_, cost)| *cost *= step / longest);
+            way.bound = Some(bounded(limit));
+        }
+    }
 }

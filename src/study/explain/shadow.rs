@@ -6,7 +6,6 @@
 
 use super::findings::{Way, Work};
 use super::mean::Mean;
-use crate::study::observed::Observed;
 use stripmine_physics::averages::of_independent;
 use stripmine_physics::method::Trials;
 use stripmine_physics::method::observed::find;
@@ -15,8 +14,6 @@ use stripmine_physics::method::observed::find;
 const STRETCHES: usize = 16;
 /// Rows of a stretch at least.
 const FEWEST: usize = 8;
-/// Energy that comes or goes, in parts of all that moves, above which a run is not conservative.
-const KEPT: f64 = 1e-9;
 
 impl Work<'_> {
     /// The bias of the configuration and step that the mean was measured with, and half the width of its interval of 95 % (the quantity's unit); none where
@@ -29,17 +26,11 @@ impl Work<'_> {
 
     fn covariance(&self, trials: &Trials, mean: &Mean) -> Option<[f64; 2]> {
         let quantities = self.case.entry.quantities;
-        let balance = Observed::of(trials, quantities).ok()?.balance?;
         let temperature = find(quantities, trials.shadow?.temperature).ok()?;
-        let rows: Vec<&Vec<f64>> = mean.rows.iter().filter(|row| row[0] >= mean.known.transient).collect();
+        let rows: Vec<Vec<f64>> =
+            mean.rows.iter().filter(|row| row[0] >= mean.known.transient).cloned().collect();
+        let balance = self.conservative(&rows)?;
         let energies: Vec<f64> = rows.iter().map(|row| balance.energy(row)).collect();
-        // What is lost or put in is no error of the balance.
-        let [first, last] = [rows.first()?, rows.last()?];
-        let lost =
-            balance.energy(last) - balance.energy(first) - (balance.error(last) - balance.error(first));
-        if lost.abs() > KEPT * balance.energies(last) || balance.inputs(last) > 0.0 {
-            return None;
-        }
         let twice = rows.iter().map(|row| row[temperature]).sum::<f64>() / rows.len() as f64;
         let values: Vec<f64> = rows.iter().map(|row| row[self.target.place]).collect();
         covariance(&values, &energies).map(|both| both.map(|value| value / twice))

@@ -8,7 +8,7 @@ use stripmine_physics::method::{Decides, StepLimit};
 use stripmine_physics::number::significant;
 
 /// The longest step that is tried, in parts of the shortest limit of theory: what lies at the limit itself fails for the fastest disc.
-const OF_LIMIT: f64 = 0.9;
+pub(super) const OF_LIMIT: f64 = 0.9;
 /// Where theory has no limit, the longest step is that many times the scene's own.
 const TIMES_OWN: f64 = 4.0;
 /// A way that costs this many times the best is followed no further.
@@ -210,7 +210,8 @@ fn give_up(ways: &mut [Way]) {
     sort(ways);
 }
 
-fn bounded(limit: &StepLimit) -> String {
+/// A limit in words.
+pub(super) fn bounded(limit: &StepLimit) -> String {
     format!("{}: {}", limit.name, limit.why)
 }
 

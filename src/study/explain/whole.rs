@@ -4,7 +4,7 @@
 use super::findings::{NO_TIME, NoRun, Way, Work};
 use crate::study::first_line;
 use crate::study::state::displaced;
-use crate::study::trial::{Known, Span, any_number};
+use crate::study::trial::{Known, Sample, Span, any_number};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde::{Deserialize, Serialize};
 use stripmine_physics::averages::of_independent;
@@ -41,10 +41,12 @@ impl Work<'_> {
         self.target.window.map(|[_, end]| end).or_else(|| self.case.duration())
     }
 
-    /// That time, where enough whole runs can be had in some seconds and a unit of time costs as much as in a sample.
-    pub(super) fn whole_in(&self, cost: f64, seconds: f64) -> Option<f64> {
-        let rounds = RUNS[0].div_ceil(rayon::current_num_threads()) as f64;
-        self.whole_time().filter(|time| rounds * cost * time <= seconds)
+    /// That time, where enough whole runs beside a sample can be had in some seconds and a unit of time costs as much as in the sample.
+    pub(super) fn whole_in(&self, sample: &Sample, seconds: f64) -> Option<f64> {
+        self.whole_time().filter(|&time| {
+            let more = RUNS[0] - usize::from(sample.cut_off(time).is_none());
+            more.div_ceil(rayon::current_num_threads()) as f64 * sample.cost * time <= seconds
+        })
     }
 
     /// Time that whole runs take, where these are too many seconds.
@@ -61,7 +63,7 @@ impl Work<'_> {
     /// The mean over a part of a run that has left its start behind, or over whole runs; with the cost of a unit of time.
     pub(super) fn measured(&self, way: &Way, step: Option<f64>, seconds: f64) -> Result<Measured, String> {
         match self.whole {
-            Some(time) => self.whole_runs(&way.overrides, step, time, seconds),
+            Some(time) => self.whole_runs(&way.overrides, step, (time, None), seconds),
             None => self.sampled_over(way, step, Span::Seconds(seconds)).map(|sample| Measured {
                 known: sample.known().ok_or_else(|| sample.without_mean()),
                 cost: sample.cost,
@@ -69,18 +71,23 @@ impl Work<'_> {
         }
     }
 
-    /// Runs of the whole time from several starts, as many at once as there are threads, for about some seconds.
+    /// Runs of the whole time from several starts, as many at once as there are threads, for about some seconds. A sample of the same configuration from the
+    /// scene's own start is the first, where it is long enough.
     pub(super) fn whole_runs(
         &self,
         overrides: &Overrides,
         step: Option<f64>,
-        time: f64,
+        (time, first): (f64, Option<&Sample>),
         seconds: f64,
     ) -> Result<Measured, String> {
         let begun = self.trial.watch.now();
         let at_once = rayon::current_num_threads().min(RUNS[1]);
         let observed = (self.case.entry.quantities, self.target.place);
         let from = self.target.window.map_or(0.0, |[from, _]| from);
+        let whole = |sample: &Sample| {
+            let run = WholeRun { mean: sample.mean_over([from, time]), cost: sample.cost };
+            sample.cut_off(time).map_or(Ok(run), Err)
+        };
         let one = |number: usize| {
             let key = format!("whole run|{}|{step:?}|{time}|{number}", overrides.texts().join(" "));
             let run = self.journal.recall(
@@ -94,13 +101,13 @@ impl Work<'_> {
                     }
                     let sample = self.trial.sample(&prepared, observed, Span::Time(time, Some(left)));
                     let sample = sample.map_err(|failure| NoRun(first_line(&failure.what())))?;
-                    let run = WholeRun { mean: sample.mean_over([from, time]), cost: sample.cost };
-                    sample.cut_off(time).map_or(Ok(run), |why| Err(NoRun(why)))
+                    whole(&sample).map_err(NoRun)
                 },
             );
             run.map_err(|NoRun(why)| why)
         };
-        let mut samples: Vec<WholeRun> = vec![];
+        let mut samples: Vec<WholeRun> = first.and_then(|it| whole(it).ok()).into_iter().collect();
+        let known_before = samples.len();
         loop {
             let next: Vec<usize> = (samples.len()..samples.len() + at_once).collect();
             let more: Result<Vec<WholeRun>, String> = next.into_par_iter().map(one).collect();
@@ -110,7 +117,7 @@ impl Work<'_> {
                 Err(_) => break,
             }
             let spent = self.trial.watch.now() - begun;
-            let rounds = samples.len() / at_once;
+            let rounds = (samples.len() - known_before) / at_once;
             let is_over = spent * (rounds + 1) as f64 / rounds as f64 > seconds;
             if samples.len() >= RUNS[1] || samples.len() >= RUNS[0] && is_over {
                 break;

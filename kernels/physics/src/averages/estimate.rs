@@ -8,7 +8,7 @@ use serde::Serialize;
 /// Independent samples below which no mean is given: neither the cut nor the error can be relied on.
 pub const FEWEST_SAMPLES: f64 = 20.0;
 /// Independent samples as they seem to be with which a run is likely to have as many: its own estimate is a rough one.
-pub(super) const LIKELY_ENOUGH: f64 = 40.0;
+pub const LIKELY_ENOUGH: f64 = 40.0;
 /// Bars hold the truth with this probability.
 pub const CONFIDENCE: f64 = 0.95;
 /// A series is still changing where chance makes such a drift in one of a thousand stationary ones.

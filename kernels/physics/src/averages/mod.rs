@@ -14,7 +14,9 @@ mod student;
 mod waves;
 mod words;
 
-pub use estimate::{Estimate, FEWEST_SAMPLES, Outcome, estimated, of_correlated, of_independent};
+pub use estimate::{
+    Estimate, FEWEST_SAMPLES, LIKELY_ENOUGH, Outcome, estimated, of_correlated, of_independent,
+};
 pub use joined::joined;
 pub use rows::Rows;
 pub use student::{student, variance_ratio};

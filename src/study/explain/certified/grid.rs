@@ -2,6 +2,7 @@
 
 use super::super::lengths::{Chance, SAMPLES};
 use super::super::recommended::Plan;
+use super::super::timing::OF_LIMIT;
 use super::reference::Reference;
 use super::runs::{Ensemble, WHOLE, side_by_side};
 use super::verdict::Verdict;
@@ -15,8 +16,7 @@ use stripmine_physics::scene::Overrides;
 
 /// Steps in parts of the longest.
 const STEPS: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
-/// The longest step in parts of the shortest limit of theory, and in multiples of the scene's own where theory has none.
-const OF_LIMIT: f64 = 0.9;
+/// Where theory has no limit, the longest step is so many times the scene's own.
 const TIMES_OWN: f64 = 4.0;
 /// Part of the time in which searches are timed.
 const SEARCHES: f64 = 0.1;

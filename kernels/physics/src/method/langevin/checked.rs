@@ -1,7 +1,7 @@
 //! A scene of particles in a bath, held against what the method demands.
 
 use super::found::{Found, found};
-use super::limits::{bound, step_limits};
+use super::limits::{Colliding, bound, step_limits};
 use super::options::PairLaw;
 use super::scene::Scene;
 use crate::domain::Domain;
@@ -145,6 +145,8 @@ impl Checked {
 
     /// What bounds the step.
     pub(super) fn limits(&self) -> Vec<StepLimit> {
-        step_limits(&self.scene, self.diameter, self.mass)
+        let (diameter, mass) = (self.diameter, self.mass);
+        let (count, area) = (self.particles.len(), self.domain.area());
+        step_limits(&self.scene, Colliding { diameter, mass, count, area })
     }
 }

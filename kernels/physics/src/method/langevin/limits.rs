@@ -4,13 +4,24 @@ use super::options::{PairLaw, SchemeKind};
 use super::scene::Scene;
 use crate::method::{Beyond, StepLimit};
 use crate::number::significant;
+use std::f64::consts::PI;
 
-/// The energy, in kT, of the hardest collisions that are looked at: of a million pairs about fifty meet harder.
+/// The least energy, in kT, of the hardest collisions that are looked at: of a million pairs about fifty meet harder.
 const HARDEST: f64 = 10.0;
 
-/// The limits of a scene with particles of a diameter (length) and a mass.
-pub(super) fn step_limits(scene: &Scene, diameter: f64, mass: f64) -> Vec<StepLimit> {
-    let dt = scene.dt;
+/// Particles of one kind in a run.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Colliding {
+    pub(super) diameter: f64,
+    pub(super) mass: f64,
+    pub(super) count: usize,
+    /// Area of the box.
+    pub(super) area: f64,
+}
+
+/// The limits of a scene.
+pub(super) fn step_limits(scene: &Scene, particles: Colliding) -> Vec<StepLimit> {
+    let (dt, Colliding { diameter, mass, .. }) = (scene.dt, particles);
     let limit = |name, step: f64, beyond, why: String| StepLimit {
         name,
         step,
@@ -28,10 +39,12 @@ pub(super) fn step_limits(scene: &Scene, diameter: f64, mass: f64) -> Vec<StepLi
                 significant(force, 5)
             )
         }));
-        let (step, nearest) = stiffest(scene, diameter, mass);
+        let energy = hardest(scene, particles);
+        let (step, nearest) = stiffest(scene, particles, energy);
         limits.push(limit("hardest-collision", step, Beyond::Unstable, {
             format!(
-                "2 √(m/(2 U″)) where the potential is {HARDEST} kT, at {:.3} diameters: the pair's spring there throws particles out",
+                "2 √(m/(2 U″)) where the potential is {} kT, at {:.3} diameters: the pair's spring there throws particles out",
+                significant(energy, 3),
                 nearest / diameter
             )
         }));
@@ -55,13 +68,43 @@ pub(super) fn bound(scene: &Scene, diameter: f64, mass: f64) -> (f64, f64) {
     ((2.0 * mass * cutoff / force).sqrt(), force)
 }
 
-/// The step (time) at which velocity Verlet loses the spring that a pair is at the end of its hardest collisions, and how near the two are
-/// then (length).
-fn stiffest(scene: &Scene, diameter: f64, mass: f64) -> (f64, f64) {
-    let energy = (HARDEST * scene.bath.temperature).max(scene.strength) / scene.strength;
+/// The energy, in kT, of the hardest collision that is expected in a run: one in M collisions has more than ln M.
+///
+/// Each of N particles has 2 √π n σ √(kT/m) collisions in a time with a number density n, as in a dilute gas: the logarithm hardly depends on it.
+fn hardest(scene: &Scene, Colliding { diameter, mass, count, area }: Colliding) -> f64 {
+    let [count, time] = [count as f64, scene.run.steps as f64 * scene.dt];
+    let rate = 2.0 * (PI * scene.bath.temperature / mass).sqrt() * diameter * count / area;
+    libm::log(0.5 * count * rate * time).max(HARDEST)
+}
+
+/// The step (time) at which velocity Verlet loses the spring that a pair is at the end of its hardest collisions, of an energy in kT, and how near the two
+/// are then (length).
+fn stiffest(scene: &Scene, Colliding { diameter, mass, .. }: Colliding, energy: f64) -> (f64, f64) {
+    let energy = (energy * scene.bath.temperature).max(scene.strength) / scene.strength;
     // 4 ε (x² − x) = E with x = (σ/r)⁶.
     let x = 0.5 * (1.0 + (1.0 + energy).sqrt());
     let nearest = diameter * x.powf(-1.0 / 6.0);
     let curvature = 4.0 * scene.strength * (156.0 * x * x - 42.0 * x) / (nearest * nearest);
     (2.0 * (0.5 * mass / curvature).sqrt(), nearest)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By hand: 1000 particles of density 1 have 3.545 collisions each in a time of 1, and half as many pairs collide: ln(1772.5 · 1000) = 14.388 kT in
+    /// a time of 1000. With ε = kT, x = (1 + √15.388)/2 = 2.4614; U″ = 4 (156 x² − 42 x) x^(1/3) = 4546.0; the step is 2 √(1/(2 U″)) = 0.020975.
+    #[test]
+    fn longer_runs_have_harder_collisions() {
+        let of_time = |time: f64| {
+            let mut scene = Scene { dt: 0.01, ..Scene::default() };
+            scene.run.steps = (time / scene.dt).round() as u64;
+            let particles = Colliding { diameter: 1.0, mass: 1.0, count: 1000, area: 1000.0 };
+            (hardest(&scene, particles), stiffest(&scene, particles, hardest(&scene, particles)).0)
+        };
+        let (energy, step) = of_time(1000.0);
+        assert!((energy - 14.388).abs() < 1e-3, "{energy}");
+        assert!((step - 0.020_975).abs() < 1e-5, "{step}");
+        assert_eq!(of_time(1.0).0, HARDEST);
+    }
 }

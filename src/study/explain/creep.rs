@@ -1,0 +1,112 @@
+//! Drift of energy along long runs: an integrator without a shadow energy loses or gains a little in every step, and what is lost stays lost where
+//! nothing is put in and nothing rubs. A mean then moves on with the time of its run, which no pair of short runs shows.
+
+use super::findings::{Way, Work};
+use super::mean::Mean;
+use crate::study::Choice;
+use crate::study::observed::{Balanced, Observed};
+use crate::study::trial::Span;
+use stripmine_physics::averages::of_independent;
+use stripmine_physics::method::Decides;
+
+/// Part of the time in which a configuration shows its drift.
+const SHARE: f64 = 0.03;
+/// Stretches of which each half of a run is made: a mean of the second half less that of the first, stretch by stretch, is half of the drift.
+const STRETCHES: usize = 8;
+/// Energy that comes or goes, in parts of all that moves, above which a run is not conservative.
+const KEPT: f64 = 1e-9;
+
+impl Work<'_> {
+    /// For each integrator that is followed: its choice, its longest step (time), and the growth of a bias at that.
+    pub(super) fn creeps(&self, ways: &[Way], mean: &Mean) -> Vec<(Choice, f64, f64)> {
+        let mut all: Vec<(Choice, f64, f64)> = vec![];
+        for way in ways.iter().filter(|way| way.dropped.is_none()) {
+            let choice = self.choice(way);
+            let is_another = all.iter().all(|(other, ..)| !other.agrees(&choice, Decides::Order));
+            if let Some(step) = way.step.filter(|_| is_another) {
+                all.push((choice, step, self.creep(way, mean)));
+            }
+        }
+        all
+    }
+
+    /// The growth of a bias at the longest step (the quantity's unit, per unit of time); 0 where energy comes and goes, or its drift is not seen.
+    ///
+    /// Energies, and with them temperature and pressure, change by the same part; a mean over the run by half of that.
+    fn creep(&self, way: &Way, mean: &Mean) -> f64 {
+        let keeps_shadow = || {
+            let integrators = self.case.entry.trials?.shadow?.integrators;
+            Some(integrators.contains(&self.choice(way).scheme()?.name))
+        };
+        if keeps_shadow() != Some(false) || self.conservative(&mean.rows).is_none() {
+            return 0.0;
+        }
+        let own = |rows: &[Vec<f64>]| Some(drift(&self.conservative(rows)?, rows)?);
+        let relative = match way.label == mean.way {
+            true => own(&mean.rows),
+            false => self
+                .sampled_over(way, way.step, Span::Seconds(SHARE * self.seconds))
+                .ok()
+                .and_then(|sample| own(&sample.rows)),
+        };
+        let seen = relative.filter(|[rate, bar]| rate.abs() > *bar);
+        seen.map_or(0.0, |[rate, _]| 0.5 * rate.abs() * mean.known.mean.abs())
+    }
+
+    /// The balance of energy of a run in which none is put in or lost: what is missing is an error.
+    pub(super) fn conservative(&self, rows: &[Vec<f64>]) -> Option<Balanced> {
+        let balance = Observed::of(self.case.entry.trials?, self.case.entry.quantities).ok()?.balance?;
+        let [first, last] = [rows.first()?, rows.last()?];
+        let lost =
+            balance.energy(last) - balance.energy(first) - (balance.error(last) - balance.error(first));
+        let is_kept = lost.abs() <= KEPT * balance.energies(last) && balance.inputs(last) == 0.0;
+        is_kept.then_some(balance)
+    }
+}
+
+/// The relative drift of energy in a unit of time, and half the width of its interval of 95 %.
+fn drift(balance: &Balanced, rows: &[Vec<f64>]) -> Option<[f64; 2]> {
+    let length = rows.len() / (2 * STRETCHES);
+    if length == 0 {
+        return None;
+    }
+    let mean = |stretch: &[Vec<f64>]| {
+        let sums =
+            stretch.iter().fold([0.0; 2], |[time, off], row| [time + row[0], off + balance.error(row)]);
+        sums.map(|sum| sum / stretch.len() as f64)
+    };
+    let stretches: Vec<[f64; 2]> = rows.chunks_exact(length).take(2 * STRETCHES).map(mean).collect();
+    let (early, late) = stretches.split_at(STRETCHES);
+    let rates: Vec<f64> = early.iter().zip(late).map(|(a, b)| (b[1] - a[1]) / (b[0] - a[0])).collect();
+    let energies = balance.energies(rows.last()?);
+    of_independent(&rates).map(|both| both.map(|value| value / energies))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stripmine_physics::method::METHODS;
+
+    /// By hand: an error of −2·10⁻³ t, with an oscillation that averages out, of an energy of 4 at the end.
+    #[test]
+    fn a_drift_is_told_from_an_oscillation() {
+        let method = METHODS.iter().find(|it| it.trials.is_some_and(|it| it.shadow.is_some())).unwrap();
+        let balance = Observed::of(method.trials.unwrap(), method.quantities).unwrap().balance.unwrap();
+        let place = |name: &str| method.quantities.iter().position(|it| it.name == name).unwrap();
+        let row = |at: usize, rate: f64| {
+            let mut row = vec![0.0; method.quantities.len()];
+            row[0] = at as f64;
+            row[place("balance_error")] = rate * at as f64 + 0.1 * libm::sin(1.7 * at as f64);
+            row[place("kinetic")] = 4.0;
+            row
+        };
+        let of = |rate: f64| {
+            let rows: Vec<Vec<f64>> = (0..1600).map(|at| row(at, rate)).collect();
+            drift(&balance, &rows).unwrap()
+        };
+        let [rate, bar] = of(-2e-3);
+        assert!((rate + 5e-4).abs() < bar && bar < 5e-5, "{rate} ± {bar}");
+        let [rate, bar] = of(0.0);
+        assert!(rate.abs() < bar, "{rate} ± {bar}");
+    }
+}
