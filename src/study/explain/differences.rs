@@ -1,7 +1,7 @@
 //! Bias of the steps of each integrator, by runs from the same states.
 
 use super::bias::{Bias, Seen};
-use super::findings::{HALVINGS, SHARES, Way, Work, sort};
+use super::findings::{HALVINGS, Way, Work, sort};
 use super::mean::{FEWEST, Mean};
 use crate::study::trial::{Compared, Paired, TOGETHER, pairs, part};
 use crate::study::{Choice, first_line};
@@ -56,7 +56,7 @@ impl Work<'_> {
             return;
         }
         let creeps = self.creeps(ways, mean);
-        let all = SHARES[2] * self.seconds;
+        let all = self.shares[2] * self.seconds;
         // A few short pairs come first: they are made again for as long as steps are shortened. None is shorter than a period.
         let mut seconds = if self.case.prepared.model.period().is_some() { all } else { SCOUT * all };
         let mut most = COMPARED;

@@ -7,7 +7,7 @@ use crate::study::rounded;
 use crate::study::trial::{Known, Span, any_number};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde::{Deserialize, Serialize};
-use stripmine_physics::averages::{Outcome, student};
+use stripmine_physics::averages::Outcome;
 use stripmine_physics::method::Decides;
 
 /// The longest step that is tried, in steps of the scene.
@@ -16,8 +16,8 @@ const LONGEST: f64 = 64.0;
 const STARTS: u64 = 6;
 /// Where there is no time for several, another start goes as far as that many times this one.
 const MARGIN: f64 = 2.0;
-/// Another start goes no farther than the bound of so many with this probability.
-const SURE: f64 = 0.95;
+/// The quantile of 95 % of the normal distribution.
+const QUANTILE: f64 = 1.644_853_626_951_472_7;
 /// The error that is looked for where none is asked for and the scene's own is not known.
 pub(super) const WANTED: f64 = 1e-3;
 
@@ -120,8 +120,8 @@ impl Work<'_> {
         }
     }
 
-    /// A run of the whole scene: how far it goes, and, where that is no farther than wanted and starts are random, how far another start goes at most with a
-    /// probability of 95 %.
+    /// A run of the whole scene: how far it goes, and, where that is no farther than wanted and starts are random, how far 95 % of all starts go at most with
+    /// a confidence of 95 %.
     fn whole_run(&self, way: &Way, step: f64, [time, wanted]: [f64; 2]) -> Result<WholeRun, NoRun> {
         let first = self.run_of_start(way, step, time, 0)?;
         if self.case.prepared.seed.is_none() || first.farthest > wanted {
@@ -196,8 +196,8 @@ impl Work<'_> {
     }
 }
 
-/// How far another start goes at most with a probability of 95 %, by how far some went: logarithms scatter evenly, as distances of runs that differ in their
-/// closest encounter do by factors.
+/// How far 95 % of all starts go at most, with a confidence of 95 %, by how far some went: logarithms scatter evenly, as distances of runs that differ in their
+/// closest encounter do by factors. The one-sided tolerance factor is Natrella's (Experimental Statistics, 1963, 2-4.1).
 fn farthest_of_another(all: &[f64]) -> f64 {
     let largest = all.iter().copied().fold(0.0, f64::max);
     if largest == 0.0 || !largest.is_finite() {
@@ -207,20 +207,31 @@ fn farthest_of_another(all: &[f64]) -> f64 {
     let logarithms: Vec<f64> = all.iter().map(|&it| libm::log(it.max(f64::MIN_POSITIVE))).collect();
     let mean = logarithms.iter().sum::<f64>() / count;
     let variance = logarithms.iter().map(|it| (it - mean).powi(2)).sum::<f64>() / (count - 1.0);
-    // On one side: twice as much is left out as between both ends.
-    let t = student(2.0 * SURE - 1.0, all.len() - 1);
-    largest.max(libm::exp(mean + t * (variance * (1.0 + count.recip())).sqrt()))
+    largest.max(libm::exp(mean + tolerance_factor(count) * variance.sqrt()))
+}
+
+/// Standard deviations above the mean of some values below which 95 % of a normal distribution are, with a confidence of 95 %.
+fn tolerance_factor(count: f64) -> f64 {
+    let square = QUANTILE * QUANTILE;
+    let a = 1.0 - square / (2.0 * (count - 1.0));
+    let b = square - square / count;
+    (QUANTILE + (square - a * b).sqrt()) / a
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// By hand: logarithms 1, 2 and 3 have the mean 2 and the variance 1; t of 90 % and 2 degrees of freedom is 2.9200, and 2.92·√(4/3) = 3.3717.
+    /// Exact factors are 3.708 for 6 values and 2.911 for 10 (Odeh and Owen, 1980); logarithms 0 and 1, three of each, have the mean 0.5 and the standard
+    /// deviation 0.5477.
     #[test]
     fn another_start_goes_as_far_as_scatter_says() {
-        let all = [1.0, 2.0, 3.0].map(libm::exp);
-        assert!((libm::log(farthest_of_another(&all)) - 5.3717).abs() < 1e-3);
+        for (count, exact) in [(6.0, 3.708), (10.0, 2.911)] {
+            let factor = tolerance_factor(count);
+            assert!((factor / exact - 1.0).abs() < 0.03, "{count}: {factor}");
+        }
+        let all = [0.0, 1.0, 0.0, 1.0, 0.0, 1.0].map(libm::exp);
+        assert!((libm::log(farthest_of_another(&all)) - 0.5 - 0.5477 * 3.67).abs() < 0.01);
         assert_eq!(farthest_of_another(&[2.0; 6]), 2.0);
         assert_eq!(
             [farthest_of_another(&[0.0; 6]), farthest_of_another(&[1.0, f64::INFINITY])],

@@ -89,8 +89,9 @@ impl Way {
 pub(super) struct Work<'w> {
     pub(super) case: &'w Case,
     pub(super) target: &'w Target,
-    /// Seconds of which [`SHARES`] are parts.
     pub(super) seconds: f64,
+    /// Parts of these, as [`SHARES`].
+    pub(super) shares: [f64; 5],
     /// No trial begins later, and one that has begun ends then (s of the watch).
     pub(super) end: f64,
     pub(super) trial: Trial<'w>,

@@ -3,9 +3,10 @@
 use super::Target;
 use super::decisions::left_out;
 use super::recommended::LeftOut;
-use super::seen::seen;
+use super::seen::seen_with_twins;
+use super::twins::has_simpler;
 use crate::frame::{Frame, Rows};
-use crate::results::{Journal, Made, Meter, Progress};
+use crate::results::{Made, Meter, Progress};
 use crate::study::trial::{Stopwatch, Trial};
 use crate::study::{Case, StudyError, first_line};
 use std::sync::atomic::AtomicBool;
@@ -72,18 +73,16 @@ pub fn compared(only: Option<&[&str]>, seconds: f64, progress: Progress<'_>) -> 
         let case = Case::parse(scene, text, &[], METHODS)?;
         let target = Target::of(&case, None, None).map_err(|error| StudyError::Own(Box::new(error)))?;
         let quantity = target.quantity.name;
-        let unheard: (&dyn Fn(f64), &Journal) = (&|_| {}, &Journal::none());
         let of = |why: String| Without { scene, quantity, why };
-        match seen(&case, &target, seconds, Trial { watch: &watch, stop: &stop }, unheard) {
-            Ok(found) => {
+        let trial = Trial { watch: &watch, stop: &stop };
+        match has_simpler(&case, quantity).then(|| seen_with_twins(&case, &target, seconds, trial)) {
+            None => without.push(of("it has nothing of the kind".to_owned())),
+            Some(Ok(found)) => {
                 let mean = found.mean.mean;
                 let twins = left_out(&found, MOST * mean.abs(), mean);
-                if twins.is_empty() {
-                    without.push(of("it has nothing of the kind".to_owned()));
-                }
                 rows.extend(twins.into_iter().map(|twin| Row { scene, quantity, mean, twin }));
             }
-            Err(error) => without.push(of(first_line(&error.to_string()))),
+            Some(Err(error)) => without.push(of(first_line(&error.to_string()))),
         }
         meter.add(1.0);
     }

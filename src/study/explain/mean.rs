@@ -59,8 +59,8 @@ pub(super) struct Mean {
 impl Work<'_> {
     /// Runs the cheapest configuration for the mean. Configurations that break, or are warned of, get shorter steps or are dropped.
     pub(super) fn mean(&mut self, ways: &mut [Way]) -> Result<Mean, ExplainError> {
-        let mut seconds = SHARES[1] * self.seconds;
-        let kept_back = SHARES[2] * self.seconds;
+        let mut seconds = self.shares[1] * self.seconds;
+        let kept_back = self.shares[2] * self.seconds;
         let mut enough = self.for_whole_run(&ways[0]);
         self.as_it_stands = self.run_as_it_stands(ways);
         let (mut attempt, mut halvings, mut is_scout) = (0, 0, true);
@@ -237,7 +237,8 @@ impl Work<'_> {
         let seed = self.case.prepared.seed.filter(|_| self.whole.is_none())?;
         let another =
             Way { overrides: way.overrides.clone().set(&SEED, seed.wrapping_add(1)), ..way.clone() };
-        let sample = self.sampled_over(&another, way.step, Span::Seconds(SHARES[4] * self.seconds)).ok()?;
+        let sample =
+            self.sampled_over(&another, way.step, Span::Seconds(self.shares[4] * self.seconds)).ok()?;
         let known = sample.known()?;
         mean.transients.push(known.transient);
         let difference = known.mean - mean.known.mean;

@@ -1,6 +1,6 @@
 //! The trials of a scene one after the other, and the plan that follows.
 
-use super::findings::{Findings, HALVINGS, Way, Work};
+use super::findings::{Findings, HALVINGS, SHARES, Way, Work};
 use super::keeping::keeping;
 use super::mean::Mean;
 use super::plan::plan;
@@ -14,6 +14,8 @@ use crate::study::trial::Trial;
 use serde::{Deserialize, Serialize};
 use stripmine_physics::method::StepLimit;
 
+/// Parts of the time where what the scene may be modelled without is asked for.
+const OF_TWINS: [f64; 5] = [0.1, 0.25, 0.12, 0.48, 0.05];
 /// Steps of a plan are printed with so many digits that they exceed a limit by this part of it.
 const ROUNDING: f64 = 1e-3;
 
@@ -69,7 +71,12 @@ impl Work<'_> {
     fn compared(&mut self, mut ways: Vec<Way>, tell: &dyn Fn(&Self)) -> Result<Compared, ExplainError> {
         let mean = self.mean(&mut ways)?;
         tell(self);
+        // Trials of the bias are as long as they get: those that follow keep their part. Whole runs have no time to spare.
+        let kept_back =
+            if self.whole.is_some() { 0.0 } else { self.seconds * (self.shares[3] + self.shares[4]) };
+        self.end -= kept_back;
         self.biases(&mut ways, &mean);
+        self.end += kept_back;
         self.unless_stopped(Compared { ways, mean, whole: self.whole })
     }
 }
@@ -92,11 +99,34 @@ pub fn seen(
     trial: Trial<'_>,
     (progress, journal): (&dyn Fn(f64), &Journal),
 ) -> Result<Findings, ExplainError> {
+    seen_by(SHARES, case, target, seconds, trial, (progress, journal))
+}
+
+/// The same with most of the time for what the scene may be modelled without.
+///
+/// # Errors
+/// As [`seen`].
+pub(super) fn seen_with_twins(
+    case: &Case,
+    target: &Target,
+    seconds: f64,
+    trial: Trial<'_>,
+) -> Result<Findings, ExplainError> {
+    seen_by(OF_TWINS, case, target, seconds, trial, (&|_| {}, &Journal::none()))
+}
+
+fn seen_by(
+    shares: [f64; 5],
+    case: &Case,
+    target: &Target,
+    seconds: f64,
+    trial: Trial<'_>,
+    (progress, journal): (&dyn Fn(f64), &Journal),
+) -> Result<Findings, ExplainError> {
     let end = trial.watch.now() + seconds;
-    findings(
-        &mut Work { case, target, seconds, end, trial, journal, as_it_stands: None, whole: None },
-        progress,
-    )
+    let (as_it_stands, whole) = (None, None);
+    let work = &mut Work { case, target, seconds, shares, end, trial, journal, as_it_stands, whole };
+    findings(work, progress)
 }
 
 /// A plan from what was measured: the scene as it stands, where that is as good and no plan is quicker.

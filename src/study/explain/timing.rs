@@ -1,7 +1,7 @@
 //! What each way to run a scene costs, at the longest step that nothing speaks against.
 
 use super::ExplainError;
-use super::findings::{HALVINGS, NO_TIME, SHARES, Way, Work, sort};
+use super::findings::{HALVINGS, NO_TIME, Way, Work, sort};
 use crate::study::{Choice, first_line};
 use rayon::ThreadPoolBuilder;
 use stripmine_physics::method::{Decides, StepLimit};
@@ -34,7 +34,7 @@ impl Work<'_> {
         let mut searches: Vec<&Choice> = all.iter().filter(of_own_arithmetic).collect();
         // The scene's own is timed whatever that takes.
         searches.sort_by_key(|choice| *choice != own);
-        let each = SHARES[0] * self.seconds / 2.0;
+        let each = self.shares[0] * self.seconds / 2.0;
         let end = |share: f64| self.end.min(self.trial.watch.now() + OVERHEAD * share);
         let mut ways = self.timed(&searches, each, end(each));
         give_up(&mut ways);

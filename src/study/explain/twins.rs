@@ -1,31 +1,36 @@
 //! What a scene may be modelled without, and what that changes and saves.
 
 use super::Target;
-use super::findings::{NO_TIME, SHARES, Way, Without, Work};
+use super::findings::{NO_TIME, Way, Without, Work};
 use super::mean::Mean;
 use super::whole::Measured;
-use crate::study::first_line;
 use crate::study::trial::Known;
+use crate::study::{Case, first_line};
 use stripmine_physics::method::{Becomes, Prepared, Rewritten};
 use stripmine_physics::scene::{Overrides, SceneErrors};
+
+/// Simpler models of a scene, by what they lack, for a quantity.
+fn simpler(case: &Case, quantity: &str) -> Vec<(&'static str, Simpler)> {
+    let of = |becomes: &Becomes| {
+        Some(match becomes {
+            Becomes::Overridden(overrides) => Simpler::Overridden(overrides(&case.values)?),
+            Becomes::Rewritten(scene) => Simpler::Rewritten(scene(&case.values, &case.prepared, quantity)?),
+        })
+    };
+    case.entry.twins.iter().filter_map(|twin| Some((twin.name, of(&twin.becomes)?))).collect()
+}
+
+/// True if a scene may be modelled without something that is compared by runs.
+pub(super) fn has_simpler(case: &Case, quantity: &str) -> bool {
+    !simpler(case, quantity).is_empty()
+}
 
 impl Work<'_> {
     /// The scene without each of what it may be modelled without.
     pub(super) fn without(&self, way: &Way, mean: &Mean) -> Vec<Without> {
         let reference = &mean.known;
-        let (case, quantity) = (self.case, self.target.quantity.name);
-        let twins: Vec<(&str, Simpler)> = (case.entry.twins.iter())
-            .filter_map(|twin| {
-                let simpler = match twin.becomes {
-                    Becomes::Overridden(overrides) => Simpler::Overridden(overrides(&case.values)?),
-                    Becomes::Rewritten(scene) => {
-                        Simpler::Rewritten(scene(&case.values, &case.prepared, quantity)?)
-                    }
-                };
-                Some((twin.name, simpler))
-            })
-            .collect();
-        let seconds = SHARES[3] * self.seconds / twins.len().max(1) as f64;
+        let twins = simpler(self.case, self.target.quantity.name);
+        let seconds = self.shares[3] * self.seconds / twins.len().max(1) as f64;
         let measured = |(name, simpler): (&str, Simpler)| {
             let of = |failed: Option<String>| Without {
                 name: name.to_owned(),

@@ -156,6 +156,7 @@ fn costs(plans: &[Judged]) -> Frame {
         .text("quantity", |(it, ..)| it.quantity)
         .text("asked", |(it, ..)| it.asked)
         .number("plan", 2, |(.., costs)| costs.plan)
+        .number("its configuration and step alone", 2, |(.., costs)| costs.choice)
         .number(BASELINES[0], 2, baseline(0))
         .number(BASELINES[1], 2, baseline(1))
         .number(BASELINES[2], 2, baseline(2))

@@ -42,6 +42,8 @@ struct Point {
 pub struct Costs {
     /// Of the plan.
     pub plan: f64,
+    /// Of its configuration and step, were they run for as long as the reference says; none where their bias is more than the error.
+    pub choice: Option<f64>,
     /// Of the scene's own values, of lists always, and of the scene's own integrator in f64 at its longest step; none where the error is not reached,
     /// or the method has none.
     pub baselines: [Option<f64>; 3],
@@ -153,6 +155,7 @@ impl<'g> Grid<'g> {
         let taken = self.as_planned(planned, plan);
         Some(Costs {
             plan: needed.map_or(taken, |needed| needed.max(taken)) / seconds,
+            choice: needed.map(|needed| needed / seconds),
             baselines: [of_own.map(|(_, it)| it / seconds), self.lists, at_limit.map(|(_, it)| it / seconds)],
             best: in_words(best),
             seconds,

@@ -28,8 +28,13 @@ fn carried(runs: &[f64], bar: f64, costs: Option<Costs>) -> Carried {
 /// By hand: 8 runs of the decided plans, 6 of them within; refused and undecided plans have no runs. Wilson's interval of 6 of 8 is 40.93 to 92.85 %.
 #[test]
 fn runs_and_plans_are_counted_once() {
-    let costs =
-        Costs { plan: 1.2, baselines: [Some(1.5), None, Some(1.0)], best: String::new(), seconds: 1.0 };
+    let costs = Costs {
+        plan: 1.2,
+        choice: Some(1.0),
+        baselines: [Some(1.5), None, Some(1.0)],
+        best: String::new(),
+        seconds: 1.0,
+    };
     let plans = vec![
         plan(Class::Driven, Ok(carried(&[10.0, 10.9, 9.1, 11.1], 0.1, Some(costs)))),
         plan(Class::Driven, Err("it would take an hour".to_owned())),
