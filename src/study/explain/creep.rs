@@ -41,7 +41,7 @@ impl Work<'_> {
         if keeps_shadow() != Some(false) || self.conservative(&mean.rows).is_none() {
             return 0.0;
         }
-        let own = |rows: &[Vec<f64>]| Some(drift(&self.conservative(rows)?, rows)?);
+        let own = |rows: &[Vec<f64>]| drift(&self.conservative(rows)?, rows);
         let relative = match way.label == mean.way {
             true => own(&mean.rows),
             false => self
