@@ -100,7 +100,7 @@ pub fn kolmogorov_smirnov(mut values: Vec<f64>, distribution: impl Fn(f64) -> f6
     (1..=100).map(term).sum::<f64>().clamp(0.0, 1.0)
 }
 
-/// Ends of the interval of 95 % of a probability that so many of some independent trials, at least one, came true by (Wilson's score).
+/// Returns the 95 % interval of a probability by Wilson's score, from the successes among independent trials (at least one).
 pub fn wilson(came_true: usize, trials: usize) -> [f64; 2] {
     // The quantile of the normal distribution.
     const Z: f64 = 1.959_963_984_540_054;

@@ -288,7 +288,7 @@ impl Bias {
         self.over(step, 0.0)
     }
 
-    /// The same of a run of some time (time), which grows as energy drifts.
+    /// Returns the expected bias of a run of a length (time) at a step, and its upper bound. It grows with the length where energy drifts.
     pub fn over(&self, step: f64, time: f64) -> Off {
         let [part, creep] = [1.0, self.creep * time].map(|it| self.part_at(step) * it);
         Off { shift: part * self.expected() + creep, below: part * self.below() + creep }

@@ -196,8 +196,8 @@ impl Work<'_> {
     }
 }
 
-/// How far 95 % of all starts go at most, with a confidence of 95 %, by how far some went: logarithms scatter evenly, as distances of runs that differ in their
-/// closest encounter do by factors. The one-sided tolerance factor is Natrella's (Experimental Statistics, 1963, 2-4.1).
+/// Returns the distance that 95 % of all starts keep within, with a confidence of 95 %, from the distances of some. Logarithms are taken to be normally
+/// distributed. The one-sided tolerance factor is Natrella's (Experimental Statistics, 1963, 2-4.1).
 fn farthest_of_another(all: &[f64]) -> f64 {
     let largest = all.iter().copied().fold(0.0, f64::max);
     if largest == 0.0 || !largest.is_finite() {

@@ -102,7 +102,7 @@ pub fn seen(
     seen_by(SHARES, case, target, seconds, trial, (progress, journal))
 }
 
-/// The same with most of the time for what the scene may be modelled without.
+/// Measures a scene as [`seen`] does, with most of the time for its simpler models.
 ///
 /// # Errors
 /// As [`seen`].

@@ -20,7 +20,7 @@ fn simpler(case: &Case, quantity: &str) -> Vec<(&'static str, Simpler)> {
     case.entry.twins.iter().filter_map(|twin| Some((twin.name, of(&twin.becomes)?))).collect()
 }
 
-/// True if a scene may be modelled without something that is compared by runs.
+/// Reports if a scene has simpler models to compare.
 pub(super) fn has_simpler(case: &Case, quantity: &str) -> bool {
     !simpler(case, quantity).is_empty()
 }

@@ -12,7 +12,7 @@ use crate::statistics::{quantile, wilson};
 const TIME: f64 = 1.5;
 /// Configurations that plans are compared with, in the order of the baselines.
 const BASELINES: [&str; 3] = ["the scene's own values", "always lists", "f64 at the limit of stability"];
-/// Errors of a curve, in parts of the error asked for: so many steps up to this one.
+/// Number of points of a curve, and the largest error drawn (in parts of the error asked for).
 const PARTS: (u32, f64) = (40, 2.0);
 
 /// The frames of judged plans.
@@ -33,7 +33,7 @@ impl Judged {
         self.carried()?.verdict.as_ref().filter(|verdict| verdict.is_decided)
     }
 
-    /// What became of it, in a word.
+    /// Returns the outcome in one word.
     fn fate(&self) -> &'static str {
         match (&self.outcome, self.decided()) {
             (Err(_), _) => "refused",
@@ -188,7 +188,7 @@ fn errors(plans: &[Judged]) -> Frame {
         .frame("errors", "Errors of runs over those that were asked for")
 }
 
-/// Share of plans whose cost is at most so many times the best. A curve that ends below 100 % does not reach the error in some.
+/// Returns the share of plans over their largest cost relative to the best. A curve ends below 100 % where some plans do not reach the error.
 fn cost_curves(plans: &[Judged]) -> Frame {
     let compared = compared(plans);
     let curve = |name: &'static str, of: &dyn Fn(&Costs) -> Option<f64>| {

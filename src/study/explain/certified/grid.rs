@@ -16,11 +16,11 @@ use stripmine_physics::scene::Overrides;
 
 /// Steps in parts of the longest.
 const STEPS: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
-/// Where theory has no limit, the longest step is so many times the scene's own.
+/// Longest step in multiples of the scene's own, where theory has no limit.
 const TIMES_OWN: f64 = 4.0;
 /// Part of the time in which searches are timed.
 const SEARCHES: f64 = 0.1;
-/// A run of what should be kept is given up after so many times its share of the time.
+/// Factor on its share of the time after which a run of a kept quantity is given up.
 const LATE: f64 = 5.0;
 /// The first number of its starts.
 const STARTS: usize = 20_000;
@@ -199,7 +199,7 @@ impl<'g> Grid<'g> {
     }
 }
 
-/// The bias that is expected of a difference and its bar: noise is none.
+/// Returns the expected bias from a measured difference and its bar. Noise alone is not a bias.
 fn bias([off, bar]: [f64; 2]) -> f64 {
     if off.abs() > bar { off.abs() } else { (off * off - 0.25 * bar * bar).max(0.0).sqrt() }
 }

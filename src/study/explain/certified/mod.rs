@@ -59,7 +59,7 @@ struct Judged {
     asked: &'static str,
     /// Wall seconds of its trials.
     trials: f64,
-    /// What came of it, or why there is no plan.
+    /// The plan's runs, or the reason why there is no plan.
     outcome: Result<Carried, String>,
 }
 
@@ -71,11 +71,11 @@ struct Carried {
     /// The error that was asked for, in the quantity's unit.
     error: f64,
     reference: Result<Reference, String>,
-    /// None without a reference.
+    /// Comparison with the reference; none without one.
     verdict: Option<Verdict>,
     /// Wall seconds: foreseen, and taken by the first estimate.
     seconds: [f64; 2],
-    /// None where it was not compared.
+    /// Costs over the best of the grid; none where the plan was not compared.
     costs: Option<Costs>,
 }
 

@@ -20,7 +20,7 @@ pub const WHOLE: [f64; 2] = [0.0, f64::INFINITY];
 /// Seeds from the scene's own on that trials may have used.
 const OF_TRIALS: u64 = 1000;
 
-/// The mean that is asked for: of which runs, over which part of them.
+/// Mean that a plan estimates: its runs, and the part of each run that is averaged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Asking {
     /// The scene's own time, where the mean is that over whole runs (time).
