@@ -21,7 +21,7 @@ use stripmine_physics::signals;
 /// with the item where it was
 #[derive(Args)]
 pub(super) struct Reproduce {
-    /// Also what the sources do not ask, and the speed of this host, and series up to 10 million discs: takes seven times as long, and 5 GB
+    /// Also what the sources do not ask, and the speed of this host, and series up to 10 million discs: takes twenty times as long, and 5 GB
     #[arg(long)]
     all: bool,
     /// Take less time: of everything what can be made in a minute, measured less
