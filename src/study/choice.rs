@@ -3,6 +3,9 @@
 use stripmine_physics::method::{Axis, Decides, Prepared, Setting};
 use stripmine_physics::scene::Overrides;
 
+/// Configurations tie that take no more than this many times as long as the quickest.
+pub(crate) const TIE: f64 = 1.1;
+
 /// A setting for each axis.
 #[derive(Clone, Debug)]
 pub struct Choice(Vec<(&'static Axis, &'static Setting)>);

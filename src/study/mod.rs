@@ -19,6 +19,7 @@ pub mod work_precision;
 
 pub use case::Case;
 pub use choice::Choice;
+pub(crate) use choice::TIE;
 pub use error::StudyError;
 pub use items::ITEMS;
 pub(crate) use shortened::{first_line, rounded};

@@ -6,6 +6,10 @@ use stripmine_physics::averages::{MOST_WAVES, variance_ratio};
 
 /// The probability with which a bar comes out as small as planned; that of bars themselves.
 const SURE: f64 = 0.95;
+/// Independent samples from which on a bar is made of as many waves as it may be: by then nine of ten runs have them.
+const FULL: f64 = 96.0;
+/// Runs are longer by so much: their averages cut off a part of them as a transient, and take the larger of two errors.
+const CUT_OFF: f64 = 1.15;
 /// Times are longer by so much that a bar computed from one is not larger by rounding.
 const ROUNDED_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
 
@@ -37,17 +41,25 @@ impl Known {
         let seen = self.freedoms.max(1.0);
         let t_squared = |freedoms: f64| variance_ratio(SURE, 1.0, freedoms);
         let of_trials = t_squared(seen);
-        // The time that was seen is the square over the bar's own.
-        let span = self.square / (self.bar * self.bar);
-        // The waves that a bar is made of are a whole number, and grow at least with the root of the time.
-        let level = |waves: usize| {
-            let waves = waves as f64;
-            WaveLevel {
-                from: if waves > 1.0 { span * (waves / seen).powi(2) } else { 0.0 },
-                margin: t_squared(waves) / of_trials * variance_ratio(SURE, waves, seen),
-            }
+        // Of whole runs nothing is cut off.
+        let longer = if self.apart > 0.0 { CUT_OFF } else { 1.0 };
+        let level = |waves: usize| WaveLevel {
+            from: self.from(waves as f64),
+            margin: longer * t_squared(waves as f64) / of_trials * variance_ratio(SURE, waves as f64, seen),
         };
         Bars { square: self.square, levels: (1..=MOST_WAVES).map(level).collect() }
+    }
+
+    /// The time from which a bar is made of some waves (time).
+    fn from(&self, waves: f64) -> f64 {
+        let most = MOST_WAVES as f64;
+        match self.waves {
+            _ if waves <= 1.0 => 0.0,
+            // Noise of independent samples has as many as there may be, and fewer in proportion to its length.
+            seen if seen >= most && self.apart > 0.0 => self.span.min(FULL * self.apart) * waves / most,
+            // They are a whole number, and grow at least with the root of the time.
+            seen => self.span * (waves / seen.max(1.0)).powi(2),
+        }
     }
 }
 
@@ -79,7 +91,7 @@ impl Bars {
 mod tests {
     use super::*;
     use std::f64::consts::PI;
-    use stripmine_physics::averages::student;
+    use stripmine_physics::averages::{LIKELY_ENOUGH, Outcome, estimated, student};
 
     /// Bars as averages have them, of independent normal values with a variance of 1: by 1.2 √n of their waves, at most 16, whose squares are independent. The plan is
     /// made of some values, and the bar of another run of the planned length is to be as small as asked. Of 2000 plans each.
@@ -112,8 +124,50 @@ mod tests {
         }
     }
 
+    /// Correlated values, as runs have them: a plan is made of the estimate of a series of some independent samples, and the bar of another series of the planned length
+    /// is as small as asked. Of 400 plans each.
+    #[test]
+    fn bars_of_correlated_series_come_out_as_small_as_planned() {
+        let mut state = 11_u64;
+        let mut uniform = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            ((state >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
+        };
+        // Each value remembers half of the one before: three values are one independent sample.
+        let mut estimate = |samples: f64| {
+            let mut value = 0.0;
+            let mut next = |_| {
+                let noise = (-2.0 * libm::log(uniform())).sqrt() * libm::cos(2.0 * PI * uniform());
+                value = 0.5 * value + 0.75_f64.sqrt() * noise;
+                value
+            };
+            let series: Vec<f64> = (0..(3.0 * samples).ceil() as usize).map(&mut next).collect();
+            match estimated(&series, 0.0, 1.0) {
+                Outcome::Mean(estimate) => {
+                    let ends = series.iter().zip(1_u32..).map(|(value, end)| [f64::from(end), *value]);
+                    Some(Known::of(estimate, &ends.collect::<Vec<_>>()))
+                }
+                _ => None,
+            }
+        };
+        for (seen, asked) in [(60.0, 0.3), (300.0, 0.3), (300.0, 0.1), (1000.0, 0.2), (1000.0, 0.05)] {
+            let (mut planned, mut kept) = (0, 0);
+            for _ in 0..400 {
+                let Some(first) = estimate(seen) else { continue };
+                // As plans have it, at least so many samples.
+                let time = first.bars().time_for(asked).max(3.0 * LIKELY_ENOUGH);
+                let Some(run) = estimate(time / 3.0) else { continue };
+                planned += 1;
+                kept += usize::from(run.bar <= asked);
+            }
+            let share = kept as f64 / f64::from(planned);
+            assert!((0.93..0.99).contains(&share), "{seen} {asked}: {share}");
+        }
+    }
+
     fn known(square: f64, freedoms: f64, bar: f64) -> Known {
-        Known { mean: 0.0, bar, square, transient: 0.0, apart: 1.0, freedoms }
+        let span = square / (bar * bar);
+        Known { bar, square, span, waves: freedoms, freedoms, ..Known::exactly(0.0) }
     }
 
     /// The time for a bar has that bar, hardly more than that, and any longer one as well; margins are factors above 1 that fall with the time.

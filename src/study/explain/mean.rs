@@ -7,12 +7,9 @@ use serde::{Deserialize, Serialize};
 use stripmine_physics::averages::Outcome;
 use stripmine_physics::method::Decides;
 use stripmine_physics::particles::Particles;
-use stripmine_physics::scene::SEED;
 
 /// States from which runs are compared, at least.
 pub(super) const FEWEST: usize = 4;
-/// Starts differ where their means are as many bars apart: about three standard errors.
-const SURE: f64 = 1.5;
 /// How often a run that is too short is made again, twice as long each time.
 const ATTEMPTS: usize = 4;
 /// The first run is this part of the time: it is made again for as long as steps are shortened.
@@ -229,20 +226,6 @@ impl Work<'_> {
         };
         // These were not enough, whatever a unit of time cost in them.
         Some(trials_for(sample.cost * time).max(LONGER * self.seconds))
-    }
-
-    /// The mean of another start less that of the scene's own, where that is beyond both bars.
-    pub(super) fn starts_differ(&self, way: &Way, mean: &mut Mean) -> Option<f64> {
-        // Of whole runs each has another.
-        let seed = self.case.prepared.seed.filter(|_| self.whole.is_none())?;
-        let another =
-            Way { overrides: way.overrides.clone().set(&SEED, seed.wrapping_add(1)), ..way.clone() };
-        let sample =
-            self.sampled_over(&another, way.step, Span::Seconds(self.shares[4] * self.seconds)).ok()?;
-        let known = sample.known()?;
-        mean.transients.push(known.transient);
-        let difference = known.mean - mean.known.mean;
-        (difference.abs() > SURE * known.bar.hypot(mean.known.bar)).then_some(difference)
     }
 }
 

@@ -6,6 +6,7 @@
 
 pub mod accuracy;
 mod alike;
+mod another_start;
 mod as_it_stands;
 mod bias;
 pub mod certified;

@@ -9,14 +9,12 @@ use super::optimum::SHORTEST;
 use super::recommended::{Expected, Interval, Own, Plan};
 use super::unreached::Unreached;
 use crate::study::trial::ROWS;
-use crate::study::{Case, Choice, rounded};
+use crate::study::{Case, Choice, TIE, rounded};
 use stripmine_physics::method::Every;
 use stripmine_physics::scene::{Overrides, STEPS, THERMO_EVERY, TIME, Width};
 
 /// A time is foreseen within this factor: other programs come and go.
 pub(super) const TIME_WITHIN: f64 = 1.5;
-/// Configurations tie that take no more than this many times as long as the quickest.
-const TIE: f64 = 1.1;
 /// Rows that a mean is taken of, at least.
 const FEWEST_ROWS: f64 = 100.0;
 

@@ -5,7 +5,7 @@ use super::keeping::keeping;
 use super::mean::Mean;
 use super::plan::plan;
 use super::recommended::Plan;
-use super::timing::{OF_LIMIT, bounded};
+use super::timing::{OF_LIMIT, OF_ONE_THREAD, bounded};
 use super::unreached::Unreached;
 use super::{ExplainError, Target};
 use crate::results::Journal;
@@ -72,8 +72,15 @@ impl Work<'_> {
         let mean = self.mean(&mut ways)?;
         tell(self);
         // Trials of the bias are as long as they get: those that follow keep their part. Whole runs have no time to spare.
-        let kept_back =
-            if self.whole.is_some() { 0.0 } else { self.seconds * (self.shares[3] + self.shares[4]) };
+        let kept_back = match self.whole {
+            Some(_) => 0.0,
+            None => {
+                let [.., of_twins, of_start] = self.shares.map(|share| share * self.seconds);
+                // The biases have their own part before twins have theirs: timing and the mean may have taken longer.
+                let spare = self.left() - self.shares[2] * self.seconds;
+                spare.clamp(0.0, of_twins) + of_start + 2.0 * OF_ONE_THREAD * self.seconds
+            }
+        };
         self.end -= kept_back;
         self.biases(&mut ways, &mean);
         self.end += kept_back;

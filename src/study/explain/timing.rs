@@ -18,6 +18,8 @@ const ROUNDS: usize = 5;
 const TIE_FROM: usize = 3;
 /// A race is over when the best leads by this factor.
 const LEAD: f64 = 1.25;
+/// Part of the time in which one thread is timed, and all of them.
+pub(super) const OF_ONE_THREAD: f64 = 0.02;
 /// Preparing and starting may take as long as the timing itself, and what is left after that is not timed.
 const OVERHEAD: f64 = 2.0;
 
@@ -127,7 +129,7 @@ impl Work<'_> {
     /// What one thread takes over what all of them take.
     pub(super) fn one_thread(&self, way: &Way) -> f64 {
         let threads = rayon::current_num_threads();
-        let seconds = 0.05 * self.seconds;
+        let seconds = OF_ONE_THREAD * self.seconds;
         let measured = || {
             if self.left() < 2.0 * seconds {
                 return None;

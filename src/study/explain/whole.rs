@@ -7,7 +7,6 @@ use crate::study::state::displaced;
 use crate::study::trial::{Known, Sample, Span, any_number};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde::{Deserialize, Serialize};
-use stripmine_physics::averages::of_independent;
 use stripmine_physics::method::Prepared;
 use stripmine_physics::number::significant;
 use stripmine_physics::particles::Particles;
@@ -125,14 +124,8 @@ impl Work<'_> {
         }
         let means: Vec<f64> = samples.iter().map(|it| it.mean).collect();
         let count = means.len() as f64;
-        let known = of_independent(&means).map(|[mean, bar]| Known {
-            square: bar * bar * count * time,
-            freedoms: count - 1.0,
-            bar,
-            ..Known::exactly(mean)
-        });
         Ok(Measured {
-            known: known.ok_or_else(|| "there is a single run".to_owned()),
+            known: Known::of_whole_runs(&means, time).ok_or_else(|| "there is a single run".to_owned()),
             cost: samples.iter().map(|sample| sample.cost).sum::<f64>() / count,
         })
     }

@@ -4,7 +4,7 @@ use super::Trial;
 use super::any_number;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::Ordering;
-use stripmine_physics::averages::{Average, Estimate, Outcome, Rows};
+use stripmine_physics::averages::{Average, Estimate, Outcome, Rows, foreseeing, of_independent};
 use stripmine_physics::method::{
     Clock, Every, Failure, Kind, Prepared, Purpose, Quantity, RunWarning, Simulation, Until,
 };
@@ -61,6 +61,12 @@ pub struct Known {
     /// Half the width of its interval of 95 %.
     #[serde(with = "any_number")]
     pub bar: f64,
+    /// Time that the mean is over (time).
+    #[serde(with = "any_number")]
+    pub span: f64,
+    /// Waves of the bar: its degrees of freedom.
+    #[serde(with = "any_number")]
+    pub waves: f64,
     /// Square of the bar of a mean over one unit of time.
     #[serde(with = "any_number")]
     pub square: f64,
@@ -70,7 +76,7 @@ pub struct Known {
     /// Time between independent samples (time).
     #[serde(with = "any_number")]
     pub apart: f64,
-    /// Degrees of freedom of the bar; infinite where it is exact.
+    /// Degrees of freedom of the square; infinite where it is exact.
     #[serde(with = "any_number")]
     pub freedoms: f64,
 }
@@ -78,19 +84,40 @@ pub struct Known {
 impl Known {
     /// A mean that chance does not touch.
     pub fn exactly(mean: f64) -> Known {
-        Known { mean, bar: 0.0, square: 0.0, transient: 0.0, apart: 0.0, freedoms: f64::INFINITY }
+        Known {
+            mean,
+            bar: 0.0,
+            square: 0.0,
+            span: 0.0,
+            waves: f64::INFINITY,
+            transient: 0.0,
+            apart: 0.0,
+            freedoms: f64::INFINITY,
+        }
     }
-}
 
-impl From<Estimate> for Known {
-    fn from(it: Estimate) -> Known {
+    /// Of the means of whole runs of a time (time); none of fewer than two.
+    pub fn of_whole_runs(means: &[f64], time: f64) -> Option<Known> {
+        let count = means.len() as f64;
+        let [mean, bar] = of_independent(means)?;
+        let (span, waves) = (count * time, count - 1.0);
+        Some(Known { bar, square: bar * bar * span, span, waves, freedoms: waves, ..Known::exactly(mean) })
+    }
+
+    /// Of an estimate, and the series that it is of: when each stretch ends (time), and its value.
+    pub fn of(it: Estimate, series: &[[f64; 2]]) -> Known {
+        let kept: Vec<f64> =
+            series.iter().filter(|[end, _]| *end > it.equilibrated_at).map(|[_, value]| *value).collect();
+        let [bar, freedoms] = foreseeing(&kept).unwrap_or([it.bar, it.freedoms]);
         Known {
             mean: it.mean,
             bar: it.bar,
-            square: it.bar * it.bar * it.span,
+            square: bar * bar * it.span,
+            span: it.span,
+            waves: it.freedoms,
             transient: it.equilibrated_at,
             apart: it.span / it.independent_samples,
-            freedoms: it.freedoms,
+            freedoms,
         }
     }
 }
@@ -100,7 +127,7 @@ impl Sample {
     pub fn known(&self) -> Option<Known> {
         match self.outcome {
             Outcome::Mean(estimate) | Outcome::TooShort { estimate: Some(estimate), .. } => {
-                Some(estimate.into())
+                Some(Known::of(estimate, &self.series))
             }
             Outcome::Constant { mean } => Some(Known::exactly(mean)),
             Outcome::TooShort { estimate: None, .. }

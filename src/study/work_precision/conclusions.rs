@@ -2,6 +2,7 @@
 
 use super::dataset::{Run, WorkPrecision};
 use super::measures::Measure;
+use crate::study::TIE;
 
 /// Errors of positions that are asked for (the method's length).
 pub const WISHES: [f64; 5] = [3e-2, 1e-2, 1e-3, 1e-4, 1e-6];
@@ -14,11 +15,16 @@ pub struct Cheapest<'d> {
     pub of_own: Option<f64>,
 }
 
-/// The cheapest of some runs with an error of positions of at most `error`.
+/// The cheapest of some runs with an error of positions of at most `error`; of those that tie the scene's own configuration, or the first by the order of the
+/// settings.
 fn cheapest(data: &WorkPrecision, error: f64, is_meant: fn(&Run) -> bool) -> Option<Cheapest<'_>> {
     let serves = |run: &&Run| is_meant(run) && run.error(Measure::Position).is_some_and(|it| it <= error);
-    let timed = data.runs.iter().filter(serves).filter_map(|run| Some((run, run.cost()?)));
-    let (run, cost) = timed.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let timed: Vec<(&Run, f64)> =
+        data.runs.iter().filter(serves).filter_map(|run| Some((run, run.cost()?))).collect();
+    let least = timed.iter().map(|(_, cost)| *cost).reduce(f64::min)?;
+    let tied = timed.into_iter().filter(|(_, cost)| *cost <= TIE * least);
+    let place = |run: &Run| (data.of(run).label != data.own, run.configuration);
+    let (run, cost) = tied.min_by(|a, b| place(a.0).cmp(&place(b.0)).then(a.1.total_cmp(&b.1)))?;
     let own = own_run(data).and_then(Run::cost);
     Some(Cheapest { run, of_own: own.map(|own| cost / own) })
 }

@@ -209,6 +209,31 @@ fn no_run_with_an_objection_is_recommended() {
     }
 }
 
+/// Of runs that cost the same but for a tenth the scene's own configuration is named, or the first by the order of the settings: by a clock that has a step of every
+/// configuration take the same time, all of them tie.
+#[test]
+fn ties_go_to_the_scene_s_own_configuration() {
+    let data = measured(&written(PRESSED, &[]), &effort(4.0)).unwrap();
+    let own = data["scenes"][0]["own_configuration"].as_str().unwrap();
+    let mut ties = 0;
+    for wish in rows(&data, "wishes").iter().filter(|wish| wish["step"].is_number()) {
+        let error = wish["error_wished_for_at_most_radii_sizes_of_a_system_of_bodies"].as_f64().unwrap();
+        let serves = |run: &&Value| {
+            run["position_rms"].as_f64().is_some_and(|it| it <= error)
+                && run["what_speaks_against_it"].as_str().unwrap_or_default().is_empty()
+        };
+        let timed: Vec<(&str, f64)> = (rows(&data, "runs").iter().filter(serves))
+            .filter_map(|run| Some((run["configuration"].as_str()?, run["cost"].as_f64()?)))
+            .collect();
+        let least = timed.iter().map(|(_, cost)| *cost).reduce(f64::min).unwrap();
+        let tied: Vec<&str> = timed.iter().filter(|(_, cost)| *cost <= 1.1 * least).map(|it| it.0).collect();
+        ties += usize::from(tied.len() > 1);
+        let named = wish["cheapest_configuration"].as_str().unwrap();
+        assert!(tied.contains(&named) && (named == own || !tied.contains(&own)), "{wish}: {tied:?}");
+    }
+    assert!(ties > 0);
+}
+
 /// A study that is interrupted keeps its finished runs, and comes out the same when it is resumed.
 #[test]
 fn an_interrupted_study_resumes() {

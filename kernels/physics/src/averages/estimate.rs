@@ -109,6 +109,14 @@ pub fn of_correlated(values: &[f64]) -> Option<[f64; 2]> {
     Some([error.mean, bar(error.standard_error, error.waves as f64)])
 }
 
+/// Half the width of the interval of 95 % of the mean of a stationary series, and its degrees of freedom: more than those of an [`Estimate`], so that the
+/// errors of other runs can be foreseen; none of fewer than two values.
+pub fn foreseeing(values: &[f64]) -> Option<[f64; 2]> {
+    let error = (values.len() > 1).then(|| WaveError::of_more(values))?;
+    let freedoms = error.waves as f64;
+    Some([bar(error.standard_error, freedoms), freedoms])
+}
+
 /// The outcome of a series of values `spacing` apart, the first at `from` + `spacing` (time).
 pub fn estimated(series: &[f64], from: f64, spacing: f64) -> Outcome {
     let few = |independent_samples: f64, enough_at: f64, estimate: Option<Estimate>| Outcome::TooShort {

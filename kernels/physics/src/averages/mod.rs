@@ -15,7 +15,7 @@ mod waves;
 mod words;
 
 pub use estimate::{
-    Estimate, FEWEST_SAMPLES, LIKELY_ENOUGH, Outcome, estimated, of_correlated, of_independent,
+    Estimate, FEWEST_SAMPLES, LIKELY_ENOUGH, Outcome, estimated, foreseeing, of_correlated, of_independent,
 };
 pub use joined::joined;
 pub use rows::Rows;

@@ -9,6 +9,8 @@ const FEWEST: usize = 6;
 const FEWEST_OF_ANY: usize = 2;
 /// The number of waves for a long series. More would make bars 5 % shorter, and miss correlations that last for a hundredth of the series.
 pub const MOST: usize = 16;
+/// So many times as many waves make an error that is used to foresee others.
+const MORE: usize = 4;
 /// The slowest waves, among which independent samples are counted: noise faster than these hides no slow change.
 const BAND: usize = 64;
 /// Waves for each independent sample in the band: all of them are slower than the correlation time, also beneath faster noise.
@@ -47,21 +49,26 @@ pub(super) struct WaveError {
 impl WaveError {
     /// Of at least two values.
     pub(super) fn of(series: &[f64]) -> WaveError {
-        WaveError::by(FEWEST, series)
+        WaveError::by(FEWEST, MOST, series)
+    }
+
+    /// Of at least two values, with so many more waves that the error itself is known better; correlations that are long are missed sooner.
+    pub(super) fn of_more(series: &[f64]) -> WaveError {
+        WaveError::by(FEWEST, MORE * MOST, series)
     }
 
     /// Of at least two values that have a mean however few samples they are: its error is without the doubt of a small number.
     pub(super) fn of_any(series: &[f64]) -> WaveError {
-        let error = WaveError::by(FEWEST_OF_ANY, series);
+        let error = WaveError::by(FEWEST_OF_ANY, MOST, series);
         WaveError { standard_error: error.standard_error * (error.resolved / error.seeming).sqrt(), ..error }
     }
 
-    fn by(fewest: usize, series: &[f64]) -> WaveError {
+    fn by(fewest: usize, most: usize, series: &[f64]) -> WaveError {
         let n = series.len() as f64;
         let mean = mean(series);
         let variance = series.iter().map(|value| (value - mean).powi(2)).sum::<f64>();
-        let band = squares(series, BAND.min(series.len() - 1));
-        let squares = &band[..(WIDER * MOST).min(band.len())];
+        let band = squares(series, (BAND * most / MOST).min(series.len() - 1));
+        let squares = &band[..(WIDER * most).min(band.len())];
         let over = |waves: usize| {
             let waves = &squares[..waves.min(squares.len())];
             waves.iter().sum::<f64>() / waves.len() as f64
@@ -69,7 +76,7 @@ impl WaveError {
         let in_band = band.iter().sum::<f64>();
         let resolved = |square: f64| if square > 0.0 { in_band / square } else { n };
         let mut waves = fewest.min(squares.len());
-        while waves < MOST.min(squares.len()) && (waves + 1) as f64 <= PER_SAMPLE * resolved(over(waves + 1))
+        while waves < most.min(squares.len()) && (waves + 1) as f64 <= PER_SAMPLE * resolved(over(waves + 1))
         {
             waves += 1;
         }

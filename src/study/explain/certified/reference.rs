@@ -3,7 +3,6 @@
 use super::super::in_unit;
 use super::runs::{Ensemble, WHOLE, side_by_side};
 use crate::study::trial::{Known, Sample, Span};
-use stripmine_physics::averages::of_independent;
 use stripmine_physics::scene::{Overrides, Width};
 
 /// The step in parts of the scene's own.
@@ -90,7 +89,10 @@ impl Ensemble<'_> {
             }
             let spent = self.trial.watch.now() - begun;
             let known = match self.asking.whole {
-                Some(time) => of_whole(&samples, time),
+                Some(time) => {
+                    let means: Vec<f64> = samples.iter().map(|sample| sample.mean_over(WHOLE)).collect();
+                    Known::of_whole_runs(&means, time)
+                }
                 None => joined(&samples.iter().filter_map(Sample::known).collect::<Vec<_>>()),
             };
             let excess = |known: &Known| (known.bar / (ENOUGH * in_unit(error, known.mean))).powi(2);
@@ -107,18 +109,6 @@ impl Ensemble<'_> {
     }
 }
 
-/// The mean over whole runs of a time.
-fn of_whole(samples: &[Sample], time: f64) -> Option<Known> {
-    let means: Vec<f64> = samples.iter().map(|sample| sample.mean_over(WHOLE)).collect();
-    let count = means.len() as f64;
-    of_independent(&means).map(|[mean, bar]| Known {
-        square: bar * bar * count * time,
-        freedoms: count - 1.0,
-        bar,
-        ..Known::exactly(mean)
-    })
-}
-
 /// The mean over independent runs, each with the weight of the time that it is over. Where they scatter by more than their bars, the bar is larger
 /// by Birge's ratio.
 pub(super) fn joined(runs: &[Known]) -> Option<Known> {
@@ -126,11 +116,8 @@ pub(super) fn joined(runs: &[Known]) -> Option<Known> {
     if runs.iter().any(|run| run.bar == 0.0) {
         return Some(*first);
     }
-    let spans: Vec<f64> = runs.iter().map(|run| run.square / run.bar.powi(2)).collect();
-    let all = spans.iter().sum::<f64>();
-    let sum = |of: &dyn Fn(&Known, f64) -> f64| {
-        runs.iter().zip(&spans).map(|(run, span)| of(run, span / all)).sum::<f64>()
-    };
+    let all = runs.iter().map(|run| run.span).sum::<f64>();
+    let sum = |of: &dyn Fn(&Known, f64) -> f64| runs.iter().map(|run| of(run, run.span / all)).sum::<f64>();
     let mean = sum(&|run, weight| weight * run.mean);
     let bar = sum(&|run, weight| (weight * run.bar).powi(2)).sqrt();
     // Bars are about two standard errors.
@@ -139,7 +126,9 @@ pub(super) fn joined(runs: &[Known]) -> Option<Known> {
     Some(Known {
         mean,
         bar: ratio * bar,
-        square: (ratio * bar).powi(2) * all,
+        square: ratio * ratio * sum(&|run, weight| weight * run.square),
+        span: all,
+        waves: runs.iter().map(|run| run.waves).sum(),
         transient: runs.iter().map(|run| run.transient).fold(f64::INFINITY, f64::min),
         apart: sum(&|run, weight| weight * run.apart),
         freedoms: runs.iter().map(|run| run.freedoms).sum(),
@@ -151,7 +140,8 @@ mod tests {
     use super::*;
 
     fn run(mean: f64, bar: f64, span: f64) -> Known {
-        Known { mean, bar, square: bar * bar * span, transient: span, apart: 1.0, freedoms: 5.0 }
+        let square = bar * bar * span;
+        Known { mean, bar, square, span, waves: 5.0, transient: span, apart: 1.0, freedoms: 5.0 }
     }
 
     /// By hand: weights 1/4 and 3/4, bar √(0.25² 0.4² + 0.75² 0.2²) = 0.18028; runs two bars apart have χ² = 4 of one degree of freedom.
@@ -159,8 +149,9 @@ mod tests {
     fn runs_are_joined_by_their_time() {
         let known = joined(&[run(1.0, 0.4, 10.0), run(1.2, 0.2, 30.0)]).unwrap();
         assert!((known.mean - 1.15).abs() < 1e-12 && (known.bar - 0.180_277_56).abs() < 1e-8, "{known:?}");
-        assert!((known.square - known.bar.powi(2) * 40.0).abs() < 1e-12);
-        assert_eq!((known.transient, known.freedoms), (10.0, 10.0));
+        // A quarter of 0.4² 10 and three quarters of 0.2² 30.
+        assert!((known.square - 1.3).abs() < 1e-12);
+        assert_eq!((known.transient, known.freedoms, known.span), (10.0, 10.0, 40.0));
         let apart = joined(&[run(0.0, 0.1, 1.0), run(0.2, 0.1, 1.0)]).unwrap();
         assert!((apart.mean - 0.1).abs() < 1e-12);
         // Each is one bar, two standard errors, from the mean: χ² = 8.

@@ -1,0 +1,85 @@
+//! The mean of another start beside that of the scene's own.
+
+use super::findings::{Way, Work};
+use super::mean::Mean;
+use crate::study::trial::{Known, Span};
+use stripmine_physics::averages::{Average, Outcome, Rows};
+use stripmine_physics::method::Quantity;
+use stripmine_physics::scene::SEED;
+
+/// Starts differ where their means are as many bars apart: about three standard errors.
+const SURE: f64 = 1.5;
+
+impl Work<'_> {
+    /// The mean of another start less that of the scene's own, where that is beyond both bars.
+    ///
+    /// Noise may hide the end of a transient from one of the two runs: means that differ are compared again from the later end on.
+    pub(super) fn starts_differ(&self, way: &Way, mean: &mut Mean) -> Option<f64> {
+        // Of whole runs each has another.
+        let seed = self.case.prepared.seed.filter(|_| self.whole.is_none())?;
+        let another =
+            Way { overrides: way.overrides.clone().set(&SEED, seed.wrapping_add(1)), ..way.clone() };
+        let sample =
+            self.sampled_over(&another, way.step, Span::Seconds(self.shares[4] * self.seconds)).ok()?;
+        let mut other = sample.known()?;
+        if differ(&mean.known, &other) {
+            let observed = (self.case.entry.quantities, self.target.place);
+            let later = mean.known.transient.max(other.transient);
+            // A run that ends before that tells nothing.
+            other = after(&sample.rows, observed, &other, later)?;
+            mean.known = after(&mean.rows, observed, &mean.known, later).unwrap_or(mean.known);
+            mean.transients = vec![mean.known.transient];
+        }
+        mean.transients.push(other.transient);
+        differ(&mean.known, &other).then_some(other.mean - mean.known.mean)
+    }
+}
+
+/// True if two means are beyond both bars of each other.
+fn differ(one: &Known, other: &Known) -> bool {
+    (one.mean - other.mean).abs() > SURE * one.bar.hypot(other.bar)
+}
+
+/// A mean without the rows before a time, of which the transient was shorter than that; none where the rest has none.
+fn after(
+    rows: &[Vec<f64>],
+    (quantities, place): (&'static [Quantity], usize),
+    known: &Known,
+    time: f64,
+) -> Option<Known> {
+    if known.transient >= time {
+        return Some(*known);
+    }
+    let mut later = Rows::new(quantities);
+    rows.iter().filter(|row| row[0] >= time).for_each(|row| later.add(row));
+    match Average::of(&later, place).outcome {
+        Outcome::Mean(estimate) => Some(Known::of(estimate, &later.course(place))),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stripmine_physics::method::Kind;
+
+    const OBSERVED: &[Quantity] = &[
+        Quantity { name: "time", unit: "time", kind: Kind::Time, doc: "" },
+        Quantity { name: "flow", unit: "", kind: Kind::Instant, doc: "" },
+    ];
+
+    /// By hand: 20 up to a time of 100, then 2 and 4 by turns, whose mean is 3.
+    #[test]
+    fn a_transient_that_was_missed_is_cut_off() {
+        let value = |at: i32| if at < 100 { 20.0 } else { f64::from(2 + at % 2 * 2) };
+        let rows: Vec<Vec<f64>> = (0..1000).map(|at| vec![f64::from(at), value(at)]).collect();
+        let missed = Known { mean: 4.7, bar: 0.5, transient: 5.0, ..Known::exactly(4.7) };
+        let cut = |transient: f64| after(&rows, (OBSERVED, 1), &missed, transient);
+        let known = cut(100.0).unwrap();
+        assert!((known.mean - 3.0).abs() < 0.01 && known.transient >= 100.0, "{known:?}");
+        assert_eq!(cut(5.0).map(|it| it.mean), Some(4.7));
+        assert!(cut(2000.0).is_none());
+        let right = Known { bar: 0.1, ..Known::exactly(3.0) };
+        assert!(differ(&right, &missed) && !differ(&right, &known));
+    }
+}
