@@ -51,7 +51,7 @@ impl Drift {
         Some(short.step * libm::pow(error / short.farthest, power.recip()))
     }
 
-    /// The next step to try for an error: half of the shortest until the error is reached, then between the longest that reaches it and the one above; none
+    /// The next step to try for an error: half of the shortest until the error is reached, or a quarter where half is not expected to be enough; then between the longest that reaches it and the one above; none
     /// where these are closer than [`CLOSE`], or half of a step is no better.
     pub(super) fn next(&self, error: f64) -> Option<f64> {
         let shortest = self.tried.last()?;
@@ -61,7 +61,9 @@ impl Drift {
                 |pair: &[Tried]| pair[1].farthest < 0.5 * pair[0].farthest || pair[0].farthest.is_infinite();
             let last = self.tried.windows(2).rev().take(2);
             let is_stuck = self.tried.len() > 4 && last.filter(|pair| !gains(pair)).count() == 2;
-            return (!is_stuck).then_some(rounded(0.5 * shortest.step, 4));
+            let is_far = self.expected_step(error).is_some_and(|step| step < 0.25 * shortest.step);
+            let part = if is_far { 0.25 } else { 0.5 };
+            return (!is_stuck).then_some(rounded(part * shortest.step, 4));
         };
         let above = self.tried.iter().rev().find(|it| it.step > found.step)?;
         let middle = rounded((above.step * found.step).sqrt(), 4);
@@ -113,6 +115,13 @@ mod tests {
         let step = tried(&[[0.4, 16.0], [0.2, 1.0]]).expected_step(1.0 / 81.0).unwrap();
         assert!((step - 0.2 / 3.0).abs() < 1e-12, "{step}");
         assert_eq!(tried(&[[0.4, f64::INFINITY], [0.2, 1.0]]).expected_step(0.1), None);
+    }
+
+    /// From 16 at 0.4 to 1 at 0.2 it falls with the fourth power: an error of 10⁻² is expected at 0.063, one of 10⁻⁴ at 0.02.
+    #[test]
+    fn steps_are_quartered_where_an_error_is_far() {
+        let drift = tried(&[[0.4, 16.0], [0.2, 1.0]]);
+        assert_eq!([1e-2, 1e-4].map(|error| drift.next(error)), [Some(0.1), Some(0.05)]);
     }
 
     #[test]

@@ -7,7 +7,7 @@ use crate::study::rounded;
 use crate::study::trial::{Known, Span, any_number};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde::{Deserialize, Serialize};
-use stripmine_physics::averages::Outcome;
+use stripmine_physics::averages::{Outcome, student};
 use stripmine_physics::method::Decides;
 
 /// The longest step that is tried, in steps of the scene.
@@ -16,8 +16,8 @@ const LONGEST: f64 = 64.0;
 const STARTS: u64 = 6;
 /// Where there is no time for several, another start goes as far as that many times this one.
 const MARGIN: f64 = 2.0;
-/// The quantile of 95 % of the normal distribution.
-const QUANTILE: f64 = 1.644_853_626_951_472_7;
+/// Probability of the interval on both sides of a mean whose upper end is that of 95 % on one side.
+const TWO_SIDED: f64 = 0.9;
 /// The error that is looked for where none is asked for and the scene's own is not known.
 pub(super) const WANTED: f64 = 1e-3;
 
@@ -120,8 +120,8 @@ impl Work<'_> {
         }
     }
 
-    /// A run of the whole scene: how far it goes, and, where that is no farther than wanted and starts are random, how far 95 % of all starts go at most with
-    /// a confidence of 95 %.
+    /// A run of the whole scene: how far it goes, and, where that is no farther than wanted and starts are random, how far another start goes at most with
+    /// a probability of 95 %.
     fn whole_run(&self, way: &Way, step: f64, [time, wanted]: [f64; 2]) -> Result<WholeRun, NoRun> {
         let first = self.run_of_start(way, step, time, 0)?;
         if self.case.prepared.seed.is_none() || first.farthest > wanted {
@@ -173,10 +173,24 @@ impl Work<'_> {
             other.dropped.is_none() && is_alike && cost(other).zip(cost(way)).is_some_and(|(b, a)| b < a)
         };
         let is_cheapest = |way: &Way| way.drift.is_some() || !ways.iter().any(|other| is_dearer(way, other));
-        let tried = |it: &(usize, &Way)| it.1.dropped.is_none() && is_cheapest(it.1);
-        let runs = ways.iter().enumerate().filter(tried).filter_map(|(at, way)| {
-            let first = rounded(LONGEST * own, 4);
-            let step = way.drift.as_ref().map_or(Some(first), |drift| drift.next(wanted))?;
+        let is_tried = |way: &Way| way.dropped.is_none() && is_cheapest(way);
+        // Rounding is far below the error of a step: other digits begin at the step at which the finest reach the error.
+        let finest = self.case.own.with(self.case.entry.trials?.references[0]);
+        let of_finest = |way: &Way| {
+            let own = self.choice(way);
+            let leads = |other: &&Way| {
+                let other_choice = self.choice(other);
+                let is_finest = other_choice.agrees(&finest, Decides::Digits);
+                is_tried(other) && is_finest && other_choice.agrees(&own, Decides::Order)
+            };
+            ways.iter().find(leads).filter(|leader| leader.label != way.label)
+        };
+        let first = |way: &Way| match of_finest(way) {
+            Some(leader) => Some(leader.drift.as_ref()?.step_for(wanted)?.step),
+            None => Some(rounded(LONGEST * own, 4)),
+        };
+        let runs = ways.iter().enumerate().filter(|(_, way)| is_tried(way)).filter_map(|(at, way)| {
+            let step = way.drift.as_ref().map_or_else(|| first(way), |drift| drift.next(wanted))?;
             let enough = way.drift.as_ref().and_then(|drift| drift.expected_step(wanted));
             let [now, expected] = [step, enough.unwrap_or(step).min(step)].map(|step| seconds(way, step));
             Some((at, step, now?, expected?))
@@ -196,8 +210,8 @@ impl Work<'_> {
     }
 }
 
-/// Returns the distance that 95 % of all starts keep within, with a confidence of 95 %, from the distances of some. Logarithms are taken to be normally
-/// distributed. The one-sided tolerance factor is Natrella's (Experimental Statistics, 1963, 2-4.1).
+/// Returns the distance that another start keeps within with a probability of 95 %, from the distances of some. Logarithms are taken to be normally distributed:
+/// the next of them is below their mean and t s √(1 + 1/n), with the one-sided t of Student's distribution.
 fn farthest_of_another(all: &[f64]) -> f64 {
     let largest = all.iter().copied().fold(0.0, f64::max);
     if largest == 0.0 || !largest.is_finite() {
@@ -207,31 +221,20 @@ fn farthest_of_another(all: &[f64]) -> f64 {
     let logarithms: Vec<f64> = all.iter().map(|&it| libm::log(it.max(f64::MIN_POSITIVE))).collect();
     let mean = logarithms.iter().sum::<f64>() / count;
     let variance = logarithms.iter().map(|it| (it - mean).powi(2)).sum::<f64>() / (count - 1.0);
-    largest.max(libm::exp(mean + tolerance_factor(count) * variance.sqrt()))
-}
-
-/// Standard deviations above the mean of some values below which 95 % of a normal distribution are, with a confidence of 95 %.
-fn tolerance_factor(count: f64) -> f64 {
-    let square = QUANTILE * QUANTILE;
-    let a = 1.0 - square / (2.0 * (count - 1.0));
-    let b = square - square / count;
-    (QUANTILE + (square - a * b).sqrt()) / a
+    let factor = student(TWO_SIDED, all.len() - 1) * (1.0 + 1.0 / count).sqrt();
+    largest.max(libm::exp(mean + factor * variance.sqrt()))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Exact factors are 3.708 for 6 values and 2.911 for 10 (Odeh and Owen, 1980); logarithms 0 and 1, three of each, have the mean 0.5 and the standard
-    /// deviation 0.5477.
+    /// By hand: t of 5 degrees of freedom is 2.015 (one-sided, 95 %); logarithms 0 and 1, three of each, have the mean 0.5 and the standard deviation 0.5477.
     #[test]
     fn another_start_goes_as_far_as_scatter_says() {
-        for (count, exact) in [(6.0, 3.708), (10.0, 2.911)] {
-            let factor = tolerance_factor(count);
-            assert!((factor / exact - 1.0).abs() < 0.03, "{count}: {factor}");
-        }
         let all = [0.0, 1.0, 0.0, 1.0, 0.0, 1.0].map(libm::exp);
-        assert!((libm::log(farthest_of_another(&all)) - 0.5 - 0.5477 * 3.67).abs() < 0.01);
+        let expected = 0.5 + 0.5477 * 2.015 * f64::sqrt(7.0 / 6.0);
+        assert!((libm::log(farthest_of_another(&all)) - expected).abs() < 1e-3);
         assert_eq!(farthest_of_another(&[2.0; 6]), 2.0);
         assert_eq!(
             [farthest_of_another(&[0.0; 6]), farthest_of_another(&[1.0, f64::INFINITY])],

@@ -281,7 +281,7 @@ pub fn explain(
     }
     let quantity = target.quantity.name;
     planned(case, target, &findings, &origin)
-        .map_err(|unreached| ExplainError::OutOfReach { quantity, unreached })
+        .map_err(|it| ExplainError::OutOfReach { quantity, unreached: Unreached { trials: seconds, ..it } })
 }
 
 /// Errors are asked for within this factor of the least that can be had in a time.
