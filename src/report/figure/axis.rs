@@ -167,11 +167,16 @@ fn fitting(axis: &Axis, values: impl Iterator<Item = f64>) -> Result<[f64; 2], S
         false if low == 0.0 => 1.0,
         false => 0.1 * low.abs(),
     };
-    Ok(match [low - free, high + free] {
-        ends if is_logarithmic => ends.map(|end| pow(10.0, end)),
+    let ends = match [low - free, high + free] {
+        // Room beyond the data may be beyond all numbers.
+        ends if is_logarithmic => ends.map(|end| pow(10.0, end).clamp(f64::MIN_POSITIVE, f64::MAX)),
         // A quantity that is positive keeps a positive axis.
         [below, above] => [if low > 0.0 { below.max(0.0) } else { below }, above],
-    })
+    };
+    if !(ends[1] - ends[0]).is_finite() {
+        return Err(no_interval(&format!("the axis `{}`", axis.label), ends));
+    }
+    Ok(ends)
 }
 
 /// Returns the decade of a number; one that is a power of ten but for its last digits lies at its beginning.
@@ -237,6 +242,16 @@ mod tests {
         for limits in [[0.0, 5e-324], [1e300, 1.000_000_000_000_001e300], [-1e308, 1e-308]] {
             assert!(labels(Scale::Linear, limits).len() < 9, "{limits:?}");
         }
+    }
+
+    /// Room beyond 1e-305 and 1e305 would lie at 0 and at infinity.
+    #[test]
+    fn ends_of_data_stay_numbers() {
+        let of = |scale, data: [f64; 2]| Span::new(&axis(scale, None), data.into_iter());
+        let wide = of(Scale::Logarithmic, [1e-305, 1e305]).unwrap();
+        assert!(wide.ends[0] > 0.0 && wide.ends[1].is_finite(), "{wide:?}");
+        assert!(!wide.marks(10.0, |_| 1.0).is_empty());
+        assert!(of(Scale::Linear, [-8.9e307, 8.9e307]).is_err());
     }
 
     #[test]
