@@ -40,7 +40,7 @@ fn differ(one: &Known, other: &Known) -> bool {
     (one.mean - other.mean).abs() > SURE * one.bar.hypot(other.bar)
 }
 
-/// A mean without the rows before a time, of which the transient was shorter than that; none where the rest has none.
+/// Returns the mean over the rows after a time, or the known mean if its transient already ends later; none if the remaining rows have no mean.
 fn after(
     rows: &[Vec<f64>],
     (quantities, place): (&'static [Quantity], usize),

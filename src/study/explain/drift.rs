@@ -51,7 +51,8 @@ impl Drift {
         Some(short.step * libm::pow(error / short.farthest, power.recip()))
     }
 
-    /// The next step to try for an error: half of the shortest until the error is reached, or a quarter where half is not expected to be enough; then between the longest that reaches it and the one above; none
+    /// The next step to try for an error: half of the shortest until the error is reached, or a quarter where half is not
+    /// expected to be enough; then between the longest that reaches it and the one above; none
     /// where these are closer than [`CLOSE`], or half of a step is no better.
     pub(super) fn next(&self, error: f64) -> Option<f64> {
         let shortest = self.tried.last()?;

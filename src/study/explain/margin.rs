@@ -6,9 +6,10 @@ use stripmine_physics::averages::{MOST_WAVES, variance_ratio};
 
 /// The probability with which a bar comes out as small as planned; that of bars themselves.
 const SURE: f64 = 0.95;
-/// Independent samples from which on a bar is made of as many waves as it may be: by then nine of ten runs have them.
+/// Independent samples from which a bar is assumed to use all its waves: 1.5 times the 64 that the rule of waves asks for, as samples are counted with noise.
 const FULL: f64 = 96.0;
-/// Runs are longer by so much: their averages cut off a part of them as a transient, and take the larger of two errors.
+/// Factor on the length of a run: its average cuts off a part as a transient and takes the larger of two errors. Calibrated on the correlated series of the test
+/// below, which therefore does not confirm it; item `plans` does or does not.
 const CUT_OFF: f64 = 1.15;
 /// Times are longer by so much that a bar computed from one is not larger by rounding.
 const ROUNDED_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
@@ -154,7 +155,7 @@ mod tests {
             let (mut planned, mut kept) = (0, 0);
             for _ in 0..400 {
                 let Some(first) = estimate(seen) else { continue };
-                // As plans have it, at least so many samples.
+                // Plans take at least this many samples.
                 let time = first.bars().time_for(asked).max(3.0 * LIKELY_ENOUGH);
                 let Some(run) = estimate(time / 3.0) else { continue };
                 planned += 1;

@@ -40,7 +40,7 @@ impl Unreached {
     }
 }
 
-/// Trials that take so many times as long as a run come to it, by way of runs with longer steps, and from several starts.
+/// Length of the trials that are advised, in runs: longer steps and several starts come before the run that is expected.
 const TIMES_RUN: f64 = 8.0;
 /// Trials that were not enough are made again for this many times as long, at least.
 const LONGER: f64 = 2.0;

@@ -52,7 +52,7 @@ impl WaveError {
         WaveError::by(FEWEST, MOST, series)
     }
 
-    /// Of at least two values, with so many more waves that the error itself is known better; correlations that are long are missed sooner.
+    /// Estimates the error from up to four times as many waves. It scatters less and misses long correlations sooner. Needs at least two values.
     pub(super) fn of_more(series: &[f64]) -> WaveError {
         WaveError::by(FEWEST, MORE * MOST, series)
     }
