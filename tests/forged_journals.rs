@@ -78,7 +78,7 @@ fn forged_lines_are_measured_again() {
                 "--set",
                 "run.time=0.4",
                 "--budget",
-                "2",
+                "40",
                 "--size",
                 "4",
                 "--seeds",

@@ -262,7 +262,7 @@ impl ExplainVerb {
         let held = signals::hold();
         let trial = Trial { watch: &Stopwatch::wall(), stop: signals::asked() };
         let found: Sample =
-            trial.sample(&prepared, observed, Span::Time(plan.time, None)).map_err(Failure::from)?;
+            trial.sample(&prepared, observed, Span::Planned(plan.time, None)).map_err(Failure::from)?;
         drop(held);
         if let Some(cut_off) = found.cut_off(plan.time) {
             let wall = Compared {

@@ -7,7 +7,7 @@ use super::recommended::Plan;
 use super::{ExplainError, Target, seen};
 use crate::frame::{Frame, Rows};
 use crate::results::{Journal, Made};
-use crate::study::trial::{ROWS, Trial};
+use crate::study::trial::Trial;
 use crate::study::{Case, Choice};
 use stripmine_physics::method::Decides;
 
@@ -91,22 +91,24 @@ fn least_errors(way: &Way, case: &Case, findings: &Findings, chance: &Chance) ->
     let Some(cost) = way.cost else { return vec![] };
     if let (Some(drift), Some(step), Some(time)) = (&way.drift, way.step, case.duration()) {
         let of = |it: &Tried| {
-            let seconds = findings.start + ROWS[1] * findings.row + cost * step / it.step * time;
+            let seconds = findings.start + findings.of_rows(time) + cost * step / it.step * time;
             Point { seconds, step: Some(it.step), error: it.farthest, most: it.farthest }
         };
         return drift.tried.iter().map(of).filter(|it| it.error.is_finite() && it.error > 0.0).collect();
     }
     let mean = &findings.mean;
-    let start = findings.start + ROWS[1] * findings.row;
+    // Of a unit of time by itself, and of its rows; the fewest of whole runs are a part of the start.
+    let rows = findings.row * mean.rows();
+    let start = findings.start + if rows > 0.0 { 0.0 } else { findings.of_rows(0.0) };
     // A mean that does not vary has no shortest run.
     let shortest = findings.whole.unwrap_or(if mean.apart > 0.0 { SHORTEST * mean.apart } else { 1.0 });
-    let first = start + cost * (shortest + mean.transient);
+    let first = start + (cost + rows) * (shortest + mean.transient);
     let walls = (0..=POINTS * DECADES).map(|at| first * 10f64.powf(f64::from(at) / f64::from(POINTS)));
     let steps = if way.step.is_some() { &STEPS[..] } else { &STEPS[..1] };
     let least = |seconds: f64| {
         let of = |part: &f64| {
             let step = way.step.map(|step| part * step);
-            let time = (seconds - start) * part / cost - mean.transient;
+            let time = (seconds - start) / (cost / part + rows) - mean.transient;
             let off =
                 way.bias.zip(step).map(|(bias, step)| bias.over(step, time.max(0.0))).unwrap_or_default();
             let chance = if time > 0.0 { chance.over(time) } else { f64::INFINITY };

@@ -1,7 +1,7 @@
 //! The scene as it stands in the place of a plan that is no better.
 
 use super::findings::Findings;
-use super::plan::TIME_WITHIN;
+use super::plan::{TIME_WITHIN, own_rows};
 use super::recommended::{Decision, Interval, Plan};
 use super::words::seconds;
 use crate::study::Case;
@@ -46,6 +46,7 @@ impl Plan {
             phases,
             step: case.step(),
             time,
+            rows: time / own_rows(case, case.step()),
             seeds: 1,
             overrides: Overrides::new(),
             own: None,

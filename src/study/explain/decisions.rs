@@ -86,8 +86,12 @@ fn run_length(case: &Case, findings: &Findings, length: &Length, window: Option<
         return "the scene's own: the quantity changes all along, and what is asked for is its mean over the whole run".to_owned();
     }
     let mut why = format!(
-        "{} to average over for a chance of ± {}, after a transient of {}",
+        "{} to average over{} for a chance of ± {}, after a transient of {}",
         significant(length.time, 3),
+        match findings.mean.every {
+            0.0 => String::new(),
+            every => format!(", by rows {} apart,", significant(every, 2)),
+        },
         significant(findings.chance().over(length.time), 2),
         significant(findings.mean.transient, 3)
     );

@@ -8,11 +8,10 @@ use super::drifts::WANTED;
 use super::findings::{Findings, Way};
 use super::lengths::{Length, Weighed};
 use super::optimum::Optimum;
-use super::plan::{TIME_WITHIN, in_unit, overrides, phases, prefer};
+use super::plan::{TIME_WITHIN, in_unit, overrides, own_rows, phases, prefer};
 use super::recommended::{Decision, Expected, Interval, Own, Plan};
 use super::unreached::Unreached;
 use crate::study::Case;
-use crate::study::trial::ROWS;
 use stripmine_physics::number::significant;
 
 /// What is recommended for a quantity that should keep its value over the scene's own time.
@@ -27,7 +26,7 @@ pub fn keeping(case: &Case, target: &Target, findings: &Findings, origin: &str) 
     let error = target.error.map(|width| in_unit(width, 1.0));
     let wanted = error.or(own_error).unwrap_or(WANTED);
     let costs = |way: &Way, step: f64| {
-        Some(findings.start + ROWS[1] * findings.row + way.cost? * way.step? / step * time)
+        Some(findings.start + findings.of_rows(time) + way.cost? * way.step? / step * time)
     };
     let mut weighed: Vec<Weighed<'_>> = usable()
         .filter_map(|way| {
@@ -75,11 +74,12 @@ pub fn keeping(case: &Case, target: &Target, findings: &Findings, origin: &str) 
         phases: phases(best, time),
         step,
         time,
+        rows: time / own_rows(case, step),
         is_whole: false,
         transient: 0.0,
         seeds: 1,
         starts_differ: None,
-        overrides: overrides(case, best.way, step, None),
+        overrides: overrides(case, best.way, step, (None, 0.0)),
         own: of_own.zip(case.step()).and_then(|(way, step)| {
             let error = Off::exactly(own_error.unwrap_or(f64::NAN));
             Some(Own { seconds: costs(way, step)?, error: Expected::of(error, 0.0) })

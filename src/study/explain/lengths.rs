@@ -5,7 +5,7 @@ use super::findings::{Findings, Way};
 use super::margin::Bars;
 use super::optimum::{Optimum, SHORTEST, Terms, UNBIASED, optimum};
 use crate::study::Case;
-use crate::study::trial::{Known, ROWS};
+use crate::study::trial::Known;
 use stripmine_physics::averages::LIKELY_ENOUGH;
 use stripmine_physics::method::Every;
 use stripmine_physics::number::significant;
@@ -21,7 +21,11 @@ pub(super) struct Weighed<'w> {
 
 /// The cheapest step and time of a way; a way that was not compared has the bias of none, and is not weighed where others were.
 pub(super) fn weigh(way: &Way, findings: &Findings, chance: &Chance, wanted: f64) -> Option<Optimum> {
-    let terms = Terms { cost: way.cost?, transient: findings.mean.transient };
+    let terms = Terms {
+        cost: way.cost?,
+        rows: findings.row * findings.mean.rows(),
+        transient: findings.mean.transient,
+    };
     let time_for = |bar| chance.time_for(bar);
     match (way.step, way.bias) {
         (None, _) => optimum(terms, (wanted, 1.0), |_, _| Off::default(), time_for),
@@ -43,6 +47,11 @@ pub(super) struct Chance {
 }
 
 impl Findings {
+    /// Wall seconds of the rows of a run of some time.
+    pub(super) fn of_rows(&self, time: f64) -> f64 {
+        self.row * self.mean.rows_in(time)
+    }
+
     /// What chance leaves by the time.
     pub(super) fn chance(&self) -> Chance {
         Chance::of(&self.mean, self.whole)
@@ -104,7 +113,7 @@ fn whole_runs(case: &Case, best: &Weighed<'_>, findings: &Findings, time: f64) -
     Ok(Length {
         time: seeds * time,
         seeds: seeds as u64,
-        seconds: rounds * (findings.start + ROWS[1] * findings.row + cost * one_thread * time),
+        seconds: rounds * (findings.start + findings.of_rows(time) + cost * one_thread * time),
         why: format!(
             "whole runs from starts that differ have means ± {} of each other",
             significant(chance, 2)
@@ -125,8 +134,8 @@ fn length_of_stretches(case: &Case, best: &Weighed<'_>, findings: &Findings) -> 
     };
     let time = best.optimum.time.max(transient).max(least);
     let cost = best.way.cost.unwrap_or(0.0) / best.optimum.part;
-    let start = findings.start + ROWS[1] * findings.row;
-    let together = start + cost * (time + transient);
+    let seconds = |time: f64, cost: f64| findings.start + findings.of_rows(time) + cost * time;
+    let together = seconds(time + transient, cost);
     let threads = findings.threads as f64;
     if let Some(difference) = findings.starts_differ {
         let why = format!(
@@ -135,7 +144,7 @@ fn length_of_stretches(case: &Case, best: &Weighed<'_>, findings: &Findings) -> 
         );
         return Length { time, seeds: 1, seconds: together, why };
     }
-    let apart = start + cost * findings.one_thread * (time / threads + transient);
+    let apart = seconds(time / threads + transient, cost * findings.one_thread);
     if findings.threads > 1 && apart < 0.95 * together && time / threads > transient.max(least) {
         return Length {
             time,

@@ -7,6 +7,8 @@ use super::bias::Off;
 pub struct Terms {
     /// Wall seconds of a unit of time at the longest step.
     pub cost: f64,
+    /// Wall seconds of the rows of a unit of time.
+    pub rows: f64,
     /// Time that does not count (time).
     pub transient: f64,
 }
@@ -62,7 +64,7 @@ pub fn optimum(
     let parts = (0..).map(|at| 2f64.powf(-f64::from(at) / f64::from(BETWEEN)));
     let of = |part: f64| {
         let (bias, time) = settled(part)?;
-        let seconds = terms.cost / part * (time + terms.transient);
+        let seconds = (terms.cost / part + terms.rows) * (time + terms.transient);
         Some(Optimum { part, bias, time, seconds })
     };
     parts.take_while(|part| *part >= shortest).filter_map(of).min_by(|a, b| a.seconds.total_cmp(&b.seconds))
@@ -72,7 +74,7 @@ pub fn optimum(
 mod tests {
     use super::*;
 
-    const TERMS: Terms = Terms { cost: 2.0, transient: 0.0 };
+    const TERMS: Terms = Terms { cost: 2.0, rows: 0.0, transient: 0.0 };
 
     fn best(terms: Terms, bias: impl Fn(f64) -> Off) -> Option<Optimum> {
         optimum(terms, (0.1, SHORTEST), |part, _| bias(part), |chance| 4.0 / (chance * chance))

@@ -4,7 +4,7 @@ use super::Target;
 use super::bias::Off;
 use super::decisions::{decisions, left_out};
 use super::findings::{Findings, Way};
-use super::lengths::{Weighed, length, weigh};
+use super::lengths::{Chance, Weighed, length, weigh};
 use super::optimum::SHORTEST;
 use super::recommended::{Expected, Interval, Own, Plan};
 use super::unreached::Unreached;
@@ -73,11 +73,12 @@ pub fn plan(case: &Case, target: &Target, findings: &Findings, origin: &str) -> 
         phases: phases(best, per_run),
         step,
         time: per_run,
+        rows: mean.rows_in(per_run),
         is_whole: findings.whole.is_some(),
         transient: mean.transient,
         seeds: length.seeds,
         starts_differ: findings.starts_differ,
-        overrides: overrides(case, best.way, step, Some(per_run)),
+        overrides: overrides(case, best.way, step, (Some(per_run), mean.every)),
         own,
         left_out: left_out(findings, wanted, mean.mean),
         origin: origin.to_owned(),
@@ -106,8 +107,13 @@ pub(super) fn phases(best: &Weighed<'_>, time: f64) -> Vec<(String, f64)> {
     best.way.phases.iter().map(scaled).collect()
 }
 
-/// The overrides that make a plan of a scene.
-pub(super) fn overrides(case: &Case, way: &Way, step: Option<f64>, time: Option<f64>) -> Overrides {
+/// The overrides that make a plan of a scene: the step, the time of a run, and that between its rows (time; 0 where it does not matter).
+pub(super) fn overrides(
+    case: &Case,
+    way: &Way,
+    step: Option<f64>,
+    (time, every): (Option<f64>, f64),
+) -> Overrides {
     let mut overrides = way.overrides.clone();
     // The run takes the step that is printed.
     let step = step.map(|step| rounded(step, 4));
@@ -121,20 +127,25 @@ pub(super) fn overrides(case: &Case, way: &Way, step: Option<f64>, time: Option<
         (true, Some(step)) => overrides.set(&STEPS, (time / step).ceil() as u64),
         _ => overrides.set(&TIME, no_shorter(time)),
     };
-    // Its own rows, where these are enough for a mean with a bar.
-    let apart = match case.prepared.schedule.rows {
+    // Its own rows, where these are enough for a mean with a bar and none were planned.
+    let between = match every {
+        0.0 if time >= FEWEST_ROWS * own_rows(case, step) => return overrides,
+        0.0 => time / ROWS,
+        _ => every.min(time / ROWS),
+    };
+    match step {
+        Some(step) => overrides.set(&THERMO_EVERY, (between / step).max(1.0) as u64),
+        None => overrides.set(&THERMO_EVERY, rounded(between, 3)),
+    }
+}
+
+/// Time between the rows of a scene with a step (time); infinite where it has none.
+pub(super) fn own_rows(case: &Case, step: Option<f64>) -> f64 {
+    match case.prepared.schedule.rows {
         Every::Steps(steps) => step.map_or(f64::INFINITY, |step| steps as f64 * step),
         Every::Time(time) => time,
         Every::Never | Every::Seconds(_) => f64::INFINITY,
-    };
-    if time < FEWEST_ROWS * apart {
-        let every = time / ROWS[1];
-        overrides = match step {
-            Some(step) => overrides.set(&THERMO_EVERY, (every / step).max(1.0) as u64),
-            None => overrides.set(&THERMO_EVERY, rounded(every, 3)),
-        };
     }
-    overrides
 }
 
 /// A time in six digits, or one more in the last of them where it would be shorter.
@@ -167,7 +178,9 @@ fn own(case: &Case, way: &Way, findings: &Findings) -> Option<Own> {
         (_, None) => Off::default(),
     };
     let left = time - findings.mean.transient;
-    let chance = if left > 0.0 { findings.chance().over(left) } else { f64::INFINITY };
-    let seconds = findings.start + ROWS[1] * findings.row + cost * time;
+    let every = own_rows(case, step);
+    let known = findings.mean.looked_at(every);
+    let chance = if left > 0.0 { Chance::of(&known, findings.whole).over(left) } else { f64::INFINITY };
+    let seconds = findings.start + findings.row * (time / every) + cost * time;
     Some(Own { seconds, error: Expected::of(bias, chance) })
 }

@@ -77,6 +77,8 @@ pub struct Plan {
     pub step: Option<f64>,
     /// Time of each run, the transient in it (time).
     pub time: f64,
+    /// Rows of each run.
+    pub rows: f64,
     /// Whether the mean is that over whole runs: the quantity changes all along.
     pub is_whole: bool,
     /// Time of the transient (time).

@@ -88,6 +88,7 @@ impl Work<'_> {
             mean: scene.unit * known.mean,
             bar: scene.unit * known.bar,
             square: scene.unit * scene.unit * known.square,
+            single: scene.unit * scene.unit * known.single,
             ..known
         };
         Ok(Measured { known: measured.known.map(in_unit), ..measured })

@@ -2,13 +2,15 @@
 
 pub(super) mod any_number;
 mod failure;
+mod known;
 mod pairs;
 mod sample;
 mod stopwatch;
 
 pub use failure::{Cause, RunFailure};
+pub use known::{Known, Pace, ROWS};
 pub use pairs::{Compared, Paired, TOGETHER, Window, pairs, part, steady};
-pub use sample::{Known, ROWS, Sample, Span};
+pub use sample::{Sample, Span};
 pub use stopwatch::Stopwatch;
 
 use crate::results::Meter;

@@ -1,18 +1,24 @@
 //! A run of some seconds: what a unit of time costs, and what it says of a mean.
 
 use super::Trial;
-use super::any_number;
-use serde::{Deserialize, Serialize};
+use super::known::{Known, Pace, ROWS};
 use std::sync::atomic::Ordering;
-use stripmine_physics::averages::{Average, Estimate, Outcome, Rows, foreseeing, of_independent};
+use stripmine_physics::averages::{Average, Outcome, Rows};
 use stripmine_physics::method::{
     Clock, Every, Failure, Kind, Prepared, Purpose, Quantity, RunWarning, Simulation, Until,
 };
 use stripmine_physics::number::significant;
 use stripmine_physics::particles::Particles;
 
-/// Rows of a sample of some seconds, about: as many as a correlation needs, and so few that they cost little; and of one whose time is known.
-pub const ROWS: [f64; 2] = [1000.0, 250.0];
+/// Rows of a sample of some seconds: as many as a correlation needs, and more where values between them are lost.
+const FEWEST_ROWS: f64 = 1000.0;
+const MOST_ROWS: f64 = 8000.0;
+/// Steps between rows at least, where these are not too dear: a row costs as much as a few.
+const STEPS: u64 = 8;
+/// Part of the time of a sample in which it is timed by longer stretches, longer by so many doublings, and the fewest of these that tell anything.
+const OF_FAR: f64 = 0.1;
+const FARTHER: i32 = 3;
+const FEW: f64 = 4.0;
 /// Looks at a quantity that should keep its value.
 const LOOKS: f64 = 2000.0;
 /// The first stretches, whose memory is cold and whose threads have not begun, are no part of the cost: this share of the time.
@@ -52,82 +58,13 @@ pub struct Sample {
     pub observed: (Kind, usize),
 }
 
-/// A mean as a run knows it.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub struct Known {
-    /// The mean.
-    #[serde(with = "any_number")]
-    pub mean: f64,
-    /// Half the width of its interval of 95 %.
-    #[serde(with = "any_number")]
-    pub bar: f64,
-    /// Time that the mean is over (time).
-    #[serde(with = "any_number")]
-    pub span: f64,
-    /// Waves of the bar: its degrees of freedom.
-    #[serde(with = "any_number")]
-    pub waves: f64,
-    /// Square of the bar of a mean over one unit of time.
-    #[serde(with = "any_number")]
-    pub square: f64,
-    /// Time that does not count (time).
-    #[serde(with = "any_number")]
-    pub transient: f64,
-    /// Time between independent samples (time).
-    #[serde(with = "any_number")]
-    pub apart: f64,
-    /// Degrees of freedom of the square; infinite where it is exact.
-    #[serde(with = "any_number")]
-    pub freedoms: f64,
-}
-
-impl Known {
-    /// A mean that chance does not touch.
-    pub fn exactly(mean: f64) -> Known {
-        Known {
-            mean,
-            bar: 0.0,
-            square: 0.0,
-            span: 0.0,
-            waves: f64::INFINITY,
-            transient: 0.0,
-            apart: 0.0,
-            freedoms: f64::INFINITY,
-        }
-    }
-
-    /// Of the means of whole runs of a time (time); none of fewer than two.
-    pub fn of_whole_runs(means: &[f64], time: f64) -> Option<Known> {
-        let count = means.len() as f64;
-        let [mean, bar] = of_independent(means)?;
-        let (span, waves) = (count * time, count - 1.0);
-        Some(Known { bar, square: bar * bar * span, span, waves, freedoms: waves, ..Known::exactly(mean) })
-    }
-
-    /// Of an estimate, and the series that it is of: when each stretch ends (time), and its value.
-    pub fn of(it: Estimate, series: &[[f64; 2]]) -> Known {
-        let kept: Vec<f64> =
-            series.iter().filter(|[end, _]| *end > it.equilibrated_at).map(|[_, value]| *value).collect();
-        let [bar, freedoms] = foreseeing(&kept).unwrap_or([it.bar, it.freedoms]);
-        Known {
-            mean: it.mean,
-            bar: it.bar,
-            square: bar * bar * it.span,
-            span: it.span,
-            waves: it.freedoms,
-            transient: it.equilibrated_at,
-            apart: it.span / it.independent_samples,
-            freedoms,
-        }
-    }
-}
-
 impl Sample {
     /// The mean, where there is one, however roughly known.
     pub fn known(&self) -> Option<Known> {
         match self.outcome {
             Outcome::Mean(estimate) | Outcome::TooShort { estimate: Some(estimate), .. } => {
-                Some(Known::of(estimate, &self.series))
+                let pace = self.pace();
+                Some(Known::of(estimate, &pace.values(&self.rows, self.observed.1, &self.series), pace))
             }
             Outcome::Constant { mean } => Some(Known::exactly(mean)),
             Outcome::TooShort { estimate: None, .. }
@@ -139,6 +76,11 @@ impl Sample {
 }
 
 impl Sample {
+    /// Cost of its time and of its rows.
+    pub fn pace(&self) -> Pace {
+        Pace { is_instant: self.observed.0 == Kind::Instant, cost: self.cost, row: self.row }
+    }
+
     /// Warnings of its checks, in words.
     pub fn warned(&self) -> String {
         self.warnings.iter().map(|warning| warning.message.as_str()).collect::<Vec<_>>().join("; ")
@@ -208,6 +150,8 @@ pub enum Span {
     Seconds(f64),
     /// A time (time), but no more wall seconds than these where they are given.
     Time(f64, Option<f64>),
+    /// The same with the rows that the scene asks for.
+    Planned(f64, Option<f64>),
 }
 
 impl Span {
@@ -217,6 +161,9 @@ impl Span {
         match self {
             Span::Seconds(seconds) => Span::Seconds(seconds.min(left)),
             Span::Time(time, seconds) => Span::Time(time, Some(seconds.map_or(left, |it| it.min(left)))),
+            Span::Planned(time, seconds) => {
+                Span::Planned(time, Some(seconds.map_or(left, |it| it.min(left))))
+            }
         }
     }
 }
@@ -241,13 +188,22 @@ impl Trial<'_> {
         rows.add(&all_rows[0]);
         let (seconds, most) = match span {
             Span::Seconds(seconds) => (Some(seconds), f64::INFINITY),
-            Span::Time(time, seconds) => (seconds, time),
+            Span::Time(time, seconds) | Span::Planned(time, seconds) => (seconds, time),
         };
-        let stride = match span {
-            Span::Seconds(seconds) => self.stride(simulation, prepared, seconds / ROWS[0])?,
-            Span::Time(time, _) => {
+        let own = own_rows(prepared).filter(|_| matches!(span, Span::Planned(..)));
+        let mut of_stretch = None;
+        let stride = match (span, own) {
+            (Span::Seconds(seconds), _) => {
+                // Only values of moments are lost between rows.
+                let is_instant = quantities[place].kind == Kind::Instant;
+                let most = if is_instant { MOST_ROWS } else { FEWEST_ROWS };
+                of_stretch = is_instant.then_some(OF_FAR * seconds);
+                self.stride(simulation, prepared, [most, FEWEST_ROWS].map(|rows| seconds / rows))?
+            }
+            (_, Some(own)) => own,
+            (Span::Time(time, _) | Span::Planned(time, _), None) => {
                 // How far a quantity goes is seen only where it is looked at.
-                let rows = if quantities[place].kind == Kind::Kept { LOOKS } else { ROWS[1] };
+                let rows = if quantities[place].kind == Kind::Kept { LOOKS } else { ROWS };
                 self.advance(simulation, first(prepared))?;
                 let Clock { steps, time: gone, .. } = simulation.clock();
                 match prepared.schedule.until {
@@ -261,7 +217,7 @@ impl Trial<'_> {
         rows.add(&all_rows[1]);
         let running = self.watch.now();
         // The start is a part of the time.
-        let limit = seconds.map_or(f64::INFINITY, |seconds| seconds - (running - begun));
+        let limit = seconds.map_or(f64::INFINITY, |all| all - (running - begun) - of_stretch.unwrap_or(0.0));
         let mut states = States::new(prepared);
         // Of the stretches once it is warm, and of all.
         let (mut warm, mut all) = ((0.0, 0.0), (0.0, 0.0));
@@ -272,7 +228,9 @@ impl Trial<'_> {
             let (from, before) = (simulation.clock().time, self.watch.now());
             let end = stride.after(&simulation.clock());
             let moment = states.next(from);
-            self.advance_to(simulation, &[Until::Time(moment), end])?;
+            if moment > from {
+                self.advance_to(simulation, &[Until::Time(moment), end])?;
+            }
             states.look(simulation, moment);
             self.advance_to(simulation, &[end])?;
             let (gone, spent) = (simulation.clock().time - from, self.watch.now() - before);
@@ -286,19 +244,25 @@ impl Trial<'_> {
             all_rows.push(row);
         }
         let (gone, spent) = if warm.0 > 0.0 { warm } else { all };
-        let row = self.timed_row(simulation);
-        let (time, series) = (simulation.clock().time, rows.course(place));
+        let (time, series, phases) = (simulation.clock().time, rows.course(place), phases(simulation));
+        let comes_beyond_end = prepared.schedule.until.has_come(&simulation.clock());
+        let warnings = simulation.warnings();
+        let near = spent / gone;
+        let [cost, row] = match of_stretch {
+            Some(of_stretch) => self.costs(simulation, stride, (near, of_stretch))?,
+            None => [near, self.timed_row(simulation)],
+        };
         Ok(Sample {
-            cost: spent / gone,
+            cost,
             row,
             start,
             seconds: self.watch.now() - begun,
             time,
             outcome: Average::of(&rows, place).outcome,
-            comes_beyond_end: prepared.schedule.until.has_come(&simulation.clock()),
-            warnings: simulation.warnings(),
+            comes_beyond_end,
+            warnings,
             series,
-            phases: phases(simulation),
+            phases,
             states: states.kept,
             rows: all_rows,
             observed: (quantities[place].kind, place),
@@ -316,6 +280,34 @@ impl Trial<'_> {
         self.watch.during(simulation, |it| it.advance(moments, self.stop))
     }
 
+    /// Wall seconds of a unit of time by itself, and of a row: stretches that are longer take less for each unit by the share of a row, which is more than
+    /// the look at the end of it.
+    fn costs(
+        &self,
+        simulation: &mut dyn Simulation,
+        stride: Until,
+        (near, seconds): (f64, f64),
+    ) -> Result<[f64; 2], Failure> {
+        let of_look = self.timed_row(simulation);
+        let farther = (0..FARTHER).fold(stride, |stride, _| stride.doubled());
+        let (begun, from) = (self.watch.now(), simulation.clock().time);
+        let mut stretches = 0.0;
+        while self.watch.now() - begun < seconds && !self.stop.load(Ordering::Relaxed) {
+            self.advance(simulation, farther)?;
+            stretches += 1.0;
+        }
+        let gone = simulation.clock().time - from;
+        if stretches < FEW {
+            return Ok([near, of_look]);
+        }
+        let far = (self.watch.now() - begun) / gone;
+        // By hand, of c and r in stretches of L and F L: near = c + r/L, far = c + r/(F L).
+        let factor = 2f64.powi(FARTHER);
+        let each = gone / stretches / factor;
+        let of_stretch = ((near - far) * each / (1.0 - 1.0 / factor)).max(0.0);
+        Ok([far.min(near) - of_stretch / (factor * each), of_look + of_stretch])
+    }
+
     /// Wall seconds of a row, the least of some.
     fn timed_row(&self, simulation: &dyn Simulation) -> f64 {
         let once = |_| {
@@ -326,18 +318,21 @@ impl Trial<'_> {
         (0..3).map(once).fold(f64::INFINITY, f64::min)
     }
 
-    /// A stretch that takes about some seconds: steps, or for a method without any a part of the time between rows.
+    /// A stretch that takes about some seconds, from least to most: steps, fewer than [`STEPS`] only where more would take the most, or for a method
+    /// without any a part of the time between rows.
     fn stride(
         &self,
         simulation: &mut dyn Simulation,
         prepared: &Prepared,
-        seconds: f64,
+        [least, most]: [f64; 2],
     ) -> Result<Until, Failure> {
         let mut stride = first(prepared);
         loop {
             let begun = self.watch.now();
             self.advance(simulation, stride)?;
-            if self.watch.now() - begun > 0.5 * seconds || self.stop.load(Ordering::Relaxed) {
+            let spent = 2.0 * (self.watch.now() - begun);
+            let is_long = !matches!(stride, Until::Steps(steps) if steps < STEPS);
+            if spent > most || is_long && spent > least || self.stop.load(Ordering::Relaxed) {
                 return Ok(stride);
             }
             stride = stride.doubled();
@@ -352,7 +347,7 @@ impl Trial<'_> {
         const STRETCHES: u32 = 4;
         let mut simulation = prepared.start(Purpose::Run)?;
         let simulation = simulation.as_mut();
-        let stride = self.stride(simulation, prepared, seconds / f64::from(STRETCHES))?;
+        let stride = self.stride(simulation, prepared, [seconds / f64::from(STRETCHES); 2])?;
         let mut least = f64::INFINITY;
         for _ in 0..STRETCHES {
             let (from, begun) = (simulation.clock().time, self.watch.now());
@@ -402,6 +397,15 @@ impl States {
             });
             self.every *= 2;
         }
+    }
+}
+
+/// The stretch between rows of the scene; none where it asks for none.
+fn own_rows(prepared: &Prepared) -> Option<Until> {
+    match prepared.schedule.rows {
+        Every::Steps(steps) => Some(Until::Steps(steps)),
+        Every::Time(time) => Some(Until::Time(time)),
+        Every::Never | Every::Seconds(_) => None,
     }
 }
 

@@ -7,7 +7,7 @@ use super::reference::Reference;
 use super::runs::{Ensemble, WHOLE, side_by_side};
 use super::verdict::Verdict;
 use crate::study::Choice;
-use crate::study::trial::{ROWS, Span};
+use crate::study::trial::Span;
 use rayon::ThreadPoolBuilder;
 use stripmine_physics::averages::{Outcome, of_independent};
 use stripmine_physics::method::{Decides, Prepared};
@@ -30,8 +30,9 @@ const STARTS: usize = 20_000;
 struct Point {
     choice: Choice,
     step: Option<f64>,
-    /// Wall seconds of a unit of time, and of what a run takes beside it.
+    /// Wall seconds of a unit of time, of a row, and of a run beside these.
     cost: f64,
+    row: f64,
     start: f64,
     /// The mean less the reference, and the bar of both; or how far it went from what should be kept.
     off: [f64; 2],
@@ -164,11 +165,12 @@ impl<'g> Grid<'g> {
 
     /// Wall seconds of a plan as it is.
     fn as_planned(&self, point: &Point, plan: &Plan) -> f64 {
+        let rows = point.start + point.row * plan.rows;
         match plan.seeds {
-            1 => point.start + point.cost / self.speedup * plan.time,
+            1 => rows + point.cost / self.speedup * plan.time,
             seeds => {
                 let rounds = (seeds as f64 / rayon::current_num_threads() as f64).ceil();
-                rounds * (point.start + point.cost * plan.time)
+                rounds * (rows + point.cost * plan.time)
             }
         }
     }
@@ -177,24 +179,25 @@ impl<'g> Grid<'g> {
     fn seconds(&self, point: &Point, bias: f64, error: f64) -> Option<f64> {
         let left = Some(error - bias).filter(|left| *left > 0.0)?;
         let cores = rayon::current_num_threads() as f64;
-        let alone = |time: f64| point.start + point.cost / self.speedup * time;
+        let known = &self.reference.known;
+        let rows = |time: f64| point.start + point.row * known.rows_in(time);
+        let alone = |time: f64| rows(time) + point.cost / self.speedup * time;
+        let one_of_several = |time: f64| rows(time) + point.cost * time;
         if self.of.target.is_kept() {
             return Some(alone(self.of.case.duration()?));
         }
-        let known = &self.reference.known;
         let time = self.chance.time_for(left);
         if let Some(whole) = self.of.asking.whole {
             let runs = (time / whole).ceil().max(1.0);
             return Some(if runs == 1.0 {
                 alone(whole)
             } else {
-                (runs / cores).ceil() * (point.start + point.cost * whole)
+                (runs / cores).ceil() * one_of_several(whole)
             });
         }
         let least = known.transient.max(SAMPLES * known.apart);
         let time = time.max(least);
-        let apart =
-            (time / cores > least).then(|| point.start + point.cost * (time / cores + known.transient));
+        let apart = (time / cores > least).then(|| one_of_several(time / cores + known.transient));
         Some(apart.into_iter().fold(alone(time + known.transient), f64::min))
     }
 }
@@ -299,13 +302,7 @@ impl Ensemble<'_> {
                 [mean - reference.known.mean, bar.hypot(reference.known.bar)]
             }
         };
-        Ok(Point {
-            choice: choice.clone(),
-            step,
-            cost: first.cost,
-            start: first.start + ROWS[1] * first.row,
-            off,
-        })
+        Ok(Point { choice: choice.clone(), step, cost: first.cost, row: first.row, start: first.start, off })
     }
 }
 
@@ -343,6 +340,7 @@ mod tests {
             choice: choice.clone(),
             step: Some(step),
             cost: 100.0 * cost,
+            row: 0.0,
             start: 1.0,
             off,
         };

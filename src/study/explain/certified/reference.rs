@@ -127,6 +127,8 @@ pub(super) fn joined(runs: &[Known]) -> Option<Known> {
         mean,
         bar: ratio * bar,
         square: ratio * ratio * sum(&|run, weight| weight * run.square),
+        every: sum(&|run, weight| weight * run.every),
+        single: sum(&|run, weight| weight * run.single),
         span: all,
         waves: runs.iter().map(|run| run.waves).sum(),
         transient: runs.iter().map(|run| run.transient).fold(f64::INFINITY, f64::min),
@@ -141,7 +143,16 @@ mod tests {
 
     fn run(mean: f64, bar: f64, span: f64) -> Known {
         let square = bar * bar * span;
-        Known { mean, bar, square, span, waves: 5.0, transient: span, apart: 1.0, freedoms: 5.0 }
+        Known {
+            bar,
+            square,
+            span,
+            waves: 5.0,
+            transient: span,
+            apart: 1.0,
+            freedoms: 5.0,
+            ..Known::exactly(mean)
+        }
     }
 
     /// By hand: weights 1/4 and 3/4, bar √(0.25² 0.4² + 0.75² 0.2²) = 0.18028; runs two bars apart have χ² = 4 of one degree of freedom.

@@ -67,7 +67,7 @@ impl Ensemble<'_> {
         let sample = self.trial.sample(prepared, observed, span);
         let sample = sample.map_err(|failure| first_line(&failure.what()))?;
         match span {
-            Span::Time(time, _) => sample.cut_off(time).map_or(Ok(sample), Err),
+            Span::Time(time, _) | Span::Planned(time, _) => sample.cut_off(time).map_or(Ok(sample), Err),
             Span::Seconds(_) => Ok(sample),
         }
     }
@@ -88,7 +88,9 @@ impl Ensemble<'_> {
         let starts = (0..seeds).map(|seed| self.start(&plan.overrides, number * seeds + seed));
         let starts: Vec<Prepared> = starts.collect::<Result<_, _>>()?;
         let most = LATE * self.target.limit;
-        let one = |at: usize| self.value(&self.sample(&starts[at], Span::Time(plan.time, Some(most)))?);
+        // Of what is kept every look counts.
+        let span = if self.target.is_kept() { Span::Time } else { Span::Planned };
+        let one = |at: usize| self.value(&self.sample(&starts[at], span(plan.time, Some(most)))?);
         let begun = self.trial.watch.now();
         let values: Vec<Result<f64, String>> = match is_alone && seeds > 1 {
             true => side_by_side(seeds, one).map_err(|error| error.to_string())?,

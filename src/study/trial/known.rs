@@ -1,0 +1,227 @@
+//! What a run knows of a mean, and how often a run is to look at a quantity: rows cost time, and values between them are lost.
+
+use super::any_number;
+use serde::{Deserialize, Serialize};
+use stripmine_physics::averages::{Estimate, foreseeing, of_independent};
+
+/// Rows of a run whose time is known, where nothing asks for more.
+pub const ROWS: f64 = 250.0;
+/// Rows may be so many times as far apart as in the sample, the farthest first.
+const EVERY: [usize; 4] = [8, 4, 2, 1];
+/// Values that are left of a series at least.
+const FEWEST: usize = 100;
+/// Closer rows are worth their cost where the whole becomes cheaper than by this factor: fewer are easier to keep.
+const WORTH: f64 = 0.8;
+
+/// A mean as a run knows it.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub struct Known {
+    /// The mean.
+    #[serde(with = "any_number")]
+    pub mean: f64,
+    /// Half the width of its interval of 95 %.
+    #[serde(with = "any_number")]
+    pub bar: f64,
+    /// Time that the mean is over (time).
+    #[serde(with = "any_number")]
+    pub span: f64,
+    /// Waves of the bar: its degrees of freedom.
+    #[serde(with = "any_number")]
+    pub waves: f64,
+    /// Square of the bar of a mean over one unit of time, by rows [`every`](Self::every) so often.
+    #[serde(with = "any_number")]
+    pub square: f64,
+    /// Time between rows (time); 0 where it does not matter.
+    #[serde(with = "any_number")]
+    pub every: f64,
+    /// Square of the bar of a single value; 0 where rows miss nothing.
+    #[serde(with = "any_number")]
+    pub single: f64,
+    /// Time that does not count (time).
+    #[serde(with = "any_number")]
+    pub transient: f64,
+    /// Time between independent samples (time).
+    #[serde(with = "any_number")]
+    pub apart: f64,
+    /// Degrees of freedom of the square; infinite where it is exact.
+    #[serde(with = "any_number")]
+    pub freedoms: f64,
+}
+
+/// Cost of the time and of the rows of a run.
+#[derive(Clone, Copy, Debug)]
+pub struct Pace {
+    /// Set where a row has the value of a moment, and nothing of those before it.
+    pub is_instant: bool,
+    /// Wall seconds of a unit of time, rows apart.
+    pub cost: f64,
+    /// Wall seconds of a row.
+    pub row: f64,
+}
+
+impl Pace {
+    /// Values of a quantity with their times: of moments those of all rows but the first, else the series of stretches (ends and values).
+    pub fn values(self, rows: &[Vec<f64>], place: usize, series: &[[f64; 2]]) -> Vec<[f64; 2]> {
+        match self.is_instant {
+            true => rows.iter().skip(1).map(|row| [row[0], row[place]]).collect(),
+            false => series.to_vec(),
+        }
+    }
+}
+
+impl Known {
+    /// A mean that chance does not touch.
+    pub fn exactly(mean: f64) -> Known {
+        Known {
+            mean,
+            bar: 0.0,
+            square: 0.0,
+            every: 0.0,
+            single: 0.0,
+            span: 0.0,
+            waves: f64::INFINITY,
+            transient: 0.0,
+            apart: 0.0,
+            freedoms: f64::INFINITY,
+        }
+    }
+
+    /// Of the means of whole runs of a time (time); none of fewer than two.
+    pub fn of_whole_runs(means: &[f64], time: f64) -> Option<Known> {
+        let count = means.len() as f64;
+        let [mean, bar] = of_independent(means)?;
+        let (span, waves) = (count * time, count - 1.0);
+        Some(Known { bar, square: bar * bar * span, span, waves, freedoms: waves, ..Known::exactly(mean) })
+    }
+
+    /// Of an estimate, and the values that it is of, each with its time (time). Rows are as far apart as is cheapest for the error.
+    pub fn of(it: Estimate, values: &[[f64; 2]], pace: Pace) -> Known {
+        let kept: Vec<f64> =
+            values.iter().filter(|[time, _]| *time > it.equilibrated_at).map(|[_, value]| *value).collect();
+        let spacing = it.span / kept.len() as f64;
+        let squares: f64 = kept.iter().map(|value| (value - it.mean).powi(2)).sum();
+        let own = Known {
+            mean: it.mean,
+            bar: it.bar,
+            square: it.bar * it.bar * it.span,
+            every: spacing,
+            single: if pace.is_instant { 4.0 * squares / kept.len() as f64 } else { 0.0 },
+            span: it.span,
+            waves: it.freedoms,
+            transient: it.equilibrated_at,
+            apart: it.span / it.independent_samples,
+            freedoms: it.freedoms,
+        };
+        let mut best: Option<(f64, Known)> = None;
+        for by in EVERY {
+            let values = thinned(&kept, by, pace.is_instant);
+            let Some([bar, freedoms]) = foreseeing(&values).filter(|_| by == 1 || values.len() >= FEWEST)
+            else {
+                continue;
+            };
+            let every = by as f64 * spacing;
+            let square = bar * bar * every * values.len() as f64;
+            let cost = square * (pace.cost + pace.row / every);
+            if best.is_none_or(|(least, _)| cost < WORTH * least) {
+                best = Some((cost, Known { square, every, freedoms, ..own }));
+            }
+        }
+        best.map_or(own, |(_, known)| known)
+    }
+
+    /// The same mean by rows so far apart (time).
+    ///
+    /// The variance of a mean over rows Δ apart is that of values whose memory fades exponentially, v Δ coth(v Δ/s), with v that of a single value and s that of
+    /// close rows in a unit of time: s where rows are close, and v Δ where each is independent of the next.
+    #[must_use]
+    pub fn looked_at(&self, every: f64) -> Known {
+        if self.single == 0.0 || every <= self.every {
+            return *self;
+        }
+        let alone = |every: f64| self.single * every;
+        let square = match alone(self.every) / self.square {
+            // Values are independent already.
+            part if part >= 1.0 => self.square * every / self.every,
+            part => {
+                let close = alone(self.every) / libm::atanh(part);
+                alone(every) / libm::tanh(alone(every) / close)
+            }
+        };
+        Known { square, every, ..*self }
+    }
+
+    /// Rows of a run of some time.
+    pub fn rows_in(&self, time: f64) -> f64 {
+        if self.every > 0.0 { (time / self.every).max(ROWS) } else { ROWS }
+    }
+
+    /// Rows of a unit of time in long runs.
+    pub fn rows(&self) -> f64 {
+        if self.every > 0.0 { 1.0 / self.every } else { 0.0 }
+    }
+}
+
+/// One of so many values: of moments the last, of stretches their mean.
+fn thinned(values: &[f64], by: usize, is_instant: bool) -> Vec<f64> {
+    let one = |values: &[f64]| match is_instant {
+        true => values[by - 1],
+        false => values.iter().sum::<f64>() / by as f64,
+    };
+    values.chunks_exact(by).map(one).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stripmine_physics::averages::{Outcome, estimated};
+
+    const FREE: Pace = Pace { is_instant: true, cost: 1.0, row: 0.0 };
+
+    /// Values a unit of time apart that remember a part of the one before.
+    fn known(memory: f64, pace: Pace) -> Known {
+        let (mut state, mut value) = (5_u64, 0.0);
+        let mut next = |end: u32| {
+            let mut uniform = || {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+            };
+            value = memory * value + (1.0 - memory * memory).sqrt() * 12f64.sqrt() * uniform();
+            [f64::from(end), value]
+        };
+        let series: Vec<[f64; 2]> = (1..=8000).map(&mut next).collect();
+        let values: Vec<f64> = series.iter().map(|it| it[1]).collect();
+        match estimated(&values, 0.0, 1.0) {
+            Outcome::Mean(estimate) => Known::of(estimate, &series, pace),
+            outcome => unreachable!("{outcome:?}"),
+        }
+    }
+
+    /// By hand, for a variance of 1 and a bar of two standard errors: rows Δ apart of values that keep a part m in a unit of time have 4 Δ (1 + m^Δ)/(1 − m^Δ). With
+    /// m = 0.9 that is 76 for every value and 79 for every eighth: the eighth is enough. With m = 0 it is 4 and 32: every value counts, unless a row costs as much as
+    /// eight units of time.
+    #[test]
+    fn rows_are_as_close_as_pays() {
+        let near = |found: f64, exact: f64| (found / exact - 1.0).abs() < 0.25;
+        let slow = known(0.9, FREE);
+        assert!(
+            slow.every == 8.0 && near(slow.square, 32.0 * (1.0 + 0.9f64.powi(8)) / (1.0 - 0.9f64.powi(8))),
+            "{slow:?}"
+        );
+        let quick = known(0.0, FREE);
+        assert!(quick.every == 1.0 && near(quick.square, 4.0) && near(quick.single, 4.0), "{quick:?}");
+        let dear = known(0.0, Pace { row: 80.0, ..FREE });
+        assert!(dear.every == 8.0 && near(dear.square, 32.0), "{dear:?}");
+        // Means of stretches miss nothing.
+        let means = known(0.0, Pace { is_instant: false, ..FREE });
+        assert!(means.every == 8.0 && near(means.square, 4.0) && means.single == 0.0, "{means:?}");
+        // By rows farther apart, by the same formula.
+        let later = known(0.5, FREE).looked_at(4.0);
+        assert!(
+            near(later.square, 16.0 * (1.0 + 0.0625) / (1.0 - 0.0625)) && later.every == 4.0,
+            "{later:?}"
+        );
+        assert!(near(quick.looked_at(10.0).square, 40.0));
+        assert_eq!(means.looked_at(100.0).square, means.square);
+        assert_eq!([quick.rows_in(1000.0), quick.rows_in(10.0), means.rows()], [1000.0, ROWS, 0.125]);
+    }
+}
