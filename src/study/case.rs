@@ -7,7 +7,7 @@ use stripmine_physics::method::{Entry, Methods, Prepared, Until, prepare, vocabu
 use stripmine_physics::scene::{Overrides, SceneErrors, Values};
 
 /// Format of finished runs in journals; raised whenever their contents change.
-const JOURNALED: &str = "10";
+const JOURNALED: &str = "11";
 
 /// A scene, its method, and its own configuration.
 pub struct Case {

@@ -2,7 +2,7 @@
 
 use super::findings::{Way, Work};
 use super::mean::Mean;
-use crate::study::trial::{Known, Pace, Span};
+use crate::study::trial::{Known, Pace, Span, values};
 use stripmine_physics::averages::{Average, Outcome, Rows};
 use stripmine_physics::method::Quantity;
 use stripmine_physics::scene::SEED;
@@ -27,7 +27,7 @@ impl Work<'_> {
             let later = mean.known.transient.max(other.transient);
             // A run that ends before that tells nothing.
             other = after(&sample.rows, observed, (&other, sample.pace()), later)?;
-            let pace = Pace { cost: mean.cost, row: mean.row, ..sample.pace() };
+            let pace = sample.pace().map(|_| Pace { cost: mean.cost, row: mean.row });
             mean.known = after(&mean.rows, observed, (&mean.known, pace), later).unwrap_or(mean.known);
             mean.transients = vec![mean.known.transient];
         }
@@ -45,7 +45,7 @@ fn differ(one: &Known, other: &Known) -> bool {
 fn after(
     rows: &[Vec<f64>],
     (quantities, place): (&'static [Quantity], usize),
-    (known, pace): (&Known, Pace),
+    (known, pace): (&Known, Option<Pace>),
     time: f64,
 ) -> Option<Known> {
     if known.transient >= time {
@@ -55,7 +55,8 @@ fn after(
     rows.iter().filter(|row| row[0] >= time).for_each(|row| later.add(row));
     match Average::of(&later, place).outcome {
         Outcome::Mean(estimate) => {
-            Some(Known::of(estimate, &pace.values(rows, place, &later.course(place)), pace))
+            let values = values(rows, place, &later.course(place), pace.is_some());
+            Some(Known::of(estimate, &values, pace))
         }
         _ => None,
     }
@@ -77,7 +78,7 @@ mod tests {
         let value = |at: i32| if at < 100 { 20.0 } else { f64::from(2 + at % 2 * 2) };
         let rows: Vec<Vec<f64>> = (0..1000).map(|at| vec![f64::from(at), value(at)]).collect();
         let missed = Known { mean: 4.7, bar: 0.5, transient: 5.0, ..Known::exactly(4.7) };
-        let pace = Pace { is_instant: true, cost: 1.0, row: 0.0 };
+        let pace = Some(Pace { cost: 1.0, row: 0.0 });
         let cut = |transient: f64| after(&rows, (OBSERVED, 1), (&missed, pace), transient);
         let known = cut(100.0).unwrap();
         assert!((known.mean - 3.0).abs() < 0.01 && known.transient >= 100.0, "{known:?}");

@@ -155,7 +155,7 @@ mod tests {
                     Outcome::Mean(estimate) => {
                         let ends = (1..).map(|end| (end * every) as f64);
                         let series: Vec<[f64; 2]> = ends.zip(seen).map(|(end, value)| [end, value]).collect();
-                        Some(Known::of(estimate, &series, Pace { is_instant: true, cost: 1.0, row: 0.0 }))
+                        Some(Known::of(estimate, &series, Some(Pace { cost: 1.0, row: 0.0 })))
                     }
                     _ => None,
                 }

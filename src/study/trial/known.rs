@@ -48,25 +48,13 @@ pub struct Known {
     pub freedoms: f64,
 }
 
-/// Cost of the time and of the rows of a run.
+/// Cost of the time and of the rows of a run whose rows have values of moments, and nothing of those between.
 #[derive(Clone, Copy, Debug)]
 pub struct Pace {
-    /// Set where a row has the value of a moment, and nothing of those before it.
-    pub is_instant: bool,
     /// Wall seconds of a unit of time, rows apart.
     pub cost: f64,
     /// Wall seconds of a row.
     pub row: f64,
-}
-
-impl Pace {
-    /// Values of a quantity with their times: of moments those of all rows but the first, else the series of stretches (ends and values).
-    pub fn values(self, rows: &[Vec<f64>], place: usize, series: &[[f64; 2]]) -> Vec<[f64; 2]> {
-        match self.is_instant {
-            true => rows.iter().skip(1).map(|row| [row[0], row[place]]).collect(),
-            false => series.to_vec(),
-        }
-    }
 }
 
 impl Known {
@@ -94,39 +82,45 @@ impl Known {
         Some(Known { bar, square: bar * bar * span, span, waves, freedoms: waves, ..Known::exactly(mean) })
     }
 
-    /// Of an estimate, and the values that it is of, each with its time (time). Rows are as far apart as is cheapest for the error.
-    pub fn of(it: Estimate, values: &[[f64; 2]], pace: Pace) -> Known {
+    /// Of an estimate, and the values that it is of, each with its time (time). With a pace rows are as far apart as is cheapest for the error.
+    pub fn of(it: Estimate, values: &[[f64; 2]], pace: Option<Pace>) -> Known {
         let kept: Vec<f64> =
             values.iter().filter(|[time, _]| *time > it.equilibrated_at).map(|[_, value]| *value).collect();
-        let spacing = it.span / kept.len() as f64;
-        let squares: f64 = kept.iter().map(|value| (value - it.mean).powi(2)).sum();
-        let own = Known {
+        let [bar, freedoms] = foreseeing(&kept).unwrap_or([it.bar, it.freedoms]);
+        let all = Known {
             mean: it.mean,
             bar: it.bar,
-            square: it.bar * it.bar * it.span,
-            every: spacing,
-            single: if pace.is_instant { 4.0 * squares / kept.len() as f64 } else { 0.0 },
+            square: bar * bar * it.span,
+            every: 0.0,
+            single: 0.0,
             span: it.span,
             waves: it.freedoms,
             transient: it.equilibrated_at,
             apart: it.span / it.independent_samples,
-            freedoms: it.freedoms,
+            freedoms,
         };
+        pace.and_then(|pace| all.by_rows(&kept, pace)).unwrap_or(all)
+    }
+
+    /// The same by the cheapest rows of all these values; none where there are too few.
+    fn by_rows(self, values: &[f64], pace: Pace) -> Option<Known> {
+        let count = values.len() as f64;
+        let spacing = self.span / count;
+        let squares: f64 = values.iter().map(|value| (value - self.mean).powi(2)).sum();
         let mut best: Option<(f64, Known)> = None;
         for by in EVERY {
-            let values = thinned(&kept, by, pace.is_instant);
-            let Some([bar, freedoms]) = foreseeing(&values).filter(|_| by == 1 || values.len() >= FEWEST)
-            else {
+            let seen: Vec<f64> = values.iter().skip(by - 1).step_by(by).copied().collect();
+            let Some([bar, freedoms]) = foreseeing(&seen).filter(|_| by == 1 || seen.len() >= FEWEST) else {
                 continue;
             };
             let every = by as f64 * spacing;
-            let square = bar * bar * every * values.len() as f64;
+            let square = bar * bar * every * seen.len() as f64;
             let cost = square * (pace.cost + pace.row / every);
             if best.is_none_or(|(least, _)| cost < WORTH * least) {
-                best = Some((cost, Known { square, every, freedoms, ..own }));
+                best = Some((cost, Known { square, every, single: 4.0 * squares / count, freedoms, ..self }));
             }
         }
-        best.map_or(own, |(_, known)| known)
+        best.map(|(_, known)| known)
     }
 
     /// The same mean by rows so far apart (time).
@@ -161,24 +155,15 @@ impl Known {
     }
 }
 
-/// One of so many values: of moments the last, of stretches their mean.
-fn thinned(values: &[f64], by: usize, is_instant: bool) -> Vec<f64> {
-    let one = |values: &[f64]| match is_instant {
-        true => values[by - 1],
-        false => values.iter().sum::<f64>() / by as f64,
-    };
-    values.chunks_exact(by).map(one).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use stripmine_physics::averages::{Outcome, estimated};
 
-    const FREE: Pace = Pace { is_instant: true, cost: 1.0, row: 0.0 };
+    const FREE: Pace = Pace { cost: 1.0, row: 0.0 };
 
     /// Values a unit of time apart that remember a part of the one before.
-    fn known(memory: f64, pace: Pace) -> Known {
+    fn known(memory: f64, pace: Option<Pace>) -> Known {
         let (mut state, mut value) = (5_u64, 0.0);
         let mut next = |end: u32| {
             let mut uniform = || {
@@ -202,26 +187,29 @@ mod tests {
     #[test]
     fn rows_are_as_close_as_pays() {
         let near = |found: f64, exact: f64| (found / exact - 1.0).abs() < 0.25;
-        let slow = known(0.9, FREE);
+        let slow = known(0.9, Some(FREE));
         assert!(
             slow.every == 8.0 && near(slow.square, 32.0 * (1.0 + 0.9f64.powi(8)) / (1.0 - 0.9f64.powi(8))),
             "{slow:?}"
         );
-        let quick = known(0.0, FREE);
+        let quick = known(0.0, Some(FREE));
         assert!(quick.every == 1.0 && near(quick.square, 4.0) && near(quick.single, 4.0), "{quick:?}");
-        let dear = known(0.0, Pace { row: 80.0, ..FREE });
+        let dear = known(0.0, Some(Pace { row: 80.0, ..FREE }));
         assert!(dear.every == 8.0 && near(dear.square, 32.0), "{dear:?}");
-        // Means of stretches miss nothing.
-        let means = known(0.0, Pace { is_instant: false, ..FREE });
-        assert!(means.every == 8.0 && near(means.square, 4.0) && means.single == 0.0, "{means:?}");
+        // Rows that miss nothing do not matter.
+        let means = known(0.0, None);
+        assert!(means.every == 0.0 && near(means.square, 4.0) && means.single == 0.0, "{means:?}");
         // By rows farther apart, by the same formula.
-        let later = known(0.5, FREE).looked_at(4.0);
+        let later = known(0.5, Some(FREE)).looked_at(4.0);
         assert!(
             near(later.square, 16.0 * (1.0 + 0.0625) / (1.0 - 0.0625)) && later.every == 4.0,
             "{later:?}"
         );
         assert!(near(quick.looked_at(10.0).square, 40.0));
         assert_eq!(means.looked_at(100.0).square, means.square);
-        assert_eq!([quick.rows_in(1000.0), quick.rows_in(10.0), means.rows()], [1000.0, ROWS, 0.125]);
+        assert_eq!(
+            [quick.rows_in(1000.0), quick.rows_in(10.0), means.rows_in(1000.0), means.rows()],
+            [1000.0, ROWS, ROWS, 0.0]
+        );
     }
 }

@@ -10,7 +10,7 @@ mod stopwatch;
 pub use failure::{Cause, RunFailure};
 pub use known::{Known, Pace, ROWS};
 pub use pairs::{Compared, Paired, TOGETHER, Window, pairs, part, steady};
-pub use sample::{Sample, Span};
+pub use sample::{Sample, Span, values};
 pub use stopwatch::Stopwatch;
 
 use crate::results::Meter;

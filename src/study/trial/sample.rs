@@ -56,6 +56,8 @@ pub struct Sample {
     pub rows: Vec<Vec<f64>>,
     /// The kind of the quantity, and its place in a row.
     pub observed: (Kind, usize),
+    /// Set where values between rows are lost, and closer rows tell more: those of moments, but for what a driving repeats.
+    pub loses: bool,
 }
 
 impl Sample {
@@ -63,8 +65,8 @@ impl Sample {
     pub fn known(&self) -> Option<Known> {
         match self.outcome {
             Outcome::Mean(estimate) | Outcome::TooShort { estimate: Some(estimate), .. } => {
-                let pace = self.pace();
-                Some(Known::of(estimate, &pace.values(&self.rows, self.observed.1, &self.series), pace))
+                let values = values(&self.rows, self.observed.1, &self.series, self.loses);
+                Some(Known::of(estimate, &values, self.pace()))
             }
             Outcome::Constant { mean } => Some(Known::exactly(mean)),
             Outcome::TooShort { estimate: None, .. }
@@ -76,9 +78,9 @@ impl Sample {
 }
 
 impl Sample {
-    /// Cost of its time and of its rows.
-    pub fn pace(&self) -> Pace {
-        Pace { is_instant: self.observed.0 == Kind::Instant, cost: self.cost, row: self.row }
+    /// Cost of its time and of its rows, where values between rows are lost.
+    pub fn pace(&self) -> Option<Pace> {
+        self.loses.then_some(Pace { cost: self.cost, row: self.row })
     }
 
     /// Warnings of its checks, in words.
@@ -143,6 +145,14 @@ impl Sample {
     }
 }
 
+/// Values of a quantity with their times: those of all rows but the first where others are lost, else the ends of stretches with their means.
+pub fn values(rows: &[Vec<f64>], place: usize, series: &[[f64; 2]], loses: bool) -> Vec<[f64; 2]> {
+    match loses {
+        true => rows.iter().skip(1).map(|row| [row[0], row[place]]).collect(),
+        false => series.to_vec(),
+    }
+}
+
 /// How long a sample is.
 #[derive(Clone, Copy, Debug)]
 pub enum Span {
@@ -191,13 +201,12 @@ impl Trial<'_> {
             Span::Time(time, seconds) | Span::Planned(time, seconds) => (seconds, time),
         };
         let own = own_rows(prepared).filter(|_| matches!(span, Span::Planned(..)));
+        let loses = quantities[place].kind == Kind::Instant && prepared.model.period().is_none();
         let mut of_stretch = None;
         let stride = match (span, own) {
             (Span::Seconds(seconds), _) => {
-                // Only values of moments are lost between rows.
-                let is_instant = quantities[place].kind == Kind::Instant;
-                let most = if is_instant { MOST_ROWS } else { FEWEST_ROWS };
-                of_stretch = is_instant.then_some(OF_FAR * seconds);
+                let most = if loses { MOST_ROWS } else { FEWEST_ROWS };
+                of_stretch = loses.then_some(OF_FAR * seconds);
                 self.stride(simulation, prepared, [most, FEWEST_ROWS].map(|rows| seconds / rows))?
             }
             (_, Some(own)) => own,
@@ -266,6 +275,7 @@ impl Trial<'_> {
             states: states.kept,
             rows: all_rows,
             observed: (quantities[place].kind, place),
+            loses,
         })
     }
 
