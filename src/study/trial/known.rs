@@ -1,4 +1,4 @@
-//! What a run knows of a mean, and how often a run is to look at a quantity: rows cost time, and values between them are lost.
+//! The mean of a run with its error, and the spacing of rows that reaches an error at the least cost: a row takes time, and values between rows are lost.
 
 use super::any_number;
 use serde::{Deserialize, Serialize};
@@ -6,11 +6,11 @@ use stripmine_physics::averages::{Estimate, foreseeing, of_independent};
 
 /// Rows of a run whose time is known, where nothing asks for more.
 pub const ROWS: f64 = 250.0;
-/// Rows may be so many times as far apart as in the sample, the farthest first.
+/// Spacings of rows that are compared, in spacings of the sample; the widest first.
 const EVERY: [usize; 4] = [8, 4, 2, 1];
 /// Values that are left of a series at least.
 const FEWEST: usize = 100;
-/// Closer rows are worth their cost where the whole becomes cheaper than by this factor: fewer are easier to keep.
+/// A closer spacing is taken if it lowers the cost to less than this part: fewer rows make smaller files.
 const WORTH: f64 = 0.8;
 
 /// A mean as a run knows it.
@@ -102,7 +102,7 @@ impl Known {
         pace.and_then(|pace| all.by_rows(&kept, pace)).unwrap_or(all)
     }
 
-    /// The same by the cheapest rows of all these values; none where there are too few.
+    /// Returns the mean with the spacing of rows that reaches an error at the least cost; none if there are too few values.
     fn by_rows(self, values: &[f64], pace: Pace) -> Option<Known> {
         let count = values.len() as f64;
         let spacing = self.span / count;
@@ -123,7 +123,7 @@ impl Known {
         best.map(|(_, known)| known)
     }
 
-    /// The same mean by rows so far apart (time).
+    /// Returns the mean with the variance that rows of this spacing give (time).
     ///
     /// The variance of a mean over rows Δ apart is that of values whose memory fades exponentially, v Δ coth(v Δ/s), with v that of a single value and s that of
     /// close rows in a unit of time: s where rows are close, and v Δ where each is independent of the next.

@@ -13,9 +13,9 @@ use stripmine_physics::particles::Particles;
 /// Rows of a sample of some seconds: as many as a correlation needs, and more where values between them are lost.
 const FEWEST_ROWS: f64 = 1000.0;
 const MOST_ROWS: f64 = 8000.0;
-/// Steps between rows at least, where these are not too dear: a row costs as much as a few.
+/// Least number of steps between rows, unless so many steps take too long: a row costs as much as about three steps.
 const STEPS: u64 = 8;
-/// Part of the time of a sample in which it is timed by longer stretches, longer by so many doublings, and the fewest of these that tell anything.
+/// The cost of a row follows from longer stretches: their part of the time, how often their length is doubled, and how many there must be.
 const OF_FAR: f64 = 0.1;
 const FARTHER: i32 = 3;
 const FEW: f64 = 4.0;
@@ -160,7 +160,7 @@ pub enum Span {
     Seconds(f64),
     /// A time (time), but no more wall seconds than these where they are given.
     Time(f64, Option<f64>),
-    /// The same with the rows that the scene asks for.
+    /// As `Time`, with the scene's own spacing of rows.
     Planned(f64, Option<f64>),
 }
 
