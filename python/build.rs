@@ -3,7 +3,9 @@
 use std::process::Command;
 
 fn git(arguments: &[&str]) -> Option<String> {
-    let output = Command::new("git").args(arguments).current_dir("..").output().ok()?;
+    // Git would write what it has looked at to its index, which is looked at for changes: the next build would do everything again.
+    let output =
+        Command::new("git").arg("--no-optional-locks").args(arguments).current_dir("..").output().ok()?;
     output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
 }
 
