@@ -92,12 +92,7 @@ impl GrowingFile {
     /// If something is there already, or the system does not let it be written.
     pub fn create(path: impl Into<PathBuf>) -> Result<Self, FileError> {
         let path = path.into();
-        let file = OpenOptions::new()
-            .read(true)
-            .write(true)
-            .create_new(true)
-            .open(&path)
-            .map_err(FileError::at(&path, "creating"))?;
+        let file = created(&path)?;
         Ok(GrowingFile { path, out: BufWriter::new(Summed::from(file)) })
     }
 
@@ -108,22 +103,8 @@ impl GrowingFile {
     /// and written.
     pub fn resume(path: impl Into<PathBuf>, mark: Mark) -> Result<Self, GrowingFileError> {
         let path = path.into();
-        let file = match OpenOptions::new().read(true).write(true).open(&path) {
-            Err(cause) if cause.kind() == ErrorKind::NotFound => {
-                return Err(GrowingFileError::Missing { file: path, expected: mark.bytes });
-            }
-            opened => opened.map_err(FileError::at(&path, "opening"))?,
-        };
-        let at = || FileError::at(&path, "reading");
-        if !is_name_of(&path, &file).map_err(at())? {
-            return Err(GrowingFileError::NoFile(path));
-        }
-        let found = file.metadata().map_err(at())?.len();
-        if found < mark.bytes {
-            return Err(GrowingFileError::Short { file: path, found, expected: mark.bytes });
-        }
-        let mut summed = Summed::from(file);
-        summed.read_up_to(mark.bytes).map_err(at())?;
+        let mut summed = Summed::from(reopened(&path, mark)?);
+        summed.read_up_to(mark.bytes).map_err(FileError::at(&path, "reading"))?;
         let found = summed.mark().checksum;
         if found != mark.checksum {
             let Mark { bytes, checksum: expected } = mark;
@@ -180,19 +161,57 @@ impl GrowingFile {
     /// # Errors
     /// If the system does not let it be written, or the file has been removed, replaced or changed meanwhile.
     pub fn sync(&mut self) -> Result<Mark, FileError> {
-        let at = |action| FileError::at(&self.path, action);
-        self.out.flush().map_err(at("writing"))?;
+        self.out.flush().map_err(FileError::at(&self.path, "writing"))?;
         let summed = self.out.get_ref();
-        let file = &summed.file;
-        file.sync_data().map_err(at("writing"))?;
-        if !is_name_of(&self.path, file).map_err(at("writing"))? {
-            let cause =
-                io::Error::new(ErrorKind::NotFound, "it was removed or replaced while the run wrote it");
-            return Err(at("writing")(cause));
-        }
-        summed.is_as_long_as_written().map_err(at("writing"))?;
+        synced(&self.path, &summed.file, summed.bytes)?;
         Ok(summed.mark())
     }
+}
+
+/// An empty file where nothing was.
+pub(super) fn created(path: &Path) -> Result<File, FileError> {
+    let created = OpenOptions::new().read(true).write(true).create_new(true).open(path);
+    created.map_err(FileError::at(path, "creating"))
+}
+
+/// The file at `path`, which is none but it, and at least as long as at a mark.
+pub(super) fn reopened(path: &Path, mark: Mark) -> Result<File, GrowingFileError> {
+    let expected = mark.bytes;
+    let file = match OpenOptions::new().read(true).write(true).open(path) {
+        Err(cause) if cause.kind() == ErrorKind::NotFound => {
+            return Err(GrowingFileError::Missing { file: path.to_owned(), expected });
+        }
+        opened => opened.map_err(FileError::at(path, "opening"))?,
+    };
+    let at = || FileError::at(path, "reading");
+    if !is_name_of(path, &file).map_err(at())? {
+        return Err(GrowingFileError::NoFile(path.to_owned()));
+    }
+    match file.metadata().map_err(at())?.len() {
+        found if found < expected => Err(GrowingFileError::Short { file: path.to_owned(), found, expected }),
+        _ => Ok(file),
+    }
+}
+
+/// Returns when a file of so many bytes is on the disk, and is still the one at `path`.
+pub(super) fn synced(path: &Path, file: &File, written: u64) -> Result<(), FileError> {
+    let at = || FileError::at(path, "writing");
+    file.sync_data().map_err(at())?;
+    if !is_name_of(path, file).map_err(at())? {
+        let cause = io::Error::new(ErrorKind::NotFound, "it was removed or replaced while the run wrote it");
+        return Err(at()(cause));
+    }
+    is_as_long_as_written(file, written).map_err(at())
+}
+
+/// That nothing else has cut or lengthened a file: writing on would leave a hole, or a part of another's.
+pub(super) fn is_as_long_as_written(file: &File, written: u64) -> io::Result<()> {
+    let found = file.metadata()?.len();
+    if found == written {
+        return Ok(());
+    }
+    let cause = format!("it has {found} bytes, but {written} were written: something else changed it");
+    Err(io::Error::other(cause))
 }
 
 impl Write for GrowingFile {
@@ -224,16 +243,6 @@ impl Summed {
         Mark { bytes: self.bytes, checksum: self.checksum.clone().finalize() }
     }
 
-    /// That nothing else has cut or lengthened the file: writing on would leave a hole, or a part of another's.
-    fn is_as_long_as_written(&self) -> io::Result<()> {
-        let (found, written) = (self.file.metadata()?.len(), self.bytes);
-        if found == written {
-            return Ok(());
-        }
-        let cause = format!("it has {found} bytes, but {written} were written: something else changed it");
-        Err(io::Error::other(cause))
-    }
-
     fn read_up_to(&mut self, end: u64) -> io::Result<()> {
         let mut block = vec![0; 1 << 16];
         while self.bytes < end {
@@ -248,7 +257,7 @@ impl Summed {
 
 impl Write for Summed {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.is_as_long_as_written()?;
+        is_as_long_as_written(&self.file, self.bytes)?;
         let written = self.file.write(bytes)?;
         self.checksum.update(&bytes[..written]);
         self.bytes += written as u64;

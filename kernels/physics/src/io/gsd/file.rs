@@ -6,11 +6,10 @@
 
 use super::layout::{ENTRY, Element, Entry, HEADING, Heading, Index, aligned, list_of};
 use crate::io::FileError;
-use crate::io::growing_file::{GrowingFileError, Mark};
-use crate::io::replace::is_name_of;
+use crate::io::growing_file::{GrowingFileError, Mark, created, is_as_long_as_written, reopened, synced};
 use crc32fast::Hasher;
-use std::fs::{File, OpenOptions};
-use std::io::{self, BufWriter, ErrorKind, Read, Seek, SeekFrom, Write};
+use std::fs::File;
+use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// Entries of the first index.
@@ -44,8 +43,7 @@ impl GsdFile {
     /// If something is there already, or the system does not let it be written.
     pub fn create(path: impl Into<PathBuf>, names: Vec<String>) -> Result<Self, FileError> {
         let path = path.into();
-        let created = OpenOptions::new().read(true).write(true).create_new(true).open(&path);
-        let created = created.map_err(FileError::at(&path, "creating"))?;
+        let created = created(&path)?;
         let mut file = GsdFile::empty(path, created, names);
         let begun = file.begin();
         begun.map_err(FileError::at(&file.path, "writing"))?;
@@ -63,20 +61,7 @@ impl GsdFile {
         mark: Mark,
     ) -> Result<Self, GrowingFileError> {
         let path = path.into();
-        let opened = match OpenOptions::new().read(true).write(true).open(&path) {
-            Err(cause) if cause.kind() == ErrorKind::NotFound => {
-                return Err(GrowingFileError::Missing { file: path, expected: mark.bytes });
-            }
-            opened => opened.map_err(FileError::at(&path, "opening"))?,
-        };
-        let at = || FileError::at(&path, "reading");
-        if !is_name_of(&path, &opened).map_err(at())? {
-            return Err(GrowingFileError::NoFile(path));
-        }
-        let found = opened.metadata().map_err(at())?.len();
-        if found < mark.bytes {
-            return Err(GrowingFileError::Short { file: path, found, expected: mark.bytes });
-        }
+        let opened = reopened(&path, mark)?;
         let mut file = GsdFile::empty(path, opened, names);
         let is_whole = file.read_up_to(mark.bytes).map_err(FileError::at(&file.path, "reading"))?;
         let found = file.checksum.clone().finalize();
@@ -256,7 +241,7 @@ impl GsdFile {
     /// # Errors
     /// Those of the file; also if something else has cut or lengthened it.
     pub(super) fn begin_frame(&mut self) -> io::Result<()> {
-        self.is_as_long_as_written()?;
+        is_as_long_as_written(self.out.get_ref(), self.end)?;
         if self.is_index_full() {
             self.grow_index()?;
         }
@@ -317,25 +302,7 @@ impl GsdFile {
     /// # Errors
     /// If the system does not let it be written, or the file has been removed, replaced or changed meanwhile.
     pub fn sync(&mut self) -> Result<Mark, FileError> {
-        let at = || FileError::at(&self.path, "writing");
-        let file = self.out.get_ref();
-        file.sync_data().map_err(at())?;
-        if !is_name_of(&self.path, file).map_err(at())? {
-            let cause =
-                io::Error::new(ErrorKind::NotFound, "it was removed or replaced while the run wrote it");
-            return Err(at()(cause));
-        }
-        self.is_as_long_as_written().map_err(at())?;
+        synced(&self.path, self.out.get_ref(), self.end)?;
         Ok(Mark { bytes: self.end, checksum: self.checksum.clone().finalize() })
-    }
-
-    /// That nothing else has cut or lengthened the file.
-    fn is_as_long_as_written(&self) -> io::Result<()> {
-        let (found, written) = (self.out.get_ref().metadata()?.len(), self.end);
-        if found == written {
-            return Ok(());
-        }
-        let cause = format!("it has {found} bytes, but {written} were written: something else changed it");
-        Err(io::Error::other(cause))
     }
 }

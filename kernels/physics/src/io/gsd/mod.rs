@@ -12,6 +12,9 @@
 //!
 //! What the schema knows is in single precision, positions from the centre of the box. The same in double precision, as the run has
 //! it, is below `log/`.
+//!
+//! The crate `hoomd-gsd` 1.4.0 does not replace the file layer: it cannot cut frames off behind a checkpoint, the place of its index
+//! depends on when it is synced (a resumed file has other bytes), it asserts what a damaged index says, and it brings 60 crates.
 
 mod error;
 mod file;
