@@ -13,12 +13,12 @@ use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use stripmine_physics::averages::Outcome;
-use stripmine_physics::io::replace::{folder_of, temporary, written_beside};
+use stripmine_physics::io::replace::{may_put, put, try_beside};
 use stripmine_physics::memory::peak;
 use stripmine_physics::method::Methods;
 use stripmine_physics::number::significant;
 use stripmine_physics::quoted;
-use stripmine_physics::reported::{Class, FilePlace, Reported};
+use stripmine_physics::reported::{Class, Reported};
 use stripmine_physics::scene::Width;
 use stripmine_physics::signals;
 
@@ -72,30 +72,14 @@ pub(super) struct ExplainVerb {
     forget: bool,
 }
 
-/// Why a plan is not written or not carried out.
+/// A plan is not carried out: it takes so long (s), and nobody said that it may.
 #[derive(Debug, thiserror::Error)]
-enum Refusal {
-    /// There is a file.
-    #[error("{} is there already: choose another --write, or add --overwrite to lose it", quoted::path(.0))]
-    Exists(PathBuf),
-    /// There is something that is no file.
-    #[error("{} is not an ordinary file: choose another --write", quoted::path(.0))]
-    NoFile(PathBuf),
-    /// It takes long, and nobody said that it may.
-    #[error("the plan was not carried out: a run of it takes about {}\n  help: add --yes to carry it out", seconds(*.0))]
-    Long(f64),
-}
+#[error("the plan was not carried out: a run of it takes about {}\n  help: add --yes to carry it out", seconds(*.0))]
+struct LongRun(f64);
 
-impl Reported for Refusal {
+impl Reported for LongRun {
     fn class(&self) -> Class {
         Class::Usage
-    }
-
-    fn place(&self) -> Option<FilePlace> {
-        match self {
-            Refusal::Exists(file) | Refusal::NoFile(file) => Some(FilePlace::at(file)),
-            Refusal::Long(_) => None,
-        }
     }
 }
 
@@ -205,27 +189,17 @@ impl ExplainVerb {
     /// That the plan may be written where it is to be, and that this can be done.
     fn may_write(&self) -> Result<(), Failure> {
         let Some(file) = &self.write else { return Ok(()) };
-        match file.symlink_metadata() {
-            Ok(_) if !self.overwrite => return Err(Refusal::Exists(file.clone()).into()),
-            // A link is replaced, not followed.
-            Ok(there) if !there.is_file() && !there.is_symlink() => {
-                return Err(Refusal::NoFile(file.clone()).into());
-            }
-            _ => {}
-        }
-        temporary()
-            .tempfile_in(folder_of(file))
-            .map(drop)
-            .map_err(Failure::writing(file.display().to_string()))
+        may_put(file, self.overwrite, "choose another --write, or add --overwrite to lose it")?;
+        try_beside(file).map_err(Failure::writing(file.display().to_string()))
     }
 
     /// That the plan may be carried out: its user says so where it takes long.
-    fn may_analyze(&self, plan: &Plan) -> Result<(), Refusal> {
+    fn may_analyze(&self, plan: &Plan) -> Result<(), LongRun> {
         let likely = plan.seconds.likely;
         if likely <= LONG || self.yes {
             return Ok(());
         }
-        let refusal = || Err(Refusal::Long(likely));
+        let refusal = || Err(LongRun(likely));
         if !io::stdin().is_terminal() || !io::stderr().is_terminal() {
             return refusal();
         }
@@ -247,11 +221,7 @@ impl ExplainVerb {
             if seeds.is_empty() { "" } else { " its seeds:" },
             prepared.scene
         );
-        let fail = || Failure::writing(file.display().to_string());
-        let beside = written_beside(file, |out| out.write_all(text.as_bytes())).map_err(fail())?;
-        // What has come there meanwhile stays.
-        let placed = if self.overwrite { beside.persist(file) } else { beside.persist_noclobber(file) };
-        placed.map(drop).map_err(|refused| fail()(refused.error))
+        put(file, &text, self.overwrite).map_err(Failure::writing(file.display().to_string()))
     }
 
     /// Carries out one run of the plan.

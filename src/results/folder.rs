@@ -4,7 +4,7 @@
 //! it; a page, if it bears the mark of ours; the whole folder, if it is empty or holds one of these, or a journal of ours.
 
 use super::Made;
-use super::journal::is_journal;
+use super::journal::{self, NAME as JOURNAL};
 use super::made::{self, LONGEST, bytes_of, files_of};
 use crate::claims;
 use crate::console::{Failure, to_json};
@@ -14,71 +14,39 @@ use crate::provenance::{Provenance, built};
 use crate::report::figure::Figure;
 use crate::report::tally::Tally;
 use crate::report::{Section, html, page};
-use serde::{Deserialize, Serialize};
-use std::fs::{self, File};
-use std::io::{ErrorKind, Read, Write};
+use serde::Serialize;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use stripmine_physics::io::lock::{Lock, LockError, is_lock};
-use stripmine_physics::io::replace::{is_temporary, listing, remove_if_there, replace, temporary};
-use stripmine_physics::io::{FileError, regular_file};
+use stripmine_physics::io::owned_folder::{FolderKind, Holds, LOCK, OwnedFolder};
+use stripmine_physics::io::regular_file;
 use stripmine_physics::origin::Origin;
 use stripmine_physics::quoted;
 use stripmine_physics::reported::{Class, Reported};
-use tempfile::TempDir;
 
 /// Where an item comes from, and its files; the one file of an item that differs from run to run.
 const PROVENANCE: &str = "provenance.json";
-/// Keeps other processes out.
-const LOCK: &str = ".stripmine.lock";
-/// Where the items lie that depend on the host.
-const HOST: &str = "host";
 /// The pages over all items, and the mark by which each is known.
 const PAGES: [(&str, &str); 2] = [("README.md", page::MARK), ("index.html", html::MARK)];
-/// Where in a page its mark is looked for (bytes from the beginning).
-const START: u64 = 1000;
+/// A folder of results; items that depend on the host are below `host`.
+const RESULTS: FolderKind = FolderKind {
+    lock: LOCK,
+    list: PROVENANCE,
+    holds: Holds::Folders { marked: &[PAGES[0], PAGES[1], (JOURNAL, journal::MARK)], below: &["host"] },
+};
 
-/// Why results are not written.
+/// Results that are committed would be written over by those of a source that is not.
 #[derive(Debug, thiserror::Error)]
-pub enum FolderError {
-    /// Something else stands there.
-    #[error(
-        "{} was not written by this command, or not by it alone: it holds {names}; move this away, or choose another --out",
-        quoted::path(folder)
-    )]
-    NotOurs {
-        /// The folder.
-        folder: PathBuf,
-        /// What is not ours.
-        names: String,
-    },
-    /// A page of that name that is another's.
-    #[error("{} was not written by this command: move it away, or choose another --out", quoted::path(.0))]
-    InTheWay(PathBuf),
-    /// Results that are committed would be written over by those of a source that is not.
-    #[error(
-        "the results in {} are committed, but this program was built from changes that are in no commit\n  help: \
-         commit them and build again, or choose another --out",
-        quoted::path(.0)
-    )]
-    Uncommitted(PathBuf),
-    /// Another process writes there.
-    #[error(transparent)]
-    Lock(#[from] LockError),
-    /// The system.
-    #[error(transparent)]
-    File(#[from] FileError),
-}
+#[error(
+    "the results in {} are committed, but this program was built from changes that are in no commit\n  help: \
+     commit them and build again, or choose another --out",
+    quoted::path(.0)
+)]
+struct Uncommitted(PathBuf);
 
-impl Reported for FolderError {
+impl Reported for Uncommitted {
     fn class(&self) -> Class {
-        match self {
-            FolderError::NotOurs { .. } | FolderError::InTheWay(_) | FolderError::Uncommitted(_) => {
-                Class::Usage
-            }
-            FolderError::Lock(error) if error.is_refusal() => Class::Usage,
-            FolderError::Lock(_) | FolderError::File(_) => Class::InputOutput,
-        }
+        Class::Usage
     }
 }
 
@@ -90,19 +58,8 @@ struct Listed<'a> {
     files: Vec<&'a str>,
 }
 
-/// The names alone.
-#[derive(Deserialize)]
-struct Names {
-    #[serde(default)]
-    files: Vec<String>,
-}
-
 /// The folder, while this process writes into it.
-pub struct Folder {
-    path: PathBuf,
-    /// None where another process holds it for this one.
-    _lock: Option<Lock>,
-}
+pub struct Folder(OwnedFolder);
 
 impl Folder {
     /// Makes the folder if it is not there, and keeps other processes out. `items` and, if asked for, the pages will be
@@ -111,32 +68,16 @@ impl Folder {
     /// # Errors
     /// If what stands there is not ours, is committed while the source of this program is not, or another process writes
     /// there.
-    pub fn open(path: &Path, items: &[&str], pages: bool) -> Result<Folder, FolderError> {
+    pub fn open(path: &Path, items: &[&str], pages: bool) -> Result<Folder, Failure> {
         traceable(path, &built())?;
-        let admits = || {
-            judge(path)?;
-            for name in items {
-                Section::folders(name)
-                    .iter()
-                    .try_for_each(|folder| own_files(&path.join(folder)).map(drop))?;
-            }
-            match pages {
-                true => PAGES.iter().try_for_each(|&(name, mark)| own_page(&path.join(name), mark).map(drop)),
-                false => Ok(()),
-            }
-        };
-        admits()?;
-        fs::create_dir_all(path).map_err(FileError::at(path, "creating the folder"))?;
-        let lock = Lock::take(&path.join(LOCK))?;
-        // Once more, now that it stays so.
-        admits()?;
-        remove_leftovers(path)?;
-        Ok(Folder { path: path.to_owned(), _lock: Some(lock) })
+        let pages = PAGES.iter().filter(|_| pages).map(|(name, _)| (*name).to_owned());
+        let wanted: Vec<String> = items.iter().flat_map(|name| Section::folders(name)).chain(pages).collect();
+        Ok(Folder(OwnedFolder::open(path, RESULTS, &wanted)?))
     }
 
     /// One that another process has opened, which lets this one write items there.
     pub fn of_another(path: &Path) -> Folder {
-        Folder { path: path.to_owned(), _lock: None }
+        Folder(OwnedFolder::of_another(path, RESULTS))
     }
 
     /// Writes an item's files: all of them, or, where that fails, none. Returns their folder and the section that the page shows.
@@ -155,49 +96,13 @@ impl Folder {
             provenance.repeated.clone_from(&made.repeated);
         }
         let (section, files) = files_of(name, made, &provenance)?;
-        let folder = self.path.join(section.folder());
-        let own = own_files(&folder)?;
         let mut listed = vec![PROVENANCE];
         listed.extend(files.iter().map(|(name, _)| name.as_str()));
-        // The list first: whatever becomes of this process, what is here is known as ours.
         let list = to_json(&Listed { provenance: &provenance, files: listed })? + "\n";
-        let part = self.temporary_folder()?;
         let all = std::iter::once((PROVENANCE, list.as_bytes()))
             .chain(files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())));
-        for (name, bytes) in all {
-            let path = part.path().join(name);
-            fs::write(&path, bytes).map_err(FileError::at(&path, "writing")).map_err(FolderError::from)?;
-        }
-        self.exchange(&part, &folder, own.as_deref())?;
-        // It has another name now.
-        let _ = part.keep();
+        let folder = self.0.write_folder(&section.folder(), all)?;
         Ok((folder, section))
-    }
-
-    /// Puts a new folder in the place of an item's, whose files are `own`.
-    fn exchange(&self, part: &TempDir, folder: &Path, own: Option<&[String]>) -> Result<(), FolderError> {
-        let at = || FileError::at(folder, "replacing");
-        let parent = folder.parent().unwrap_or(&self.path);
-        fs::create_dir_all(parent).map_err(FileError::at(parent, "creating the folder"))?;
-        let Some(own) = own else { return Ok(fs::rename(part.path(), folder).map_err(at())?) };
-        let aside = self.temporary_folder()?.keep();
-        let old = aside.join("item");
-        fs::rename(folder, &old).map_err(at())?;
-        fs::rename(part.path(), folder).map_err(at())?;
-        remove_own(&old, own)?;
-        Ok(fs::remove_dir(&aside).map_err(FileError::at(&aside, "removing"))?)
-    }
-
-    fn temporary_folder(&self) -> Result<TempDir, FolderError> {
-        #[cfg_attr(not(unix), expect(unused_mut, reason = "only there they have permissions"))]
-        let mut names = temporary();
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::PermissionsExt;
-            // As for any other folder: what the user's mask leaves of it.
-            names.permissions(fs::Permissions::from_mode(0o777));
-        }
-        Ok(names.tempdir_in(&self.path).map_err(FileError::at(&self.path, "creating a folder in it"))?)
     }
 
     /// Writes the pages over every item that the folder holds.
@@ -217,16 +122,14 @@ impl Folder {
         sections.sort_by_key(|section| section.chapter);
         // A picture that is gone leaves a gap in the page, and is there again with the item's next making.
         let drawn = |section: &Section, figure: &Figure| {
-            let file = self.path.join(section.folder()).join(format!("{}.svg", figure.name));
+            let file = self.0.file(&section.folder()).join(format!("{}.svg", figure.name));
             String::from_utf8(regular_file::read(&file, LONGEST).unwrap_or_default()).unwrap_or_default()
         };
         let tally = Tally::of(&sections, &claims::all()?);
         let texts =
             [page::render(&sections, &left_out, &tally), html::render(&sections, &left_out, &tally, &drawn)];
-        for ((name, mark), text) in PAGES.into_iter().zip(texts) {
-            let path = self.path.join(name);
-            own_page(&path, mark)?;
-            replace(&path, |out| out.write_all(text.as_bytes())).map_err(FolderError::from)?;
+        for ((name, _), text) in PAGES.into_iter().zip(texts) {
+            self.0.write(name, |out| out.write_all(text.as_bytes()))?;
         }
         Ok(())
     }
@@ -297,7 +200,7 @@ impl Folder {
 
     /// The folder of an item that is there.
     fn item(&self, name: &str) -> Option<PathBuf> {
-        let folders = Section::folders(name).map(|folder| self.path.join(folder));
+        let folders = Section::folders(name).map(|folder| self.0.file(&folder));
         folders.into_iter().find(|folder| folder.join(PROVENANCE).exists())
     }
 }
@@ -312,26 +215,10 @@ enum Known {
     Absent,
 }
 
-/// Names of all entries of a folder, sorted; none if it is not there.
-fn entries(folder: &Path) -> Result<Option<Vec<String>>, FileError> {
-    let at = || FileError::at(folder, "reading the folder");
-    let entries = match fs::read_dir(folder) {
-        Ok(entries) => entries,
-        Err(cause) if cause.kind() == ErrorKind::NotFound => return Ok(None),
-        Err(cause) => return Err(at()(cause)),
-    };
-    let mut names = Vec::new();
-    for entry in entries {
-        names.push(entry.map_err(at())?.file_name().to_string_lossy().into_owned());
-    }
-    names.sort();
-    Ok(Some(names))
-}
-
 /// Refuses to write over committed results what no commit can make again.
-fn traceable(path: &Path, origin: &Origin) -> Result<(), FolderError> {
+fn traceable(path: &Path, origin: &Origin) -> Result<(), Uncommitted> {
     match !origin.is_committed() && is_committed(path) {
-        true => Err(FolderError::Uncommitted(path.to_owned())),
+        true => Err(Uncommitted(path.to_owned())),
         false => Ok(()),
     }
 }
@@ -346,99 +233,10 @@ fn is_committed(folder: &Path) -> bool {
     listed.is_ok_and(|listed| listed.status.success() && !listed.stdout.is_empty())
 }
 
-fn not_ours(folder: &Path, foreign: &[String]) -> FolderError {
-    FolderError::NotOurs { folder: folder.to_owned(), names: listing(foreign) }
-}
-
-fn is_folder(path: &Path) -> bool {
-    fs::symlink_metadata(path).is_ok_and(|there| there.is_dir())
-}
-
-fn is_file(path: &Path) -> bool {
-    fs::symlink_metadata(path).is_ok_and(|there| there.is_file())
-}
-
-/// The files in the folder of an item, all of them ours; none if there is no folder.
-fn own_files(folder: &Path) -> Result<Option<Vec<String>>, FolderError> {
-    if fs::symlink_metadata(folder).is_ok_and(|there| !there.is_dir()) {
-        return Err(FolderError::InTheWay(folder.to_owned()));
-    }
-    let Some(names) = entries(folder)? else { return Ok(None) };
-    let list = folder.join(PROVENANCE);
-    let listed = match is_file(&list) {
-        true => regular_file::read(&list, LONGEST).map_err(FileError::at(&list, "reading"))?,
-        false => vec![],
-    };
-    let listed = serde_json::from_slice::<Names>(&listed).map_or(vec![], |names| names.files);
-    let foreign: Vec<String> =
-        names.iter().filter(|name| !listed.contains(name) || !is_file(&folder.join(name))).cloned().collect();
-    if foreign.is_empty() { Ok(Some(names)) } else { Err(not_ours(folder, &foreign)) }
-}
-
-/// Removes files and the folder, if nothing else is in it; the list goes last.
-fn remove_own(folder: &Path, own: &[String]) -> Result<(), FolderError> {
-    let (list, rest): (Vec<&String>, Vec<&String>) = own.iter().partition(|&name| name == PROVENANCE);
-    rest.into_iter().chain(list).try_for_each(|name| remove_if_there(&folder.join(name)))?;
-    Ok(fs::remove_dir(folder).map_err(FileError::at(folder, "removing"))?)
-}
-
-/// Whether a page is there; if so, it is ours.
-fn own_page(path: &Path, mark: &str) -> Result<bool, FolderError> {
-    if fs::symlink_metadata(path).is_err_and(|cause| cause.kind() == ErrorKind::NotFound) {
-        return Ok(false);
-    }
-    let mut start = Vec::new();
-    if is_file(path) {
-        let read = File::open(path).and_then(|file| file.take(START).read_to_end(&mut start));
-        read.map_err(FileError::at(path, "reading"))?;
-    }
-    if String::from_utf8_lossy(&start).contains(mark) {
-        Ok(true)
-    } else {
-        Err(FolderError::InTheWay(path.to_owned()))
-    }
-}
-
-/// Refuses a folder that holds something, but nothing of ours.
-fn judge(path: &Path) -> Result<(), FolderError> {
-    let Some(mut names) = entries(path)? else { return Ok(()) };
-    names.retain(|name| !(is_temporary(name) || name == LOCK && is_lock(&path.join(LOCK))));
-    let host = path.join(HOST);
-    let of_host = if is_folder(&host) { entries(&host)?.unwrap_or_default() } else { vec![] };
-    if of_host.is_empty() && is_folder(&host) {
-        names.retain(|name| name != HOST);
-    }
-    let items = names.iter().map(|name| path.join(name)).chain(of_host.iter().map(|name| host.join(name)));
-    let is_item = |folder: PathBuf| is_file(&folder.join(PROVENANCE)) && own_files(&folder).is_ok();
-    let (page, mark) = PAGES[0];
-    let ours = names.is_empty()
-        || is_journal(path)
-        || own_page(&path.join(page), mark).is_ok_and(|there| there)
-        || items.into_iter().any(is_item);
-    if ours { Ok(()) } else { Err(not_ours(path, &names)) }
-}
-
-/// What sessions that were killed left of their temporary files and folders, as far as it is ours.
-fn remove_leftovers(path: &Path) -> Result<(), FolderError> {
-    for name in entries(path)?.unwrap_or_default().into_iter().filter(|name| is_temporary(name)) {
-        let left = path.join(name);
-        if !is_folder(&left) {
-            remove_if_there(&left)?;
-            continue;
-        }
-        let aside = left.join("item");
-        for folder in [aside, left].iter().filter(|folder| is_folder(folder)) {
-            if let Ok(Some(own)) = own_files(folder) {
-                remove_own(folder, &own)?;
-            }
-        }
-    }
-    Ok(())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     #[test]
     fn committed_results_are_refused_to_a_source_that_is_not_committed() {
@@ -456,7 +254,7 @@ mod tests {
         git(&["add", "reports"]);
         let of = |dirty| Origin { commit: "1234567890ab".to_owned(), dirty, ..built() };
         let refused = traceable(&kept, &of(true)).unwrap_err();
-        assert!(matches!(&refused, FolderError::Uncommitted(folder) if *folder == kept));
+        assert_eq!(refused.0, kept);
         assert!(refused.to_string().contains("another --out"), "{refused}");
         assert_eq!(Failure::from(refused).exit_code(), 2);
         assert!(traceable(&kept, &of(false)).is_ok());

@@ -12,7 +12,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::fs::{File, OpenOptions};
-use std::io::{ErrorKind, Read, Write};
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError, RwLock};
 use stripmine_physics::io::replace::replace;
@@ -22,7 +22,7 @@ use stripmine_physics::quoted;
 /// The name of the file.
 pub(super) const NAME: &str = "journal.jsonl";
 /// How the first line begins.
-const MARK: &str = "{\"stripmine journal\":2,";
+pub(super) const MARK: &str = "{\"stripmine journal\":2,";
 /// Longer than any journal (bytes).
 const LONGEST: u64 = 1 << 30;
 
@@ -95,14 +95,6 @@ pub struct Journal {
     /// The processes that make the study together, and what this one has made since it told the others.
     team: Option<Team>,
     made: Mutex<Runs>,
-}
-
-/// Whether a folder holds a journal of this program.
-pub(super) fn is_journal(folder: &Path) -> bool {
-    let mut start = vec![];
-    let read = regular_file::open(&folder.join(NAME))
-        .and_then(|file| file.take(MARK.len() as u64).read_to_end(&mut start));
-    read.is_ok() && start == MARK.as_bytes()
 }
 
 impl Journal {
@@ -299,6 +291,7 @@ fn refused(file: PathBuf, first: &str, ours: &Identity) -> JournalError {
 mod tests {
     use super::*;
     use std::fs;
+    use stripmine_physics::io::owned_folder::is_marked;
     use stripmine_physics::reported::{Class, Reported};
 
     fn identity(digest: &str) -> Identity {
@@ -321,7 +314,7 @@ mod tests {
         let second = Journal::open(folder.path(), &identity("12345678"), None).unwrap();
         assert_eq!((run(&second, "a", 10), run(&second, "b", 20), second.len()), (1, 20, 1));
         drop(second);
-        assert!(is_journal(folder.path()));
+        assert!(is_marked(&path, MARK).unwrap());
         let third = Journal::open(folder.path(), &identity("12345678"), None).unwrap();
         assert_eq!((run(&third, "b", 3), third.len()), (20, 2));
     }
@@ -336,7 +329,7 @@ mod tests {
             fs::write(folder.path().join(NAME), mine).unwrap();
             let foreign = Journal::open(folder.path(), &identity("12345678"), None).err().unwrap();
             assert!(matches!(foreign, JournalError::Foreign(_)), "{foreign}");
-            assert!(!is_journal(folder.path()));
+            assert!(is_marked(&folder.path().join(NAME), MARK).is_err());
             assert_eq!(fs::read_to_string(folder.path().join(NAME)).unwrap(), mine);
         }
     }
@@ -391,7 +384,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let pipe = folder.path().join(NAME);
         assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
-        assert!(!is_journal(folder.path()));
+        assert!(is_marked(&pipe, MARK).is_err());
         let refused = Journal::open(folder.path(), &identity("12345678"), None).err().unwrap();
         assert!(refused.to_string().contains("it is a pipe"), "{refused}");
     }

@@ -54,7 +54,7 @@ impl Reported for JournalError {
     fn place(&self) -> Option<FilePlace> {
         match self {
             JournalError::Other { file, .. } | JournalError::Foreign(file) => Some(FilePlace::at(file)),
-            JournalError::File(error) => Some(FilePlace::at(&error.file)),
+            JournalError::File(error) => error.place(),
             JournalError::Differs | JournalError::Gone(_) => None,
         }
     }

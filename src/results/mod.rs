@@ -6,15 +6,13 @@ mod journal;
 mod journal_error;
 mod made;
 mod meter;
-mod own_files;
 mod team;
 
-pub use folder::{Folder, FolderError};
+pub use folder::Folder;
 pub use item::{Item, Progress};
 pub use journal::{Identity, Journal};
 pub use journal_error::JournalError;
 pub use meter::Meter;
-pub(crate) use own_files::OwnFiles;
 pub use team::Team;
 
 use crate::frame::Frame;

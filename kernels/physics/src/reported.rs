@@ -1,5 +1,6 @@
 //! What a user hears of an error, whatever it is of: its class, its place, and what to do.
 
+use crate::io::{FileError, FolderError};
 use crate::scene::SceneErrors;
 use std::path::Path;
 
@@ -107,5 +108,43 @@ impl Reported for SceneErrors {
 
     fn mistakes(&self) -> Option<&SceneErrors> {
         Some(self)
+    }
+}
+
+impl Reported for FileError {
+    fn class(&self) -> Class {
+        Class::InputOutput
+    }
+
+    fn place(&self) -> Option<FilePlace> {
+        Some(FilePlace::at(&self.file))
+    }
+}
+
+impl Reported for FolderError {
+    fn class(&self) -> Class {
+        match self {
+            FolderError::List { .. } => Class::Checkpoint,
+            FolderError::File(error) => error.class(),
+            _ => Class::Usage,
+        }
+    }
+
+    fn place(&self) -> Option<FilePlace> {
+        match self {
+            FolderError::NotOurs { folder: path, .. }
+            | FolderError::InTheWay { path, .. }
+            | FolderError::Held(path, _)
+            | FolderError::Exists(path, _)
+            | FolderError::NoFile(path) => Some(FilePlace::at(path)),
+            FolderError::List { file, line, .. } => {
+                Some(FilePlace { line: Some(*line), ..FilePlace::at(file) })
+            }
+            FolderError::File(error) => error.place(),
+        }
+    }
+
+    fn remedy(&self) -> Option<String> {
+        if let FolderError::Exists(_, remedy) = self { Some((*remedy).to_owned()) } else { None }
     }
 }

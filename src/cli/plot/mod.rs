@@ -12,7 +12,6 @@ use super::run_folder;
 use crate::console::{Common, Failure, print, print_json, say};
 use crate::report::figure::{Figure, png, svg};
 use crate::report::{html, terminal};
-use crate::results::OwnFiles;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use colouring::{Colouring, Colours};
@@ -20,7 +19,9 @@ use observed::Observed;
 use particles::PictureError;
 use serde_json::json;
 use std::collections::BTreeSet;
+use std::io::Write;
 use std::path::PathBuf;
+use stripmine_physics::io::owned_folder::{FolderKind, Holds, LOCK, OwnedFolder};
 use stripmine_physics::method::Methods;
 use stripmine_physics::quoted;
 
@@ -46,10 +47,14 @@ pub(super) struct PlotVerb {
     overwrite: bool,
 }
 
-/// The list of the pictures that a folder has from here.
-const LIST: &str = "plot.files";
-/// The film among them.
+/// The film of a run.
 const FILM: &str = "film.html";
+/// A folder of pictures.
+const PICTURES: FolderKind = FolderKind {
+    lock: LOCK,
+    list: "plot.files",
+    holds: Holds::Files { heading: "stripmine plot.files 1", is_own: is_picture, is_shared: true },
+};
 /// Longest name of a picture (characters), its kind and number left out.
 const LONGEST_NAME: usize = 80;
 
@@ -83,10 +88,11 @@ impl PlotVerb {
             names.push(FILM.to_owned());
             pictures.push(html::film_page(&film, &notes).into_bytes());
         }
-        let folder = OwnFiles::claim(&out, LIST, &names, self.overwrite)?;
+        let mut folder = OwnedFolder::open(&out, PICTURES, &[])?;
+        folder.claim(names.iter().map(String::as_str), self.overwrite)?;
         let mut written = vec![];
         for (name, bytes) in names.iter().zip(&pictures) {
-            written.push(folder.write(name, bytes)?.display().to_string());
+            written.push(folder.write(name, |out| out.write_all(bytes))?.display().to_string());
         }
         if common.json {
             return print_json(&json!({ "files": written }));
@@ -97,6 +103,11 @@ impl PlotVerb {
         }
         print(&terminal::render(&small))
     }
+}
+
+/// Whether a picture or a film may be called so.
+fn is_picture(name: &str) -> bool {
+    name == FILM || [".svg", ".png"].iter().any(|end| name.ends_with(end))
 }
 
 /// A picture in both forms; none where it cannot be drawn, which is said.

@@ -4,10 +4,10 @@ use super::RunVerb;
 use crate::cli::processes;
 use crate::console::{Common, Failure, SHARES, bar, clear_progress, print, print_json, say, to_json, warn};
 use crate::provenance::built;
-use crate::results::OwnFiles;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde::Serialize;
 use std::collections::BTreeSet;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::PoisonError;
@@ -15,6 +15,7 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::thread;
 use std::time::Instant;
 use stripmine_physics::averages::{Averages, joined};
+use stripmine_physics::io::owned_folder::{FolderKind, Holds, LOCK, OwnedFolder};
 use stripmine_physics::method::{Entry, Methods, Prepared, prepare, vocabularies};
 use stripmine_physics::quoted;
 use stripmine_physics::ranks::Crew;
@@ -23,12 +24,20 @@ use stripmine_physics::run::{
 };
 use stripmine_physics::scene::{Fallback, Key, Reason, Value, Values, Vocabulary};
 use stripmine_physics::signals;
-use stripmine_physics::structure::observable;
+use stripmine_physics::structure::{OBSERVABLES, observable};
 
-/// The list of what stands in the folder beside the runs.
-const LIST: &str = "seeds.files";
 /// What the runs say together.
 const SUMMARY: &str = "seeds.json";
+/// The folder of the runs: beside them is what they say together.
+const SEEDS: FolderKind = FolderKind {
+    lock: LOCK,
+    list: "seeds.files",
+    holds: Holds::Files {
+        heading: "stripmine seeds.files 1",
+        is_own: |name| name == SUMMARY || OBSERVABLES.iter().any(|it| it.file == name),
+        is_shared: true,
+    },
+};
 /// Parts of a run on the bar.
 const PARTS: u64 = 1000;
 
@@ -108,12 +117,13 @@ impl RunVerb {
         prepared.memory.fits(&self.scene)?;
         let begun = Instant::now();
         let asked = &prepared.output.structure;
-        let files = asked.iter().filter_map(|name| observable(name)).map(|it| it.file.to_owned());
-        let files: Vec<String> = std::iter::once(SUMMARY.to_owned()).chain(files).collect();
-        let claimed = || -> Result<OwnFiles, Failure> {
-            let own = OwnFiles::claim(&folder, LIST, &files, self.overwrite)?;
+        let files = asked.iter().filter_map(|name| observable(name)).map(|it| it.file);
+        let files: Vec<&str> = std::iter::once(SUMMARY).chain(files).collect();
+        let claimed = || -> Result<OwnedFolder, Failure> {
+            let mut own = OwnedFolder::open(&folder, SEEDS, &[])?;
+            own.claim(files.iter().copied(), self.overwrite)?;
             // A summary of earlier runs says nothing of these, should they be interrupted.
-            own.remove(SUMMARY)?;
+            own.remove_own(SUMMARY)?;
             Ok(own)
         };
         // Where runs are refused, all stays as it is.
@@ -146,15 +156,14 @@ impl RunVerb {
             members.map(|((folder, seeds), averages)| Member { folder, seeds, averages }).collect();
         let all: Vec<Averages> = runs.iter().map(|run| run.averages.clone()).collect();
         let structure = functions_of(runs.iter().map(|run| run.folder.as_path()));
-        let structure: Vec<Function> =
-            structure.into_iter().filter(|it| files.contains(&it.file.to_owned())).collect();
+        let structure: Vec<Function> = structure.into_iter().filter(|it| files.contains(&it.file)).collect();
         let seconds = begun.elapsed().as_secs_f64();
         let ensemble = Ensemble { averages: joined(&all), seconds, runs, structure };
-        ensemble
-            .structure
-            .iter()
-            .try_for_each(|function| own.write(function.file, &function.csv()).map(drop))?;
-        own.write(SUMMARY, to_json(&ensemble)?.as_bytes())?;
+        for function in &ensemble.structure {
+            own.write(function.file, |out| out.write_all(&function.csv()))?;
+        }
+        let summary = to_json(&ensemble)?;
+        own.write(SUMMARY, |out| out.write_all(summary.as_bytes()))?;
         if common.json {
             return print_json(&ensemble);
         }

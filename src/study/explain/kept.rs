@@ -14,7 +14,8 @@ use std::fs;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
-use stripmine_physics::io::replace::replace;
+use stripmine_physics::io::owned_folder::names_in;
+use stripmine_physics::io::replace::{remove_if_there, replace};
 use stripmine_physics::io::{FileError, regular_file};
 use stripmine_physics::number::significant;
 use stripmine_physics::quoted;
@@ -236,9 +237,7 @@ impl Kept {
     /// [`KeptError`] if one cannot be removed.
     pub fn forget(&self) -> Result<usize, KeptError> {
         let files: Vec<PathBuf> = self.files()?.into_iter().filter(|file| is_marked(file)).collect();
-        for file in &files {
-            fs::remove_file(file).map_err(FileError::at(file, "removing"))?;
-        }
+        files.iter().try_for_each(|file| remove_if_there(file))?;
         let journals = self.entries(|name| name.split_once(BEGUN).is_some_and(|(key, _)| is_key_of(key)))?;
         for folder in &journals {
             fs::remove_dir_all(folder).map_err(FileError::at(folder, "removing"))?;
@@ -253,15 +252,8 @@ impl Kept {
 
     fn entries(&self, is_ours: fn(&str) -> bool) -> Result<Vec<PathBuf>, KeptError> {
         let Some(folder) = &self.folder else { return Ok(vec![]) };
-        let files = match fs::read_dir(folder) {
-            Ok(files) => files,
-            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(vec![]),
-            Err(cause) => return Err(FileError::at(folder, "reading the folder")(cause).into()),
-        };
-        let is_named = |file: &PathBuf| file.file_name().and_then(OsStr::to_str).is_some_and(is_ours);
-        let mut files: Vec<PathBuf> = files.flatten().map(|file| file.path()).filter(is_named).collect();
-        files.sort();
-        Ok(files)
+        let names = names_in(folder)?.unwrap_or_default();
+        Ok(names.iter().filter(|name| is_ours(name)).map(|name| folder.join(name)).collect())
     }
 }
 

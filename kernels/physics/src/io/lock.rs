@@ -1,8 +1,7 @@
 //! One writer a folder: a lock that the system gives back with the process that held it, however that ended.
 
-use super::FileError;
-use super::replace::{is_name_of, remove_if_there};
-use crate::quoted;
+use super::replace::{folder_of, is_name_of, remove_if_there};
+use super::{FileError, FolderError};
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, ErrorKind, Read, Seek, Write};
 use std::path::{Path, PathBuf};
@@ -19,36 +18,6 @@ pub struct Lock {
     path: PathBuf,
     file: File,
     held: bool,
-}
-
-/// Why a lock cannot be had.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum LockError {
-    /// Another process has it.
-    #[error(
-        "{} is being written by {holder}: wait until it has ended, or choose another --out",
-        quoted::path(folder)
-    )]
-    Held {
-        /// The folder.
-        folder: PathBuf,
-        /// The process, its host, and since when.
-        holder: String,
-    },
-    /// A file of its name that is none.
-    #[error("{} is no lock file of this program: move it away, or choose another --out", quoted::path(.0))]
-    Foreign(PathBuf),
-    /// The system.
-    #[error(transparent)]
-    File(#[from] FileError),
-}
-
-impl LockError {
-    /// Whether it is another's, not the system that failed.
-    pub fn is_refusal(&self) -> bool {
-        !matches!(self, LockError::File(_))
-    }
 }
 
 /// Whether the file at `path` is a lock file, or became one no further than its creation.
@@ -71,8 +40,8 @@ impl Lock {
     /// Takes the lock whose file is at `path`, in a folder that is there.
     ///
     /// # Errors
-    /// If another process has it, something else is called so, or the system does not let it be written.
-    pub fn take(path: &Path) -> Result<Lock, LockError> {
+    /// [`FolderError`] if another process has it, something else is called so, or the system does not let it be written.
+    pub fn take(path: &Path) -> Result<Lock, FolderError> {
         let at = || FileError::at(path, "locking");
         loop {
             let file = match OpenOptions::new().read(true).write(true).create_new(true).open(path) {
@@ -92,8 +61,7 @@ impl Lock {
             let held = match file.try_lock() {
                 Ok(()) => true,
                 Err(TryLockError::WouldBlock) => {
-                    let folder = super::replace::folder_of(path).to_owned();
-                    return Err(LockError::Held { folder, holder: holder(&file) });
+                    return Err(FolderError::Held(folder_of(path).to_owned(), holder(&file)));
                 }
                 // A file system without locks.
                 Err(TryLockError::Error(cause)) if cause.kind() == ErrorKind::Unsupported => false,
@@ -101,13 +69,13 @@ impl Lock {
             };
             if !is_name_of(path, &file).map_err(at())? {
                 if path.symlink_metadata().is_ok_and(|there| !there.is_file()) {
-                    return Err(LockError::Foreign(path.to_owned()));
+                    return Err(FolderError::in_the_way(path));
                 }
                 // Removed by the one who held it: the next one has another file.
                 continue;
             }
             if !is_lock_text(&text(&file).map_err(at())?) {
-                return Err(LockError::Foreign(path.to_owned()));
+                return Err(FolderError::in_the_way(path));
             }
             sign(&file).map_err(at())?;
             return Ok(Lock { path: path.to_owned(), file, held });

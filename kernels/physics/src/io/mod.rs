@@ -1,17 +1,21 @@
 //! Files in and out: extended XYZ, DCD, GSD, LAMMPS data and dump, checkpoints, tables that grow with a run; how they are put in
-//! their place, and one writer a folder.
+//! their place, and folders that one process at a time writes into and that lose nothing of others.
 
 pub mod checkpoint;
 pub mod dcd;
 pub mod extxyz;
+mod folder_error;
 pub mod growing_file;
 pub mod gsd;
 pub mod lammps;
-pub mod lock;
+pub(crate) mod lock;
+pub mod owned_folder;
 pub mod regular_file;
 pub mod replace;
 pub mod table_file;
 pub mod trajectory;
+
+pub use folder_error::FolderError;
 
 use std::path::{Path, PathBuf};
 

@@ -1,6 +1,6 @@
 //! Whole files put in their place in one step, by way of temporary files whose names cannot be foreseen.
 
-use super::FileError;
+use super::{FileError, FolderError};
 use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::Path;
@@ -14,10 +14,14 @@ pub fn is_temporary(name: &str) -> bool {
     name.starts_with(TEMPORARY[0]) && name.ends_with(TEMPORARY[1])
 }
 
-/// Names for temporary files and folders.
-pub fn temporary<'a>() -> Builder<'a, 'a> {
+/// Names for temporary files or folders, with permissions as for any others: what the user's mask leaves of `mode`.
+pub fn temporary<'a>(mode: u32) -> Builder<'a, 'a> {
     let mut builder = Builder::new();
     builder.prefix(TEMPORARY[0]).suffix(TEMPORARY[1]).rand_bytes(16);
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(mode));
+    #[cfg(not(unix))]
+    let _ = mode;
     builder
 }
 
@@ -40,6 +44,37 @@ pub fn replace(
     sync_folder(folder_of(path)).map_err(FileError::at(path, "replacing"))
 }
 
+/// Puts a whole file at `path` where nothing is or, with `overwrite`, in the place of what is there.
+///
+/// # Errors
+/// If something is there that is to stay, or the system does not let the file be written; then what was at `path` stays.
+pub fn put(path: &Path, text: &str, overwrite: bool) -> io::Result<()> {
+    let file = written_beside(path, |out| out.write_all(text.as_bytes()))?;
+    let placed = if overwrite { file.persist(path) } else { file.persist_noclobber(path) };
+    placed.map(drop).map_err(|refused| refused.error)
+}
+
+/// Refuses to put a file where something is that is to stay: without `overwrite` anything, and always what is no file.
+///
+/// # Errors
+/// [`FolderError::Exists`] with what to do, or [`FolderError::NoFile`].
+pub fn may_put(path: &Path, overwrite: bool, remedy: &'static str) -> Result<(), FolderError> {
+    match path.symlink_metadata() {
+        Ok(_) if !overwrite => Err(FolderError::Exists(path.to_owned(), remedy)),
+        // A link is replaced, not followed.
+        Ok(there) if !there.is_file() && !there.is_symlink() => Err(FolderError::NoFile(path.to_owned())),
+        _ => Ok(()),
+    }
+}
+
+/// Makes a file beside `path` and removes it: whether one can be put there is known before the work for it is done.
+///
+/// # Errors
+/// What the system says.
+pub fn try_beside(path: &Path) -> io::Result<()> {
+    temporary(0o666).tempfile_in(folder_of(path)).map(drop)
+}
+
 /// A temporary file in the folder of `path` that holds what `write` writes, on the disk.
 ///
 /// # Errors
@@ -48,15 +83,7 @@ pub fn written_beside(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>,
 ) -> io::Result<NamedTempFile> {
-    #[cfg_attr(not(unix), expect(unused_mut, reason = "only there they have permissions"))]
-    let mut names = temporary();
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        // As for any other file: what the user's mask leaves of it.
-        names.permissions(fs::Permissions::from_mode(0o666));
-    }
-    let file = names.tempfile_in(folder_of(path))?;
+    let file = temporary(0o666).tempfile_in(folder_of(path))?;
     let mut out = BufWriter::new(file.as_file());
     write(&mut out)?;
     out.flush()?;
@@ -71,17 +98,6 @@ pub fn written_beside(
 /// If the folder cannot be opened or its entries not be written to the disk.
 pub fn sync_folder(folder: &Path) -> io::Result<()> {
     if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
-}
-
-/// What stands in a folder, for a message: the first few names, with nothing in them that a terminal would obey.
-pub fn listing(names: &[String]) -> String {
-    const NAMED: usize = 5;
-    let plain = |name: &String| name.chars().flat_map(char::escape_debug).collect::<String>();
-    let said = names.iter().take(NAMED).map(plain).collect::<Vec<_>>().join(", ");
-    match names.len().saturating_sub(NAMED) {
-        0 => said,
-        more => format!("{said} and {more} more"),
-    }
 }
 
 /// Removes a file or a link, never what the link points to; one that is not there is no error.

@@ -19,17 +19,17 @@ mod summary;
 mod table;
 
 pub use finished::{Finished, FinishedError, averages_of};
-pub use folder::FolderError;
 pub use functions::{Function, Number, Point, function_of, functions_of};
 pub use identity::chosen_otherwise;
 pub use structured::Summed;
 pub use summary::Summary;
 pub use table::{TableError, TableReader};
 
-use crate::io::FileError;
 use crate::io::checkpoint::{CheckpointError, WriteError};
 use crate::io::growing_file::GrowingFileError;
+use crate::io::lock::Lock;
 use crate::io::table_file::TableFileError;
+use crate::io::{FileError, FolderError};
 use crate::method::{Clock, Failure, Prepared, Purpose, Quantity, Until};
 use crate::number::significant;
 use crate::origin::Origin;
@@ -37,6 +37,7 @@ use crate::quoted;
 use crate::reported::{Class, FilePlace, Reported};
 use crate::scene::{SceneErrors, Target, Width};
 use crate::signals;
+use folder::RUN;
 use recorder::Recorder;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -222,6 +223,8 @@ impl Reported for RunError {
             RunError::Scene(errors) => Some(errors),
             RunError::Physics { failure, .. } | RunError::Start(failure) => Some(failure),
             RunError::Rows(error) => Some(error),
+            RunError::Folder(error) => Some(error),
+            RunError::File(error) => Some(error),
             _ => None,
         }
     }
@@ -237,7 +240,6 @@ impl Reported for RunError {
             RunError::Checkpoint(CheckpointError { file, .. }) | RunError::Foreign { file, .. } => {
                 Some(FilePlace::at(file))
             }
-            RunError::File(error) => Some(FilePlace::at(&error.file)),
             _ => self.passed_on()?.place(),
         }
     }
@@ -282,9 +284,9 @@ const LONGEST_STRIDE: Duration = Duration::from_secs(1);
 /// # Errors
 /// If the folder is another's, or holds a run that is to stay.
 pub fn begins(folder: &Path, existing: Existing) -> Result<bool, RunError> {
-    let holds = folder::listed(folder)?.is_some_and(|names| !names.is_empty());
+    let holds = RUN.listed(folder)?.is_some_and(|names| !names.is_empty());
     if holds {
-        folder::is_free(folder)?;
+        drop(Lock::take(&folder.join(RUN.lock))?);
     }
     match existing {
         Existing::Refuse if holds => Err(RunError::Exists(folder.to_owned())),

@@ -1,7 +1,9 @@
 //! The folder of a run: what is written when.
 
 use super::finished::{LONGEST_SCENE, rows_of};
-use super::folder::{DATA, GSD, RunFolder, SCENE, SUMMARY, THERMO, TRAJECTORY};
+use super::folder::{
+    ALWAYS, CHECKPOINTS, DATA, GSD, RUN, RunFolder, SCENE, SUMMARY, THERMO, TRAJECTORY, needed,
+};
 use super::goal::{Goal, Known};
 use super::growing::{Growing, Kept, logged_of};
 use super::identity::{BITS, Identity, same_scene};
@@ -70,7 +72,7 @@ impl Recorder {
         job: Job<'_>,
         simulation: &mut dyn Simulation,
     ) -> Result<Recorder, RunError> {
-        let folder = RunFolder::open(path)?;
+        let folder = RunFolder::open(path, RUN, &[])?;
         let mut notes = Vec::new();
         if !folder.is_locked() {
             notes.push(format!(
@@ -79,8 +81,8 @@ impl Recorder {
             ));
         }
         match existing {
-            Existing::Refuse if folder.is_run() => Err(RunError::Exists(path.to_owned())),
-            Existing::Resume { other_version } if folder.is_run() => match read_latest(path)? {
+            Existing::Refuse if folder.has_own() => Err(RunError::Exists(path.to_owned())),
+            Existing::Resume { other_version } if folder.has_own() => match read_latest(path)? {
                 Some(latest) => Recorder::resume(folder, latest, job, simulation, other_version, notes),
                 None => {
                     begun_with(&folder, &Identity::of(job, path).scene)?;
@@ -99,8 +101,8 @@ impl Recorder {
         simulation: &mut dyn Simulation,
         notes: Vec<String>,
     ) -> Result<Recorder, RunError> {
-        folder.clear()?;
-        folder.claim(&on_request(job.prepared))?;
+        folder.clear(&CHECKPOINTS)?;
+        folder.claim(ALWAYS.into_iter().chain(on_request(job.prepared)), false)?;
         let pace = Pace::of(job.prepared.schedule.snapshots, simulation);
         let growing = Growing::begin(&folder, job.prepared, job.quantities, pace)?;
         let mut recorder = Recorder::with(folder, job, growing, &simulation.clock(), notes);
@@ -191,7 +193,7 @@ impl Recorder {
         };
         simulation.restore(clock, snapshot).map_err(foreign)?;
 
-        folder.claim(&on_request(job.prepared))?;
+        folder.claim(ALWAYS.into_iter().chain(on_request(job.prepared)), false)?;
         growing.cut(&mut folder, prepared, quantities)?;
         // They speak of an end that is not reached yet.
         folder.remove_own(SUMMARY)?;
@@ -229,7 +231,7 @@ impl Recorder {
     }
 
     fn write_scene(&self) -> Result<(), RunError> {
-        Ok(self.folder.write(SCENE, |out| out.write_all(self.identity.scene.as_bytes()))?)
+        Ok(self.folder.write(SCENE, |out| out.write_all(self.identity.scene.as_bytes())).map(drop)?)
     }
 
     /// The moments at which something is to be written.
@@ -377,7 +379,7 @@ impl Recorder {
         self.checkpointed = Some(clock);
         self.unsaved_since = Instant::now();
         // Later than the checkpoint, so that what is still there can be gone on with.
-        Ok(self.folder.check(true)?)
+        Ok(self.folder.still_has(needed(true))?)
     }
 
     /// The end: a last checkpoint, the last state in every file that is asked for, and what there is to say. The frame comes
@@ -406,7 +408,7 @@ impl Recorder {
             serde_json::to_writer_pretty(&mut *out, &summary)?;
             writeln!(out)
         })?;
-        self.folder.check(self.checkpointed.is_some())?;
+        self.folder.still_has(needed(self.checkpointed.is_some()))?;
         Ok(summary)
     }
 }

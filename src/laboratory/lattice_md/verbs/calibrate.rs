@@ -3,11 +3,8 @@
 use crate::console::{Common, Failure, clear_progress, print, print_json, progress, say, warn};
 use crate::laboratory::lattice_md::study::calibration::calibrate;
 use clap::Args;
-use std::io::Write;
 use std::path::PathBuf;
-use stripmine_physics::io::replace::{folder_of, temporary, written_beside};
-use stripmine_physics::quoted;
-use stripmine_physics::reported::{Class, FilePlace, Reported};
+use stripmine_physics::io::replace::{may_put, put, try_beside};
 use stripmine_physics::signals;
 
 /// Measures this host's operations and caches, in whatever state it is, and writes a host file that says which
@@ -27,34 +24,11 @@ pub(super) struct CalibrateVerb {
 /// Seconds that a calibration takes, about.
 pub(super) const SECONDS: u16 = 75;
 
-/// There is a host file already.
-#[derive(Debug, thiserror::Error)]
-#[error("{} is there already: {ELSEWHERE}", quoted::path(.0))]
-struct Exists(PathBuf);
-
-const ELSEWHERE: &str = "--force writes over it, --out elsewhere";
-
-impl Reported for Exists {
-    fn class(&self) -> Class {
-        Class::Usage
-    }
-
-    fn place(&self) -> Option<FilePlace> {
-        Some(FilePlace::at(&self.0))
-    }
-
-    fn remedy(&self) -> Option<String> {
-        Some(ELSEWHERE.to_owned())
-    }
-}
-
 impl CalibrateVerb {
     pub(super) fn run(&self, common: &Common) -> Result<(), Failure> {
-        if self.out.exists() && !self.force {
-            return Err(Exists(self.out.clone()).into());
-        }
+        may_put(&self.out, self.force, "--force writes over it, --out elsewhere")?;
         // A place that cannot be written is found before minutes of measuring.
-        drop(temporary().tempfile_in(folder_of(&self.out)).map_err(self.failed())?);
+        try_beside(&self.out).map_err(self.failed())?;
         let bar = progress(common, "calibrate");
         let model = calibrate(self.seconds.into(), |share| bar.set_position((1e3 * share) as u64))?;
         clear_progress();
@@ -62,7 +36,7 @@ impl CalibrateVerb {
             warn(format_args!("the machine was {}; the host file says so", model.measured.state));
         }
         // Before anything is printed: the reader of that may close the pipe.
-        signals::whole(|| self.write(&model.to_toml()))?;
+        signals::whole(|| put(&self.out, &model.to_toml(), self.force)).map_err(self.failed())?;
         if !common.quiet {
             say(format_args!("written: {}", self.out.display()));
         }
@@ -78,13 +52,6 @@ impl CalibrateVerb {
             measured.state,
             100.0 * measured.residual
         ))
-    }
-
-    /// Writes the whole file, or leaves what was there.
-    fn write(&self, text: &str) -> Result<(), Failure> {
-        let file = written_beside(&self.out, |out| out.write_all(text.as_bytes())).map_err(self.failed())?;
-        let placed = if self.force { file.persist(&self.out) } else { file.persist_noclobber(&self.out) };
-        placed.map(drop).map_err(|refused| self.failed()(refused.error))
     }
 
     fn failed(&self) -> impl FnOnce(std::io::Error) -> Failure {

@@ -103,7 +103,7 @@ fn read_one(path: &Path) -> Result<Checkpoint, reading::Found> {
 /// file. Where the file system has no second names, moves it there.
 fn keep(path: &Path) -> io::Result<()> {
     let older = previous(path);
-    match temporary().make_in(folder_of(path), |link| fs::hard_link(path, link)) {
+    match temporary(0o666).make_in(folder_of(path), |link| fs::hard_link(path, link)) {
         Ok(link) => {
             let link = link.into_temp_path();
             let name = link.to_path_buf();
