@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::granular::Contact;
 use stripmine_kernels::law::lennard_jones::LennardJones;
+use stripmine_kernels::law::potential::CutOff;
 use stripmine_kernels::law::{Axis, Env, Field, Law, Stated, Sum, check};
 use stripmine_kernels::sweep::pair::Pair;
 use stripmine_kernels::{Execution, InstructionSet};
@@ -268,7 +269,7 @@ fn the_energy_is_that_of_the_force_and_the_virial_is_the_forces() {
 fn lennard_jones_forces_are_slopes_of_the_energy() {
     let sigma = 0.7;
     for (cutoff, only_repels) in [(2.5 * sigma, false), (2f64.powf(1.0 / 6.0) * sigma, true)] {
-        let law = LennardJones::new(1.3, sigma, cutoff);
+        let law = CutOff::new(LennardJones::new(1.3, sigma), cutoff);
         let at = |distance: f64| {
             let angle = 0.4f64;
             let mut pair = Pair::touching();

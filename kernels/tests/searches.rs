@@ -10,6 +10,7 @@ use stripmine_kernels::InstructionSet;
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::Asked;
 use stripmine_kernels::law::lennard_jones::LennardJones;
+use stripmine_kernels::law::potential::CutOff;
 use stripmine_kernels::mask::Mask;
 use stripmine_kernels::noise::{Purpose, Stream};
 use stripmine_kernels::sweep::fast::lattice::{Candidates, Codes, Lattice, Occupancy};
@@ -255,7 +256,7 @@ unsafe impl Finder<f64, f64> for Counted<'_> {
 /// the same to the bit as on one thread. Where there are bands for all, each is one thread's.
 #[test]
 fn few_sectors_are_searched_by_all_threads_to_the_same_bits() {
-    let law = LennardJones::new(1.0, 0.9, 1.0);
+    let law = CutOff::new(LennardJones::new(1.0, 0.9), 1.0);
     for (sides, periodic, discs, is_coarse) in [
         ([9.0, 9.0], [true, true], 6000, true),
         ([40.0, 3.0], [true, true], 5000, true),

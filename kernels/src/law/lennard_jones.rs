@@ -1,80 +1,105 @@
-//! The pair potential of Lennard-Jones, cut off and shifted, LAN17.
+//! The pair potential of Lennard-Jones, LAN17.
 
-use super::{Axis::X, Axis::Y, Env, Field, Law, Sum};
+use super::potential::PairPotential;
 use crate::isa::Vector;
 
-/// Particles that repel each other as r⁻¹² and, up to the cut-off, attract as r⁻⁶: U = 4 ε ((σ/r)¹² − (σ/r)⁶) less its value at the
-/// cut-off, and nothing beyond. With the cut-off at 2^(1/6) σ they only repel (WCA).
+/// Particles that repel each other as r⁻¹² and attract each other as r⁻⁶:
+///
+/// ```text
+/// U(r) = 4 ε ((σ/r)¹² − (σ/r)⁶)
+/// F(r) = 24 ε (2 (σ/r)¹² − (σ/r)⁶)/r
+/// U″(r) = 4 ε (156 (σ/r)¹² − 42 (σ/r)⁶)/r²
+/// ```
+///
+/// with ε, the depth (energy), and σ, the diameter (length). Cut off at their minimum, 2^(1/6) σ, they only repel (WCA).
+///
+/// # As printed
+/// The sum of LAN17 multiplies the acceleration by F/m; forces are added here. A particle does not meet itself.
+///
+/// # Examples
+/// At σ the energy is 0 and the force 24 ε/σ; at the minimum the energy is −ε and the curvature 72 ε/r².
+/// ```
+/// use stripmine_kernels::law::lennard_jones::LennardJones;
+/// use stripmine_kernels::law::potential::PairPotential;
+///
+/// let potential = LennardJones::new(1.5, 2.0);
+/// assert_eq!((potential.energy(2.0), potential.force(2.0)), (0.0, 18.0));
+/// let minimum = 2.0 * 2f64.powf(1.0 / 6.0);
+/// assert!((potential.energy(minimum) + 1.5).abs() < 1e-14 && potential.force(minimum).abs() < 1e-13);
+/// assert!((potential.curvature(minimum) * minimum * minimum - 108.0).abs() < 1e-11);
+/// ```
+///
+/// Cut off at 2.5 diameters and shifted, the energy is 0 at the cut-off:
+/// ```
+/// # use stripmine_kernels::law::lennard_jones::LennardJones;
+/// use stripmine_kernels::law::potential::CutOff;
+///
+/// let law = CutOff::new(LennardJones::new(1.0, 1.0), 2.5);
+/// assert!((law.energy(1.0) - 0.016_316_891).abs() < 1e-9);
+/// assert_eq!((law.energy(2.5), law.force(2.5)), (0.0, 0.0));
+/// ```
+///
+/// The force that two particles feel is the one that sweeps evaluate; two that collide with 48 ε come as near as 2^(−1/3) σ:
+/// ```
+/// # use stripmine_kernels::law::lennard_jones::LennardJones;
+/// # use stripmine_kernels::law::potential::{CutOff, PairPotential};
+/// use stripmine_kernels::sweep::pair::{Body, Pair};
+///
+/// let law = CutOff::new(LennardJones::new(1.0, 1.0), 2.5);
+/// let pair = Pair { bodies: [Body::at(1.0, 0.0), Body::at(0.0, 0.0)] };
+/// assert_eq!(pair.sums(&law), [[24.0, 0.0, 0.0], [-24.0, 0.0, 0.0]]);
+/// assert!((law.potential().closest(48.0) - 2f64.powf(-1.0 / 3.0)).abs() < 1e-15);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LennardJones {
     /// ε (energy).
     strength: f64,
+    /// σ (length).
+    diameter: f64,
     /// σ² (length²).
     square: f64,
-    /// The square of the cut-off (length²).
-    reach: f64,
-    /// The potential at the cut-off (energy).
-    shift: f64,
 }
 
 impl LennardJones {
-    /// With ε (energy), σ and the cut-off (length).
+    /// With ε (energy) and σ (length).
     #[inline]
-    pub fn new(strength: f64, diameter: f64, cutoff: f64) -> Self {
-        let sixth = (diameter / cutoff).powi(6);
-        LennardJones {
-            strength,
-            square: diameter * diameter,
-            reach: cutoff * cutoff,
-            shift: 4.0 * strength * sixth * (sixth - 1.0),
-        }
+    pub fn new(strength: f64, diameter: f64) -> Self {
+        LennardJones { strength, diameter, square: diameter * diameter }
+    }
+
+    /// (σ/r)⁶.
+    fn sixth(&self, distance: f64) -> f64 {
+        (self.diameter / distance).powi(6)
     }
 }
 
-impl Law<2> for LennardJones {
-    type Own<V: Copy> = [V; 2];
-
-    const FIELDS: &'static [Field] = &[];
-    const SUMS: &'static [Sum] = &[Sum::Force(X), Sum::Force(Y)];
-
-    #[inline(always)]
-    fn own<E: Env<2>>(&self, env: E) -> [E::V; 2] {
-        env.own_position()
+impl PairPotential for LennardJones {
+    fn energy(&self, distance: f64) -> f64 {
+        let sixth = self.sixth(distance);
+        4.0 * self.strength * sixth * (sixth - 1.0)
     }
 
-    /// F = 24 ε (2 (σ/r)¹² − (σ/r)⁶)/r², times the vector between the particles.
-    ///
-    /// # As printed
-    /// The sum multiplies the acceleration by F/m; forces are added here. A particle does not meet itself.
+    fn force(&self, distance: f64) -> f64 {
+        let sixth = self.sixth(distance);
+        24.0 * self.strength * (2.0 * sixth * sixth - sixth) / distance
+    }
+
+    fn curvature(&self, distance: f64) -> f64 {
+        let sixth = self.sixth(distance);
+        4.0 * self.strength * (156.0 * sixth * sixth - 42.0 * sixth) / (distance * distance)
+    }
+
     #[inline(always)]
-    fn pair<E: Env<2>>(&self, env: E, place: E::Place, own: &[E::V; 2]) {
-        let uniform = |value: f64| env.uniform(value);
-        env.section("distance");
-        let [dx, dy] = env.displacement(*own, place);
-        let square = dx * dx + dy * dy;
-        let within = square.less_than(uniform(self.reach));
-        // A program of the lattice meets each particle's own place and empty ones, all at infinity.
-        if env.none(within) {
-            return;
-        }
-        env.section("force");
-        let zero = uniform(0.0);
+    fn swept_force<V: Vector>(&self, uniform: impl Fn(f64) -> V, square: V) -> [V; 2] {
         let inverse = uniform(1.0) / square;
         let ratio = uniform(self.square) * inverse;
         let sixth = ratio * ratio * ratio;
         let repulsion = sixth * (sixth + sixth - uniform(1.0));
-        let strength = E::V::select(within, uniform(24.0 * self.strength) * repulsion * inverse, zero);
-        env.section("sums");
-        for (sum, along) in [(Sum::Force(X), dx), (Sum::Force(Y), dy)] {
-            env.add_product(sum, place, strength, along);
-        }
-        if env.observes_energy() {
-            env.section("energy");
-            let share = if E::BOTH_PARTNERS { 1.0 } else { 0.5 };
-            let potential =
-                uniform(4.0 * self.strength) * (sixth * (sixth - uniform(1.0))) - uniform(self.shift);
-            env.energy(E::V::select(within, potential * uniform(share), zero));
-            env.virial(E::V::select(within, strength * square * uniform(share), zero));
-        }
+        [uniform(24.0 * self.strength) * repulsion * inverse, sixth]
+    }
+
+    #[inline(always)]
+    fn swept_energy<V: Vector>(&self, uniform: impl Fn(f64) -> V, sixth: V) -> V {
+        uniform(4.0 * self.strength) * (sixth * (sixth - uniform(1.0)))
     }
 }

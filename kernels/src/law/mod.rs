@@ -4,6 +4,7 @@ mod environment;
 pub mod granular;
 pub mod gravity;
 pub mod lennard_jones;
+pub mod potential;
 mod quantity;
 pub mod spring;
 mod stated;

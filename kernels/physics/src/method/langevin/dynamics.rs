@@ -14,11 +14,12 @@ use stripmine_kernels::backend;
 use stripmine_kernels::integrator::Inertia;
 use stripmine_kernels::integrator::langevin::{Baoab, Bath, Stochastic};
 use stripmine_kernels::law::lennard_jones::LennardJones;
+use stripmine_kernels::law::potential::CutOff;
 
 /// Particles of one kind in a bath.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct InBath {
-    pub(super) law: LennardJones,
+    pub(super) law: CutOff<LennardJones>,
     scheme: SchemeKind,
     bath: Bath,
     dt: f64,
@@ -30,7 +31,7 @@ impl InBath {
     pub(super) fn of(checked: &Checked) -> InBath {
         let Checked { scene, mass, reach, .. } = checked;
         InBath {
-            law: LennardJones::new(scene.strength, checked.diameter, *reach),
+            law: CutOff::new(LennardJones::new(scene.strength, checked.diameter), *reach),
             scheme: scene.scheme,
             bath: scene.bath,
             dt: scene.dt,

@@ -8,6 +8,7 @@ use crate::model::host::{Around, HostModel};
 use stripmine_kernels::isa::{AlignedColumn, Array, Memory, Slot};
 use stripmine_kernels::law::gravity::Gravity;
 use stripmine_kernels::law::lennard_jones::LennardJones;
+use stripmine_kernels::law::potential::CutOff;
 use stripmine_kernels::mask::Mask;
 use stripmine_kernels::sweep::all_pairs::shifts::{BODY_POSITION, Shifts};
 use stripmine_kernels::sweep::lattice::forces::Forces;
@@ -29,7 +30,7 @@ pub(super) fn strangers(host: &HostModel) -> Result<Vec<Case>, StudyError> {
         for (name, half_width) in [("Lennard-Jones, 24 places", 2), ("Lennard-Jones, 120 places", 5)] {
             let (side, mask) = (n.isqrt(), Mask::square(half_width));
             let shape = LatticeShape::new(side, side, &mask, [true; 2]).map_err(MeasurementError::from)?;
-            let law = LennardJones::new(1.0, 1.0, 1.12);
+            let law = CutOff::new(LennardJones::new(1.0, 1.0), 1.12);
             let frame = Frame { origin: [0.0; 2], edge: [0.56; 2] };
             let forces = Forces::<f64, _>::new(law, &mask, shape, frame, Coordinates::CellRelative);
             let arrays = [&[Array::X, Array::Y][..], &[Array::Fx, Array::Fy]];

@@ -1,0 +1,126 @@
+//! Pair potentials: each is stated once, as formulas; cutting off, shifting and sweeping are here, for all of them.
+
+use super::{Axis::X, Axis::Y, Env, Field, Law, Sum};
+use crate::isa::Vector;
+
+/// A potential U(r) of two particles: it goes to 0 far away, and grows without bound and ever more steeply as they come together.
+///
+/// [`energy`](Self::energy), [`force`](Self::force) and [`curvature`](Self::curvature) are the formulas of a textbook: theory, checks and
+/// tests ask for these. [`swept_force`](Self::swept_force) and [`swept_energy`](Self::swept_energy) say the same by the operations that
+/// vectors have. [`CutOff`] makes a [`Law`] of both.
+pub trait PairPotential: Send + Sync + 'static {
+    /// U (energy) at a distance (length).
+    fn energy(&self, distance: f64) -> f64;
+    /// F = −dU/dr (energy/length) at a distance (length); above 0 where the particles repel each other.
+    fn force(&self, distance: f64) -> f64;
+    /// U″ (energy/length²) at a distance (length).
+    fn curvature(&self, distance: f64) -> f64;
+
+    /// F/r (energy/length²) by the square of the distance (length²), and a term that [`swept_energy`](Self::swept_energy) takes again.
+    fn swept_force<V: Vector>(&self, uniform: impl Fn(f64) -> V, square: V) -> [V; 2]
+    where
+        Self: Sized;
+    /// U (energy) by the term.
+    fn swept_energy<V: Vector>(&self, uniform: impl Fn(f64) -> V, term: V) -> V
+    where
+        Self: Sized;
+
+    /// The distance (length) at which a head-on collision of an energy above 0 ends; 0 where the potential is nowhere so high.
+    fn closest(&self, energy: f64) -> f64 {
+        let (mut near, mut far): (f64, f64) = (1.0, 1.0);
+        while self.energy(far) > energy {
+            far *= 2.0;
+        }
+        while near > 0.0 && self.energy(near) < energy {
+            near *= 0.5;
+        }
+        loop {
+            let middle = 0.5 * (near + far);
+            if middle <= near || middle >= far {
+                return middle;
+            }
+            if self.energy(middle) < energy { far = middle } else { near = middle }
+        }
+    }
+}
+
+/// The law of a potential that is cut off and shifted: U(r) − U(r_c) up to the cut-off r_c, and nothing beyond.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CutOff<P> {
+    potential: P,
+    /// r_c (length).
+    cutoff: f64,
+    /// r_c² (length²).
+    square: f64,
+    /// U(r_c) (energy).
+    shift: f64,
+}
+
+impl<P: PairPotential> CutOff<P> {
+    /// A potential up to a cut-off (length).
+    #[inline]
+    pub fn new(potential: P, cutoff: f64) -> Self {
+        CutOff { square: cutoff * cutoff, shift: potential.energy(cutoff), potential, cutoff }
+    }
+
+    /// The potential as it is stated.
+    pub fn potential(&self) -> &P {
+        &self.potential
+    }
+
+    /// r_c (length).
+    pub fn cutoff(&self) -> f64 {
+        self.cutoff
+    }
+
+    /// U(r) − U(r_c) (energy) at a distance (length); 0 beyond the cut-off.
+    pub fn energy(&self, distance: f64) -> f64 {
+        if distance < self.cutoff { self.potential.energy(distance) - self.shift } else { 0.0 }
+    }
+
+    /// F (energy/length) at a distance (length); 0 beyond the cut-off.
+    pub fn force(&self, distance: f64) -> f64 {
+        if distance < self.cutoff { self.potential.force(distance) } else { 0.0 }
+    }
+}
+
+impl<P: PairPotential + Clone> Law<2> for CutOff<P> {
+    type Own<V: Copy> = [V; 2];
+
+    const FIELDS: &'static [Field] = &[];
+    const SUMS: &'static [Sum] = &[Sum::Force(X), Sum::Force(Y)];
+
+    #[inline(always)]
+    fn own<E: Env<2>>(&self, env: E) -> [E::V; 2] {
+        env.own_position()
+    }
+
+    /// F/r, times the vector between the particles.
+    #[inline(always)]
+    fn pair<E: Env<2>>(&self, env: E, place: E::Place, own: &[E::V; 2]) {
+        let uniform = |value: f64| env.uniform(value);
+        env.section("distance");
+        let [dx, dy] = env.displacement(*own, place);
+        let square = dx * dx + dy * dy;
+        let within = square.less_than(uniform(self.square));
+        // A program of the lattice meets each particle's own place and empty ones, all at infinity.
+        if env.none(within) {
+            return;
+        }
+        env.section("force");
+        let zero = uniform(0.0);
+        let [force, term] = self.potential.swept_force(uniform, square);
+        let strength = E::V::select(within, force, zero);
+        env.section("sums");
+        for (sum, along) in [(Sum::Force(X), dx), (Sum::Force(Y), dy)] {
+            env.add_product(sum, place, strength, along);
+        }
+        if env.observes_energy() {
+            env.section("energy");
+            let share = if E::BOTH_PARTNERS { 1.0 } else { 0.5 };
+            let potential = self.potential.swept_energy(uniform, term) - uniform(self.shift);
+            env.energy(E::V::select(within, potential * uniform(share), zero));
+            env.virial(E::V::select(within, strength * square * uniform(share), zero));
+        }
+    }
+}
