@@ -7,7 +7,9 @@ use std::fs;
 use std::sync::atomic::AtomicBool;
 use stripmine_kernels::noise::{Purpose as Of, Stream};
 use stripmine_physics::domain::Domain;
+use stripmine_physics::method::langevin::laws::PairLaw;
 use stripmine_physics::method::{Clock, METHODS, Prepared, Purpose, Simulation, Snapshot, Until, load};
+use stripmine_physics::words::Words;
 
 /// Most particles of a scene.
 const MOST: usize = 12;
@@ -194,7 +196,7 @@ fn granular(stream: &mut Stream) -> String {
 }
 
 fn langevin(stream: &mut Stream) -> String {
-    let law = one_of(stream, &["none", "wca", "lennard-jones"]);
+    let law = one_of(stream, PairLaw::WORDS);
     let start = discs(stream, [true; 2], 8.0).text("langevin", "");
     start
         + &format!(

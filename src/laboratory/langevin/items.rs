@@ -5,8 +5,7 @@ use crate::console::Failure;
 use crate::laboratory::programs;
 use crate::laboratory::running::prepared;
 use crate::results::{Item, Lab, Made, Size};
-use stripmine_physics::method::langevin::keys::LAW;
-use stripmine_physics::method::langevin::options::PairLaw;
+use stripmine_physics::method::langevin::laws::{LAW, PairLaw};
 use stripmine_physics::scene::Overrides;
 
 /// Every item, in the order of its chapter.

@@ -8,8 +8,9 @@ use crate::results::{Lab, Made, Meter, Size};
 use crate::statistics::Mean;
 use crate::study::StudyError;
 use std::f64::consts::PI;
-use stripmine_physics::method::langevin::keys::{INTEGRATOR, LAW};
-use stripmine_physics::method::langevin::options::{PairLaw, SchemeKind};
+use stripmine_physics::method::langevin::keys::INTEGRATOR;
+use stripmine_physics::method::langevin::laws::{LAW, PairLaw};
+use stripmine_physics::method::langevin::options::SchemeKind;
 use stripmine_physics::scene::{COUNT, DT, Overrides, SIDES};
 use stripmine_physics::words::Words;
 

@@ -9,8 +9,9 @@ use crate::study::StudyError;
 use std::collections::BTreeMap;
 use std::time::Instant;
 use stripmine_physics::io::extxyz::{self, Frame};
-use stripmine_physics::method::langevin::keys::{LAW, PER_SIDE, SEARCH, SORT};
-use stripmine_physics::method::langevin::options::{By, PairLaw, SortKind};
+use stripmine_physics::method::langevin::keys::{PER_SIDE, SEARCH, SORT};
+use stripmine_physics::method::langevin::laws::{LAW, PairLaw};
+use stripmine_physics::method::langevin::options::{By, SortKind};
 use stripmine_physics::scene::{COUNT, Overrides, SIDES, SPACING};
 use stripmine_physics::words::Words;
 

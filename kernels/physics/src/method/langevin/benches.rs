@@ -1,8 +1,10 @@
 //! What is measured of particles in a bath.
 
+use super::laws::PairLaw;
 use super::quantities::QUANTITIES;
 use crate::method::entry::bench_options;
 use crate::method::{Bench, Until};
+use crate::words::Words;
 
 /// The benchmark: the source's system.
 pub(super) const BENCHES: &[Bench] = &[Bench {
@@ -19,7 +21,7 @@ pub(super) const BENCHES: &[Bench] = &[Bench {
             let side = count.parse::<f64>().map_or(100.0, |count| (count / 4.0).sqrt());
             vec![format!("particles.count={count}"), format!("domain.sides=[{side:?}, {side:?}]")]
         }, "Number of particles, at least";
-        "law" Word ["none", "wca", "lennard-jones"], |law| vec![format!("law.kind={law}")], "Pair law of particles in a bath: none, wca or lennard-jones";
+        "law" Word PairLaw::WORDS, |law| vec![format!("law.kind={law}")], "Pair law of particles in a bath, a word of law.kind";
         "search" Word ["auto", "lattice", "sectors", "neighbor-list"], |by| vec![format!("search.by={by}")], "How pairs of particles in a bath are found: auto, lattice, sectors or neighbor-list";
         "sectors" Count [], |count| vec!["search.by=sectors".to_owned(), format!("search.sectors={count}")], "Sectors along each side";
         "sort" Word ["auto", "when-needed", "every-step"], |sort| {

@@ -2,7 +2,6 @@
 
 use super::found::{Found, found};
 use super::limits::{Colliding, bound, step_limits};
-use super::options::PairLaw;
 use super::scene::Scene;
 use crate::domain::Domain;
 use crate::method::{Prepared, StepLimit, compress};
@@ -14,8 +13,8 @@ use crate::scene::{
 use crate::start::{Stated, make, noise_seed, outside, overlaps};
 use stripmine_kernels::noise::NoiseSource;
 
-/// Particles may be nearer than a diameter by this part of it at the start: the potential is then 100 ε.
-const DEEPEST: f64 = 0.25;
+/// Particles may start as near as their potential is so many ε.
+const HIGHEST: f64 = 100.0;
 
 /// A checked scene.
 #[derive(Clone)]
@@ -60,9 +59,10 @@ pub(super) fn checked(values: Values) -> Result<Checked, SceneErrors> {
     let made = make(&stated)?;
     let (domain, particles) = (made.domain, made.particles);
     let mut errors = outside(&stated, &domain, &particles);
-    if scene.law != PairLaw::None {
+    if scene.law.has_pairs() {
+        let deepest = 1.0 - scene.law.nearest(&scene.parameters, HIGHEST);
         let why = "so near they would be thrown apart";
-        errors.extend(overlaps(&stated, &domain, &particles, DEEPEST, why));
+        errors.extend(overlaps(&stated, &domain, &particles, deepest, why));
     }
     let first = match of_one_kind(&values, &particles) {
         Ok(first) => first,
@@ -72,7 +72,7 @@ pub(super) fn checked(values: Values) -> Result<Checked, SceneErrors> {
         }
     };
     let (diameter, mass) = (2.0 * first.radius, first.mass);
-    let reach = diameter * scene.law.cutoff().unwrap_or(1.0);
+    let reach = scene.law_at(diameter).cutoff();
     let mut choices = vec![];
     let found = found(&values, &mut scene, &domain, [diameter, reach], particles.len(), &mut choices);
     let found = match found {
@@ -124,7 +124,7 @@ fn of_one_kind(values: &Values, particles: &Particles) -> Result<Particle, Scene
 /// A step beyond the source's bound.
 fn too_long(scene: &Scene, diameter: f64, mass: f64) -> Option<Warning> {
     let (step, _) = bound(scene, diameter, mass);
-    (scene.law != PairLaw::None && scene.dt > step).then(|| Warning {
+    (scene.law.has_pairs() && scene.dt > step).then(|| Warning {
         check: "source-bound",
         share: scene.dt / step,
         is_refusal: false,
@@ -140,7 +140,7 @@ fn too_long(scene: &Scene, diameter: f64, mass: f64) -> Option<Warning> {
 impl Checked {
     /// Whether particles act on each other.
     pub(super) fn has_pairs(&self) -> bool {
-        self.scene.law != PairLaw::None
+        self.scene.law.has_pairs()
     }
 
     /// What bounds the step.

@@ -2,7 +2,8 @@
 
 use super::checked::Checked;
 use super::found::Found;
-use super::options::{PairLaw, SchemeKind, SortKind};
+use super::laws::SweptLaw;
+use super::options::{SchemeKind, SortKind};
 use crate::domain::Domain;
 use crate::method::pairwise::search::{LatticeSearch, ListSearch, OnConflict, Search, SectorSearch};
 use crate::method::pairwise::{Dynamics, Sort, Stepping, System, WithLaw, WithScheme, begin};
@@ -13,13 +14,11 @@ use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend;
 use stripmine_kernels::integrator::Inertia;
 use stripmine_kernels::integrator::langevin::{Baoab, Bath, Stochastic};
-use stripmine_kernels::law::lennard_jones::LennardJones;
-use stripmine_kernels::law::potential::CutOff;
 
 /// Particles of one kind in a bath.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct InBath {
-    pub(super) law: CutOff<LennardJones>,
+    law: SweptLaw,
     scheme: SchemeKind,
     bath: Bath,
     dt: f64,
@@ -29,9 +28,9 @@ pub(super) struct InBath {
 impl InBath {
     /// Of a scene.
     pub(super) fn of(checked: &Checked) -> InBath {
-        let Checked { scene, mass, reach, .. } = checked;
+        let Checked { scene, diameter, mass, .. } = checked;
         InBath {
-            law: CutOff::new(LennardJones::new(scene.strength, checked.diameter), *reach),
+            law: scene.law_at(*diameter),
             scheme: scene.scheme,
             bath: scene.bath,
             dt: scene.dt,
@@ -42,7 +41,7 @@ impl InBath {
 
 impl Dynamics for InBath {
     fn with_law<W: WithLaw>(&self, work: W) -> W::Output {
-        work.with(self.law)
+        self.law.with(work)
     }
 
     fn with_scheme<W: WithScheme>(&self, work: W) -> W::Output {
@@ -94,7 +93,7 @@ fn of_precision<S: backend::Precision, P: backend::Precision>(
         },
         longest_step: f64::INFINITY,
         // Particles that do not act on each other may go as far as they like.
-        crosses_any: scene.law == PairLaw::None,
+        crosses_any: !scene.law.has_pairs(),
         followed: [follows; 2],
         noise: checked.noise,
     };

@@ -3,15 +3,16 @@
 use super::benches::BENCHES;
 use super::checked::prepare;
 use super::keys::VOCABULARY;
+use super::laws::TWINS;
 use super::quantities::QUANTITIES;
-use super::trials::{AXES, TRIALS, TWINS};
+use super::trials::{AXES, TRIALS};
 use crate::method::Entry;
 
 /// Langevin dynamics.
 pub static ENTRY: Entry = Entry {
     vocabulary: &VOCABULARY,
     source: "Langevin dynamics of 2017 (LAN17)",
-    doc: "particles in a bath of friction and noise, with Lennard-Jones pairs",
+    doc: "particles in a bath of friction and noise, with pair forces or without",
     quantities: QUANTITIES,
     prepare,
     benches: BENCHES,

@@ -1,7 +1,8 @@
 //! How pairs of a scene are found: as it says, or by what serves.
 
-use super::keys::{LAW, PER_SIDE, SEARCH, SKIN};
-use super::options::{By, PairLaw};
+use super::keys::{PER_SIDE, SEARCH, SKIN};
+use super::laws::LAW;
+use super::options::By;
 use super::scene::Scene;
 use crate::domain::Domain;
 use crate::grid::sectors_of;
@@ -11,8 +12,10 @@ use stripmine_kernels::mask::Mask;
 use stripmine_kernels::sweep::fast::{Grid, GridError};
 use stripmine_kernels::sweep::lattice::{Frame, LatticeShape};
 
-/// How near particles come at all, in diameters: on a lattice those that come nearer share a cell, which costs time.
-pub(super) const NEAREST: f64 = 0.82;
+/// Particles hardly come nearer than where their potential is so many ε: on a lattice those that do share a cell, which costs time.
+const HIGHEST: f64 = 30.0;
+/// Cells that a lattice's mask sees on either side.
+const HALF_WIDTH: u32 = 2;
 /// Sectors of the source's case of all pairs.
 const FEWEST: f64 = 3.0;
 
@@ -50,10 +53,8 @@ pub(super) fn found(
     let single = scene.precision != Precision::F64;
     let box_spot =
         || -> Spot { if values.gives(&SIDES) { values.spot(&SIDES) } else { values.spot(&GENERATE) } };
-    let lattice = || match scene.law {
-        PairLaw::Wca => lattice_of(domain, reach, NEAREST * diameter),
-        _ => None,
-    };
+    let edge = widest_cell(scene, diameter);
+    let lattice = || lattice_of(domain, reach, edge);
     let lists = |scene: &Scene| {
         let skin = scene.skin.unwrap_or_else(|| roomy_skin(domain, reach, count));
         let grid = sectors_of(domain, reach + skin, single, count);
@@ -67,10 +68,11 @@ pub(super) fn found(
     let chosen = match scene.by {
         By::Lattice => lattice().ok_or_else(|| {
             let message = format!(
-                "no lattice serves: a cell that is one particle's and a mask of 5 × 5 of them that sees to the cut-off {reach} are \
-                 for law.kind = \"wca\" and boxes of at least five cells"
+                "no lattice serves: a mask of 5 × 5 cells that are one particle's sees to {}, the cut-off is {reach}, and a box takes at \
+                 least five cells",
+                significant(f64::from(HALF_WIDTH) * edge, 5)
             );
-            let spot = if scene.law == PairLaw::Wca { values.spot(&SEARCH) } else { values.spot(&LAW) };
+            let spot = if reach > f64::from(HALF_WIDTH) * edge { values.spot(&LAW) } else { values.spot(&SEARCH) };
             spot.error(Reason::Geometry, message).expecting("search.by = \"sectors\" or \"neighbor-list\"")
         }).map(|(shape, frame)| Found::Lattice(shape, frame))?,
         By::Sectors => Found::Sectors(sectors(scene)?),
@@ -139,11 +141,15 @@ fn roomy_skin(domain: &Domain, reach: f64, count: usize) -> f64 {
     if room > 0.0 { wanted.min(room * (1.0 - 1e-12)) } else { wanted }
 }
 
-/// The lattice for pairs up to `reach` (length) apart of which hardly any comes nearer than `nearest`; none where the box has none.
-fn lattice_of(domain: &Domain, reach: f64, nearest: f64) -> Option<(LatticeShape, Frame)> {
-    const HALF_WIDTH: u32 = 2;
+/// The widest cell (length) that hardly any two particles of a diameter share.
+pub(super) fn widest_cell(scene: &Scene, diameter: f64) -> f64 {
+    scene.law.nearest(&scene.parameters, HIGHEST) * diameter / std::f64::consts::SQRT_2
+}
+
+/// The lattice for pairs up to `reach` (length) apart, of cells that are at most so wide (length); none where the box has none.
+fn lattice_of(domain: &Domain, reach: f64, widest: f64) -> Option<(LatticeShape, Frame)> {
     let least = reach / f64::from(HALF_WIDTH);
-    if least > nearest / std::f64::consts::SQRT_2 {
+    if least > widest {
         return None;
     }
     let counts = [0, 1].map(|axis| (domain.length(axis) / least).floor());

@@ -1,6 +1,7 @@
 //! The keys that are this method's own, and what they demand of each other.
 
-use super::options::{By, PairLaw, SchemeKind, SortKind};
+use super::laws;
+use super::options::{By, SchemeKind, SortKind};
 use crate::scene::Bounds::{NonNegative, Positive};
 use crate::scene::Fallback::{Is, Otherwise};
 use crate::scene::Kind::{Choice, Number, Switch, Whole};
@@ -13,17 +14,12 @@ use crate::scene::{
 use crate::words::Words;
 
 const ALWAYS: Use = None;
-const WITH_PAIRS: Use = Some((&LAW, &["wca", "lennard-jones"]));
 const LISTS: Use = Some((&SEARCH, &["auto", "neighbor-list"]));
 const SECTORS: Use = Some((&SEARCH, &["auto", "sectors"]));
 
 define_keys! {
-    /// Law, bath, search and integrator.
+    /// Bath, search and integrator.
     static OWN;
-    LAW = "law" "kind", Choice(PairLaw::WORDS), "", Is("\"wca\""), ALWAYS,
-        "The pair law: none; Lennard-Jones cut off at its minimum, which only repels (wca); or cut off at 2.5 diameters and shifted. The diameter σ is twice particles.radius.";
-    STRENGTH = "law" "strength", Number(Positive), "energy", Is("1.0"), WITH_PAIRS,
-        "Depth ε of the pair potential.";
     DRAG = "law" "drag", Number(NonNegative), "mass/time", Is("1.0"), ALWAYS,
         "Friction γ of the bath.";
     BATH_TEMPERATURE = "law" "bath_temperature", Number(NonNegative), "energy", Is("1.0"), ALWAYS,
@@ -32,7 +28,7 @@ define_keys! {
         "Seed of the bath's noise: runs of one start with different seeds are independent replicas. Where the start is a file or a list, the noise depends on the state as well: a run that continues from a frame has new noise.";
 
     SEARCH = "search" "by", Choice(By::WORDS), "", Is("\"auto\""), ALWAYS,
-        "How pairs are found: on a lattice of cells that are one particle's each (wca only), in sectors, or by lists of neighbours; auto takes the fastest that the scene allows.";
+        "How pairs are found: on a lattice of cells that are one particle's each (for laws of short reach, such as wca), in sectors, or by lists of neighbours; auto takes the fastest that the scene allows.";
     PER_SIDE = "search" "sectors", Whole(3, 1_000_000), "", Otherwise("as is fastest"), SECTORS,
         "Sectors along each side; none may be narrower than the cut-off.";
     SORT = "search" "sort", Choice(SortKind::WORDS), "", Is("\"auto\""), SECTORS,
@@ -57,6 +53,7 @@ pub(super) static VOCABULARY: Vocabulary = Vocabulary {
             HEADING,
             PLANAR_DOMAIN,
             DISCS,
+            laws::KEYS,
             OWN,
             STEP,
             ARITHMETIC,

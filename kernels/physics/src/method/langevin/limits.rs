@@ -1,6 +1,6 @@
 //! How long a step may be, by theory.
 
-use super::options::{PairLaw, SchemeKind};
+use super::options::SchemeKind;
 use super::scene::Scene;
 use crate::method::{Beyond, StepLimit};
 use crate::number::significant;
@@ -31,11 +31,11 @@ pub(super) fn step_limits(scene: &Scene, particles: Colliding) -> Vec<StepLimit>
         why,
     };
     let mut limits = vec![];
-    if scene.law != PairLaw::None {
+    if scene.law.has_pairs() {
         let (step, force) = bound(scene, diameter, mass);
         limits.push(limit("source-bound", step, Beyond::Unstable, {
             format!(
-                "√(2 m r_c/F) with F = 24 ε/σ = {}: necessary, by far not sufficient",
+                "√(2 m r_c/F) with F = {} at a distance of σ: necessary, by far not sufficient",
                 significant(force, 5)
             )
         }));
@@ -63,9 +63,9 @@ pub(super) fn step_limits(scene: &Scene, particles: Colliding) -> Vec<StepLimit>
 
 /// The source's bound (time), and the force in it.
 pub(super) fn bound(scene: &Scene, diameter: f64, mass: f64) -> (f64, f64) {
-    let force = 24.0 * scene.strength / diameter;
-    let cutoff = diameter * scene.law.cutoff().unwrap_or(1.0);
-    ((2.0 * mass * cutoff / force).sqrt(), force)
+    let law = scene.law_at(diameter);
+    let force = law.potential().force(diameter);
+    ((2.0 * mass * law.cutoff() / force).sqrt(), force)
 }
 
 /// The energy, in kT, of the hardest collision that is expected in a run: one in M collisions has more than ln M.
@@ -80,12 +80,9 @@ fn hardest(scene: &Scene, Colliding { diameter, mass, count, area }: Colliding) 
 /// The step (time) at which velocity Verlet loses the spring that a pair is at the end of its hardest collisions, of an energy in kT, and how near the two
 /// are then (length).
 fn stiffest(scene: &Scene, Colliding { diameter, mass, .. }: Colliding, energy: f64) -> (f64, f64) {
-    let energy = (energy * scene.bath.temperature).max(scene.strength) / scene.strength;
-    // 4 ε (x² − x) = E with x = (σ/r)⁶.
-    let x = 0.5 * (1.0 + (1.0 + energy).sqrt());
-    let nearest = diameter * x.powf(-1.0 / 6.0);
-    let curvature = 4.0 * scene.strength * (156.0 * x * x - 42.0 * x) / (nearest * nearest);
-    (2.0 * (0.5 * mass / curvature).sqrt(), nearest)
+    let law = scene.law_at(diameter);
+    let nearest = law.potential().closest((energy * scene.bath.temperature).max(scene.parameters.strength));
+    (2.0 * (0.5 * mass / law.potential().curvature(nearest)).sqrt(), nearest)
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! LAN17: particles in a bath of friction and noise, with Lennard-Jones pairs.
+//! LAN17: particles in a bath of friction and noise, with pair forces or without.
 
 mod benches;
 mod checked;
@@ -6,6 +6,7 @@ mod dynamics;
 mod entry;
 mod found;
 pub mod keys;
+pub mod laws;
 mod limits;
 mod losses;
 pub mod options;

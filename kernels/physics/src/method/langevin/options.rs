@@ -3,18 +3,6 @@
 use crate::words::define_words;
 
 define_words! {
-    /// What particles do to each other.
-    pub enum PairLaw {
-        /// Nothing.
-        None = "none",
-        /// Repulsion: Lennard-Jones cut off at its minimum (WCA).
-        Wca = "wca",
-        /// Lennard-Jones, cut off at 2.5 diameters.
-        LennardJones = "lennard-jones",
-    }
-}
-
-define_words! {
     /// How pairs are found.
     pub enum By {
         /// As is fastest.
@@ -58,16 +46,5 @@ impl SchemeKind {
     /// kT − dt²⟨F²⟩/(4 m), with ⟨F²⟩ = kT⟨U″⟩. By the source's scheme those of the end of the step have kT exactly in a trap.
     pub(super) fn is_observed_after_bath(self) -> bool {
         self == SchemeKind::Baoab
-    }
-}
-
-impl PairLaw {
-    /// The cut-off over the diameter; none without pairs.
-    pub fn cutoff(self) -> Option<f64> {
-        match self {
-            PairLaw::None => None,
-            PairLaw::Wca => Some(1.122_462_048_309_373),
-            PairLaw::LennardJones => Some(2.5),
-        }
     }
 }

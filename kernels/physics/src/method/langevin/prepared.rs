@@ -4,7 +4,7 @@ use super::checked::Checked;
 use super::dynamics::InBath;
 use super::found::Found;
 use super::losses;
-use super::options::{By, PairLaw};
+use super::options::By;
 use super::programs::programs;
 use super::scene::Scene;
 use super::simulation::Running;
@@ -27,7 +27,8 @@ use stripmine_kernels::sweep::fast::lattice::SPARSE;
 impl Checked {
     /// What is offered.
     pub(super) fn prepared(self) -> Prepared {
-        let scene = &self.scene;
+        let (scene, word) = (&self.scene, self.scene.law.word());
+        let only_repels = self.has_pairs() && !scene.law_at(self.diameter).attracts();
         Prepared {
             scene: scene.to_toml(),
             schedule: Schedule::of_steps(&scene.run),
@@ -40,8 +41,8 @@ impl Checked {
             warnings: self.warnings.clone(),
             choices: self.choices.clone(),
             left_out: left_out(&[
-                (scene.law == PairLaw::None, "pairs, and the search for them: law.kind is none"),
-                (scene.law == PairLaw::Wca, "attraction: law.kind is wca"),
+                (!self.has_pairs(), format!("pairs, and the search for them: law.kind is {word}").as_str()),
+                (only_repels, format!("attraction: law.kind is {word}").as_str()),
                 (scene.bath.friction == 0.0, "friction and noise: law.drag is 0"),
             ]),
             step_limits: self.limits(),
@@ -82,7 +83,7 @@ impl Checked {
             Fact::new("density", density, "density N σ²/A", significant(density, 5)),
             Fact::new("law", scene.law.word(), "pairs", scene.law.word()),
         ];
-        if scene.law != PairLaw::None {
+        if self.has_pairs() {
             facts.push(Fact::new("cutoff", *reach, "cut-off", significant(*reach, 7)));
         }
         facts.push(Fact::new("search", scene.by.word(), "search", by));

@@ -2,13 +2,15 @@
 
 use super::checked::Checked;
 use super::dynamics::InBath;
-use super::found::NEAREST;
+use super::found::widest_cell;
 use crate::method::VectorProgram;
-use stripmine_kernels::Program;
+use crate::method::pairwise::{Dynamics, WithLaw};
+use stripmine_kernels::law::Law;
 use stripmine_kernels::ledger::Length;
 use stripmine_kernels::mask::Mask;
 use stripmine_kernels::sweep::lattice::forces::Forces;
 use stripmine_kernels::sweep::lattice::{Coordinates, Frame, LatticeShape};
+use stripmine_kernels::{Program, Runnable};
 
 /// The widest mask that is thought of: cells on either side.
 const WIDEST: u32 = 12;
@@ -17,7 +19,7 @@ const WIDEST: u32 = 12;
 /// too small for it.
 pub(super) fn lattice(checked: &Checked) -> Option<(LatticeShape, Frame, Mask)> {
     let (domain, reach) = (checked.domain, checked.reach);
-    let largest = NEAREST * checked.diameter / std::f64::consts::SQRT_2;
+    let largest = widest_cell(&checked.scene, checked.diameter);
     let half_width = (1..=WIDEST).find(|&width| reach / f64::from(width) <= largest)?;
     let least = reach / f64::from(half_width);
     let counts = [0, 1].map(|axis| (domain.length(axis) / least).floor());
@@ -36,35 +38,46 @@ pub(super) fn programs(checked: &Checked) -> Vec<VectorProgram> {
     let Some((shape, frame, mask)) = checked.has_pairs().then(|| lattice(checked)).flatten() else {
         return vec![];
     };
-    let law = InBath::of(checked).law;
-    let forces = Forces::<f64, _>::new(law, &mask, shape, frame, Coordinates::CellRelative);
     let length = Length::SweptCells;
-    let program = Box::new(Program::new(forces));
+    let program = InBath::of(checked).with_law(OnLattice(&mask, shape, frame));
     vec![VectorProgram { part: "forces", length: length.symbol(), n: shape.swept().len(), times: 1, program }]
+}
+
+/// The forces of a law on a lattice, as a program.
+struct OnLattice<'m>(&'m Mask, LatticeShape, Frame);
+
+impl WithLaw for OnLattice<'_> {
+    type Output = Box<dyn Runnable>;
+
+    fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> Box<dyn Runnable> {
+        let OnLattice(mask, shape, frame) = self;
+        Box::new(Program::new(Forces::<f64, _>::new(law, mask, shape, frame, Coordinates::CellRelative)))
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::checked::checked;
     use super::super::keys::VOCABULARY;
+    use super::super::laws::PairLaw;
     use super::*;
     use crate::particles::{Particle, Particles};
     use crate::scene::Values;
+    use crate::words::Words;
     use stripmine_kernels::isa::{Array, Memory, Slot};
     use stripmine_kernels::noise::{Purpose, normals};
-    use stripmine_kernels::{Execution, InstructionSet, Runnable};
+    use stripmine_kernels::{Execution, InstructionSet};
 
-    /// Forces as they are written, pair by pair.
+    /// Forces as the potential states them, pair by pair.
     fn written_down(checked: &Checked, particles: &Particles) -> Vec<[f64; 2]> {
-        let (epsilon, sigma) = (checked.scene.strength, checked.diameter);
+        let law = checked.scene.law_at(checked.diameter);
         let force = |a: &Particle| {
             let mut sum = [0.0; 2];
             for b in particles.all().iter().filter(|b| b.id != a.id) {
                 let way = checked.domain.displacement(b.place(), a.place());
                 let square = way[0] * way[0] + way[1] * way[1];
                 if square < checked.reach * checked.reach {
-                    let sixth = (sigma * sigma / square).powi(3);
-                    let strength = 24.0 * epsilon * (2.0 * sixth * sixth - sixth) / square;
+                    let strength = law.potential().force(square.sqrt()) / square.sqrt();
                     (0..2).for_each(|axis| sum[axis] += strength * way[axis]);
                 }
             }
@@ -76,7 +89,7 @@ mod tests {
     /// Forces by the program over the whole lattice, run the CRAY's way and chained, are those that are written down but for rounding.
     #[test]
     fn the_program_finds_the_forces_of_all_pairs() {
-        for law in ["wca", "lennard-jones"] {
+        for (_, law) in PairLaw::ALL.iter().filter(|(law, _)| law.has_pairs()) {
             let overrides = [
                 format!("law.kind={law}"),
                 "particles.count=200".to_owned(),
@@ -108,13 +121,7 @@ mod tests {
             for image in shape.images() {
                 (x[image.cell], y[image.cell]) = (x[image.source], y[image.source]);
             }
-            let program = Program::new(Forces::<f64, _>::new(
-                InBath::of(&checked).law,
-                &mask,
-                shape,
-                frame,
-                Coordinates::CellRelative,
-            ));
+            let program = InBath::of(&checked).with_law(OnLattice(&mask, shape, frame));
             let expected = written_down(&checked, &particles);
             let largest = expected.iter().flatten().fold(0.0, |most: f64, it| most.max(it.abs()));
             assert!(largest > 0.1);
@@ -125,7 +132,7 @@ mod tests {
                     .read(Slot::new(Array::Y), &y)
                     .write(Slot::new(Array::Fx), &mut fx)
                     .write(Slot::new(Array::Fy), &mut fy);
-                Runnable::run(&program, &memory, shape.swept(), execution, InstructionSet::best()).unwrap();
+                program.run(&memory, shape.swept(), execution, InstructionSet::best()).unwrap();
                 for (&cell, force) in cell_of.iter().zip(&expected) {
                     for (found, expected) in [fx[cell], fy[cell]].into_iter().zip(force) {
                         assert!((found - expected).abs() < 1e-11 * largest, "{law}: {found} {expected}");

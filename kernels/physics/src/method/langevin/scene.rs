@@ -1,7 +1,8 @@
 //! What a scene of this method says, as plain data.
 
 use super::keys::*;
-use super::options::{By, PairLaw, SchemeKind, SortKind};
+use super::laws::{LAW, PairLaw, Parameters, SweptLaw};
+use super::options::{By, SchemeKind, SortKind};
 use crate::scene::{
     Binding, Domain, Output, Precision, Run, Start, WallMotion, Write, bind_arithmetic, bind_heading,
 };
@@ -19,8 +20,8 @@ pub struct Scene {
     pub start: Start,
     /// What they do to each other.
     pub law: PairLaw,
-    /// ε (energy).
-    pub strength: f64,
+    /// Its numbers.
+    pub(super) parameters: Parameters,
     /// Friction and temperature.
     pub bath: Bath,
     /// Seed of the noise, where it is not that of the start.
@@ -58,7 +59,7 @@ impl Default for Scene {
             domain: Domain::default(),
             start: Start::default(),
             law: PairLaw::Wca,
-            strength: 1.0,
+            parameters: Parameters::default(),
             bath: Bath { friction: 1.0, temperature: 1.0 },
             noise_seed: None,
             by: By::Auto,
@@ -85,9 +86,7 @@ impl Scene {
         self.start.bind(binding);
         WallMotion::Fixed.bind(binding, &self.start);
         binding.choice(&LAW, &mut self.law);
-        if self.law != PairLaw::None {
-            binding.number(&STRENGTH, &mut self.strength);
-        }
+        self.parameters.bind(self.law, binding);
         binding.number(&DRAG, &mut self.bath.friction);
         binding.number(&BATH_TEMPERATURE, &mut self.bath.temperature);
         binding.whole_if_any(&NOISE_SEED, &mut self.noise_seed);
@@ -106,6 +105,11 @@ impl Scene {
         binding.whole(&MOST_LOST, &mut self.most_lost);
         self.output.bind(binding);
         binding.switch(&LOSSES, &mut self.losses);
+    }
+
+    /// The law between particles of a diameter (length).
+    pub(super) fn law_at(&self, diameter: f64) -> SweptLaw {
+        self.law.of(&self.parameters, diameter)
     }
 
     /// The instructions of a run.

@@ -1,12 +1,12 @@
 //! How particles in a bath may be run, and what a map of stability varies.
 
 use super::checked::prepare;
-use super::keys::{BATH_TEMPERATURE, DRAG, INTEGRATOR, LAW, SEARCH, STRENGTH};
-use super::options::{By, PairLaw, SchemeKind};
+use super::keys::{BATH_TEMPERATURE, DRAG, INTEGRATOR, SEARCH};
+use super::laws::STRENGTH;
+use super::options::{By, SchemeKind};
 use crate::method::trials::settings;
-use crate::method::{Axis, Becomes, Decides, Parameter, Prepared, SMALLEST_RADIUS, Trials, Twin};
+use crate::method::{Axis, Decides, Parameter, Prepared, SMALLEST_RADIUS, Trials};
 use crate::scene::{DT, Key, Overrides, PRECISION, Precision, Values};
-use crate::words::Words;
 
 /// Every way to run a scene of particles in a bath.
 pub(super) static TRIALS: Trials = Trials {
@@ -29,24 +29,6 @@ pub(super) static TRIALS: Trials = Trials {
     parameters: PARAMETERS,
     at_any_step: prepare,
 };
-
-/// What a scene may be modelled without.
-pub(super) const TWINS: &[Twin] = &[
-    Twin {
-        name: "attraction between pairs (wca in the place of lennard-jones)",
-        becomes: Becomes::Overridden(|values| {
-            let attracts = values.choice(&LAW)? == PairLaw::LennardJones.word();
-            attracts.then(|| Overrides::new().set(&LAW, PairLaw::Wca))
-        }),
-    },
-    Twin {
-        name: "pairs: free particles in the bath",
-        becomes: Becomes::Overridden(|values| {
-            let has_pairs = values.choice(&LAW)? != PairLaw::None.word();
-            has_pairs.then(|| Overrides::new().set(&LAW, PairLaw::None))
-        }),
-    },
-];
 
 pub(super) const AXES: &[Axis] = &[
     Axis {

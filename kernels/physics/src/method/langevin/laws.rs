@@ -1,0 +1,314 @@
+//! Pair laws of scenes: one list, from which words, keys, help, potentials and simpler models follow.
+//!
+//! A law is a [`PairPotential`] with a cut-off. What scenes need beside these, such as limits of the step, how near particles may start and
+//! which searches serve, is asked of the potential.
+
+use crate::method::pairwise::WithLaw;
+use crate::method::{Becomes, Twin};
+use crate::scene::{Binding, Bounds, Fallback, Key, Kind, Overrides, Use, Values};
+use crate::words::{Words, define_words};
+use stripmine_kernels::law::lennard_jones::LennardJones;
+use stripmine_kernels::law::potential::{CutOff, PairPotential};
+
+/// Defines everything of the laws by a list: a potential, and the laws that it makes. A law has its word; its help; keys of its own, each a
+/// static, a field of `Parameters`, a default, bounds, unit and help; what a simpler law in its place lacks; and the law of parameters and of
+/// particles of a diameter (length).
+macro_rules! define_pair_laws {
+    ($($potential:ident {
+        $($law:ident = $word:literal, $help:literal,
+            keys [$($key:ident $name:ident = $default:literal, $bounds:expr, $unit:literal, $doc:literal)*],
+            simpler [$($lacks:literal, $simpler:ident)?],
+            $of:expr;)+
+    })+) => {
+        define_words! {
+            /// What particles do to each other.
+            pub enum PairLaw {
+                /// Nothing.
+                None = "none",
+                $($(#[doc = $help] $law = $word,)+)+
+            }
+        }
+
+        /// The words of laws by which particles act on each other.
+        const WORDS: &[&str] = &[$($($word),+),+];
+
+        /// The pair law.
+        pub static LAW: Key = key("kind", Kind::Choice(PairLaw::WORDS), "", "\"wca\"", None, concat!(
+            "The pair law: none" $($(, "; ", $word, ", ", $help)+)+, ". The diameter σ is twice particles.radius."
+        ));
+        /// The energy scale of the pair potential.
+        pub static STRENGTH: Key = key("strength", Kind::Number(Bounds::Positive), "energy", "1.0", Some((&LAW, WORDS)),
+            "Energy ε of the pair potential; the depth of that of Lennard-Jones.");
+        $($($(
+            #[doc = $doc]
+            pub static $key: Key = key(stringify!($name), Kind::Number($bounds), $unit, stringify!($default),
+                Some((&LAW, &[$word])), $doc);
+        )*)+)+
+
+        /// Keys of the pair law, in the order in which they are written.
+        pub(super) static KEYS: &[&Key] = &[&LAW, &STRENGTH, $($($(&$key,)*)+)+];
+
+        /// Numbers of the pair law.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub(super) struct Parameters {
+            /// ε (energy).
+            pub(super) strength: f64,
+            $($($(#[doc = $doc] $name: f64,)*)+)+
+        }
+
+        impl Default for Parameters {
+            fn default() -> Self {
+                Parameters { strength: 1.0, $($($($name: $default,)*)+)+ }
+            }
+        }
+
+        impl Parameters {
+            /// Meets the keys of a law.
+            pub(super) fn bind(&mut self, law: PairLaw, binding: &mut dyn Binding) {
+                match law {
+                    PairLaw::None => {}
+                    $($(PairLaw::$law => {
+                        binding.number(&STRENGTH, &mut self.strength);
+                        $(binding.number(&$key, &mut self.$name);)*
+                    })+)+
+                }
+            }
+        }
+
+        /// A law with its numbers, as sweeps are compiled for it: a variant for each potential.
+        #[derive(Clone, Copy, Debug)]
+        pub(super) enum SweptLaw {
+            $($potential(CutOff<$potential>),)+
+        }
+
+        impl SweptLaw {
+            /// Does something with the law.
+            pub(super) fn with<W: WithLaw>(self, work: W) -> W::Output {
+                match self { $(SweptLaw::$potential(law) => work.with(law),)+ }
+            }
+
+            /// The potential, neither cut off nor shifted.
+            pub(super) fn potential(&self) -> &dyn PairPotential {
+                match self { $(SweptLaw::$potential(law) => law.potential(),)+ }
+            }
+
+            /// The cut-off (length).
+            pub(super) fn cutoff(&self) -> f64 {
+                match self { $(SweptLaw::$potential(law) => law.cutoff(),)+ }
+            }
+        }
+
+        impl PairLaw {
+            /// The law between particles of a diameter (length). Without pairs it has no strength and ends at the diameter.
+            pub(super) fn of(self, parameters: &Parameters, diameter: f64) -> SweptLaw {
+                match self {
+                    PairLaw::None => SweptLaw::LennardJones(CutOff::new(LennardJones::new(0.0, diameter), diameter)),
+                    $($(PairLaw::$law => {
+                        let of: fn(&Parameters, f64) -> CutOff<$potential> = $of;
+                        SweptLaw::$potential(of(parameters, diameter))
+                    })+)+
+                }
+            }
+        }
+
+        /// What a scene may be modelled without.
+        pub(super) const TWINS: &[Twin] = &[
+            $($($(Twin {
+                name: $lacks,
+                becomes: Becomes::Overridden(|values| {
+                    (law_of(values)? == PairLaw::$law).then(|| Overrides::new().set(&LAW, PairLaw::$simpler))
+                }),
+            },)?)+)+
+            Twin {
+                name: "pairs: free particles in the bath",
+                becomes: Becomes::Overridden(|values| {
+                    law_of(values)?.has_pairs().then(|| Overrides::new().set(&LAW, PairLaw::None))
+                }),
+            },
+        ];
+    };
+}
+
+define_pair_laws! {
+    LennardJones {
+        Wca = "wca", "Lennard-Jones cut off at its minimum, which only repels",
+            keys [], simpler [],
+            |of, diameter| CutOff::new(LennardJones::new(of.strength, diameter), 1.122_462_048_309_373 * diameter);
+        LennardJones = "lennard-jones", "Lennard-Jones cut off at 2.5 diameters and shifted",
+            keys [], simpler ["attraction between pairs (wca in the place of lennard-jones)", Wca],
+            |of, diameter| CutOff::new(LennardJones::new(of.strength, diameter), 2.5 * diameter);
+    }
+}
+
+/// A key of the pair law with a default.
+const fn key(
+    name: &'static str,
+    kind: Kind,
+    unit: &'static str,
+    default: &'static str,
+    used: Use,
+    doc: &'static str,
+) -> Key {
+    Key { section: "law", name, kind, unit, fallback: Fallback::Is(default), used, implies: None, doc }
+}
+
+/// The law of a scene's values.
+fn law_of(values: &Values) -> Option<PairLaw> {
+    PairLaw::parse(&values.choice(&LAW)?)
+}
+
+impl PairLaw {
+    /// Is true where particles act on each other.
+    pub(super) fn has_pairs(self) -> bool {
+        self != PairLaw::None
+    }
+
+    /// How near two particles are where the potential is so many ε, in diameters to two digits behind the point.
+    pub(super) fn nearest(self, parameters: &Parameters, energies: f64) -> f64 {
+        let closest = self.of(parameters, 1.0).potential().closest(energies * parameters.strength);
+        (100.0 * closest).round() / 100.0
+    }
+}
+
+impl SweptLaw {
+    /// Is true if particles attract each other anywhere up to the cut-off, looked at in a hundred places.
+    pub(super) fn attracts(&self) -> bool {
+        (1..100).any(|place| self.potential().force(0.01 * f64::from(place) * self.cutoff()) < 0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::marker::PhantomData;
+    use stripmine_kernels::backend::Precision;
+    use stripmine_kernels::isa::{Array, Memory, Slot};
+    use stripmine_kernels::law::{Asked, Law};
+    use stripmine_kernels::mask::Mask;
+    use stripmine_kernels::sweep::lattice::forces::Forces;
+    use stripmine_kernels::sweep::lattice::{Coordinates, Frame, LatticeShape};
+    use stripmine_kernels::{Execution, InstructionSet, Program};
+
+    const DIAMETER: f64 = 0.7;
+
+    /// Every law by which particles act on each other, of ε = 1, with its word.
+    fn laws() -> impl Iterator<Item = (&'static str, SweptLaw)> {
+        let all = PairLaw::ALL.iter().filter(|(law, _)| law.has_pairs());
+        all.map(|(law, word)| (*word, law.of(&Parameters::default(), DIAMETER)))
+    }
+
+    /// Of every law F = −dU/dr and U″ = −dF/dr, by central differences to 10⁻⁷, from 300 ε to the cut-off; particles repel each other at σ, and
+    /// collisions of more energy end nearer, where the potential is that energy and steeper.
+    #[test]
+    fn force_and_curvature_are_slopes_of_the_energy() {
+        for (word, law) in laws() {
+            let potential = law.potential();
+            let (near, far) = (potential.closest(300.0), law.cutoff());
+            for step in 0..=400 {
+                let distance = near + (far - near) * f64::from(step) / 400.0;
+                let h = 1e-6 * distance;
+                let slope = |of: &dyn Fn(f64) -> f64| (of(distance - h) - of(distance + h)) / (2.0 * h);
+                let (force, curvature) = (potential.force(distance), potential.curvature(distance));
+                let off = slope(&|r| potential.energy(r)) - force;
+                assert!(off.abs() < 1e-7 * (force.abs() + 1.0 / distance), "{word} at {distance}: {off}");
+                let off = slope(&|r| potential.force(r)) - curvature;
+                assert!(off.abs() < 1e-7 * (curvature.abs() + 1.0 / distance.powi(2)), "{word}: {off}");
+            }
+            assert!(potential.force(DIAMETER) > 0.0, "{word}");
+            let (mut before, mut steepest) = (far, 0.0);
+            for energy in [1.0, 10.0, 30.0, 100.0, 300.0] {
+                let closest = potential.closest(energy);
+                assert!((potential.energy(closest) / energy - 1.0).abs() < 1e-13, "{word}: {closest}");
+                assert!(closest < before && potential.curvature(closest) > steepest, "{word}: {closest}");
+                (before, steepest) = (closest, potential.curvature(closest));
+            }
+        }
+    }
+
+    /// How a law is swept.
+    type How = (Execution, InstructionSet);
+
+    /// Pairs at some distances on a lattice, swept in a precision: force apart, energy and virial of each pair.
+    struct Pairs<'d, P>(&'d [f64], How, PhantomData<P>);
+
+    impl<P: Precision> WithLaw for Pairs<'_, P> {
+        type Output = Vec<[f64; 3]>;
+
+        fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> Vec<[f64; 3]> {
+            let Pairs(distances, (execution, set), _) = self;
+            let (mask, (sine, cosine)) = (Mask::square(2), 0.4f64.sin_cos());
+            // Farther from each other than the mask sees.
+            let shape = LatticeShape::new(5 * distances.len(), 5, &mask, [false; 2]).unwrap();
+            let frame = Frame { origin: [0.0; 2], edge: [DIAMETER; 2] };
+            let cells = (0..distances.len() as isize).map(|pair| shape.position(5 * pair + 1, 2));
+            let column = |value: f64| vec![P::from_f64(value); shape.padded()];
+            let [mut x, mut y] = [1e30; 2].map(column);
+            for (own, distance) in cells.clone().zip(distances) {
+                (x[own], y[own]) = (P::from_f64(0.0), P::from_f64(0.0));
+                let way = [distance * cosine - DIAMETER, distance * sine];
+                [x[own + 1], y[own + 1]] = way.map(P::from_f64);
+            }
+            let [mut fx, mut fy, mut energy, mut virial] = [0.0; 4].map(column);
+            let memory = Memory::new()
+                .read(Slot::new(Array::X), &x)
+                .read(Slot::new(Array::Y), &y)
+                .write(Slot::new(Array::Fx), &mut fx)
+                .write(Slot::new(Array::Fy), &mut fy)
+                .write(Slot::new(Array::Energy), &mut energy)
+                .write(Slot::new(Array::Virial), &mut virial);
+            let forces = Forces::<P, L>::new(law, &mask, shape, frame, Coordinates::CellRelative);
+            let program = Program::new(forces.asked(Asked { energy: true, ..Asked::default() }));
+            program.run(&memory, shape.swept(), execution, set).unwrap();
+            let pair = |cell: usize| {
+                let [fx, fy, energy, virial] = [&fx, &fy, &energy, &virial].map(|it| it[cell].to_f64());
+                [-(fx * cosine + fy * sine), 2.0 * energy, 2.0 * virial]
+            };
+            cells.map(pair).collect()
+        }
+    }
+
+    /// In both precisions, by every execution on every instruction set a law gives the same bits: those that are stated, cut off and shifted, to
+    /// rounding, and nothing beyond the cut-off.
+    #[test]
+    fn sweeps_find_what_is_stated() {
+        for (word, law) in laws() {
+            let (potential, cutoff) = (law.potential(), law.cutoff());
+            let near = potential.closest(300.0);
+            let distances: Vec<f64> =
+                (0..200).map(|step| near + (1.1 * cutoff - near) * f64::from(step) / 200.0).collect();
+            let swept = |how| {
+                let double = law.with(Pairs::<f64>(&distances, how, PhantomData));
+                [double, law.with(Pairs::<f32>(&distances, how, PhantomData))]
+            };
+            let oracle = swept((Execution::Chained, InstructionSet::Scalar));
+            for execution in [Execution::Eager, Execution::Strip(64), Execution::Chained] {
+                for set in InstructionSet::available() {
+                    assert!(swept((execution, set)) == oracle, "{word}: {execution:?} on {set:?}");
+                }
+            }
+            for (found, bound) in oracle.iter().zip([1e-12, 2e-5]) {
+                for (&distance, found) in distances.iter().zip(found) {
+                    let force = potential.force(distance);
+                    let energy = potential.energy(distance) - potential.energy(cutoff);
+                    let stated = [force, energy, force * distance].map(|it| if distance < cutoff { it } else { 0.0 });
+                    for (found, stated) in found.iter().zip(stated) {
+                        let off = (found - stated).abs();
+                        assert!(off < bound * (stated.abs() + 20.0), "{word} at {distance}: {found} {stated}");
+                    }
+                }
+            }
+        }
+    }
+
+    /// Numbers that followed from the formula of Lennard-Jones when they were written down: cells of a lattice for pairs that come as near as
+    /// 0.82 σ, and starts with overlaps of up to 0.25 σ. Only the longer cut-off leaves attraction.
+    #[test]
+    fn scenes_know_of_a_law_what_follows_from_its_potential() {
+        let parameters = Parameters::default();
+        for (law, attracts) in [(PairLaw::Wca, false), (PairLaw::LennardJones, true)] {
+            assert_eq!([30.0, 100.0].map(|energies| law.nearest(&parameters, energies)), [0.82, 0.75]);
+            assert_eq!(law.of(&parameters, DIAMETER).attracts(), attracts);
+        }
+        assert_eq!(PairLaw::None.nearest(&parameters, 30.0), 0.0);
+    }
+}
