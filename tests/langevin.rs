@@ -353,7 +353,7 @@ fn losses_are_counted_listed_and_survived() {
 #[test]
 fn what_cannot_be_is_refused_with_what_may_be() {
     let folder = tempfile::tempdir().unwrap();
-    let cases: [(&str, &[&str], &[&str]); 11] = [
+    let cases: [(&str, &[&str], &[&str]); 14] = [
         (
             "langevin-report",
             &["search.by=sectors", "search.sectors=900"],
@@ -367,6 +367,17 @@ fn what_cannot_be_is_refused_with_what_may_be() {
         ("langevin-dense", &["integrator.dt=-1"], &["integrator.dt"]),
         ("langevin-dense", &["search.skin=20"], &["no room", "search.skin"]),
         ("langevin-dense", &["law.strenght=2"], &["strength"]),
+        (
+            "langevin-dense",
+            &["law.kind=wca", "law.screening=3"],
+            &["means nothing with law.kind = \"wca\"", "yukawa"],
+        ),
+        ("langevin-dense", &["law.kind=yukawa", "law.screening=60"], &["above 0 and at most 50"]),
+        (
+            "langevin-dense",
+            &["law.kind=yukawa", "search.by=lattice"],
+            &["no lattice serves", "the cut-off is 2.5"],
+        ),
         ("langevin-dense", &["law.noise_seed=-1"], &["law.noise_seed"]),
         (
             "langevin-free",
@@ -541,4 +552,89 @@ fn the_temperature_counts_what_the_bath_moves() {
         ["particles.positions=[[2.0, 3.0], [5.0, 5.0]]", "particles.velocities=[[1.0, 2.0], [-1.0, 0.0]]"];
     assert_eq!(rows("two", &two), 12.0 / 4.0);
     assert_eq!(rows("two-free", &[&two[..], &["law.drag=0"]].concat()), 8.0 / 2.0);
+}
+
+/// U of Yukawa particles with ε = 1, σ = 1 and κσ = 5, cut off at 2.5 and shifted.
+fn yukawa(distance: f64) -> f64 {
+    let uncut = |r: f64| (-5.0 * (r - 1.0)).exp() / r;
+    if distance < 2.5 { uncut(distance) - uncut(2.5) } else { 0.0 }
+}
+
+/// Two Yukawa particles: at rest, 1.2 apart, energy and pressure are those of the formula, with r F = U (κ r + 1); without friction the error
+/// of the energy in a collision goes with dt².
+#[test]
+fn two_yukawa_particles_are_those_of_the_formula() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows = |name: &str, sets: &[&str], columns: &[&str]| -> Vec<Vec<f64>> {
+        let two = [
+            "law.kind=yukawa",
+            "law.drag=0",
+            "integrator.kind=stochastic",
+            "particles.generate=list",
+            "particles.radius=0.5",
+            "run.thermo_every=1",
+        ];
+        let out = folder.path().join(name);
+        run("langevin-free", &out, &[&two[..], sets].concat(), &[]);
+        columns.iter().map(|name| column(&out, name)).collect()
+    };
+    let rest = [
+        "particles.positions=[[20.0, 20.0], [21.2, 20.0]]",
+        "particles.velocities=[[0.0, 0.0], [0.0, 0.0]]",
+        "run.steps=1",
+    ];
+    let found = rows("rest", &rest, &["potential", "pressure"]);
+    let virial = (-1f64).exp() / 1.2 * (5.0 * 1.2 + 1.0);
+    assert!((found[0][0] - yukawa(1.2)).abs() < 1e-14, "{found:?}");
+    assert!((found[1][0] - 0.5 * virial / 2500.0).abs() < 1e-14, "{found:?}");
+    let worst = [0.04, 0.02, 0.01].map(|dt| {
+        let (name, dt) = (format!("dt-{dt}"), format!("integrator.dt={dt}"));
+        let collision = [
+            "particles.positions=[[20.0, 20.0], [23.0, 20.3]]",
+            "particles.velocities=[[1.0, 0.0], [-1.0, 0.0]]",
+            "run.time=3",
+            &dt,
+        ];
+        let found = rows(&name, &collision, &["kinetic", "potential"]);
+        let energies = found[0].iter().zip(&found[1]).map(|(kinetic, potential)| kinetic + potential);
+        energies.map(|energy| (energy - 1.0).abs()).fold(0.0, f64::max)
+    });
+    assert!(worst[0] < 5e-3 && worst.windows(2).all(|it| (3.6..4.4).contains(&(it[0] / it[1]))), "{worst:?}");
+}
+
+/// The pressure of a thin Yukawa fluid, P = ρ kT (1 + B₂ ρ + B₃ ρ²) with virial coefficients by quadrature: what pairs add to it within 2.5 %,
+/// of which B₄ is half a percent and chance as much.
+#[test]
+fn a_thin_yukawa_fluid_has_the_pressure_of_its_virial_coefficients() {
+    const PARTS: usize = 60;
+    let part = 2.5 / PARTS as f64;
+    let mayer = |distance: f64| (-yukawa(distance)).exp() - 1.0;
+    let middles = || (0..PARTS).map(|it| (it as f64 + 0.5) * part);
+    let second = -std::f64::consts::PI * middles().map(|r| mayer(r) * r * part).sum::<f64>();
+    let third = |r: f64, s: f64| {
+        let angles = (0..PARTS).map(|it| (it as f64 + 0.5) * std::f64::consts::PI / PARTS as f64);
+        let across = |angle: f64| mayer((r * r + s * s - 2.0 * r * s * angle.cos()).sqrt());
+        mayer(r) * r * part * mayer(s) * s * part * angles.map(across).sum::<f64>() / PARTS as f64
+    };
+    let third = -4.0 / 3.0
+        * std::f64::consts::PI.powi(2)
+        * middles().map(|r| middles().map(|s| third(r, s)).sum::<f64>()).sum::<f64>();
+    let folder = tempfile::tempdir().unwrap();
+    let thin = [
+        "law.kind=yukawa",
+        "particles.count=2000",
+        "domain.sides=[200.0, 200.0]",
+        "integrator.dt=0.01",
+        "run.time=200",
+        "run.thermo_every=20",
+        "run.snapshot_every=0",
+    ];
+    run("langevin-dense", folder.path(), &thin, &[]);
+    let density = 0.05;
+    let [pressures, temperatures] = ["pressure", "temperature"].map(|name| column(folder.path(), name));
+    let of_pairs = pressures.iter().zip(&temperatures).map(|(pressure, kt)| pressure - density * kt);
+    let of_pairs: Vec<f64> = of_pairs.skip(pressures.len() / 10).collect();
+    let found = of_pairs.iter().sum::<f64>() / of_pairs.len() as f64;
+    let expected = density * (second * density + third * density * density);
+    assert!((found / expected - 1.0).abs() < 0.025, "{found} {expected}: B₂ = {second}, B₃ = {third}");
 }

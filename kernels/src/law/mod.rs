@@ -8,6 +8,7 @@ pub mod potential;
 mod quantity;
 pub mod spring;
 mod stated;
+pub mod yukawa;
 
 pub use environment::{Asked, Env, Law};
 pub use quantity::{Axis, Field, Sum};

@@ -9,6 +9,7 @@ use crate::scene::{Binding, Bounds, Fallback, Key, Kind, Overrides, Use, Values}
 use crate::words::{Words, define_words};
 use stripmine_kernels::law::lennard_jones::LennardJones;
 use stripmine_kernels::law::potential::{CutOff, PairPotential};
+use stripmine_kernels::law::yukawa::Yukawa;
 
 /// Defines everything of the laws by a list: a potential, and the laws that it makes. A law has its word; its help; keys of its own, each a
 /// static, a field of `Parameters`, a default, bounds, unit and help; what a simpler law in its place lacks; and the law of parameters and of
@@ -138,6 +139,15 @@ define_pair_laws! {
             keys [], simpler ["attraction between pairs (wca in the place of lennard-jones)", Wca],
             |of, diameter| CutOff::new(LennardJones::new(of.strength, diameter), 2.5 * diameter);
     }
+    Yukawa {
+        Yukawa = "yukawa", "the screened repulsion ε (σ/r) exp(−κ (r − σ)), cut off at κ (r − σ) = 7.5 and shifted",
+            keys [SCREENING screening = 5.0, Bounds::AtMost(50.0), "", "Screening κσ of yukawa: σ over the screening length."],
+            simpler [],
+            |of, diameter| {
+                let potential = Yukawa::new(of.strength, diameter, of.screening / diameter);
+                CutOff::new(potential, (1.0 + 7.5 / of.screening) * diameter)
+            };
+    }
 }
 
 /// A key of the pair law with a default.
@@ -180,6 +190,7 @@ impl SweptLaw {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::method::{METHODS, load};
     use std::marker::PhantomData;
     use stripmine_kernels::backend::Precision;
     use stripmine_kernels::isa::{Array, Memory, Slot};
@@ -290,10 +301,14 @@ mod tests {
                 for (&distance, found) in distances.iter().zip(found) {
                     let force = potential.force(distance);
                     let energy = potential.energy(distance) - potential.energy(cutoff);
-                    let stated = [force, energy, force * distance].map(|it| if distance < cutoff { it } else { 0.0 });
+                    let stated =
+                        [force, energy, force * distance].map(|it| if distance < cutoff { it } else { 0.0 });
                     for (found, stated) in found.iter().zip(stated) {
                         let off = (found - stated).abs();
-                        assert!(off < bound * (stated.abs() + 20.0), "{word} at {distance}: {found} {stated}");
+                        assert!(
+                            off < bound * (stated.abs() + 20.0),
+                            "{word} at {distance}: {found} {stated}"
+                        );
                     }
                 }
             }
@@ -310,5 +325,25 @@ mod tests {
             assert_eq!(law.of(&parameters, DIAMETER).attracts(), attracts);
         }
         assert_eq!(PairLaw::None.nearest(&parameters, 30.0), 0.0);
+    }
+
+    /// By hand, as for Lennard-Jones in `limits`: the hardest of the collisions of 1000 particles of density 1 in a time of 1000 has 14.388 kT. With
+    /// ε = kT and κσ = 5 it ends at 0.57678, where exp(5 (1 − r))/r = 14.388 and U″ = U (25 + 10/r + 2/r²) = 695.65: the step is
+    /// 2 √(1/(2 U″)) = 0.053619. The source's bound, with r_c = 2.5 and F = 6, is √(2 · 2.5/6) = 0.91287.
+    #[test]
+    fn limits_of_yukawa_follow_from_its_potential() {
+        let sets = [
+            "law.kind=yukawa",
+            "particles.count=1000",
+            "particles.spacing=0.9",
+            "domain.sides=[40.0, 25.0]",
+            "integrator.dt=0.01",
+            "run.time=1000",
+        ];
+        let (prepared, _) = load("langevin-dense", &sets.map(str::to_owned), METHODS).unwrap();
+        let [source, hardest] = [0, 1].map(|limit| prepared.step_limits[limit].step);
+        assert!((source - 0.912_87).abs() < 1e-5 && (hardest - 0.053_619).abs() < 1e-6, "{source} {hardest}");
+        assert_eq!(prepared.left_out, ["attraction: law.kind is yukawa"]);
+        assert!(prepared.scene.contains("strength = 1.0 # energy\nscreening = 5.0\n"), "{}", prepared.scene);
     }
 }
