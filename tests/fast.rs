@@ -7,8 +7,9 @@ use stripmine_kernels::law::granular::Contact;
 use stripmine_kernels::sweep::lattice::LatticeShape;
 use stripmine_kernels::{Execution, InstructionSet};
 use stripmine_physics::io::checkpoint::Column;
+use stripmine_physics::method::SteppedState;
 use stripmine_physics::method::lattice_md::Document;
-use stripmine_physics::method::lattice_md::Engine;
+use stripmine_physics::method::lattice_md::Grains;
 use stripmine_physics::method::lattice_md::{
     Contacts, FastSearch, GearValues, Machine, Model, OnConflict, Scheme, Watch,
 };
@@ -30,14 +31,14 @@ const SCHEMES: [Scheme; 4] = [
     Scheme::Gear(GearValues::Six),
 ];
 
-fn bits(method: &dyn Engine) -> Vec<(String, Vec<u64>)> {
+fn bits(method: &Grains) -> Vec<(String, Vec<u64>)> {
     let bits = |column: Column| match column {
         Column::F64(values) => values.into_iter().map(f64::to_bits).collect(),
         Column::F32(values) => values.into_iter().map(|x| u64::from(x.to_bits())).collect(),
         Column::U32(values) => values.into_iter().map(u64::from).collect(),
         Column::U64(values) => values,
     };
-    method.state().into_iter().map(|(name, column)| (name, bits(column))).collect()
+    method.columns().into_iter().map(|(name, column)| (name, bits(column))).collect()
 }
 
 /// Largest difference of positions (length), across the box, and of velocities.
@@ -63,12 +64,12 @@ fn trajectories_are_the_faithful_ones_but_for_rounding() {
                 [(Precision::F64, 1e-10), (Precision::Mixed, 1e-3), (Precision::F32, 1e-3)]
             {
                 let mut faithful = simulate(precision, &start, Contacts::Lattice, fast());
-                advance(faithful.as_mut(), 300);
+                advance(&mut faithful, 300);
                 let moved = differences(&start.0, &start.1, &faithful.particles());
                 assert!(moved[0] > 0.1, "the discs must have moved: {moved:?}");
                 for search in SEARCHES {
                     let mut other = simulate(precision, &start, Contacts::Fast(search), fast());
-                    advance(other.as_mut(), 300);
+                    advance(&mut other, 300);
                     let off = differences(&start.0, &faithful.particles(), &other.particles());
                     let close = off[0] < bound && off[1] < 10.0 * bound;
                     assert!(close, "{search:?} {scheme:?} {precision:?}: {off:?}");
@@ -95,9 +96,9 @@ fn walls_gravity_and_a_shaken_floor_are_the_faithful_ones() {
         model.scheme = scheme;
         let run = |contacts| {
             let (model, particles) = (model.clone(), particles.clone());
-            let start = stripmine_physics::method::lattice_md::start;
+            let start = Grains::start;
             let mut method = start(Precision::F64, model, contacts, fast(), walls, particles).unwrap();
-            advance(method.as_mut(), 400);
+            advance(&mut method, 400);
             (method.particles(), method.totals())
         };
         let (faithful, deep) = run(Contacts::Lattice);
@@ -125,9 +126,9 @@ fn lists_and_order_are_the_same_on_any_number_of_threads() {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
                 let mut gas = simulate(precision, &start, Contacts::Fast(search), fast());
-                advance(gas.as_mut(), 5);
+                advance(&mut gas, 5);
                 assert!(gas.lists().is_none_or(|(_, made)| made > 1), "lists are made again");
-                (bits(gas.as_ref()), gas.lists())
+                (bits(&gas), gas.lists())
             })
         };
         let alone = run(1);
@@ -157,8 +158,8 @@ fn threads_and_instructions_give_the_same_bits_and_so_does_going_on() {
             pool.install(|| {
                 let machine = Machine { execution: Execution::Chained, set };
                 let mut gas = simulate(precision, &start, Contacts::Fast(search), machine);
-                advance(gas.as_mut(), STEPS);
-                bits(gas.as_ref())
+                advance(&mut gas, STEPS);
+                bits(&gas)
             })
         };
         let scalar = run(1, InstructionSet::Scalar);
@@ -168,12 +169,12 @@ fn threads_and_instructions_give_the_same_bits_and_so_does_going_on() {
             }
         }
         let mut first = simulate(precision, &start, Contacts::Fast(search), fast());
-        advance(first.as_mut(), 37);
+        advance(&mut first, 37);
         let mut second = simulate(precision, &start, Contacts::Fast(search), fast());
-        second.restore(37, first.totals(), first.state()).unwrap();
+        second.restore(37, first.totals(), &first.columns()).unwrap();
         assert!(second.particles() == first.particles());
-        advance(second.as_mut(), STEPS - 37);
-        assert!(bits(second.as_ref()) == scalar, "{search:?}: a run that goes on differs");
+        advance(&mut second, STEPS - 37);
+        assert!(bits(&second) == scalar, "{search:?}: a run that goes on differs");
     }
 }
 
@@ -190,7 +191,7 @@ fn conflicts_are_resolved_beside_the_lattice() {
         let run = |search: FastSearch, set: InstructionSet| {
             let machine = Machine { execution: Execution::Chained, set };
             let mut gas = simulate(Precision::F64, &start, Contacts::Fast(search), machine);
-            advance(gas.as_mut(), 300);
+            advance(&mut gas, 300);
             gas
         };
         let resolve = FastSearch::Lattice(OnConflict::Resolve);
@@ -201,17 +202,17 @@ fn conflicts_are_resolved_beside_the_lattice() {
         assert!(conflicts > 300, "{conflicts} in 300 steps");
         assert_eq!(rival.totals().shared_cells, 0);
         let scalar = run(resolve, InstructionSet::Scalar);
-        assert!(bits(scalar.as_ref()) == bits(resolved.as_ref()));
+        assert!(bits(&scalar) == bits(&resolved));
         assert_eq!(scalar.totals(), resolved.totals());
         // Which of two discs has a shared cell is a matter of the state, not of its history.
         let mut first = simulate(Precision::F64, &start, Contacts::Fast(resolve), fast());
-        advance(first.as_mut(), 111);
+        advance(&mut first, 111);
         let mut second = simulate(Precision::F64, &start, Contacts::Fast(resolve), fast());
-        second.restore(111, first.totals(), first.state()).unwrap();
-        advance(second.as_mut(), 189);
-        assert!(bits(second.as_ref()) == bits(resolved.as_ref()), "a run that goes on differs");
+        second.restore(111, first.totals(), &first.columns()).unwrap();
+        advance(&mut second, 189);
+        assert!(bits(&second) == bits(&resolved), "a run that goes on differs");
         assert_eq!(second.totals(), resolved.totals());
-        let begin = stripmine_physics::method::lattice_md::start;
+        let begin = Grains::start;
         let (model, particles) = start.clone();
         let stopped =
             begin(Precision::F64, model, Contacts::Fast(LATTICE), fast(), WallMotion::Fixed, particles);
@@ -271,7 +272,7 @@ fn wide_sizes_are_for_sectors_and_lists() {
     for kind in ["sectors", "neighbor-list"] {
         let checked = load(&[&few[..], &[&format!("search.by={kind}")]].concat()).unwrap();
         let mut method = stripmine_physics::method::lattice_md::assemble(&checked).unwrap();
-        advance(method.as_mut(), STEPS);
+        advance(&mut method, STEPS);
         let off = differences(&model, &expected, &method.particles());
         assert!(off[0] < 1e-9 && off[1] < 1e-8, "{kind}: {off:?}");
     }
@@ -284,11 +285,10 @@ fn momentum_is_conserved_to_rounding() {
     let mut start = gas(400, 0.84, 5);
     start.0.scheme = Scheme::VelocityVerlet;
     let mut gas = simulate(Precision::F64, &start, Contacts::Fast(LATTICE), fast());
-    let observe =
-        |gas: &dyn Engine| Observation::of(gas.steps(), 0.0, &gas.particles(), &Scenery::of(&start.0));
-    let first = observe(gas.as_ref());
-    advance(gas.as_mut(), 2000);
-    let seen = observe(gas.as_ref());
+    let observe = |gas: &Grains| Observation::of(gas.steps(), 0.0, &gas.particles(), &Scenery::of(&start.0));
+    let first = observe(&gas);
+    advance(&mut gas, 2000);
+    let seen = observe(&gas);
     let lost = (seen.momentum_x - first.momentum_x).hypot(seen.momentum_y - first.momentum_y);
     assert!(lost < 1e-12, "{lost:e}");
     assert!(seen.kinetic < 0.99 * first.kinetic, "the gas must have collided and cooled");
@@ -302,14 +302,14 @@ fn energy_is_kept_over_ten_thousand_steps() {
         start.0.contact = Contact { normal_damping: 0.0, shear_damping: 0.0, friction: 0.0, ..CONTACT };
         (start.0.friction, start.0.scheme) = (false, scheme);
         let mut gas = simulate(Precision::F64, &start, contacts, fast());
-        let energy = |gas: &dyn Engine| {
+        let energy = |gas: &Grains| {
             Observation::of(gas.steps(), 0.0, &gas.particles(), &Scenery::of(&start.0)).energy()
         };
-        let first = energy(gas.as_ref());
+        let first = energy(&gas);
         (0..10)
             .map(|_| {
-                advance(gas.as_mut(), 1000);
-                (energy(gas.as_ref()) / first - 1.0).abs()
+                advance(&mut gas, 1000);
+                (energy(&gas) / first - 1.0).abs()
             })
             .fold(0.0, f64::max)
     };
@@ -352,7 +352,7 @@ fn failures_are_found_in_their_step() {
         let failure = |contacts| -> Failure {
             let start = start.clone();
             let (model, particles) = start;
-            let begin = stripmine_physics::method::lattice_md::start;
+            let begin = Grains::start;
             let mut method =
                 match begin(Precision::F64, model, contacts, fast(), WallMotion::Fixed, particles) {
                     Ok(method) => method,

@@ -5,8 +5,9 @@ mod support;
 
 use stripmine_kernels::sweep::lattice::Coordinates;
 use stripmine_kernels::{Execution, InstructionSet};
+use stripmine_physics::method::SteppedState;
 use stripmine_physics::method::lattice_md::{
-    Contacts, Engine, ListOptions, Machine, Model, ProgramText, Rebuild,
+    Contacts, Grains, ListOptions, Machine, Model, ProgramText, Rebuild,
 };
 use stripmine_physics::particles::Particles;
 use stripmine_physics::scene::Precision;
@@ -22,12 +23,12 @@ fn agree(precision: Precision, start: &(Model, Particles), rebuild: Rebuild, ste
     let mut lattice = simulate(precision, start, Contacts::Lattice, fast());
     let mut list = simulate(precision, start, Contacts::Lists(ListOptions { rebuild, skin: 0.2 }), fast());
     for _ in 0..10 {
-        advance(lattice.as_mut(), steps / 10);
-        advance(list.as_mut(), steps / 10);
+        advance(&mut lattice, steps / 10);
+        advance(&mut list, steps / 10);
         // Lists keep beside it where they were made.
-        let of_list = list.state();
+        let of_list = list.columns();
         let same = |column| of_list.contains(column);
-        assert!(lattice.state().iter().all(same), "they differ after {} steps", lattice.steps());
+        assert!(lattice.columns().iter().all(same), "they differ after {} steps", lattice.steps());
     }
     let (_, rebuilds) = list.lists().unwrap();
     assert!(rebuilds > 2, "the discs must have moved through the lists");
@@ -62,14 +63,14 @@ fn the_printed_text_runs_the_same_by_every_execution_and_beside_ours() {
     let start = printed_gas(200, 0.84, 3);
     let after = |start: &(Model, Particles), execution, set| {
         let mut engine = simulate(Precision::F64, start, Contacts::Lattice, Machine { execution, set });
-        advance(engine.as_mut(), STEPS);
+        advance(&mut engine, STEPS);
         engine
     };
-    let state = |engine: &dyn Engine| engine.state();
+    let state = |engine: &Grains| engine.columns();
     let printed = after(&start, Execution::Chained, InstructionSet::Scalar);
     for set in InstructionSet::available() {
         for execution in [Execution::Eager, Execution::Strip(64), Execution::Strip(7), Execution::Chained] {
-            let same = state(after(&start, execution, set).as_ref()) == state(printed.as_ref());
+            let same = state(&after(&start, execution, set)) == state(&printed);
             assert!(same, "{execution:?} on {set:?} differs");
         }
     }
@@ -95,7 +96,7 @@ fn the_pipe_of_the_printed_text_is_ours_but_for_rounding() {
     let run = |preset: &str, overrides: &[&str]| {
         let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
         let mut engine = assemble(&Document::load(preset, &overrides).unwrap().check().unwrap()).unwrap();
-        advance(engine.as_mut(), 300);
+        advance(&mut engine, 300);
         engine.particles()
     };
     let walls = [

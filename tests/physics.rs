@@ -7,7 +7,8 @@ use stripmine_kernels::law::granular::{Contact, ContactArm};
 use stripmine_kernels::law::spring::Spring;
 use stripmine_kernels::{Execution, InstructionSet};
 use stripmine_physics::io::checkpoint::Column;
-use stripmine_physics::method::lattice_md::Engine;
+use stripmine_physics::method::SteppedState;
+use stripmine_physics::method::lattice_md::Grains;
 use stripmine_physics::method::lattice_md::{Contacts, GearValues, Machine, Model, Scheme, Watch};
 use stripmine_physics::method::{Failure, FailureKind};
 use stripmine_physics::observe::{Observation, Scenery};
@@ -15,11 +16,11 @@ use stripmine_physics::particles::{Particle, Particles};
 use stripmine_physics::scene::Precision;
 use support::{CONTACT, advance, arena, fast, gas, grain, simulate};
 
-fn lattice(start: &(Model, Particles)) -> Box<dyn Engine> {
+fn lattice(start: &(Model, Particles)) -> Grains {
     simulate(Precision::F64, start, Contacts::Lattice, fast())
 }
 
-fn observe(method: &dyn Engine, model: &Model) -> Observation {
+fn observe(method: &Grains, model: &Model) -> Observation {
     Observation::of(method.steps(), method.time(), &method.particles(), &Scenery::of(model))
 }
 
@@ -32,13 +33,13 @@ fn energy_error(values: GearValues, dt: f64, time: f64) -> [f64; 2] {
     start.0.friction = false;
     (start.0.scheme, start.0.dt) = (Scheme::Gear(values), dt);
     let mut gas = lattice(&start);
-    let energy = observe(gas.as_ref(), &start.0).energy();
+    let energy = observe(&gas, &start.0).energy();
     let samples = 100;
     let steps = (time / dt / f64::from(samples)).round() as u64;
     let (mut square, mut most) = (0.0, 0.0_f64);
     for _ in 0..samples {
-        advance(gas.as_mut(), steps);
-        let seen = observe(gas.as_ref(), &start.0);
+        advance(&mut gas, steps);
+        let seen = observe(&gas, &start.0);
         assert!(seen.elastic < 0.9 * energy, "the gas must be moving");
         let error = seen.energy() / energy - 1.0;
         square += error * error / f64::from(samples);
@@ -59,12 +60,12 @@ fn the_pressure_of_soft_discs_is_that_of_hard_ones_of_their_effective_diameter()
     start.0.friction = false;
     (start.0.scheme, start.0.dt) = (Scheme::Gear(GearValues::Five), 0.02);
     let mut gas = lattice(&start);
-    advance(gas.as_mut(), 2_000);
+    advance(&mut gas, 2_000);
     let area = start.0.sides[0] * start.0.sides[1];
     let seen: Vec<Observation> = (0..800)
         .map(|_| {
-            advance(gas.as_mut(), 20);
-            observe(gas.as_ref(), &start.0)
+            advance(&mut gas, 20);
+            observe(&gas, &start.0)
         })
         .collect();
     let mean = |of: &dyn Fn(&Observation) -> f64| seen.iter().map(of).sum::<f64>() / seen.len() as f64;
@@ -100,7 +101,7 @@ fn energy_of_an_undamped_gas_converges_with_the_time_step() {
 fn momentum_of_a_periodic_gas_is_conserved_to_rounding() {
     let start = gas(400, 0.84, 5);
     let mut gas = lattice(&start);
-    let first = observe(gas.as_ref(), &start.0);
+    let first = observe(&gas, &start.0);
     let magnitude: f64 = gas
         .particles()
         .grains()
@@ -109,17 +110,14 @@ fn momentum_of_a_periodic_gas_is_conserved_to_rounding() {
         .sum();
     let mut worst = 0.0_f64;
     for _ in 0..20 {
-        advance(gas.as_mut(), 100);
-        let seen = observe(gas.as_ref(), &start.0);
+        advance(&mut gas, 100);
+        let seen = observe(&gas, &start.0);
         let lost = (seen.momentum_x - first.momentum_x).hypot(seen.momentum_y - first.momentum_y);
         worst = worst.max(lost / magnitude);
     }
     println!("momentum lost in 2000 steps: {worst:.2e} of the sum of its magnitudes");
     assert!(worst < 1e-13, "{worst:e}");
-    assert!(
-        observe(gas.as_ref(), &start.0).kinetic < 0.99 * first.kinetic,
-        "the gas must have collided and cooled"
-    );
+    assert!(observe(&gas, &start.0).kinetic < 0.99 * first.kinetic, "the gas must have collided and cooled");
 }
 
 // ---- one collision --------------------------------------------------------------------------------------
@@ -165,7 +163,7 @@ fn simulated(contact: Contact, dt: f64, speed: f64, time: f64) -> End {
     let (mut before, _, _) = apart(collision.particles().all());
     let (mut touched, mut parted) = (None, None);
     loop {
-        advance(collision.as_mut(), 1);
+        advance(&mut collision, 1);
         let (overlap, _, [away, _]) = apart(collision.particles().all());
         let crossing = collision.time() - dt * overlap / (overlap - before);
         match (before > 0.0, overlap > 0.0) {
@@ -277,7 +275,7 @@ fn an_undamped_collision_converges_at_more_than_second_order() {
                 let mut start = pair(contact, dt, 1.0 + f64::from(phase) / f64::from(phases), [speed, 0.0]);
                 start.0.scheme = Scheme::Gear(values);
                 let mut collision = lattice(&start);
-                advance(collision.as_mut(), (1.3 * hertz_time(contact.stiffness, speed) / dt) as u64 + 3);
+                advance(&mut collision, (1.3 * hertz_time(contact.stiffness, speed) / dt) as u64 + 3);
                 let (overlap, _, [away, _]) = apart(collision.particles().all());
                 assert!(overlap < 0.0 && away > 0.0);
                 (away / speed - 1.0).powi(2)
@@ -301,7 +299,7 @@ fn oblique(contact: Contact, normal: f64, shear: f64) -> ([f64; 2], [f64; 2], Pa
     };
     let (mut first, mut last) = (None, [0.0; 2]);
     for _ in 0..1000 {
-        advance(collision.as_mut(), 1);
+        advance(&mut collision, 1);
         let now = collision.particles();
         let (overlap, n, _) = apart(now.all());
         if overlap > 0.0 {
@@ -350,7 +348,7 @@ fn linear_contacts_are_those_of_lammps() {
         (model.contact, model.friction, model.dt) = (contact, true, 0.0005);
         let side = model.sides[0];
         let mut collision = lattice(&(model, particles));
-        advance(collision.as_mut(), 5000);
+        advance(&mut collision, 5000);
         for (disc, before) in collision.particles().all().iter().zip(&discs) {
             let after = &row[12 * (disc.id as usize - 1) + 7..][..5];
             let ours = [disc.position, disc.velocity].map(|[x, y, _]| [x, y]).concat();
@@ -400,14 +398,14 @@ fn friction_is_coulombs_where_surfaces_slide_and_less_where_they_roll() {
 
 // ---- the same bits --------------------------------------------------------------------------------------
 
-fn bits(method: &dyn Engine) -> Vec<(String, Vec<u64>)> {
+fn bits(method: &Grains) -> Vec<(String, Vec<u64>)> {
     let bits = |column: Column| match column {
         Column::F64(values) => values.into_iter().map(f64::to_bits).collect(),
         Column::F32(values) => values.into_iter().map(|x| u64::from(x.to_bits())).collect(),
         Column::U32(values) => values.into_iter().map(u64::from).collect(),
         Column::U64(values) => values,
     };
-    method.state().into_iter().map(|(name, column)| (name, bits(column))).collect()
+    method.columns().into_iter().map(|(name, column)| (name, bits(column))).collect()
 }
 
 #[test]
@@ -419,10 +417,10 @@ fn threads_and_instructions_give_the_same_bits() {
             assert_eq!(rayon::current_num_threads(), threads);
             let machine = Machine { execution: Execution::Chained, set };
             let mut gas = simulate(Precision::F64, &start, Contacts::Lattice, machine);
-            advance(gas.as_mut(), 50);
+            advance(&mut gas, 50);
             let touching = gas.forces().iter().filter(|force| force[0] != 0.0).count();
             assert!(touching > 500, "the gas must collide: {touching}");
-            bits(gas.as_ref())
+            bits(&gas)
         })
     };
     let scalar = run(1, InstructionSet::Scalar);

@@ -116,7 +116,9 @@ fn seen(prepared: &Prepared, ranks: usize, steps: u64) -> Result<Seen, String> {
             }
             seen.snapshots.push(simulation.snapshot());
             seen.checksums.push(simulation.particles().checksum());
-            seen.positions.push(simulation.positions().iter().map(|place| place.map(f32::to_bits)).collect());
+            seen.positions.push(
+                simulation.per_particle().positions().iter().map(|place| place.map(f32::to_bits)).collect(),
+            );
         }
         seen.events = simulation.take_events();
         seen.words = simulation.in_words();

@@ -3,7 +3,7 @@
 
 use std::sync::atomic::AtomicBool;
 use stripmine_physics::method::lattice_md::{Checked, Document};
-use stripmine_physics::method::lattice_md::{Engine, Totals};
+use stripmine_physics::method::lattice_md::{Grains, Totals};
 use stripmine_physics::method::lattice_md::{assemble, assemble_following_energy, model};
 use stripmine_physics::method::{Culprit, Failure, FailureKind, METHODS, Purpose, Until, load};
 use stripmine_physics::observe::{Observation, Scenery};
@@ -36,7 +36,7 @@ fn refused(scene: &str, overrides: &[&str]) -> String {
     document.and_then(Document::check).expect_err("must be refused").to_string()
 }
 
-fn observe(checked: &Checked, method: &dyn Engine) -> Observation {
+fn observe(checked: &Checked, method: &Grains) -> Observation {
     Observation::of(method.steps(), method.time(), &method.particles(), &Scenery::of(&model(checked)))
 }
 
@@ -45,7 +45,7 @@ fn step_and_first(failure: &Failure) -> (u64, Culprit) {
     (failure.at.expect("a moment").steps, failure.culprits[0])
 }
 
-fn advance(method: &mut dyn Engine, steps: u64) {
+fn advance(method: &mut Grains, steps: u64) {
     (0..steps).for_each(|_| method.step().unwrap_or_else(|failure| panic!("{failure}")));
 }
 
@@ -85,9 +85,9 @@ fn discs_in_one_cell_meet_in_lists() {
     let run = |engine: &[&str]| {
         let checked = checked(&scene, &[engine]);
         let mut method = assemble(&checked).unwrap();
-        let before = observe(&checked, method.as_ref());
-        advance(method.as_mut(), 1000);
-        let after = observe(&checked, method.as_ref());
+        let before = observe(&checked, &method);
+        advance(&mut method, 1000);
+        let after = observe(&checked, &method);
         assert!((after.energy() / before.energy() - 1.0).abs() < 1e-5, "{engine:?}: {after:?}");
         (method.particles(), method.totals())
     };
@@ -115,9 +115,9 @@ fn a_hot_gas_keeps_its_energy_in_lists() {
     let checked =
         checked("dense-gas", &[ENGINES[4].1, &["particles.count=100", "particles.temperature=0.3"]]);
     let mut method = assemble(&checked).unwrap();
-    let before = observe(&checked, method.as_ref()).energy();
-    advance(method.as_mut(), 2000);
-    let after = observe(&checked, method.as_ref()).energy();
+    let before = observe(&checked, &method).energy();
+    advance(&mut method, 2000);
+    let after = observe(&checked, &method).energy();
     assert!((after / before - 1.0).abs() < 1e-4, "{before} {after}");
 }
 
@@ -141,7 +141,7 @@ fn single_precision_loses_no_motion() {
             let checked = checked(&scene, &[engine, &["machine.precision=f32"]]);
             let mut method = assemble(&checked).unwrap();
             let start = method.particles();
-            advance(method.as_mut(), steps);
+            advance(&mut method, steps);
             let moved = method.particles().all()[0].position[0] - start.all()[0].position[0];
             let off = moved / (speed * 0.005 * steps as f64) - 1.0;
             assert!(off.abs() < 2e-3, "{name} in {length}: moved {moved}");
@@ -158,7 +158,7 @@ fn single_precision_crosses_sides_as_double_does() {
         let scene = discs([12.0, 9.0], "[[1.0, 1.0]]", velocity, 0.005);
         let run = |precision: &str| {
             let mut method = assemble(&checked(&scene, &[engine, &[precision]])).unwrap();
-            advance(method.as_mut(), 6000);
+            advance(&mut method, 6000);
             method.particles()
         };
         for (a, b) in run("machine.precision=f64").all().iter().zip(run("machine.precision=f32").all()) {
@@ -182,9 +182,9 @@ fn collisions_in_empty_boxes_keep_their_energy_in_single_precision() {
         for (precision, bound) in [("machine.precision=f32", 2e-3), ("machine.precision=mixed", 2e-3)] {
             let checked = checked(&scene, &[engine, &[precision]]);
             let mut method = assemble(&checked).unwrap();
-            let before = observe(&checked, method.as_ref()).kinetic;
-            advance(method.as_mut(), 1500);
-            let seen = observe(&checked, method.as_ref());
+            let before = observe(&checked, &method).kinetic;
+            advance(&mut method, 1500);
+            let seen = observe(&checked, &method);
             assert_eq!(seen.contacts, 0, "the collision must be over");
             let turned = method.particles().all()[0].velocity[1].abs();
             assert!(turned > 0.05, "they must have collided: {turned}");
@@ -216,14 +216,14 @@ fn dissipation_is_counted_and_the_balance_closes() {
             ["particles.count=100", "law.normal_damping=0.3", "law.shear_damping=0.2", "law.friction=0.4"];
         let checked = checked("dense-gas", &[&more, engine]);
         let mut method = assemble_following_energy(&checked).unwrap();
-        let energy = |method: &dyn Engine| {
+        let energy = |method: &Grains| {
             let seen = observe(&checked, method);
             seen.kinetic + seen.rotational + seen.elastic
         };
-        let before = energy(method.as_ref());
-        advance(method.as_mut(), steps);
+        let before = energy(&method);
+        advance(&mut method, steps);
         let totals = method.totals();
-        (totals, energy(method.as_ref()) - before + totals.dissipated)
+        (totals, energy(&method) - before + totals.dissipated)
     };
     let (faithful, error) = run(ENGINES[0].1, 3000);
     assert!(faithful.dissipated > 0.1, "{faithful:?}");
@@ -234,7 +234,7 @@ fn dissipation_is_counted_and_the_balance_closes() {
     }
     let elastic = checked("dense-gas", &[&["particles.count=100"]]);
     let mut method = assemble_following_energy(&elastic).unwrap();
-    advance(method.as_mut(), 200);
+    advance(&mut method, 200);
     assert_eq!(method.totals().dissipated, 0.0);
 }
 
@@ -246,12 +246,12 @@ fn work_of_gravity_and_walls_is_counted() {
             let checked = checked(scene, &[engine]);
             let mut method = assemble_following_energy(&checked).unwrap();
             let start = method.particles();
-            let inner = |method: &dyn Engine| {
+            let inner = |method: &Grains| {
                 let seen = observe(&checked, method);
                 seen.kinetic + seen.rotational + seen.elastic
             };
-            let before = inner(method.as_ref());
-            advance(method.as_mut(), steps);
+            let before = inner(&method);
+            advance(&mut method, steps);
             let (now, crossings, totals) = (method.particles(), method.crossings(), method.totals());
             let mut work = 0.0;
             for (number, (a, b)) in start.grains().iter().zip(now.grains()).enumerate() {
@@ -264,7 +264,7 @@ fn work_of_gravity_and_walls_is_counted() {
                     }
                 }
             }
-            let error = inner(method.as_ref()) - before - work - totals.wall_work + totals.dissipated;
+            let error = inner(&method) - before - work - totals.wall_work + totals.dissipated;
             let scale = totals.dissipated + work.abs() + totals.wall_work.abs();
             assert!(error.abs() < tolerance * scale, "{scene}, {name}: {error} {work} {totals:?}");
             assert_eq!(scene == "shaken-box", totals.wall_work != 0.0);
@@ -357,7 +357,7 @@ fn steps_that_are_too_long_are_caught() {
         assert!(first.velocity[0].abs() * 0.01 > limit && failure.count >= 1, "{name}");
         steps.push(step);
         let mut counting = assemble(&checked(&scene, &[engine, &["integrator.on_long_step=count"]])).unwrap();
-        advance(counting.as_mut(), step + 2);
+        advance(&mut counting, step + 2);
         assert!(counting.totals().long_steps >= 3, "{name}: {:?}", counting.totals());
     }
     assert!(steps.iter().all(|step| step.abs_diff(steps[0]) <= 1), "{steps:?}");
@@ -392,8 +392,8 @@ fn cells_too_wide_for_the_search_are_refused() {
     let run = |engine: &[&str]| {
         let checked = checked("dense-gas", &[&packed, engine]);
         let mut method = assemble(&checked).unwrap();
-        advance(method.as_mut(), 200);
-        observe(&checked, method.as_ref())
+        advance(&mut method, 200);
+        observe(&checked, &method)
     };
     let (wide, sectors) = (run(&[&resolve[..], &["search.cell_edge=4"]].concat()), run(ENGINES[3].1));
     assert_eq!(wide.contacts, sectors.contacts);
@@ -413,12 +413,12 @@ fn positions_too_coarse_for_their_distance_are_refused() {
 fn boxes_without_room_for_lists_are_refused_when_checked() {
     let lists = ["search.by=neighbor-list", "machine.engine=fast"];
     let mut method = assemble(&checked("two-discs", &[&lists, &["search.skin=7.4"]])).unwrap();
-    advance(method.as_mut(), 50);
+    advance(&mut method, 50);
     let said = refused("dense-gas", &[&lists[..], &["particles.count=64", "search.skin=4.0"]].concat());
     assert!(said.contains("no room for three sectors"), "{said}");
     // Where no skin is asked for, the box decides.
     let small = discs([4.0, 3.2], "[[1.0, 1.0]]", "[[0.1, 0.0]]", 0.005);
-    advance(assemble(&checked(&small, &[&lists])).unwrap().as_mut(), 10);
+    advance(&mut assemble(&checked(&small, &[&lists])).unwrap(), 10);
     // What passes the check starts: small boxes of every size, with every search.
     for sides in (0..60).map(|n| [2.6 + 0.07 * f64::from(n), 2.6 + 0.11 * f64::from(n % 13)]) {
         let scene = discs(sides, "[[1.0, 1.0]]", "[[0.1, 0.0]]", 0.005);

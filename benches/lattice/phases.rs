@@ -8,14 +8,14 @@ use criterion::{Criterion, SamplingMode, Throughput};
 use std::time::Duration;
 use stripmine_physics::method::lattice_md::assemble;
 use stripmine_physics::method::lattice_md::{Checked, Document};
-use stripmine_physics::method::lattice_md::{Engine, Phase};
+use stripmine_physics::method::lattice_md::{Grains, Phase};
 
 /// Steps before anything is timed: the start on a lattice has no contacts.
 pub const EQUILIBRATION: u64 = 400;
 /// The phases, and how long each is to be timed (ms). The rest of its steps comes on top, so a short phase gets little.
 const PHASES: [(Phase, u64); 3] = [(Phase::CorrectPredict, 300), (Phase::Index, 50), (Phase::Forces, 1000)];
 
-pub fn advance(gas: &mut dyn Engine, steps: u64) {
+pub fn advance(gas: &mut Grains, steps: u64) {
     (0..steps).for_each(|_| gas.step().expect("the bench scene runs on"));
 }
 
@@ -35,7 +35,7 @@ pub fn scene(packing_fraction: f64, count: usize, precision: &str) -> Checked {
 fn of_one_gas(criterion: &mut Criterion, packing_fraction: f64, count: usize, precision: &str) {
     let scene = scene(packing_fraction, count, precision);
     // Made when first asked for: most calls ask for few of the benches.
-    let mut moving: Option<Box<dyn Engine>> = None;
+    let mut moving: Option<Grains> = None;
     let mut group = criterion.benchmark_group(format!("phases/{precision}/{packing_fraction}/{count}"));
     group.throughput(Throughput::Elements(scene.particles.grain_count() as u64));
     group.sample_size(10).sampling_mode(SamplingMode::Flat);
@@ -43,14 +43,14 @@ fn of_one_gas(criterion: &mut Criterion, packing_fraction: f64, count: usize, pr
         let time = Duration::from_millis(milliseconds);
         group.measurement_time(time).warm_up_time(time / 10);
         group.bench_function(phase.name(), |bencher| {
-            let gas = moving.get_or_insert_with(|| {
+            let mut gas = moving.get_or_insert_with(|| {
                 let mut gas = assemble(&scene).expect("a start without conflicts");
-                advance(gas.as_mut(), EQUILIBRATION);
+                advance(&mut gas, EQUILIBRATION);
                 gas
             });
             bencher.iter_custom(|steps| {
                 gas.reset_timings();
-                advance(gas.as_mut(), steps);
+                advance(&mut gas, steps);
                 Duration::from_secs_f64(gas.timings().seconds(phase))
             });
         });

@@ -43,7 +43,7 @@ pub fn search(criterion: &mut Criterion) {
     for packing_fraction in [0.84, 0.3, 0.03] {
         let scene = scene(packing_fraction, 100_000, "f64");
         let mut gas = assemble(&scene).expect("a start without conflicts");
-        advance(gas.as_mut(), EQUILIBRATION);
+        advance(&mut gas, EQUILIBRATION);
         let (model, particles) = (model(&scene), gas.particles());
         let count = particles.len();
 

@@ -1,16 +1,15 @@
 //! Free flight of discs: the smallest method there can be. One entry, and every verb knows it.
 
 use serde_json::{Map, Value, json};
-use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use stripmine_physics::domain::Domain;
 use stripmine_physics::io::checkpoint::Column;
 use stripmine_physics::memory::{Foreseen, OfRanks};
 use stripmine_physics::method::{
-    Axis, Bench, BenchOption, Clock, Decides, Entry, Fact, Failure, Kind, Prepared, Purpose, Quantity,
-    RunWarning, SMALLEST_RADIUS, Schedule, Setting, Simulation, Snapshot, Startable, Takes, Trials, Until,
-    compress,
+    Axis, Bench, BenchOption, Clock, Decides, Elapsed, Entry, Fact, Failure, Kind, Observable, PerParticle,
+    Prepared, Purpose, Quantity, SMALLEST_RADIUS, Schedule, Setting, Simulation, Snapshot, Startable,
+    Stepped, SteppedState, Stepwise, Takes, Trials, Until, compress,
 };
 use stripmine_physics::particles::Particles;
 use stripmine_physics::scene::{
@@ -174,7 +173,8 @@ impl Startable for Flight {
     }
 
     fn start(&self, _: Purpose) -> Result<Box<dyn Simulation>, Failure> {
-        Ok(Box::new(Flying { domain: self.domain(), dt: self.dt, discs: self.made.clone(), steps: 0 }))
+        let (domain, discs) = (self.domain(), self.made.clone());
+        Ok(Box::new(Stepped::new(Flying { domain, elapsed: Elapsed::of_steps(self.dt), discs }, Free)))
     }
 
     fn started_from(&self, particles: Particles) -> Prepared {
@@ -182,88 +182,85 @@ impl Startable for Flight {
     }
 }
 
+/// Discs under way.
 struct Flying {
     domain: Domain,
-    dt: f64,
+    elapsed: Elapsed,
     discs: Particles,
-    steps: u64,
 }
 
-impl Simulation for Flying {
-    fn advance(&mut self, until: &[Until], interrupted: &AtomicBool) -> Result<(), Failure> {
-        while !until.iter().any(|moment| moment.has_come(&self.clock())) {
-            if interrupted.load(Ordering::Relaxed) {
-                break;
-            }
-            for disc in self.discs.all_mut() {
-                let moved = [0, 1, 2].map(|axis| disc.position[axis] + self.dt * disc.velocity[axis]);
-                disc.position = self.domain.wrapped(moved);
-            }
-            self.steps += 1;
-        }
-        Ok(())
-    }
-
-    fn clock(&self) -> Clock {
-        Clock { steps: self.steps, time: self.steps as f64 * self.dt, events: 0 }
-    }
-
+impl PerParticle for Flying {
     fn particles(&self) -> Particles {
         self.discs.clone()
     }
+}
 
-    fn observe(&self) -> Vec<f64> {
-        let energy = |v: [f64; 2], mass: f64| 0.5 * mass * (v[0] * v[0] + v[1] * v[1]);
-        vec![
-            self.clock().time,
-            self.discs.all().iter().map(|disc| energy(disc.planar_velocity(), disc.mass)).sum(),
-        ]
+impl SteppedState for Flying {
+    fn elapsed(&self) -> &Elapsed {
+        &self.elapsed
     }
 
-    fn snapshot(&self) -> Snapshot {
+    fn per_particle(&self) -> &dyn PerParticle {
+        self
+    }
+
+    fn columns(&self) -> Vec<(String, Column)> {
         let column =
             |axis: usize| Column::F64(self.discs.all().iter().map(|disc| disc.position[axis]).collect());
-        let columns = ["x", "y"].iter().zip([0, 1]).map(|(name, axis)| ((*name).to_owned(), column(axis)));
-        Snapshot { counters: BTreeMap::new(), columns: columns.collect() }
+        ["x", "y"].iter().zip([0, 1]).map(|(name, axis)| ((*name).to_owned(), column(axis))).collect()
+    }
+}
+
+/// The law of free flight. Nothing is kept beside the discs.
+struct Free;
+
+impl Stepwise for Free {
+    type State = Flying;
+    /// Time and kinetic energy.
+    type Seen = [f64; 2];
+    const OBSERVABLES: &'static [Observable<[f64; 2]>] = &[
+        Observable { quantity: QUANTITIES[0], of: |seen| seen[0] },
+        Observable { quantity: QUANTITIES[1], of: |seen| seen[1] },
+    ];
+
+    fn step(run: &mut Stepped<Self>, _: &AtomicBool) -> Result<bool, Failure> {
+        let Flying { domain, elapsed, discs } = &mut run.state;
+        for disc in discs.all_mut() {
+            let moved = [0, 1, 2].map(|axis| disc.position[axis] + elapsed.dt * disc.velocity[axis]);
+            disc.position = domain.wrapped(moved);
+        }
+        elapsed.steps += 1;
+        Ok(true)
     }
 
-    fn restore(&mut self, clock: Clock, snapshot: Snapshot) -> Result<(), String> {
+    fn with_seen<R>(run: &Stepped<Self>, work: impl FnOnce(&[f64; 2]) -> R) -> R {
+        let energy = |v: [f64; 2], mass: f64| 0.5 * mass * (v[0] * v[0] + v[1] * v[1]);
+        let discs = run.state.discs.all().iter();
+        let kinetic = discs.map(|disc| energy(disc.planar_velocity(), disc.mass)).sum();
+        work(&[run.clock().time, kinetic])
+    }
+
+    fn keep(_: &Stepped<Self>, _: &mut Snapshot) {}
+
+    fn restore(run: &mut Stepped<Self>, clock: Clock, snapshot: Snapshot) -> Result<(), String> {
+        let discs = run.state.discs.all_mut();
         for (axis, name) in ["x", "y"].iter().enumerate() {
-            let column = snapshot.columns.iter().find(|(there, _)| there == name);
-            let Some((_, Column::F64(values))) =
-                column.filter(|(_, values)| values.len() == self.discs.len())
-            else {
-                return Err(format!("the column {name} is missing"));
-            };
-            self.discs
-                .all_mut()
-                .iter_mut()
-                .zip(values)
-                .for_each(|(disc, &value)| disc.position[axis] = value);
+            let values = snapshot.numbers(name, discs.len())?;
+            discs.iter_mut().zip(values).for_each(|(disc, &value)| disc.position[axis] = value);
         }
-        self.steps = clock.steps;
+        run.state.elapsed.steps = clock.steps;
         Ok(())
     }
 
-    fn phases(&self) -> BTreeMap<&'static str, f64> {
-        BTreeMap::new()
+    fn work(run: &Stepped<Self>) -> f64 {
+        run.state.discs.len() as f64 * run.clock().steps as f64
     }
 
-    fn reset_phases(&mut self) {}
-
-    fn work(&self) -> f64 {
-        self.discs.len() as f64 * self.steps as f64
+    fn summary(run: &Stepped<Self>) -> Vec<(&'static str, Value)> {
+        vec![("discs", json!(run.state.discs.len()))]
     }
 
-    fn summary(&self) -> Map<String, Value> {
-        Map::from_iter([("discs".to_owned(), json!(self.discs.len()))])
-    }
-
-    fn warnings(&self) -> Vec<RunWarning> {
-        vec![]
-    }
-
-    fn in_words(&self) -> String {
-        format!("{} discs", self.discs.len())
+    fn in_words(run: &Stepped<Self>) -> String {
+        format!("{} discs", run.state.discs.len())
     }
 }

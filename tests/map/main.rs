@@ -43,7 +43,7 @@ const DEPENDENCIES: [(&str, &[&str]); 2] = [
 ];
 
 /// Circles of files that there are, each with the reason.
-const KNOWN_CIRCLES: [(&[&str], &str); 6] = [
+const KNOWN_CIRCLES: [(&[&str], &str); 5] = [
     (
         &["kernels/src/backend/dispatch.rs", "kernels/src/backend/precision.rs"],
         "a precision says which programs are compiled for it, and work is dispatched by precision",
@@ -62,13 +62,6 @@ const KNOWN_CIRCLES: [(&[&str], &str); 6] = [
             "kernels/physics/src/method/lattice_md/programs.rs",
         ],
         "arrays ask programs for their memory, and programs run on the arrays",
-    ),
-    (
-        &[
-            "kernels/physics/src/method/lattice_md/balance.rs",
-            "kernels/physics/src/method/lattice_md/engine.rs",
-        ],
-        "an engine is observed by its balance, which is of engines",
     ),
     (
         &["src/console/failure.rs", "src/console/output.rs"],

@@ -44,7 +44,7 @@ fn seen(simulation: &dyn Simulation) -> Seen {
     Seen {
         clock: simulation.clock(),
         row: simulation.observe().iter().map(|value| value.to_bits()).collect(),
-        particles: format!("{:?} {:?}", simulation.particles(), simulation.images()),
+        particles: format!("{:?} {:?}", simulation.particles(), simulation.per_particle().images()),
         summary: format!("{:?} {} {:?}", simulation.summary(), simulation.in_words(), simulation.warnings()),
         snapshot: simulation.snapshot(),
     }

@@ -49,7 +49,7 @@ pub fn shortened(methods: Methods, entry: &'static Entry, preset: &str) -> Vec<S
 pub fn end_of(prepared: &Prepared) -> (Clock, Particles, Vec<[f32; 3]>) {
     let mut simulation = prepared.start(Purpose::Run).expect("it starts");
     simulation.advance(&[prepared.schedule.until], &AtomicBool::new(false)).expect("it does not break");
-    (simulation.clock(), simulation.particles(), simulation.positions())
+    (simulation.clock(), simulation.particles(), simulation.per_particle().positions())
 }
 
 /// The moments at which something is due up to the end, that of the start among them.

@@ -38,7 +38,7 @@ fn discs_are_followed_across_periodic_sides() {
         let mut simulation = prepared.start(Purpose::Run).unwrap();
         let mut states = States::of(prepared.particles().grains());
         let mut look = |simulation: &dyn Simulation| {
-            simulation.states(&mut states);
+            simulation.per_particle().states(&mut states);
             states.rows().iter().map(|row| [row[0], row[1]]).collect::<Vec<_>>()
         };
         let start = look(simulation.as_ref());
@@ -63,7 +63,7 @@ fn discs_are_followed_across_periodic_sides() {
                 simulation.restore(clock, kept).unwrap();
             }
         }
-        let images = simulation.images();
+        let images = simulation.per_particle().images();
         assert_eq!(images.len(), prepared.particles().len(), "{named}");
         let mut crossed = 0;
         for (grain, way) in ways.iter().enumerate() {

@@ -8,9 +8,9 @@ use stripmine_kernels::mask::Mask;
 use stripmine_kernels::noise::{Purpose, Stream};
 use stripmine_kernels::sweep::lattice::{Coordinates, Frame, LatticeShape};
 use stripmine_kernels::{Execution, InstructionSet};
-use stripmine_physics::method::lattice_md::Engine;
+use stripmine_physics::method::lattice_md::Grains;
 use stripmine_physics::method::lattice_md::{
-    Contacts, Discs, GearValues, Machine, Model, ProgramText, Scheme, Watch, start,
+    Contacts, Discs, GearValues, Machine, Model, ProgramText, Scheme, Watch,
 };
 use stripmine_physics::particles::{Kind, Particle, Particles, in_space};
 use stripmine_physics::placement::hexagonal;
@@ -76,11 +76,11 @@ pub fn simulate(
     (model, particles): &(Model, Particles),
     contacts: Contacts,
     machine: Machine,
-) -> Box<dyn Engine> {
-    start(precision, model.clone(), contacts, machine, WallMotion::Fixed, particles.clone()).unwrap()
+) -> Grains {
+    Grains::start(precision, model.clone(), contacts, machine, WallMotion::Fixed, particles.clone()).unwrap()
 }
 
-pub fn advance(method: &mut dyn Engine, steps: u64) {
+pub fn advance(method: &mut Grains, steps: u64) {
     for _ in 0..steps {
         method.step().unwrap();
     }

@@ -11,11 +11,13 @@ mod list;
 pub mod nbody;
 pub mod observed;
 mod pairwise;
+mod per_particle;
 mod restored;
 mod several;
 mod simulation;
 mod snapshot;
 mod start_temperature;
+mod stepped;
 pub mod throughput;
 mod trials;
 
@@ -28,10 +30,13 @@ pub use entry::{
 pub use failure::{Culprit, Failure, FailureKind};
 pub use hard_disks::compress;
 pub use list::{METHODS, Methods, load, method, observer, prepare, vocabularies};
+pub use pairwise::Elapsed;
+pub use per_particle::PerParticle;
 pub use several::{DISMISSED, refuse_several_ranks};
 pub use simulation::{RunWarning, Simulation};
 pub use snapshot::Snapshot;
 pub use start_temperature::START_TEMPERATURE;
+pub use stepped::{Stepped, SteppedState, Stepwise};
 pub use trials::{
     Axis, Balance, Becomes, Decides, Encounter, Length, Parameter, Rewritten, SMALLEST_RADIUS, Setting,
     Shadow, Theory, Trials, Twin,

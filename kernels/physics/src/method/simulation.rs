@@ -2,8 +2,9 @@
 
 use super::clock::{Clock, Until};
 use super::failure::Failure;
+use super::per_particle::PerParticle;
 use super::snapshot::Snapshot;
-use crate::particles::{Particles, States};
+use crate::particles::Particles;
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
@@ -39,23 +40,12 @@ pub trait Simulation: Send {
         None
     }
 
+    /// Data of each particle as it stands.
+    fn per_particle(&self) -> &dyn PerParticle;
+
     /// The particles as they stand, positions inside the box.
-    fn particles(&self) -> Particles;
-
-    /// Places and velocities of the grains in the plane, places inside the box.
-    fn states(&self, states: &mut States) {
-        states.take_up(&self.particles());
-    }
-
-    /// Positions alone, in single precision, one for each particle of the start in its order; no numbers where one is lost.
-    fn positions(&self) -> Vec<[f32; 3]> {
-        self.particles().positions()
-    }
-
-    /// How many periods each particle has moved along x and y since the start, in the order of [`particles`](Self::particles); empty
-    /// where that is not followed along every periodic side.
-    fn images(&self) -> Vec<[i32; 2]> {
-        vec![]
+    fn particles(&self) -> Particles {
+        self.per_particle().particles()
     }
 
     /// Holds the state against what only sums over all particles show; asked before every row, and at the end.

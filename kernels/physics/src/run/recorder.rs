@@ -314,7 +314,7 @@ impl Recorder {
         let dcd = self.growing.dcd.as_mut().filter(|_| self.output.dcd);
         if let Some((dcd, step)) = dcd.zip(self.growing.pace.number(moment)) {
             let cell = self.domain.lengths();
-            dcd.add(moment, || Positions { step, cell, places: simulation.positions() })?;
+            dcd.add(moment, || Positions { step, cell, places: simulation.per_particle().positions() })?;
         }
         let Output { trajectory, lammps_dump, gsd, .. } = self.output;
         if !(trajectory || lammps_dump || gsd) {
@@ -421,7 +421,7 @@ fn logged(
     frame: Arc<Frame>,
 ) -> LoggedFrame {
     let values = logged_of(quantities, rows.row_at(frame.time));
-    LoggedFrame { frame, images: simulation.images(), values }
+    LoggedFrame { frame, images: simulation.per_particle().images(), values }
 }
 
 /// The failure of a sum over all particles that no number holds.

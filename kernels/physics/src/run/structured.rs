@@ -190,9 +190,9 @@ impl Structured {
         let Structured { setting, sums, motion, .. } = self;
         let Some((motion, states)) = motion else { return };
         states.forget();
-        simulation.states(states);
+        simulation.per_particle().states(states);
         if self.follows {
-            let images = simulation.images();
+            let images = simulation.per_particle().images();
             // Lost particles have no images.
             let left = (images.len() < self.particles).then(|| simulation.particles());
             states.unfold(setting.domain.lengths(), &images, left.as_ref());
@@ -219,7 +219,7 @@ impl Structured {
         let Some(look) = &mut self.look else { return };
         let is_any_left = look.at(|states| {
             states.forget();
-            simulation.states(states);
+            simulation.per_particle().states(states);
         });
         if !is_any_left {
             return;

@@ -40,6 +40,7 @@ fn dimensional_keys_have_units() {
         "mass_ratio",
         "damping",
         "structure_share",
+        "screening",
     ];
     for key in METHODS.iter().flat_map(|method| method.vocabulary.keys.keys()) {
         let measures = matches!(key.kind, Number(_) | Pair(_) | Pairs | Numbers(_));

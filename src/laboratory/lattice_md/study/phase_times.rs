@@ -9,7 +9,7 @@ use stripmine_kernels::sweep::fast::lattice::SPARSE;
 use stripmine_physics::method::Failure;
 use stripmine_physics::method::lattice_md::keys::{CELL_EDGE, ENGINE, EXECUTION, SEARCH};
 use stripmine_physics::method::lattice_md::{
-    Checked, Document, Engine, Lengths, Phase, StepProgram, assemble, model, programs,
+    Checked, Document, Grains, Lengths, Phase, StepProgram, assemble, model, programs,
 };
 use stripmine_physics::method::throughput::MeasurementError;
 use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION, PRECISION};
@@ -128,18 +128,18 @@ impl TimedRun {
             (_, true) => ((250_000 / self.run.particles).clamp(3, 60), 6),
         };
         let steps = (10_000 / self.run.particles).clamp(least, 2000);
-        let shortest = self.advance(engine.as_mut(), warm_up, false)?;
+        let shortest = self.advance(&mut engine, warm_up, false)?;
         let group = ((SHORT / shortest) as usize).clamp(1, steps);
         for done in (0..steps).step_by(group) {
-            self.advance(engine.as_mut(), group.min(steps - done), true)?;
+            self.advance(&mut engine, group.min(steps - done), true)?;
         }
         Ok(())
     }
 
     /// Runs some steps, as a sample if they are timed: the makings of lists count in any case, for these are rare. Returns the nanoseconds
     /// of the shortest.
-    fn advance(&mut self, engine: &mut dyn Engine, count: usize, is_timed: bool) -> Result<f64, Failure> {
-        let made = |engine: &dyn Engine| engine.lists().map_or(0, |(_, made)| made);
+    fn advance(&mut self, engine: &mut Grains, count: usize, is_timed: bool) -> Result<f64, Failure> {
+        let made = |engine: &Grains| engine.lists().map_or(0, |(_, made)| made);
         let (mut shortest, mut making, mut upkeeps) = (f64::INFINITY, 0.0, count);
         engine.reset_timings();
         for _ in 0..count {

@@ -15,7 +15,7 @@ use super::restored::sound;
 use super::sums::{Mark, Means, Motion, Totals};
 use crate::io::checkpoint::Column;
 use crate::method::observed::values;
-use crate::method::{Clock, Culprit, Failure, RunWarning, Simulation, Snapshot, Until};
+use crate::method::{Clock, Culprit, Failure, PerParticle, RunWarning, Simulation, Snapshot, Until};
 use crate::number::{counted, significant};
 use crate::observe::relative_energy_error;
 use crate::particles::{Particles, States, in_space};
@@ -253,6 +253,37 @@ impl Running {
     }
 }
 
+impl PerParticle for Running {
+    fn particles(&self) -> Particles {
+        let mut particles = Particles::clone(&self.particles);
+        let all = particles.all_mut();
+        let time = self.clock.time;
+        for (disc, &place) in self.discs().zip(&self.places) {
+            all[place].position = in_space(self.arena.place(disc, time));
+            all[place].velocity = in_space(disc.velocity_at(&self.arena.space, time));
+        }
+        particles
+    }
+
+    fn states(&self, states: &mut States) {
+        let time = self.clock.time;
+        for (disc, &number) in self.discs().zip(&self.places) {
+            states.put(number, self.arena.place(disc, time), disc.velocity_at(&self.arena.space, time));
+        }
+    }
+
+    fn images(&self) -> Vec<[i32; 2]> {
+        let Some(followed) = self.followed.as_ref().filter(|it| it.follows(&self.arena)) else {
+            return vec![];
+        };
+        let mut images = vec![[0; 2]; self.particles.len()];
+        for (number, &place) in self.places.iter().enumerate() {
+            images[place] = followed.image(&self.arena, number, self.clock.time);
+        }
+        images
+    }
+}
+
 impl Simulation for Running {
     fn advance(&mut self, until: &[Until], interrupted: &AtomicBool) -> Result<(), Failure> {
         let begun = Instant::now();
@@ -298,33 +329,8 @@ impl Simulation for Running {
         self.clock
     }
 
-    fn particles(&self) -> Particles {
-        let mut particles = Particles::clone(&self.particles);
-        let all = particles.all_mut();
-        let time = self.clock.time;
-        for (disc, &place) in self.discs().zip(&self.places) {
-            all[place].position = in_space(self.arena.place(disc, time));
-            all[place].velocity = in_space(disc.velocity_at(&self.arena.space, time));
-        }
-        particles
-    }
-
-    fn states(&self, states: &mut States) {
-        let time = self.clock.time;
-        for (disc, &number) in self.discs().zip(&self.places) {
-            states.put(number, self.arena.place(disc, time), disc.velocity_at(&self.arena.space, time));
-        }
-    }
-
-    fn images(&self) -> Vec<[i32; 2]> {
-        let Some(followed) = self.followed.as_ref().filter(|it| it.follows(&self.arena)) else {
-            return vec![];
-        };
-        let mut images = vec![[0; 2]; self.particles.len()];
-        for (number, &place) in self.places.iter().enumerate() {
-            images[place] = followed.image(&self.arena, number, self.clock.time);
-        }
-        images
+    fn per_particle(&self) -> &dyn PerParticle {
+        self
     }
 
     fn observe(&self) -> Vec<f64> {

@@ -6,7 +6,7 @@ use super::laws::SweptLaw;
 use super::options::{SchemeKind, SortKind};
 use crate::domain::Domain;
 use crate::method::pairwise::search::{LatticeSearch, ListSearch, OnConflict, Search, SectorSearch};
-use crate::method::pairwise::{Dynamics, Sort, Stepping, System, WithLaw, WithScheme, begin};
+use crate::method::pairwise::{Dynamics, Losing, Sort, System, WithLaw, WithScheme, begin};
 use crate::method::{Failure, FailureKind};
 use crate::particles::Particles;
 use crate::scene::Precision;
@@ -62,7 +62,7 @@ pub(super) fn stepper(
     checked: &Checked,
     particles: Particles,
     follows: bool,
-) -> Result<Box<dyn Stepping>, Failure> {
+) -> Result<Box<dyn Losing>, Failure> {
     match checked.scene.precision {
         Precision::F64 => of_precision::<f64, f64>(checked, particles, follows),
         Precision::F32 => of_precision::<f32, f32>(checked, particles, follows),
@@ -74,7 +74,7 @@ fn of_precision<S: backend::Precision, P: backend::Precision>(
     checked: &Checked,
     particles: Particles,
     follows: bool,
-) -> Result<Box<dyn Stepping>, Failure> {
+) -> Result<Box<dyn Losing>, Failure> {
     let Checked { scene, domain, mass, reach, found, .. } = checked;
     let (domain, mass, reach): (Domain, f64, f64) = (*domain, *mass, *reach);
     let dynamics = InBath::of(checked);
@@ -103,7 +103,7 @@ fn of_precision<S: backend::Precision, P: backend::Precision>(
         (dynamics, system, set): (InBath, System, InstructionSet),
         search: Q,
         particles: Particles,
-    ) -> Result<Box<dyn Stepping>, Failure> {
+    ) -> Result<Box<dyn Losing>, Failure> {
         begin::<S, P, Q, _>((dynamics, system, set), search, particles)
     }
     let all = (dynamics, system, set);

@@ -7,7 +7,7 @@ use super::losses;
 use super::options::By;
 use super::programs::programs;
 use super::scene::Scene;
-use super::simulation::Running;
+use super::simulation;
 use crate::memory::{Foreseen, OfRanks, PROGRAM, available};
 use crate::method::entry::left_out;
 use crate::method::pairwise::{Dynamics, ToReach};
@@ -178,7 +178,7 @@ impl Startable for Checked {
     }
 
     fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure> {
-        Ok(Box::new(Running::new(self, purpose)?))
+        Ok(Box::new(simulation::begin(self, purpose)?))
     }
 
     fn started_from(&self, particles: Particles) -> Prepared {

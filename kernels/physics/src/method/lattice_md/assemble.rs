@@ -1,9 +1,9 @@
-//! From a checked scene to the engine that steps its discs.
+//! From a checked scene to discs that are stepped.
 
 use super::check::Checked;
 use super::model::sides_of;
 use super::scene::{By, ProgramText};
-use super::{Contacts, Discs, Engine, FastSearch, ListOptions, Machine, Model, Watch, start};
+use super::{Contacts, Discs, FastSearch, Grains, ListOptions, Machine, Model, Watch};
 use crate::method::Failure;
 use crate::method::refuse_several_ranks;
 use stripmine_kernels::law::granular::Disc;
@@ -60,11 +60,11 @@ pub(super) fn contacts(checked: &Checked) -> Contacts {
     }
 }
 
-/// The engine of a checked scene, at the start.
+/// The discs of a checked scene, at the start.
 ///
 /// # Errors
 /// [`Failure`] if the start breaks a precondition, or the processor lacks the instruction set asked for.
-pub fn assemble(checked: &Checked) -> Result<Box<dyn Engine>, Failure> {
+pub fn assemble(checked: &Checked) -> Result<Grains, Failure> {
     start_of(checked, model(checked))
 }
 
@@ -73,7 +73,7 @@ pub fn assemble(checked: &Checked) -> Result<Box<dyn Engine>, Failure> {
 ///
 /// # Errors
 /// As [`assemble`].
-pub fn assemble_following_energy(checked: &Checked) -> Result<Box<dyn Engine>, Failure> {
+pub fn assemble_following_energy(checked: &Checked) -> Result<Grains, Failure> {
     start_of(checked, model_following_energy(checked))
 }
 
@@ -85,7 +85,7 @@ pub(super) fn model_following_energy(checked: &Checked) -> Model {
     model
 }
 
-fn start_of(checked: &Checked, model: Model) -> Result<Box<dyn Engine>, Failure> {
+fn start_of(checked: &Checked, model: Model) -> Result<Grains, Failure> {
     let Checked { scene, particles, .. } = checked;
     if !scene.machine.is_fast() {
         refuse_several_ranks(
@@ -94,5 +94,5 @@ fn start_of(checked: &Checked, model: Model) -> Result<Box<dyn Engine>, Failure>
     }
     let contacts = contacts(checked);
     let machine = Machine { execution: scene.machine.execution, set: scene.machine.instructions() };
-    start(scene.machine.precision, model, contacts, machine, scene.walls, particles.clone())
+    Grains::start(scene.machine.precision, model, contacts, machine, scene.walls, particles.clone())
 }

@@ -1,9 +1,9 @@
 //! The balance of energy along a run.
 
-use super::{Engine, Totals};
+use super::Totals;
 use crate::domain::Domain;
 use crate::observe::{Observation, Scenery, Sums};
-use crate::particles::Particle;
+use crate::particles::{Particle, Particles};
 
 /// What the energy of the grains is held against: what was there at the start, what gravity and walls have put in, and what
 /// contacts have taken out.
@@ -24,16 +24,18 @@ pub struct Way {
 }
 
 impl Way {
-    /// From where the grains of an engine are now on.
-    pub(super) fn begin(engine: &dyn Engine, scenery: &Scenery) -> Way {
+    /// From where grains stand, who have crossed so many periods; they are asked for only where something pulls.
+    pub(super) fn begin(
+        scenery: &Scenery,
+        crossings: &[[f64; 2]],
+        standing: impl FnOnce() -> Particles,
+    ) -> Way {
         let Scenery { domain, gravity, .. } = *scenery;
         let mut way = Way { domain, gravity, from: vec![] };
         if gravity != [0.0; 2] {
-            let standing = engine.unwrapped();
-            let grains = standing.grains().iter().enumerate();
-            way.from = grains
-                .map(|(number, grain)| way.unfolded(number, grain.place(), engine.crossings()))
-                .collect();
+            let standing = standing();
+            let places = standing.grains().iter().map(Particle::place).enumerate();
+            way.from = places.map(|(number, place)| way.unfolded(number, place, crossings)).collect();
         }
         way
     }

@@ -8,7 +8,7 @@ use crate::number::significant;
 /// Counts discs that are so fast that contacts may pass unseen in a step, and stops if there must be none.
 pub(super) fn judge_steps(
     discs: &(impl Named + ?Sized),
-    far: impl Iterator<Item = usize>,
+    far: &[u32],
     watch: Option<Watch>,
     totals: &mut Totals,
 ) -> Result<(), Failure> {
@@ -18,7 +18,8 @@ pub(super) fn judge_steps(
         x.hypot(y)
     };
     // What is no number is found with the cells.
-    let far: Vec<usize> = far.filter(|&disc| !speed(disc).is_nan()).collect();
+    let far: Vec<usize> =
+        far.iter().map(|&disc| disc as usize).filter(|&disc| !speed(disc).is_nan()).collect();
     let count = far.len() as u64;
     totals.long_steps += count;
     let first = far.into_iter().min_by_key(|&disc| discs.number(disc));
@@ -35,13 +36,14 @@ pub(super) fn judge_steps(
 /// Counts grains in contacts that are too deep, and stops at what must not be. A pair may be given once or from both sides.
 pub(super) fn judge_depth(
     discs: &(impl Named + ?Sized),
-    pairs: impl Iterator<Item = [usize; 2]>,
+    pairs: &[[u32; 2]],
     watch: Option<Watch>,
     totals: &mut Totals,
 ) -> Result<(), Failure> {
     let Some(watch) = watch else { return Ok(()) };
     let is_grain = |disc: &usize| discs.grains().contains(disc);
     let (mut grains, mut deepest): (Vec<usize>, Option<(f64, [usize; 2])>) = (vec![], None);
+    let pairs = pairs.iter().map(|pair| pair.map(|disc| disc as usize));
     for pair in pairs.filter(|pair| pair.iter().any(is_grain)) {
         let penetration = discs.penetration(pair);
         if penetration > watch.max_penetration {

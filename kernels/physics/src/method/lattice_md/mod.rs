@@ -8,9 +8,9 @@
 //! use stripmine_physics::method::lattice_md::{Document, assemble};
 //!
 //! let checked = Document::load("two-discs", &["machine.engine=programs".to_owned()])?.check()?;
-//! let mut engine = assemble(&checked)?;
-//! engine.step()?;
-//! assert_eq!(engine.particles().len(), 2);
+//! let mut grains = assemble(&checked)?;
+//! grains.step()?;
+//! assert_eq!(grains.particles().len(), 2);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -21,12 +21,13 @@ mod benches;
 mod check;
 mod checks;
 mod choice;
+mod contacts;
 mod document;
 mod encounter;
-mod engine;
 mod entry;
 mod facts;
 mod fast;
+mod grains;
 mod hard;
 mod judge;
 pub mod keys;
@@ -39,28 +40,28 @@ mod presets;
 mod programs;
 mod quantities;
 mod run_monitor;
+mod running;
 pub mod scene;
 mod simulation;
 mod theory;
 mod totals;
 mod trials;
 mod walls;
-mod watch;
 
 pub use crate::method::pairwise::search::OnConflict;
-pub use crate::method::pairwise::{Elapsed, Halo, Phase, Timings, halo_rows};
+pub use crate::method::pairwise::{Halo, Phase, Timings, halo_rows};
 pub use arrays::{Arrays, Lengths};
 pub use assemble::{assemble, assemble_following_energy, model};
 pub use balance::Balance;
 pub use check::{Checked, Estimates, Geometry};
+pub use contacts::{Contacts, Machine};
 pub use document::Document;
-pub use engine::Engine;
 pub use entry::ENTRY;
 pub use fast::FastSearch;
+pub use grains::Grains;
 pub use model::{Discs, GearValues, Model, OnLongStep, Scheme, Watch};
 pub use neighbor_list::{ListOptions, Rebuild};
 pub use options::ProgramText;
 pub use programs::{Part, StepProgram, execute, ledger, programs, rival_ledger};
 pub use scene::{Inertia, Scene};
-pub use simulation::{Contacts, LatticeMd, Machine, start};
 pub use totals::{Total, Totals};

@@ -5,7 +5,7 @@ use super::field::Attraction;
 use super::options::StartKind;
 use super::scene::constant_of;
 use super::shifted::counted;
-use super::simulation::Running;
+use super::simulation;
 use super::starts::ORBIT;
 use crate::domain::{Domain, Side};
 use crate::memory::{Foreseen, OfRanks, PROGRAM, available};
@@ -145,7 +145,7 @@ impl Startable for Checked {
     }
 
     fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure> {
-        Ok(Box::new(Running::new(self, purpose)?))
+        Ok(Box::new(simulation::begin(self, purpose)?))
     }
 
     fn started_from(&self, particles: Particles) -> Prepared {

@@ -5,7 +5,7 @@ use super::checked::{Checked, checked};
 use super::field::Pairs;
 use super::keys::VOCABULARY;
 use super::schemes::SchemeName;
-use super::simulation::Running;
+use super::simulation::{Running, begin};
 use super::sums::{Stop, Sums};
 use crate::method::{Failure, FailureKind, Purpose, Simulation, Until};
 use crate::scene::Values;
@@ -20,7 +20,7 @@ fn scene(preset: &str, sets: &[&str]) -> Checked {
 }
 
 fn started(preset: &str, sets: &[&str]) -> Running {
-    Running::new(&scene(preset, sets), Purpose::Run).unwrap()
+    begin(&scene(preset, sets), Purpose::Run).unwrap()
 }
 
 fn advance(running: &mut Running, steps: u64) -> Result<(), Failure> {
@@ -65,7 +65,7 @@ where
         + Sync
         + 'static,
 {
-    let pairs = &mut running.field.get_mut().pairs;
+    let pairs = &mut running.state.field.get_mut().pairs;
     let inner = match std::mem::replace(pairs, Pairs::Reference) {
         Pairs::Summed(sums) => Some(sums),
         Pairs::Reference => None,
@@ -131,7 +131,7 @@ fn an_interrupted_step_is_not_taken() {
                 "run.thermo_every=2".to_owned(),
             ];
             let checked = scene_of(&sets);
-            let start = || Running::new(&checked, Purpose::Run).unwrap();
+            let start = || begin(&checked, Purpose::Run).unwrap();
             let mut whole = start();
             advance(&mut whole, 6).unwrap();
             for most in [0, 1, 5, 12, 40] {
@@ -258,7 +258,7 @@ fn an_encounter_followed_badly_is_warned_of() {
 fn what_is_lost_in_the_last_steps_is_found() {
     let mut running = started("plummer", &["particles.count=100", "run.steps=70", "run.thermo_every=0"]);
     advance(&mut running, 66).unwrap();
-    running.bodies.velocity.iter_mut().flatten().for_each(|v| *v *= 300.0);
+    running.state.bodies.velocity.iter_mut().flatten().for_each(|v| *v *= 300.0);
     let failure = advance(&mut running, 70).unwrap_err();
     assert_eq!(failure.kind, super::UNBOUND);
     assert!(failure.message.contains("not any more"), "{failure}");

@@ -22,6 +22,11 @@ impl Elapsed {
         Elapsed { dt, steps: 0, crossings, timings: Timings::default() }
     }
 
+    /// The same of particles whose periods are not followed.
+    pub fn of_steps(dt: f64) -> Self {
+        Elapsed::new(dt, Crossings::default())
+    }
+
     /// Time since the start of the scene.
     pub fn time(&self) -> f64 {
         self.steps as f64 * self.dt

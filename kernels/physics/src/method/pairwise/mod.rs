@@ -38,7 +38,7 @@ pub use engine::Engine;
 pub use forces::ToReach;
 pub use named::{Named, conflict, not_finite, outside};
 pub use ranked::{begin, halo_rows};
-pub use stepping::{Stepping, Work};
+pub use stepping::{Losing, Stepping, Work};
 pub use timings::{Halo, Phase, Timings};
 pub use unwrapped::{unwrapped, wrapped};
 

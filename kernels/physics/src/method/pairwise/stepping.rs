@@ -1,23 +1,24 @@
-//! What a method sees of the engine, whatever its precisions, search and dynamics.
+//! What a method sees of discs that are stepped, whatever steps them: the engine alone, several ranks of it, or vector programs.
 
 use super::search::{Cells, Search};
 use super::{Dynamics, Elapsed, Engine, Named, Phase, wrapped};
 use crate::io::checkpoint::Column;
-use crate::method::Failure;
+use crate::method::{Failure, PerParticle, SteppedState};
 use crate::observe::{Scenery, Sums};
 use crate::particles::{Particle, Particles, States};
 use stripmine_kernels::alone_if;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::law::Asked;
+use stripmine_kernels::ledger::{Ledger, Length};
 use stripmine_kernels::sweep::fast::Met;
 
 /// What gravity has done to a grain, by its number in the scene, that is at a position.
 pub type Work<'w> = dyn Fn(usize, &Particle, [f64; 2]) -> f64 + Sync + 'w;
 
 /// Discs that are stepped.
-pub trait Stepping: Named + Send {
-    /// Corrects the last step, unless this is the first one, predicts the next and brings the search up to date. Gives the
-    /// discs that moved farther than [`System::longest_step`], or whose speed is no number.
+pub trait Stepping: Named + PerParticle + Send {
+    /// Predicts the next step, after the last one was corrected, and finds the cells of the discs. Gives the discs that moved farther
+    /// than contacts can be seen, or whose speed is no number.
     ///
     /// # Errors
     /// [`Failure`] if a disc left the box, or came into another's cell.
@@ -29,57 +30,36 @@ pub trait Stepping: Named + Send {
     /// [`Failure`] if a force is no finite number, or the machine refuses the law.
     fn compute_forces(&mut self, asked: Asked) -> Result<Met, Failure>;
 
+    /// The rest of the step, once its forces are found and judged: where the corrector waits for it.
+    ///
+    /// # Errors
+    /// [`Failure`] if a correction is no finite number.
+    fn finish(&mut self) -> Result<(), Failure> {
+        Ok(())
+    }
+
     /// Steps, periods and seconds so far.
     fn elapsed(&self) -> &Elapsed;
 
     /// The same, to be changed.
     fn elapsed_mut(&mut self) -> &mut Elapsed;
 
-    /// How many discs there are.
-    fn discs(&self) -> usize;
-
-    /// How many of them forces move.
-    fn grain_count(&self) -> usize;
+    /// The discs at the start.
+    fn start(&self) -> &Particles;
 
     /// How many discs are in cells that are another disc's.
-    fn shared_cells(&self) -> usize;
+    fn shared_cells(&self) -> usize {
+        0
+    }
 
     /// Entries of the lists, and how often they were made; none where there are no lists.
     fn lists(&self) -> Option<(usize, u64)>;
 
-    /// The particles as they stand, positions inside the box.
-    fn particles(&self) -> Particles;
-
-    /// Places inside the box and velocities of the grains, by their places in the scene.
-    fn states(&self, states: &mut States);
-
-    /// Positions alone, inside the box and in single precision, in the scene's order.
-    fn positions(&self) -> Vec<[f32; 3]>;
-
-    /// How many periods each has moved along x and y since the start, as of [`particles`](Self::particles); empty where a periodic side
-    /// is not followed.
-    fn images(&self) -> Vec<[i32; 2]>;
-
     /// The particles as they stand; positions are consistent with the periods that are counted as crossed.
     fn unwrapped(&self) -> Particles;
 
-    /// Velocities as the last predictor left them (length/time), in the scene's order; at the start those of the start.
-    fn predicted_velocities(&self) -> Vec<[f64; 2]>;
-
     /// Force along x and y and torque on every particle, in the scene's order.
     fn forces(&self) -> Vec<[f64; 3]>;
-
-    /// Takes the forces as found where no pair acts: there are none.
-    fn skip_forces(&mut self);
-
-    /// The particles, by their places in the scene and rising, that belong to no cell or of which a number is not finite.
-    fn unfit(&self) -> Vec<usize>;
-
-    /// Brings all cells up to date from the places as they were predicted, whose forces are not yet known.
-    ///
-    /// # Errors
-    /// [`Failure`] if a particle belongs to no cell.
-    fn settle(&mut self) -> Result<(), Failure>;
 
     /// Everything that the next step depends on, by name.
     fn columns(&self) -> Vec<(String, Column)>;
@@ -93,7 +73,57 @@ pub trait Stepping: Named + Send {
     /// Sums over the grains and their contacts at the end of the step. `work` gives what gravity has done to a grain (by its number in
     /// the scene) that is at a position (length), which is consistent with the periods that are counted as crossed; it is asked only
     /// where there is gravity.
-    fn sums(&self, scenery: &Scenery, work: &Work<'_>) -> Sums;
+    fn sums(&self, scenery: &Scenery, work: &Work<'_>) -> Sums {
+        Sums::over_parts(&self.unwrapped(), scenery, work)
+    }
+
+    /// What a step executes; nothing where its work depends on the data, contact by contact.
+    fn ledger(&self) -> Ledger {
+        Ledger::default()
+    }
+
+    /// How long vectors of a symbolic length are, or were in the last step, where the discs and the lattice do not say it.
+    fn length(&self, _length: Length) -> Option<u64> {
+        None
+    }
+}
+
+/// Discs of which some may be taken away.
+pub trait Losing: Stepping {
+    /// Velocities as the last predictor left them (length/time), in the scene's order; at the start those of the start.
+    fn predicted_velocities(&self) -> Vec<[f64; 2]>;
+
+    /// Takes the forces as found where no pair acts: there are none.
+    fn skip_forces(&mut self);
+
+    /// The particles, by their places in the scene and rising, that belong to no cell or of which a number is not finite.
+    fn unfit(&self) -> Vec<usize>;
+
+    /// Brings all cells up to date from the places as they were predicted, whose forces are not yet known.
+    ///
+    /// # Errors
+    /// [`Failure`] if a particle belongs to no cell.
+    fn settle(&mut self) -> Result<(), Failure>;
+}
+
+impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> PerParticle for Engine<S, P, Q, D> {
+    fn particles(&self) -> Particles {
+        wrapped(self.unwrapped(), &self.system.domain)
+    }
+
+    fn states(&self, states: &mut States) {
+        self.each_standing(0..self.start.len(), |disc, place, velocity| {
+            states.put(self.state.number(disc), self.system.domain.wrapped(place), velocity);
+        });
+    }
+
+    fn positions(&self) -> Vec<[f32; 3]> {
+        self.standing_places()
+    }
+
+    fn images(&self) -> Vec<[i32; 2]> {
+        self.standing_images()
+    }
 }
 
 impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Engine<S, P, Q, D> {
@@ -118,12 +148,8 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Engi
         &mut self.elapsed
     }
 
-    fn discs(&self) -> usize {
-        self.start.len()
-    }
-
-    fn grain_count(&self) -> usize {
-        self.state.grains()
+    fn start(&self) -> &Particles {
+        &self.start
     }
 
     fn shared_cells(&self) -> usize {
@@ -134,32 +160,8 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Engi
         self.search.lists().map(|lists| (lists.entries(), lists.made()))
     }
 
-    fn particles(&self) -> Particles {
-        wrapped(self.unwrapped(), &self.system.domain)
-    }
-
-    fn states(&self, states: &mut States) {
-        self.each_standing(0..self.start.len(), |disc, place, velocity| {
-            states.put(self.state.number(disc), self.system.domain.wrapped(place), velocity);
-        });
-    }
-
-    fn positions(&self) -> Vec<[f32; 3]> {
-        self.standing_places()
-    }
-
-    fn images(&self) -> Vec<[i32; 2]> {
-        self.standing_images()
-    }
-
     fn unwrapped(&self) -> Particles {
         self.standing()
-    }
-
-    fn predicted_velocities(&self) -> Vec<[f64; 2]> {
-        let mut velocities = vec![[0.0; 2]; self.start.len()];
-        (0..velocities.len()).for_each(|disc| velocities[self.state.number(disc)] = self.velocity(disc));
-        velocities
     }
 
     fn forces(&self) -> Vec<[f64; 3]> {
@@ -168,18 +170,6 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Engi
             forces[self.state.number(disc)] = self.force_on(disc);
         }
         forces
-    }
-
-    fn skip_forces(&mut self) {
-        self.awaits_forces = false;
-    }
-
-    fn unfit(&self) -> Vec<usize> {
-        self.unfit_discs()
-    }
-
-    fn settle(&mut self) -> Result<(), Failure> {
-        self.settle_all().map(drop)
     }
 
     fn columns(&self) -> Vec<(String, Column)> {
@@ -194,5 +184,39 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Engi
         let corrected = self.corrected_discs();
         let grains = self.grain_sums(&corrected, scenery, work);
         Sums { grains, contacts: self.contact_sums(&corrected) }
+    }
+}
+
+impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Losing for Engine<S, P, Q, D> {
+    fn predicted_velocities(&self) -> Vec<[f64; 2]> {
+        let mut velocities = vec![[0.0; 2]; self.start.len()];
+        (0..velocities.len()).for_each(|disc| velocities[self.state.number(disc)] = self.velocity(disc));
+        velocities
+    }
+
+    fn skip_forces(&mut self) {
+        self.awaits_forces = false;
+    }
+
+    fn unfit(&self) -> Vec<usize> {
+        self.unfit_discs()
+    }
+
+    fn settle(&mut self) -> Result<(), Failure> {
+        self.settle_all().map(drop)
+    }
+}
+
+impl SteppedState for Box<dyn Losing> {
+    fn elapsed(&self) -> &Elapsed {
+        self.as_ref().elapsed()
+    }
+
+    fn per_particle(&self) -> &dyn PerParticle {
+        self.as_ref()
+    }
+
+    fn columns(&self) -> Vec<(String, Column)> {
+        self.as_ref().columns()
     }
 }

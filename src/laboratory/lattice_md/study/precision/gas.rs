@@ -3,7 +3,7 @@
 use crate::laboratory::lattice_md::study::StudyError;
 use stripmine_kernels::sweep::lattice::Coordinates;
 use stripmine_physics::method::lattice_md::Document;
-use stripmine_physics::method::lattice_md::Engine;
+use stripmine_physics::method::lattice_md::Grains;
 use stripmine_physics::method::lattice_md::keys::{ENGINE, INTEGRATOR, SEARCH};
 use stripmine_physics::method::lattice_md::options::{By, EngineChoice, IntegratorKind};
 use stripmine_physics::method::lattice_md::{assemble, model};
@@ -20,7 +20,7 @@ pub(super) const EQUILIBRATION: u64 = 1000;
 
 /// A running bench scene.
 pub(super) struct Gas {
-    pub(super) method: Box<dyn Engine>,
+    pub(super) method: Grains,
     pub(super) scenery: Scenery,
 }
 

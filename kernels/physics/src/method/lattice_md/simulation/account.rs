@@ -1,30 +1,21 @@
 //! What a step is judged and accounted by, beside its forces: steps that are too long, periods crossed, powers.
 
 use super::LatticeMd;
-use crate::method::Failure;
-use crate::method::lattice_md::Engine;
-use crate::method::lattice_md::judge::judge_steps;
 use crate::method::lattice_md::programs::scales;
-use crate::method::lattice_md::walls::wall_power;
 use stripmine_kernels::backend;
 use stripmine_kernels::isa::Array;
 
 impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
     /// Discs that are so fast that contacts may pass unseen in a step.
-    pub(super) fn judge_steps(&mut self) -> Result<(), Failure> {
-        let Some(watch) = self.model.watch else { return Ok(()) };
+    pub(super) fn far(&self) -> Vec<u32> {
+        let Some(watch) = self.model.watch else { return vec![] };
         let column = |array| self.arrays.state(array).unwrap_or(&[]);
         let velocities = column(Array::X1).iter().zip(column(Array::Y1)).take(self.arrays.lengths().grains);
         // The velocity as the state has it, at which a step is so long.
         let fastest = watch.longest_step() * (scales(&self.model)[1] / self.model.dt);
         let square = S::from_f64(fastest * fastest);
         let is_far = |(x, y): (&S, &S)| square.less_than(*x * *x + *y * *y);
-        let far: Vec<usize> =
-            velocities.enumerate().filter(|&(_, velocity)| is_far(velocity)).map(|(disc, _)| disc).collect();
-        let mut totals = self.totals;
-        let judged = judge_steps(&self.names(), far.into_iter(), Some(watch), &mut totals);
-        self.totals = totals;
-        judged
+        (0..).zip(velocities).filter(|&(_, velocity)| is_far(velocity)).map(|(disc, _)| disc).collect()
     }
 
     /// Periods that discs crossed when the Index wrapped them: no step is as long as half the box.
@@ -44,11 +35,6 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
             });
             self.elapsed.crossings.add(disc, crossed);
         }
-    }
-
-    /// What moving walls put in (energy/time).
-    pub(super) fn wall_power(&self) -> f64 {
-        wall_power(&self.model, self.walls, self.time(), self.arrays.lengths().grains, || self.forces())
     }
 
     /// What the contacts found in the sweep of the lattice dissipate (energy/time).

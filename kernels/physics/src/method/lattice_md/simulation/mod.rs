@@ -1,108 +1,55 @@
-//! A running simulation: one step after the other, every broken precondition found in its step.
+//! Discs that are stepped by the vector programs, or by the rival with its lists on the same state: one step after the other, every broken
+//! precondition found in its step.
 
 mod account;
+mod names;
 mod saved;
 
-use super::balance::Way;
-use super::fast::{self, FastSearch};
-use super::judge::judge_depth;
 use super::neighbor_list::Rival;
 use super::options::ProgramText;
 use super::programs::{programs_of, rival_ledger_of, scales};
 use super::walls::walls_at;
-use super::watch::Names;
-use super::{Arrays, ListOptions, Model, Part, StepProgram, execute, ledger};
-use super::{Elapsed, Engine, Phase, Timings, Totals};
+use super::{Arrays, Contacts, Machine, Model, Part, StepProgram, execute, ledger};
 use crate::io::checkpoint::Column;
-use crate::method::Failure;
-use crate::method::pairwise::{Crossings, Named, Prescribed, unwrapped, wrapped};
-use crate::observe::{Scenery, Sums};
+use crate::method::pairwise::{
+    Crossings, Elapsed, Named, Phase, Prescribed, Stepping, Timings, unwrapped, wrapped,
+};
+use crate::method::{Failure, PerParticle};
 use crate::particles::{Particle, Particles};
-use crate::scene::{Precision, WallMotion};
+use crate::scene::WallMotion;
 use stripmine_kernels::backend;
 use stripmine_kernels::integrator::NOT_FINITE;
 use stripmine_kernels::integrator::gear::STATE;
 use stripmine_kernels::isa::{Array, COUNTERS, Counter, ProgramError};
+use stripmine_kernels::law::Asked;
 use stripmine_kernels::ledger::{Ledger, Length};
+use stripmine_kernels::sweep::fast::Met;
 use stripmine_kernels::sweep::lattice::cells::{CONFLICTS, STRAYS};
 use stripmine_kernels::sweep::lattice::forces::DEEP;
-use stripmine_kernels::{Execution, InstructionSet};
 
-/// How contacts are found.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Contacts {
-    /// On the lattice: the method of the source.
-    Lattice,
-    /// Each pair once and the law for contacts only; the machine's execution does not matter.
-    Fast(FastSearch),
-    /// By neighbour lists: its rival.
-    Lists(ListOptions),
-}
-
-/// How the programs are run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Machine {
-    /// How instructions meet elements.
-    pub execution: Execution,
-    /// The instructions.
-    pub set: InstructionSet,
-}
-
-/// Begins a simulation in the precision asked for. Compiled here once, for all that run one.
-///
-/// # Errors
-/// As [`LatticeMd::new`].
-pub fn start(
-    precision: Precision,
-    model: Model,
-    contacts: Contacts,
-    machine: Machine,
-    walls: WallMotion,
-    particles: Particles,
-) -> Result<Box<dyn Engine>, Failure> {
-    if let Contacts::Fast(search) = contacts {
-        let set = machine.set;
-        return match precision {
-            Precision::F64 => fast::start::<f64, f64>(model, search, set, walls, particles),
-            Precision::F32 => fast::start::<f32, f32>(model, search, set, walls, particles),
-            Precision::Mixed => fast::start::<f64, f32>(model, search, set, walls, particles),
-        };
-    }
-    Ok(match precision {
-        Precision::F64 => Box::new(LatticeMd::<f64, f64>::new(model, contacts, machine, walls, particles)?),
-        Precision::F32 => Box::new(LatticeMd::<f32, f32>::new(model, contacts, machine, walls, particles)?),
-        Precision::Mixed => Box::new(LatticeMd::<f64, f32>::new(model, contacts, machine, walls, particles)?),
-    })
-}
-
-/// A simulation with state of precision `S` and forces of precision `P`.
-pub struct LatticeMd<S, P> {
+/// Discs with state of precision `S` and forces of precision `P`.
+pub(super) struct LatticeMd<S, P> {
     model: Model,
     machine: Machine,
     programs: Vec<StepProgram>,
     arrays: Arrays<S, P>,
     start: Particles,
-    ids: Vec<u32>,
     walls: WallMotion,
     rival: Option<Rival<P>>,
     elapsed: Elapsed,
-    totals: Totals,
-    /// The cells of the discs before the Index is made, while it is.
+    /// The cells from which discs are seen while the Index is made; empty if they are those of the arrays.
     anchor: Vec<u32>,
 }
 
 impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
-    /// Lays out `particles` and finds their first accelerations.
-    ///
-    /// # Errors
-    /// [`Failure`] if the start breaks a precondition already.
-    pub fn new(
+    /// Lays out `particles`. Their forces are not yet known: [`compute_forces`](Stepping::compute_forces) finds them.
+    pub(super) fn new(
         model: Model,
         contacts: Contacts,
         machine: Machine,
         walls: WallMotion,
         particles: Particles,
-    ) -> Result<Self, Failure> {
+    ) -> Self {
         let rival = match contacts {
             Contacts::Lattice | Contacts::Fast(_) => None,
             Contacts::Lists(options) => {
@@ -111,28 +58,20 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
             }
         };
         let crossings = Crossings::new(model.counts_crossings(), particles.len());
-        let mut simulation = LatticeMd {
+        LatticeMd {
             programs: programs_of::<S, P>(&model),
             arrays: match contacts {
                 Contacts::Lists(_) => Arrays::with_forces_by_disc(&model, &particles),
                 Contacts::Lattice | Contacts::Fast(_) => Arrays::new(&model, &particles),
             },
-            ids: particles.all().iter().map(|disc| disc.id).collect(),
             start: particles,
             elapsed: Elapsed::new(model.dt, crossings),
             model,
             machine,
             walls,
             rival,
-            totals: Totals::default(),
             anchor: vec![],
-        };
-        simulation.move_walls(0.0);
-        let power = simulation.compute_forces()?;
-        simulation.start_derivatives();
-        simulation.totals = Totals::starting_with(power, simulation.wall_power());
-        simulation.elapsed.timings = Timings::default();
-        Ok(simulation)
+        }
     }
 
     /// The second derivatives that belong to the first forces: a start from zero would spoil the order.
@@ -174,16 +113,6 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
         Ok([0, 1, 2, 3].map(|counter| memory.counted(Counter(counter))))
     }
 
-    fn names(&self) -> Names<'_, S, P> {
-        Names {
-            model: &self.model,
-            arrays: &self.arrays,
-            anchor: &self.anchor,
-            ids: &self.ids,
-            clock: self.elapsed.clock(),
-        }
-    }
-
     fn move_walls(&mut self, time: f64) {
         let (grains, discs) = (self.arrays.lengths().grains, self.arrays.lengths().discs);
         if grains == discs || self.walls == WallMotion::Fixed {
@@ -215,9 +144,36 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
             }
         }
     }
+}
 
-    /// Index, lattice vectors and forces of the positions as they stand; gives what contacts dissipate (energy/time).
-    fn compute_forces(&mut self) -> Result<f64, Failure> {
+impl<S: backend::Precision, P: backend::Precision> PerParticle for LatticeMd<S, P> {
+    fn particles(&self) -> Particles {
+        wrapped(self.unwrapped(), &self.model.domain())
+    }
+
+    fn images(&self) -> Vec<[i32; 2]> {
+        let (domain, crossings) = (self.model.domain(), &self.elapsed.crossings);
+        if !crossings.follows(&domain) {
+            return vec![];
+        }
+        let image = |(number, disc): (usize, &Particle)| crossings.image(&domain, number, disc.place());
+        self.unwrapped().all().iter().enumerate().map(image).collect()
+    }
+}
+
+impl<S: backend::Precision, P: backend::Precision> Stepping for LatticeMd<S, P> {
+    fn advance(&mut self) -> Result<Vec<u32>, Failure> {
+        self.elapsed.steps += 1;
+        let mut timings = self.elapsed.timings;
+        timings.time(Phase::Predict, || self.run(&[Part::Predictor]))?;
+        let far = timings.time(Phase::Index, || self.far());
+        self.elapsed.timings = timings;
+        Ok(far)
+    }
+
+    // The programs are made for what is asked.
+    fn compute_forces(&mut self, _asked: Asked) -> Result<Met, Failure> {
+        self.move_walls(self.elapsed.time());
         let mut timings = self.elapsed.timings;
         if self.elapsed.crossings.is_followed() || self.model.is_anchored::<S>() {
             self.anchor.clear();
@@ -231,13 +187,13 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
             (strays, conflicts) = (counted[STRAYS.0 as usize], counted[CONFLICTS.0 as usize]);
         }
         if strays > 0
-            && let Some(failure) = self.names().stray(strays)
+            && let Some(failure) = self.stray(strays)
         {
             return Err(failure);
         }
         self.count_crossings();
         if self.model.reaches_beyond_box()
-            && let Some(failure) = self.names().beyond_box()
+            && let Some(failure) = self.beyond_box()
         {
             return Err(failure);
         }
@@ -245,56 +201,47 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
         self.anchor.clear();
         if conflicts > 0
             && self.rival.is_none()
-            && let Some(failure) = self.names().conflicting()
+            && let Some(failure) = self.conflicting()
         {
             return Err(failure);
         }
         let watch = self.model.watch;
-        let (power, marked) = match self.rival.take() {
+        let met = match self.rival.take() {
             None => {
                 timings.time(Phase::Index, || self.run(&[Part::Lattice]))?;
                 let counted = timings.time(Phase::Forces, || self.run(&[Part::Forces]))?;
                 let found = watch.filter(|_| counted[DEEP.0 as usize] > 0);
-                let marked = found.map_or(vec![], |watch| self.names().marked_on_lattice(watch.depth()));
-                (self.power_on_lattice(), marked)
+                let deep = found.map_or(vec![], |watch| self.marked_on_lattice(watch.depth()));
+                Met { deep, dissipated: self.power_on_lattice(), ..Met::default() }
             }
             Some(mut rival) => {
                 timings.time(Phase::Index, || rival.keep(&self.model, &self.arrays));
                 timings.time(Phase::Forces, || rival.forces(&self.model, &mut self.arrays));
-                let deep = std::mem::take(&mut rival.met.deep).into_iter().map(<[usize; 2]>::from).collect();
-                let power = rival.met.dissipated;
+                let deep = std::mem::take(&mut rival.met.deep).into_iter();
+                let deep = deep.map(|(disc, partner)| [disc as u32, partner as u32]).collect();
+                let met =
+                    Met { pairs: rival.met.pairs, dissipated: rival.met.dissipated, deep, ..Met::default() };
                 self.rival = Some(rival);
-                (power, deep)
+                met
             }
         };
         self.elapsed.timings = timings;
-        let mut totals = self.totals;
-        let judged = judge_depth(&self.names(), marked.into_iter(), watch, &mut totals);
-        self.totals = totals;
-        judged.map(|()| power)
+        Ok(met)
     }
-}
 
-impl<S: backend::Precision, P: backend::Precision> Engine for LatticeMd<S, P> {
-    fn step(&mut self) -> Result<(), Failure> {
-        self.elapsed.steps += 1;
-        let mut timings = self.elapsed.timings;
-        timings.time(Phase::Predict, || self.run(&[Part::Predictor]))?;
-        timings.time(Phase::Index, || self.judge_steps())?;
-        self.elapsed.timings = timings;
-        self.move_walls(self.time());
-        let power = self.compute_forces()?;
-        self.totals.add_work(self.model.dt, power, self.wall_power());
+    fn finish(&mut self) -> Result<(), Failure> {
+        if self.elapsed.steps == 0 {
+            self.start_derivatives();
+            self.elapsed.timings = Timings::default();
+            return Ok(());
+        }
         let mut timings = self.elapsed.timings;
         let counted = timings.time(Phase::Correct, || self.run(&[Part::Corrector]))?;
         self.elapsed.timings = timings;
-        let lost = counted[NOT_FINITE.0 as usize];
-        if lost > 0
-            && let Some(failure) = self.names().not_finite(lost)
-        {
-            return Err(failure);
+        match counted[NOT_FINITE.0 as usize] {
+            0 => Ok(()),
+            lost => self.not_finite(lost).map_or(Ok(()), Err),
         }
-        Ok(())
     }
 
     fn elapsed(&self) -> &Elapsed {
@@ -305,17 +252,12 @@ impl<S: backend::Precision, P: backend::Precision> Engine for LatticeMd<S, P> {
         &mut self.elapsed
     }
 
-    fn particles(&self) -> Particles {
-        wrapped(self.unwrapped(), &self.model.domain())
+    fn start(&self) -> &Particles {
+        &self.start
     }
 
-    fn images(&self) -> Vec<[i32; 2]> {
-        let (domain, crossings) = (self.model.domain(), &self.elapsed().crossings);
-        if !crossings.follows(&domain) {
-            return vec![];
-        }
-        let image = |(number, disc): (usize, &Particle)| crossings.image(&domain, number, disc.place());
-        self.unwrapped().all().iter().enumerate().map(image).collect()
+    fn lists(&self) -> Option<(usize, u64)> {
+        self.rival.as_ref().map(|rival| (rival.candidates(), rival.rebuilds))
     }
 
     fn unwrapped(&self) -> Particles {
@@ -334,15 +276,8 @@ impl<S: backend::Precision, P: backend::Precision> Engine for LatticeMd<S, P> {
             let [vx, vy, omega] = rates.map(|column| value(column, disc) / velocity_scale);
             (disc, [[x, vx], [y, vy], [value(angle, disc), omega]])
         };
-        let walls = walls_at(self.walls, self.time()).velocity;
+        let walls = walls_at(self.walls, self.elapsed.time()).velocity;
         unwrapped(&self.start, walls, (0..self.start.len()).map(of))
-    }
-
-    fn sums(&self, scenery: &Scenery, way: &Way) -> Sums {
-        let crossings = self.crossings();
-        Sums::over_parts(&self.unwrapped(), scenery, |number, grain, position| {
-            way.work(number, grain, position, crossings)
-        })
     }
 
     fn forces(&self) -> Vec<[f64; 3]> {
@@ -354,19 +289,14 @@ impl<S: backend::Precision, P: backend::Precision> Engine for LatticeMd<S, P> {
         (0..self.start.len()).map(forces).collect()
     }
 
-    fn totals(&self) -> Totals {
-        self.totals
+    fn columns(&self) -> Vec<(String, Column)> {
+        self.saved()
     }
 
-    fn state(&self) -> Vec<(String, Column)> {
-        self.columns()
-    }
-
-    fn restore(&mut self, steps: u64, totals: Totals, columns: Vec<(String, Column)>) -> Result<(), String> {
-        self.take_up(&columns)?;
+    fn restore(&mut self, steps: u64, columns: &[(String, Column)]) -> Result<(), String> {
+        self.take_up(columns)?;
         self.elapsed.steps = steps;
-        self.totals = totals;
-        self.move_walls(self.time());
+        self.move_walls(self.elapsed.time());
         Ok(())
     }
 
@@ -377,15 +307,12 @@ impl<S: backend::Precision, P: backend::Precision> Engine for LatticeMd<S, P> {
         }
     }
 
-    fn length(&self, length: Length) -> u64 {
-        match (length, &self.rival) {
-            (Length::Candidates, Some(rival)) => rival.candidates() as u64,
-            (Length::Pairs, Some(rival)) => rival.met.pairs,
-            _ => self.arrays.lengths().range(length).len() as u64,
+    fn length(&self, length: Length) -> Option<u64> {
+        let rival = self.rival.as_ref()?;
+        match length {
+            Length::Candidates => Some(rival.candidates() as u64),
+            Length::Pairs => Some(rival.met.pairs),
+            _ => None,
         }
-    }
-
-    fn lists(&self) -> Option<(usize, u64)> {
-        self.rival.as_ref().map(|rival| (rival.candidates(), rival.rebuilds))
     }
 }

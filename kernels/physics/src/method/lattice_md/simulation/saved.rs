@@ -20,7 +20,7 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
     }
 
     /// Everything that the next step depends on, by name.
-    pub(super) fn columns(&self) -> Vec<(String, Column)> {
+    pub(super) fn saved(&self) -> Vec<(String, Column)> {
         let column = |values: &[S]| real_column(values.iter().copied());
         let arrays = self.arrays.states().map(|(array, values)| (array.label().to_owned(), column(values)));
         let cells = self.keeps_cells().then(|| {
@@ -40,7 +40,7 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
         columns
     }
 
-    /// Takes up columns that [`columns`](Self::columns) gave.
+    /// Takes up columns that [`saved`](Self::saved) gave.
     pub(super) fn take_up(&mut self, columns: &[(String, Column)]) -> Result<(), String> {
         let expected: Vec<Array> = self.arrays.states().map(|(array, _)| array).collect();
         for array in expected {
@@ -52,7 +52,7 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
         }
         self.elapsed.crossings.take_up(columns)?;
         if let Some(rival) = &mut self.rival {
-            let discs = self.ids.len();
+            let discs = self.start.len();
             let of = |axis: usize| find_column(columns, MADE_AT[axis], discs);
             let (made_at, counts) = ([of(0)?, of(1)?], find_column::<f64>(columns, LIST_COUNTS, 2)?);
             if counts.iter().any(|&count| count.fract() != 0.0 || !(0.0..=2f64.powi(53)).contains(&count)) {

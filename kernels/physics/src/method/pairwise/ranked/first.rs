@@ -7,8 +7,8 @@ use crate::domain::Domain;
 use crate::io::checkpoint::Column;
 use crate::method::pairwise::observing::{Standing, contact_sums, sums_of_grains};
 use crate::method::pairwise::search::Search;
-use crate::method::pairwise::{Dynamics, Elapsed, Engine, Named, Stepping, Work, wrapped};
-use crate::method::{Clock, Failure, FailureKind};
+use crate::method::pairwise::{Dynamics, Elapsed, Engine, Losing, Named, Stepping, Work, wrapped};
+use crate::method::{Clock, Failure, FailureKind, PerParticle};
 use crate::observe::{Scenery, Sums};
 use crate::particles::{Particles, States, in_space};
 use crate::ranks::{Gone, Parcel, Ranks};
@@ -231,6 +231,34 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Named for Ranked<
     }
 }
 
+impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> PerParticle for Ranked<S, P, Q, D> {
+    fn particles(&self) -> Particles {
+        wrapped(self.unwrapped(), &self.engine().system.domain)
+    }
+
+    fn states(&self, states: &mut States) {
+        let domain = self.engine().system.domain;
+        for (number, [x, y, _, vx, vy, _]) in self.standing().into_iter().enumerate() {
+            states.put(number, domain.wrapped([x, y]), [vx, vy]);
+        }
+    }
+
+    fn positions(&self) -> Vec<[f32; 3]> {
+        let domain = self.engine().system.domain;
+        let place = |[x, y, ..]: [f64; 6]| domain.wrapped(in_space([x, y])).map(|along| along as f32);
+        self.standing().into_iter().map(place).collect()
+    }
+
+    fn images(&self) -> Vec<[i32; 2]> {
+        let (domain, crossings) = (&self.engine().system.domain, &self.engine().elapsed.crossings);
+        if !crossings.follows(domain) {
+            return vec![];
+        }
+        let image = |(number, [x, y, ..]): (usize, [f64; 6])| crossings.image(domain, number, [x, y]);
+        self.standing().into_iter().enumerate().map(image).collect()
+    }
+}
+
 impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Ranked<S, P, Q, D> {
     fn advance(&mut self) -> Result<Vec<u32>, Failure> {
         let reports = self.order(Do::Advance, |_| {})?;
@@ -263,12 +291,8 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Rank
         &mut self.worker.engine.elapsed
     }
 
-    fn discs(&self) -> usize {
-        self.engine().start.len()
-    }
-
-    fn grain_count(&self) -> usize {
-        self.engine().start.grain_count()
+    fn start(&self) -> &Particles {
+        &self.engine().start
     }
 
     fn shared_cells(&self) -> usize {
@@ -279,32 +303,6 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Rank
         let made = self.engine().search.lists()?.made();
         let listed = self.ask(Do::Listed).unwrap_or_default();
         Some((listed.iter().map(|parcel| parcel.read().count()).sum(), made))
-    }
-
-    fn particles(&self) -> Particles {
-        wrapped(self.unwrapped(), &self.engine().system.domain)
-    }
-
-    fn states(&self, states: &mut States) {
-        let domain = self.engine().system.domain;
-        for (number, [x, y, _, vx, vy, _]) in self.standing().into_iter().enumerate() {
-            states.put(number, domain.wrapped([x, y]), [vx, vy]);
-        }
-    }
-
-    fn positions(&self) -> Vec<[f32; 3]> {
-        let domain = self.engine().system.domain;
-        let place = |[x, y, ..]: [f64; 6]| domain.wrapped(in_space([x, y])).map(|along| along as f32);
-        self.standing().into_iter().map(place).collect()
-    }
-
-    fn images(&self) -> Vec<[i32; 2]> {
-        let (domain, crossings) = (&self.engine().system.domain, &self.engine().elapsed.crossings);
-        if !crossings.follows(domain) {
-            return vec![];
-        }
-        let image = |(number, [x, y, ..]): (usize, [f64; 6])| crossings.image(domain, number, [x, y]);
-        self.standing().into_iter().enumerate().map(image).collect()
     }
 
     fn unwrapped(&self) -> Particles {
@@ -325,31 +323,8 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Rank
         particles
     }
 
-    fn predicted_velocities(&self) -> Vec<[f64; 2]> {
-        self.each(What::Velocities)
-    }
-
     fn forces(&self) -> Vec<[f64; 3]> {
         self.each(What::Forces)
-    }
-
-    fn skip_forces(&mut self) {
-        // What a rank says that has ended, the next step says.
-        let _ = self.order(Do::SkipForces, |_| {});
-    }
-
-    fn unfit(&self) -> Vec<usize> {
-        let all = self.ask(Do::Unfit).unwrap_or_default();
-        let mut unfit: Vec<usize> =
-            all.iter().flat_map(|parcel| parcel.read().counts()).map(|number| number as usize).collect();
-        unfit.sort_unstable();
-        unfit
-    }
-
-    fn settle(&mut self) -> Result<(), Failure> {
-        let reports = self.order(Do::Settle, |_| {})?;
-        self.is_to_migrate = true;
-        self.heard(&reports).map(drop)
     }
 
     fn columns(&self) -> Vec<(String, Column)> {
@@ -381,6 +356,31 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Rank
         let reports = self.ask(Do::Contacts).unwrap_or_default();
         let met = Met::of(Self::bands(&reports));
         Sums { grains, contacts: contact_sums(&met) }
+    }
+}
+
+impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Losing for Ranked<S, P, Q, D> {
+    fn predicted_velocities(&self) -> Vec<[f64; 2]> {
+        self.each(What::Velocities)
+    }
+
+    fn skip_forces(&mut self) {
+        // What a rank says that has ended, the next step says.
+        let _ = self.order(Do::SkipForces, |_| {});
+    }
+
+    fn unfit(&self) -> Vec<usize> {
+        let all = self.ask(Do::Unfit).unwrap_or_default();
+        let mut unfit: Vec<usize> =
+            all.iter().flat_map(|parcel| parcel.read().counts()).map(|number| number as usize).collect();
+        unfit.sort_unstable();
+        unfit
+    }
+
+    fn settle(&mut self) -> Result<(), Failure> {
+        let reports = self.order(Do::Settle, |_| {})?;
+        self.is_to_migrate = true;
+        self.heard(&reports).map(drop)
     }
 }
 

@@ -19,7 +19,7 @@ mod wire;
 mod worker;
 
 use super::search::Search;
-use super::{Dynamics, Engine, Stepping, System};
+use super::{Dynamics, Engine, Losing, System};
 use crate::method::{Clock, Failure};
 use crate::particles::Particles;
 use crate::ranks::{self, Crew, Parcel};
@@ -39,7 +39,7 @@ pub fn begin<S, P, Q, D>(
     (dynamics, system, set): (D, System, InstructionSet),
     search: Q,
     particles: Particles,
-) -> Result<Box<dyn Stepping>, Failure>
+) -> Result<Box<dyn Losing>, Failure>
 where
     S: Precision,
     P: Precision,
@@ -52,7 +52,7 @@ where
     }
     let scene = Scene { dynamics, system, set, search };
     scene.refuse_too_many(crew.count())?;
-    let stepping: Box<dyn Stepping> = match crew {
+    let stepping: Box<dyn Losing> = match crew {
         Crew::Processes(join) if join().rank() > 0 => return Err(scene.serve(join, particles)),
         Crew::Processes(join) => {
             let ranks = join();

@@ -3,7 +3,7 @@
 use super::wire::take_columns;
 use super::worker::{What, Worker};
 use crate::method::pairwise::search::Search;
-use crate::method::pairwise::{Dynamics, Stepping};
+use crate::method::pairwise::{Dynamics, Losing};
 use crate::ranks::{Gone, Parcel, Reader};
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::law::Asked;

@@ -1,27 +1,17 @@
 //! Which discs broke a precondition, once a counter says that one did.
 
-use super::options::ProgramText;
-use super::{Arrays, Model};
+use super::LatticeMd;
 use crate::domain::Domain;
+use crate::method::lattice_md::options::ProgramText;
 use crate::method::pairwise::{Named, conflict, not_finite, outside};
 use crate::method::{Clock, Failure};
 use std::ops::Range;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::Array;
 
-/// What is needed to name a disc.
-pub(super) struct Names<'a, S, P> {
-    pub(super) model: &'a Model,
-    pub(super) arrays: &'a Arrays<S, P>,
-    /// The cells from which discs are seen while these are looked for; empty if they are those of the arrays.
-    pub(super) anchor: &'a [u32],
-    pub(super) ids: &'a [u32],
-    pub(super) clock: Clock,
-}
-
-impl<S: Precision, P: Precision> Named for Names<'_, S, P> {
+impl<S: Precision, P: Precision> Named for LatticeMd<S, P> {
     fn clock(&self) -> Clock {
-        self.clock
+        self.elapsed.clock()
     }
 
     fn domain(&self) -> Domain {
@@ -37,7 +27,7 @@ impl<S: Precision, P: Precision> Named for Names<'_, S, P> {
     }
 
     fn id(&self, disc: usize) -> u32 {
-        self.ids[disc]
+        self.start.all()[disc].id
     }
 
     fn position(&self, disc: usize) -> [f64; 2] {
@@ -68,7 +58,7 @@ impl<S: Precision, P: Precision> Named for Names<'_, S, P> {
     }
 }
 
-impl<S: Precision, P: Precision> Names<'_, S, P> {
+impl<S: Precision, P: Precision> LatticeMd<S, P> {
     /// Whether a disc belongs to no cell.
     fn is_stray(&self, disc: usize) -> bool {
         match self.model.text {
@@ -84,14 +74,14 @@ impl<S: Precision, P: Precision> Names<'_, S, P> {
 
     /// Discs that belong to no cell.
     pub(super) fn stray(&self, count: u64) -> Option<Failure> {
-        let strays = || (0..self.ids.len()).filter(|&disc| self.is_stray(disc));
+        let strays = || (0..self.start.len()).filter(|&disc| self.is_stray(disc));
         let lost = |disc: &usize| self.position(*disc).iter().any(|r| !r.is_finite());
         // Those that are nowhere come before those that are outside.
         let (first, count) = match strays().find(lost) {
             Some(first) => (first, strays().filter(lost).count() as u64),
             None => (strays().next()?, count),
         };
-        Some(outside(self.clock, count, self.culprit(first)))
+        Some(outside(self.clock(), count, self.culprit(first)))
     }
 
     /// Discs whose cell another one took.
@@ -99,23 +89,23 @@ impl<S: Precision, P: Precision> Names<'_, S, P> {
         let cell = self.arrays.cell();
         let index = self.arrays.index();
         let taken = |disc: &usize| cell[*disc] != 0 && index[cell[*disc] as usize - 1] != *disc as u32 + 1;
-        let first = (0..self.ids.len()).find(taken)?;
+        let first = (0..self.start.len()).find(taken)?;
         let second = index[cell[first] as usize - 1] as usize - 1;
-        Some(conflict(self.clock, self.domain(), [self.culprit(first), self.culprit(second)]))
+        Some(conflict(self.clock(), self.domain(), [self.culprit(first), self.culprit(second)]))
     }
 
     /// Discs whose correction was no finite number.
     pub(super) fn not_finite(&self, count: u64) -> Option<Failure> {
-        let disc = (0..self.ids.len()).find(|&disc| {
+        let disc = (0..self.start.len()).find(|&disc| {
             let moved =
                 [Array::X2, Array::Y2, Array::Phi2].into_iter().filter_map(|array| self.arrays.state(array));
             moved.into_iter().any(|column| !column[disc].to_f64().is_finite())
         })?;
-        Some(not_finite(self.clock, count, self.culprit(disc)))
+        Some(not_finite(self.clock(), count, self.culprit(disc)))
     }
 
     /// Pairs that may be too deep: around the cells that the sweep marked.
-    pub(super) fn marked_on_lattice(&self, depth: f64) -> Vec<[usize; 2]> {
+    pub(super) fn marked_on_lattice(&self, depth: f64) -> Vec<[u32; 2]> {
         let Some(deepest) = self.arrays.lattice(Array::Deepest) else { return vec![] };
         let index = self.arrays.index();
         let marked = |position: &usize| index[*position] != 0 && deepest[*position].to_f64() > depth;
@@ -123,7 +113,9 @@ impl<S: Precision, P: Precision> Names<'_, S, P> {
             let own = index[position] as usize - 1;
             let shifts = self.model.mask.offsets().iter().map(|&offset| self.model.shape.shift(offset));
             let partners = shifts.map(move |shift| index[position.wrapping_add_signed(shift)] as usize);
-            partners.filter(move |&there| there != 0 && there - 1 != own).map(move |there| [own, there - 1])
+            partners
+                .filter(move |&there| there != 0 && there - 1 != own)
+                .map(move |there| [own, there - 1].map(|disc| disc as u32))
         };
         self.model.shape.swept().filter(marked).flat_map(around).collect()
     }

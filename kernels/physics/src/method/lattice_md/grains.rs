@@ -1,0 +1,201 @@
+//! Granular discs that are stepped, one step after the other: what a step is judged and accounted by, whatever steps the discs.
+
+use super::balance::Way;
+use super::contacts::{Contacts, Machine};
+use super::fast;
+use super::judge::{judge_depth, judge_steps};
+use super::simulation::LatticeMd;
+use super::walls::wall_power;
+use super::{Lengths, Model, Timings, Totals};
+use crate::io::checkpoint::Column;
+use crate::method::pairwise::Stepping;
+use crate::method::stepped::SteppedState;
+use crate::method::{Elapsed, Failure, PerParticle};
+use crate::observe::{Scenery, Sums};
+use crate::particles::Particles;
+use crate::scene::{Precision, WallMotion};
+use stripmine_kernels::ledger::{Ledger, Length};
+
+/// Granular discs that are stepped. It never prints and never writes a file.
+pub struct Grains {
+    stepping: Box<dyn Stepping>,
+    model: Model,
+    walls: WallMotion,
+    totals: Totals,
+    /// Pairs met in the last step.
+    met: u64,
+}
+
+impl Grains {
+    /// Lays out `particles` and finds their first forces, in the precision asked for.
+    ///
+    /// # Errors
+    /// [`Failure`] if the start breaks a precondition already, or the box is none for sectors.
+    pub fn start(
+        precision: Precision,
+        model: Model,
+        contacts: Contacts,
+        machine: Machine,
+        walls: WallMotion,
+        particles: Particles,
+    ) -> Result<Grains, Failure> {
+        fn programs<S: stripmine_kernels::backend::Precision, P: stripmine_kernels::backend::Precision>(
+            (model, contacts, machine): (&Model, Contacts, Machine),
+            walls: WallMotion,
+            particles: Particles,
+        ) -> Box<dyn Stepping> {
+            Box::new(LatticeMd::<S, P>::new(model.clone(), contacts, machine, walls, particles))
+        }
+        let stepping = match (contacts, precision) {
+            (Contacts::Fast(search), Precision::F64) => {
+                fast::stepping::<f64, f64>(&model, search, machine.set, walls, particles)?
+            }
+            (Contacts::Fast(search), Precision::F32) => {
+                fast::stepping::<f32, f32>(&model, search, machine.set, walls, particles)?
+            }
+            (Contacts::Fast(search), Precision::Mixed) => {
+                fast::stepping::<f64, f32>(&model, search, machine.set, walls, particles)?
+            }
+            (_, Precision::F64) => programs::<f64, f64>((&model, contacts, machine), walls, particles),
+            (_, Precision::F32) => programs::<f32, f32>((&model, contacts, machine), walls, particles),
+            (_, Precision::Mixed) => programs::<f64, f32>((&model, contacts, machine), walls, particles),
+        };
+        let mut grains = Grains { stepping, model, walls, totals: Totals::default(), met: 0 };
+        let power = grains.compute_forces()?;
+        grains.stepping.finish()?;
+        grains.totals = Totals::starting_with(power, grains.wall_power());
+        Ok(grains)
+    }
+
+    /// Advances by one time step.
+    ///
+    /// # Errors
+    /// [`Failure`] says what broke, which particles, where, and what to do; the state is that of the failing step.
+    pub fn step(&mut self) -> Result<(), Failure> {
+        let far = self.stepping.advance()?;
+        judge_steps(self.stepping.as_ref(), &far, self.model.watch, &mut self.totals)?;
+        self.totals.shared_cells += self.stepping.shared_cells() as u64;
+        let power = self.compute_forces()?;
+        self.totals.add_work(self.model.dt, power, self.wall_power());
+        self.stepping.finish()
+    }
+
+    /// All forces of the positions as they stand; gives what contacts dissipate (energy/time).
+    fn compute_forces(&mut self) -> Result<f64, Failure> {
+        let met = self.stepping.compute_forces(self.model.asked())?;
+        self.met = met.pairs;
+        judge_depth(self.stepping.as_ref(), &met.deep, self.model.watch, &mut self.totals)?;
+        Ok(met.dissipated)
+    }
+
+    /// What moving walls put in (energy/time).
+    fn wall_power(&self) -> f64 {
+        let grains = self.stepping.start().grain_count();
+        wall_power(&self.model, self.walls, self.time(), grains, || self.forces())
+    }
+
+    /// Steps done since the start of the scene.
+    pub fn steps(&self) -> u64 {
+        self.elapsed().steps
+    }
+
+    /// Time since the start of the scene.
+    pub fn time(&self) -> f64 {
+        self.elapsed().time()
+    }
+
+    /// The particles as they stand, positions inside the box.
+    pub fn particles(&self) -> Particles {
+        self.stepping.particles()
+    }
+
+    /// The same as the state has them: the last correction may have taken a position beyond a periodic side, and no
+    /// [crossing](Self::crossings) is counted before the next step.
+    pub fn unwrapped(&self) -> Particles {
+        self.stepping.unwrapped()
+    }
+
+    /// How many periods each particle has moved along x and y since the start, in the order of
+    /// [`particles`](Self::particles); empty where that is not followed.
+    pub fn crossings(&self) -> &[[f64; 2]] {
+        self.elapsed().crossings.counts()
+    }
+
+    /// Sums over the discs and their contacts as they stand, with what gravity has done on their way. Summed in an order that
+    /// depends on the scene alone.
+    pub fn sums(&self, scenery: &Scenery, way: &Way) -> Sums {
+        let crossings = self.crossings();
+        self.stepping.sums(scenery, &|number, grain, position| way.work(number, grain, position, crossings))
+    }
+
+    /// Force along x and y and torque on every particle, as of the last step.
+    pub fn forces(&self) -> Vec<[f64; 3]> {
+        self.stepping.forces()
+    }
+
+    /// What has been counted and summed up since the start.
+    pub fn totals(&self) -> Totals {
+        self.totals
+    }
+
+    /// Takes columns of a state up again.
+    ///
+    /// # Errors
+    /// A sentence, if the columns are not those of these discs.
+    pub fn restore(
+        &mut self,
+        steps: u64,
+        totals: Totals,
+        columns: &[(String, Column)],
+    ) -> Result<(), String> {
+        self.stepping.restore(steps, columns)?;
+        self.totals = totals;
+        Ok(())
+    }
+
+    /// What a step executes.
+    pub fn ledger(&self) -> Ledger {
+        self.stepping.ledger()
+    }
+
+    /// How long vectors of a symbolic length are, or were in the last step.
+    pub fn length(&self, length: Length) -> u64 {
+        match (self.stepping.length(length), length) {
+            (Some(own), _) => own,
+            (None, Length::Pairs) => self.met,
+            (None, _) => {
+                let start = self.stepping.start();
+                Lengths::new(&self.model, start.grain_count(), start.len()).range(length).len() as u64
+            }
+        }
+    }
+
+    /// Entries of the neighbour lists, and how often they were made again; none where there are no lists.
+    pub fn lists(&self) -> Option<(usize, u64)> {
+        self.stepping.lists()
+    }
+
+    /// Seconds spent in each phase.
+    pub fn timings(&self) -> &Timings {
+        &self.elapsed().timings
+    }
+
+    /// Forgets the seconds spent so far.
+    pub fn reset_timings(&mut self) {
+        self.stepping.elapsed_mut().timings = Timings::default();
+    }
+}
+
+impl SteppedState for Grains {
+    fn elapsed(&self) -> &Elapsed {
+        self.stepping.elapsed()
+    }
+
+    fn per_particle(&self) -> &dyn PerParticle {
+        self.stepping.as_ref()
+    }
+
+    fn columns(&self) -> Vec<(String, Column)> {
+        self.stepping.columns()
+    }
+}

@@ -1,0 +1,268 @@
+//! A run of granular discs: what is seen of them, the balance of their energy, what is said of it at the end.
+
+use super::assemble::model_following_energy;
+use super::balance::{Way, Work};
+use super::check::Checked;
+use super::checks;
+use super::quantities::{OBSERVABLES, Seen};
+use super::run_monitor::RunMonitor;
+use super::{
+    Discs, Grains, Lengths, Model, Total, Totals, assemble, assemble_following_energy, ledger, model,
+    programs,
+};
+use crate::io::checkpoint::Counter;
+use crate::method::pairwise::Crossings;
+use crate::method::stepped::{Stepped, Stepwise};
+use crate::method::{Clock, Failure, Observable, Purpose, RunWarning, Snapshot};
+use crate::number::significant;
+use crate::observe::{Observation, Scenery, Sums};
+use crate::scene::Precision;
+use serde::Serialize;
+use serde_json::{Value, json};
+use std::cell::{Cell, OnceCell};
+use std::collections::BTreeMap;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+use stripmine_kernels::isa::OpCounts;
+
+/// The phase in which discs are observed.
+const OBSERVING: &str = "observe";
+
+/// What a run keeps beside its discs.
+pub(super) struct Granular {
+    model: Model,
+    scenery: Scenery,
+    /// The balance of energy since the start.
+    work: Work,
+    /// What is seen of this moment, once somebody has asked.
+    seen: OnceCell<Seen>,
+    /// Seconds that this has taken: a phase that belongs to no step.
+    observing: Cell<f64>,
+    /// Columns and rows of the lattice, where the scene needs one, and discs for each cell.
+    lattice: Option<([usize; 2], f64)>,
+    discs: [usize; 2],
+    /// What is looked at now and then, in a run.
+    run_monitor: Option<RunMonitor>,
+    /// Whether a checkpoint may have no counts of the periods that discs cross.
+    counts_for_motion_alone: bool,
+}
+
+/// The discs of a checked scene, at the start.
+///
+/// # Errors
+/// [`Failure`] if the start breaks a precondition, or the processor lacks the instruction set asked for.
+pub(super) fn begin(checked: &Checked, purpose: Purpose) -> Result<Stepped<Granular>, Failure> {
+    let grains = match purpose {
+        Purpose::Run => assemble_following_energy(checked)?,
+        Purpose::Measurement => assemble(checked)?,
+    };
+    let Checked { scene, particles, geometry, .. } = checked;
+    let model = model(checked);
+    let scenery = Scenery::of(&model);
+    let way = Way::begin(&scenery, grains.crossings(), || grains.unwrapped());
+    let sums = grains.sums(&scenery, &way);
+    let work = Work::begin(way, &Observation::new(grains.steps(), grains.time(), &sums, &scenery));
+    let run_monitor = (purpose == Purpose::Run).then(|| {
+        let mut run_monitor = RunMonitor::of(checked);
+        run_monitor.look(&sums.grains);
+        run_monitor
+    });
+    let count = particles.grain_count();
+    let cells = [geometry.shape.columns(), geometry.shape.rows()];
+    let granular = Granular {
+        model,
+        scenery,
+        work,
+        seen: OnceCell::new(),
+        observing: Cell::default(),
+        lattice: scene.needs_lattice().then_some((cells, geometry.occupancy)),
+        discs: [count, particles.len() - count],
+        run_monitor,
+        counts_for_motion_alone: model_following_energy(checked).counts_crossings_for_motion_alone(),
+    };
+    Ok(Stepped::new(grains, granular))
+}
+
+impl Stepped<Granular> {
+    /// What is to be seen of this moment: looked at once, however many ask.
+    fn seen(&self) -> &Seen {
+        self.method.seen.get_or_init(|| {
+            let (grains, sums) = (&self.state, self.sums());
+            let now = Observation::new(grains.steps(), grains.time(), &sums, &self.method.scenery);
+            let totals = grains.totals();
+            Seen { now, balance: self.method.work.balance(&now, &sums, &totals), totals }
+        })
+    }
+
+    /// Sums over the discs and their contacts as they stand, with the time that they take.
+    fn sums(&self) -> Sums {
+        let start = Instant::now();
+        let Granular { scenery, work, observing, .. } = &self.method;
+        let sums = self.state.sums(scenery, work.way());
+        observing.set(observing.get() + start.elapsed().as_secs_f64());
+        sums
+    }
+
+    /// What leaving out saves: the programs as they are against those of the fullest model, on the same lattice; none where
+    /// a step is no fixed program.
+    fn relative_work(&self) -> Option<f64> {
+        if self.state.ledger().parts().is_empty() {
+            return None;
+        }
+        let Granular { model, discs: [grains, walls], .. } = &self.method;
+        let lengths = Lengths::new(model, *grains, grains + walls);
+        let work = |model: &Model| -> u64 {
+            let parts = ledger(&programs(model, Precision::F64)).parts();
+            let cost = parts.iter();
+            cost.map(|(_, length, counts)| counts.total() * lengths.range(*length).len() as u64).sum()
+        };
+        let everything = Model { friction: true, discs: Discs::Varying, ..model.clone() };
+        Some(work(model) as f64 / work(&everything) as f64)
+    }
+}
+
+/// Part of a step.
+#[derive(Serialize)]
+struct LedgerRow {
+    /// The part.
+    part: &'static str,
+    /// Vector length, as a symbol.
+    length: &'static str,
+    /// Vector length in the last step.
+    n: u64,
+    /// Operations on each element.
+    operations: u64,
+}
+
+fn ledger_rows(grains: &Grains) -> Vec<LedgerRow> {
+    let parts = grains.ledger().parts();
+    let rows = parts.iter().map(|(part, length, counts)| LedgerRow {
+        part,
+        length: length.symbol(),
+        n: grains.length(*length),
+        operations: counts.total(),
+    });
+    rows.collect()
+}
+
+impl Stepwise for Granular {
+    type State = Grains;
+    type Seen = Seen;
+    const OBSERVABLES: &'static [Observable<Seen>] = &OBSERVABLES;
+
+    fn step(run: &mut Stepped<Self>, _interrupted: &AtomicBool) -> Result<bool, Failure> {
+        run.method.seen.take();
+        run.state.step()?;
+        if run.method.run_monitor.is_some() && RunMonitor::is_due(run.state.steps()) {
+            let sums = run.sums();
+            run.method.run_monitor.iter_mut().for_each(|run_monitor| run_monitor.look(&sums.grains));
+        }
+        Ok(true)
+    }
+
+    fn with_seen<R>(run: &Stepped<Self>, work: impl FnOnce(&Seen) -> R) -> R {
+        work(run.seen())
+    }
+
+    fn keep(run: &Stepped<Self>, kept: &mut Snapshot) {
+        for (name, total) in run.state.totals().entries() {
+            match total {
+                Total::Count(count) => kept.add_count(name, count),
+                Total::Sum(sum) => kept.add_sum(name, sum),
+            }
+        }
+        kept.counters.extend(run.method.run_monitor.iter().flat_map(RunMonitor::counters));
+    }
+
+    fn restore(run: &mut Stepped<Self>, clock: Clock, snapshot: Snapshot) -> Result<(), String> {
+        let totals = Totals::from_entries(|name| match snapshot.counters.get(name)? {
+            Counter::Count(count) => Some(Total::Count(*count)),
+            Counter::Sum(sum) => Some(Total::Sum(*sum)),
+        });
+        let discs = run.method.discs[0] + run.method.discs[1];
+        let totals = totals.map_err(|name| format!("the total {name} is missing"))?;
+        totals.are_of(clock.steps, discs as u64)?;
+        if let Some(run_monitor) = &mut run.method.run_monitor {
+            run_monitor.restore(&snapshot.counters)?;
+        }
+        run.method.seen.take();
+        let mut columns = snapshot.columns;
+        if run.method.counts_for_motion_alone {
+            Crossings::begin_in(&mut columns, discs);
+        }
+        run.state.restore(clock.steps, totals, &columns)
+    }
+
+    fn phases(run: &Stepped<Self>) -> BTreeMap<&'static str, f64> {
+        let observing = Some((OBSERVING, run.method.observing.get())).filter(|(_, seconds)| *seconds > 0.0);
+        run.state.timings().named().into_iter().chain(observing).collect()
+    }
+
+    fn reset_phases(run: &mut Stepped<Self>) {
+        run.state.reset_timings();
+        run.method.observing.take();
+    }
+
+    fn work(run: &Stepped<Self>) -> f64 {
+        run.method.discs[0] as f64 * run.state.steps() as f64
+    }
+
+    fn operations(run: &Stepped<Self>) -> Vec<(OpCounts, u64)> {
+        let parts = run.state.ledger().parts();
+        parts.into_iter().map(|(_, length, counts)| (counts, run.state.length(length))).collect()
+    }
+
+    fn summary(run: &Stepped<Self>) -> Vec<(&'static str, Value)> {
+        let (Seen { now, balance, totals, .. }, Granular { discs, lattice, .. }) = (run.seen(), &run.method);
+        let lists = run.state.lists();
+        vec![
+            ("discs", json!({ "grains": discs[0], "walls": discs[1] })),
+            (
+                "lattice",
+                json!(lattice.map(|([columns, rows], _)| json!({ "columns": columns, "rows": rows }))),
+            ),
+            ("occupancy", json!(lattice.map(|(_, occupancy)| occupancy))),
+            ("energy", json!(balance)),
+            ("long_steps", json!(totals.long_steps)),
+            ("deep_disc_steps", json!(totals.deep_disc_steps)),
+            ("resolved_conflicts", json!(totals.shared_cells)),
+            ("deepest_watched", json!(totals.deepest)),
+            ("listed_pairs", json!(lists.map(|(entries, _)| entries))),
+            ("lists_made", json!(lists.map(|(_, made)| made))),
+            ("ledger", json!(ledger_rows(&run.state))),
+            ("work_relative_to_everything", json!(run.relative_work())),
+            ("last", json!(now)),
+        ]
+    }
+
+    fn warnings(run: &Stepped<Self>) -> Vec<RunWarning> {
+        let (Seen { balance, totals, .. }, run_monitor) = (run.seen(), &run.method.run_monitor);
+        let passed = run.method.work.passed(balance);
+        let energy = run_monitor.as_ref().and_then(|_| checks::energy(balance, passed));
+        let looked = run_monitor.iter().flat_map(RunMonitor::warnings);
+        checks::counted(totals).into_iter().chain(looked).chain(energy).collect()
+    }
+
+    fn in_words(run: &Stepped<Self>) -> String {
+        let ([grains, walls], Seen { now, .. }) = (run.method.discs, run.seen());
+        let mut text = format!("{grains} grains and {walls} wall discs");
+        if let Some(([columns, rows], occupancy)) = run.method.lattice {
+            let occupancy = significant(occupancy, 4);
+            text.push_str(&format!(" on {columns}×{rows} cells, occupancy {occupancy}"));
+        }
+        text.push_str(&format!(
+            "; temperature {}, flow {}, contacts {}, deepest penetration {}",
+            significant(now.temperature, 5),
+            significant(now.flow, 5),
+            now.contacts,
+            significant(now.deepest_penetration, 4)
+        ));
+        if let Some(share) = run.relative_work().filter(|&share| share < 1.0) {
+            let saved = 100.0 * (1.0 - share);
+            text.push_str(&format!(
+                "\nsaved: {saved:.1} % of a step's operations with friction and different discs"
+            ));
+        }
+        text
+    }
+}

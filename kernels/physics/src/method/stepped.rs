@@ -1,0 +1,206 @@
+//! Methods with a time step: one simulation for all of them.
+//!
+//! ```text
+//! a run      holds a dyn Simulation
+//! Stepped    the loop over steps, the clock, checkpoints: once, here
+//! Stepwise   what a method gives: how a step is done, what is seen of it, what is said at the end
+//! state      what a step changes: discs found in pairs (pairwise), vector programs (lattice_md), bodies (nbody)
+//! ```
+
+use super::clock::{Clock, Until};
+use super::failure::Failure;
+use super::observed::values;
+use super::pairwise::Elapsed;
+use super::simulation::{RunWarning, Simulation};
+use super::snapshot::Snapshot;
+use super::{Observable, PerParticle};
+use crate::io::checkpoint::Column;
+use serde_json::{Map, Value};
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+use stripmine_kernels::isa::OpCounts;
+
+/// What steps change.
+pub trait SteppedState: Send {
+    /// Steps, periods and seconds so far.
+    fn elapsed(&self) -> &Elapsed;
+
+    /// Its particles.
+    fn per_particle(&self) -> &dyn PerParticle;
+
+    /// Everything that the next step depends on, by name.
+    fn columns(&self) -> Vec<(String, Column)>;
+}
+
+/// A method with a time step. Its functions are given the whole simulation: the state and what the method keeps beside it.
+pub trait Stepwise: Send + Sized {
+    /// What its steps change.
+    type State: SteppedState;
+    /// What there is to be seen of a moment.
+    type Seen: 'static;
+    /// How each quantity is read off that.
+    const OBSERVABLES: &'static [Observable<Self::Seen>];
+
+    /// One step on. Gives whether it was made: one that is interrupted leaves the state of before.
+    ///
+    /// # Errors
+    /// As [`Simulation::advance`].
+    fn step(run: &mut Stepped<Self>, interrupted: &AtomicBool) -> Result<bool, Failure>;
+
+    /// Does something with all that there is to be seen of this moment.
+    fn with_seen<R>(run: &Stepped<Self>, work: impl FnOnce(&Self::Seen) -> R) -> R;
+
+    /// As [`Simulation::per_particle`], where it is more than the state knows.
+    fn per_particle(run: &Stepped<Self>) -> &dyn PerParticle {
+        run.state.per_particle()
+    }
+
+    /// As [`Simulation::check`].
+    ///
+    /// # Errors
+    /// As there.
+    fn check(_run: &Stepped<Self>) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    /// Adds to the columns of the state what else the future depends on, and what has been counted.
+    fn keep(run: &Stepped<Self>, kept: &mut Snapshot);
+
+    /// As [`Simulation::restore`]; the clock is one of steps.
+    ///
+    /// # Errors
+    /// As there.
+    fn restore(run: &mut Stepped<Self>, clock: Clock, snapshot: Snapshot) -> Result<(), String>;
+
+    /// As [`Simulation::phases`].
+    fn phases(run: &Stepped<Self>) -> BTreeMap<&'static str, f64> {
+        BTreeMap::from([("steps", run.seconds)])
+    }
+
+    /// Forgets what [`phases`](Self::phases) gives, but for [`Stepped::seconds`].
+    fn reset_phases(_run: &mut Stepped<Self>) {}
+
+    /// As [`Simulation::work`].
+    fn work(run: &Stepped<Self>) -> f64;
+
+    /// As [`Simulation::operations`].
+    fn operations(_run: &Stepped<Self>) -> Vec<(OpCounts, u64)> {
+        vec![]
+    }
+
+    /// As [`Simulation::summary`].
+    fn summary(run: &Stepped<Self>) -> Vec<(&'static str, Value)>;
+
+    /// As [`Simulation::take_events`].
+    fn take_events(_run: &mut Stepped<Self>) -> String {
+        String::new()
+    }
+
+    /// As [`Simulation::warnings`].
+    fn warnings(_run: &Stepped<Self>) -> Vec<RunWarning> {
+        vec![]
+    }
+
+    /// As [`Simulation::in_words`].
+    fn in_words(run: &Stepped<Self>) -> String;
+}
+
+/// A simulation of a method with a time step.
+pub struct Stepped<M: Stepwise> {
+    /// What steps change.
+    pub state: M::State,
+    /// What the method keeps beside it.
+    pub method: M,
+    /// Seconds spent on steps.
+    pub seconds: f64,
+}
+
+impl<M: Stepwise> Stepped<M> {
+    /// Of a state as it stands.
+    pub fn new(state: M::State, method: M) -> Self {
+        Stepped { state, method, seconds: 0.0 }
+    }
+
+    /// How far it has come.
+    pub fn clock(&self) -> Clock {
+        self.state.elapsed().clock()
+    }
+}
+
+impl<M: Stepwise> Simulation for Stepped<M> {
+    fn advance(&mut self, until: &[Until], interrupted: &AtomicBool) -> Result<(), Failure> {
+        let begun = Instant::now();
+        while !until.iter().any(|moment| moment.has_come(&self.clock())) {
+            if interrupted.load(Ordering::Relaxed) || !M::step(self, interrupted)? {
+                break;
+            }
+        }
+        self.seconds += begun.elapsed().as_secs_f64();
+        Ok(())
+    }
+
+    fn clock(&self) -> Clock {
+        Stepped::clock(self)
+    }
+
+    fn time_step(&self) -> Option<f64> {
+        Some(self.state.elapsed().dt)
+    }
+
+    fn per_particle(&self) -> &dyn PerParticle {
+        M::per_particle(self)
+    }
+
+    fn check(&self) -> Result<(), Failure> {
+        M::check(self)
+    }
+
+    fn observe(&self) -> Vec<f64> {
+        M::with_seen(self, |seen| values(M::OBSERVABLES, seen))
+    }
+
+    fn snapshot(&self) -> Snapshot {
+        let mut kept = Snapshot { columns: self.state.columns(), ..Snapshot::default() };
+        M::keep(self, &mut kept);
+        kept
+    }
+
+    fn restore(&mut self, clock: Clock, snapshot: Snapshot) -> Result<(), String> {
+        clock.of_steps(self.state.elapsed().dt)?;
+        M::restore(self, clock, snapshot)
+    }
+
+    fn phases(&self) -> BTreeMap<&'static str, f64> {
+        M::phases(self)
+    }
+
+    fn reset_phases(&mut self) {
+        self.seconds = 0.0;
+        M::reset_phases(self);
+    }
+
+    fn work(&self) -> f64 {
+        M::work(self)
+    }
+
+    fn operations(&self) -> Vec<(OpCounts, u64)> {
+        M::operations(self)
+    }
+
+    fn summary(&self) -> Map<String, Value> {
+        M::summary(self).into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+    }
+
+    fn take_events(&mut self) -> String {
+        M::take_events(self)
+    }
+
+    fn warnings(&self) -> Vec<RunWarning> {
+        M::warnings(self)
+    }
+
+    fn in_words(&self) -> String {
+        M::in_words(self)
+    }
+}
