@@ -62,7 +62,7 @@ fn reads<L: Copy>(action: &Action<L>) -> Vec<RegisterName> {
         },
         Action::Effect(effect) => match effect {
             Effect::Store(_, a) => vec![register(a)],
-            Effect::Count(a, _) | Effect::StoreIndex(_, a) => vec![Some(*a)],
+            Effect::Count(_, a) | Effect::StoreIndex(_, a) => vec![Some(*a)],
             Effect::Scatter(_, a, b) => vec![Some(*a), register(b)],
             Effect::ScatterIndex(_, a, b) => vec![Some(*a), Some(*b)],
         },

@@ -14,6 +14,7 @@
 
 use super::pulp::{Pulp, PulpElement, Register, Truth};
 use super::registers::Registers;
+use super::values::{implement_operator, implement_vector};
 use crate::isa::Vector;
 use crate::isa::list::for_each_op;
 use pulp::Simd;
@@ -25,23 +26,13 @@ use std::any::TypeId;
 /// A precision in which there is something to fuse and to estimate.
 pub trait Estimates: PulpElement {
     /// `a · b + c`, rounded once.
-    fn fused<S: Simd>(
-        simd: S,
-        a: Self::Register<S>,
-        b: Self::Register<S>,
-        c: Self::Register<S>,
-    ) -> Self::Register<S>;
+    fn fused<S: Simd>(simd: S, a: Self::V<S>, b: Self::V<S>, c: Self::V<S>) -> Self::V<S>;
 
     /// `c − a · b`, rounded once.
-    fn fused_from<S: Simd>(
-        simd: S,
-        a: Self::Register<S>,
-        b: Self::Register<S>,
-        c: Self::Register<S>,
-    ) -> Self::Register<S>;
+    fn fused_from<S: Simd>(simd: S, a: Self::V<S>, b: Self::V<S>, c: Self::V<S>) -> Self::V<S>;
 
     /// 1/√a to a few digits, and the terms that the correction takes; none where the processor has no such instruction.
-    fn inverse_root<S: Simd>(simd: S, a: Self::Register<S>) -> Option<(Self::Register<S>, &'static [f64])>;
+    fn inverse_root<S: Simd>(simd: S, a: Self::V<S>) -> Option<(Self::V<S>, &'static [f64])>;
 }
 
 /// The terms of the correction behind the 1.
@@ -157,79 +148,52 @@ impl<S: Simd, T: Estimates, const RAW: bool> Registers for Estimating<S, T, RAW>
     }
 }
 
-macro_rules! define_estimated {
-    (operator { $(($ov:ident, $om:literal, $oc:ident, $od:literal, $trait:ident $of:ident)),* $(,)? }
-     binary { $(($bv:ident, $bm:literal, $bc:ident, $bd:literal, $bf:ident)),* $(,)? }
-     unary { $(($uv:ident, $um:literal, $uc:ident, $ud:literal, $uf:ident)),* $(,)? }
-     compare { $(($cv:ident, $cm:literal, $cc:ident, $cd:literal, $cf:ident)),* $(,)? }
-     connective $connective:tt
-     negation $negation:tt
-     machine $machine:tt) => {
-        $(
-            impl<S: Simd, T: Estimates, const RAW: bool> std::ops::$trait for Estimated<S, T, RAW> {
-                type Output = Self;
-                #[inline(always)]
-                fn $of(self, other: Self) -> Self {
-                    Estimated(self.0, std::ops::$trait::$of(self.1, other.1))
-                }
-            }
-        )*
-
-        impl<S: Simd, T: Estimates, const RAW: bool> Vector for Estimated<S, T, RAW> {
-            type Predicate = Truth<S, T>;
-            $(
-                #[inline(always)]
-                fn $uf(self) -> Self {
-                    Estimated(self.0, self.1.$uf())
-                }
-            )*
-            $(
-                #[inline(always)]
-                fn $bf(self, other: Self) -> Self {
-                    Estimated(self.0, self.1.$bf(other.1))
-                }
-            )*
-            $(
-                #[inline(always)]
-                fn $cf(self, other: Self) -> Truth<S, T> {
-                    self.1.$cf(other.1)
-                }
-            )*
-            #[inline(always)]
-            fn select(predicate: Truth<S, T>, holds: Self, fails: Self) -> Self {
-                Estimated(holds.0, Register::select(predicate, holds.1, fails.1))
-            }
-            #[inline(always)]
-            fn times_plus(self, factor: Self, addend: Self) -> Self {
-                let value = T::fused(self.0, self.1.value(), factor.1.value(), addend.1.value());
-                Estimated(self.0, Register::new(self.0, value))
-            }
-            #[inline(always)]
-            fn times_from(self, factor: Self, addend: Self) -> Self {
-                let value = T::fused_from(self.0, self.1.value(), factor.1.value(), addend.1.value());
-                Estimated(self.0, Register::new(self.0, value))
-            }
-            #[inline(always)]
-            fn inverse_three_halves(self, one: Self) -> Self {
-                let Some((root, terms)) = T::inverse_root(self.0, self.1.value()) else {
-                    return one / (self * self.sqrt());
-                };
-                let root = Estimated(self.0, Register::new(self.0, root));
-                let square = root * root;
-                if RAW {
-                    return square * root;
-                }
-                let error = self.times_from(square, one);
-                let registers = Estimating::<S, T, RAW>::new(self.0);
-                let term = |k: usize| registers.splat(T::from_f64(terms[k]));
-                let correction = match terms.len() {
-                    1 => term(0),
-                    2 => error.times_plus(term(1), term(0)),
-                    _ => error.times_plus(error.times_plus(term(2), term(1)), term(0)),
-                };
-                square * root * error.times_plus(correction, one)
-            }
-        }
+/// An operation of registers that estimate is that of the registers inside.
+macro_rules! of_register {
+    (() V merge $op:ident $f:ident ($predicate:ident $a:ident $b:ident) $result:tt) => {
+        Estimated($a.0, Register::$f($predicate, $a.1, $b.1))
+    };
+    (() V $group:ident $op:ident $f:ident ($a:ident $($b:ident)*) $result:tt) => {
+        Estimated($a.0, $a.1.$f($($b.1)*))
+    };
+    (() P $group:ident $op:ident $f:ident ($a:ident $b:ident) $result:tt) => {
+        $a.1.$f($b.1)
     };
 }
-for_each_op!(define_estimated);
+for_each_op!(each implement_operator ([S: Simd, T: Estimates, const RAW: bool] Estimated<S, T, RAW>, of_register ()));
+
+impl<S: Simd, T: Estimates, const RAW: bool> Vector for Estimated<S, T, RAW> {
+    type Predicate = Truth<S, T>;
+    for_each_op!(each implement_vector (of_register ()));
+
+    #[inline(always)]
+    fn times_plus(self, factor: Self, addend: Self) -> Self {
+        let value = T::fused(self.0, self.1.value(), factor.1.value(), addend.1.value());
+        Estimated(self.0, Register::new(self.0, value))
+    }
+    #[inline(always)]
+    fn times_from(self, factor: Self, addend: Self) -> Self {
+        let value = T::fused_from(self.0, self.1.value(), factor.1.value(), addend.1.value());
+        Estimated(self.0, Register::new(self.0, value))
+    }
+    #[inline(always)]
+    fn inverse_three_halves(self, one: Self) -> Self {
+        let Some((root, terms)) = T::inverse_root(self.0, self.1.value()) else {
+            return one / (self * self.sqrt());
+        };
+        let root = Estimated(self.0, Register::new(self.0, root));
+        let square = root * root;
+        if RAW {
+            return square * root;
+        }
+        let error = self.times_from(square, one);
+        let registers = Estimating::<S, T, RAW>::new(self.0);
+        let term = |k: usize| registers.splat(T::from_f64(terms[k]));
+        let correction = match terms.len() {
+            1 => term(0),
+            2 => error.times_plus(term(1), term(0)),
+            _ => error.times_plus(error.times_plus(term(2), term(1)), term(0)),
+        };
+        square * root * error.times_plus(correction, one)
+    }
+}

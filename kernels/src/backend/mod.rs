@@ -7,6 +7,7 @@ mod pulp;
 mod registers;
 mod scalar;
 pub mod tape;
+mod values;
 mod wide;
 
 pub(crate) use dispatch::dispatch_estimating;

@@ -1,6 +1,7 @@
 //! Registers of the processor at hand, chosen at run time: AVX-512, AVX2, NEON, or scalar, by the crate `pulp`.
 
 use super::registers::{IndexLanes, Registers};
+use super::values::{implement_operator, implement_predicate, implement_vector};
 use crate::isa::list::for_each_op;
 use crate::isa::{Element, Predicate, Vector};
 use pulp::Simd;
@@ -8,116 +9,66 @@ use pulp::Simd;
 use std::any::TypeId;
 use std::marker::PhantomData;
 
-macro_rules! define_pulp_element {
-    (operator { $(($ov:ident, $om:literal, $oc:ident, $od:literal, $trait:ident $of:ident)),* $(,)? }
-     binary { $(($bv:ident, $bm:literal, $bc:ident, $bd:literal, $bf:ident)),* $(,)? }
-     unary { $(($uv:ident, $um:literal, $uc:ident, $ud:literal, $uf:ident)),* $(,)? }
-     compare { $(($cv:ident, $cm:literal, $cc:ident, $cd:literal, $cf:ident)),* $(,)? }
-     connective { $(($av:ident, $am:literal, $ac:ident, $ad:literal, $af:ident)),* $(,)? }
-     negation { $(($nv:ident, $nm:literal, $nc:ident, $nd:literal, $nf:ident)),* $(,)? }
-     machine $machine:tt) => {
-        /// A precision that `pulp` has registers for. Its operations are named per type, hence this table.
-        pub trait PulpElement: Element {
-            /// A register of `S`.
-            type Register<S: Simd>: Copy;
-            /// A register of truth values of `S`.
-            type Truth<S: Simd>: Copy;
-            /// An index vector, of as many entries as the widest registers have lanes: with more, what is loaded would be
-            /// laid out on the stack and read back in wider pieces, which waits.
-            type Index: IndexLanes;
-
-            #[doc(hidden)]
-            fn splat<S: Simd>(simd: S, value: Self) -> Self::Register<S>;
-            $(
-                #[doc(hidden)]
-                fn $of<S: Simd>(simd: S, a: Self::Register<S>, b: Self::Register<S>) -> Self::Register<S>;
-            )*
-            $(
-                #[doc(hidden)]
-                fn $bf<S: Simd>(simd: S, a: Self::Register<S>, b: Self::Register<S>) -> Self::Register<S>;
-            )*
-            $(
-                #[doc(hidden)]
-                fn $uf<S: Simd>(simd: S, a: Self::Register<S>) -> Self::Register<S>;
-            )*
-            $(
-                #[doc(hidden)]
-                fn $cf<S: Simd>(simd: S, a: Self::Register<S>, b: Self::Register<S>) -> Self::Truth<S>;
-            )*
-            $(
-                #[doc(hidden)]
-                fn $af<S: Simd>(simd: S, a: Self::Truth<S>, b: Self::Truth<S>) -> Self::Truth<S>;
-            )*
-            $(
-                #[doc(hidden)]
-                fn $nf<S: Simd>(simd: S, a: Self::Truth<S>) -> Self::Truth<S>;
-            )*
-            #[doc(hidden)]
-            fn select<S: Simd>(
-                simd: S,
-                truth: Self::Truth<S>,
-                holds: Self::Register<S>,
-                fails: Self::Register<S>,
-            ) -> Self::Register<S>;
-            #[doc(hidden)]
-            fn none<S: Simd>(simd: S, a: Self::Truth<S>) -> bool;
-            #[doc(hidden)]
-            fn bits<S: Simd>(simd: S, a: Self::Truth<S>) -> u64;
-        }
-
-        $(
-            impl<S: Simd, T: PulpElement> std::ops::$trait for Register<S, T> {
-                type Output = Self;
-                #[inline(always)]
-                fn $of(self, other: Self) -> Self {
-                    Register(self.0, <T as PulpElement>::$of(self.0, self.1, other.1))
-                }
-            }
-        )*
-
-        impl<S: Simd, T: PulpElement> Predicate for Truth<S, T> {
-            $(
-                #[inline(always)]
-                fn $af(self, other: Self) -> Self {
-                    Truth(self.0, <T as PulpElement>::$af(self.0, self.1, other.1))
-                }
-            )*
-            $(
-                #[inline(always)]
-                fn $nf(self) -> Self {
-                    Truth(self.0, <T as PulpElement>::$nf(self.0, self.1))
-                }
-            )*
-        }
-
-        impl<S: Simd, T: PulpElement> Vector for Register<S, T> {
-            type Predicate = Truth<S, T>;
-            $(
-                #[inline(always)]
-                fn $uf(self) -> Self {
-                    Register(self.0, <T as PulpElement>::$uf(self.0, self.1))
-                }
-            )*
-            $(
-                #[inline(always)]
-                fn $bf(self, other: Self) -> Self {
-                    Register(self.0, <T as PulpElement>::$bf(self.0, self.1, other.1))
-                }
-            )*
-            $(
-                #[inline(always)]
-                fn $cf(self, other: Self) -> Truth<S, T> {
-                    Truth(self.0, <T as PulpElement>::$cf(self.0, self.1, other.1))
-                }
-            )*
-            #[inline(always)]
-            fn select(predicate: Truth<S, T>, holds: Self, fails: Self) -> Self {
-                Register(holds.0, <T as PulpElement>::select(holds.0, predicate.1, holds.1, fails.1))
-            }
-        }
+/// The operations of an element.
+macro_rules! declare {
+    (() machine $($row:tt)*) => {};
+    (() operator $op:ident $doc:literal $trait:ident::$f:ident $($row:tt)*) => {
+        declare!(() binary $op $doc $f $($row)*);
+    };
+    (() $group:ident $op:ident $doc:literal $f:ident($($x:ident: $kind:ident),+) -> $result:ident $meaning:tt) => {
+        #[doc(hidden)]
+        fn $f<S: Simd>(simd: S, $($x: Self::$kind<S>),+) -> Self::$result<S>;
     };
 }
-for_each_op!(define_pulp_element);
+
+/// A precision that `pulp` has registers for. Its operations are named per type, hence this table.
+pub trait PulpElement: Element {
+    /// A register of `S`.
+    type V<S: Simd>: Copy;
+    /// A register of truth values of `S`.
+    type P<S: Simd>: Copy;
+    /// An index vector, of as many entries as the widest registers have lanes: with more, what is loaded would be
+    /// laid out on the stack and read back in wider pieces, which waits.
+    type Index: IndexLanes;
+
+    #[doc(hidden)]
+    fn splat<S: Simd>(simd: S, value: Self) -> Self::V<S>;
+    for_each_op!(each declare ());
+    #[doc(hidden)]
+    fn none<S: Simd>(simd: S, a: Self::P<S>) -> bool;
+    #[doc(hidden)]
+    fn bits<S: Simd>(simd: S, a: Self::P<S>) -> u64;
+}
+
+/// An operation of registers is the one of their elements.
+macro_rules! of_element {
+    (() V $group:ident $op:ident $f:ident ($a:ident $($b:ident)*) $result:tt) => {
+        Register($a.0, <T as PulpElement>::$f($a.0, $a.1 $(, $b.1)*))
+    };
+    (() P $group:ident $op:ident $f:ident ($a:ident $($b:ident)*) $result:tt) => {
+        Truth($a.0, <T as PulpElement>::$f($a.0, $a.1 $(, $b.1)*))
+    };
+}
+for_each_op!(each implement_operator ([S: Simd, T: PulpElement] Register<S, T>, of_element ()));
+
+impl<S: Simd, T: PulpElement> Vector for Register<S, T> {
+    type Predicate = Truth<S, T>;
+    for_each_op!(each implement_vector (of_element ()));
+}
+
+impl<S: Simd, T: PulpElement> Predicate for Truth<S, T> {
+    for_each_op!(each implement_predicate (of_element ()));
+}
+
+/// Functions of an element: `V` is its register of numbers, `P` that of truth values.
+macro_rules! instructions {
+    ($simd:ident $v:ident $p:ident: $($f:ident($($operand:ident: $kind:ident),+) -> $result:ident $body:block)*) => {$(
+        #[inline(always)]
+        fn $f<S: Simd>($simd: S, $($operand: instructions!($kind $v $p)),+) -> instructions!($result $v $p) $body
+    )*};
+    (V $v:ident $p:ident) => { S::$v };
+    (P $v:ident $p:ident) => { S::$p };
+}
 
 macro_rules! pulp_element {
     ($ty:ident, $register:ident, $truth:ident, $lanes:ident, $widest:literal,
@@ -125,53 +76,41 @@ macro_rules! pulp_element {
      $less_than:ident $less_equal:ident $equal:ident $select:ident $and:ident $not:ident $first_true:ident
      $movemask:ident $bits:ident) => {
         impl PulpElement for $ty {
-            type Register<S: Simd> = S::$register;
-            type Truth<S: Simd> = S::$truth;
+            type V<S: Simd> = S::$register;
+            type P<S: Simd> = S::$truth;
             type Index = [u32; $widest];
+            instructions! { simd $register $truth:
+                add(a: V, b: V) -> V { simd.$add(a, b) }
+                sub(a: V, b: V) -> V { simd.$sub(a, b) }
+                mul(a: V, b: V) -> V { simd.$mul(a, b) }
+                div(a: V, b: V) -> V { simd.$div(a, b) }
+                min(a: V, b: V) -> V {
+                    // Only x86's instruction is the machine's "a < b ? a : b" to the bit.
+                    if cfg!(target_arch = "x86_64") && !S::IS_SCALAR {
+                        simd.$min(a, b)
+                    } else {
+                        simd.$select(simd.$less_than(a, b), a, b)
+                    }
+                }
+                max(a: V, b: V) -> V {
+                    if cfg!(target_arch = "x86_64") && !S::IS_SCALAR {
+                        simd.$max(a, b)
+                    } else {
+                        simd.$select(simd.$less_than(b, a), a, b)
+                    }
+                }
+                sqrt(a: V) -> V { simd.$sqrt(a) }
+                abs(a: V) -> V { simd.$abs(a) }
+                less_than(a: V, b: V) -> P { simd.$less_than(a, b) }
+                less_equal(a: V, b: V) -> P { simd.$less_equal(a, b) }
+                equal(a: V, b: V) -> P { simd.$equal(a, b) }
+                select(truth: P, a: V, b: V) -> V { simd.$select(truth, a, b) }
+                and(a: P, b: P) -> P { simd.$and(a, b) }
+                not(a: P) -> P { simd.$not(a) }
+            }
             #[inline(always)]
             fn splat<S: Simd>(simd: S, value: Self) -> S::$register {
                 simd.$splat(value)
-            }
-            #[inline(always)]
-            fn add<S: Simd>(simd: S, a: S::$register, b: S::$register) -> S::$register {
-                simd.$add(a, b)
-            }
-            #[inline(always)]
-            fn sub<S: Simd>(simd: S, a: S::$register, b: S::$register) -> S::$register {
-                simd.$sub(a, b)
-            }
-            #[inline(always)]
-            fn mul<S: Simd>(simd: S, a: S::$register, b: S::$register) -> S::$register {
-                simd.$mul(a, b)
-            }
-            #[inline(always)]
-            fn div<S: Simd>(simd: S, a: S::$register, b: S::$register) -> S::$register {
-                simd.$div(a, b)
-            }
-            #[inline(always)]
-            fn min<S: Simd>(simd: S, a: S::$register, b: S::$register) -> S::$register {
-                // Only x86's instruction is the machine's "a < b ? a : b" to the bit.
-                if cfg!(target_arch = "x86_64") && !S::IS_SCALAR {
-                    simd.$min(a, b)
-                } else {
-                    simd.$select(simd.$less_than(a, b), a, b)
-                }
-            }
-            #[inline(always)]
-            fn max<S: Simd>(simd: S, a: S::$register, b: S::$register) -> S::$register {
-                if cfg!(target_arch = "x86_64") && !S::IS_SCALAR {
-                    simd.$max(a, b)
-                } else {
-                    simd.$select(simd.$less_than(b, a), a, b)
-                }
-            }
-            #[inline(always)]
-            fn sqrt<S: Simd>(simd: S, a: S::$register) -> S::$register {
-                simd.$sqrt(a)
-            }
-            #[inline(always)]
-            fn abs<S: Simd>(simd: S, a: S::$register) -> S::$register {
-                simd.$abs(a)
             }
             #[inline(always)]
             fn truncate<S: Simd>(_: S, mut a: S::$register) -> S::$register {
@@ -181,35 +120,6 @@ macro_rules! pulp_element {
                     *lane = lane.trunc();
                 }
                 a
-            }
-            #[inline(always)]
-            fn less_than<S: Simd>(simd: S, a: S::$register, b: S::$register) -> S::$truth {
-                simd.$less_than(a, b)
-            }
-            #[inline(always)]
-            fn less_equal<S: Simd>(simd: S, a: S::$register, b: S::$register) -> S::$truth {
-                simd.$less_equal(a, b)
-            }
-            #[inline(always)]
-            fn equal<S: Simd>(simd: S, a: S::$register, b: S::$register) -> S::$truth {
-                simd.$equal(a, b)
-            }
-            #[inline(always)]
-            fn select<S: Simd>(
-                simd: S,
-                truth: S::$truth,
-                holds: S::$register,
-                fails: S::$register,
-            ) -> S::$register {
-                simd.$select(truth, holds, fails)
-            }
-            #[inline(always)]
-            fn and<S: Simd>(simd: S, a: S::$truth, b: S::$truth) -> S::$truth {
-                simd.$and(a, b)
-            }
-            #[inline(always)]
-            fn not<S: Simd>(simd: S, a: S::$truth) -> S::$truth {
-                simd.$not(a)
             }
             #[inline(always)]
             fn none<S: Simd>(simd: S, a: S::$truth) -> bool {
@@ -284,31 +194,31 @@ impl<S: Simd, T: PulpElement> Pulp<S, T> {
 
 /// One register.
 #[derive(Clone, Copy)]
-pub struct Register<S: Simd, T: PulpElement>(S, T::Register<S>);
+pub struct Register<S: Simd, T: PulpElement>(S, T::V<S>);
 
 impl<S: Simd, T: PulpElement> Register<S, T> {
     /// Of what `pulp` has it made.
     #[inline(always)]
-    pub(super) fn new(simd: S, value: T::Register<S>) -> Self {
+    pub(super) fn new(simd: S, value: T::V<S>) -> Self {
         Register(simd, value)
     }
 
     /// What `pulp` has it made of.
     #[inline(always)]
-    pub(super) fn value(self) -> T::Register<S> {
+    pub(super) fn value(self) -> T::V<S> {
         self.1
     }
 }
 
 /// One register of truth values.
 #[derive(Clone, Copy)]
-pub struct Truth<S: Simd, T: PulpElement>(S, T::Truth<S>);
+pub struct Truth<S: Simd, T: PulpElement>(S, T::P<S>);
 
 impl<S: Simd, T: PulpElement> Registers for Pulp<S, T> {
     type Lane = T;
     type V = Register<S, T>;
     type Index = T::Index;
-    const LANES: usize = size_of::<T::Register<S>>() / T::BYTES;
+    const LANES: usize = size_of::<T::V<S>>() / T::BYTES;
 
     #[inline(always)]
     fn splat(self, value: T) -> Self::V {
@@ -318,13 +228,13 @@ impl<S: Simd, T: PulpElement> Registers for Pulp<S, T> {
     unsafe fn load(self, from: *const T) -> Self::V {
         // SAFETY: the caller promises LANES initialised numbers; a register is those and no more, of any bits, and is
         // read without its own alignment.
-        Register(self.simd, unsafe { from.cast::<T::Register<S>>().read_unaligned() })
+        Register(self.simd, unsafe { from.cast::<T::V<S>>().read_unaligned() })
     }
     #[inline(always)]
     unsafe fn store(self, to: *mut T, value: Self::V) {
         // SAFETY: the caller promises room for LANES numbers; a register is those and no more, and is written without its
         // own alignment.
-        unsafe { to.cast::<T::Register<S>>().write_unaligned(value.1) };
+        unsafe { to.cast::<T::V<S>>().write_unaligned(value.1) };
     }
     #[inline(always)]
     fn none(self, predicate: Truth<S, T>) -> bool {

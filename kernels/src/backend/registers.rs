@@ -1,5 +1,6 @@
 //! The machine made of registers: one body of every instruction over any register file.
 
+use crate::isa::list::for_each_op;
 use crate::isa::{Column, Counter, Element, Machine, Memory, Slot, Storage, Vector, same};
 use std::hint::select_unpredictable;
 use std::mem::MaybeUninit;
@@ -89,6 +90,8 @@ impl<T: Copy> Spill<T> {
     }
 }
 
+/// The bodies of the machine's instructions, each under the name of its method of [`Machine`].
+///
 /// Instructions that touch memory take its column by value: looked up lane by lane or register by register, behind stores to
 /// the stack, a pass took a tenth longer or twice as long at some depths of the stack and not at others. A load waits for an
 /// earlier store at the same last 12 bits of its address.
@@ -105,9 +108,13 @@ impl<'m, R: Registers> Strip<'m, R> {
         unsafe { column.at(self.base.wrapping_add_signed(shift)) }
     }
 
-    /// As [`Machine::load_shifted`].
     #[inline(always)]
-    pub(crate) fn load_from<T: Element>(self, column: Column<T>, shift: isize) -> R::V {
+    pub(crate) fn load<T: Element>(self, column: Column<T>) -> R::V {
+        self.load_shifted(column, 0)
+    }
+
+    #[inline(always)]
+    pub(crate) fn load_shifted<T: Element>(self, column: Column<T>, shift: isize) -> R::V {
         let from = self.place(column, shift);
         if same::<T, R::Lane>() {
             // SAFETY: T is Lane, and the admitted footprint covers the LANES elements from base + shift on.
@@ -118,9 +125,8 @@ impl<'m, R: Registers> Strip<'m, R> {
         }
     }
 
-    /// As [`Machine::store`].
     #[inline(always)]
-    pub(crate) fn store_to<T: Element>(self, column: Column<T>, value: R::V) {
+    pub(crate) fn store<T: Element>(self, column: Column<T>, value: R::V) {
         let to = self.place(column, 0);
         if same::<T, R::Lane>() {
             // SAFETY: T is Lane, and the admitted footprint has the LANES elements from base on as written ones.
@@ -131,9 +137,8 @@ impl<'m, R: Registers> Strip<'m, R> {
         }
     }
 
-    /// As [`Machine::gather`].
     #[inline(always)]
-    pub(crate) fn gather_from<T: Element>(self, column: Column<T>, index: R::Index, elsewhere: R::V) -> R::V {
+    pub(crate) fn gather<T: Element>(self, column: Column<T>, index: R::Index, elsewhere: R::V) -> R::V {
         let mut spill = Spill::new();
         // SAFETY: the spill has room for MAX_LANES >= LANES elements.
         unsafe { self.registers.store(spill.start(), elsewhere) };
@@ -154,9 +159,8 @@ impl<'m, R: Registers> Strip<'m, R> {
         unsafe { self.registers.load(spill.start()) }
     }
 
-    /// As [`Machine::load_index`].
     #[inline(always)]
-    pub(crate) fn load_index_from(self, column: Column<u32>) -> R::Index {
+    pub(crate) fn load_index(self, column: Column<u32>) -> R::Index {
         let from = self.place(column, 0);
         let mut index = R::Index::none();
         for lane in 0..R::LANES {
@@ -166,9 +170,8 @@ impl<'m, R: Registers> Strip<'m, R> {
         index
     }
 
-    /// As [`Machine::store_index`].
     #[inline(always)]
-    pub(crate) fn store_index_to(self, column: Column<u32>, value: R::Index) {
+    pub(crate) fn store_index(self, column: Column<u32>, value: R::Index) {
         let to = self.place(column, 0);
         for lane in 0..R::LANES {
             // SAFETY: lane < LANES, and the admitted footprint has the LANES elements from base on as written ones.
@@ -176,9 +179,8 @@ impl<'m, R: Registers> Strip<'m, R> {
         }
     }
 
-    /// As [`Machine::gather_index`].
     #[inline(always)]
-    pub(crate) fn gather_index_from(self, column: Column<u32>, index: R::Index) -> R::Index {
+    pub(crate) fn gather_index(self, column: Column<u32>, index: R::Index) -> R::Index {
         let mut gathered = R::Index::none();
         for lane in 0..R::LANES {
             let number = index.lane(lane);
@@ -189,9 +191,8 @@ impl<'m, R: Registers> Strip<'m, R> {
         gathered
     }
 
-    /// As [`Machine::scatter_index`].
     #[inline(always)]
-    pub(crate) fn scatter_index_to(self, column: Column<u32>, index: R::Index, value: R::Index) {
+    pub(crate) fn scatter_index(self, column: Column<u32>, index: R::Index, value: R::Index) {
         for lane in 0..R::LANES {
             let number = index.lane(lane);
             if number != 0 {
@@ -200,15 +201,45 @@ impl<'m, R: Registers> Strip<'m, R> {
         }
     }
 
-    /// As [`Machine::scatter`].
     #[inline(always)]
-    pub(crate) fn scatter_to<T: Element>(self, column: Column<T>, index: R::Index, value: R::V) {
+    pub(crate) fn scatter<T: Element>(self, column: Column<T>, index: R::Index, value: R::V) {
         self.disperse(value, |lane, number| {
             let place = index.lane(lane);
             if place != 0 {
                 column.write(place as usize - 1, T::from_f64(number.to_f64()));
             }
         });
+    }
+
+    #[inline(always)]
+    pub(crate) fn numbers(self) -> R::V {
+        self.assemble(|lane| R::Lane::from_f64((self.base + lane + 1) as f64))
+    }
+
+    #[inline(always)]
+    pub(crate) fn to_index(self, numbers: R::V) -> R::Index {
+        let mut index = R::Index::none();
+        // A cast saturates: negative numbers and NaN become 0, none.
+        self.disperse(numbers, |lane, number| index.set_lane(lane, number.to_f64() as u32));
+        index
+    }
+
+    #[inline(always)]
+    pub(crate) fn index_numbers(self, index: R::Index) -> R::V {
+        self.assemble(|lane| R::Lane::from_f64(index.lane(lane).into()))
+    }
+
+    #[inline(always)]
+    pub(crate) fn count(self, counter: Counter, predicate: <R::V as Vector>::Predicate) {
+        if self.none(predicate) {
+            return; // What is counted is rare.
+        }
+        let zero = self.uniform(0.0);
+        let mut holding = 0;
+        self.disperse(R::V::select(predicate, self.uniform(1.0), zero), |_, number| {
+            holding += u64::from(number.to_f64() != 0.0);
+        });
+        self.memory.count(counter, holding);
     }
 
     /// Builds a vector lane by lane.
@@ -236,6 +267,23 @@ impl<'m, R: Registers> Strip<'m, R> {
     }
 }
 
+/// The method of an instruction: arrays are looked up, and the instruction has its body.
+macro_rules! implement {
+    ($strip:ident $about:tt [$($signature:tt)*]
+     $file:ident $form:ident $f:ident $(($($x:ident $($shift:ident)?: $kind:ident),+))?) => {
+        #[inline(always)]
+        $($signature)* {
+            Strip::$f($strip $($(, looked_up!($strip $kind $x) $(, $shift)?)+)?)
+        }
+    };
+}
+#[rustfmt::skip]
+macro_rules! looked_up {
+    ($strip:ident Numbers $slot:ident) => { $strip.memory.column($slot) };
+    ($strip:ident Entries $slot:ident) => { $strip.memory.column($slot) };
+    ($strip:ident $kind:ident $value:ident) => { $value };
+}
+
 impl<R: Registers> Machine for Strip<'_, R> {
     type Lane = R::Lane;
     type V = R::V;
@@ -247,81 +295,7 @@ impl<R: Registers> Machine for Strip<'_, R> {
         self.registers.splat(R::Lane::from_f64(value))
     }
 
-    #[inline(always)]
-    fn load<T: Element>(self, slot: Slot<T>) -> R::V {
-        self.load_shifted(slot, 0)
-    }
-
-    #[inline(always)]
-    fn load_shifted<T: Element>(self, slot: Slot<T>, shift: isize) -> R::V {
-        self.load_from(self.memory.column(slot), shift)
-    }
-
-    #[inline(always)]
-    fn store<T: Element>(self, slot: Slot<T>, value: R::V) {
-        self.store_to(self.memory.column(slot), value);
-    }
-
-    #[inline(always)]
-    fn numbers(self) -> R::V {
-        self.assemble(|lane| R::Lane::from_f64((self.base + lane + 1) as f64))
-    }
-
-    #[inline(always)]
-    fn to_index(self, numbers: R::V) -> R::Index {
-        let mut index = R::Index::none();
-        // A cast saturates: negative numbers and NaN become 0, none.
-        self.disperse(numbers, |lane, number| index.set_lane(lane, number.to_f64() as u32));
-        index
-    }
-
-    #[inline(always)]
-    fn index_numbers(self, index: R::Index) -> R::V {
-        self.assemble(|lane| R::Lane::from_f64(index.lane(lane).into()))
-    }
-
-    #[inline(always)]
-    fn load_index(self, slot: Slot<u32>) -> R::Index {
-        self.load_index_from(self.memory.column(slot))
-    }
-
-    #[inline(always)]
-    fn store_index(self, slot: Slot<u32>, value: R::Index) {
-        self.store_index_to(self.memory.column(slot), value);
-    }
-
-    #[inline(always)]
-    fn gather<T: Element>(self, slot: Slot<T>, index: R::Index, elsewhere: R::V) -> R::V {
-        self.gather_from(self.memory.column(slot), index, elsewhere)
-    }
-
-    #[inline(always)]
-    fn gather_index(self, slot: Slot<u32>, index: R::Index) -> R::Index {
-        self.gather_index_from(self.memory.column(slot), index)
-    }
-
-    #[inline(always)]
-    fn scatter_index(self, slot: Slot<u32>, index: R::Index, value: R::Index) {
-        self.scatter_index_to(self.memory.column(slot), index, value);
-    }
-
-    #[inline(always)]
-    fn scatter<T: Element>(self, slot: Slot<T>, index: R::Index, value: R::V) {
-        self.scatter_to(self.memory.column(slot), index, value);
-    }
-
-    #[inline(always)]
-    fn count(self, counter: Counter, predicate: Self::P) {
-        if self.none(predicate) {
-            return; // What is counted is rare.
-        }
-        let zero = self.uniform(0.0);
-        let mut holding = 0;
-        self.disperse(R::V::select(predicate, self.uniform(1.0), zero), |_, number| {
-            holding += u64::from(number.to_f64() != 0.0);
-        });
-        self.memory.count(counter, holding);
-    }
+    for_each_op!(each_instruction implement self);
 
     #[inline(always)]
     fn none(self, predicate: Self::P) -> bool {

@@ -1,8 +1,31 @@
 //! The scalar oracle: plain numbers, one lane, no SIMD. Every other backend must give its bits.
 
 use super::registers::Registers;
-use crate::isa::Element;
+use super::values::{implement_predicate, implement_vector};
+use crate::isa::list::for_each_op;
+use crate::isa::{Element, Predicate, Vector};
 use std::marker::PhantomData;
+
+/// The meaning for one lane, as the table has it.
+macro_rules! as_listed {
+    (() $kind:ident $group:ident $op:ident $method:ident $operands:tt $result:tt) => {
+        $result
+    };
+}
+
+impl Vector for f64 {
+    type Predicate = bool;
+    for_each_op!(each implement_vector (as_listed ()));
+}
+
+impl Vector for f32 {
+    type Predicate = bool;
+    for_each_op!(each implement_vector (as_listed ()));
+}
+
+impl Predicate for bool {
+    for_each_op!(each implement_predicate (as_listed ()));
+}
 
 /// Registers of one lane.
 #[derive(Clone, Copy, Default)]

@@ -1,6 +1,7 @@
 //! Registers of a width fixed at compile time, by the crate `wide`: what a build without run-time dispatch gets.
 
 use super::registers::{IndexLanes, Registers};
+use super::values::{implement_operator, implement_predicate, implement_vector};
 use crate::isa::list::for_each_op;
 use crate::isa::{Element, Predicate, Vector};
 use ::wide::{f32x8, f64x4};
@@ -36,81 +37,49 @@ pub struct Truth<W>(W);
 #[derive(Clone, Copy, Default)]
 pub struct Wide<T>(PhantomData<T>);
 
-macro_rules! operators {
-    (operator { $(($variant:ident, $mnemonic:literal, $class:ident, $doc:literal, $trait:ident $method:ident)),* $(,)? }
-     $($others:tt)*) => {$(
-        impl<W: std::ops::$trait<Output = W>> std::ops::$trait for Register<W> {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                Register(std::ops::$trait::$method(self.0, other.0))
-            }
-        }
-    )*};
+/// The instructions of the crate, those of numbers on what a register is made of.
+#[rustfmt::skip]
+macro_rules! of_wide {
+    (($ty:ident $wide:ident) V $group:ident $op:ident $f:ident ($($a:ident)*) $result:tt) => {
+        Register(of_wide!($op $ty $wide $(($a.0))*))
+    };
+    (($ty:ident $wide:ident) P $group:ident $op:ident $f:ident ($($a:ident)*) $result:tt) => {
+        Truth(of_wide!($op $ty $wide $(($a.0))*))
+    };
+    (Add $ty:ident $wide:ident $a:tt $b:tt) => { $a + $b };
+    (Subtract $ty:ident $wide:ident $a:tt $b:tt) => { $a - $b };
+    (Multiply $ty:ident $wide:ident $a:tt $b:tt) => { $a * $b };
+    (Divide $ty:ident $wide:ident $a:tt $b:tt) => { $a / $b };
+    // Only x86's instruction is the machine's "a < b ? a : b" to the bit.
+    (Minimum $ty:ident $wide:ident $a:tt $b:tt) => {
+        if cfg!(target_arch = "x86_64") { $a.fast_min($b) } else { $a.simd_lt($b).select($a, $b) }
+    };
+    (Maximum $ty:ident $wide:ident $a:tt $b:tt) => {
+        if cfg!(target_arch = "x86_64") { $a.fast_max($b) } else { $b.simd_lt($a).select($a, $b) }
+    };
+    (SquareRoot $ty:ident $wide:ident $a:tt) => { $a.sqrt() };
+    (Absolute $ty:ident $wide:ident $a:tt) => { $a.abs() };
+    // The crate's own truncation loses the sign of zero on some targets.
+    (Truncate $ty:ident $wide:ident $a:tt) => { $wide::from($a.to_array().map($ty::trunc)) };
+    (LessThan $ty:ident $wide:ident $a:tt $b:tt) => { $a.simd_lt($b) };
+    (LessEqual $ty:ident $wide:ident $a:tt $b:tt) => { $a.simd_le($b) };
+    (Equal $ty:ident $wide:ident $a:tt $b:tt) => { $a.simd_eq($b) };
+    (And $ty:ident $wide:ident $a:tt $b:tt) => { $a & $b };
+    (Not $ty:ident $wide:ident $a:tt) => { !$a };
+    (Select $ty:ident $wide:ident $p:tt $a:tt $b:tt) => { $p.select($a, $b) };
 }
-for_each_op!(operators);
 
 macro_rules! wide_element {
     ($ty:ident, $wide:ident, $lanes:literal) => {
-        impl Predicate for Truth<$wide> {
-            #[inline(always)]
-            fn and(self, other: Self) -> Self {
-                Truth(self.0 & other.0)
-            }
-            #[inline(always)]
-            fn not(self) -> Self {
-                Truth(!self.0)
-            }
-        }
+        for_each_op!(each implement_operator ([] Register<$wide>, of_wide ($ty $wide)));
 
         impl Vector for Register<$wide> {
             type Predicate = Truth<$wide>;
-            #[inline(always)]
-            fn sqrt(self) -> Self {
-                Register(self.0.sqrt())
-            }
-            #[inline(always)]
-            fn abs(self) -> Self {
-                Register(self.0.abs())
-            }
-            #[inline(always)]
-            fn truncate(self) -> Self {
-                // The crate's own truncation loses the sign of zero on some targets.
-                Register($wide::from(self.0.to_array().map($ty::trunc)))
-            }
-            #[inline(always)]
-            fn min(self, other: Self) -> Self {
-                // Only x86's instruction is the machine's "a < b ? a : b" to the bit.
-                if cfg!(target_arch = "x86_64") {
-                    Register(self.0.fast_min(other.0))
-                } else {
-                    Self::select(self.less_than(other), self, other)
-                }
-            }
-            #[inline(always)]
-            fn max(self, other: Self) -> Self {
-                if cfg!(target_arch = "x86_64") {
-                    Register(self.0.fast_max(other.0))
-                } else {
-                    Self::select(other.less_than(self), self, other)
-                }
-            }
-            #[inline(always)]
-            fn less_than(self, other: Self) -> Self::Predicate {
-                Truth(self.0.simd_lt(other.0))
-            }
-            #[inline(always)]
-            fn less_equal(self, other: Self) -> Self::Predicate {
-                Truth(self.0.simd_le(other.0))
-            }
-            #[inline(always)]
-            fn equal(self, other: Self) -> Self::Predicate {
-                Truth(self.0.simd_eq(other.0))
-            }
-            #[inline(always)]
-            fn select(predicate: Self::Predicate, holds: Self, fails: Self) -> Self {
-                Register(predicate.0.select(holds.0, fails.0))
-            }
+            for_each_op!(each implement_vector (of_wide ($ty $wide)));
+        }
+
+        impl Predicate for Truth<$wide> {
+            for_each_op!(each implement_predicate (of_wide ($ty $wide)));
         }
 
         impl WideRegister<$ty> for Register<$wide> {

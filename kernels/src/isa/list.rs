@@ -1,59 +1,149 @@
-//! The list of operations. From it come names, classes and counts, the methods of `Vector` and their
-//! forwarding to registers, what a tape records, and what the interpreter executes.
+//! The table of operations. From it come names, classes and counts, the methods of `Vector`, `Predicate` and `Machine` with
+//! what registers and recorders make of them, the instructions of a tape with their operands, and the passes that execute them.
 //!
-//! An operation is a row of a group, which says what it takes and gives. A row that is not served everywhere does not
-//! compile: a computing operation is a method that every vector must have, and any other names the actions of a tape that
-//! count as it, which listing, allocation and interpreter match one by one.
+//! An operation is a row: its name, its symbol in listings, its class, and its meaning in words. The row of a computing
+//! operation ends with its method, the kinds of its operands and its result, and the result for one lane, which is the oracle.
+//! The row of an operation that needs the machine ends with the instructions that count as it, each with its method of
+//! `Machine` and its operands. A row without a body in some register file does not compile.
 
-/// Calls the macro `$apply` with `$args` and every operation of the machine, a row each:
-/// `(variant, mnemonic, class, what it does, ...)`.
+/// Calls the macro `$apply` with the operations of the machine: `for_each_op!(each $apply $args)` once for each row, with
+/// `$args`, the group, the operation, its meaning, and what its row ends with; `for_each_op!(each_instruction $apply self)`
+/// once for each instruction of the group `machine`, with `self`, the comment and the signature of its method, and its form
+/// on a tape with its operands; `for_each_op!($apply $args)` with the whole table, for enumerations and matches.
 ///
 /// The groups: `operator` and `binary` (a number from two, by a trait of `std::ops` or a method of `Vector`), `unary` (from
-/// one), `compare` (a predicate from two numbers), `connective` and `negation` (from two predicates, from one), and
-/// `machine`, whose rows end with the actions of a tape that count as the operation.
+/// one), `compare` (a predicate from two numbers), `merge` (a number from a predicate and two numbers), `connective` and
+/// `negation` (a predicate from two, from one), and `machine`.
+///
+/// An instruction of the group `machine` is an action of the tape (its enumeration and variant), then the method. Operands
+/// are in the order of both and of the listing: first the array or the counter. The kind of an operand is one of `V`
+/// (numbers), `P` (a predicate), `I` (an index vector), `At` (an index vector: which elements of the array before it),
+/// `Numbers` and `Entries` (an array of numbers or of index vectors, at the own place or at a shift), and `Counter`. With
+/// each kind goes its type, by default that of a method of `Machine`.
 macro_rules! for_each_op {
-    ($apply:ident $($args:tt)*) => {
+    (@rows $apply:ident $args:tt
+     $($group:ident { $(($op:ident, $symbol:literal, $class:ident, $doc:literal, $($rest:tt)*)),* $(,)? })*) => {
+        $($($apply! { $args $group $op $doc $($rest)* })*)*
+    };
+    (@instructions $apply:ident $this:ident operator $o:tt binary $b:tt unary $u:tt compare $c:tt connective $a:tt
+     negation $n:tt merge $m:tt
+     machine { $(($v:ident, $s:literal, $class:ident, $d:literal, [$(
+         $(#[$about:meta])* $file:ident $form:ident $f:ident $([$($generic:tt)*])?
+         $(($($x:ident $(@ $shift:ident)?: {$kind:ident $type:ty}),+))? $(-> {$result:ident $value:ty})?;
+     )*])),* $(,)? }) => {
+        $($($apply! {
+            $this
+            [$(#[$about])*]
+            [fn $f $(<$($generic)*>)? ($this $($(, $x: $type $(, $shift: isize)?)+)?) $(-> $value)?]
+            $file $form $f $(($($x $($shift)?: $kind),+))?
+        })*)*
+    };
+    (each $apply:ident $args:tt) => {
+        for_each_op! { for_each_op @rows $apply $args }
+    };
+    (each_instruction $apply:ident $this:ident) => {
+        for_each_op! { for_each_op @instructions $apply $this }
+    };
+    (@($V:tt $P:tt $I:tt $At:tt $Numbers:tt $Entries:tt $Counter:tt) $apply:ident $($args:tt)*) => {
         $apply! {
             $($args)*
             operator {
-                (Add, "add", Add, "sum of two vectors", Add add),
-                (Subtract, "sub", Add, "difference of two vectors", Sub sub),
-                (Multiply, "mul", Multiply, "product of two vectors", Mul mul),
-                (Divide, "div", Divide, "quotient of two vectors", Div div),
+                (Add, "add", Add, "sum of two vectors", Add::add(a: V, b: V) -> V { a + b }),
+                (Subtract, "sub", Add, "difference of two vectors", Sub::sub(a: V, b: V) -> V { a - b }),
+                (Multiply, "mul", Multiply, "product of two vectors", Mul::mul(a: V, b: V) -> V { a * b }),
+                (Divide, "div", Divide, "quotient of two vectors", Div::div(a: V, b: V) -> V { a / b }),
             }
             binary {
-                (Minimum, "min", Compare, "the smaller of two; the second where they do not compare", min),
-                (Maximum, "max", Compare, "the larger of two; the second where they do not compare", max),
+                (Minimum, "min", Compare, "the smaller of two; the second where they do not compare",
+                    min(a: V, b: V) -> V { if a < b { a } else { b } }),
+                (Maximum, "max", Compare, "the larger of two; the second where they do not compare",
+                    max(a: V, b: V) -> V { if a > b { a } else { b } }),
             }
             unary {
-                (SquareRoot, "sqrt", SquareRoot, "square root", sqrt),
-                (Absolute, "abs", Logical, "magnitude: the sign bit cleared", abs),
-                (Truncate, "int", Convert, "integer part, rounded towards zero", truncate),
+                (SquareRoot, "sqrt", SquareRoot, "square root", sqrt(a: V) -> V { a.sqrt() }),
+                (Absolute, "abs", Logical, "magnitude: the sign bit cleared", abs(a: V) -> V { a.abs() }),
+                (Truncate, "int", Convert, "integer part, rounded towards zero", truncate(a: V) -> V { a.trunc() }),
             }
             compare {
-                (LessThan, "lt", Compare, "predicate a < b", less_than),
-                (LessEqual, "le", Compare, "predicate a <= b", less_equal),
-                (Equal, "eq", Compare, "predicate a = b", equal),
+                (LessThan, "lt", Compare, "predicate a < b", less_than(a: V, b: V) -> P { a < b }),
+                (LessEqual, "le", Compare, "predicate a <= b", less_equal(a: V, b: V) -> P { a <= b }),
+                (Equal, "eq", Compare, "predicate a = b", equal(a: V, b: V) -> P { a == b }),
             }
             connective {
-                (And, "and", Logical, "conjunction of two predicates", and),
+                (And, "and", Logical, "conjunction of two predicates", and(a: P, b: P) -> P { a & b }),
             }
             negation {
-                (Not, "not", Logical, "negation of a predicate", not),
+                (Not, "not", Logical, "negation of a predicate", not(a: P) -> P { !a }),
+            }
+            merge {
+                (Select, "sel", Logical, "merge: a where the predicate holds, else b",
+                    select(predicate: P, holds: V, fails: V) -> V { if predicate { holds } else { fails } }),
             }
             machine {
-                (Select, "sel", Logical, "merge: a where the predicate holds, else b", [Number Select]),
-                (Count, "cnt", Reduce, "population count of a predicate, added to a counter", [Effect Count]),
-                (Numbers, "iota", Convert, "the element numbers 1, 2, 3, ...", [Number Numbers]),
-                (ToIndex, "toidx", Convert, "numbers to an index vector", [Indices ToIndex]),
-                (FromIndex, "fromidx", Convert, "an index vector to numbers", [Number FromIndex]),
+                (Count, "cnt", Reduce, "population count of a predicate, added to a counter", [
+                    /// Adds how many lanes hold to `counter`.
+                    Effect Count count(counter: $Counter, predicate: $P);
+                ]),
+                (Numbers, "iota", Convert, "the element numbers 1, 2, 3, ...", [
+                    /// The element numbers, from 1.
+                    Number Numbers numbers -> $V;
+                ]),
+                (ToIndex, "toidx", Convert, "numbers to an index vector", [
+                    /// Numbers to an index vector; what is no element number (negative, not a number) becomes 0, none.
+                    Indices ToIndex to_index(numbers: $V) -> $I;
+                ]),
+                (FromIndex, "fromidx", Convert, "an index vector to numbers", [
+                    /// An index vector to numbers.
+                    Number FromIndex index_numbers(index: $I) -> $V;
+                ]),
                 (Widen, "cvt", Convert, "change of precision at a load, gather or store", []),
-                (Load, "ld", Load, "load at the own place, unit stride", [Number Load, Indices Load]),
-                (LoadShifted, "lds", Shift, "load at a shift: the shifted copy of a lattice vector", [Number LoadShifted]),
-                (Store, "st", Store, "store at the own place", [Effect Store, Effect StoreIndex]),
-                (Gather, "gth", Gather, "load through an index vector", [Number Gather, Indices Gather]),
-                (Scatter, "sct", Scatter, "store through an index vector", [Effect Scatter, Effect ScatterIndex]),
+                (Load, "ld", Load, "load at the own place, unit stride", [
+                    /// Loads at the own place.
+                    Number Load load[T: Element](slot: $Numbers) -> $V;
+                    /// Loads an index vector at the own place.
+                    Indices Load load_index(slot: $Entries) -> $I;
+                ]),
+                (LoadShifted, "lds", Shift, "load at a shift: the shifted copy of a lattice vector", [
+                    /// Loads `shift` elements from the own place.
+                    Number LoadShifted load_shifted[T: Element](slot @ shift: $Numbers) -> $V;
+                ]),
+                (Store, "st", Store, "store at the own place", [
+                    /// Stores at the own place.
+                    Effect Store store[T: Element](slot: $Numbers, value: $V);
+                    /// Stores an index vector at the own place.
+                    Effect StoreIndex store_index(slot: $Entries, value: $I);
+                ]),
+                (Gather, "gth", Gather, "load through an index vector", [
+                    /// Loads the elements that `index` numbers; `elsewhere` where it numbers none.
+                    ///
+                    /// # Panics
+                    /// If a number lies beyond the array.
+                    Number Gather gather[T: Element](slot: $Numbers, index: $At, elsewhere: $V) -> $V;
+                    /// Loads the entries of an index vector that `index` numbers; none where it numbers none.
+                    ///
+                    /// # Panics
+                    /// If a number lies beyond the array.
+                    Indices Gather gather_index(slot: $Entries, index: $At) -> $I;
+                ]),
+                (Scatter, "sct", Scatter, "store through an index vector", [
+                    /// Stores `value` at the elements that `index` numbers, in element order: of two at one place the later stays.
+                    ///
+                    /// # Panics
+                    /// If a number lies beyond the array.
+                    Effect Scatter scatter[T: Element](slot: $Numbers, index: $At, value: $V);
+                    /// The same for an index vector.
+                    ///
+                    /// # Panics
+                    /// If a number lies beyond the array.
+                    Effect ScatterIndex scatter_index(slot: $Entries, index: $At, value: $I);
+                ]),
             }
+        }
+    };
+    ($($call:tt)*) => {
+        for_each_op! {
+            @({V Self::V} {P Self::P} {I Self::I} {At Self::I} {Numbers Slot<T>} {Entries Slot<u32>} {Counter Counter})
+            $($call)*
         }
     };
 }

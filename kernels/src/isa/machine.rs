@@ -1,9 +1,17 @@
 //! What a kernel text may ask of the machine.
 
 use super::element::{Element, Storage};
+use super::list::for_each_op;
 use super::memory::Counter;
 use super::slot::Slot;
 use super::vector::Vector;
+
+/// The method of an instruction.
+macro_rules! declare {
+    ($this:ident [$($about:tt)*] [$($signature:tt)*] $($form:tt)*) => {
+        $($about)* $($signature)*;
+    };
+}
 
 /// The machine that a text runs on: registers, memory at the own place and at shifts, index vectors.
 ///
@@ -22,47 +30,8 @@ pub trait Machine: Copy {
     /// The same number in every lane: a scalar operand, which costs no operation.
     fn uniform(self, value: f64) -> Self::V;
 
-    /// Loads at the own place.
-    fn load<T: Element>(self, slot: Slot<T>) -> Self::V;
-    /// Loads `shift` elements from the own place.
-    fn load_shifted<T: Element>(self, slot: Slot<T>, shift: isize) -> Self::V;
-    /// Stores at the own place.
-    fn store<T: Element>(self, slot: Slot<T>, value: Self::V);
+    for_each_op!(each_instruction declare self);
 
-    /// The element numbers, from 1.
-    fn numbers(self) -> Self::V;
-    /// Numbers to an index vector; what is no element number (negative, not a number) becomes 0, none.
-    fn to_index(self, numbers: Self::V) -> Self::I;
-    /// An index vector to numbers.
-    fn index_numbers(self, index: Self::I) -> Self::V;
-    /// Loads an index vector at the own place.
-    fn load_index(self, slot: Slot<u32>) -> Self::I;
-    /// Stores an index vector at the own place.
-    fn store_index(self, slot: Slot<u32>, value: Self::I);
-
-    /// Loads the elements that `index` numbers; `elsewhere` where it numbers none.
-    ///
-    /// # Panics
-    /// If a number lies beyond the array.
-    fn gather<T: Element>(self, slot: Slot<T>, index: Self::I, elsewhere: Self::V) -> Self::V;
-    /// Loads the entries of an index vector that `index` numbers; none where it numbers none.
-    ///
-    /// # Panics
-    /// If a number lies beyond the array.
-    fn gather_index(self, slot: Slot<u32>, index: Self::I) -> Self::I;
-    /// Stores `value` at the elements that `index` numbers, in element order: of two at one place the later stays.
-    ///
-    /// # Panics
-    /// If a number lies beyond the array.
-    fn scatter_index(self, slot: Slot<u32>, index: Self::I, value: Self::I);
-    /// The same for numbers.
-    ///
-    /// # Panics
-    /// If a number lies beyond the array.
-    fn scatter<T: Element>(self, slot: Slot<T>, index: Self::I, value: Self::V);
-
-    /// Adds how many lanes hold to `counter`.
-    fn count(self, counter: Counter, predicate: Self::P);
     /// Whether no lane holds, where the machine takes early ways out; a machine that does not says `false`.
     fn none(self, predicate: Self::P) -> bool;
 

@@ -65,13 +65,13 @@ macro_rules! define_group {
 }
 
 macro_rules! define_groups {
-    (operator { $(($ov:ident, $om:literal, $oc:ident, $od:literal, $trait:ident $of:ident)),* $(,)? }
-     binary { $(($bv:ident, $bm:literal, $bc:ident, $bd:literal, $bf:ident)),* $(,)? }
-     unary { $(($uv:ident, $um:literal, $uc:ident, $ud:literal, $uf:ident)),* $(,)? }
-     compare { $(($cv:ident, $cm:literal, $cc:ident, $cd:literal, $cf:ident)),* $(,)? }
-     connective { $(($av:ident, $am:literal, $ac:ident, $ad:literal, $af:ident)),* $(,)? }
-     negation { $(($nv:ident, $nm:literal, $nc:ident, $nd:literal, $nf:ident)),* $(,)? }
-     machine $machine:tt) => {
+    (operator { $(($ov:ident, $os:literal, $oc:ident, $od:literal, $trait:ident::$of:ident $($or:tt)*)),* $(,)? }
+     binary { $(($bv:ident, $bs:literal, $bc:ident, $bd:literal, $bf:ident $($br:tt)*)),* $(,)? }
+     unary { $(($uv:ident, $us:literal, $uc:ident, $ud:literal, $uf:ident $($ur:tt)*)),* $(,)? }
+     compare { $(($cv:ident, $cs:literal, $cc:ident, $cd:literal, $cf:ident $($cr:tt)*)),* $(,)? }
+     connective { $(($av:ident, $as:literal, $ac:ident, $ad:literal, $af:ident $($ar:tt)*)),* $(,)? }
+     negation { $(($nv:ident, $ns:literal, $nc:ident, $nd:literal, $nf:ident $($nr:tt)*)),* $(,)? }
+     $($others:tt)*) => {
         define_group! {
             /// A number from two.
             BinaryOp, Vector (a: V, b: V) (a, b) -> V { $(($ov, $od, std::ops::$trait::$of),)* $(($bv, $bd, Vector::$bf)),* }

@@ -60,28 +60,102 @@ pub struct Reference {
     pub shift: isize,
 }
 
-/// What gives numbers.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Number<L> {
-    /// One number.
-    Unary(UnaryOp, Operand<L>),
-    /// Two numbers.
-    Binary(BinaryOp, Operand<L>, Operand<L>),
-    /// A merge under a predicate.
-    Select(RegisterName, Operand<L>, Operand<L>),
-    /// Element numbers.
-    Numbers,
-    /// Indices.
-    FromIndex(RegisterName),
-    /// Memory at the own place.
-    Load(Reference),
-    /// Memory at a shift.
-    LoadShifted(Reference),
-    /// Memory through an index vector; the operand where it numbers none.
-    Gather(Reference, RegisterName, Operand<L>),
+/// An operand of an action, by its kind in the table of operations.
+pub(super) enum Part<'a, L> {
+    V(&'a mut Operand<L>),
+    P(&'a mut RegisterName),
+    I(&'a mut RegisterName),
+    At(&'a mut RegisterName),
+    Numbers(&'a mut Reference),
+    Entries(&'a mut Reference),
+    Counter(&'a mut u8),
 }
 
-/// What gives a predicate.
+/// Defines actions and what follows from their operands. Instructions of the group `machine` go one by one into the enumeration that
+/// the table names.
+macro_rules! define_actions {
+    (operator $o:tt binary $b:tt unary $u:tt compare $c:tt connective $a:tt negation $n:tt merge $m:tt
+     machine { $(($v:ident, $s:literal, $class:ident, $d:literal, [$(
+         $(#[$about:meta])* $file:ident $form:ident $f:ident $([$($generic:tt)*])?
+         $(($($x:ident $(@ $shift:ident)?: {$kind:ident $type:ty}),+))? $(-> {$result:ident $value:ty})?;
+     )*])),* $(,)? }) => {
+        define_actions! { {} {} {} $($($file { #[doc = $d] $form $(($($type),+))?, })*)* }
+
+        impl<L> Action<L> {
+            /// The operation it is, which says its name and class.
+            pub fn op(&self) -> Op {
+                match self {
+                    Action::Number(_, Number::Binary(op, ..)) => op.op(),
+                    Action::Number(_, Number::Unary(op, _)) => op.op(),
+                    Action::Number(_, Number::Select(..)) => Op::Select,
+                    Action::Truth(_, Truth::Compare(op, ..)) => op.op(),
+                    Action::Truth(_, Truth::Connective(op, ..)) => op.op(),
+                    Action::Truth(_, Truth::Negation(op, _)) => op.op(),
+                    $($(Action::$file(.., $file::$form { .. }) => Op::$v,)*)*
+                }
+            }
+
+            /// Calls `visit` with every operand, in the order of the table.
+            pub(super) fn parts(&mut self, mut visit: impl FnMut(Part<'_, L>)) {
+                match self {
+                    Action::Number(_, Number::Unary(_, a)) => visit(Part::V(a)),
+                    Action::Number(_, Number::Binary(_, a, b)) | Action::Truth(_, Truth::Compare(_, a, b)) => {
+                        [a, b].into_iter().for_each(|operand| visit(Part::V(operand)));
+                    }
+                    Action::Number(_, Number::Select(predicate, a, b)) => {
+                        visit(Part::P(predicate));
+                        [a, b].into_iter().for_each(|operand| visit(Part::V(operand)));
+                    }
+                    Action::Truth(_, Truth::Connective(_, a, b)) => {
+                        [a, b].into_iter().for_each(|predicate| visit(Part::P(predicate)));
+                    }
+                    Action::Truth(_, Truth::Negation(_, a)) => visit(Part::P(a)),
+                    $($(Action::$file(.., $file::$form $(($($x),+))?) => { $($(visit(Part::$kind($x));)+)? })*)*
+                }
+            }
+        }
+    };
+    ({$($number:tt)*} {$($indices:tt)*} {$($effect:tt)*}) => {
+        /// Instructions that write a register of numbers.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub enum Number<L> {
+            /// One number.
+            Unary(UnaryOp, Operand<L>),
+            /// Two numbers.
+            Binary(BinaryOp, Operand<L>, Operand<L>),
+            /// A merge under a predicate.
+            Select(RegisterName, Operand<L>, Operand<L>),
+            $($number)*
+        }
+
+        /// Instructions that write an index vector.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub enum Indices<L> {
+            $($indices)*
+        }
+
+        /// Instructions that write memory or a counter.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub enum Effect<L> {
+            $($effect)*
+        }
+    };
+    ({$($number:tt)*} $indices:tt $effect:tt Number {$($form:tt)*} $($others:tt)*) => {
+        define_actions! { {$($number)* $($form)*} $indices $effect $($others)* }
+    };
+    ($number:tt {$($indices:tt)*} $effect:tt Indices {$($form:tt)*} $($others:tt)*) => {
+        define_actions! { $number {$($indices)* $($form)*} $effect $($others)* }
+    };
+    ($number:tt $indices:tt {$($effect:tt)*} Effect {$($form:tt)*} $($others:tt)*) => {
+        define_actions! { $number $indices {$($effect)* $($form)*} $($others)* }
+    };
+}
+for_each_op! {
+    @({V Operand<L>} {P RegisterName} {I RegisterName} {At RegisterName} {Numbers Reference} {Entries Reference} {Counter u8})
+    define_actions
+}
+
+/// Instructions that write a predicate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Truth<L> {
     /// Two numbers.
@@ -90,32 +164,6 @@ pub enum Truth<L> {
     Connective(ConnectiveOp, RegisterName, RegisterName),
     /// One predicate.
     Negation(NegationOp, RegisterName),
-}
-
-/// What gives an index vector.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Indices<L> {
-    /// Numbers.
-    ToIndex(Operand<L>),
-    /// Memory.
-    Load(Reference),
-    /// Memory through an index vector.
-    Gather(Reference, RegisterName),
-}
-
-/// What writes no register.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Effect<L> {
-    /// Population count into a counter.
-    Count(RegisterName, u8),
-    /// Numbers to memory.
-    Store(Reference, Operand<L>),
-    /// Indices to memory.
-    StoreIndex(Reference, RegisterName),
-    /// Numbers to memory through an index vector: address, value.
-    Scatter(Reference, RegisterName, Operand<L>),
-    /// Indices to memory through an index vector: address, value.
-    ScatterIndex(Reference, RegisterName, RegisterName),
 }
 
 /// What an instruction does to which operands, and the register that it writes: the type says of which file.
@@ -130,27 +178,6 @@ pub enum Action<L> {
     /// Writes memory or a counter.
     Effect(Effect<L>),
 }
-
-macro_rules! define_action_op {
-    (operator $o:tt binary $b:tt unary $u:tt compare $c:tt connective $a:tt negation $n:tt machine {
-        $(($variant:ident, $mnemonic:literal, $class:ident, $doc:literal, [$($file:ident $action:ident),*])),* $(,)?
-    }) => {
-        impl<L> Action<L> {
-            /// The operation it is, which says its name and class.
-            pub fn op(&self) -> Op {
-                match self {
-                    Action::Number(_, Number::Binary(op, ..)) => op.op(),
-                    Action::Number(_, Number::Unary(op, _)) => op.op(),
-                    Action::Truth(_, Truth::Compare(op, ..)) => op.op(),
-                    Action::Truth(_, Truth::Connective(op, ..)) => op.op(),
-                    Action::Truth(_, Truth::Negation(op, _)) => op.op(),
-                    $($(Action::$file(.., $file::$action { .. }) => Op::$variant,)*)*
-                }
-            }
-        }
-    };
-}
-for_each_op!(define_action_op);
 
 /// One recorded vector instruction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -177,91 +204,60 @@ impl<L: Element> Instruction<L> {
 
     /// The memory it touches.
     pub fn reference(&self) -> Option<Reference> {
-        match self.action {
-            Action::Number(_, Number::Load(r) | Number::LoadShifted(r) | Number::Gather(r, ..))
-            | Action::Indices(_, Indices::Load(r) | Indices::Gather(r, _))
-            | Action::Effect(
-                Effect::Store(r, _)
-                | Effect::StoreIndex(r, _)
-                | Effect::Scatter(r, ..)
-                | Effect::ScatterIndex(r, ..),
-            ) => Some(r),
-            _ => None,
-        }
+        let (mut found, mut action) = (None, self.action);
+        action.parts(|part| {
+            if let Part::Numbers(reference) | Part::Entries(reference) = part {
+                found = Some(*reference);
+            }
+        });
+        found
+    }
+
+    /// True where it finds memory through an index vector.
+    pub(super) fn is_indexed(&self) -> bool {
+        let (mut found, mut action) = (false, self.action);
+        action.parts(|part| found |= matches!(part, Part::At(_)));
+        found
     }
 
     /// The operations it counts as: its own, and a conversion where memory holds another precision than the lanes.
     pub fn operations(&self) -> impl Iterator<Item = Op> {
-        let numbers = match self.action {
-            Action::Number(..) | Action::Effect(Effect::Store(..) | Effect::Scatter(..)) => self.reference(),
-            _ => None,
-        };
-        let converts = numbers.is_some_and(|reference| reference.element != L::NAME);
+        let (mut converts, mut action) = (false, self.action);
+        action.parts(|part| {
+            if let Part::Numbers(reference) = part {
+                converts = reference.element != L::NAME;
+            }
+        });
         std::iter::once(self.op()).chain(converts.then_some(Op::Widen))
     }
 
     /// Whether it writes to the array that `reference` names.
     pub fn overwrites(&self, reference: Reference) -> bool {
-        match self.action {
-            Action::Effect(Effect::Count(..)) => false,
-            Action::Effect(_) => self
-                .reference()
-                .is_some_and(|to| (to.array, to.element) == (reference.array, reference.element)),
-            _ => false,
-        }
+        let is = |to: Reference| (to.array, to.element) == (reference.array, reference.element);
+        matches!(self.action, Action::Effect(_)) && self.reference().is_some_and(is)
     }
 
     /// Calls `visit` with every operand of numbers.
     pub fn operands(&mut self, mut visit: impl FnMut(&mut Operand<L>)) {
-        match &mut self.action {
-            Action::Number(_, Number::Unary(_, a) | Number::Gather(_, _, a))
-            | Action::Indices(_, Indices::ToIndex(a))
-            | Action::Effect(Effect::Store(_, a) | Effect::Scatter(_, _, a)) => visit(a),
-            Action::Number(_, Number::Binary(_, a, b) | Number::Select(_, a, b))
-            | Action::Truth(_, Truth::Compare(_, a, b)) => {
-                visit(a);
-                visit(b);
+        self.action.parts(|part| {
+            if let Part::V(operand) = part {
+                visit(operand);
             }
-            Action::Number(
-                _,
-                Number::Numbers | Number::FromIndex(_) | Number::Load(_) | Number::LoadShifted(_),
-            )
-            | Action::Truth(_, Truth::Connective(..) | Truth::Negation(..))
-            | Action::Indices(_, Indices::Load(_) | Indices::Gather(..))
-            | Action::Effect(Effect::Count(..) | Effect::StoreIndex(..) | Effect::ScatterIndex(..)) => {}
-        }
+        });
     }
 
-    /// Calls `visit` with every register it reads.
+    /// Calls `visit` with every register it reads, those of numbers first.
     pub fn reads(&mut self, mut visit: impl FnMut(&mut RegisterName)) {
         self.operands(|operand| {
             if let Operand::Register(name) = operand {
                 visit(name);
             }
         });
-        match &mut self.action {
-            Action::Number(_, Number::Select(a, ..) | Number::Gather(_, a, _) | Number::FromIndex(a))
-            | Action::Truth(_, Truth::Negation(_, a))
-            | Action::Indices(_, Indices::Gather(_, a))
-            | Action::Effect(Effect::Count(a, _) | Effect::StoreIndex(_, a) | Effect::Scatter(_, a, _)) => {
-                visit(a);
+        self.action.parts(|part| {
+            if let Part::P(name) | Part::I(name) | Part::At(name) = part {
+                visit(name);
             }
-            Action::Truth(_, Truth::Connective(_, a, b)) | Action::Effect(Effect::ScatterIndex(_, a, b)) => {
-                visit(a);
-                visit(b);
-            }
-            Action::Number(
-                _,
-                Number::Unary(..)
-                | Number::Binary(..)
-                | Number::Numbers
-                | Number::Load(_)
-                | Number::LoadShifted(_),
-            )
-            | Action::Truth(_, Truth::Compare(..))
-            | Action::Indices(_, Indices::ToIndex(_) | Indices::Load(_))
-            | Action::Effect(Effect::Store(..)) => {}
-        }
+        });
     }
 
     /// Calls `visit` with every register it reads, then, where it writes one, with that.

@@ -9,7 +9,7 @@ use crate::backend::dispatch::{InstructionSet, Task, dispatch};
 use crate::backend::{IndexLanes, Precision, Registers, Scalar, Strip};
 use crate::isa::list::for_each_op;
 use crate::isa::op::{BinaryOp, CompareOp, UnaryOp};
-use crate::isa::{Array, Column, Counter, Element, Machine, Memory, ProgramError, Slot, Storage, Vector};
+use crate::isa::{Array, Column, Counter, Memory, ProgramError, Slot, Storage, Vector};
 use std::cell::Cell;
 use std::ops::Range;
 
@@ -105,39 +105,119 @@ impl<R: Registers> Default for RegisterFiles<R> {
 
 type TruthOf<R> = <<R as Registers>::V as Vector>::Predicate;
 
-/// A pass for every number from two. Which operation it is, is asked outside the loop.
-macro_rules! binary_passes {
-    ($op:ident $span:ident $to:ident $a:ident $b:ident
-     operator { $(($ov:ident, $om:literal, $oc:ident, $od:literal, $trait:ident $of:ident)),* $(,)? }
-     binary { $(($bv:ident, $bm:literal, $bc:ident, $bd:literal, $bf:ident)),* $(,)? }
-     $($others:tt)*) => {
-        match $op {
-            $(BinaryOp::$ov => $span.binary($to, $a, $b, |_, a, b| std::ops::$trait::$of(a, b)),)*
-            $(BinaryOp::$bv => $span.binary($to, $a, $b, |_, a, b| a.$bf(b)),)*
+/// The pass of every instruction. Which operation it is, and which elements an array has, is asked outside the loop.
+macro_rules! passes {
+    ($files:ident $span:ident $action:expr;
+     operator { $(($ov:ident, $os:literal, $oc:ident, $od:literal, $trait:ident::$of:ident $($or:tt)*)),* $(,)? }
+     binary { $(($bv:ident, $bs:literal, $bc:ident, $bd:literal, $bf:ident $($br:tt)*)),* $(,)? }
+     unary { $(($uv:ident, $us:literal, $uc:ident, $ud:literal, $uf:ident $($ur:tt)*)),* $(,)? }
+     compare { $(($cv:ident, $cs:literal, $cc:ident, $cd:literal, $cf:ident $($cr:tt)*)),* $(,)? }
+     connective $c:tt negation $n:tt merge $m:tt
+     machine { $(($v:ident, $s:literal, $class:ident, $d:literal, [$(
+         $(#[$about:meta])* $file:ident $form:ident $f:ident $([$($generic:tt)*])?
+         $(($($x:ident $(@ $shift:ident)?: {$kind:ident $type:ty}),+))? $(-> {$result:ident $value:ty})?;
+     )*])),* $(,)? }) => {
+        match $action {
+            Action::Number(to, Number::Binary(op, a, b)) => {
+                let (to, a, b) = ($files.numbers.register(to.number), $files.source(a, $span), $files.source(b, $span));
+                match op {
+                    $(BinaryOp::$ov => $span.binary(to, a, b, |_, a, b| std::ops::$trait::$of(a, b)),)*
+                    $(BinaryOp::$bv => $span.binary(to, a, b, |_, a, b| a.$bf(b)),)*
+                }
+            }
+            Action::Number(to, Number::Unary(op, a)) => {
+                let (to, a) = ($files.numbers.register(to.number), $files.source(a, $span));
+                match op {
+                    $(UnaryOp::$uv => $span.unary(to, a, |_, a| a.$uf()),)*
+                }
+            }
+            Action::Number(to, Number::Select(predicate, a, b)) => {
+                let (to, a, b) = ($files.numbers.register(to.number), $files.source(a, $span), $files.source(b, $span));
+                let predicate = $files.predicate(*predicate);
+                $span.binary(to, a, b, |i, a, b| R::V::select(predicate[i].get(), a, b));
+            }
+            Action::Truth(to, Truth::Compare(op, a, b)) => {
+                let (to, a, b) = ($files.predicate(*to), $files.source(a, $span), $files.source(b, $span));
+                match op {
+                    $(CompareOp::$cv => $span.binary(to, a, b, |_, a, b| a.$cf(b)),)*
+                }
+            }
+            Action::Truth(to, Truth::Connective(op, a, b)) => {
+                let (to, a, b) = ($files.predicate(*to), $files.predicate(*a), $files.predicate(*b));
+                $span.each(to, |i| op.apply(a[i].get(), b[i].get()));
+            }
+            Action::Truth(to, Truth::Negation(op, a)) => {
+                let (to, a) = ($files.predicate(*to), $files.predicate(*a));
+                $span.each(to, |i| op.apply(a[i].get()));
+            }
+            $($(
+                Action::$file($(first!(to $result),)? $file::$form $(($($x),+))?) => {
+                    $(let to = result!($files to $result);)?
+                    pass!($files $span $(to $result)? = $f $($($x $($shift)?: $kind),+)?)
+                }
+            )*)*
         }
     };
 }
 
-/// A pass for every number from one.
-macro_rules! unary_passes {
-    ($op:ident $span:ident $to:ident $a:ident operator $o:tt binary $b:tt
-     unary { $(($uv:ident, $um:literal, $uc:ident, $ud:literal, $uf:ident)),* $(,)? }
-     $($others:tt)*) => {
-        match $op {
-            $(UnaryOp::$uv => $span.unary($to, $a, |_, a| a.$uf()),)*
-        }
+/// The first of two names.
+macro_rules! first {
+    ($first:ident $second:ident) => {
+        $first
     };
 }
 
-/// A pass for every comparison.
-macro_rules! compare_passes {
-    ($op:ident $span:ident $to:ident $a:ident $b:ident operator $o:tt binary $bin:tt unary $u:tt
-     compare { $(($cv:ident, $cm:literal, $cc:ident, $cd:literal, $cf:ident)),* $(,)? }
-     $($others:tt)*) => {
-        match $op {
-            $(CompareOp::$cv => $span.binary($to, $a, $b, |_, a, b| a.$cf(b)),)*
+/// The register that a pass writes.
+#[rustfmt::skip]
+macro_rules! result {
+    ($files:ident $to:ident V) => { $files.numbers.register($to.number) };
+    ($files:ident $to:ident I) => { $files.index(*$to) };
+}
+
+/// A pass of an instruction's body over the places of a strip. Its operands are looked up before the loop; the body is called
+/// for in one place, or the compiler would call it for every hardware register.
+macro_rules! pass {
+    ($files:ident $span:ident $($to:ident $result:ident)? = $f:ident $x:ident $($shift:ident)?: Numbers $($others:tt)*) => {
+        match $x.element {
+            f64::NAME => pass!($files $span $($to $result)? = $f $x $($shift)?: f64 $($others)*),
+            _ => pass!($files $span $($to $result)? = $f $x $($shift)?: f32 $($others)*),
         }
     };
+    ($files:ident $span:ident $to:ident $result:ident = $f:ident $($x:ident $($shift:ident)?: $kind:ident),*) => {{
+        $($(let $shift = $x.shift;)? let $x = operand!($files $span $x $kind);)*
+        $span.each($to, |i| $span.at(i).$f($(at!($span i $x $kind) $(, $shift)?),*));
+    }};
+    ($files:ident $span:ident = $f:ident $($x:ident: $kind:ident),*) => {{
+        $(let $x = operand!($files $span $x $kind);)*
+        for i in 0..$span.length {
+            $span.at(i).$f($(at!($span i $x $kind)),*);
+        }
+    }};
+}
+
+/// An operand before the loop, by its kind.
+#[rustfmt::skip]
+macro_rules! operand {
+    ($files:ident $span:ident $x:ident V) => { $files.source($x, $span) };
+    ($files:ident $span:ident $x:ident P) => { &$files.predicate(*$x)[..$span.length] };
+    ($files:ident $span:ident $x:ident I) => { &$files.index(*$x)[..$span.length] };
+    ($files:ident $span:ident $x:ident At) => { &$files.index(*$x)[..$span.length] };
+    ($files:ident $span:ident $x:ident Counter) => { Counter(*$x) };
+    ($files:ident $span:ident $x:ident Entries) => { $span.column::<u32>($x.array) };
+    ($files:ident $span:ident $x:ident $element:ident) => { $span.column::<$element>($x.array) };
+}
+
+/// An operand at a place, by its kind.
+#[rustfmt::skip]
+macro_rules! at {
+    ($span:ident $i:ident $x:ident V) => {
+        // SAFETY: the source is a register of the file or admitted memory, with all lanes of the span; i is below its length.
+        unsafe { $span.lanes($x, $i) }
+    };
+    ($span:ident $i:ident $x:ident P) => { $x[$i].get() };
+    ($span:ident $i:ident $x:ident I) => { $x[$i].get() };
+    ($span:ident $i:ident $x:ident At) => { $x[$i].get() };
+    ($span:ident $i:ident $x:ident $other:ident) => { $x };
 }
 
 /// What an instruction reads: consecutive lanes of a register or of memory, or the same number in every lane.
@@ -299,160 +379,6 @@ impl<R: Registers> RegisterFiles<R> {
     /// One instruction over one strip.
     #[inline(always)]
     fn step(&self, pass: &Instruction<R::Lane>, span: Span<'_, R>) {
-        match &pass.action {
-            Action::Number(to, number) => self.number(number, span, self.numbers.register(to.number)),
-            Action::Truth(to, truth) => self.truth(truth, span, self.predicates.register(to.number)),
-            Action::Indices(to, indices) => self.indices(indices, span, self.indices.register(to.number)),
-            Action::Effect(effect) => self.effect(effect, span),
-        }
-    }
-
-    /// What writes a register of numbers.
-    #[inline(always)]
-    fn number(&self, number: &Number<R::Lane>, span: Span<'_, R>, to: &[Cell<R::V>]) {
-        match number {
-            Number::Binary(op, a, b) => {
-                let (a, b) = (self.source(a, span), self.source(b, span));
-                for_each_op!(binary_passes op span to a b);
-            }
-            Number::Unary(op, a) => {
-                let a = self.source(a, span);
-                for_each_op!(unary_passes op span to a);
-            }
-            Number::Select(predicate, a, b) => {
-                let predicate = self.predicate(*predicate);
-                let (a, b) = (self.source(a, span), self.source(b, span));
-                span.binary(to, a, b, |i, a, b| R::V::select(predicate[i].get(), a, b));
-            }
-            Number::Load(from) | Number::LoadShifted(from) => match from.element {
-                f64::NAME => {
-                    let (column, shift) = (span.column::<f64>(from.array), from.shift);
-                    span.each(to, |i| span.at(i).load_from(column, shift));
-                }
-                _ => {
-                    let (column, shift) = (span.column::<f32>(from.array), from.shift);
-                    span.each(to, |i| span.at(i).load_from(column, shift));
-                }
-            },
-            Number::Gather(from, index, elsewhere) => match from.element {
-                f64::NAME => self.gather(span, to, span.column::<f64>(from.array), *index, elsewhere),
-                _ => self.gather(span, to, span.column::<f32>(from.array), *index, elsewhere),
-            },
-            Number::Numbers => span.each(to, |i| span.at(i).numbers()),
-            Number::FromIndex(index) => {
-                let index = self.index(*index);
-                span.each(to, |i| span.at(i).index_numbers(index[i].get()));
-            }
-        }
-    }
-
-    /// One place that calls for the body, or the compiler would call it for every hardware register.
-    #[inline(always)]
-    fn gather<T: Element>(
-        &self,
-        span: Span<'_, R>,
-        to: &[Cell<R::V>],
-        column: Column<T>,
-        index: RegisterName,
-        elsewhere: &Operand<R::Lane>,
-    ) {
-        let (index, elsewhere) = (self.index(index), self.source(elsewhere, span));
-        span.each(to, |i| {
-            // SAFETY: the source is a register of the file or admitted memory, with all lanes of the span; i is below its length.
-            span.at(i).gather_from(column, index[i].get(), unsafe { span.lanes(elsewhere, i) })
-        });
-    }
-
-    /// What writes a predicate.
-    #[inline(always)]
-    fn truth(&self, truth: &Truth<R::Lane>, span: Span<'_, R>, to: &[Cell<TruthOf<R>>]) {
-        match truth {
-            Truth::Compare(op, a, b) => {
-                let (a, b) = (self.source(a, span), self.source(b, span));
-                for_each_op!(compare_passes op span to a b);
-            }
-            Truth::Connective(op, a, b) => {
-                let (a, b) = (self.predicate(*a), self.predicate(*b));
-                span.each(to, |i| op.apply(a[i].get(), b[i].get()));
-            }
-            Truth::Negation(op, a) => {
-                let a = self.predicate(*a);
-                span.each(to, |i| op.apply(a[i].get()));
-            }
-        }
-    }
-
-    /// What writes an index vector.
-    #[inline(always)]
-    fn indices(&self, indices: &Indices<R::Lane>, span: Span<'_, R>, to: &[Cell<R::Index>]) {
-        match indices {
-            Indices::ToIndex(a) => span.unary(to, self.source(a, span), |i, a| span.at(i).to_index(a)),
-            Indices::Load(from) => {
-                let column = span.column(from.array);
-                span.each(to, |i| span.at(i).load_index_from(column));
-            }
-            Indices::Gather(from, index) => {
-                let (column, index) = (span.column(from.array), self.index(*index));
-                span.each(to, |i| span.at(i).gather_index_from(column, index[i].get()));
-            }
-        }
-    }
-
-    /// What writes memory or a counter.
-    #[inline(always)]
-    fn effect(&self, effect: &Effect<R::Lane>, span: Span<'_, R>) {
-        match effect {
-            Effect::Store(to, value) => match to.element {
-                f64::NAME => self.store(span, span.column::<f64>(to.array), value),
-                _ => self.store(span, span.column::<f32>(to.array), value),
-            },
-            Effect::StoreIndex(to, value) => {
-                let (column, value) = (span.column(to.array), self.index(*value));
-                for (i, value) in value[..span.length].iter().enumerate() {
-                    span.at(i).store_index_to(column, value.get());
-                }
-            }
-            Effect::Scatter(to, index, value) => match to.element {
-                f64::NAME => self.scatter(span, span.column::<f64>(to.array), *index, value),
-                _ => self.scatter(span, span.column::<f32>(to.array), *index, value),
-            },
-            Effect::ScatterIndex(to, index, value) => {
-                let (column, index, value) = (span.column(to.array), self.index(*index), self.index(*value));
-                for (i, (index, value)) in index[..span.length].iter().zip(value).enumerate() {
-                    span.at(i).scatter_index_to(column, index.get(), value.get());
-                }
-            }
-            Effect::Count(predicate, counter) => {
-                for (i, predicate) in self.predicate(*predicate)[..span.length].iter().enumerate() {
-                    span.at(i).count(Counter(*counter), predicate.get());
-                }
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn store<T: Element>(&self, span: Span<'_, R>, column: Column<T>, value: &Operand<R::Lane>) {
-        let value = self.source(value, span);
-        for i in 0..span.length {
-            // SAFETY: the source is a register of the file or admitted memory, with all lanes of the span; i is below its length.
-            let value = unsafe { span.lanes(value, i) };
-            span.at(i).store_to(column, value);
-        }
-    }
-
-    #[inline(always)]
-    fn scatter<T: Element>(
-        &self,
-        span: Span<'_, R>,
-        column: Column<T>,
-        index: RegisterName,
-        value: &Operand<R::Lane>,
-    ) {
-        let value = self.source(value, span);
-        for (i, index) in self.index(index)[..span.length].iter().enumerate() {
-            // SAFETY: the source is a register of the file or admitted memory, with all lanes of the span; i is below its length.
-            let value = unsafe { span.lanes(value, i) };
-            span.at(i).scatter_to(column, index.get(), value);
-        }
+        for_each_op!(passes self span &pass.action;)
     }
 }

@@ -1,8 +1,6 @@
 //! A program as an assembly listing.
 
-use super::instruction::{
-    Action, Effect, Indices, Instruction, Number, Operand, Reference, RegisterName, Truth,
-};
+use super::instruction::{Instruction, Operand, Part, Reference, RegisterName};
 use super::recorded::Tape;
 use crate::isa::Element;
 use serde::Serialize;
@@ -37,51 +35,21 @@ pub struct Line {
 }
 
 fn line<L: Element>(section: &'static str, instruction: &Instruction<L>) -> Line {
-    let to = instruction.to().map(|name| name.to_string());
-    let word = |operand: &dyn fmt::Display| operand.to_string();
-    let (destination, sources) = match &instruction.action {
-        Action::Number(_, number) => (
-            to,
-            match number {
-                Number::Unary(_, a) => vec![word(a)],
-                Number::Binary(_, a, b) => vec![word(a), word(b)],
-                Number::Select(predicate, a, b) => vec![word(predicate), word(a), word(b)],
-                Number::Numbers => vec![],
-                Number::FromIndex(a) => vec![word(a)],
-                Number::Load(from) | Number::LoadShifted(from) => vec![word(from)],
-                Number::Gather(from, index, elsewhere) => vec![format!("{from}({index})"), word(elsewhere)],
-            },
-        ),
-        Action::Truth(_, truth) => (
-            to,
-            match truth {
-                Truth::Compare(_, a, b) => vec![word(a), word(b)],
-                Truth::Connective(_, a, b) => vec![word(a), word(b)],
-                Truth::Negation(_, a) => vec![word(a)],
-            },
-        ),
-        Action::Indices(_, indices) => (
-            to,
-            match indices {
-                Indices::ToIndex(a) => vec![word(a)],
-                Indices::Load(from) => vec![word(from)],
-                Indices::Gather(from, index) => vec![format!("{from}({index})")],
-            },
-        ),
-        Action::Effect(effect) => match effect {
-            Effect::Count(predicate, counter) => (Some(format!("C{counter}")), vec![word(predicate)]),
-            Effect::Store(to, value) => (Some(word(to)), vec![word(value)]),
-            Effect::StoreIndex(to, value) => (Some(word(to)), vec![word(value)]),
-            Effect::Scatter(to, index, value) => (Some(format!("{to}({index})")), vec![word(value)]),
-            Effect::ScatterIndex(to, index, value) => (Some(format!("{to}({index})")), vec![word(value)]),
-        },
-    };
-    Line {
-        section,
-        operation: instruction.op().mnemonic(),
-        destination: destination.unwrap_or_default(),
-        sources,
-    }
+    let mut words = Vec::from_iter(instruction.to().map(|name| name.to_string()));
+    let mut action = instruction.action;
+    action.parts(|part| match part {
+        Part::V(operand) => words.push(operand.to_string()),
+        Part::P(name) | Part::I(name) => words.push(name.to_string()),
+        Part::Numbers(array) | Part::Entries(array) => words.push(array.to_string()),
+        Part::At(name) => {
+            let array = words.pop().unwrap_or_default();
+            words.push(format!("{array}({name})"));
+        }
+        Part::Counter(number) => words.push(format!("C{number}")),
+    });
+    // An instruction that writes no register has first where its result goes.
+    let destination = words.remove(0);
+    Line { section, operation: instruction.op().mnemonic(), destination, sources: words }
 }
 
 /// Prints a tape, one vector instruction a line.

@@ -1,8 +1,6 @@
 //! Instructions as a timing model sees them: which unit, from where, to where, whatever the lanes hold.
 
-use super::instruction::{
-    Action, Effect, File, Indices, Instruction, Number, Operand, Reference, RegisterName,
-};
+use super::instruction::{File, Instruction, Operand, Reference, RegisterName};
 use super::recorded::Tape;
 use crate::backend::dispatch::{InstructionSet, Task, dispatch};
 use crate::backend::precision::Precision;
@@ -61,22 +59,18 @@ impl Outline {
             }
         });
         copy.reads(|name| reads.push(Place::Register(*name)));
-        let mut writes = instruction.to().map(Place::Register);
-        match instruction.action {
-            Action::Number(_, Number::Load(from) | Number::LoadShifted(from))
-            | Action::Indices(_, Indices::Load(from)) => reads.push(Place::Memory(from)),
-            Action::Number(_, Number::Gather(from, ..)) | Action::Indices(_, Indices::Gather(from, _)) => {
-                reads.push(Place::Indexed(from));
-            }
-            Action::Effect(Effect::Store(to, _) | Effect::StoreIndex(to, _)) => {
-                writes = Some(Place::Memory(to));
-            }
-            Action::Effect(Effect::Scatter(to, ..) | Effect::ScatterIndex(to, ..)) => {
-                writes = Some(Place::Indexed(to))
-            }
-            _ => {}
+        let place = if instruction.is_indexed() { Place::Indexed } else { Place::Memory };
+        let memory = instruction.reference().map(place);
+        let result = instruction.to().map(Place::Register);
+        if result.is_some() {
+            reads.extend(memory);
         }
-        Outline { op: instruction.op(), converts: instruction.operations().count() > 1, reads, writes }
+        Outline {
+            op: instruction.op(),
+            converts: instruction.operations().count() > 1,
+            reads,
+            writes: result.or(memory),
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use super::allocation::{FileSizes, allocate};
 use super::folding::fold_loads;
 use super::instruction::{File, Instruction};
 use super::recorder::{Recorder, Recording};
-use crate::isa::{Element, Footprint, Op, OpCounts, Text};
+use crate::isa::{Element, Footprint, OpCounts, Text};
 
 /// A recorded program: straight-line vector instructions with registers, and the passes that execute them.
 #[derive(Clone, Debug)]
@@ -60,10 +60,8 @@ impl<L: Element> Tape<L> {
         let mut footprint = Footprint::default();
         for instruction in &self.instructions {
             if let Some(reference) = instruction.reference() {
-                let strided = !matches!(instruction.op(), Op::Gather | Op::Scatter);
-                let writes = matches!(instruction.op(), Op::Store | Op::Scatter);
-                let shift = strided.then_some(reference.shift);
-                footprint.record(reference.array, reference.element, shift, writes);
+                let shift = (!instruction.is_indexed()).then_some(reference.shift);
+                footprint.record(reference.array, reference.element, shift, instruction.to().is_none());
             }
         }
         footprint

@@ -3,6 +3,7 @@
 use super::instruction::{
     Action, Effect, File, Indices, Instruction, Number, Operand, Reference, RegisterName, Truth,
 };
+use crate::backend::values::{implement_operator, implement_predicate, implement_vector};
 use crate::isa::list::for_each_op;
 use crate::isa::op::{BinaryOp, CompareOp, ConnectiveOp, NegationOp, UnaryOp};
 use crate::isa::{Counter, Element, Machine, Predicate, Slot, Storage, Vector};
@@ -38,16 +39,16 @@ impl<L: Element> Recorder<L> {
         RegisterName { file, number }
     }
 
-    fn number(&self, number: Number<L>) -> RegisterName {
+    fn number(&self, number: Number<L>) -> Value<'_, L> {
         let to = self.register(File::Number);
         self.push(Action::Number(to, number));
-        to
+        Value { recorder: self, operand: Operand::Register(to) }
     }
 
-    fn truth(&self, truth: Truth<L>) -> RegisterName {
-        let to = self.register(File::Predicate);
-        self.push(Action::Truth(to, truth));
-        to
+    fn truth(&self, truth: Truth<L>) -> TruthValue<'_, L> {
+        let register = self.register(File::Predicate);
+        self.push(Action::Truth(register, truth));
+        TruthValue { recorder: self, register }
     }
 
     fn indices(&self, indices: Indices<L>) -> RegisterName {
@@ -71,102 +72,91 @@ pub(super) struct TruthValue<'t, L> {
     register: RegisterName,
 }
 
-impl<'t, L: Element> Value<'t, L> {
+impl<L: Element> Value<'_, L> {
     /// Arithmetic between scalar operands is done at once: no vector machine would spend an instruction on it.
     fn binary(self, op: BinaryOp, other: Self) -> Self {
-        let operand = match (self.operand, other.operand) {
-            (Operand::Uniform(a), Operand::Uniform(b)) => Operand::Uniform(op.apply(a, b)),
-            (a, b) => Operand::Register(self.recorder.number(Number::Binary(op, a, b))),
-        };
-        Value { recorder: self.recorder, operand }
+        match (self.operand, other.operand) {
+            (Operand::Uniform(a), Operand::Uniform(b)) => {
+                Value { operand: Operand::Uniform(op.apply(a, b)), ..self }
+            }
+            (a, b) => self.recorder.number(Number::Binary(op, a, b)),
+        }
     }
 
     fn unary(self, op: UnaryOp) -> Self {
-        let operand = match self.operand {
-            Operand::Uniform(a) => Operand::Uniform(op.apply(a)),
-            a => Operand::Register(self.recorder.number(Number::Unary(op, a))),
-        };
-        Value { recorder: self.recorder, operand }
-    }
-
-    fn compare(self, op: CompareOp, other: Self) -> TruthValue<'t, L> {
-        let register = self.recorder.truth(Truth::Compare(op, self.operand, other.operand));
-        TruthValue { recorder: self.recorder, register }
+        match self.operand {
+            Operand::Uniform(a) => Value { operand: Operand::Uniform(op.apply(a)), ..self },
+            a => self.recorder.number(Number::Unary(op, a)),
+        }
     }
 }
 
-macro_rules! record {
-    (operator { $(($ov:ident, $om:literal, $oc:ident, $od:literal, $trait:ident $of:ident)),* $(,)? }
-     binary { $(($bv:ident, $bm:literal, $bc:ident, $bd:literal, $bf:ident)),* $(,)? }
-     unary { $(($uv:ident, $um:literal, $uc:ident, $ud:literal, $uf:ident)),* $(,)? }
-     compare { $(($cv:ident, $cm:literal, $cc:ident, $cd:literal, $cf:ident)),* $(,)? }
-     connective { $(($av:ident, $am:literal, $ac:ident, $ad:literal, $af:ident)),* $(,)? }
-     negation { $(($nv:ident, $nm:literal, $nc:ident, $nd:literal, $nf:ident)),* $(,)? }
-     machine $machine:tt) => {
-        $(
-            impl<L: Element> std::ops::$trait for Value<'_, L> {
-                type Output = Self;
-                fn $of(self, other: Self) -> Self {
-                    self.binary(BinaryOp::$ov, other)
-                }
-            }
-        )*
-
-        impl<L: Element> Predicate for TruthValue<'_, L> {
-            $(
-                fn $af(self, other: Self) -> Self {
-                    let truth = Truth::Connective(ConnectiveOp::$av, self.register, other.register);
-                    TruthValue { register: self.recorder.truth(truth), ..self }
-                }
-            )*
-            $(
-                fn $nf(self) -> Self {
-                    let truth = Truth::Negation(NegationOp::$nv, self.register);
-                    TruthValue { register: self.recorder.truth(truth), ..self }
-                }
-            )*
-        }
-
-        impl<'t, L: Element> Vector for Value<'t, L> {
-            type Predicate = TruthValue<'t, L>;
-
-            $(
-                fn $uf(self) -> Self {
-                    self.unary(UnaryOp::$uv)
-                }
-            )*
-            $(
-                fn $bf(self, other: Self) -> Self {
-                    self.binary(BinaryOp::$bv, other)
-                }
-            )*
-            $(
-                fn $cf(self, other: Self) -> Self::Predicate {
-                    self.compare(CompareOp::$cv, other)
-                }
-            )*
-            fn select(predicate: Self::Predicate, holds: Self, fails: Self) -> Self {
-                let recorder = predicate.recorder;
-                let merge = Number::Select(predicate.register, holds.operand, fails.operand);
-                Value { recorder, operand: Operand::Register(recorder.number(merge)) }
-            }
-        }
+/// An operation of recorded values is an instruction on the tape.
+macro_rules! recorded {
+    (() V unary $op:ident $f:ident ($a:ident) $result:tt) => {
+        $a.unary(UnaryOp::$op)
+    };
+    (() V merge $op:ident $f:ident ($predicate:ident $a:ident $b:ident) $result:tt) => {
+        $predicate.recorder.number(Number::$op($predicate.register, $a.operand, $b.operand))
+    };
+    (() V $group:ident $op:ident $f:ident ($a:ident $b:ident) $result:tt) => {
+        $a.binary(BinaryOp::$op, $b)
+    };
+    (() P compare $op:ident $f:ident ($a:ident $b:ident) $result:tt) => {
+        $a.recorder.truth(Truth::Compare(CompareOp::$op, $a.operand, $b.operand))
+    };
+    (() P connective $op:ident $f:ident ($a:ident $b:ident) $result:tt) => {
+        $a.recorder.truth(Truth::Connective(ConnectiveOp::$op, $a.register, $b.register))
+    };
+    (() P negation $op:ident $f:ident ($a:ident) $result:tt) => {
+        $a.recorder.truth(Truth::Negation(NegationOp::$op, $a.register))
     };
 }
-for_each_op!(record);
+for_each_op!(each implement_operator (['t, L: Element] Value<'t, L>, recorded ()));
+
+impl<'t, L: Element> Vector for Value<'t, L> {
+    type Predicate = TruthValue<'t, L>;
+    for_each_op!(each implement_vector (recorded ()));
+}
+
+impl<L: Element> Predicate for TruthValue<'_, L> {
+    for_each_op!(each implement_predicate (recorded ()));
+}
 
 /// The recording machine itself.
 #[derive(Clone, Copy)]
 pub(super) struct Recording<'t, L>(pub(super) &'t Recorder<L>);
 
-impl<'t, L: Element> Recording<'t, L> {
-    fn number(self, number: Number<L>) -> Value<'t, L> {
-        Value { recorder: self.0, operand: Operand::Register(self.0.number(number)) }
-    }
-}
-
 fn reference<T: Storage>(slot: Slot<T>, shift: isize) -> Reference {
     Reference { array: slot.array(), element: T::NAME, shift }
+}
+
+/// An operand as a tape has it, by its kind.
+#[rustfmt::skip]
+macro_rules! operand {
+    (V $value:ident) => { $value.operand };
+    (P $predicate:ident) => { $predicate.register };
+    (Counter $counter:ident) => { $counter.0 };
+    (Numbers $slot:ident $shift:ident) => { reference($slot, $shift) };
+    (Numbers $slot:ident) => { reference($slot, 0) };
+    (Entries $slot:ident) => { reference($slot, 0) };
+    ($kind:ident $index:ident) => { $index };
+}
+
+/// The method of an instruction, by its enumeration.
+macro_rules! record {
+    ($this:ident $about:tt [$($signature:tt)*]
+     $file:ident $form:ident $f:ident $(($($x:ident $($shift:ident)?: $kind:ident),+))?) => {
+        $($signature)* {
+            push!($file $this.0, $file::$form $(($(operand!($kind $x $($shift)?)),+))?)
+        }
+    };
+}
+#[rustfmt::skip]
+macro_rules! push {
+    (Number $recorder:expr, $number:expr) => { $recorder.number($number) };
+    (Indices $recorder:expr, $indices:expr) => { $recorder.indices($indices) };
+    (Effect $recorder:expr, $effect:expr) => { $recorder.push(Action::Effect($effect)) };
 }
 
 impl<'t, L: Element> Machine for Recording<'t, L> {
@@ -178,45 +168,7 @@ impl<'t, L: Element> Machine for Recording<'t, L> {
     fn uniform(self, value: f64) -> Value<'t, L> {
         Value { recorder: self.0, operand: Operand::Uniform(L::from_f64(value)) }
     }
-    fn load<T: Element>(self, slot: Slot<T>) -> Value<'t, L> {
-        self.number(Number::Load(reference(slot, 0)))
-    }
-    fn load_shifted<T: Element>(self, slot: Slot<T>, shift: isize) -> Value<'t, L> {
-        self.number(Number::LoadShifted(reference(slot, shift)))
-    }
-    fn store<T: Element>(self, slot: Slot<T>, value: Value<'t, L>) {
-        self.0.push(Action::Effect(Effect::Store(reference(slot, 0), value.operand)));
-    }
-    fn numbers(self) -> Value<'t, L> {
-        self.number(Number::Numbers)
-    }
-    fn to_index(self, numbers: Value<'t, L>) -> RegisterName {
-        self.0.indices(Indices::ToIndex(numbers.operand))
-    }
-    fn index_numbers(self, index: RegisterName) -> Value<'t, L> {
-        self.number(Number::FromIndex(index))
-    }
-    fn load_index(self, slot: Slot<u32>) -> RegisterName {
-        self.0.indices(Indices::Load(reference(slot, 0)))
-    }
-    fn store_index(self, slot: Slot<u32>, value: RegisterName) {
-        self.0.push(Action::Effect(Effect::StoreIndex(reference(slot, 0), value)));
-    }
-    fn gather<T: Element>(self, slot: Slot<T>, index: RegisterName, elsewhere: Value<'t, L>) -> Value<'t, L> {
-        self.number(Number::Gather(reference(slot, 0), index, elsewhere.operand))
-    }
-    fn gather_index(self, slot: Slot<u32>, index: RegisterName) -> RegisterName {
-        self.0.indices(Indices::Gather(reference(slot, 0), index))
-    }
-    fn scatter_index(self, slot: Slot<u32>, index: RegisterName, value: RegisterName) {
-        self.0.push(Action::Effect(Effect::ScatterIndex(reference(slot, 0), index, value)));
-    }
-    fn scatter<T: Element>(self, slot: Slot<T>, index: RegisterName, value: Value<'t, L>) {
-        self.0.push(Action::Effect(Effect::Scatter(reference(slot, 0), index, value.operand)));
-    }
-    fn count(self, counter: Counter, predicate: TruthValue<'t, L>) {
-        self.0.push(Action::Effect(Effect::Count(predicate.register, counter.0)));
-    }
+    for_each_op!(each_instruction record self);
     fn none(self, _: TruthValue<'t, L>) -> bool {
         // A tape is straight-line: it holds every operation, as the CRAY executed them.
         false
