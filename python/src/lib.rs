@@ -1,6 +1,7 @@
 //! The package `stripmine` for Python: scenes, simulations and runs of the physics, with arrays of numpy and tables in the format of
 //! Arrow. What Python sees is described in `stripmine/__init__.pyi`.
 
+mod checked;
 mod computing;
 mod exceptions;
 mod frames;

@@ -1,9 +1,9 @@
 //! A whole run, which Ctrl-C ends at its next step with a checkpoint.
 
+use crate::checked::Checked;
 use crate::computing::computed;
 use crate::exceptions;
 use crate::interruption::beside;
-use crate::scene::Checked;
 use crate::scratch::Scratch;
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;

@@ -1,10 +1,11 @@
 //! Scenes: read, checked, started and run.
 
+use crate::checked::{Checked, Source};
 use crate::computing::computed;
 use crate::exceptions;
 use crate::json;
 use crate::overrides::overrides;
-use crate::particles::{Particles, dimensions};
+use crate::particles::Particles;
 use crate::run::Run;
 use crate::running::{begin_scratch, carry_out};
 use crate::simulation::Simulation;
@@ -14,58 +15,8 @@ use pyo3::types::{PyDict, PyTuple};
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use stripmine_physics::method::{Counted, Entry, METHODS, Prepared, prepare, vocabularies};
+use stripmine_physics::method::Counted;
 use stripmine_physics::run::{Existing, RunError, chosen_otherwise, forecast};
-use stripmine_physics::scene::{SceneErrors, Values};
-
-/// What errors call a scene that is given as a text.
-const OF_TEXT: &str = "scene";
-
-/// What a scene is read from.
-#[derive(Clone)]
-enum Source {
-    /// A preset's name, or a file's path.
-    Named(String),
-    /// A text.
-    Text(String),
-}
-
-impl Source {
-    /// What errors call it.
-    fn name(&self) -> &str {
-        match self {
-            Source::Named(name) => name,
-            Source::Text(_) => OF_TEXT,
-        }
-    }
-
-    fn values(&self, given: &[String]) -> Result<Values, SceneErrors> {
-        let known = vocabularies(METHODS);
-        match self {
-            Source::Named(name) => Values::load(name, given, &known),
-            Source::Text(text) => Values::parse(OF_TEXT, text, given, &known),
-        }
-    }
-}
-
-/// A scene that was read and may run.
-pub(crate) struct Checked {
-    /// With its particles.
-    pub(crate) prepared: Prepared,
-    /// Its method.
-    pub(crate) entry: &'static Entry,
-    /// In how many dimensions its particles move.
-    pub(crate) dimensions: usize,
-    values: Values,
-}
-
-impl Checked {
-    fn of(values: Values) -> Result<Checked, SceneErrors> {
-        let (prepared, entry) = prepare(values.clone(), METHODS)?;
-        let dimensions = dimensions(prepared.particles());
-        Ok(Checked { prepared, entry, dimensions, values })
-    }
-}
 
 /// A scene that was read, checked and may run. `stripmine.scene` makes it.
 #[pyclass(frozen, module = "stripmine")]

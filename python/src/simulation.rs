@@ -1,11 +1,11 @@
 //! A simulation that is advanced step by step.
 
+use crate::checked::Checked;
 use crate::computing::computed;
 use crate::exceptions;
 use crate::interruption::beside;
 use crate::particles::{self, Particles};
 use crate::pulse::{self, BEAT};
-use crate::scene::Checked;
 use numpy::PyArray2;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;

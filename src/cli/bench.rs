@@ -10,7 +10,7 @@ use clap::{Arg, ArgAction, ArgMatches, Args, value_parser};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use stripmine_physics::method::throughput::{Measurement, MeasurementError, Throughput, throughput};
-use stripmine_physics::method::{Bench, BenchOption, Entry, Methods, Purpose, Takes};
+use stripmine_physics::method::{Bench, BenchOption, Entry, Methods, Purpose};
 use stripmine_physics::number::{counted, significant};
 use stripmine_physics::ranks::{self, Crew};
 use stripmine_physics::scene::{Reason, SceneErrors, Values};
@@ -31,6 +31,47 @@ pub(super) struct BenchVerb {
     repeats: u16,
 }
 
+/// The kind of value that follows an option.
+#[derive(Clone, Copy)]
+enum Takes {
+    Nothing,
+    /// A whole number from 1 on.
+    Count,
+    Number,
+    Word,
+}
+
+macro_rules! options {
+    ($($takes:ident $name:literal $help:literal;)*) => { &[$(($name, Takes::$takes, $help)),*] };
+}
+
+/// The options of benches: the kind of value that follows, and the help.
+const OPTIONS: &[(&str, Takes, &str)] = options! {
+    Count "particles" "Number of particles, at least";
+    Number "packing-fraction" "Area of the discs over that of the box";
+    Word "precision" "Precision of state and forces: f64, f32 or mixed";
+    Word "integrator" "Integrator, such as gear4, gear5, gear6, velocity-verlet, baoab or stochastic";
+    Word "engine" "What moves the particles: auto, fast, or programs of lattice MD, reference of hard discs; the fastest by default";
+    Word "text" "Whose programs: ours, or printed for the source's own; implies programs";
+    Word "execution" "How programs are executed: eager, strip:N or chained; implies programs";
+    Word "instruction-set" "scalar, avx2, avx512, wide, or auto for the widest there is";
+    Nothing "frictionless" "Leave out friction, and with it rotation";
+    Number "cell-edge" "Side of a lattice cell; the largest that the geometry allows by default";
+    Word "mask" "Mask of cells around a disc, such as min or r3; the cheapest by default";
+    Word "law" "Pair law of particles in a bath, a word of law.kind";
+    Word "search" "How pairs of particles in a bath are found: auto, lattice, sectors or neighbor-list";
+    Count "sectors" "Sectors along each side";
+    Word "sort" "When particles in a bath are put in the order of their sectors: auto, when-needed or every-step";
+    Number "skin" "How much farther than the cut-off listed pairs may be";
+    Word "arithmetic" "How products and roots of bodies are formed: exact, estimated or raw";
+};
+
+/// The kind of value that follows an option, and its help; a word where the option is of a method that this program does not know.
+fn described(option: &BenchOption) -> (Takes, &'static str) {
+    let known = OPTIONS.iter().find(|(name, ..)| *name == option.name);
+    known.map_or((Takes::Word, "A value of the scene"), |&(_, takes, help)| (takes, help))
+}
+
 /// The options of all benches, each once.
 fn options(methods: Methods) -> impl Iterator<Item = &'static BenchOption> {
     let all = methods.iter().flat_map(|method| method.benches).flat_map(|bench| bench.options);
@@ -42,8 +83,9 @@ fn options(methods: Methods) -> impl Iterator<Item = &'static BenchOption> {
 pub(super) fn arguments(methods: Methods) -> impl Iterator<Item = Arg> {
     options(methods).map(|option| {
         let value = option.name.to_uppercase().replace('-', "_");
-        let argument = Arg::new(option.name).long(option.name).value_name(value).help(option.doc);
-        match option.takes {
+        let (takes, help) = described(option);
+        let argument = Arg::new(option.name).long(option.name).value_name(value).help(help);
+        match takes {
             Takes::Nothing => argument.action(ArgAction::SetTrue),
             Takes::Count => argument.value_parser(count),
             Takes::Number => argument.value_parser(value_parser!(f64)).allow_negative_numbers(true),
@@ -54,7 +96,7 @@ pub(super) fn arguments(methods: Methods) -> impl Iterator<Item = Arg> {
 
 /// The value of an option that was given, as text.
 fn value_of(option: &BenchOption, given: &ArgMatches) -> Option<String> {
-    match option.takes {
+    match described(option).0 {
         Takes::Nothing => given.get_flag(option.name).then(String::new),
         Takes::Count => given.get_one::<u64>(option.name).map(u64::to_string),
         Takes::Number => given.get_one::<f64>(option.name).map(f64::to_string),
@@ -316,4 +358,16 @@ fn text(result: &Throughput) -> String {
         observed.join(", "),
         result.checksum
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stripmine_physics::method::METHODS;
+
+    #[test]
+    fn every_option_of_a_bench_has_its_help() {
+        let names: BTreeSet<&str> = options(METHODS).map(|option| option.name).collect();
+        assert_eq!(names, OPTIONS.iter().map(|(name, ..)| *name).collect());
+    }
 }

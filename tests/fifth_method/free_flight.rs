@@ -9,7 +9,7 @@ use stripmine_physics::memory::{Foreseen, OfRanks};
 use stripmine_physics::method::{
     Axis, Bench, BenchOption, Clock, Decides, Elapsed, Entry, Fact, Failure, Kind, Observable, PerParticle,
     Prepared, Purpose, Quantity, SMALLEST_RADIUS, Schedule, Setting, Simulation, Snapshot, Startable,
-    Stepped, SteppedState, Stepwise, Takes, Trials, Until, compress,
+    Stepped, SteppedState, Stepwise, Trials, Until, compress,
 };
 use stripmine_physics::particles::Particles;
 use stripmine_physics::scene::{
@@ -35,9 +35,7 @@ pub static ENTRY: Entry = Entry {
         defaults: &[("particles", "50")],
         options: &[BenchOption {
             name: "particles",
-            takes: Takes::Count,
             values: &[],
-            doc: "Number of particles",
             overrides: |count| vec![format!("particles.count={count}")],
         }],
         overrides: &[],

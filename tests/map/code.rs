@@ -1,4 +1,4 @@
-//! The three crates as files and the arrows between them: who names whom, in `use` or by a path in the text, through re-exports.
+//! The crates as files and the arrows between them: who names whom, in `use` or by a path in the text, through re-exports.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -15,10 +15,11 @@ pub struct Crate {
 }
 
 /// From the lowest to the highest: a crate uses those before it only.
-pub const CRATES: [Crate; 3] = [
+pub const CRATES: [Crate; 4] = [
     Crate { name: "stripmine_kernels", folder: "kernels/src", short: "kernels" },
     Crate { name: "stripmine_physics", folder: "kernels/physics/src", short: "physics" },
     Crate { name: "stripmine", folder: "src", short: "src" },
+    Crate { name: "stripmine_python", folder: "python/src", short: "python" },
 ];
 
 impl Crate {

@@ -13,8 +13,9 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-/// All that the lower crates depend on: none of it reads a command line, draws, or writes pages.
-const DEPENDENCIES: [(&str, &[&str]); 2] = [
+/// All that the lower crates depend on: none of it reads a command line, draws, or writes pages. And the package for Python, which does
+/// without the laboratory.
+const DEPENDENCIES: [(&str, &[&str]); 3] = [
     ("kernels", &["libm", "memmap2", "pulp", "rand", "rayon", "serde", "thiserror", "wide"]),
     (
         "kernels/physics",
@@ -39,6 +40,10 @@ const DEPENDENCIES: [(&str, &[&str]); 2] = [
             "toml",
             "zmij",
         ],
+    ),
+    (
+        "python",
+        &["arrow-array", "arrow-schema", "numpy", "pyo3", "serde_json", "stripmine-physics", "tempfile"],
     ),
 ];
 
@@ -147,8 +152,8 @@ fn dependencies(manifest: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// The kernels name neither physics nor laboratory, and the physics does not name the laboratory; neither depends on a crate beyond its
-/// list.
+/// The kernels name neither physics nor laboratory, and neither the physics nor the package for Python names the laboratory; none of them
+/// depends on a crate beyond its list.
 #[test]
 fn lower_crates_know_nothing_of_higher_ones() {
     for (folder, expected) in DEPENDENCIES {
@@ -223,7 +228,7 @@ fn the_map_names_every_room_and_nothing_else() {
 /// Every path that a document names exists, and every link leads to a file and to a heading that are there.
 #[test]
 fn paths_in_documents_exist() {
-    let roots = ["src/", "kernels/", "benches/", "tests/", "reports/", "docs/"];
+    let roots = ["src/", "kernels/", "python/", "benches/", "tests/", "reports/", "docs/"];
     for document in documents() {
         let text = text(&document);
         for path in quoted(&text).into_iter().filter(|word| roots.iter().any(|it| word.starts_with(it))) {

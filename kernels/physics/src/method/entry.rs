@@ -27,7 +27,7 @@ pub struct Entry {
     pub quantities: &'static [Quantity],
     /// Holds a scene against every precondition and makes its particles; every mistake at once.
     pub prepare: fn(Values) -> Result<Prepared, SceneErrors>,
-    /// What `bench` can measure of it.
+    /// Measurements of its throughput.
     pub benches: &'static [Bench],
     /// What may be chosen without changing what is simulated; every combination that its check accepts is a way to run a scene.
     pub axes: &'static [Axis],
@@ -103,7 +103,7 @@ pub const fn quantities<S: 'static, const COUNT: usize>(
 /// A measurement of throughput.
 #[derive(Debug)]
 pub struct Bench {
-    /// The name after `bench`.
+    /// Its name.
     pub name: &'static str,
     /// What is measured.
     pub doc: &'static str,
@@ -115,9 +115,9 @@ pub struct Bench {
     pub until: fn(u64) -> Until,
     /// How many steps or events make about a second, for a number of particles.
     pub amount: fn(u64) -> u64,
-    /// What options stand for that are not given.
+    /// Values of options that are not given.
     pub defaults: &'static [(&'static str, &'static str)],
-    /// The options that it takes, each with the overrides that a value makes.
+    /// What may be chosen of its scene by a short name, each with the overrides that a value makes.
     pub options: &'static [BenchOption],
     /// Overrides that make the bench.
     pub overrides: &'static [&'static str],
@@ -129,44 +129,21 @@ pub struct Bench {
     pub at_end: &'static [&'static str],
 }
 
-/// An option of `bench`.
+/// Something of the scene of a bench that has a short name.
 #[derive(Debug)]
 pub struct BenchOption {
     /// The name.
     pub name: &'static str,
-    /// What follows it.
-    pub takes: Takes,
     /// The values that it may have; none where the scene judges them.
     pub values: &'static [&'static str],
-    /// What it is, for the help.
-    pub doc: &'static str,
     /// The overrides that a value makes.
     pub overrides: fn(&str) -> Vec<String>,
 }
 
-/// What follows an option.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Takes {
-    /// Nothing: it is there or not.
-    Nothing,
-    /// A whole number from 1 on.
-    Count,
-    /// A number.
-    Number,
-    /// A word.
-    Word,
-}
-
-/// The options of a bench: name, what follows, values where they are named here, what a value says in a scene, and the help.
+/// The options of a bench: name, values where they are named here, and the overrides that a value makes.
 macro_rules! bench_options {
-    ($($name:literal $takes:ident $values:expr, $overrides:expr, $doc:literal;)*) => {
-        &[$($crate::method::BenchOption {
-            name: $name,
-            takes: $crate::method::Takes::$takes,
-            values: &$values,
-            doc: $doc,
-            overrides: $overrides,
-        }),*]
+    ($($name:literal $values:expr, $overrides:expr;)*) => {
+        &[$($crate::method::BenchOption { name: $name, values: &$values, overrides: $overrides }),*]
     };
 }
 pub(super) use bench_options;
@@ -296,7 +273,7 @@ pub struct Prepared {
     pub expected_error: Option<Fact>,
     /// The memory that a run takes.
     pub memory: Foreseen,
-    /// How it is run: precision, integrator and the like, by the names that `bench --json` gives them.
+    /// How it is run: precision, integrator and the like, by name.
     pub settings: Map<String, Value>,
     /// The names of the columns of `events.csv`, where the scene asks for a row for each event.
     pub event_columns: Option<&'static str>,
@@ -366,8 +343,8 @@ pub trait Startable: Send + Sync {
     fn started_from(&self, particles: Particles) -> Prepared;
 
     /// The same scene whose noise has a seed, and in each step is made of that of `parts` shorter steps: a run with steps of h and p parts
-    /// sees the Brownian path of one with steps of h/p and one part. It is for comparisons: no checkpoint and no scene says the parts. None
-    /// where there is no noise.
+    /// follows the Brownian path of one with steps of h/p and one part. The method's scheme decides how increments of the path add up. No
+    /// checkpoint and no scene holds the parts. None where there is no noise.
     fn with_noise(&self, _seed: u64, _parts: u32) -> Option<Prepared> {
         None
     }

@@ -25,7 +25,7 @@ pub use clock::{Clock, Every, Schedule, Until, steps_over};
 pub use counted::Counted;
 pub use entry::{
     Bench, BenchOption, Beyond, Entry, Fact, Kind, Observable, Prepared, Purpose, Quantity, Startable,
-    StepLimit, Takes, VectorProgram, is_sound, quantities,
+    StepLimit, VectorProgram, is_sound, quantities,
 };
 pub use failure::{Culprit, Failure, FailureKind};
 pub use hard_disks::compress;

@@ -80,7 +80,7 @@ pub trait Simulation: Send {
     /// Forgets the seconds spent so far.
     fn reset_phases(&mut self);
 
-    /// How much has been done, in the unit of the rates that `bench` gives.
+    /// Work since the start, in the unit of the method's rates: particle steps, events or interactions.
     fn work(&self) -> f64;
 
     /// Operations of the last step on whole vectors, with the elements of each vector; none where they are not counted.
@@ -91,8 +91,9 @@ pub trait Simulation: Send {
     /// What there is to be said at the end: the method's own entries of `summary.json`.
     fn summary(&self) -> Map<String, Value>;
 
-    /// Where it goes from event to event: what it has done for them since it was started or taken up, kind by kind. It is for studies,
-    /// and no part of what a run writes.
+    /// Predictions, searches and moves in the queue that events have cost since it was started or taken up, by kind: the terms of the
+    /// method's cost formula, as [`operations`](Self::operations) are those of a step. One that is taken up predicts some events again, so
+    /// the counts are of a session, and no run writes them. Empty where there are no events.
     fn event_operations(&self) -> Vec<(&'static str, u64)> {
         vec![]
     }

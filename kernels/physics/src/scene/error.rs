@@ -204,7 +204,7 @@ pub struct Warning {
     pub check: &'static str,
     /// The value found over the largest one that is allowed; infinite where nothing of the kind is.
     pub share: f64,
-    /// Whether it is a reason to refuse the scene. A scene that has such a warning was prepared for a study, at any step.
+    /// True for a reason to refuse the scene, which was prepared nevertheless: at any step.
     pub is_refusal: bool,
     /// The key that decides it.
     pub key: String,

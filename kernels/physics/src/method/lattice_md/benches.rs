@@ -48,25 +48,25 @@ const GRANULAR: Bench = Bench {
     at_end: &["contacts"],
 };
 
-/// The options of `bench`.
+/// The options of them all.
 const OPTIONS: &[BenchOption] = bench_options! {
-    "particles" Count [], |count| vec![format!("particles.count={count}")], "Number of particles, at least";
-    "packing-fraction" Number [], |fraction| vec![format!("particles.packing_fraction={fraction}")], "Area of the discs over that of the box";
-    "precision" Word [], |precision| vec![format!("machine.precision={precision}")], "Precision of state and forces: f64, f32 or mixed";
-    "integrator" Word ["gear4", "gear5", "gear6", "velocity-verlet"], |name| match name.strip_prefix("gear") {
+    "particles" [], |count| vec![format!("particles.count={count}")];
+    "packing-fraction" [], |fraction| vec![format!("particles.packing_fraction={fraction}")];
+    "precision" [], |precision| vec![format!("machine.precision={precision}")];
+    "integrator" ["gear4", "gear5", "gear6", "velocity-verlet"], |name| match name.strip_prefix("gear") {
         Some(values) => vec![format!("integrator.values={values}")],
         None => vec![format!("integrator.kind={name}")],
-    }, "Integrator, such as gear4, gear5, gear6, velocity-verlet, baoab or stochastic";
-    "engine" Word ["auto", "fast", "programs"], |engine| vec![format!("machine.engine={engine}")], "What moves the particles: auto, fast, or programs of lattice MD, reference of hard discs; the fastest by default";
+    };
+    "engine" ["auto", "fast", "programs"], |engine| vec![format!("machine.engine={engine}")];
     // The source has no clamp.
-    "text" Word ["ours", "printed"], |text| {
+    "text" ["ours", "printed"], |text| {
         let clamped = format!("law.cohesionless={}", text != "printed");
         vec!["machine.engine=programs".to_owned(), format!("machine.text={text}"), clamped]
-    }, "Whose programs: ours, or printed for the source's own; implies programs";
-    "execution" Word [], |execution| {
+    };
+    "execution" [], |execution| {
         vec!["machine.engine=programs".to_owned(), format!("machine.execution={execution}")]
-    }, "How programs are executed: eager, strip:N or chained; implies programs";
-    "instruction-set" Word [], |set| vec![format!("machine.instruction_set={set}")], "scalar, avx2, avx512, wide, or auto for the widest there is";
-    "frictionless" Nothing [], |_| vec!["law.friction=0".to_owned()], "Leave out friction, and with it rotation";
-    "cell-edge" Number [], |edge| vec![format!("search.cell_edge={edge}")], "Side of a lattice cell; the largest that the geometry allows by default";
+    };
+    "instruction-set" [], |set| vec![format!("machine.instruction_set={set}")];
+    "frictionless" [], |_| vec!["law.friction=0".to_owned()];
+    "cell-edge" [], |edge| vec![format!("search.cell_edge={edge}")];
 };

@@ -52,7 +52,7 @@ impl Document {
         check(self, Steps::Foreseen)
     }
 
-    /// The same, but whatever the step is: for studies that try what is foreseen to fail. Reasons to refuse the step are warnings.
+    /// The same at any step: reasons to refuse the step are warnings, so that what theory foresees can be tried.
     ///
     /// # Errors
     /// [`SceneErrors`]: every precondition that does not hold.
