@@ -43,14 +43,14 @@ fn of_one_gas(criterion: &mut Criterion, packing_fraction: f64, count: usize, pr
         let time = Duration::from_millis(milliseconds);
         group.measurement_time(time).warm_up_time(time / 10);
         group.bench_function(phase.name(), |bencher| {
-            let mut gas = moving.get_or_insert_with(|| {
+            let gas = moving.get_or_insert_with(|| {
                 let mut gas = assemble(&scene).expect("a start without conflicts");
                 advance(&mut gas, EQUILIBRATION);
                 gas
             });
             bencher.iter_custom(|steps| {
                 gas.reset_timings();
-                advance(&mut gas, steps);
+                advance(gas, steps);
                 Duration::from_secs_f64(gas.timings().seconds(phase))
             });
         });
