@@ -64,7 +64,7 @@ impl Frames {
 }
 
 fn wrong(py: Python<'_>, error: &TrajectoryError) -> PyErr {
-    exceptions::of_file(py, Class::Input, &error.to_string(), error.file())
+    exceptions::of_file(py, Class::Input, &error.words, &error.file)
 }
 
 #[pymethods]

@@ -9,6 +9,8 @@ use stripmine::model::machines::names;
 use stripmine_physics::io::checkpoint::{Checkpoint, Column, Counter};
 use stripmine_physics::io::extxyz::{self, Frames};
 use stripmine_physics::io::gsd;
+use stripmine_physics::io::run_moment::RunHeader;
+use stripmine_physics::io::sink::Sink;
 use stripmine_physics::method::lattice_md::{Document, ENTRY};
 
 const MEGABYTE: u64 = 1 << 20;
@@ -70,11 +72,11 @@ fn trajectories_are_read_or_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("seed.gsd");
     let start = Frames::new(Cursor::new(frames().swap_remove(0)), "two.xyz").next().unwrap().unwrap();
-    let mut file = gsd::Writer::create(&path, &["energy"]).unwrap();
+    let header = RunHeader { columns: vec!["energy"], logged: vec![0], ..RunHeader::default() };
+    let mut file = gsd::Writer::begin(path.clone(), &header).unwrap();
     for step in 0..3 {
         let frame = extxyz::Frame { step, ..start.clone() };
-        gsd::write(&gsd::LoggedFrame { frame: frame.into(), images: vec![], values: vec![0.5] }, &mut file)
-            .unwrap();
+        file.write(gsd::LoggedFrame { frame: frame.into(), images: vec![], values: vec![0.5] }).unwrap();
     }
     let seed = std::fs::read(&path).unwrap();
     let damaged = folder.path().join("fuzz.gsd");

@@ -2,11 +2,14 @@
 
 use crate::{frame, text};
 use std::fs;
-use std::io::Write;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use stripmine_physics::io::extxyz::write;
 use stripmine_physics::io::growing_file::{GrowingFile, GrowingFileError, Mark};
-use stripmine_physics::io::table_file::{TableFile, TableFileError};
+use stripmine_physics::io::run_moment::{RunHeader, RunMoment};
+use stripmine_physics::io::sink::{Sink, TextSink};
+use stripmine_physics::io::table_file::ObservedRows;
+use stripmine_physics::particles::{Particles, PerParticle};
 use tempfile::TempDir;
 
 const COLUMNS: [&str; 2] = ["time", "energy"];
@@ -17,18 +20,48 @@ fn folder_and(name: &str) -> (TempDir, PathBuf) {
     (folder, path)
 }
 
+type Table = TextSink<ObservedRows>;
+
+fn header(columns: [&'static str; 2]) -> RunHeader {
+    RunHeader { columns: columns.to_vec(), ..RunHeader::default() }
+}
+
+fn begun(path: &Path) -> Table {
+    Table::begin(path.to_owned(), &header(COLUMNS)).unwrap()
+}
+
+fn resumed(path: &Path, columns: [&'static str; 2], mark: Mark) -> Result<Table, GrowingFileError> {
+    Table::resume(path.to_owned(), &header(columns), mark, &mut vec![])
+}
+
+struct Nothing;
+
+impl PerParticle for Nothing {
+    fn particles(&self) -> Particles {
+        Particles::default()
+    }
+}
+
+/// Adds a row of a step.
+fn append(table: &mut Table, step: u64, row: &[f64]) -> io::Result<()> {
+    let header = header(COLUMNS);
+    let mut moment = RunMoment::new(&header, &Nothing, (step, step, 0.0));
+    moment.row = Some(row);
+    table.write(Table::entry(&moment).expect("there is a row"))
+}
+
 /// A table of some rows; the mark is after the first `marked` of them.
-fn table(path: &PathBuf, marked: usize, steps: &[u64]) -> Mark {
+fn table(path: &Path, marked: usize, steps: &[u64]) -> Mark {
     let _ = fs::remove_file(path);
-    let mut table = TableFile::create(path, &COLUMNS).unwrap();
+    let mut table = begun(path);
     let mut mark = Mark::default();
     for (i, step) in steps.iter().enumerate() {
         if i == marked {
-            mark = table.sync().unwrap();
+            mark = table.mark().unwrap();
         }
-        table.append(*step, &[0.1 * *step as f64, -1.0 / 3.0]).unwrap();
+        append(&mut table, *step, &[0.1 * *step as f64, -1.0 / 3.0]).unwrap();
     }
-    table.sync().unwrap();
+    table.mark().unwrap();
     mark
 }
 
@@ -42,12 +75,12 @@ fn a_resumed_table_is_the_table_of_one_run() {
     for torn in ["", "50,5.", "torn", "\0\0\0"] {
         let mark = table(&path, 3, &[0, 10, 20, 30]);
         fs::write(&path, fs::read_to_string(&path).unwrap() + torn).unwrap();
-        let mut table = TableFile::resume(&path, &COLUMNS, mark).unwrap();
+        let mut table = resumed(&path, COLUMNS, mark).unwrap();
         table.cut().unwrap();
         for step in [30, 40] {
-            table.append(step, &[0.1 * step as f64, -1.0 / 3.0]).unwrap();
+            append(&mut table, step, &[0.1 * step as f64, -1.0 / 3.0]).unwrap();
         }
-        table.sync().unwrap();
+        table.mark().unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), whole);
     }
 }
@@ -61,7 +94,7 @@ fn what_is_missing_or_changed_before_the_mark_is_refused() {
     let marked = mark.bytes as usize;
     for cut in 0..marked {
         fs::write(&path, &whole[..cut]).unwrap();
-        let error = TableFile::resume(&path, &COLUMNS, mark).unwrap_err();
+        let error = resumed(&path, COLUMNS, mark).unwrap_err();
         assert!(error.is_damage(), "{error}");
         assert!(error.to_string().contains(&format!("has {cut} bytes, but {marked} were")), "{error}");
         assert_eq!(fs::read(&path).unwrap(), whole[..cut]);
@@ -70,12 +103,12 @@ fn what_is_missing_or_changed_before_the_mark_is_refused() {
         let mut bytes = whole.clone();
         bytes[place] ^= 1;
         fs::write(&path, &bytes).unwrap();
-        let error = TableFile::resume(&path, &COLUMNS, mark).unwrap_err();
+        let error = resumed(&path, COLUMNS, mark).unwrap_err();
         assert!(error.is_damage() && error.to_string().contains("thermo.csv has changed"), "{error}");
         assert_eq!(fs::read(&path).unwrap(), bytes);
     }
     fs::remove_file(&path).unwrap();
-    let missing = TableFile::resume(&path, &COLUMNS, mark).unwrap_err();
+    let missing = resumed(&path, COLUMNS, mark).unwrap_err();
     assert!(missing.is_damage() && missing.to_string().contains("thermo.csv is missing"), "{missing}");
 }
 
@@ -83,7 +116,7 @@ fn what_is_missing_or_changed_before_the_mark_is_refused() {
 fn a_table_of_other_columns_is_refused() {
     let (_folder, path) = folder_and("thermo.csv");
     let mark = table(&path, 1, &[0, 10]);
-    let error = TableFile::resume(&path, &["time", "heat"], mark).unwrap_err();
+    let error = resumed(&path, ["time", "heat"], mark).unwrap_err();
     assert!(
         error
             .to_string()
@@ -96,9 +129,8 @@ fn a_table_of_other_columns_is_refused() {
 #[test]
 fn a_row_of_another_width_is_refused() {
     let (_folder, path) = folder_and("thermo.csv");
-    let mut table = TableFile::create(&path, &COLUMNS).unwrap();
-    let error = table.append(0, &[1.0]).unwrap_err();
-    assert!(matches!(error, TableFileError::Width { found: 1, expected: 2, .. }), "{error}");
+    let error = append(&mut begun(&path), 0, &[1.0]).unwrap_err();
+    assert_eq!(error.to_string(), "a row of 1 numbers for 2 columns after `step`");
 }
 
 /// Frames, torn anywhere after the mark.

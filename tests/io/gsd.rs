@@ -5,12 +5,26 @@ use std::fs;
 use std::io::{Seek, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
 use stripmine_physics::io::extxyz::Frame;
-use stripmine_physics::io::growing_file::Mark;
-use stripmine_physics::io::gsd::{Frames, LoggedFrame, Writer, write};
+use stripmine_physics::io::growing_file::{GrowingFileError, Mark};
+use stripmine_physics::io::gsd::{Frames, LoggedFrame, Writer};
+use stripmine_physics::io::run_moment::RunHeader;
+use stripmine_physics::io::sink::Sink;
 use stripmine_physics::particles::{Kind, Particle, Particles};
 use tempfile::TempDir;
 
-const LOGGED: [&str; 2] = ["energy", "lost"];
+/// A run that logs two quantities.
+fn header() -> RunHeader {
+    logging(vec!["energy", "lost"])
+}
+
+fn logging(columns: Vec<&'static str>) -> RunHeader {
+    RunHeader { logged: (0..columns.len()).collect(), columns, ..RunHeader::default() }
+}
+
+fn resumed(path: &Path, header: &RunHeader, mark: Mark) -> Result<Writer, GrowingFileError> {
+    Writer::resume(path.to_owned(), header, mark, &mut vec![])
+}
+
 /// Frames of which the index has no room where it first is, nor where it next is.
 const MANY: u64 = 200;
 
@@ -69,11 +83,11 @@ fn space(step: u64) -> LoggedFrame {
 /// A file that grows up to a number of frames: its bytes and its mark without frames, after the first, and so on.
 fn written(path: &Path, of: fn(u64) -> LoggedFrame, count: u64) -> (Vec<Vec<u8>>, Vec<Mark>) {
     let _ = fs::remove_file(path);
-    let mut file = Writer::create(path, &LOGGED).unwrap();
-    let mut grown = (vec![fs::read(path).unwrap()], vec![file.sync().unwrap()]);
+    let mut file = Writer::begin(path.to_owned(), &header()).unwrap();
+    let mut grown = (vec![fs::read(path).unwrap()], vec![file.mark().unwrap()]);
     for step in 0..count {
-        write(&of(step), &mut file).unwrap();
-        grown.1.push(file.sync().unwrap());
+        file.write(of(step)).unwrap();
+        grown.1.push(file.mark().unwrap());
         grown.0.push(fs::read(path).unwrap());
     }
     grown
@@ -143,14 +157,14 @@ fn a_resumed_trajectory_is_that_of_one_run() {
         let torn = [&grown[more][..], &next[..random.below(next.len().min(2000) + 1)]].concat();
         for bytes in [whole, &grown[number], &grown[more], &torn] {
             fs::write(&path, bytes).unwrap();
-            let mut file = Writer::resume(&path, &LOGGED, mark).unwrap();
+            let mut file = resumed(&path, &header(), mark).unwrap();
             assert!(&fs::read(&path).unwrap() == bytes, "nothing is changed before it is cut");
             file.cut().unwrap();
             assert_eq!(Frames::open(&path).unwrap().frame_count(), number as u64);
             for step in number as u64..MANY {
-                write(&plane(step), &mut file).unwrap();
+                file.write(plane(step)).unwrap();
             }
-            assert_eq!(file.sync().unwrap(), marks[MANY as usize]);
+            assert_eq!(file.mark().unwrap(), marks[MANY as usize]);
             assert!(&fs::read(&path).unwrap() == whole, "from frame {number}");
         }
     }
@@ -204,7 +218,7 @@ fn what_is_missing_or_changed_before_the_mark_is_refused() {
     let (whole, mark) = (grown.swap_remove(4), marks[4]);
     let refused = |bytes: &[u8], words: &str| {
         fs::write(&path, bytes).unwrap();
-        let error = Writer::resume(&path, &LOGGED, mark).unwrap_err();
+        let error = resumed(&path, &header(), mark).unwrap_err();
         assert!(error.is_damage() && error.to_string().contains(words), "{error}");
         assert_eq!(fs::read(&path).unwrap(), bytes);
     };
@@ -221,9 +235,9 @@ fn what_is_missing_or_changed_before_the_mark_is_refused() {
         refused(&bytes, "trajectory.gsd has changed");
     }
     fs::write(&path, &whole).unwrap();
-    assert!(Writer::resume(&path, &["heat"], mark).unwrap_err().is_damage());
+    assert!(resumed(&path, &logging(vec!["heat"]), mark).unwrap_err().is_damage());
     fs::remove_file(&path).unwrap();
-    assert!(Writer::resume(&path, &LOGGED, mark).unwrap_err().to_string().contains("is missing"));
+    assert!(resumed(&path, &header(), mark).unwrap_err().to_string().contains("is missing"));
 }
 
 /// Damaged and foreign files are refused with their place.
@@ -304,14 +318,13 @@ fn other_files_are_refused_with_their_place() {
 fn damage_of_a_grown_index_never_passes() {
     let (_folder, path) = folder_and_path();
     // With so many quantities the index moves in the third frame.
-    let names: Vec<String> = (0..400).map(|number| format!("q{number}")).collect();
-    let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let mut file = Writer::create(&path, &names).unwrap();
-    let frame = |step| LoggedFrame { values: vec![0.5; names.len()], ..plane(step) };
-    (0..3).for_each(|step| write(&frame(step), &mut file).unwrap());
-    let (mark, bytes) = (file.sync().unwrap(), fs::read(&path).unwrap());
-    write(&frame(3), &mut file).unwrap();
-    file.sync().unwrap();
+    let header = logging((0..400).map(|number| &*format!("q{number}").leak()).collect());
+    let mut file = Writer::begin(path.clone(), &header).unwrap();
+    let frame = |step| LoggedFrame { values: vec![0.5; 400], ..plane(step) };
+    (0..3).for_each(|step| file.write(frame(step)).unwrap());
+    let (mark, bytes) = (file.mark().unwrap(), fs::read(&path).unwrap());
+    file.write(frame(3)).unwrap();
+    file.mark().unwrap();
     drop(file);
     let whole = fs::read(&path).unwrap();
     let number = |at: usize| u64::from_le_bytes(bytes[at..at + 8].try_into().unwrap()) as usize;
@@ -332,7 +345,7 @@ fn damage_of_a_grown_index_never_passes() {
             file.write_all(&[byte]).unwrap();
         };
         put(bytes[place] ^ 1 << (place % 8));
-        match Writer::resume(&path, &names, mark) {
+        match resumed(&path, &header, mark) {
             Err(error) => {
                 assert!(
                     error.is_damage() && error.to_string().contains("has changed"),
@@ -343,8 +356,8 @@ fn damage_of_a_grown_index_never_passes() {
             Ok(mut file) => {
                 assert!(is_unused, "byte {place} is not refused");
                 file.cut().unwrap();
-                write(&frame(3), &mut file).unwrap();
-                file.sync().unwrap();
+                file.write(frame(3)).unwrap();
+                file.mark().unwrap();
                 assert!(fs::read(&path).unwrap() == whole, "byte {place} passes");
                 fs::write(&path, &bytes).unwrap();
             }

@@ -3,6 +3,7 @@
 mod budgets;
 mod code;
 mod documents;
+mod formats;
 mod graph;
 mod reports;
 mod tokens;

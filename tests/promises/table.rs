@@ -17,6 +17,10 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread;
 use stripmine::provenance::built;
 use stripmine_kernels::noise::{Purpose as Of, Stream};
+use stripmine_physics::io::FORMATS;
+use stripmine_physics::io::extxyz::Frame;
+use stripmine_physics::io::output_format::FrameWriting;
+use stripmine_physics::io::trajectory::FrameReading;
 use stripmine_physics::method::{Entry, Every, Methods, Prepared, Schedule, load};
 use stripmine_physics::particles::Particles;
 use stripmine_physics::run::{Ending, Existing, Job, run};
@@ -33,17 +37,8 @@ pub enum Extent {
 /// Cases at a time: most of the time goes by until files are on the disk.
 const AT_A_TIME: usize = 6;
 
-/// What the files of a run are, where it has all.
-const FILES: [&str; 8] = [
-    "thermo.csv",
-    "trajectory.xyz",
-    "trajectory.dcd",
-    "trajectory.gsd",
-    "dump.lammpstrj",
-    "final.data",
-    "events.csv",
-    "scene.toml",
-];
+/// What the files of a run are, where it has all, beside those of the formats.
+const FILES: [&str; 3] = ["thermo.csv", "events.csv", "scene.toml"];
 /// What a summary says of its session alone.
 const OF_THE_SESSION: [&str; 5] = ["begun", "ended", "seconds", "phases", "notes"];
 
@@ -119,6 +114,11 @@ fn cases(methods: Methods, entry: &'static Entry, extent: Extent) -> Vec<Case> {
         }
     }
     cases
+}
+
+/// The files of a run that the physics alone decides, those of every format among them.
+fn files() -> impl Iterator<Item = &'static str> {
+    FILES.into_iter().chain(FORMATS.iter().map(|format| format.file))
 }
 
 fn places(particles: &Particles) -> Places {
@@ -249,7 +249,7 @@ impl Case {
 
     /// The same bytes and the same summary.
     fn same(&self, way: &str, whole: &Path, parts: &Path) {
-        for name in FILES {
+        for name in files() {
             let [one, other] = [whole, parts].map(|folder| fs::read(folder.join(name)).ok());
             assert!(one == other, "{}: {name} differs, {way}", self.label());
         }
@@ -280,9 +280,8 @@ impl Case {
         };
         assert!(expected.len() > 5);
         assert_eq!(xyz.iter().map(moment).collect::<Vec<_>>(), expected, "{label}: moments of the frames");
-        let output = &prepared.output;
-        let dump =
-            output.lammps_dump.then(|| ("dump.lammpstrj", lammps_dump(&folder.join("dump.lammpstrj"))));
+        let dump = folder.join("dump.lammpstrj");
+        let dump = dump.exists().then(|| ("dump.lammpstrj", lammps_dump(&dump)));
         let texts: Vec<(u64, u64, Places)> = xyz.iter().map(TextFrame::text).collect();
         for (name, frames) in [("trajectory.xyz", xyz)].into_iter().chain(dump) {
             assert_eq!(frames.len(), expected.len(), "{label}: {name}");
@@ -329,11 +328,12 @@ impl Case {
                 "{label}: {name}"
             );
         }
-        held.frames += (3 + usize::from(output.lammps_dump)) * expected.len();
+        held.frames += self.formats(prepared, folder, &texts);
 
-        let data = fs::read_to_string(folder.join("final.data")).unwrap_or_default();
-        for [x, y, z] in ends[1].values().filter(|_| output.lammps_data) {
-            assert!(data.contains(&format!(" {x:?} {y:?} {z:?}\n")), "{label}: final.data");
+        if let Ok(data) = fs::read_to_string(folder.join("final.data")) {
+            for [x, y, z] in ends[1].values() {
+                assert!(data.contains(&format!(" {x:?} {y:?} {z:?}\n")), "{label}: final.data");
+            }
         }
         let (summary, events) = (summary(folder), fs::read_to_string(folder.join("events.csv")));
         assert_eq!(
@@ -346,7 +346,31 @@ impl Case {
         if let (Ok(events), true) = (events, clock.events > 0) {
             assert_eq!(events.lines().count() as u64, clock.events + 1, "{label}: events.csv");
         }
-        held.files += FILES.iter().filter(|name| folder.join(name).exists()).count();
+        held.files += files().filter(|name| folder.join(name).exists()).count();
+    }
+
+    /// Every format that the scene asks for has a file, and frames that are read again are those of the text; how many frames there
+    /// are in all.
+    fn formats(&self, prepared: &Prepared, folder: &Path, texts: &[(u64, u64, Places)]) -> usize {
+        let mut frames = 0;
+        for format in FORMATS {
+            let (label, path) = (format!("{}: {}", self.label(), format.file), folder.join(format.file));
+            let is_asked = prepared.output.asks_for(format);
+            assert_eq!(fs::metadata(&path).is_ok_and(|file| file.len() > 0), is_asked, "{label}");
+            // Some formats are of scenes in a box alone.
+            assert!(is_asked || format.needs_box, "{label}");
+            if let FrameWriting::Growing(_) = format.writing {
+                frames += usize::from(is_asked) * texts.len();
+            }
+            if let FrameReading::Opens(open) = format.reading {
+                let frames = open(&path).unwrap_or_else(|error| panic!("{label}: {error}"));
+                let frame = |frame: Frame| (frame.step, frame.time.to_bits(), places(&frame.particles));
+                let frames =
+                    frames.map(|read| read.map(frame).unwrap_or_else(|error| panic!("{label}: {error}")));
+                assert_eq!(frames.collect::<Vec<_>>(), texts, "{label}");
+            }
+        }
+        frames
     }
 
     /// Curves and, where they are read, particles.

@@ -6,8 +6,10 @@ use super::window;
 use crate::report::section::{Film, Frame as Moment, Side};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
+use stripmine_physics::io::FORMATS;
 use stripmine_physics::io::extxyz::Frame;
-use stripmine_physics::io::trajectory::{Trajectory, TrajectoryError};
+use stripmine_physics::io::output_format::OutputFormat;
+use stripmine_physics::io::trajectory::{FrameReading, Trajectory, TrajectoryError};
 use stripmine_physics::number::counted;
 use stripmine_physics::particles::{Kind, Particle};
 use stripmine_physics::quoted;
@@ -27,16 +29,15 @@ const LOOKED_AT: usize = 100_000;
 pub(super) enum FilmError {
     /// The trajectory has no frame.
     #[error(
-        "{} has no frame, of which a film is made\n  help: a run with --set output.trajectory=true or output.gsd=true \
-         writes one every run.snapshot_every{}",
+        "{} has no frame, of which a film is made\n  help: a run with --set {} writes one every run.snapshot_every{others}",
         quoted::path(file),
-        if *has_dcd { "; trajectory.dcd has no sizes" } else { "" }
+        keys()
     )]
     NoFrame {
         /// The trajectory.
         file: PathBuf,
-        /// Whether there is one of another kind.
-        has_dcd: bool,
+        /// Files of other formats that are there, with what they lack.
+        others: String,
     },
     /// The trajectory cannot be read.
     #[error(transparent)]
@@ -49,7 +50,7 @@ pub(super) enum FilmError {
 impl Reported for FilmError {
     fn class(&self) -> Class {
         match self {
-            FilmError::Trajectory(error) if error.system().is_some() => Class::InputOutput,
+            FilmError::Trajectory(error) if error.is_of_system => Class::InputOutput,
             FilmError::NoFrame { .. } | FilmError::Trajectory(_) => Class::Input,
             FilmError::Colouring(error) => error.class(),
         }
@@ -59,11 +60,26 @@ impl Reported for FilmError {
         match self {
             FilmError::NoFrame { file, .. } => Some(FilePlace::at(file)),
             FilmError::Trajectory(error) => {
-                Some(FilePlace { line: error.line(), ..FilePlace::at(error.file()) })
+                Some(FilePlace { line: error.line, ..FilePlace::at(&error.file) })
             }
             FilmError::Colouring(_) => None,
         }
     }
+}
+
+/// The keys that ask for frames of which a film is made.
+fn keys() -> String {
+    let read = FORMATS.iter().filter(|format| format.is_read());
+    read.map(|format| format!("output.{}=true", format.key)).collect::<Vec<_>>().join(" or ")
+}
+
+/// The files of a run that no film is made of, with what they lack.
+fn others(run: &Path) -> String {
+    let lacking = |format: &OutputFormat| match format.reading {
+        FrameReading::Lacks(what) => Some(format!("; {} has no {what}", format.file)),
+        FrameReading::Opens(_) | FrameReading::Never => None,
+    };
+    FORMATS.iter().filter(|format| run.join(format.file).exists()).filter_map(lacking).collect()
 }
 
 /// The film of a run, and what a reader must know of it, a line each.
@@ -72,12 +88,14 @@ impl Reported for FilmError {
 /// If there is no trajectory, it cannot be read, or its particles cannot be coloured so.
 pub(super) fn film(run: &Path, colours: &Colours) -> Result<(Film, Vec<String>), FilmError> {
     let trajectory = Trajectory::open(run)?;
-    let (file, has_dcd) = (trajectory.path().to_owned(), run.join("trajectory.dcd").exists());
+    let file = trajectory.path().to_owned();
     let mut reel = Reel::default();
     for frame in trajectory {
         reel.add(frame?, colours)?;
     }
-    let Some((last, cast)) = reel.last.take() else { return Err(FilmError::NoFrame { file, has_dcd }) };
+    let Some((last, cast)) = reel.last.take() else {
+        return Err(FilmError::NoFrame { file, others: others(run) });
+    };
     let scene = scene(run);
     let (mut film, notes) = reel.film(&last, cast, colours, scene.as_ref())?;
     let name = run.file_stem().unwrap_or_default().to_string_lossy();

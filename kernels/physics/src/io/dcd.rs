@@ -8,8 +8,24 @@
 
 use super::FileError;
 use super::growing_file::{GrowingFile, GrowingFileError, Mark};
+use super::opened::SinkKind;
+use super::output_format::{FrameWriting, OutputFormat};
+use super::run_moment::{FramesEvery, RunHeader, RunMoment};
+use super::sink::Sink;
+use super::trajectory::FrameReading;
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
+
+/// The format.
+pub const FORMAT: OutputFormat = OutputFormat {
+    key: "dcd",
+    doc: "Snapshots as trajectory.dcd: positions in single precision, small and fast to write. Its frames are evenly apart: the end of a run between two snapshots is left out.",
+    is_default: false,
+    needs_box: false,
+    file: "trajectory.dcd",
+    writing: FrameWriting::Growing(SinkKind::of::<Writer>()),
+    reading: FrameReading::Lacks("sizes"),
+};
 
 /// Where every particle is at a step, in the order of the start.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,19 +38,46 @@ pub struct Positions {
     pub places: Vec<[f32; 3]>,
 }
 
-/// Distance of frames.
+/// Distance of frames as the heading says it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Spacing {
+struct Spacing {
     /// Steps between frames.
-    pub steps: u64,
+    steps: u64,
     /// The time step (time).
-    pub dt: f64,
+    dt: f64,
 }
 
 impl Spacing {
+    fn of(header: &RunHeader) -> Spacing {
+        /// Length of steps that have none, and distance of a frame at the start alone: any number serves.
+        const NO_MATTER: f64 = 1.0;
+        match (header.frames, header.time_step) {
+            (FramesEvery::Time(dt), None) => Spacing { steps: 1, dt },
+            (FramesEvery::Steps(steps), dt) => Spacing { steps, dt: dt.unwrap_or(NO_MATTER) },
+            // Nothing is evenly apart from the start.
+            (_, Some(dt)) => Spacing { steps: u64::MAX, dt },
+            (FramesEvery::Never, None) => Spacing { steps: 1, dt: NO_MATTER },
+        }
+    }
+
     /// Numbers of the heading.
     fn numbers(self) -> [i32; 2] {
         [whole(self.steps), (self.dt as f32).to_bits().cast_signed()]
+    }
+}
+
+/// The step of a moment, or the number of its frame; none where it is not evenly apart from the start.
+fn number(header: &RunHeader, steps: u64, now: f64) -> Option<u64> {
+    /// Rounding of multiples (parts of the distance, and of the multiple).
+    const ROUNDING: [f64; 2] = [1e-9, 4.0 * f64::EPSILON];
+    match (header.frames, header.time_step) {
+        (FramesEvery::Time(time), None) => {
+            let whole = (now / time).round();
+            let is_whole = (now / time - whole).abs() <= ROUNDING[0].max(ROUNDING[1] * whole);
+            is_whole.then_some(whole as u64).filter(|_| now == 0.0 || whole > 0.0)
+        }
+        (FramesEvery::Never, None) => (now == 0.0).then_some(0),
+        _ => Some(steps),
     }
 }
 
@@ -55,25 +98,27 @@ pub struct Writer {
 }
 
 impl Writer {
-    /// Begins a file where nothing is.
-    ///
-    /// # Errors
-    /// If something is there already, or the system does not let it be written.
-    pub fn create(path: impl Into<PathBuf>, spacing: Spacing) -> Result<Writer, FileError> {
-        Ok(Writer { file: GrowingFile::create(path)?, spacing, next: None, is_even: true })
+    /// Reports whether a frame is the next one of an evenly spaced row.
+    fn takes(&self, step: u64) -> bool {
+        self.is_even && step.is_multiple_of(self.spacing.steps) && self.next.is_none_or(|next| next == step)
+    }
+}
+
+impl Sink for Writer {
+    type Entry = Positions;
+
+    fn begin(path: PathBuf, header: &RunHeader) -> Result<Writer, FileError> {
+        let file = GrowingFile::create(path)?;
+        Ok(Writer { file, spacing: Spacing::of(header), next: None, is_even: true })
     }
 
-    /// Goes on at a mark.
-    ///
-    /// # Errors
-    /// If what was there at the mark is not there any more, the file is a link, or the system does not let it be read
-    /// and written.
-    pub fn resume(
-        path: impl Into<PathBuf>,
+    fn resume(
+        path: PathBuf,
+        header: &RunHeader,
         mark: Mark,
-        spacing: Spacing,
+        notes: &mut Vec<String>,
     ) -> Result<Writer, GrowingFileError> {
-        let mut file = GrowingFile::resume(path, mark)?;
+        let (mut file, spacing) = (GrowingFile::resume(path, mark)?, Spacing::of(header));
         let heading = file.first_bytes(HEADING)?;
         let number = |at: usize| {
             let bytes = heading.get(at..at + 4).unwrap_or_default();
@@ -84,75 +129,57 @@ impl Writer {
         let of_a_frame = u64::from(has_box != 0) * (48 + 8) + 3 * (4 * positive(count) + 8);
         let frames = mark.bytes.saturating_sub(HEADING as u64) / of_a_frame;
         let has_begun = mark.bytes > 0;
-        Ok(Writer {
-            file,
-            spacing,
-            next: has_begun.then(|| positive(first) + frames * positive(steps)),
-            is_even: !has_begun || [steps, dt] == spacing.numbers(),
-        })
+        let is_even = !has_begun || [steps, dt] == spacing.numbers();
+        if !is_even {
+            notes.push(format!(
+                "{} gets no more frames: those it has are otherwise apart than run.snapshot_every now says",
+                FORMAT.file
+            ));
+        }
+        let next = has_begun.then(|| positive(first) + frames * positive(steps));
+        Ok(Writer { file, spacing, next, is_even })
     }
 
-    /// Reports whether the frames that follow are as far apart as those that are there.
-    pub fn is_even(&self) -> bool {
-        self.is_even
-    }
-
-    /// Cuts off what a resumed file has after its mark; to be called once it is certain that the run goes on.
-    ///
-    /// # Errors
-    /// If the system does not let it be cut.
-    pub fn cut(&mut self) -> Result<(), FileError> {
+    fn cut(&mut self) -> Result<(), FileError> {
         self.file.cut()
     }
 
-    /// The file.
-    pub fn path(&self) -> &Path {
-        self.file.path()
+    fn entry(moment: &RunMoment<'_>) -> Option<Positions> {
+        let step = number(moment.header, moment.steps, moment.time)?;
+        Some(Positions { step, cell: moment.header.cell, places: moment.per_particle.positions() })
     }
 
-    /// Returns when all that was written is on the disk, and says how far that is.
-    ///
-    /// # Errors
-    /// If the system does not let it be written, or the file has been removed, replaced or changed meanwhile.
-    pub fn sync(&mut self) -> Result<Mark, FileError> {
+    /// Adds a frame, and before the first one the heading; leaves out one that is not evenly apart from those before.
+    fn write(&mut self, frame: Positions) -> io::Result<()> {
+        if !self.takes(frame.step) {
+            return Ok(());
+        }
+        let mut bytes = Vec::with_capacity(HEADING + 64 + 3 * (8 + 4 * frame.places.len()));
+        if self.next.is_none() {
+            heading(&mut bytes, &frame, self.spacing);
+        }
+        self.next = Some(frame.step + self.spacing.steps);
+        if has_box(&frame) {
+            // Sides and angles by turns, as CHARMM orders them: A, γ, B, β, α, C.
+            let [a, b] = frame.cell;
+            record(&mut bytes, &[a, 90.0, b, 90.0, 90.0, 1.0].map(f64::to_le_bytes).concat());
+        }
+        let length = (4 * frame.places.len() as u32).to_le_bytes();
+        for axis in 0..3 {
+            bytes.extend(length);
+            let from = bytes.len();
+            bytes.resize(from + 4 * frame.places.len(), 0);
+            for (number, place) in bytes[from..].chunks_exact_mut(4).zip(&frame.places) {
+                number.copy_from_slice(&place[axis].to_le_bytes());
+            }
+            bytes.extend(length);
+        }
+        self.file.write_all(&bytes)
+    }
+
+    fn mark(&mut self) -> Result<Mark, FileError> {
         self.file.sync()
     }
-
-    /// Reports whether a frame is the next one of an evenly spaced row.
-    fn takes(&self, step: u64) -> bool {
-        self.is_even && step.is_multiple_of(self.spacing.steps) && self.next.is_none_or(|next| next == step)
-    }
-}
-
-/// Adds a frame, and before the first one the heading; leaves out one that is not evenly apart from those before.
-///
-/// # Errors
-/// Those of the file.
-pub fn write(frame: &Positions, to: &mut Writer) -> io::Result<()> {
-    if !to.takes(frame.step) {
-        return Ok(());
-    }
-    let mut bytes = Vec::with_capacity(HEADING + 64 + 3 * (8 + 4 * frame.places.len()));
-    if to.next.is_none() {
-        heading(&mut bytes, frame, to.spacing);
-    }
-    to.next = Some(frame.step + to.spacing.steps);
-    if has_box(frame) {
-        // Sides and angles by turns, as CHARMM orders them: A, γ, B, β, α, C.
-        let [a, b] = frame.cell;
-        record(&mut bytes, &[a, 90.0, b, 90.0, 90.0, 1.0].map(f64::to_le_bytes).concat());
-    }
-    let length = (4 * frame.places.len() as u32).to_le_bytes();
-    for axis in 0..3 {
-        bytes.extend(length);
-        let from = bytes.len();
-        bytes.resize(from + 4 * frame.places.len(), 0);
-        for (number, place) in bytes[from..].chunks_exact_mut(4).zip(&frame.places) {
-            number.copy_from_slice(&place[axis].to_le_bytes());
-        }
-        bytes.extend(length);
-    }
-    to.file.write_all(&bytes)
 }
 
 /// Bytes of the heading.
@@ -194,6 +221,26 @@ fn record(bytes: &mut Vec<u8>, content: &[u8]) {
 mod tests {
     use super::*;
 
+    fn header(Spacing { steps, dt }: Spacing) -> RunHeader {
+        let frames = FramesEvery::Steps(steps);
+        RunHeader { frames, time_step: Some(dt), ..RunHeader::default() }
+    }
+
+    #[test]
+    fn moments_between_frames_have_no_number() {
+        for (every, time, expected) in [
+            (FramesEvery::Time(0.1), 0.0, Some(0)),
+            (FramesEvery::Time(0.1), 3.0 * 0.1, Some(3)),
+            (FramesEvery::Time(0.1), 0.35, None),
+            (FramesEvery::Time(0.1), 1e6 + 0.1, Some(10_000_001)),
+            (FramesEvery::Never, 0.0, Some(0)),
+            (FramesEvery::Never, 5.0, None),
+        ] {
+            let header = RunHeader { frames: every, ..RunHeader::default() };
+            assert_eq!(number(&header, 0, time), expected, "{time} by {every:?}");
+        }
+    }
+
     /// A reader of its own: the records of a file.
     fn records(mut bytes: &[u8]) -> Vec<&[u8]> {
         let mut all = vec![];
@@ -216,11 +263,11 @@ mod tests {
             places: vec![[1.5, -2.25, 0.0], [step as f32, f32::NAN, 4.0]],
         };
         for (cell, of_a_frame) in [([3.0, 4.0], 4), ([f64::INFINITY; 2], 3)] {
-            let mut file = Writer::create(&path, Spacing { steps: 10, dt: 0.5 }).unwrap();
+            let mut file = Writer::begin(path.clone(), &header(Spacing { steps: 10, dt: 0.5 })).unwrap();
             for step in [0, 10] {
-                write(&frame(step, cell), &mut file).unwrap();
+                file.write(frame(step, cell)).unwrap();
             }
-            file.sync().unwrap();
+            file.mark().unwrap();
             let bytes = std::fs::read(&path).unwrap();
             let records = records(&bytes);
             assert_eq!(records.len(), 3 + 2 * of_a_frame);
@@ -248,11 +295,11 @@ mod tests {
             let records = records(&bytes);
             records[3..].chunks(4).map(|frame| f32::from_le_bytes(frame[1].try_into().unwrap())).collect()
         };
-        let mut file = Writer::create(&path, even).unwrap();
+        let mut file = Writer::begin(path.clone(), &header(even)).unwrap();
         for step in [0, 1000, 2000, 2050] {
-            write(&frame(step), &mut file).unwrap();
+            file.write(frame(step)).unwrap();
         }
-        let mark = file.sync().unwrap();
+        let mark = file.mark().unwrap();
         assert_eq!(steps(), [0.0, 1000.0, 2000.0]);
         let bytes = std::fs::read(&path).unwrap();
         let number =
@@ -265,11 +312,12 @@ mod tests {
             (Spacing { dt: 0.01, ..even }, [3000, 4000, 5000], &[0.0, 1000.0, 2000.0]),
         ] {
             std::fs::write(&path, &bytes).unwrap();
-            let mut file = Writer::resume(&path, mark, spacing).unwrap();
-            assert_eq!(file.is_even(), spacing == even);
+            let mut notes = vec![];
+            let mut file = Writer::resume(path.clone(), &header(spacing), mark, &mut notes).unwrap();
+            assert_eq!(notes.is_empty(), spacing == even);
             file.cut().unwrap();
-            next.iter().for_each(|&step| write(&frame(step), &mut file).unwrap());
-            file.sync().unwrap();
+            next.iter().for_each(|&step| file.write(frame(step)).unwrap());
+            file.mark().unwrap();
             assert_eq!(steps(), expected);
         }
     }

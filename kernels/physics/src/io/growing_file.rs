@@ -73,6 +73,16 @@ pub enum GrowingFileError {
         /// Their checksum at the checkpoint.
         expected: u32,
     },
+    /// Other columns than this run writes.
+    #[error("{}:1: the columns are `{found}`; this run writes `{expected}`", quoted::path(file))]
+    Columns {
+        /// The file.
+        file: PathBuf,
+        /// Its heading.
+        found: String,
+        /// The heading of this run.
+        expected: String,
+    },
     /// A link, or no file at all.
     #[error("{} is a link or no file; the file itself is expected there", quoted::path(.0))]
     NoFile(PathBuf),

@@ -4,9 +4,52 @@
 //! Grains are of type 1, wall discs of type 2. The box reaches from −1/2 to 1/2 in z.
 
 use super::extxyz::{DEPTH, Frame};
+use super::growing_file::GrowingFile;
+use super::opened::SinkKind;
+use super::output_format::{FrameWriting, OutputFormat};
+use super::run_moment::RunMoment;
+use super::sink::{TextFormat, TextSink};
+use super::trajectory::FrameReading;
 use crate::particles::Kind;
 use std::f64::consts::PI;
 use std::io::{self, Write};
+use std::sync::Arc;
+
+/// The format of a dump.
+pub const DUMP: OutputFormat = OutputFormat {
+    key: "lammps_dump",
+    doc: "Snapshots as a LAMMPS dump.",
+    is_default: false,
+    needs_box: true,
+    file: "dump.lammpstrj",
+    writing: FrameWriting::Growing(SinkKind::of::<TextSink<Snapshots>>()),
+    reading: FrameReading::Never,
+};
+
+/// The format of a data file.
+pub const DATA: OutputFormat = OutputFormat {
+    key: "lammps_data",
+    doc: "The final state as a LAMMPS data file.",
+    is_default: false,
+    needs_box: true,
+    file: "final.data",
+    writing: FrameWriting::Last(|frame, out| write_data(frame, out)),
+    reading: FrameReading::Never,
+};
+
+struct Snapshots;
+
+impl TextFormat for Snapshots {
+    type Entry = Arc<Frame>;
+
+    fn entry(moment: &RunMoment<'_>) -> Option<Arc<Frame>> {
+        Some(moment.frame().clone())
+    }
+
+    fn write(frame: Arc<Frame>, out: &mut GrowingFile) -> io::Result<()> {
+        write_dump(&frame, out)
+    }
+}
 
 fn atom_type(kind: Kind) -> u8 {
     match kind {

@@ -1,75 +1,66 @@
 //! The frames of a run, whichever of its files has them.
 
-use super::{extxyz, gsd};
-use std::fs::{self, File};
-use std::io::{self, BufReader};
+use super::FORMATS;
+use super::extxyz::Frame;
+use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The file of frames that every run has, empty where they are not asked for.
-pub const TEXT: &str = "trajectory.xyz";
-/// The one with an index, on request.
-pub const INDEXED: &str = "trajectory.gsd";
+/// Reader of a format.
+pub enum FrameReading {
+    /// Opens a file.
+    Opens(fn(&Path) -> Result<FrameReader, TrajectoryError>),
+    /// Frames are not read: they lack something.
+    Lacks(&'static str),
+    /// Frames are not read.
+    Never,
+}
+
+/// Frames one after the other; ends after the first that is wrong.
+pub type FrameReader = Box<dyn Iterator<Item = Result<Frame, TrajectoryError>> + Send>;
+
+/// Returns frames of a format as those of a run.
+pub fn reader<E: Into<TrajectoryError>>(
+    frames: impl Iterator<Item = Result<Frame, E>> + Send + 'static,
+) -> FrameReader {
+    Box::new(frames.map(|frame| frame.map_err(Into::into)))
+}
+
+/// Error in the frames of a run.
+#[derive(Debug, thiserror::Error)]
+#[error("{words}")]
+pub struct TrajectoryError {
+    /// The file.
+    pub file: PathBuf,
+    /// The line of the first mistake, from 1, where the file has lines.
+    pub line: Option<usize>,
+    /// True where the system did not let the file be read.
+    pub is_of_system: bool,
+    /// The message, with file and place.
+    pub words: String,
+}
 
 /// The frames of a run, one after the other; ends after the first that is wrong.
 pub struct Trajectory {
     path: PathBuf,
-    frames: Frames,
-}
-
-enum Frames {
-    Text(extxyz::Frames<BufReader<File>>),
-    Indexed(gsd::Frames),
-}
-
-/// Why frames of a run cannot be read.
-#[derive(Debug, thiserror::Error)]
-pub enum TrajectoryError {
-    /// Extended XYZ.
-    #[error(transparent)]
-    Text(#[from] extxyz::ReadError),
-    /// GSD.
-    #[error(transparent)]
-    Indexed(#[from] gsd::ReadError),
-}
-
-impl TrajectoryError {
-    /// What the system said, if the file could not be read at all: a matter of input and output, not of content.
-    pub fn system(&self) -> Option<&io::Error> {
-        match self {
-            TrajectoryError::Text(error) => error.system(),
-            TrajectoryError::Indexed(error) => error.system(),
-        }
-    }
-
-    /// The file.
-    pub fn file(&self) -> &Path {
-        match self {
-            TrajectoryError::Text(error) => error.file.as_ref(),
-            TrajectoryError::Indexed(error) => &error.file,
-        }
-    }
-
-    /// The line of the first mistake, from 1, where the file has lines.
-    pub fn line(&self) -> Option<usize> {
-        match self {
-            TrajectoryError::Text(error) => error.mistakes.first()?.line,
-            TrajectoryError::Indexed(_) => None,
-        }
-    }
+    frames: FrameReader,
 }
 
 impl Trajectory {
-    /// Opens the frames of the run in a folder: those of its text or, where that has none, those of GSD.
+    /// Opens the frames of the run in a folder: the first file of a format that is read again and that has any.
     ///
     /// # Errors
     /// If the system does not let them be read, or the file is none of its kind.
     pub fn open(folder: &Path) -> Result<Trajectory, TrajectoryError> {
-        let [text, indexed] = [TEXT, INDEXED].map(|name| folder.join(name));
-        let has_text = fs::metadata(&text).is_ok_and(|text| text.len() > 0);
-        Ok(match !has_text && indexed.exists() {
-            true => Trajectory { frames: Frames::Indexed(gsd::Frames::open(&indexed)?), path: indexed },
-            false => Trajectory { frames: Frames::Text(extxyz::Frames::open(&text)?.in_space()), path: text },
-        })
+        let opener = |reading: &FrameReading| match reading {
+            FrameReading::Opens(open) => Some(*open),
+            FrameReading::Lacks(_) | FrameReading::Never => None,
+        };
+        let files = FORMATS.iter().filter_map(|it| Some((folder.join(it.file), opener(&it.reading)?)));
+        let files: Vec<_> = files.collect();
+        let has_any = |path: &Path| fs::metadata(path).is_ok_and(|file| file.len() > 0);
+        // Every run has the first of them.
+        let found = files.iter().find(|(path, _)| has_any(path)).unwrap_or(&files[0]);
+        Ok(Trajectory { frames: found.1(&found.0)?, path: found.0.clone() })
     }
 
     /// The file that has them.
@@ -79,12 +70,9 @@ impl Trajectory {
 }
 
 impl Iterator for Trajectory {
-    type Item = Result<extxyz::Frame, TrajectoryError>;
+    type Item = Result<Frame, TrajectoryError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        Some(match &mut self.frames {
-            Frames::Text(frames) => frames.next()?.map_err(TrajectoryError::Text),
-            Frames::Indexed(frames) => frames.next()?.map_err(TrajectoryError::Indexed),
-        })
+        self.frames.next()
     }
 }

@@ -11,7 +11,6 @@ mod list;
 pub mod nbody;
 pub mod observed;
 mod pairwise;
-mod per_particle;
 mod restored;
 mod several;
 mod simulation;
@@ -21,6 +20,7 @@ mod stepped;
 pub mod throughput;
 mod trials;
 
+pub use crate::particles::PerParticle;
 pub use clock::{Clock, Every, Schedule, Until, steps_over};
 pub use counted::Counted;
 pub use entry::{
@@ -31,7 +31,6 @@ pub use failure::{Culprit, Failure, FailureKind};
 pub use hard_disks::compress;
 pub use list::{METHODS, Methods, load, method, observer, prepare, vocabularies};
 pub use pairwise::Elapsed;
-pub use per_particle::PerParticle;
 pub use several::{DISMISSED, refuse_several_ranks};
 pub use simulation::{RunWarning, Simulation};
 pub use snapshot::Snapshot;

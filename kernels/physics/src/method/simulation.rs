@@ -2,9 +2,8 @@
 
 use super::clock::{Clock, Until};
 use super::failure::Failure;
-use super::per_particle::PerParticle;
 use super::snapshot::Snapshot;
-use crate::particles::Particles;
+use crate::particles::{Particles, PerParticle};
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;

@@ -1,8 +1,8 @@
 //! The files of a run, and the list of them that its folder has: `run.files`.
 
+use crate::io::FORMATS;
 use crate::io::checkpoint::NAME as CHECKPOINT;
 use crate::io::owned_folder::{FolderKind, Holds};
-use crate::io::trajectory;
 use crate::structure::OBSERVABLES;
 
 pub(super) use crate::io::owned_folder::OwnedFolder as RunFolder;
@@ -10,16 +10,6 @@ pub(super) use crate::io::owned_folder::OwnedFolder as RunFolder;
 const LIST: &str = "run.files";
 /// The table of observables.
 pub(super) const THERMO: &str = "thermo.csv";
-/// The frames.
-pub(super) const TRAJECTORY: &str = trajectory::TEXT;
-/// The frames' positions, as DCD.
-pub(super) const DCD: &str = "trajectory.dcd";
-/// The frames as GSD.
-pub(super) const GSD: &str = trajectory::INDEXED;
-/// The frames for LAMMPS.
-pub(super) const DUMP: &str = "dump.lammpstrj";
-/// The last state for LAMMPS.
-pub(super) const DATA: &str = "final.data";
 /// A row for each event.
 pub(super) const EVENTS: &str = "events.csv";
 /// The scene with every value spelled out.
@@ -29,10 +19,8 @@ pub(super) const SUMMARY: &str = "summary.json";
 /// The checkpoint before the newest.
 const PREVIOUS: &str = "run.checkpoint.previous";
 
-/// What a run writes whatever its scene.
-pub(super) const ALWAYS: [&str; 7] = [LIST, SCENE, THERMO, TRAJECTORY, SUMMARY, CHECKPOINT, PREVIOUS];
-/// What it writes on request, but for the structure.
-const ON_REQUEST: [&str; 5] = [DCD, GSD, EVENTS, DUMP, DATA];
+/// What a run writes whatever its scene, beside what grows.
+pub(super) const ALWAYS: [&str; 5] = [LIST, SCENE, SUMMARY, CHECKPOINT, PREVIOUS];
 /// Those that are removed first where a run begins again: without them, what is left is the beginning of a run.
 pub(super) const CHECKPOINTS: [&str; 2] = [PREVIOUS, CHECKPOINT];
 
@@ -44,7 +32,9 @@ pub(super) const RUN: FolderKind = FolderKind {
 };
 
 fn is_own(name: &str) -> bool {
-    let mut all = ALWAYS.into_iter().chain(ON_REQUEST).chain(OBSERVABLES.iter().map(|it| it.file));
+    let formats = FORMATS.iter().map(|it| it.file);
+    let mut all =
+        ALWAYS.into_iter().chain([THERMO, EVENTS]).chain(formats).chain(OBSERVABLES.iter().map(|it| it.file));
     all.any(|own| own == name)
 }
 

@@ -1,102 +1,122 @@
 //! The files of a run that grow: begun, taken up again, cut and brought to the disk together.
 
 use super::RunError;
-use super::folder::{DCD, DUMP, EVENTS, GSD, RunFolder, THERMO, TRAJECTORY};
-use super::frames::Frames;
-use super::pace::Pace;
+use super::folder::{EVENTS, RunFolder, THERMO};
+use super::structured::chosen;
 use crate::io::checkpoint::Counter;
-use crate::io::dcd::{self, Positions};
-use crate::io::extxyz::{self, Frame};
-use crate::io::growing_file::{GrowingFile, Mark};
-use crate::io::gsd::{self, LoggedFrame};
-use crate::io::table_file::TableFile;
-use crate::io::{FileError, lammps};
-use crate::method::{Clock, Kind, Prepared, Quantity};
+use crate::io::growing_file::Mark;
+use crate::io::opened::{OpenSink, SinkKind};
+use crate::io::output_format::{FrameWriting, OutputFormat};
+use crate::io::run_moment::{RunHeader, RunMoment};
+use crate::io::sink::{Due, TextSink};
+use crate::io::table_file::{EventRows, ObservedRows};
+use crate::io::{FORMATS, FileError};
+use crate::method::{Clock, Prepared};
 use std::collections::BTreeMap;
-use std::io::{self, Write};
-use std::sync::Arc;
 
-/// The growing files of a run; none where the scene does not ask for one.
-pub(super) struct Growing {
-    pub(super) thermo: TableFile,
-    pub(super) trajectory: Frames<Arc<Frame>>,
-    pub(super) dump: Option<Frames<Arc<Frame>>>,
-    pub(super) dcd: Option<Frames<Positions, dcd::Writer>>,
-    pub(super) gsd: Option<Frames<LoggedFrame, gsd::Writer>>,
-    pub(super) events: Option<GrowingFile>,
-    /// Distance of the frames of DCD.
-    pub(super) pace: Pace,
+/// A file that may grow with a run.
+struct GrowingSink {
+    name: &'static str,
+    kind: SinkKind,
+    /// Begun whatever the scene.
+    is_always_there: bool,
+    /// Added to: the scene asks for it.
+    is_asked: bool,
+    /// None where it is not begun.
+    sink: Option<Box<dyn OpenSink>>,
+    /// The moment of the last frame.
+    last: Option<Clock>,
 }
 
-/// What a checkpoint keeps of a file: how far it was written, and the moment of its last frame.
-pub(super) struct Kept<'c> {
-    counters: &'c BTreeMap<String, Counter>,
-}
-
-impl<'c> Kept<'c> {
-    pub(super) fn new(counters: &'c BTreeMap<String, Counter>) -> Self {
-        Kept { counters }
+impl GrowingSink {
+    fn new(name: &'static str, kind: SinkKind, [is_always_there, is_asked]: [bool; 2]) -> GrowingSink {
+        GrowingSink { name, kind, is_always_there, is_asked, sink: None, last: None }
     }
 
-    fn count(&self, name: &str) -> Result<u64, String> {
-        match self.counters.get(name) {
-            Some(Counter::Count(count)) => Ok(*count),
-            _ => Err(format!("the counter {name} is missing")),
+    fn is_begun(&self) -> bool {
+        self.is_always_there || self.is_asked
+    }
+
+    /// Adds a moment, unless the last frame is of it already.
+    fn add(&mut self, moment: &RunMoment<'_>, clock: Clock) -> Result<(), FileError> {
+        let Some(sink) = &mut self.sink else { return Ok(()) };
+        let is_frame = self.kind.due == Due::Frame;
+        if is_frame && self.last == Some(clock) {
+            return Ok(());
         }
+        if sink.add(moment)? && is_frame {
+            self.last = Some(clock);
+        }
+        Ok(())
     }
+}
 
-    fn mark(&self, file: &str) -> Result<Mark, String> {
-        let checksum = self.count(&format!("{file} checksum"))?;
-        let checksum =
-            u32::try_from(checksum).map_err(|_| format!("the checksum of {file} has more than 32 bits"))?;
-        Ok(Mark { bytes: self.count(&format!("{file} bytes"))?, checksum })
-    }
+/// The growing files of a run.
+pub(super) struct Growing(Vec<GrowingSink>);
 
-    fn last_frame(&self, file: &str) -> Option<Clock> {
-        let [steps, time, events] = last_names(file);
-        let Some(Counter::Sum(time)) = self.counters.get(&time) else { return None };
-        Some(Clock { steps: self.count(&steps).ok()?, time: *time, events: self.count(&events).ok()? })
+/// Returns the names of the files that a run begins, or writes at its end.
+pub(super) fn names(prepared: &Prepared) -> Vec<&'static str> {
+    let begun = Growing::of(prepared).0.into_iter().filter(GrowingSink::is_begun).map(|it| it.name);
+    let last = FORMATS.iter().filter(|it| matches!(it.writing, FrameWriting::Last(_)));
+    let last = last.filter(|format| prepared.output.asks_for(format)).map(|format| format.file);
+    begun.chain(last).chain(chosen(&prepared.output).map(|observable| observable.file)).collect()
+}
+
+/// Counters of a checkpoint.
+type Counters = BTreeMap<String, Counter>;
+
+fn count(kept: &Counters, name: &str) -> Result<u64, String> {
+    match kept.get(name) {
+        Some(Counter::Count(count)) => Ok(*count),
+        _ => Err(format!("the counter {name} is missing")),
     }
+}
+
+/// Returns how far a file was written.
+fn mark_of(kept: &Counters, file: &str) -> Result<Mark, String> {
+    let checksum = count(kept, &format!("{file} checksum"))?;
+    let checksum =
+        u32::try_from(checksum).map_err(|_| format!("the checksum of {file} has more than 32 bits"))?;
+    Ok(Mark { bytes: count(kept, &format!("{file} bytes"))?, checksum })
+}
+
+/// Returns the moment of a file's last frame.
+fn last_of(kept: &Counters, file: &str) -> Option<Clock> {
+    let [steps, time, events] = last_names(file);
+    let Some(Counter::Sum(time)) = kept.get(&time) else { return None };
+    Some(Clock { steps: count(kept, &steps).ok()?, time: *time, events: count(kept, &events).ok()? })
 }
 
 impl Growing {
+    /// Lists all files that may grow; none is begun.
+    fn of(prepared: &Prepared) -> Growing {
+        let rows = GrowingSink::new(THERMO, SinkKind::of::<TextSink<ObservedRows>>(), [true; 2]);
+        let of_format = |format: &OutputFormat| match format.writing {
+            FrameWriting::Growing(kind) => {
+                let is_asked = prepared.output.asks_for(format);
+                Some(GrowingSink::new(format.file, kind, [format.is_default, is_asked]))
+            }
+            FrameWriting::Last(_) => None,
+        };
+        let has_events = prepared.event_columns.is_some();
+        let events = GrowingSink::new(EVENTS, SinkKind::of::<TextSink<EventRows>>(), [false, has_events]);
+        Growing([rows].into_iter().chain(FORMATS.iter().filter_map(of_format)).chain([events]).collect())
+    }
+
     /// Begins the files that a scene asks for.
     pub(super) fn begin(
         folder: &RunFolder,
         prepared: &Prepared,
-        quantities: &'static [Quantity],
-        pace: Pace,
+        header: &RunHeader,
     ) -> Result<Growing, RunError> {
-        let thermo = TableFile::create(folder.file(THERMO), &columns(quantities))?;
-        let trajectory = Frames::of(GrowingFile::create(folder.file(TRAJECTORY))?, write_text, None);
-        let mut growing =
-            Growing { thermo, trajectory, dump: None, dcd: None, gsd: None, events: None, pace };
-        growing.begin_missing(folder, prepared, quantities)?;
+        let mut growing = Growing::of(prepared);
+        growing.begin_missing(folder, header)?;
         Ok(growing)
     }
 
-    /// Begins the files on request that are not there.
-    fn begin_missing(
-        &mut self,
-        folder: &RunFolder,
-        prepared: &Prepared,
-        quantities: &'static [Quantity],
-    ) -> Result<(), RunError> {
-        let output = &prepared.output;
-        if output.lammps_dump && self.dump.is_none() {
-            let file = GrowingFile::create(folder.file(DUMP))?;
-            self.dump = Some(Frames::of(file, write_dump, None));
-        }
-        if output.dcd && self.dcd.is_none() {
-            let file = dcd::Writer::create(folder.file(DCD), self.pace.spacing())?;
-            self.dcd = Some(Frames::of(file, dcd::write, None));
-        }
-        if output.gsd && self.gsd.is_none() {
-            let file = gsd::Writer::create(folder.file(GSD), &logged(quantities))?;
-            self.gsd = Some(Frames::of(file, gsd::write, None));
-        }
-        if self.events.is_none() {
-            self.events = begin_events(folder, prepared)?;
+    fn begin_missing(&mut self, folder: &RunFolder, header: &RunHeader) -> Result<(), RunError> {
+        for file in self.0.iter_mut().filter(|file| file.sink.is_none() && file.is_begun()) {
+            file.sink = Some((file.kind.begin)(folder.file(file.name), header)?);
         }
         Ok(())
     }
@@ -105,102 +125,65 @@ impl Growing {
     /// what is out of the ordinary.
     pub(super) fn resume(
         folder: &RunFolder,
-        quantities: &'static [Quantity],
-        kept: &Kept<'_>,
-        (pace, notes): (Pace, &mut Vec<String>),
+        prepared: &Prepared,
+        header: &RunHeader,
+        (kept, notes): (&Counters, &mut Vec<String>),
         foreign: impl Fn(String) -> RunError,
     ) -> Result<Growing, RunError> {
-        let mark = |file: &str| kept.mark(file).map_err(&foreign);
-        let thermo = TableFile::resume(folder.file(THERMO), &columns(quantities), mark(THERMO)?)?;
-        // A file that the checkpoint does not know was not asked for, or begun after it.
-        let known = |file: &str| Some((kept.mark(file).ok()?, kept.last_frame(file)));
-        let trajectory = GrowingFile::resume(folder.file(TRAJECTORY), mark(TRAJECTORY)?)?;
-        let mut growing = Growing {
-            thermo,
-            trajectory: Frames::of(trajectory, write_text, kept.last_frame(TRAJECTORY)),
-            dump: None,
-            dcd: None,
-            gsd: None,
-            events: None,
-            pace,
-        };
-        if let Some((mark, last)) = known(DUMP) {
-            let file = GrowingFile::resume(folder.file(DUMP), mark)?;
-            growing.dump = Some(Frames::of(file, write_dump, last));
-        }
-        if let Some((mark, last)) = known(DCD) {
-            let file = dcd::Writer::resume(folder.file(DCD), mark, pace.spacing())?;
-            if !file.is_even() {
-                notes.push(format!("{DCD} gets no more frames: those it has are otherwise apart than run.snapshot_every now says"));
-            }
-            growing.dcd = Some(Frames::of(file, dcd::write, last));
-        }
-        if let Some((mark, last)) = known(GSD) {
-            let file = gsd::Writer::resume(folder.file(GSD), &logged(quantities), mark)?;
-            growing.gsd = Some(Frames::of(file, gsd::write, last));
-        }
-        if let Some((mark, _)) = known(EVENTS) {
-            growing.events = Some(GrowingFile::resume(folder.file(EVENTS), mark)?);
+        let mut growing = Growing::of(prepared);
+        for file in &mut growing.0 {
+            let mark = match mark_of(kept, file.name) {
+                Ok(mark) => mark,
+                Err(reason) if file.is_always_there => return Err(foreign(reason)),
+                // A file that the checkpoint does not know was not asked for, or begun after it.
+                Err(_) => continue,
+            };
+            file.sink = Some((file.kind.resume)(folder.file(file.name), header, mark, notes)?);
+            file.last = last_of(kept, file.name);
         }
         Ok(growing)
     }
 
     /// Cuts the files where the checkpoint was written. Those that it does not know were begun after it, if they are there at
     /// all: they are begun again if the scene asks for them.
-    pub(super) fn cut(
+    pub(super) fn cut(&mut self, folder: &RunFolder, header: &RunHeader) -> Result<(), RunError> {
+        for file in &mut self.0 {
+            match &mut file.sink {
+                Some(sink) => sink.cut()?,
+                None => folder.remove_own(file.name)?,
+            }
+        }
+        self.begin_missing(folder, header)
+    }
+
+    /// Adds a moment to the files in which something is due and that the scene asks for.
+    pub(super) fn add(&mut self, due: Due, moment: &RunMoment<'_>, clock: Clock) -> Result<(), RunError> {
+        let mut asked = self.0.iter_mut().filter(|it| it.kind.due == due && it.is_asked);
+        Ok(asked.try_for_each(|it| it.add(moment, clock))?)
+    }
+
+    /// Adds a moment to a file, whether the scene asks for it or not.
+    pub(super) fn add_to(
         &mut self,
-        folder: &mut RunFolder,
-        prepared: &Prepared,
-        quantities: &'static [Quantity],
+        name: &str,
+        moment: &RunMoment<'_>,
+        clock: Clock,
     ) -> Result<(), RunError> {
-        self.thermo.cut()?;
-        self.trajectory.cut()?;
-        match &mut self.dump {
-            Some(dump) => dump.cut()?,
-            None => folder.remove_own(DUMP)?,
-        }
-        match &mut self.dcd {
-            Some(dcd) => dcd.cut()?,
-            None => folder.remove_own(DCD)?,
-        }
-        match &mut self.gsd {
-            Some(gsd) => gsd.cut()?,
-            None => folder.remove_own(GSD)?,
-        }
-        match &mut self.events {
-            Some(events) => events.cut()?,
-            None => folder.remove_own(EVENTS)?,
-        }
-        self.begin_missing(folder, prepared, quantities)
+        let mut there = self.0.iter_mut().filter(|it| it.name == name);
+        Ok(there.try_for_each(|it| it.add(moment, clock))?)
     }
 
     /// Returns when everything is on the disk; gives what a checkpoint keeps of it.
-    pub(super) fn sync(&mut self) -> Result<BTreeMap<String, Counter>, RunError> {
-        let mut counters = BTreeMap::new();
-        let mut keep = |file: &str, mark: Mark, last: Option<Clock>| {
-            counters.insert(format!("{file} bytes"), Counter::Count(mark.bytes));
-            counters.insert(format!("{file} checksum"), Counter::Count(mark.checksum.into()));
-            let Some(Clock { steps, time, events }) = last else { return };
+    pub(super) fn mark(&mut self) -> Result<Counters, RunError> {
+        let mut counters = Counters::new();
+        for GrowingSink { name, sink, last, .. } in &mut self.0 {
+            let Some(sink) = sink else { continue };
+            let Mark { bytes, checksum } = sink.mark()?;
+            counters.insert(format!("{name} bytes"), Counter::Count(bytes));
+            counters.insert(format!("{name} checksum"), Counter::Count(checksum.into()));
+            let Some(Clock { steps, time, events }) = *last else { continue };
             let moment = [Counter::Count(steps), Counter::Sum(time), Counter::Count(events)];
-            counters.extend(last_names(file).into_iter().zip(moment));
-        };
-        keep(THERMO, self.thermo.sync()?, None);
-        let (mark, last) = self.trajectory.sync()?;
-        keep(TRAJECTORY, mark, last);
-        if let Some(dump) = &mut self.dump {
-            let (mark, last) = dump.sync()?;
-            keep(DUMP, mark, last);
-        }
-        if let Some(dcd) = &mut self.dcd {
-            let (mark, last) = dcd.sync()?;
-            keep(DCD, mark, last);
-        }
-        if let Some(gsd) = &mut self.gsd {
-            let (mark, last) = gsd.sync()?;
-            keep(GSD, mark, last);
-        }
-        if let Some(events) = &mut self.events {
-            keep(EVENTS, events.sync()?, None);
+            counters.extend(last_names(name).into_iter().zip(moment));
         }
         Ok(counters)
     }
@@ -211,40 +194,64 @@ fn last_names(file: &str) -> [String; 3] {
     ["last", "last time", "last events"].map(|what| format!("{file} {what}"))
 }
 
-/// The names of the columns of `thermo.csv` after the step.
-fn columns(quantities: &'static [Quantity]) -> Vec<&'static str> {
-    quantities.iter().map(|quantity| quantity.name).collect()
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::method::{METHODS, load};
+    use crate::particles::{Particles, PerParticle};
 
-/// Frames are shared by the files that have them.
-fn write_text(frame: &Arc<Frame>, file: &mut GrowingFile) -> io::Result<()> {
-    extxyz::write(frame, file)
-}
+    struct Nothing;
 
-fn write_dump(frame: &Arc<Frame>, file: &mut GrowingFile) -> io::Result<()> {
-    lammps::write_dump(frame, file)
-}
+    impl PerParticle for Nothing {
+        fn particles(&self) -> Particles {
+            Particles::default()
+        }
+    }
 
-/// What a trajectory logs of a row: the frame has the time.
-fn is_logged(quantity: &Quantity) -> bool {
-    quantity.kind != Kind::Time
-}
+    /// Takes every moment but the third.
+    struct Numbers(Vec<u64>);
 
-/// The names of what a trajectory logs.
-fn logged(quantities: &'static [Quantity]) -> Vec<&'static str> {
-    quantities.iter().filter(|it| is_logged(it)).map(|it| it.name).collect()
-}
+    impl OpenSink for Numbers {
+        fn add(&mut self, moment: &RunMoment<'_>) -> Result<bool, FileError> {
+            self.0.push(moment.number);
+            Ok(moment.number != 3)
+        }
 
-/// What a trajectory logs of a row; not a number where there is no row.
-pub(super) fn logged_of(quantities: &'static [Quantity], row: Option<&[f64]>) -> Vec<f64> {
-    let value = |(place, quantity)| is_logged(quantity).then(|| row.map_or(f64::NAN, |row| row[place]));
-    quantities.iter().enumerate().filter_map(value).collect()
-}
+        fn cut(&mut self) -> Result<(), FileError> {
+            Ok(())
+        }
 
-/// The file of events with its heading, where the scene asks for them.
-fn begin_events(folder: &RunFolder, prepared: &Prepared) -> Result<Option<GrowingFile>, RunError> {
-    let Some(columns) = prepared.event_columns else { return Ok(None) };
-    let mut file = GrowingFile::create(folder.file(EVENTS))?;
-    writeln!(file, "{columns}").map_err(FileError::at(file.path(), "writing"))?;
-    Ok(Some(file))
+        fn mark(&mut self) -> Result<Mark, FileError> {
+            Ok(Mark { bytes: self.0.len() as u64, checksum: 0 })
+        }
+    }
+
+    /// No frame is there twice; without steps frames are of other moments where the time or the events are others. A moment that a
+    /// file takes nothing of is not that of its last frame.
+    #[test]
+    fn frames_are_there_once() {
+        let (prepared, _) = load("two-discs", &[], METHODS).unwrap();
+        let mut growing = Growing::of(&prepared);
+        growing.0[1].sink = Some(Box::new(Numbers(vec![])));
+        let header = RunHeader::default();
+        let at = |steps, time, events| Clock { steps, time, events };
+        for (clock, count) in [
+            (at(0, 0.0, 0), 1),
+            (at(1, 0.1, 0), 2),
+            (at(1, 0.1, 0), 2),
+            (at(0, 1.0, 8), 3),
+            (at(0, 2.0, 8), 4),
+            (at(0, 2.0, 9), 5),
+            (at(0, 2.0, 9), 5),
+        ] {
+            let moment = RunMoment::new(&header, &Nothing, (clock.steps, clock.number(), clock.time));
+            growing.add(Due::Frame, &moment, clock).unwrap();
+            let counters = growing.mark().unwrap();
+            assert_eq!(counters["trajectory.xyz bytes"], Counter::Count(count), "{clock:?}");
+            assert_eq!(counters["trajectory.xyz last events"], Counter::Count(clock.events), "{clock:?}");
+        }
+        let third = RunMoment::new(&header, &Nothing, (3, 3, 3.0));
+        growing.add(Due::Frame, &third, at(3, 3.0, 0)).unwrap();
+        assert_eq!(growing.mark().unwrap()["trajectory.xyz last"], Counter::Count(0));
+    }
 }

@@ -1,22 +1,23 @@
 //! A run: advance, observe, record; checkpoints, interruption, resumption. What it writes is a folder of its own:
-//! `scene.toml`, `thermo.csv`, `trajectory.xyz`, `summary.json`, `run.checkpoint`, a list of all this (`run.files`) and, on
-//! request, LAMMPS files, a row for each event (`events.csv`) and what is summed up of the structure.
+//! `scene.toml`, `thermo.csv`, `summary.json`, `run.checkpoint`, a list of all this (`run.files`), the particles in each format
+//! ([`FORMATS`](crate::io::FORMATS)) that the scene asks for and, on request, a row for each event (`events.csv`) and what is summed up
+//! of the structure.
 
 mod block_means;
 mod finished;
 mod folder;
 pub mod forecast;
-mod frames;
 mod functions;
 mod goal;
 mod growing;
 mod identity;
-mod on_request;
-mod pace;
+mod moments;
 mod recorder;
 mod structured;
 mod summary;
 mod table;
+#[cfg(test)]
+mod tests;
 
 pub use finished::{Finished, FinishedError, averages_of};
 pub use functions::{Function, Number, Point, function_of, functions_of};
@@ -28,7 +29,6 @@ pub use table::{TableError, TableReader};
 use crate::io::checkpoint::{CheckpointError, WriteError};
 use crate::io::growing_file::GrowingFileError;
 use crate::io::lock::Lock;
-use crate::io::table_file::TableFileError;
 use crate::io::{FileError, FolderError};
 use crate::method::{Clock, Failure, Prepared, Purpose, Quantity, Until};
 use crate::number::significant;
@@ -182,15 +182,12 @@ pub enum RunError {
     /// A file.
     #[error(transparent)]
     File(#[from] FileError),
-    /// The table of observables.
-    #[error(transparent)]
-    Table(#[from] TableFileError),
     /// The rows of earlier sessions.
     #[error(transparent)]
     Rows(#[from] TableError),
-    /// The frames.
+    /// A file of earlier sessions that grows.
     #[error(transparent)]
-    Frames(#[from] GrowingFileError),
+    Growing(#[from] GrowingFileError),
 }
 
 impl Reported for RunError {
@@ -208,11 +205,9 @@ impl Reported for RunError {
             RunError::Folder(error) => error.class(),
             RunError::Rows(error) => error.class(),
             RunError::Checkpoint(error) if error.is_corrupt() => Class::Checkpoint,
-            RunError::Table(error) if error.is_damage() => Class::Checkpoint,
-            RunError::Frames(error) if error.is_damage() => Class::Checkpoint,
+            RunError::Growing(error) if error.is_damage() => Class::Checkpoint,
             RunError::Checkpoint(_)
-            | RunError::Table(_)
-            | RunError::Frames(_)
+            | RunError::Growing(_)
             | RunError::CheckpointWriting(_)
             | RunError::File(_) => Class::InputOutput,
         }
@@ -334,7 +329,7 @@ pub fn run(
         if begun.elapsed() > LONGEST_STRIDE {
             strides = strides.saturating_mul(2);
         }
-        recorder.log(&simulation.take_events())?;
+        recorder.log(simulation.as_mut())?;
         let is_over = until.has_come(&simulation.clock());
         let failed = match advanced.and_then(|()| if is_over { simulation.check() } else { Ok(()) }) {
             Ok(()) => recorder.write_what_is_due(simulation.as_mut())?,

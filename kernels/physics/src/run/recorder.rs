@@ -1,24 +1,20 @@
 //! The folder of a run: what is written when.
 
 use super::finished::{LONGEST_SCENE, rows_of};
-use super::folder::{
-    ALWAYS, CHECKPOINTS, DATA, GSD, RUN, RunFolder, SCENE, SUMMARY, THERMO, TRAJECTORY, needed,
-};
+use super::folder::{ALWAYS, CHECKPOINTS, RUN, RunFolder, SCENE, SUMMARY, THERMO, needed};
 use super::goal::{Goal, Known};
-use super::growing::{Growing, Kept, logged_of};
+use super::growing::{Growing, names};
 use super::identity::{BITS, Identity, same_scene};
-use super::on_request::on_request;
-use super::pace::Pace;
+use super::moments::{header_of, moment_of};
 use super::structured::Structured;
 use super::table::TableReader;
 use super::{Existing, Job, RunError, Summary};
 use crate::averages::{Averages, Rows};
-use crate::domain::Domain;
 use crate::io::checkpoint::{Checkpoint, Counter, Latest, NAME, read_latest};
-use crate::io::dcd::Positions;
-use crate::io::extxyz::Frame;
-use crate::io::gsd::LoggedFrame;
-use crate::io::{FileError, lammps, regular_file};
+use crate::io::output_format::{FrameWriting, OutputFormat};
+use crate::io::run_moment::RunHeader;
+use crate::io::sink::Due;
+use crate::io::{FORMATS, FileError, regular_file};
 use crate::method::{
     Clock, Every, Failure, FailureKind, Quantity, Schedule, Simulation, Snapshot, Until, is_sound,
 };
@@ -27,7 +23,6 @@ use crate::scene::Output;
 use crate::structure::OBSERVABLES;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::time::Instant;
 
 /// The counter of events in a checkpoint.
@@ -39,8 +34,7 @@ pub(super) struct Recorder {
     identity: Identity,
     schedule: Schedule,
     output: Output,
-    seed: Option<u64>,
-    domain: Domain,
+    header: RunHeader,
     quantities: &'static [Quantity],
     /// When the next row, the next snapshot and the next checkpoint are due.
     due: [Option<Until>; 3],
@@ -102,10 +96,10 @@ impl Recorder {
         notes: Vec<String>,
     ) -> Result<Recorder, RunError> {
         folder.clear(&CHECKPOINTS)?;
-        folder.claim(ALWAYS.into_iter().chain(on_request(job.prepared)), false)?;
-        let pace = Pace::of(job.prepared.schedule.snapshots, simulation);
-        let growing = Growing::begin(&folder, job.prepared, job.quantities, pace)?;
-        let mut recorder = Recorder::with(folder, job, growing, &simulation.clock(), notes);
+        folder.claim(ALWAYS.into_iter().chain(names(job.prepared)), false)?;
+        let header = header_of(job.prepared, job.quantities, simulation);
+        let growing = Growing::begin(&folder, job.prepared, &header)?;
+        let mut recorder = Recorder::with(folder, job, (growing, header), &simulation.clock(), notes);
         recorder.new_notes = recorder.notes.len();
         recorder.write_scene()?;
         if let Some(failure) = recorder.thermo(simulation)? {
@@ -118,7 +112,7 @@ impl Recorder {
     fn with(
         folder: RunFolder,
         job: Job<'_>,
-        growing: Growing,
+        (growing, header): (Growing, RunHeader),
         clock: &Clock,
         notes: Vec<String>,
     ) -> Recorder {
@@ -131,8 +125,7 @@ impl Recorder {
             identity,
             schedule,
             output: prepared.output.clone(),
-            seed: prepared.seed,
-            domain: prepared.domain,
+            header,
             quantities,
             due,
             growing,
@@ -183,9 +176,9 @@ impl Recorder {
             };
             return Err(RunError::FewerSteps { folder: folder.path().to_owned(), done, asked });
         }
-        let kept = Kept::new(&checkpoint.counters);
-        let pace = Pace::of(prepared.schedule.snapshots, simulation);
-        let mut growing = Growing::resume(&folder, quantities, &kept, (pace, &mut notes), foreign)?;
+        let header = header_of(prepared, quantities, simulation);
+        let mut growing =
+            Growing::resume(&folder, prepared, &header, (&checkpoint.counters, &mut notes), foreign)?;
         let structured = Structured::resumed(prepared, &checkpoint, &mut notes).map_err(foreign)?;
         let snapshot = Snapshot {
             counters: std::mem::take(&mut checkpoint.counters),
@@ -193,13 +186,14 @@ impl Recorder {
         };
         simulation.restore(clock, snapshot).map_err(foreign)?;
 
-        folder.claim(ALWAYS.into_iter().chain(on_request(job.prepared)), false)?;
-        growing.cut(&mut folder, prepared, quantities)?;
+        folder.claim(ALWAYS.into_iter().chain(names(prepared)), false)?;
+        growing.cut(&folder, &header)?;
         // They speak of an end that is not reached yet.
         folder.remove_own(SUMMARY)?;
-        folder.remove_own(DATA)?;
-        OBSERVABLES.iter().try_for_each(|observable| folder.remove_own(observable.file))?;
-        let mut recorder = Recorder::with(folder, job, growing, &clock, notes);
+        let last = FORMATS.iter().filter(|format| matches!(format.writing, FrameWriting::Last(_)));
+        let mut of_the_end = last.map(|format| format.file).chain(OBSERVABLES.iter().map(|it| it.file));
+        of_the_end.try_for_each(|name| folder.remove_own(name))?;
+        let mut recorder = Recorder::with(folder, job, (growing, header), &clock, notes);
         recorder.structured = structured;
         recorder.new_notes = recorder.notes.len() - said;
         recorder.checkpointed = (recorder.new_notes == 0).then_some(clock);
@@ -256,13 +250,18 @@ impl Recorder {
             if let Some(failure) = self.thermo(simulation)? {
                 return Ok(Some(failure));
             }
-            self.structured.row(simulation);
+        }
+        let moment = moment_of(simulation, &self.header, &self.rows);
+        if rows {
+            self.structured.row(&moment);
         }
         if snapshots {
             self.due[1] = snapshot.next(&clock);
-            self.structured.snapshot(simulation);
-            self.snapshot(simulation)?;
+            self.structured.snapshot(&moment);
+            self.growing.add(Due::Frame, &moment, clock)?;
         }
+        // A checkpoint needs the room of its frame.
+        drop(moment);
         if checkpoints {
             self.due[2] = checkpoint.next(&clock);
             self.checkpoint(simulation)?;
@@ -271,12 +270,11 @@ impl Recorder {
     }
 
     /// Adds rows of events, where the scene asks for them.
-    pub(super) fn log(&mut self, rows: &str) -> Result<(), RunError> {
-        if let Some(events) = self.growing.events.as_mut() {
-            let written = events.write_all(rows.as_bytes());
-            written.map_err(FileError::at(events.path(), "writing events"))?;
-        }
-        Ok(())
+    pub(super) fn log(&mut self, simulation: &mut dyn Simulation) -> Result<(), RunError> {
+        let events = simulation.take_events();
+        let mut moment = moment_of(simulation, &self.header, &self.rows);
+        moment.events = &events;
+        self.growing.add(Due::Events, &moment, simulation.clock())
     }
 
     /// A row of observables, unless one of them is no finite number where there is one.
@@ -289,70 +287,36 @@ impl Recorder {
         if let Some((quantity, &value)) = named.into_iter().find(|(it, value)| !is_sound(it.name, **value)) {
             return Ok(Some(overflow(clock, quantity.name, value)));
         }
-        self.growing.thermo.append(clock.number(), &row)?;
+        let mut moment = moment_of(simulation, &self.header, &self.rows);
+        moment.row = Some(&row);
+        self.growing.add(Due::Row, &moment, clock)?;
         self.rows.add(&row);
         Ok(None)
     }
 
-    fn frame(&self, simulation: &dyn Simulation) -> Arc<Frame> {
-        let (domain, clock) = (self.domain, simulation.clock());
-        Arc::new(Frame {
-            particles: simulation.particles(),
-            cell: domain.lengths(),
-            origin: domain.corner(),
-            periodic: Some(domain.periodic()),
-            time: clock.time,
-            step: clock.number(),
-            seed: self.seed,
-            has_raised_ids: false,
-        })
-    }
-
     /// A frame in each of the files that are asked for and do not have it yet.
     fn snapshot(&mut self, simulation: &dyn Simulation) -> Result<(), RunError> {
-        let moment = simulation.clock();
-        let dcd = self.growing.dcd.as_mut().filter(|_| self.output.dcd);
-        if let Some((dcd, step)) = dcd.zip(self.growing.pace.number(moment)) {
-            let cell = self.domain.lengths();
-            dcd.add(moment, || Positions { step, cell, places: simulation.per_particle().positions() })?;
-        }
-        let Output { trajectory, lammps_dump, gsd, .. } = self.output;
-        if !(trajectory || lammps_dump || gsd) {
-            return Ok(());
-        }
-        let frame = self.frame(simulation);
-        if let Some(gsd) = self.growing.gsd.as_mut().filter(|_| gsd) {
-            gsd.add(moment, || logged(self.quantities, &self.rows, simulation, frame.clone()))?;
-        }
-        if let Some(dump) = self.growing.dump.as_mut().filter(|_| self.output.lammps_dump) {
-            dump.add(moment, || frame.clone())?;
-        }
-        if self.output.trajectory {
-            self.growing.trajectory.add(moment, || frame)?;
-        }
-        Ok(())
+        let moment = moment_of(simulation, &self.header, &self.rows);
+        self.growing.add(Due::Frame, &moment, simulation.clock())
     }
 
     /// The state of a failed step, whether snapshots are due or not, and what there is to say of it.
     pub(super) fn fail(&mut self, simulation: &dyn Simulation, summary: Summary) -> Result<(), RunError> {
-        let (moment, frame) = (simulation.clock(), self.frame(simulation));
-        let is_gsd_alone = self.is_gsd_alone();
-        match self.growing.gsd.as_mut().filter(|_| is_gsd_alone) {
-            Some(gsd) => gsd.add(moment, || logged(self.quantities, &self.rows, simulation, frame))?,
-            None => self.growing.trajectory.add(moment, || frame)?,
-        }
-        self.growing.sync()?;
+        let moment = moment_of(simulation, &self.header, &self.rows);
+        self.growing.add_to(self.trajectory().file, &moment, simulation.clock())?;
+        self.growing.mark()?;
         self.summary(summary).map(drop)
+    }
+
+    /// The first format of frames that are read again and asked for; without one, the first that every run has.
+    fn trajectory(&self) -> &'static OutputFormat {
+        let mut read = FORMATS.iter().filter(|format| format.is_read());
+        read.find(|format| self.output.asks_for(format)).unwrap_or(&FORMATS[0])
     }
 
     /// Where the frames are.
     pub(super) fn trajectory_path(&self) -> PathBuf {
-        self.folder.file(if self.is_gsd_alone() { GSD } else { TRAJECTORY })
-    }
-
-    /// Whether frames are in the file with an index and not in the text.
-    fn is_gsd_alone(&self) -> bool {
-        self.output.gsd && !self.output.trajectory
+        self.folder.file(self.trajectory().file)
     }
 
     /// The complete state, after everything before it is on the disk.
@@ -361,7 +325,7 @@ impl Recorder {
         if self.checkpointed == Some(clock) {
             return Ok(());
         }
-        let mut counters = self.growing.sync()?;
+        let mut counters = self.growing.mark()?;
         counters.insert("bits".to_owned(), Counter::Count(BITS));
         counters.insert(EVENT_COUNT.to_owned(), Counter::Count(clock.events));
         let mut snapshot = simulation.snapshot();
@@ -390,11 +354,13 @@ impl Recorder {
         summary: Summary,
     ) -> Result<Summary, RunError> {
         self.checkpoint(simulation)?;
-        self.snapshot(simulation)?;
-        self.growing.sync()?;
-        if self.output.lammps_data {
-            let frame = self.frame(simulation);
-            self.folder.write(DATA, |out| lammps::write_data(&frame, out))?;
+        let moment = moment_of(simulation, &self.header, &self.rows);
+        self.growing.add(Due::Frame, &moment, simulation.clock())?;
+        self.growing.mark()?;
+        for format in FORMATS.iter().filter(|format| self.output.asks_for(format)) {
+            if let FrameWriting::Last(write) = format.writing {
+                self.folder.write(format.file, |out| write(moment.frame(), out))?;
+            }
         }
         self.structured.write(&self.folder)?;
         self.summary(summary)
@@ -411,17 +377,6 @@ impl Recorder {
         self.folder.still_has(needed(self.checkpointed.is_some()))?;
         Ok(summary)
     }
-}
-
-/// A frame with what is logged of its moment.
-fn logged(
-    quantities: &'static [Quantity],
-    rows: &Rows,
-    simulation: &dyn Simulation,
-    frame: Arc<Frame>,
-) -> LoggedFrame {
-    let values = logged_of(quantities, rows.row_at(frame.time));
-    LoggedFrame { frame, images: simulation.per_particle().images(), values }
 }
 
 /// The failure of a sum over all particles that no number holds.

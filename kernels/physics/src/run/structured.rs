@@ -12,7 +12,8 @@ use super::block_means::Function;
 use super::folder::RunFolder;
 use super::functions::{Number, Point, write_csv};
 use crate::io::checkpoint::{Checkpoint, Column};
-use crate::method::{Every, Prepared, Simulation, Snapshot};
+use crate::io::run_moment::RunMoment;
+use crate::method::{Every, Prepared, Snapshot};
 use crate::particles::States;
 use crate::scene::Output;
 use crate::structure::{
@@ -183,25 +184,25 @@ impl Structured {
     }
 
     /// Looks at a moment of which there is a row.
-    pub(super) fn row(&mut self, simulation: &dyn Simulation) {
+    pub(super) fn row(&mut self, moment: &RunMoment<'_>) {
         if self.motion.is_none() || !self.passes(ROWS) {
             return;
         }
         let Structured { setting, sums, motion, .. } = self;
         let Some((motion, states)) = motion else { return };
         states.forget();
-        simulation.per_particle().states(states);
+        moment.per_particle.states(states);
         if self.follows {
-            let images = simulation.per_particle().images();
+            let images = moment.per_particle.images();
             // Lost particles have no images.
-            let left = (images.len() < self.particles).then(|| simulation.particles());
+            let left = (images.len() < self.particles).then(|| moment.per_particle.particles());
             states.unfold(setting.domain.lengths(), &images, left.as_ref());
         }
         let of = |sum: &Sum| match sum.observable.seen {
             Seen::Twice { of, .. } => Some(of),
             Seen::Once { .. } => None,
         };
-        motion.look(states.rows(), simulation.clock().time, |look, place, means| {
+        motion.look(states.rows(), moment.time, |look, place, means| {
             for sum in &mut *sums {
                 if let Some(of) = of(sum) {
                     sum.blocks.add(look, place, of(means), 1.0);
@@ -212,20 +213,20 @@ impl Structured {
     }
 
     /// Looks at a moment of which there is a snapshot.
-    pub(super) fn snapshot(&mut self, simulation: &dyn Simulation) {
+    pub(super) fn snapshot(&mut self, moment: &RunMoment<'_>) {
         if self.look.is_none() || !self.passes(SNAPSHOTS) {
             return;
         }
         let Some(look) = &mut self.look else { return };
         let is_any_left = look.at(|states| {
             states.forget();
-            simulation.per_particle().states(states);
+            moment.per_particle.states(states);
         });
         if !is_any_left {
             return;
         }
         if let Some(forces) = &self.forces {
-            look.meet(&simulation.particles(), forces);
+            look.meet(&moment.frame().particles, forces);
         }
         for sum in &mut self.sums {
             if let Seen::Once { .. } = sum.observable.seen {

@@ -6,9 +6,11 @@ use super::key_set::Rivals;
 use super::keys::Bounds::{NonNegative, Positive};
 use super::keys::Fallback::{Is, Otherwise, Required};
 use super::keys::Kind::{self, Number, OneOf, Switch, Text, Whole};
-use super::keys::{Use, define_keys};
+use super::keys::{Key, Use, define_keys};
 use super::target::Target;
 use super::values::Values;
+use crate::io::FORMATS;
+use crate::io::output_format::OutputFormat;
 use crate::number::significant;
 use crate::structure;
 
@@ -52,20 +54,19 @@ define_keys! {
         "Ends the run as soon as the mean of a quantity is known so well: the half width of its interval of 95 %, in percent of the mean or in its unit. The end by number or time that the scene gives is the latest; a run that comes to it first fails.";
 }
 
-define_keys! {
-    /// Files on request.
-    pub static OUTPUT;
-    TRAJECTORY = "output" "trajectory", Switch, "", Is("true"), ALWAYS,
-        "Snapshots as trajectory.xyz, extended XYZ.";
-    DCD = "output" "dcd", Switch, "", Is("false"), ALWAYS,
-        "Snapshots as trajectory.dcd: positions in single precision, small and fast to write. Its frames are evenly apart: the end of a run between two snapshots is left out.";
-    GSD = "output" "gsd", Switch, "", Is("false"), ALWAYS,
-        "Snapshots as trajectory.gsd, with an index: positions and velocities in single and in double precision, and the row of thermo.csv.";
-    LAMMPS_DUMP = "output" "lammps_dump", Switch, "", Is("false"), ALWAYS,
-        "Snapshots as a LAMMPS dump.";
-    LAMMPS_DATA = "output" "lammps_data", Switch, "", Is("false"), ALWAYS,
-        "The final state as a LAMMPS data file.";
-}
+static KEYS_OF_FORMATS: [Key; FORMATS.len()] = {
+    let (mut keys, mut at) = ([UNITS; FORMATS.len()], 0);
+    while at < keys.len() {
+        let OutputFormat { key: name, doc, is_default, .. } = FORMATS[at];
+        let fallback = Is(if is_default { "true" } else { "false" });
+        keys[at] = Key { section: "output", name, kind: Switch, fallback, doc, ..UNITS };
+        at += 1;
+    }
+    keys
+};
+
+/// Files on request: a key for each of [`FORMATS`], in their order.
+pub static OUTPUT: &[&Key] = &KEYS_OF_FORMATS.each_ref();
 
 define_keys! {
     /// What is summed up as a run goes, where there is a box.
@@ -129,16 +130,8 @@ pub fn too_many_steps(values: &Values) -> Vec<SceneError> {
 /// Which files are written.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Output {
-    /// Extended XYZ snapshots.
-    pub trajectory: bool,
-    /// Snapshots of positions as DCD.
-    pub dcd: bool,
-    /// Snapshots as GSD.
-    pub gsd: bool,
-    /// LAMMPS dump snapshots.
-    pub lammps_dump: bool,
-    /// The final state as a LAMMPS data file.
-    pub lammps_data: bool,
+    /// The formats that particles are written in, by their keys.
+    pub formats: Vec<&'static str>,
     /// The names of what is summed up of the structure.
     pub structure: Vec<String>,
     /// The largest share of the work that may take.
@@ -146,6 +139,11 @@ pub struct Output {
 }
 
 impl Output {
+    /// Whether particles are written in a format.
+    pub fn asks_for(&self, format: &OutputFormat) -> bool {
+        self.formats.contains(&format.key)
+    }
+
     /// Whether displacements are asked for, for which discs are followed across periodic sides.
     pub fn follows_motion(&self) -> bool {
         self.structure.iter().filter_map(|name| structure::observable(name)).any(|it| it.follows_motion())
@@ -153,11 +151,12 @@ impl Output {
 
     /// Meets its keys.
     pub fn bind(&mut self, binding: &mut dyn Binding) {
-        binding.switch(&TRAJECTORY, &mut self.trajectory);
-        binding.switch(&DCD, &mut self.dcd);
-        binding.switch(&GSD, &mut self.gsd);
-        binding.switch(&LAMMPS_DUMP, &mut self.lammps_dump);
-        binding.switch(&LAMMPS_DATA, &mut self.lammps_data);
+        let asked = FORMATS.iter().zip(OUTPUT.iter().copied()).filter(|&(format, key)| {
+            let mut is_asked = self.asks_for(format);
+            binding.switch(key, &mut is_asked);
+            is_asked
+        });
+        self.formats = asked.map(|(format, _)| format.key).collect();
         binding.words(&STRUCTURE, &mut self.structure);
         binding.number_if_any(&STRUCTURE_SHARE, &mut self.structure_share);
     }

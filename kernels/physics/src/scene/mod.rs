@@ -34,9 +34,8 @@ pub use discs::{Amount, Grains, Lining, List, Speed, Start, WallMotion};
 pub use domain::{Domain, GRAVITY, ORIGIN, PERIODIC, PLANAR_DOMAIN, SIDES};
 pub use error::{Place, Reason, SceneError, SceneErrors, Spot, Warning};
 pub use general::{
-    DT, DURATION, FORMAT_VERSION, HEADING, LAMMPS_DATA, LAMMPS_DUMP, METHOD, OUTPUT, Output, Run, STEP,
-    STEPPED_RUN, STEPS, STRUCTURE, SUMMED, TARGET, TARGETED, THERMO_EVERY, TIME, UNITS, bind_heading,
-    too_many_steps,
+    DT, DURATION, FORMAT_VERSION, HEADING, METHOD, OUTPUT, Output, Run, STEP, STEPPED_RUN, STEPS, STRUCTURE,
+    SUMMED, TARGET, TARGETED, THERMO_EVERY, TIME, UNITS, bind_heading, too_many_steps,
 };
 pub use key_set::{KeySet, Rivals, SECTIONS};
 pub use keys::{Bounds, Fallback, Key, Kind, Use, Value};

@@ -18,12 +18,12 @@ pub enum WriteError {
 }
 
 /// Passes bytes on and keeps their checksum.
-struct Sink<W> {
+struct Checksummed<W> {
     out: W,
     checksum: Hasher,
 }
 
-impl<W: Write> Sink<W> {
+impl<W: Write> Checksummed<W> {
     fn put(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.checksum.update(bytes);
         self.out.write_all(bytes)
@@ -40,7 +40,7 @@ impl Checkpoint {
         let state = self.state();
         let columns: u64 =
             self.columns.iter().map(|(name, column)| SECTION_FRAME + column_bytes(name, column)).sum();
-        let mut sink = Sink { out, checksum: Hasher::new() };
+        let mut sink = Checksummed { out, checksum: Hasher::new() };
         sink.put(&MAGIC)?;
         sink.put(&VERSION.to_le_bytes())?;
         sink.put(&(self.columns.len() as u32 + 1).to_le_bytes())?;
@@ -109,7 +109,7 @@ fn push_map<T>(bytes: &mut Vec<u8>, map: &BTreeMap<String, T>, push: impl Fn(&mu
 }
 
 fn put_all<W: Write, T, const WIDTH: usize>(
-    sink: &mut Sink<W>,
+    sink: &mut Checksummed<W>,
     values: &[T],
     bytes_of: impl Fn(&T) -> [u8; WIDTH],
 ) -> io::Result<()> {

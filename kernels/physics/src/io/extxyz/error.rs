@@ -1,6 +1,7 @@
 //! What can be wrong with an extended XYZ file, and where.
 
 use super::format::Format;
+use crate::io::trajectory::TrajectoryError;
 use crate::number::counted;
 use crate::quoted::{self, quoted};
 use std::fmt;
@@ -263,6 +264,17 @@ impl ReadError {
             Reason::Io(cause) => Some(cause),
             _ => None,
         })
+    }
+}
+
+impl From<ReadError> for TrajectoryError {
+    fn from(error: ReadError) -> TrajectoryError {
+        TrajectoryError {
+            line: error.mistakes.first().and_then(|mistake| mistake.line),
+            is_of_system: error.system().is_some(),
+            words: error.to_string(),
+            file: error.file.into(),
+        }
     }
 }
 

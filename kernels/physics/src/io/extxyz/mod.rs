@@ -25,7 +25,7 @@ mod writer;
 pub use error::{Mistake, ReadError, Reason};
 pub use format::Format;
 pub use reader::{Frames, Which, read};
-pub use writer::write;
+pub use writer::{FORMAT, write};
 
 use crate::particles::Particles;
 

@@ -1,8 +1,40 @@
 //! Writing a frame.
 
-use super::{DEPTH, Frame, OF_ASE, PROPERTIES};
+use super::{DEPTH, Frame, Frames, OF_ASE, PROPERTIES};
+use crate::io::growing_file::GrowingFile;
+use crate::io::opened::SinkKind;
+use crate::io::output_format::{FrameWriting, OutputFormat};
+use crate::io::run_moment::RunMoment;
+use crate::io::sink::{TextFormat, TextSink};
+use crate::io::trajectory::{FrameReading, reader};
 use crate::particles::Kind;
 use std::io::{self, Write};
+use std::sync::Arc;
+
+/// The format.
+pub const FORMAT: OutputFormat = OutputFormat {
+    key: "trajectory",
+    doc: "Snapshots as trajectory.xyz, extended XYZ.",
+    is_default: true,
+    needs_box: false,
+    file: "trajectory.xyz",
+    writing: FrameWriting::Growing(SinkKind::of::<TextSink<Snapshots>>()),
+    reading: FrameReading::Opens(|path| Ok(reader(Frames::open(path)?.in_space()))),
+};
+
+struct Snapshots;
+
+impl TextFormat for Snapshots {
+    type Entry = Arc<Frame>;
+
+    fn entry(moment: &RunMoment<'_>) -> Option<Arc<Frame>> {
+        Some(moment.frame().clone())
+    }
+
+    fn write(frame: Arc<Frame>, out: &mut GrowingFile) -> io::Result<()> {
+        write(&frame, out)
+    }
+}
 
 /// Writes a frame, numbers in the shortest form that reads back to the same bits.
 ///

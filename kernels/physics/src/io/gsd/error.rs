@@ -1,5 +1,6 @@
 //! What can be wrong with a GSD file, and where.
 
+use crate::io::trajectory::TrajectoryError;
 use crate::quoted::{self, quoted};
 use std::fmt;
 use std::io;
@@ -118,6 +119,17 @@ impl ReadError {
         match &self.reason {
             Reason::Io(cause) => Some(cause),
             _ => None,
+        }
+    }
+}
+
+impl From<ReadError> for TrajectoryError {
+    fn from(error: ReadError) -> TrajectoryError {
+        TrajectoryError {
+            line: None,
+            is_of_system: error.system().is_some(),
+            words: error.to_string(),
+            file: error.file,
         }
     }
 }

@@ -24,7 +24,22 @@ mod writer;
 
 pub use error::{Place, ReadError, Reason};
 pub use reader::Frames;
-pub use writer::{LoggedFrame, Writer, write};
+pub use writer::{LoggedFrame, Writer};
+
+use super::opened::SinkKind;
+use super::output_format::{FrameWriting, OutputFormat};
+use super::trajectory::{FrameReading, reader};
+
+/// The format.
+pub const FORMAT: OutputFormat = OutputFormat {
+    key: "gsd",
+    doc: "Snapshots as trajectory.gsd, with an index: positions and velocities in single and in double precision, and the row of thermo.csv.",
+    is_default: false,
+    needs_box: false,
+    file: "trajectory.gsd",
+    writing: FrameWriting::Growing(SinkKind::of::<Writer>()),
+    reading: FrameReading::Opens(|path| Ok(reader(Frames::open(path)?))),
+};
 
 /// The chunks of a frame; behind them comes a `log/` for each quantity that is logged. Readers expect every `log/` in the first frame.
 const CHUNKS: [&str; 22] = [

@@ -12,9 +12,11 @@ use super::{
 use crate::io::FileError;
 use crate::io::extxyz::Frame;
 use crate::io::growing_file::{GrowingFileError, Mark};
+use crate::io::run_moment::{RunHeader, RunMoment};
+use crate::io::sink::Sink;
 use crate::particles::{Kind, Particle};
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// A frame, and what is logged with it.
@@ -53,121 +55,110 @@ impl First {
     }
 }
 
-impl Writer {
-    /// Begins a trajectory where nothing is, to log quantities of these names.
-    ///
-    /// # Errors
-    /// If something is there already, or the system does not let it be written.
-    pub fn create(path: impl Into<PathBuf>, logged: &[&str]) -> Result<Writer, FileError> {
-        let logged = chunks_of(logged);
+impl Sink for Writer {
+    type Entry = LoggedFrame;
+
+    fn begin(path: PathBuf, header: &RunHeader) -> Result<Writer, FileError> {
+        let logged = chunks_of(header);
         Ok(Writer { file: GsdFile::create(path, names(&logged))?, logged, first: None })
     }
 
-    /// Goes on at a mark, logging what was logged before.
-    ///
-    /// # Errors
-    /// If what was there at the mark is not there any more, the file is a link, or the system does not let it be read and written.
-    pub fn resume(path: impl Into<PathBuf>, logged: &[&str], mark: Mark) -> Result<Writer, GrowingFileError> {
-        let logged = chunks_of(logged);
+    fn resume(
+        path: PathBuf,
+        header: &RunHeader,
+        mark: Mark,
+        _notes: &mut Vec<String>,
+    ) -> Result<Writer, GrowingFileError> {
+        let logged = chunks_of(header);
         Ok(Writer { file: GsdFile::resume(path, names(&logged), mark)?, logged, first: None })
     }
 
-    /// Cuts off what a resumed file has after its mark; to be called once it is certain that the run goes on.
-    ///
-    /// # Errors
-    /// If the system does not let it be cut.
-    pub fn cut(&mut self) -> Result<(), FileError> {
+    fn cut(&mut self) -> Result<(), FileError> {
         self.file.cut()?;
-        let first = Frames::open(self.path()).and_then(|mut frames| frames.next().transpose());
-        let first = first.map_err(|error| FileError::at(self.path(), "reading")(io::Error::other(error)))?;
+        let path = self.file.path();
+        let first = Frames::open(path).and_then(|mut frames| frames.next().transpose());
+        let first = first.map_err(|error| FileError::at(path, "reading")(io::Error::other(error)))?;
         self.first = first.map(|frame| First::of(&frame));
         Ok(())
     }
 
-    /// The file.
-    pub fn path(&self) -> &Path {
-        self.file.path()
+    fn entry(moment: &RunMoment<'_>) -> Option<LoggedFrame> {
+        let (frame, images) = (moment.frame().clone(), moment.per_particle.images());
+        Some(LoggedFrame { frame, images, values: moment.logged() })
     }
 
-    /// If the system does not let it be written.
-    ///
-    /// # Errors
-    /// If the system does not let it be written, or the file has been removed, replaced or changed meanwhile.
-    pub fn sync(&mut self) -> Result<Mark, FileError> {
+    fn write(&mut self, LoggedFrame { frame, images, values }: LoggedFrame) -> io::Result<()> {
+        let (particles, Cell { sides, centre, is_plane }) = (frame.particles.all(), Cell::of(&frame));
+        let first = self.first.as_ref();
+        let is_first = first.is_none();
+        let is_same = first.is_some_and(|first| first.ids.iter().copied().eq(ids(particles)));
+        let is_still = is_same && first.is_some_and(|first| !first.turns) && !turns(particles);
+        let has_sides = first.is_some_and(|first| first.sides == sides);
+        let number = |of: fn(&Particle) -> f64| particles.iter().map(move |it| [of(it)]);
+        let single = |of: fn(&Particle) -> f64| particles.iter().map(move |it| [of(it) as f32]);
+
+        let file = &mut self.file;
+        file.begin_frame()?;
+        file.add(STEP, [[frame.step]])?;
+        if is_first {
+            file.add(DIMENSIONS, [[if is_plane { 2_u8 } else { 3 }]])?;
+        }
+        if !has_sides {
+            file.add(BOX, sides.map(|side| [side]))?;
+        }
+        if !is_same {
+            file.add(COUNT, [[particles.len() as u32]])?;
+        }
+        if is_first {
+            file.add(TYPES, TYPE_NAMES.map(|name| name.map(|byte| byte as i8)))?;
+        }
+        if !is_same {
+            file.add(TYPE, particles.iter().map(|it| [u32::from(it.kind == Kind::Wall)]))?;
+            file.add(MASS, single(|it| it.mass))?;
+            file.add(DIAMETER, single(|it| 2.0 * it.radius))?;
+        }
+        let from_centre =
+            |it: &Particle| std::array::from_fn(|axis| (it.position[axis] - centre[axis]) as f32);
+        file.add::<f32, 3>(POSITION, particles.iter().map(from_centre))?;
+        file.add(VELOCITY, particles.iter().map(|it| it.velocity.map(|v| v as f32)))?;
+        if !images.is_empty() {
+            file.add(IMAGE, images.iter().map(|&[x, y]| [x, y, 0]))?;
+        }
+        file.add(TIME, [[frame.time]])?;
+        if is_first {
+            file.add(SIDES, frame.cell.map(|side| [side]))?;
+            file.add(CORNER, frame.origin.map(|at| [at]))?;
+            file.add(PERIODIC, frame.periodic.unwrap_or([true; 2]).map(|repeats| [u8::from(repeats)]))?;
+        }
+        if !is_same {
+            file.add(ID, particles.iter().map(|it| [it.id]))?;
+            file.add(RADIUS, number(|it| it.radius))?;
+            file.add(EXACT_MASS, number(|it| it.mass))?;
+        }
+        if is_plane {
+            file.add(EXACT_POSITION, particles.iter().map(Particle::place))?;
+            file.add(EXACT_VELOCITY, particles.iter().map(Particle::planar_velocity))?;
+        } else {
+            file.add(EXACT_POSITION, particles.iter().map(|it| it.position))?;
+            file.add(EXACT_VELOCITY, particles.iter().map(|it| it.velocity))?;
+        }
+        if !is_still {
+            file.add(ANGLE, number(|it| it.angle))?;
+            file.add(OMEGA, number(|it| it.omega))?;
+        }
+        for (name, value) in self.logged.iter().zip(values) {
+            file.add(name, [[value]])?;
+        }
+        file.end_frame()?;
+        if is_first {
+            self.first = Some(First::of(&frame));
+        }
+        Ok(())
+    }
+
+    fn mark(&mut self) -> Result<Mark, FileError> {
         self.file.sync()
     }
-}
-
-/// Adds a frame.
-///
-/// # Errors
-/// Those of the file.
-pub fn write(LoggedFrame { frame, images, values }: &LoggedFrame, to: &mut Writer) -> io::Result<()> {
-    let (particles, Cell { sides, centre, is_plane }) = (frame.particles.all(), Cell::of(frame));
-    let first = to.first.as_ref();
-    let is_first = first.is_none();
-    let is_same = first.is_some_and(|first| first.ids.iter().copied().eq(ids(particles)));
-    let is_still = is_same && first.is_some_and(|first| !first.turns) && !turns(particles);
-    let has_sides = first.is_some_and(|first| first.sides == sides);
-    let number = |of: fn(&Particle) -> f64| particles.iter().map(move |it| [of(it)]);
-    let single = |of: fn(&Particle) -> f64| particles.iter().map(move |it| [of(it) as f32]);
-
-    let file = &mut to.file;
-    file.begin_frame()?;
-    file.add(STEP, [[frame.step]])?;
-    if is_first {
-        file.add(DIMENSIONS, [[if is_plane { 2_u8 } else { 3 }]])?;
-    }
-    if !has_sides {
-        file.add(BOX, sides.map(|side| [side]))?;
-    }
-    if !is_same {
-        file.add(COUNT, [[particles.len() as u32]])?;
-    }
-    if is_first {
-        file.add(TYPES, TYPE_NAMES.map(|name| name.map(|byte| byte as i8)))?;
-    }
-    if !is_same {
-        file.add(TYPE, particles.iter().map(|it| [u32::from(it.kind == Kind::Wall)]))?;
-        file.add(MASS, single(|it| it.mass))?;
-        file.add(DIAMETER, single(|it| 2.0 * it.radius))?;
-    }
-    let from_centre = |it: &Particle| std::array::from_fn(|axis| (it.position[axis] - centre[axis]) as f32);
-    file.add::<f32, 3>(POSITION, particles.iter().map(from_centre))?;
-    file.add(VELOCITY, particles.iter().map(|it| it.velocity.map(|v| v as f32)))?;
-    if !images.is_empty() {
-        file.add(IMAGE, images.iter().map(|&[x, y]| [x, y, 0]))?;
-    }
-    file.add(TIME, [[frame.time]])?;
-    if is_first {
-        file.add(SIDES, frame.cell.map(|side| [side]))?;
-        file.add(CORNER, frame.origin.map(|at| [at]))?;
-        file.add(PERIODIC, frame.periodic.unwrap_or([true; 2]).map(|repeats| [u8::from(repeats)]))?;
-    }
-    if !is_same {
-        file.add(ID, particles.iter().map(|it| [it.id]))?;
-        file.add(RADIUS, number(|it| it.radius))?;
-        file.add(EXACT_MASS, number(|it| it.mass))?;
-    }
-    if is_plane {
-        file.add(EXACT_POSITION, particles.iter().map(Particle::place))?;
-        file.add(EXACT_VELOCITY, particles.iter().map(Particle::planar_velocity))?;
-    } else {
-        file.add(EXACT_POSITION, particles.iter().map(|it| it.position))?;
-        file.add(EXACT_VELOCITY, particles.iter().map(|it| it.velocity))?;
-    }
-    if !is_still {
-        file.add(ANGLE, number(|it| it.angle))?;
-        file.add(OMEGA, number(|it| it.omega))?;
-    }
-    for (name, &value) in to.logged.iter().zip(values) {
-        file.add(name, [[value]])?;
-    }
-    file.end_frame()?;
-    if is_first {
-        to.first = Some(First::of(frame));
-    }
-    Ok(())
 }
 
 fn ids(particles: &[Particle]) -> impl Iterator<Item = u32> {
@@ -178,8 +169,8 @@ fn turns(particles: &[Particle]) -> bool {
     particles.iter().any(|it| it.angle != 0.0 || it.omega != 0.0)
 }
 
-fn chunks_of(logged: &[&str]) -> Vec<String> {
-    logged.iter().map(|name| format!("log/{name}")).collect()
+fn chunks_of(header: &RunHeader) -> Vec<String> {
+    header.logged.iter().map(|&place| format!("log/{}", header.columns[place])).collect()
 }
 
 fn names(logged: &[String]) -> Vec<String> {

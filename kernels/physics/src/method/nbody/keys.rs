@@ -2,6 +2,7 @@
 
 use super::options::{ArithmeticKind, Engine, StartKind};
 use super::schemes::SchemeName;
+use crate::io::FORMATS;
 use crate::scene::Bounds::{AtMost, Finite, NonNegative, Positive, UpTo};
 use crate::scene::Fallback::{Is, Otherwise, Required};
 use crate::scene::Kind::{Choice, Number, Rows, Whole};
@@ -103,12 +104,13 @@ pub(super) static VOCABULARY: Vocabulary = Vocabulary {
 /// What does not belong together.
 fn own_rules(values: &Values) -> Vec<SceneError> {
     let mut errors = vec![];
-    for key in [&crate::scene::LAMMPS_DUMP, &crate::scene::LAMMPS_DATA] {
+    let of_boxes = FORMATS.iter().zip(OUTPUT).filter(|(format, _)| format.needs_box);
+    for key in of_boxes.map(|(_, key)| key) {
         if values.value(key) == Some(Value::Switch(true)) {
             let error = values
                 .spot(key)
                 .error(Reason::Contradiction, format!("`{}` needs a box, and bodies have none", key.path()));
-            errors.push(error.advising("leave it out: trajectory.xyz has what it would have"));
+            errors.push(error.advising(format!("leave it out: {} has what it would have", FORMATS[0].file)));
         }
     }
     errors

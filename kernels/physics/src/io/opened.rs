@@ -1,0 +1,200 @@
+//! A sink that a run has open, whatever its format. Frames are written by a thread of their own: a run goes on while a frame is written.
+
+use super::FileError;
+use super::growing_file::{GrowingFileError, Mark};
+use super::run_moment::{RunHeader, RunMoment};
+use super::sink::{Due, Sink};
+use std::io;
+use std::path::PathBuf;
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::thread::{self, JoinHandle};
+
+/// An open sink; its functions are as those of [`Sink`].
+pub(crate) trait OpenSink: Send {
+    fn cut(&mut self) -> Result<(), FileError>;
+
+    /// Gives whether anything is added.
+    fn add(&mut self, moment: &RunMoment<'_>) -> Result<bool, FileError>;
+
+    fn mark(&mut self) -> Result<Mark, FileError>;
+}
+
+/// A kind of sink: when something is added, and how one is opened.
+#[derive(Clone, Copy, Debug)]
+pub struct SinkKind {
+    pub(crate) due: Due,
+    pub(crate) begin: Begin,
+    pub(crate) resume: Resume,
+}
+
+type Begin = fn(PathBuf, &RunHeader) -> Result<Box<dyn OpenSink>, FileError>;
+type Resume = fn(PathBuf, &RunHeader, Mark, &mut Vec<String>) -> Result<Box<dyn OpenSink>, GrowingFileError>;
+
+impl SinkKind {
+    /// That of a sink.
+    pub const fn of<S: Sink>() -> SinkKind {
+        SinkKind {
+            due: S::DUE,
+            begin: |path, header| Ok(Opened::boxed(S::begin(path.clone(), header)?, path)),
+            resume: |path, header, mark, notes| {
+                Ok(Opened::boxed(S::resume(path.clone(), header, mark, notes)?, path))
+            },
+        }
+    }
+}
+
+/// A sink, or, once there is a frame, the thread that has it.
+struct Opened<S: Sink> {
+    path: PathBuf,
+    sink: Option<S>,
+    /// It writes one frame while the next is computed; a run that is faster waits for it.
+    thread: Option<Writing<S>>,
+}
+
+/// Where entries go, and the thread that writes them and gives the sink back.
+struct Writing<S: Sink> {
+    entries: SyncSender<S::Entry>,
+    thread: JoinHandle<(S, io::Result<()>)>,
+}
+
+fn write<S: Sink>(mut sink: S, entries: Receiver<S::Entry>) -> (S, io::Result<()>) {
+    let mut written = Ok(());
+    for entry in entries {
+        // After what went wrong nothing is written.
+        written = written.and_then(|()| sink.write(entry));
+    }
+    (sink, written)
+}
+
+impl<S: Sink> Opened<S> {
+    fn boxed(sink: S, path: PathBuf) -> Box<dyn OpenSink> {
+        Box::new(Opened { path, sink: Some(sink), thread: None })
+    }
+
+    /// Hands an entry to the thread, which is begun with the first.
+    fn send(&mut self, entry: S::Entry) -> io::Result<()> {
+        if let Some(sink) = self.sink.take() {
+            // Without room: of frames there is one that is written and one that is made.
+            let (entries, received) = sync_channel(0);
+            let thread = thread::Builder::new().name("frames".to_owned());
+            let thread = thread.spawn(move || write(sink, received))?;
+            self.thread = Some(Writing { entries, thread });
+        }
+        let sent = self.thread.as_ref().map(|writing| writing.entries.send(entry));
+        sent.and_then(Result::ok).ok_or_else(gone)
+    }
+
+    /// The sink, with all that was added written.
+    fn here(&mut self) -> io::Result<&mut S> {
+        if let Some(Writing { entries, thread }) = self.thread.take() {
+            drop(entries);
+            let (sink, written) = thread.join().map_err(|_| gone())?;
+            self.sink = Some(sink);
+            written?;
+        }
+        self.sink.as_mut().ok_or_else(gone)
+    }
+
+    fn failed(&self, cause: io::Error) -> FileError {
+        let action = match S::DUE {
+            Due::Events => "writing events",
+            Due::Row => "writing a row",
+            Due::Frame => "writing a frame",
+        };
+        FileError::at(&self.path, action)(cause)
+    }
+}
+
+fn gone() -> io::Error {
+    io::Error::other("the thread that writes has ended")
+}
+
+impl<S: Sink> OpenSink for Opened<S> {
+    fn cut(&mut self) -> Result<(), FileError> {
+        match self.here() {
+            Ok(sink) => sink.cut(),
+            Err(cause) => Err(self.failed(cause)),
+        }
+    }
+
+    fn add(&mut self, moment: &RunMoment<'_>) -> Result<bool, FileError> {
+        let Some(entry) = S::entry(moment) else { return Ok(false) };
+        let added = match S::DUE {
+            Due::Frame => self.send(entry),
+            Due::Events | Due::Row => self.here().and_then(|sink| sink.write(entry)),
+        };
+        added.map(|()| true).map_err(|cause| self.failed(cause))
+    }
+
+    fn mark(&mut self) -> Result<Mark, FileError> {
+        match self.here() {
+            Ok(sink) => sink.mark(),
+            Err(cause) => Err(self.failed(cause)),
+        }
+    }
+}
+
+impl<S: Sink> Drop for Opened<S> {
+    /// Everything added is written before anything else is done with the folder.
+    fn drop(&mut self) {
+        drop(self.here());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::growing_file::GrowingFile;
+    use crate::io::sink::{TextFormat, TextSink};
+    use crate::particles::{Particles, PerParticle};
+    use std::io::Write;
+
+    struct Numbers;
+
+    impl TextFormat for Numbers {
+        type Entry = u64;
+
+        fn entry(moment: &RunMoment<'_>) -> Option<u64> {
+            Some(moment.number).filter(|&number| number != 6)
+        }
+
+        fn write(number: u64, out: &mut GrowingFile) -> io::Result<()> {
+            match number {
+                7 => Err(io::Error::other("no seven")),
+                _ => writeln!(out, "{number}"),
+            }
+        }
+    }
+
+    struct Nothing;
+
+    impl PerParticle for Nothing {
+        fn particles(&self) -> Particles {
+            Particles::default()
+        }
+    }
+
+    /// Every frame in order, whatever the thread is doing; a failure comes out at the latest when all are to be on the disk.
+    #[test]
+    fn frames_are_written_in_order_and_failures_come_out() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("frames");
+        let header = RunHeader::default();
+        let mut sink = (SinkKind::of::<TextSink<Numbers>>().begin)(path.clone(), &header).unwrap();
+        let add = |sink: &mut Box<dyn OpenSink>, number| {
+            sink.add(&RunMoment::new(&header, &Nothing, (number, number, 0.0))).unwrap()
+        };
+        for (numbers, bytes) in [(&[0, 1, 1, 2, 5, 6][..], 10), (&[8, 9], 14), (&[], 14)] {
+            for &number in numbers {
+                assert_eq!(add(&mut sink, number), number != 6);
+            }
+            assert_eq!(sink.mark().unwrap().bytes, bytes);
+        }
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "0\n1\n1\n2\n5\n8\n9\n");
+        add(&mut sink, 7);
+        add(&mut sink, 8);
+        assert!(sink.mark().unwrap_err().to_string().contains("no seven"));
+        drop(sink);
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "0\n1\n1\n2\n5\n8\n9\n");
+    }
+}

@@ -1,0 +1,88 @@
+//! A format that a run writes its particles in is named where ARCHITECTURE.md says, and nowhere else.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+
+use crate::code::{CRATES, Code};
+use crate::documents::{quoted, root, section, text};
+use stripmine_physics::io::FORMATS;
+
+/// Other files that name one, each with the reason.
+const OTHERS: [(&str, &str); 1] = [(
+    "kernels/physics/src/method/langevin/quantities.rs",
+    "the help of a quantity says where velocities of another moment are",
+)];
+
+/// The module of the format that scenes start from and that frames in memory are of: others use it, too.
+const FRAMES: &str = "kernels/physics/src/io/extxyz";
+
+/// Displacements are summed up here.
+const SUMS: &str = "kernels/physics/src/run/structured.rs";
+
+/// The files of the crates that have some words, comments and tests apart.
+fn naming(words: &[String]) -> BTreeSet<String> {
+    let mut folders: Vec<_> = CRATES.iter().map(|it| root().join(it.folder)).collect();
+    let mut found = BTreeSet::new();
+    while let Some(folder) = folders.pop() {
+        for path in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|kind| kind == "rs") && !path.ends_with("tests.rs") {
+                let text = fs::read_to_string(&path).unwrap();
+                let code = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
+                let mut lines = code.lines().filter(|line| !line.trim_start().starts_with("//"));
+                if lines.any(|line| words.iter().any(|word| line.contains(word))) {
+                    found.insert(path.strip_prefix(root()).unwrap().to_str().unwrap().to_owned());
+                }
+            }
+        }
+    }
+    found
+}
+
+/// The text of a recipe, and the files and folders of the crates that it names.
+fn recipe(name: &str) -> (String, Vec<String>) {
+    let recipes = section(&text("ARCHITECTURE.md"), "Files to touch for");
+    let recipe = recipes.split("\n- ").find(|item| item.starts_with(&format!("*{name}*"))).unwrap();
+    let places = quoted(recipe).into_iter().filter(|word| word.starts_with("kernels/"));
+    (recipe.to_owned(), places.map(str::to_owned).collect())
+}
+
+/// A format takes the two files of the recipe: nothing but its own file has its key and the name of what it writes, and nothing but
+/// the list uses what is in that file.
+#[test]
+fn a_format_is_named_where_the_recipe_says() {
+    let (recipe, places) = recipe("A format of trajectories");
+    assert!(recipe.contains(", two files: "), "{recipe}");
+    let [folder, example, list] = &places[..] else { panic!("{places:?}") };
+    let arrows = Code::read(root()).arrows();
+    let mut files = BTreeSet::new();
+    for format in FORMATS {
+        let mut found = naming(&[format!("\"{}\"", format.key), format.file.to_owned()]);
+        OTHERS.iter().for_each(|(other, _)| _ = found.remove(*other));
+        let [own] = found.iter().map(String::as_str).collect::<Vec<_>>()[..] else {
+            panic!("{}: {found:?}", format.file)
+        };
+        let module = match Path::new(own).parent() {
+            Some(parent) if parent != Path::new(folder) => parent.to_str().unwrap(),
+            _ => own,
+        };
+        assert!(module.starts_with(folder.as_str()), "{own}");
+        let is_user = |(from, to): &&(String, String)| to.starts_with(module) && !from.starts_with(module);
+        let users: BTreeSet<&str> = arrows.iter().filter(is_user).map(|(from, _)| from.as_str()).collect();
+        assert!(module == FRAMES || users == BTreeSet::from([list.as_str()]), "{own}: {users:?}");
+        files.insert(own.to_owned());
+    }
+    assert!(files.len() > 3 && files.contains(example), "{files:?}");
+}
+
+/// Data of particles are asked for where they are written or summed up, and by nothing between that and the method.
+#[test]
+fn data_of_particles_are_asked_for_where_they_are_written() {
+    let (_, places) = recipe("Data of each particle");
+    let [home, format] = &places[..] else { panic!("{places:?}") };
+    assert!(text(home).contains("pub trait PerParticle {") && text(home).contains("fn images(&self)"));
+    let users = naming(&["per_particle.images()", "per_particle().images()"].map(str::to_owned));
+    assert_eq!(users, BTreeSet::from([format.as_str(), SUMS].map(str::to_owned)));
+}
