@@ -113,7 +113,7 @@ fn bad_machine_files_are_refused() {
         std::fs::write(folder.join("machine.toml"), text).unwrap();
         stripmine(folder, &["table", "--machine", "machine.toml"])
     };
-    all_are_refused("machine", 30, ask, |line, column| format!("line {line}, column {column}"));
+    all_are_refused("machine", 30, ask, |line, column| format!("machine.toml:{line}:{column}: "));
 }
 
 #[test]
@@ -126,5 +126,5 @@ fn bad_host_files_are_refused() {
         std::fs::write(folder.join("host.toml"), host.replacen(old, new, 1)).unwrap();
         stripmine(folder, &["validate-model", "--host", "host.toml"])
     };
-    all_are_refused("host", 15, ask, |line, column| format!("line {line}, column {column}"));
+    all_are_refused("host", 15, ask, |line, column| format!("host.toml:{line}:{column}: "));
 }

@@ -84,7 +84,7 @@ const CASES: &[(&[&str], i32, &str, &[&str])] = &[
     (&["validate-model", "--particles", "100", "--occupancies", "7"], 2, "usage", &["--occupancies"]),
     (&["validate-model", "--seconds", "0"], 2, "usage", &["--seconds", "0"]),
     (&["validate-model", "--host", "none.toml"], 5, "input-output", &["none.toml"]),
-    (&["validate-model", "--host", "latin.toml"], 3, "input", &["line 3", "UTF-8"]),
+    (&["validate-model", "--host", "latin.toml"], 3, "input", &["latin.toml:3:", "UTF-8"]),
     (&["validate-model", "--host", "scene.toml", "--calibrate"], 2, "usage", &["--calibrate"]),
     (&["validate-model", "--out", "file"], 5, "input-output", &["file"]),
     (&["chart"], 2, "usage", &["WHAT"]),

@@ -35,7 +35,7 @@ fn a_machine_file_of_ones_own_is_asked_and_every_clock_answers() {
 fn bad_machine_files_are_named_with_line_and_column() {
     let folder = tempfile::tempdir().unwrap();
     for (old, new, said) in [
-        ("value = 20", "value = -20", "line 6, column 21: `start_up.default` is -20"),
+        ("value = 20", "value = -20", "mine.toml:6:21: `start_up.default` is -20"),
         ("default =", "subtract =", "`subtract` names no class of operations"),
         ("year = ", "jahr = ", "unknown field `jahr`"),
         ("title = \"Mine\"\n", "", "missing field `title`"),
@@ -43,7 +43,7 @@ fn bad_machine_files_are_named_with_line_and_column() {
         let path = file(&folder, &MACHINE.replace(old, new));
         let out = stripmine(&["table", "--machine", &path]).code(3);
         let complaint = String::from_utf8_lossy(&out.get_output().stderr).into_owned();
-        assert!(complaint.contains(said) && complaint.contains("line "), "{complaint}");
+        assert!(complaint.contains(said) && complaint.contains("mine.toml:"), "{complaint}");
     }
 }
 
@@ -56,9 +56,9 @@ fn all_wrong_values_of_a_machine_file_are_said_at_once() {
     let out = stripmine(&["table", "--machine", &path]).code(3);
     let complaint = String::from_utf8_lossy(&out.get_output().stderr).into_owned();
     for said in [
-        "line 2, column 9: `title`: invalid type: integer `7`, expected a string",
-        "line 3, column 18: `year` is 2026.5, but must be a whole number",
-        "line 6, column 21: `start_up.default` is -20",
+        "mine.toml:2:9: `title`: invalid type: integer `7`, expected a string",
+        "mine.toml:3:18: `year` is 2026.5, but must be a whole number",
+        "mine.toml:6:21: `start_up.default` is -20",
     ] {
         assert!(complaint.contains(said), "{said}: {complaint}");
     }

@@ -1,8 +1,7 @@
 //! Files of claims.
 
 use serde::Deserialize;
-use std::ops::Range;
-use stripmine_physics::reported::{Class, Reported};
+use stripmine_physics::input::{InputErrors, InputText, Reason, Spot};
 use toml::Spanned;
 
 /// Source of a claim.
@@ -75,9 +74,9 @@ pub struct Claim {
     /// Earlier limits, the newest first.
     #[serde(default)]
     pub before: Vec<Limit>,
-    /// File and line.
+    /// Place in its file.
     #[serde(skip)]
-    pub at: (String, usize),
+    pub at: Spot,
 }
 
 /// Limit that decides a claim.
@@ -138,29 +137,13 @@ pub enum Unjudged {
     Contradiction,
 }
 
-/// A file of claims that cannot be understood.
-#[derive(Debug, thiserror::Error)]
-#[error("claims/{file} line {line}: {cause}")]
-pub struct ClaimError {
-    file: String,
-    line: usize,
-    cause: String,
-}
-
-impl Reported for ClaimError {
-    fn class(&self) -> Class {
-        Class::Usage
-    }
-}
-
 impl Claim {
     /// Refuses the claim, with its place.
-    pub(super) fn refused(&self, cause: impl Into<String>) -> ClaimError {
-        let (file, line) = self.at.clone();
-        ClaimError { file, line, cause: cause.into() }
+    pub(super) fn refused(&self, cause: impl Into<String>) -> InputErrors {
+        self.at.error(Reason::Contradiction, cause).into()
     }
 
-    fn check(&self) -> Result<(), ClaimError> {
+    fn check(&self) -> Result<(), InputErrors> {
         let Limit { expected, relation, tolerance, relative, .. } = &self.limit;
         let has_tolerance = tolerance.is_some() || relative.is_some();
         let cause = match (&self.value, self.verdict) {
@@ -186,29 +169,26 @@ impl Claim {
 /// Claims of a file's text.
 ///
 /// # Errors
-/// [`ClaimError`] with the line of what cannot be understood.
-pub fn read(file: &str, text: &str) -> Result<Vec<Claim>, ClaimError> {
+/// [`InputErrors`] with the place of what cannot be understood.
+pub fn read(file: &str, text: &str) -> Result<Vec<Claim>, InputErrors> {
     #[derive(Deserialize)]
     #[serde(deny_unknown_fields)]
     struct File {
         #[serde(default)]
         claim: Vec<Spanned<toml::Table>>,
     }
-    let line = |span: Range<usize>| text[..span.start.min(text.len())].lines().count().max(1);
-    let wrong = |cause: &toml::de::Error, line| ClaimError {
-        file: file.to_owned(),
-        line,
-        cause: cause.message().to_owned(),
-    };
-    let all: File = toml::from_str(text).map_err(|cause| wrong(&cause, cause.span().map_or(1, line)))?;
-    let claim = |it: Spanned<toml::Table>| {
-        // The span of a table begins at its head.
-        let at = line(it.span()) + usize::from(text[..it.span().start].ends_with('\n'));
+    let file = format!("claims/{file}");
+    let text = InputText::new(&file, text);
+    let wrong = |cause: &toml::de::Error, spot: &Spot| spot.error(Reason::Type, cause.message());
+    let all: File = toml::from_str(text.text)
+        .map_err(|cause| wrong(&cause, &text.spot(cause.span().map_or(0, |span| span.start))))?;
+    let claim = |it: Spanned<toml::Table>| -> Result<Claim, InputErrors> {
+        let at = text.spot(it.span().start);
         let (limit, mut rest): (toml::Table, toml::Table) =
             it.into_inner().into_iter().partition(|(key, _)| LIMIT.contains(&key.as_str()));
         rest.insert("limit".to_owned(), toml::Value::Table(limit));
-        let mut claim: Claim = rest.try_into().map_err(|cause| wrong(&cause, at))?;
-        claim.at = (file.to_owned(), at);
+        let mut claim: Claim = rest.try_into().map_err(|cause| wrong(&cause, &at))?;
+        claim.at = at;
         claim.check()?;
         Ok(claim)
     };
@@ -226,7 +206,7 @@ mod tests {
     fn claims_have_lines() {
         let claims =
             read("bp93.toml", &format!("# head\n\n{GOOD}\n{}", GOOD.replace("\"a\"", "\"b\""))).unwrap();
-        assert_eq!(claims.iter().map(|claim| claim.at.1).collect::<Vec<_>>(), [3, 15]);
+        assert_eq!(claims.iter().map(|claim| claim.at.place.unwrap().line).collect::<Vec<_>>(), [3, 15]);
         assert_eq!(claims[1].limit.expected, Some(Expected::Number(59.0)));
     }
 
@@ -244,7 +224,7 @@ mod tests {
             ("\"BP93\"", "\"BP94\"", "BP93"),
         ] {
             let said = read("bp93.toml", &format!("\n{}", GOOD.replace(from, to))).unwrap_err().to_string();
-            assert!(said.starts_with("claims/bp93.toml line 2: ") && said.contains(named), "{to}: {said}");
+            assert!(said.starts_with("claims/bp93.toml:2:") && said.contains(named), "{to}: {said}");
         }
     }
 }

@@ -6,11 +6,12 @@
 mod file;
 mod verdict;
 
-pub use file::{Claim, ClaimError, Expected, Limit, Source, read};
+pub use file::{Claim, Expected, Limit, Source, read};
 pub use verdict::{Judged, Verdict};
 
 use crate::frame::{Expressions, Scope};
 use rust_embed::RustEmbed;
+use stripmine_physics::input::InputErrors;
 
 /// The files of claims: read from the source tree by a development build, part of the program in a release.
 #[derive(RustEmbed)]
@@ -20,8 +21,8 @@ struct Files;
 /// Every claim, source by source, in the order of the files.
 ///
 /// # Errors
-/// [`ClaimError`] with the file and the line of what cannot be understood.
-pub fn all() -> Result<Vec<Claim>, ClaimError> {
+/// [`InputErrors`] with the file and the line of what cannot be understood.
+pub fn all() -> Result<Vec<Claim>, InputErrors> {
     let mut claims = vec![];
     for source in Source::ALL {
         let name = source.file();
@@ -54,13 +55,13 @@ pub fn judge_where_possible<'c>(
 /// Judges the claims of an item by its frames, which were made on a day (year-month-day).
 ///
 /// # Errors
-/// [`ClaimError`] if an expression names a table or a column that is not there.
+/// [`InputErrors`] if an expression names a table or a column that is not there.
 pub fn judge<'c>(
     claims: &'c [Claim],
     item: &str,
     scope: &Scope,
     date: &str,
-) -> Result<Vec<Judged<'c>>, ClaimError> {
+) -> Result<Vec<Judged<'c>>, InputErrors> {
     let expressions = Expressions::new();
     let own = claims.iter().filter(|claim| claim.item.as_deref() == Some(item));
     own.map(|claim| verdict::judge(claim, &expressions, scope, date)).collect()

@@ -1,8 +1,9 @@
 //! Verdicts: one function of value, error, expectation and tolerance.
 
-use super::file::{Claim, ClaimError, Expected, Limit, Relation, Unjudged};
+use super::file::{Claim, Expected, Limit, Relation, Unjudged};
 use crate::frame::{Expressions, Scope};
 use minijinja::value::{Value, ValueKind};
+use stripmine_physics::input::InputErrors;
 use stripmine_physics::number::{significant, with_bar};
 
 /// Verdict of a claim.
@@ -111,7 +112,7 @@ pub(super) fn judge<'c>(
     expressions: &Expressions,
     scope: &Scope,
     date: &str,
-) -> Result<Judged<'c>, ClaimError> {
+) -> Result<Judged<'c>, InputErrors> {
     let (Some(value), Some(expected), Some(relation)) =
         (&claim.value, &claim.limit.expected, claim.limit.relation)
     else {
@@ -273,7 +274,7 @@ mod tests {
             ("value = \"t.where(name='c').column('x')\"\n", "empty list"),
         ] {
             let said = judged(&format!("{value}{limit}")).unwrap_err();
-            assert!(said.starts_with("claims/bp93.toml line 1: ") && said.contains(named), "{said}");
+            assert!(said.starts_with("claims/bp93.toml:1:") && said.contains(named), "{said}");
         }
     }
 }

@@ -1,49 +1,32 @@
-//! Reads the TOML files of machines and hosts, and reports mistakes with their line and column.
+//! Reads the TOML files of machines and hosts.
 //!
-//! serde reads the grammar of a file and stops at its first mistake; a rule for single entries then reports each value that
-//! cannot be.
+//! The types that a file is read into are its grammar; a rule of the file checks single values. All mistakes are found at once: serde
+//! stops at the first one, which is taken out of what it reads next.
 
 use serde::de::DeserializeOwned;
-use std::io::ErrorKind;
+use std::ops::Range;
 use std::path::Path;
-use stripmine_physics::io::regular_file;
-use stripmine_physics::number::counted;
-use stripmine_physics::quoted::{message, one_line, quoted};
-use stripmine_physics::reported::{Class, FilePlace, Reported};
-use toml::de::{DeTable, DeValue};
+use stripmine_physics::input::{InputError, InputErrors, InputText, Mistakes, Reason, Spot, read_text};
+use stripmine_physics::quoted::one_line;
+use stripmine_physics::words::nearest;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue, Deserializer};
 
 /// Longest file (bytes).
 const LONGEST: u64 = 4 << 20;
-/// Mistakes that a message lists at most.
-const LISTED: usize = 20;
+/// Bytes of a whole file.
+const WHOLE: Range<usize> = 0..usize::MAX;
 
-/// Why the file of a machine or a host cannot be used, with the place of its first mistake.
-#[derive(Debug, thiserror::Error)]
-#[error("{message}")]
-pub struct ModelFileError {
-    class: Class,
-    place: FilePlace,
-    message: String,
-}
-
-impl Reported for ModelFileError {
-    fn class(&self) -> Class {
-        self.class
-    }
-
-    fn place(&self) -> Option<FilePlace> {
-        Some(self.place.clone())
-    }
-}
-
-/// A kind of file.
-pub(super) struct Kind {
-    /// Its name in messages.
-    pub(super) name: &'static str,
+/// A kind of file, which is read into a `T`.
+pub(super) struct Kind<T> {
     /// The version that this program reads.
     pub(super) format: u32,
-    /// Words after the number of another version: what to do.
-    pub(super) remedy: &'static str,
+    /// What to do about another version.
+    pub(super) remedy: Option<&'static str>,
+    /// Says what is wrong with a value, whatever the others are.
+    pub(super) wrong: fn(&Entry<'_>) -> Option<String>,
+    /// Completes what was read, or returns the path of an entry that disagrees with others, and why.
+    pub(super) completed: fn(T) -> Result<T, (String, String)>,
 }
 
 /// A value of a file.
@@ -51,8 +34,8 @@ pub(super) struct Entry<'t> {
     /// Names of the tables around it, and its own.
     pub(super) names: Vec<&'t str>,
     pub(super) value: &'t DeValue<'t>,
-    /// Bytes at which messages say that it is, and at which its value begins.
-    at: [usize; 2],
+    /// Bytes of its name and of its value. Those of a table may be of its last heading.
+    spans: [Range<usize>; 2],
 }
 
 impl Entry<'_> {
@@ -68,126 +51,129 @@ impl Entry<'_> {
             _ => None,
         }
     }
+
+    /// The byte at which messages say that it is.
+    fn at(&self) -> usize {
+        self.spans[usize::from(!self.value.is_table())].start
+    }
 }
 
 /// A value and all that is in it, which have these names and places.
-fn entries<'t>(names: Vec<&'t str>, at: [usize; 2], value: &'t DeValue<'t>) -> Vec<Entry<'t>> {
-    let mut all = vec![Entry { names: names.clone(), value, at }];
+fn entries<'t>(names: Vec<&'t str>, spans: [Range<usize>; 2], value: &'t DeValue<'t>) -> Vec<Entry<'t>> {
+    let mut all = vec![Entry { names: names.clone(), value, spans }];
     match value {
         DeValue::Table(table) => all.extend(table.iter().flat_map(|(name, value)| {
-            let starts = value.span().start;
-            // A table's own span may be that of its last header: its name says where it begins.
-            let at = if value.get_ref().is_table() { name.span().start } else { starts };
-            entries([&names[..], &[name.get_ref()]].concat(), [at, starts], value.get_ref())
+            let spans = [name.span(), value.span()];
+            entries([&names[..], &[name.get_ref()]].concat(), spans, value.get_ref())
         })),
-        DeValue::Array(items) => {
-            all.extend(items.iter().flat_map(|it| entries(names.clone(), [it.span().start; 2], it.get_ref())))
-        }
+        DeValue::Array(items) => all
+            .extend(items.iter().flat_map(|it| entries(names.clone(), [it.span(), it.span()], it.get_ref()))),
         _ => {}
     }
     all
 }
 
-/// A text in TOML, and its name in messages.
-#[derive(Clone, Copy)]
-pub(super) struct Source<'t> {
-    pub(super) kind: &'static Kind,
-    pub(super) file: &'t str,
-    pub(super) text: &'t str,
+/// Takes an entry out of a table; returns whether it was there.
+fn remove(table: &mut DeTable<'_>, names: &[&str]) -> bool {
+    match names {
+        [] => false,
+        [name] => table.remove(*name).is_some(),
+        [name, rest @ ..] => match table.get_mut(*name).map(Spanned::get_mut) {
+            Some(DeValue::Table(table)) => remove(table, rest),
+            _ => false,
+        },
+    }
 }
 
-impl Source<'_> {
-    /// Reads the document. `wrong` says what is wrong with a single entry; `completed` completes a document whose entries are
-    /// right, or returns the path of an entry that disagrees with others, and why.
+impl<T: DeserializeOwned> Kind<T> {
+    /// Reads a file.
     ///
     /// # Errors
-    /// [`ModelFileError`]: not TOML, another version, or the grammar's first mistake with all wrong values.
-    pub(super) fn read<T: DeserializeOwned>(
-        self,
-        wrong: impl Fn(&Entry<'_>) -> Option<String>,
-        completed: impl FnOnce(T) -> Result<T, (String, String)>,
-    ) -> Result<T, ModelFileError> {
-        let document = DeTable::parse(self.text).map_err(|cause| {
-            let place = cause.span().map_or([None; 2], |span| self.place(span.start).map(Some));
-            self.error(Class::Input, place, format!("{}: {}", self.name(), message(&cause.to_string())))
-        })?;
-        let root = DeValue::Table(document.into_inner());
-        let entries = entries(vec![], [0; 2], &root);
+    /// [`InputErrors`]: the system does not let it be read, it is not UTF-8, or as [`Kind::read`].
+    pub(super) fn load(&self, path: &Path) -> Result<T, InputErrors> {
+        let file = path.display().to_string();
+        let nowhere = Spot { file: file.clone(), place: None };
+        let text = read_text(path, LONGEST, |cause| nowhere.error(Reason::System, cause.to_string()))?;
+        self.read(&file, &text)
+    }
+
+    /// Reads a file's text; `file` is the name that errors give it.
+    ///
+    /// # Errors
+    /// [`InputErrors`]: not TOML, another version, all mistakes of single entries, or the disagreement of right ones.
+    pub(super) fn read(&self, file: &str, text: &str) -> Result<T, InputErrors> {
+        let text = InputText::new(file, text);
+        let table = text.table()?;
+        let root = DeValue::Table(table.clone());
+        let entries = entries(vec![], [0..0, WHOLE], &root);
         let format = entries.iter().find(|it| it.names == ["format"]);
-        let format = format.and_then(|it| Some((it.at[0], it.number()?)));
         // A file of another version has other entries: its version is the mistake.
-        if let Some((at, found)) = format.filter(|&(_, found)| found != f64::from(self.kind.format)) {
-            let Kind { format, remedy, .. } = self.kind;
-            let what = format!("`format` is {found}, but this program reads {format}{remedy}");
-            return Err(self.mistakes(vec![(at, what)]));
+        if let Some((it, found)) = format.and_then(|it| Some((it, it.number()?)))
+            && found != f64::from(self.format)
+        {
+            let what = format!("`format` is {found}, but this program reads {}", self.format);
+            let error = text.spot(it.at()).error(Reason::Format, what);
+            return Err(self.remedy.map_or(error.clone(), |remedy| error.advising(remedy)).into());
         }
-        let mut mistakes: Vec<(usize, String)> =
-            entries.iter().filter_map(|it| Some((it.at[0], wrong(it)?))).collect();
-        match toml::from_str(self.text) {
-            Ok(read) if mistakes.is_empty() => match completed(read) {
-                Ok(completed) => return Ok(completed),
-                Err((path, what)) => {
-                    let entry = entries.iter().find(|it| it.path() == path);
-                    mistakes.push((entry.map_or(0, |it| it.at[0]), what));
-                }
-            },
-            Ok(_) => {}
-            Err(cause) => {
-                let at = cause.span().map_or(0, |span| span.start);
-                let entry = entries.iter().find(|it| it.at[1] == at && !it.names.is_empty());
-                let path = entry.map(|it| format!("`{}`: ", it.path())).unwrap_or_default();
-                mistakes.push((at, path + cause.message()));
-            }
-        }
-        Err(self.mistakes(mistakes))
-    }
-
-    /// Reports mistakes by the byte at which they are.
-    fn mistakes(self, mut found: Vec<(usize, String)>) -> ModelFileError {
-        found.sort_by_key(|(at, _)| *at);
-        let lines = found.iter().take(LISTED).map(|(at, what)| {
-            let [line, column] = self.place(*at);
-            format!("{}, line {line}, column {column}: {}", self.name(), one_line(what))
-        });
-        let more = found.len().saturating_sub(LISTED);
-        let more = (more > 0)
-            .then(|| format!("{}: {}", self.name(), counted(more, "more mistake", "more mistakes")));
-        let message = lines.chain(more).collect::<Vec<_>>().join("\n");
-        let first = found.first().map_or([None; 2], |(at, _)| self.place(*at).map(Some));
-        self.error(Class::Input, first, message)
-    }
-
-    fn name(self) -> String {
-        format!("{} `{}`", self.kind.name, quoted(self.file))
-    }
-
-    fn error(self, class: Class, [line, column]: [Option<usize>; 2], message: String) -> ModelFileError {
-        ModelFileError { class, place: FilePlace { file: self.file.to_owned(), line, column }, message }
-    }
-
-    /// The line and the column of a byte, from 1.
-    fn place(self, at: usize) -> [usize; 2] {
-        let before = self.text.get(..at).unwrap_or_default();
-        let column = before.rsplit('\n').next().map_or(0, |line| line.chars().count()) + 1;
-        [before.matches('\n').count() + 1, column]
+        let mut mistakes = Mistakes::default();
+        let wrong =
+            |it: &Entry<'_>| Some(text.spot(it.at()).error(Reason::Range, one_line(&(self.wrong)(it)?)));
+        mistakes.extend(entries.iter().filter_map(wrong));
+        let read = deserialized(&text, table, &entries, &mut mistakes);
+        mistakes.none_of(file)?;
+        (self.completed)(read?).map_err(|(path, what)| {
+            let entry = entries.iter().find(|it| it.path() == path);
+            text.spot(entry.map_or(0, Entry::at)).error(Reason::Contradiction, what).into()
+        })
     }
 }
 
-/// Reads a file as text.
-///
-/// # Errors
-/// [`ModelFileError`]: the system does not let it be read, or it is not UTF-8.
-pub(super) fn text(kind: &'static Kind, path: &Path) -> Result<String, ModelFileError> {
-    let file = path.display().to_string();
-    let source = Source { kind, file: &file, text: "" };
-    let bytes = regular_file::read(path, LONGEST).map_err(|cause| {
-        let is_input = cause.kind() == ErrorKind::InvalidData;
-        let class = if is_input { Class::Input } else { Class::InputOutput };
-        source.error(class, [None; 2], format!("{}: {cause}", source.name()))
-    })?;
-    String::from_utf8(bytes).map_err(|cause| {
-        let line = regular_file::line_that_is_not_text(cause.as_bytes()).unwrap_or(1);
-        let what = format!("{}, line {line}: not UTF-8 text; expected a TOML file in UTF-8", source.name());
-        source.error(Class::Input, [Some(line), None], what)
-    })
+/// Reads a table that has these entries; adds what serde finds wrong with it to the mistakes.
+fn deserialized<T: DeserializeOwned>(
+    text: &InputText<'_>,
+    mut table: DeTable<'_>,
+    entries: &[Entry<'_>],
+    mistakes: &mut Mistakes,
+) -> Result<T, InputError> {
+    // What is missing because it was wrong, or has another name, is no mistake of its own.
+    let mut gone: Vec<String> = vec![];
+    loop {
+        let cause = match T::deserialize(Deserializer::from(Spanned::new(WHOLE, table.clone()))) {
+            Ok(read) => return Ok(read),
+            Err(cause) => cause,
+        };
+        let span = cause.span().unwrap_or(WHOLE);
+        // Of entries with one place the innermost comes last.
+        let entry = entries.iter().rev().find(|it| it.spans.contains(&span));
+        let names = entry.map_or(&[][..], |it| &it.names[..]);
+        let path = names.join(".");
+        let is_of_value = entry.is_some_and(|it| it.spans[1] == span) && !names.is_empty();
+        let prefix = if is_of_value { format!("`{path}`: ") } else { String::new() };
+        let spot = text.spot(if names.is_empty() { 0 } else { span.start });
+        let mut error = spot.error(Reason::Type, one_line(&(prefix + cause.message())));
+        let words: Vec<&str> = cause.message().split('`').collect();
+        let is_known = match words[..] {
+            ["missing field ", name, ..] => gone.contains(&below(&path, name)),
+            ["unknown field " | "unknown variant ", name, _, ref known @ ..] => {
+                if let Some(near) = nearest(name, known.iter().step_by(2).copied()) {
+                    gone.extend(names.split_last().map(|(_, above)| below(&above.join("."), near)));
+                    error = error.advising(format!("did you mean `{near}`?"));
+                }
+                false
+            }
+            _ => false,
+        };
+        if !is_known {
+            mistakes.push(error.clone());
+        }
+        if !mistakes.has_room() || !remove(&mut table, names) {
+            return Err(error);
+        }
+        gone.push(path);
+    }
+}
+
+/// The path of an entry of a table.
+fn below(path: &str, name: &str) -> String {
+    if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") }
 }

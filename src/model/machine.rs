@@ -104,7 +104,8 @@ pub struct Occupied<'m> {
     pub rate: f64,
 }
 
-/// One processor of a vector machine, as its file states it. Classes of operations go by their names.
+/// One processor of a vector machine, as its file states it. Classes of operations go by their names. A clock that needs what is left
+/// out charges as the clock before it.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MachineModel {
@@ -112,9 +113,13 @@ pub struct MachineModel {
     pub(super) title: String,
     year: Quantity,
     pub(super) clock_period_ns: Quantity,
+    /// Whether a result feeds the next instruction element by element.
     chaining: Option<Known<bool>>,
+    /// Clock periods of each strip.
     pub(super) loop_overhead: Option<Quantity>,
+    /// None where vectors have any length.
     pub(super) vector_registers: Option<VectorRegisters>,
+    /// Clock periods by class; `default` is for all classes that are not named.
     pub(super) start_up: BTreeMap<String, Quantity>,
     #[serde(default)]
     units: BTreeMap<String, Unit>,

@@ -1,46 +1,13 @@
-//! Machine files: TOML in which every number is a table of its value, its provenance and a note.
-//!
-//! ```toml
-//! format = 1
-//! title = "A machine"
-//! year = { value = 1976, provenance = "sourced", note = "where from" }
-//! clock_period_ns = { value = 12.5, provenance = "sourced", note = "where from" }
-//!
-//! [vector_registers] # left out where vectors have any length
-//! count = { value = 8, provenance = "sourced", note = "where from" }
-//! length = { value = 64, provenance = "sourced", note = "where from" }
-//!
-//! [start_up] # clock periods; `default` is for all classes that are not named
-//! default = { value = 6, provenance = "assumed", note = "why" }
-//! divide = { value = 14, provenance = "sourced", note = "the reciprocal unit" }
-//!
-//! [expansions.divide] # the class itself stands for its unit and is not expanded again
-//! steps = { divide = 1, multiply = 3 }
-//! provenance = "sourced"
-//! note = "where from"
-//!
-//! # All of the following may be left out; a clock that needs what is left out charges as the clock before it.
-//! chaining = { value = true, provenance = "sourced", note = "where from" } # above the tables
-//! loop_overhead = { value = 15, provenance = "assumed", note = "why" } # clock periods a strip; above the tables
-//!
-//! [units.add] # `count` instructions of these classes run at once, each at `rate` elements a clock period
-//! serves = ["add", "convert"]
-//! count = { value = 1, provenance = "sourced", note = "where from" }
-//! rate = { value = 2, provenance = "sourced", note = "where from" } # 1 where it is left out
-//!
-//! [memory]
-//! load_ports = { value = 2, provenance = "sourced", note = "where from" }
-//! store_ports = { value = 1, provenance = "sourced", note = "where from" } # left out: stores take the ports of loads
-//! rate = { value = 1, provenance = "sourced", note = "where from" } # elements a clock period of each port
-//! gather_rate = { value = 0.5, provenance = "sourced", note = "where from" } # the same through an index vector
-//! ```
+//! Machine files: TOML in which every number is a table of its value, its provenance and a note. The fields of [`MachineModel`]
+//! say what stands where, `machines/cray-1.toml` is an example of almost all.
 
-use super::file::{self, Entry, Kind, ModelFileError, Source};
+use super::file::{Entry, Kind};
 use super::machine::{ClassCounts, DEFAULT, MachineModel, add_scaled};
 use stripmine_kernels::isa::op::OpClass;
+use stripmine_physics::input::InputErrors;
 use toml::de::DeValue;
 
-const KIND: Kind = Kind { name: "machine file", format: 1, remedy: "" };
+const KIND: Kind<MachineModel> = Kind { format: 1, remedy: None, wrong, completed: MachineModel::completed };
 /// Operations that one operation may come to; a clock writes them out one by one.
 const LONGEST_EXPANSION: u64 = 10_000;
 
@@ -48,18 +15,17 @@ impl MachineModel {
     /// Reads a machine file.
     ///
     /// # Errors
-    /// `ModelFileError`: the system does not let it be read, or it is bad.
-    pub fn load(file: &str) -> Result<MachineModel, ModelFileError> {
-        MachineModel::parse(file, &file::text(&KIND, file.as_ref())?)
+    /// [`InputErrors`]: the system does not let it be read, or as [`MachineModel::parse`].
+    pub fn load(file: &str) -> Result<MachineModel, InputErrors> {
+        KIND.load(file.as_ref())
     }
 
     /// Reads a machine from the `text` of a machine file; `file` is the name that errors give it.
     ///
     /// # Errors
-    /// `ModelFileError`: not TOML, the grammar's first mistake with every value that cannot be, or, once every entry is right,
-    /// a mistake that only the whole machine shows.
-    pub fn parse(file: &str, text: &str) -> Result<MachineModel, ModelFileError> {
-        Source { kind: &KIND, file, text }.read(wrong, MachineModel::completed)
+    /// [`InputErrors`]: every entry that cannot be, or, once every entry is right, a mistake that only the whole machine shows.
+    pub fn parse(file: &str, text: &str) -> Result<MachineModel, InputErrors> {
+        KIND.read(file, text)
     }
 
     /// The machine with its expansions followed to the end. Every class that it executes has a start-up and, where units are named,
@@ -231,7 +197,7 @@ mod tests {
             (default, "", "neither `start_up.add` nor `start_up.default` is given"),
         ] {
             let complaint = complaint(old, new);
-            assert!(complaint.starts_with("machine file `bad.toml`, line "), "{complaint}");
+            assert!(complaint.starts_with("bad.toml:"), "{complaint}");
             assert!(complaint.contains(expected), "{complaint}");
         }
     }
@@ -249,10 +215,10 @@ mod tests {
             ("value = 12.5, ", "", "missing field `value`"),
             ("value = 12.5", "value = \"fast\"", "`clock_period_ns.value`: invalid type"),
             ("multiply = 3", "multiply = -3", "`expansions.divide.steps.multiply`: invalid value"),
-            ("title = \"A machine\"", "title = ", "TOML parse error at"),
+            ("title = \"A machine\"", "title = ", "not TOML: "),
         ] {
             let complaint = complaint(old, new);
-            assert!(complaint.contains(expected) && complaint.contains("line "), "{complaint}");
+            assert!(complaint.contains(expected) && complaint.starts_with("bad.toml:"), "{complaint}");
         }
     }
 
@@ -288,29 +254,37 @@ mod tests {
     }
 
     #[test]
-    fn every_wrong_value_is_found_with_the_first_mistake_of_the_grammar() {
+    fn all_mistakes_are_found_at_once() {
         let text = r#"
-            format = 1
+            format = "1"
             titel = "A machine"
             year = { value = 0, provenance = "sourced", note = "here" }
             clock_period_ns = { value = -12.5, provenance = "sourced", note = "" }
+            chaining = { value = "no", provenance = "sourced", note = "here" }
+            loop_overhead = { value = 15, provenance = "sourced" }
             [start_up]
             default = { value = 6, provenance = "assumed", note = "why not" }
             division = { value = 0, provenance = "assumed", note = "why not" }
+            [memory]
         "#;
-        let said = MachineModel::parse("bad.toml", text).unwrap_err().to_string();
-        let said: Vec<&str> = said.lines().collect();
-        for expected in [
-            "line 3, column 13: unknown field `titel`, expected one of",
-            "`year` is 0",
-            "`clock_period_ns` is -12.5",
-            "the note of `clock_period_ns` is empty",
-            "`division` names no class",
-            "`start_up.division` is 0",
+        let InputErrors(said) = MachineModel::parse("bad.toml", text).unwrap_err();
+        for (line, expected) in [
+            (2, "`format`: invalid type: string \"1\", expected u32"),
+            (3, "unknown field `titel`, expected one of"),
+            (4, "`year` is 0, but must be positive"),
+            (5, "`clock_period_ns` is -12.5, but must be positive"),
+            (5, "the note of `clock_period_ns` is empty"),
+            (6, "`chaining.value`: invalid type: string \"no\", expected a boolean"),
+            (7, "`loop_overhead`: missing field `note`"),
+            (10, "`division` names no class"),
+            (10, "`start_up.division` is 0"),
+            (11, "`memory`: missing field `load_ports`"),
         ] {
-            let count = said.iter().filter(|said| said.contains(expected)).count();
-            assert_eq!(count, 1, "{expected}: {said:#?}");
+            let found = said.iter().filter(|it| it.message.contains(expected));
+            let lines: Vec<u32> = found.map(|it| it.place.unwrap().line).collect();
+            assert_eq!(lines, [line], "{expected}: {said:#?}");
         }
-        assert_eq!(said.len(), 6, "{said:#?}");
+        assert_eq!(said.len(), 10, "{said:#?}");
+        assert_eq!(said[1].suggestion.as_deref(), Some("did you mean `title`?"));
     }
 }

@@ -1,9 +1,9 @@
 //! The machines that come with the program.
 
-use super::file::ModelFileError;
 use super::machine::MachineModel;
+use stripmine_physics::input::InputErrors;
 use stripmine_physics::quoted::quoted;
-use stripmine_physics::reported::{Class, FilePlace, Reported};
+use stripmine_physics::reported::{Class, Reported};
 use stripmine_physics::words::suggestion;
 
 macro_rules! embedded {
@@ -33,7 +33,7 @@ pub enum MachineError {
     },
     /// A file that cannot be used.
     #[error(transparent)]
-    File(#[from] ModelFileError),
+    File(#[from] InputErrors),
 }
 
 impl Reported for MachineError {
@@ -44,9 +44,8 @@ impl Reported for MachineError {
         }
     }
 
-    fn place(&self) -> Option<FilePlace> {
-        let MachineError::File(error) = self else { return None };
-        error.place()
+    fn passed_on(&self) -> Option<&dyn Reported> {
+        if let MachineError::File(errors) = self { Some(errors) } else { None }
     }
 
     fn remedy(&self) -> Option<String> {

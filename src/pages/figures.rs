@@ -1,11 +1,12 @@
 //! Figures of a page: charts and maps by expressions over the columns of frames, and pictures that a study drew.
 
-use super::{Filling, PageError, Shown, Text};
+use super::{Filling, Shown, Text};
 use crate::frame::{Frame, Scope};
 use crate::report::figure::{Axis, Band, Chart, Figure, Map, Picture, Point, Series, Style};
 use minijinja::value::{Value, ValueKind};
 use serde::Deserialize;
 use std::sync::Arc;
+use stripmine_physics::input::InputErrors;
 use toml::Spanned;
 
 /// A figure of the page.
@@ -133,7 +134,7 @@ pub(super) fn figures(
     spec: &FigureSpec,
     fill: &Filling<'_>,
     shown: &Shown<'_>,
-) -> Result<Vec<Figure>, PageError> {
+) -> Result<Vec<Figure>, InputErrors> {
     if let Some(when) = &spec.when {
         let value = fill.expressions.value(when.get_ref(), fill.scope);
         if !value.map_err(|cause| fill.refused(when.span().start, cause))?.is_true() {
@@ -146,7 +147,7 @@ pub(super) fn figures(
 }
 
 /// Names that expressions may use for each element of a list.
-fn elements(list: &Text, fill: &Filling<'_>) -> Result<Vec<Scope>, PageError> {
+fn elements(list: &Text, fill: &Filling<'_>) -> Result<Vec<Scope>, InputErrors> {
     let refused = |cause: String| fill.refused(list.span().start, cause);
     let all = fill.expressions.value(list.get_ref(), fill.scope).map_err(refused)?;
     let all = all.try_iter().map_err(|cause| refused(cause.to_string()))?;
@@ -154,7 +155,7 @@ fn elements(list: &Text, fill: &Filling<'_>) -> Result<Vec<Scope>, PageError> {
 }
 
 /// The figure of a page.
-fn figure(spec: &FigureSpec, fill: &Filling<'_>, shown: &Shown<'_>) -> Result<Figure, PageError> {
+fn figure(spec: &FigureSpec, fill: &Filling<'_>, shown: &Shown<'_>) -> Result<Figure, InputErrors> {
     let title = fill.text(&spec.title)?;
     let caption = spec.caption.as_ref().map_or(Ok(String::new()), |caption| fill.text(caption))?;
     let name = fill.text(&spec.name)?;
@@ -172,7 +173,7 @@ fn figure(spec: &FigureSpec, fill: &Filling<'_>, shown: &Shown<'_>) -> Result<Fi
                     let all = panels
                         .as_ref()
                         .map_or_else(|| Ok(vec![fill.scope.clone()]), |all| elements(all, fill))?;
-                    Picture::Charts(all.into_iter().map(panel).collect::<Result<_, PageError>>()?)
+                    Picture::Charts(all.into_iter().map(panel).collect::<Result<_, InputErrors>>()?)
                 }
             }
         }
@@ -187,7 +188,7 @@ fn figure(spec: &FigureSpec, fill: &Filling<'_>, shown: &Shown<'_>) -> Result<Fi
     Ok(picture.figure(name, title).caption(caption))
 }
 
-fn axis(spec: &AxisSpec, fill: &Filling<'_>) -> Result<Axis, PageError> {
+fn axis(spec: &AxisSpec, fill: &Filling<'_>) -> Result<Axis, InputErrors> {
     let label = fill.text(&spec.label)?;
     let unit = spec.unit.as_ref().map(|unit| fill.text(unit)).transpose()?.filter(|unit| !unit.is_empty());
     let is_logarithmic = match &spec.log {
@@ -202,7 +203,7 @@ fn axis(spec: &AxisSpec, fill: &Filling<'_>) -> Result<Axis, PageError> {
     Ok(Axis { limits: spec.limits, ..axis })
 }
 
-fn chart(spec: &FigureSpec, [x, y]: [Axis; 2], fill: &Filling<'_>) -> Result<Chart, PageError> {
+fn chart(spec: &FigureSpec, [x, y]: [Axis; 2], fill: &Filling<'_>) -> Result<Chart, InputErrors> {
     let mut chart = Chart::of(x, y);
     let mut names = [vec![], vec![]];
     for spec in &spec.series {
@@ -229,7 +230,7 @@ fn chart(spec: &FigureSpec, [x, y]: [Axis; 2], fill: &Filling<'_>) -> Result<Cha
     Ok(chart)
 }
 
-fn band(mut chart: Chart, spec: &BandSpec, fill: &Filling<'_>) -> Result<Chart, PageError> {
+fn band(mut chart: Chart, spec: &BandSpec, fill: &Filling<'_>) -> Result<Chart, InputErrors> {
     let label = fill.text(&spec.label)?;
     let ends = |ends: &Spanned<[End; 2]>| {
         let end = |end: &End| match end {
@@ -241,7 +242,7 @@ fn band(mut chart: Chart, spec: &BandSpec, fill: &Filling<'_>) -> Result<Chart, 
             }
         };
         let [low, high] = ends.get_ref();
-        Ok::<_, PageError>([end(low)?, end(high)?])
+        Ok::<_, InputErrors>([end(low)?, end(high)?])
     };
     if let Some(x) = &spec.x {
         chart = chart.band(Band::of_x(&label, ends(x)?));
@@ -258,7 +259,7 @@ fn series(
     next: usize,
     [across, down]: &mut [Vec<String>; 2],
     fill: &Filling<'_>,
-) -> Result<Vec<Series>, PageError> {
+) -> Result<Vec<Series>, InputErrors> {
     let frame = fill.frame(&spec.from)?;
     let rows = Rows { frame, fill };
     let fixed = spec.name.as_ref().map_or(Ok(String::new()), |name| fill.text(name))?;
@@ -295,7 +296,7 @@ fn series(
 }
 
 /// Cells in the order of their places: numbers rise, words keep their order. A place without a row is empty.
-fn mapped(spec: &MapSpec, [x, y]: [Axis; 2], fill: &Filling<'_>) -> Result<Map, PageError> {
+fn mapped(spec: &MapSpec, [x, y]: [Axis; 2], fill: &Filling<'_>) -> Result<Map, InputErrors> {
     let frame = fill.frame(&spec.from)?;
     let rows = Rows { frame, fill };
     let mut cells = vec![];
@@ -305,7 +306,7 @@ fn mapped(spec: &MapSpec, [x, y]: [Axis; 2], fill: &Filling<'_>) -> Result<Map, 
             cells.push((place, rows.number(&spec.value, row)?.unwrap_or(f64::NAN)));
         }
     }
-    let along = |axis: usize, drawn: Axis, text: &Text| {
+    let along = |axis: usize, drawn: Axis, text: &Text| -> Result<_, InputErrors> {
         let mut all: Vec<Value> = vec![];
         for (place, _) in &cells {
             if !all.contains(&place[axis]) {
@@ -336,13 +337,13 @@ struct Rows<'r> {
 }
 
 impl Rows<'_> {
-    fn value(&self, text: &Text, row: usize) -> Result<Value, PageError> {
+    fn value(&self, text: &Text, row: usize) -> Result<Value, InputErrors> {
         let value = self.fill.expressions.of_row(text.get_ref(), self.fill.scope, self.frame, row);
         value.map_err(|cause| self.fill.refused(text.span().start, cause))
     }
 
     /// Place on an axis: a number, or the position of a name.
-    fn place(&self, text: &Text, row: usize, names: &mut Vec<String>) -> Result<Option<f64>, PageError> {
+    fn place(&self, text: &Text, row: usize, names: &mut Vec<String>) -> Result<Option<f64>, InputErrors> {
         let value = self.value(text, row)?;
         let Some(name) = value.as_str() else { return self.number(text, row) };
         let at = names.iter().position(|known| known == name).unwrap_or_else(|| {
@@ -352,7 +353,7 @@ impl Rows<'_> {
         Ok(Some(at as f64))
     }
 
-    fn number(&self, text: &Text, row: usize) -> Result<Option<f64>, PageError> {
+    fn number(&self, text: &Text, row: usize) -> Result<Option<f64>, InputErrors> {
         let value = self.value(text, row)?;
         number(&value).map_err(|cause| self.fill.refused(text.span().start, cause))
     }

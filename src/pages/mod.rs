@@ -14,7 +14,7 @@ use crate::report::{Chapter, Section};
 use figures::FigureSpec;
 use rust_embed::RustEmbed;
 use serde::Deserialize;
-use stripmine_physics::reported::{Class, Reported};
+use stripmine_physics::input::{InputErrors, InputText, Reason};
 use toml::Spanned;
 
 /// The templates: read from the source tree by a development build, part of the program in a release.
@@ -27,27 +27,6 @@ const FENCE: &str = "+++\n";
 
 /// A text that may hold expressions, with its place in the file.
 type Text = Spanned<String>;
-
-/// A page that cannot be made.
-#[derive(Debug, thiserror::Error)]
-pub enum PageError {
-    /// The template.
-    #[error("pages/{name}.md line {line}: {cause}")]
-    Template {
-        /// Item.
-        name: String,
-        /// Line of the file.
-        line: usize,
-        /// Cause, with the names that exist.
-        cause: String,
-    },
-}
-
-impl Reported for PageError {
-    fn class(&self) -> Class {
-        Class::Usage
-    }
-}
 
 /// A template.
 #[derive(Debug)]
@@ -158,18 +137,16 @@ impl Page {
     /// The template of an item, if there is one. A development build reads its file.
     ///
     /// # Errors
-    /// [`PageError`] with the line that cannot be understood.
-    pub fn of(name: &str) -> Result<Option<Page>, PageError> {
+    /// [`InputErrors`] with the line that cannot be understood.
+    pub fn of(name: &str) -> Result<Option<Page>, InputErrors> {
         let Some(file) = Files::get(&format!("{name}.md")) else { return Ok(None) };
         Page::read(name, String::from_utf8_lossy(&file.data).into_owned()).map(Some)
     }
 
-    fn read(name: &str, text: String) -> Result<Page, PageError> {
-        let wrong = |at: usize, cause: &str| PageError::Template {
-            name: name.to_owned(),
-            line: line(&text, at),
-            cause: cause.to_owned(),
-        };
+    fn read(name: &str, text: String) -> Result<Page, InputErrors> {
+        let file = file(name);
+        let wrong =
+            |at: usize, cause: &str| InputText::new(&file, &text).spot(at).error(Reason::Syntax, cause);
         let header = text.strip_prefix(FENCE).ok_or_else(|| wrong(0, "the first line is not `+++`"))?;
         let end = header.find(&format!("\n{FENCE}")).ok_or_else(|| wrong(0, "no second line of `+++`"))? + 1;
         // The blank head keeps places as they are in the file.
@@ -210,8 +187,8 @@ impl Page {
     /// The item as a section of the report, with its claims judged as of the day on which the data were made.
     ///
     /// # Errors
-    /// [`PageError`] if the template or a claim names a table or a column that is not there.
-    pub fn section(&self, shown: &Shown<'_>, claims: &[Claim], date: &str) -> Result<Section, PageError> {
+    /// [`InputErrors`] if the template or a claim names a table or a column that is not there.
+    pub fn section(&self, shown: &Shown<'_>, claims: &[Claim], date: &str) -> Result<Section, InputErrors> {
         let scope = Scope::of(shown.frames.iter().cloned());
         let expressions = Expressions::new();
         let fill = Filling { page: self, scope: &scope, expressions: &expressions };
@@ -262,28 +239,28 @@ struct Filling<'p> {
 
 impl Filling<'_> {
     /// Refuses what stands at a place of the file.
-    fn refused(&self, at: usize, cause: impl Into<String>) -> PageError {
-        let (name, line) = (self.page.name.clone(), line(&self.page.text, at));
-        PageError::Template { name, line, cause: cause.into() }
+    fn refused(&self, at: usize, cause: impl Into<String>) -> InputErrors {
+        let file = file(&self.page.name);
+        InputText::new(&file, &self.page.text).spot(at).error(Reason::Contradiction, cause).into()
     }
 
     /// A text of the file with its expressions filled in.
-    fn at(&self, text: &str, at: usize) -> Result<String, PageError> {
+    fn at(&self, text: &str, at: usize) -> Result<String, InputErrors> {
         self.expressions.text(text, self.scope).map_err(|(down, cause)| {
-            let line = line(&self.page.text, at) + down - 1;
-            PageError::Template { name: self.page.name.clone(), line, cause }
+            let lines = text.split_inclusive('\n').take(down - 1);
+            self.refused(at + lines.map(str::len).sum::<usize>(), cause)
         })
     }
 
-    fn text(&self, text: &Text) -> Result<String, PageError> {
+    fn text(&self, text: &Text) -> Result<String, InputErrors> {
         self.at(text.get_ref(), text.span().start).map(|text| one_line(&text))
     }
 
-    fn frame(&self, name: &Text) -> Result<&std::sync::Arc<Frame>, PageError> {
+    fn frame(&self, name: &Text) -> Result<&std::sync::Arc<Frame>, InputErrors> {
         self.scope.frame(name.get_ref()).map_err(|cause| self.refused(name.span().start, cause))
     }
 
-    fn table(&self, spec: &TableSpec) -> Result<Table, PageError> {
+    fn table(&self, spec: &TableSpec) -> Result<Table, InputErrors> {
         let frame = self.frame(&spec.from)?;
         let mut table = Table::from(&**frame);
         if let Some(columns) = &spec.columns {
@@ -292,7 +269,7 @@ impl Filling<'_> {
                 let heading = &frame.columns[frame.position(column).map_err(wrong)?].doc;
                 Ok(table.columns.iter().position(|it| it == heading).unwrap_or_default())
             });
-            let places = places.collect::<Result<Vec<usize>, PageError>>()?;
+            let places = places.collect::<Result<Vec<usize>, InputErrors>>()?;
             table.columns = places.iter().map(|at| table.columns[*at].clone()).collect();
             for row in &mut table.rows {
                 *row = places.iter().map(|at| row[*at].clone()).collect();
@@ -305,7 +282,7 @@ impl Filling<'_> {
         Ok(table.notes(notes))
     }
 
-    fn lines(&self, excerpt: &Excerpt, files: &[(String, String)]) -> Result<String, PageError> {
+    fn lines(&self, excerpt: &Excerpt, files: &[(String, String)]) -> Result<String, InputErrors> {
         let name = excerpt.file.get_ref();
         let file = files.iter().find(|(known, _)| known == name);
         let names = || files.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", ");
@@ -316,9 +293,9 @@ impl Filling<'_> {
     }
 }
 
-/// Line of a place, from 1.
-fn line(text: &str, at: usize) -> usize {
-    text.bytes().take(at).filter(|byte| *byte == b'\n').count() + 1
+/// The file of a template, by the name of its item.
+fn file(name: &str) -> String {
+    format!("pages/{name}.md")
 }
 
 /// Words in one line, as paragraphs are read.

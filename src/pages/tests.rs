@@ -153,7 +153,7 @@ fn a_template_with_a_fault_names_the_line_and_what_exists() {
         ("x = { label = \"steps\", log = true }\n", "", 9, "drew no picture `over-steps`"),
     ] {
         let said = filled(&TEMPLATE.replacen(from, to, 1)).unwrap_err();
-        assert!(said.starts_with(&format!("pages/x.md line {line}: ")), "{from}: {said}");
+        assert!(said.starts_with(&format!("pages/x.md:{line}:")), "{from}: {said}");
         assert!(said.contains(named), "{from}: {said}");
     }
 }

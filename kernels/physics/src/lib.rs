@@ -20,6 +20,7 @@
 pub mod averages;
 pub mod domain;
 pub mod grid;
+pub mod input;
 pub mod io;
 pub mod memory;
 pub mod method;

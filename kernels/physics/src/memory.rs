@@ -1,7 +1,7 @@
 //! How much memory there is left for this program, who sets the limit, and whether a run fits into it.
 
+use crate::input::{InputErrors, Reason, Spot};
 use crate::ranks::Crew;
-use crate::scene::{Reason, SceneErrors, Spot};
 use serde::{Serialize, Serializer};
 use std::fs;
 use stripmine_kernels::isa::aligned_column::taken;
@@ -88,8 +88,8 @@ impl Foreseen {
     /// Whether the run fits this machine; `scene` is the name that an error gives it.
     ///
     /// # Errors
-    /// [`SceneErrors`] with both numbers, where it does not.
-    pub fn fits(&self, scene: &str) -> Result<(), SceneErrors> {
+    /// [`InputErrors`] with both numbers, where it does not.
+    pub fn fits(&self, scene: &str) -> Result<(), InputErrors> {
         let Foreseen { needed, available, what, remedy, ranks } = self;
         // Stacks are address space, of which little is ever taken.
         let of_threads = |by| if by == Limit::AddressSpace { ranks.threads as u64 } else { 0 };

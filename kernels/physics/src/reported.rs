@@ -1,7 +1,7 @@
 //! What a user hears of an error, whatever it is of: its class, its place, and what to do.
 
+use crate::input::{InputErrors, Reason};
 use crate::io::{FileError, FolderError};
-use crate::scene::SceneErrors;
 use std::path::Path;
 
 /// The classes of errors; each has an exit code of its own.
@@ -80,8 +80,8 @@ pub trait Reported: std::error::Error + Send + Sync {
         None
     }
 
-    /// The mistakes of a scene, where it is of one.
-    fn mistakes(&self) -> Option<&SceneErrors> {
+    /// The mistakes of an input file, where it is of one.
+    fn mistakes(&self) -> Option<&InputErrors> {
         self.passed_on()?.mistakes()
     }
 
@@ -101,12 +101,13 @@ pub trait Reported: std::error::Error + Send + Sync {
     }
 }
 
-impl Reported for SceneErrors {
+impl Reported for InputErrors {
     fn class(&self) -> Class {
-        Class::Input
+        let is_of_system = self.0.iter().any(|error| error.reason == Reason::System);
+        if is_of_system { Class::InputOutput } else { Class::Input }
     }
 
-    fn mistakes(&self) -> Option<&SceneErrors> {
+    fn mistakes(&self) -> Option<&InputErrors> {
         Some(self)
     }
 }

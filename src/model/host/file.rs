@@ -1,13 +1,15 @@
 //! Host files: what `calibrate` writes, as TOML.
 
 use super::model::HostModel;
-use crate::model::file::{self, Entry, Kind, ModelFileError, Source};
+use crate::model::file::{Entry, Kind};
 use std::path::Path;
 use stripmine_kernels::InstructionSet;
+use stripmine_physics::input::InputErrors;
 
 /// The version of the file format that this program reads.
 pub const FORMAT: u32 = 15;
-const KIND: Kind = Kind { name: "host file", format: FORMAT, remedy: ": calibrate again" };
+const KIND: Kind<HostModel> =
+    Kind { format: FORMAT, remedy: Some("calibrate again"), wrong, completed: HostModel::checked };
 /// Above every number of a host file: with larger ones a sum of all that a step does might not be finite.
 const MOST: f64 = 1e15;
 
@@ -15,17 +17,17 @@ impl HostModel {
     /// Reads a host file.
     ///
     /// # Errors
-    /// `ModelFileError`: it cannot be read, or is bad.
-    pub fn load(path: &Path) -> Result<HostModel, ModelFileError> {
-        HostModel::parse(&path.display().to_string(), &file::text(&KIND, path)?)
+    /// [`InputErrors`]: the system does not let it be read, or as [`HostModel::parse`].
+    pub fn load(path: &Path) -> Result<HostModel, InputErrors> {
+        KIND.load(path)
     }
 
     /// Reads a host file's text; `file` is the name that errors give it.
     ///
     /// # Errors
-    /// `ModelFileError`: another format, or the grammar's first mistake with every number that cannot be.
-    pub fn parse(file: &str, text: &str) -> Result<HostModel, ModelFileError> {
-        Source { kind: &KIND, file, text }.read(wrong, HostModel::checked)
+    /// [`InputErrors`]: another format, every entry that cannot be, or the disagreement of right ones.
+    pub fn parse(file: &str, text: &str) -> Result<HostModel, InputErrors> {
+        KIND.read(file, text)
     }
 
     /// The text of its file.
@@ -105,8 +107,8 @@ fn readable(value: &mut toml::Value) {
 /// The host model that comes with the program: of the machine that it was developed on.
 ///
 /// # Errors
-/// `ModelFileError` never, as a test of the shipped text holds.
-pub fn default_model() -> Result<HostModel, ModelFileError> {
+/// [`InputErrors`] never, as a test of the shipped text holds.
+pub fn default_model() -> Result<HostModel, InputErrors> {
     HostModel::parse("the shipped host model", include_str!("default.toml"))
 }
 
@@ -136,7 +138,7 @@ mod tests {
             ("format = 15\n", "", "missing field `format`"),
         ] {
             let said = complaint(old, new);
-            assert!(said.contains(expected) && said.contains("line "), "{said}");
+            assert!(said.contains(expected) && said.starts_with("bad.toml:"), "{said}");
         }
     }
 }

@@ -1,11 +1,12 @@
 //! One function for a section both ways: what it binds to keys is read from values, and written as values.
 
-use super::error::{Reason, SceneError, SceneErrors};
 use super::key_set::{KeySet, SECTIONS};
 use super::keys::{Fallback, Key, Value};
 use super::start_file::SharedFrame;
 use super::target::Target;
 use super::values::Values;
+use super::{SceneError, SceneErrors};
+use crate::input::Reason;
 use crate::words::Words;
 
 /// What meets the fields of a section: reads them from a text, or writes them down.

@@ -1,13 +1,14 @@
 //! The box of a scene in the plane.
 
+use super::SceneError;
 use super::binding::Binding;
 use super::disc_keys::SIDED;
-use super::error::{Reason, SceneError};
 use super::keys::Bounds::{Finite, Positive};
 use super::keys::Fallback::{Is, Required};
 use super::keys::Kind::{Pair, Switches};
 use super::keys::{Use, Value, define_keys};
 use super::values::Values;
+use crate::input::Reason;
 
 const ALWAYS: Use = None;
 

@@ -1,8 +1,9 @@
 //! Scenes of format 1, which are refused with what to change, key by key.
 
-use super::error::{Place, Reason, SceneError, SceneErrors, Spot};
 use super::general::{FORMAT, FORMAT_VERSION};
 use super::values::Vocabulary;
+use super::{SceneError, SceneErrors};
+use crate::input::{InputText, Reason};
 use toml::de::{DeTable, DeValue};
 
 /// Refuses a scene of format 1.
@@ -10,9 +11,8 @@ use toml::de::{DeTable, DeValue};
 /// # Errors
 /// If it is one: every key that says something else in format 2, or something under another name.
 pub(super) fn refuse(
-    file: &str,
     table: &DeTable<'_>,
-    place: impl Fn(usize) -> Place,
+    text: &InputText<'_>,
     methods: &[&'static Vocabulary],
 ) -> Result<(), SceneErrors> {
     let Some(format) = table.get(FORMAT.name) else { return Ok(()) };
@@ -20,8 +20,7 @@ pub(super) fn refuse(
     if number.as_str() != "1" {
         return Ok(());
     }
-    let spot = |offset: usize| Spot { file: file.to_owned(), place: Some(place(offset)) };
-    let (line, names) = (spot(format.span().start), methods.iter().map(|method| method.keys.method));
+    let (line, names) = (text.spot(format.span().start), methods.iter().map(|method| method.keys.method));
     let names: Vec<String> = names.map(|name| format!("kind = \"{name}\"")).collect();
     let mut errors: Vec<SceneError> = vec![
         line.error(Reason::Format, "this program reads format 2; the file is of format 1")
@@ -32,9 +31,9 @@ pub(super) fn refuse(
         let Some((section, name)) = renamed.old.split_once('.') else { continue };
         let section = table.get(section).and_then(|section| section.get_ref().as_table());
         let Some((key, value)) = section.and_then(|section| section.get_key_value(name)) else { continue };
-        let text = value.get_ref().as_str().map(|text| format!(" = \"{}\"", crate::quoted::quoted(text)));
-        let message = format!("`{}{}` is of format 1", renamed.old, text.unwrap_or_default());
-        errors.push(spot(key.span().start).error(Reason::Format, message).expecting(renamed.new));
+        let word = value.get_ref().as_str().map(|word| format!(" = \"{}\"", crate::quoted::quoted(word)));
+        let message = format!("`{}{}` is of format 1", renamed.old, word.unwrap_or_default());
+        errors.push(text.spot(key.span().start).error(Reason::Format, message).expecting(renamed.new));
     }
     SceneErrors::none_of(errors)
 }

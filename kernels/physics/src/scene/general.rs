@@ -1,7 +1,7 @@
 //! What every scene says, whatever its method: format and units, box, duration, files.
 
+use super::SceneError;
 use super::binding::Binding;
-use super::error::{Reason, SceneError};
 use super::key_set::Rivals;
 use super::keys::Bounds::{NonNegative, Positive};
 use super::keys::Fallback::{Is, Otherwise, Required};
@@ -9,6 +9,7 @@ use super::keys::Kind::{self, Number, OneOf, Switch, Text, Whole};
 use super::keys::{Key, Use, define_keys};
 use super::target::Target;
 use super::values::Values;
+use crate::input::Reason;
 use crate::io::FORMATS;
 use crate::io::output_format::OutputFormat;
 use crate::number::significant;

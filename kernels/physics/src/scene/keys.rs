@@ -1,7 +1,7 @@
 //! What a key is: its name, type, range, unit, default and documentation.
 
-use super::error::{Mistakes, Reason};
 use super::target::{Target, Width};
+use crate::input::{Mistakes, Reason};
 use crate::quoted::quoted;
 use crate::words::nearest;
 use std::ops::Range;

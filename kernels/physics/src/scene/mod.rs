@@ -9,7 +9,6 @@ mod binding;
 mod disc_keys;
 mod discs;
 mod domain;
-mod error;
 mod format_1;
 mod general;
 mod key_set;
@@ -23,7 +22,9 @@ mod target;
 mod text;
 mod unknown;
 mod values;
+mod warning;
 
+pub use crate::input::{InputError as SceneError, InputErrors as SceneErrors, Place, Reason, Spot};
 pub use binding::{Binding, Read, Write};
 pub use disc_keys::{
     CLEAR_WIDTH, COUNT, DISC_RIVALS, DISCS, FILE, FILL_HEIGHT, GENERATE, MASS, PACKING_FRACTION, POSITIONS,
@@ -32,7 +33,6 @@ pub use disc_keys::{
 };
 pub use discs::{Amount, Grains, Lining, List, Speed, Start, WallMotion};
 pub use domain::{Domain, GRAVITY, ORIGIN, PERIODIC, PLANAR_DOMAIN, SIDES};
-pub use error::{Place, Reason, SceneError, SceneErrors, Spot, Warning};
 pub use general::{
     DT, DURATION, FORMAT_VERSION, HEADING, METHOD, OUTPUT, Output, Run, STEP, STEPPED_RUN, STEPS, STRUCTURE,
     SUMMED, TARGET, TARGETED, THERMO_EVERY, TIME, UNITS, bind_heading, too_many_steps,
@@ -48,6 +48,7 @@ pub use rules::disagreements;
 pub use start_file::StartFile;
 pub use target::{Target, Width};
 pub use values::{Preset, Renamed, Values, Vocabulary};
+pub use warning::Warning;
 
 #[cfg(test)]
 mod tests;

@@ -1,11 +1,10 @@
 //! From a preset's name, a file or a text to values that have passed every rule.
 
-use super::error::{Place, Reason, SceneErrors, Spot};
 use super::general::METHOD;
 use super::overrides::Overrides;
 use super::values::{Preset, Values, Vocabulary};
-use super::{rules, text};
-use crate::io::regular_file;
+use super::{SceneErrors, rules, text};
+use crate::input::{Reason, Spot, read_text};
 use crate::words::nearest;
 use std::path::Path;
 
@@ -77,7 +76,7 @@ impl Values {
         }
         let nowhere = Spot { file: what.to_owned(), place: None };
         let names: Vec<&str> = presets().map(|preset| preset.name).collect();
-        let bytes = regular_file::read(Path::new(what), LONGEST).map_err(|cause| {
+        read_text(Path::new(what), LONGEST, |cause| {
             let message = match cause.kind() {
                 std::io::ErrorKind::NotFound => "there is no such preset and no such file".to_owned(),
                 _ => format!("cannot be read: {cause}"),
@@ -88,12 +87,6 @@ impl Values {
                 Some(name) => error.advising(format!("did you mean {name}?")),
                 None => error,
             }
-        })?;
-        String::from_utf8(bytes).map_err(|cause| {
-            let line = regular_file::line_that_is_not_text(cause.as_bytes()).unwrap_or(1);
-            let spot = Spot { file: what.to_owned(), place: Some(Place { line: line as u32, column: 1 }) };
-            let error = spot.error(Reason::Syntax, "this line is not UTF-8 text");
-            error.expecting("a TOML file in UTF-8").into()
         })
     }
 }

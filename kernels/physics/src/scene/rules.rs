@@ -1,10 +1,11 @@
 //! What keys demand of each other: which are used, which are missing, which exclude each other, which must agree.
 
+use super::SceneError;
 use super::disc_keys::{COUNT, GENERATE, OMEGAS, PACKING_FRACTION, POSITIONS, RADII, VELOCITIES};
 use super::domain::periodic_as;
-use super::error::{Reason, SceneError};
 use super::keys::{Fallback, Key, Value};
 use super::values::Values;
+use crate::input::Reason;
 
 /// Holds all rules against the values, drops what overrides have made meaningless, and notes every mistake.
 pub(super) fn apply(values: &mut Values) {

@@ -1,75 +1,20 @@
 //! From the text of a scene to values that are each right for themselves.
 
-use super::error::{Mistakes, Place, Reason, SceneError, SceneErrors, Spot};
 use super::general::{FORMAT, METHOD};
 use super::key_set::{KeySet, SECTIONS};
 use super::keys::{Fault, Key, Value};
 use super::overrides::{as_typed, typed};
 use super::unknown::{Help, Unknown};
 use super::values::{Entry, Values, Vocabulary};
+use super::{SceneError, SceneErrors};
+use crate::input::{InputText, Reason, Spot};
 use crate::quoted::quoted;
 use crate::words::nearest;
-use std::collections::BTreeSet;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// Where lines begin.
-struct Lines<'t> {
-    file: &'t str,
-    text: &'t [u8],
-    starts: Vec<usize>,
-    /// Characters before every [`Lines::BLOCK`]th byte.
-    before: Vec<usize>,
-}
-
-impl<'t> Lines<'t> {
-    /// A place is counted from this far at most, however long its line.
-    const BLOCK: usize = 1024;
-
-    fn new(file: &'t str, text: &'t str) -> Self {
-        let text = text.as_bytes();
-        let breaks = text.iter().enumerate().filter(|(_, byte)| **byte == b'\n').map(|(at, _)| at + 1);
-        let starts = std::iter::once(0).chain(breaks).collect();
-        let mut characters = 0;
-        let before = text.chunks(Lines::BLOCK).map(|block| {
-            let before = characters;
-            characters += count_characters(block);
-            before
-        });
-        Lines { file, text, starts, before: before.collect() }
-    }
-
-    /// Characters before a byte.
-    fn characters(&self, offset: usize) -> usize {
-        let block = (offset / Lines::BLOCK).min(self.before.len().saturating_sub(1));
-        let rest = self.text.get(block * Lines::BLOCK..offset.min(self.text.len())).unwrap_or_default();
-        self.before.get(block).copied().unwrap_or(0) + count_characters(rest)
-    }
-
-    fn place(&self, offset: usize) -> Place {
-        let line = self.starts.partition_point(|start| *start <= offset);
-        let start = self.starts[line.saturating_sub(1)];
-        let column = 1 + self.characters(offset) - self.characters(start);
-        Place { line: line as u32, column: column as u32 }
-    }
-
-    fn spot(&self, offset: usize) -> Spot {
-        Spot { file: self.file.to_owned(), place: Some(self.place(offset)) }
-    }
-}
-
-/// Characters, not bytes: continuation bytes of UTF-8 do not count.
-fn count_characters(text: &[u8]) -> usize {
-    text.iter().filter(|byte| **byte & 0xC0 != 0x80).count()
-}
-
 /// The method that a text and its overrides ask for, and where they do.
-fn asked_method(
-    file: &str,
-    table: &DeTable<'_>,
-    lines: &Lines<'_>,
-    overrides: &[String],
-) -> Option<(String, Spot)> {
+fn asked_method(table: &DeTable<'_>, text: &InputText<'_>, overrides: &[String]) -> Option<(String, Spot)> {
     let overriding = overrides.iter().rev().find_map(|text| {
         let (path, value) = text.split_once('=')?;
         let spot = Spot { file: format!("--set {text}"), place: None };
@@ -78,8 +23,7 @@ fn asked_method(
     overriding.or_else(|| {
         let section = table.get(METHOD.section)?.get_ref().as_table()?;
         let kind = section.get(METHOD.name)?;
-        let spot = Spot { file: file.to_owned(), place: Some(lines.place(kind.span().start)) };
-        Some((kind.get_ref().as_str()?.to_owned(), spot))
+        Some((kind.get_ref().as_str()?.to_owned(), text.spot(kind.span().start)))
     })
 }
 
@@ -90,23 +34,10 @@ pub(super) fn read(
     overrides: &[String],
     methods: &[&'static Vocabulary],
 ) -> Result<Values, SceneErrors> {
-    let lines = Lines::new(file, text);
-    let (table, syntax) = DeTable::parse_recoverable(text);
-    if !syntax.is_empty() {
-        // One mistake often makes several messages; what else a broken text says is not to be trusted.
-        let (mut known, mut errors) = (BTreeSet::new(), Mistakes::default());
-        for error in syntax {
-            let place = error.span().map(|span| lines.place(span.start));
-            if known.insert(place.map(|place| place.line)) {
-                let spot = Spot { file: file.to_owned(), place };
-                errors.push(spot.error(Reason::Syntax, format!("not TOML: {}", error.message())));
-            }
-        }
-        errors.none_of(file)?;
-        return Err(Spot { file: file.to_owned(), place: None }.error(Reason::Syntax, "not TOML").into());
-    }
-    super::format_1::refuse(file, table.get_ref(), |offset| lines.place(offset), methods)?;
-    let asked = asked_method(file, table.get_ref(), &lines, overrides);
+    let text = &InputText::new(file, text);
+    let table = text.table()?;
+    super::format_1::refuse(&table, text, methods)?;
+    let asked = asked_method(&table, text, overrides);
     let known = |name: &str| methods.iter().copied().find(|method| method.keys.method == name);
     let vocabulary = match &asked {
         Some((name, spot)) => known(name).ok_or_else(|| unknown_method(name, spot, methods))?,
@@ -114,8 +45,8 @@ pub(super) fn read(
         None => methods.first().copied().ok_or_else(|| unknown_method("", &Spot::default(), methods))?,
     };
     let mut values = Values::none(file, vocabulary, methods);
-    let source = Source { lines: Some(&lines), file, keys: &vocabulary.keys, methods };
-    for (name, value) in table.get_ref() {
+    let source = Source { text: Some(text), file, keys: &vocabulary.keys, methods };
+    for (name, value) in &table {
         source.top(&mut values, name, value);
     }
     let version = values.errors.named().iter().find(|error| error.reason == Reason::Format);
@@ -149,7 +80,7 @@ fn override_with(values: &mut Values, text: &str, methods: &[&'static Vocabulary
         return values.errors.push(error.expecting("section.key=value"));
     };
     let (path, value) = (path.trim(), as_typed(value.trim()));
-    let source = Source { lines: None, file: &file, keys: &values.vocabulary.keys, methods };
+    let source = Source { text: None, file: &file, keys: &values.vocabulary.keys, methods };
     match path.split_once('.') {
         Some((section, key)) => match SECTIONS.iter().find(|(name, _)| *name == section) {
             Some((name, _)) => source.key(values, name, &Spanned::new(0..0, key.into()), &value),
@@ -164,14 +95,14 @@ pub(super) fn set(values: &mut Values, key: &Key, value: &Value) {
     let text = typed(value);
     let file = format!("--set {}={text}", key.path());
     let methods = values.methods.clone();
-    let source = Source { lines: None, file: &file, keys: &values.vocabulary.keys, methods: &methods };
+    let source = Source { text: None, file: &file, keys: &values.vocabulary.keys, methods: &methods };
     let name = Spanned::new(0..0, key.name.into());
     source.key(values, key.section, &name, &as_typed(&text));
 }
 
 /// A text that values come from: the file, or an option of the command line.
 struct Source<'s> {
-    lines: Option<&'s Lines<'s>>,
+    text: Option<&'s InputText<'s>>,
     file: &'s str,
     keys: &'static KeySet,
     methods: &'s [&'static Vocabulary],
@@ -179,8 +110,8 @@ struct Source<'s> {
 
 impl Source<'_> {
     fn spot(&self, offset: usize) -> Spot {
-        match self.lines {
-            Some(lines) => lines.spot(offset),
+        match self.text {
+            Some(text) => text.spot(offset),
             None => Spot { file: self.file.to_owned(), place: None },
         }
     }
@@ -250,12 +181,12 @@ impl Source<'_> {
             Ok(read) => {
                 let elements = value.get_ref().as_array().into_iter().flatten();
                 let places =
-                    |lines: &Lines<'_>| elements.map(|item| lines.place(item.span().start)).collect();
+                    |text: &InputText<'_>| elements.map(|item| text.place(item.span().start)).collect();
                 let entry = Entry {
                     value: read,
                     spot: self.spot(name.span().start),
-                    items: self.lines.map(places).unwrap_or_default(),
-                    overrides: self.lines.is_none(),
+                    items: self.text.map(places).unwrap_or_default(),
+                    overrides: self.text.is_none(),
                 };
                 values.faulty.remove(&key.id());
                 values.values.insert(key.id(), entry);
@@ -279,7 +210,7 @@ impl Source<'_> {
         let place =
             if section.is_empty() { "at the top of the file".to_owned() } else { format!("in [{section}]") };
         let place =
-            if section.is_empty() && self.lines.is_none() { "without a section".to_owned() } else { place };
+            if section.is_empty() && self.text.is_none() { "without a section".to_owned() } else { place };
         let mut error = self
             .spot(name.span().start)
             .error(Reason::Unknown, format!("unknown key `{}` {place}", quoted(name.get_ref())));
@@ -288,7 +219,7 @@ impl Source<'_> {
             methods: self.methods,
             section,
             name: name.get_ref(),
-            overrides: self.lines.is_none(),
+            overrides: self.text.is_none(),
         };
         error = match unknown.help() {
             Help::Advice(advice, meant) => {

@@ -1,9 +1,10 @@
 //! What the scenes of a method may say (its keys, what they demand of each other, scenes to start from), and the values of a scene, with their places.
 
-use super::error::{Mistakes, Place, SceneError, Spot};
+use super::SceneError;
 use super::key_set::KeySet;
 use super::keys::{Fallback, Key, Use, Value};
 use super::start_file::SharedFrame;
+use crate::input::{Mistakes, Place, Spot};
 use std::collections::{BTreeMap, BTreeSet};
 use toml::de::DeValue;
 

@@ -1,4 +1,4 @@
-//! What can be wrong with a scene, and where.
+//! Mistakes of an input file, with their places.
 
 use crate::number::counted;
 use crate::quoted;
@@ -13,7 +13,7 @@ pub struct Place {
     pub column: u32,
 }
 
-/// What kind of mistake it is.
+/// Kind of a mistake.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
@@ -22,6 +22,8 @@ pub enum Reason {
     Unreadable,
     /// Not TOML.
     Syntax,
+    /// The system does not let the file be read.
+    System,
     /// A format version that this program does not read.
     Format,
     /// No such section or key.
@@ -56,15 +58,15 @@ pub enum Reason {
     More,
 }
 
-/// A mistake of a scene.
+/// A mistake of an input file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, thiserror::Error)]
 #[error("{}", paragraph(self))]
-pub struct SceneError {
+pub struct InputError {
     /// The file, the preset, or the option of the command line.
     pub file: String,
     /// Where in the file; nothing where no single place is wrong.
     pub place: Option<Place>,
-    /// The kind of mistake.
+    /// Kind.
     pub reason: Reason,
     /// What is wrong, with the numbers.
     pub message: String,
@@ -74,7 +76,7 @@ pub struct SceneError {
     pub suggestion: Option<String>,
 }
 
-fn paragraph(error: &SceneError) -> String {
+fn paragraph(error: &InputError) -> String {
     let mut text = quoted::quoted(&error.file);
     if let Some(Place { line, column }) = error.place {
         text.push_str(&format!(":{line}:{column}"));
@@ -88,41 +90,42 @@ fn paragraph(error: &SceneError) -> String {
     text
 }
 
-impl SceneError {
+impl InputError {
     /// The same, with what should stand there.
     #[must_use]
     pub fn expecting(self, expected: impl Into<String>) -> Self {
-        SceneError { expected: Some(expected.into()), ..self }
+        InputError { expected: Some(expected.into()), ..self }
     }
 
     /// The same, with what to do about it.
     #[must_use]
     pub fn advising(self, suggestion: impl Into<String>) -> Self {
-        SceneError { suggestion: Some(suggestion.into()), ..self }
+        InputError { suggestion: Some(suggestion.into()), ..self }
     }
 }
 
 /// Mistakes as they are found; names the first ones and counts the rest.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Mistakes {
-    named: Vec<SceneError>,
+pub struct Mistakes {
+    named: Vec<InputError>,
     more: usize,
 }
 
 impl Mistakes {
     /// At most as many mistakes are named: a file of another kind may hold millions.
-    pub(super) const NAMED: usize = 50;
+    pub(crate) const NAMED: usize = 50;
 
     /// Whether a mistake would be named; where not, there is no need to find words for it.
-    pub(super) fn has_room(&self) -> bool {
+    pub fn has_room(&self) -> bool {
         self.named.len() < Mistakes::NAMED
     }
 
-    pub(super) fn named(&self) -> &[SceneError] {
+    pub(crate) fn named(&self) -> &[InputError] {
         &self.named
     }
 
-    pub(super) fn push(&mut self, error: SceneError) {
+    /// Adds a mistake.
+    pub fn push(&mut self, error: InputError) {
         match self.has_room() {
             true => self.named.push(error),
             false => self.more += 1,
@@ -130,13 +133,16 @@ impl Mistakes {
     }
 
     /// One more, of which nothing is said.
-    pub(super) fn count(&mut self) {
+    pub(crate) fn count(&mut self) {
         self.more += 1;
     }
 
     /// Nothing wrong, or the mistakes of the file.
-    pub(super) fn none_of(self, file: &str) -> Result<(), SceneErrors> {
-        let Err(SceneErrors(mut errors)) = SceneErrors::none_of(self.named) else { return Ok(()) };
+    ///
+    /// # Errors
+    /// If there is any mistake.
+    pub fn none_of(self, file: &str) -> Result<(), InputErrors> {
+        let Err(InputErrors(mut errors)) = InputErrors::none_of(self.named) else { return Ok(()) };
         if self.more > 0 {
             let spot = Spot { file: file.to_owned(), place: None };
             errors.push(spot.error(
@@ -144,28 +150,28 @@ impl Mistakes {
                 format!("{}, not named", counted(self.more, "more mistake", "more mistakes")),
             ));
         }
-        Err(SceneErrors(errors))
+        Err(InputErrors(errors))
     }
 }
 
-impl Extend<SceneError> for Mistakes {
-    fn extend<T: IntoIterator<Item = SceneError>>(&mut self, errors: T) {
+impl Extend<InputError> for Mistakes {
+    fn extend<T: IntoIterator<Item = InputError>>(&mut self, errors: T) {
         errors.into_iter().for_each(|error| self.push(error));
     }
 }
 
-/// Every mistake found in a scene, in the order of their places; at least one. Of very many only the first are named.
+/// Every mistake found in an input file, in the order of their places; at least one. Of very many only the first are named.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, thiserror::Error)]
 #[error("{}", paragraphs(.0))]
 #[serde(transparent)]
-pub struct SceneErrors(pub Vec<SceneError>);
+pub struct InputErrors(pub Vec<InputError>);
 
-impl SceneErrors {
+impl InputErrors {
     /// Nothing wrong, or all mistakes in the order of their places.
     ///
     /// # Errors
     /// If there is any mistake.
-    pub fn none_of(mut errors: Vec<SceneError>) -> Result<(), SceneErrors> {
+    pub fn none_of(mut errors: Vec<InputError>) -> Result<(), InputErrors> {
         if errors.is_empty() {
             return Ok(());
         }
@@ -174,44 +180,26 @@ impl SceneErrors {
         // Those without a place last.
         let placeless = errors.partition_point(|error| error.place.is_none());
         errors.rotate_left(placeless);
-        Err(SceneErrors(errors))
+        Err(InputErrors(errors))
     }
 }
 
-impl From<SceneError> for SceneErrors {
-    fn from(error: SceneError) -> Self {
-        SceneErrors(vec![error])
+impl From<InputError> for InputErrors {
+    fn from(error: InputError) -> Self {
+        InputErrors(vec![error])
     }
 }
 
-fn paragraphs(errors: &[SceneError]) -> String {
+fn paragraphs(errors: &[InputError]) -> String {
     let all: Vec<String> = errors.iter().map(ToString::to_string).collect();
     match all.len() {
         1 => all.concat(),
         count => {
             let more = errors.iter().any(|error| error.reason == Reason::More);
             let count = if more { format!("more than {}", count - 1) } else { count.to_string() };
-            format!("{count} mistakes in the scene\n\n{}\n", all.join("\n\n"))
+            format!("{count} mistakes\n\n{}\n", all.join("\n\n"))
         }
     }
-}
-
-/// Something that a scene may do but that seldom ends well.
-#[derive(Clone, Debug, PartialEq, Serialize, thiserror::Error)]
-#[error("{key}: {message}\n  help: {suggestion}")]
-pub struct Warning {
-    /// The check that found it.
-    pub check: &'static str,
-    /// The value found over the largest one that is allowed; infinite where nothing of the kind is.
-    pub share: f64,
-    /// True for a reason to refuse the scene, which was prepared nevertheless: at any step.
-    pub is_refusal: bool,
-    /// The key that decides it.
-    pub key: String,
-    /// What was found, with the numbers.
-    pub message: String,
-    /// What to do about it.
-    pub suggestion: String,
 }
 
 /// Where a value comes from, to be said in an error.
@@ -225,8 +213,8 @@ pub struct Spot {
 
 impl Spot {
     /// A mistake at this place.
-    pub fn error(&self, reason: Reason, message: impl Into<String>) -> SceneError {
-        SceneError {
+    pub fn error(&self, reason: Reason, message: impl Into<String>) -> InputError {
+        InputError {
             file: self.file.clone(),
             place: self.place,
             reason,
