@@ -1,5 +1,10 @@
 //! Notes which source the program is built from, so that every report can say so.
 
+#![expect(
+    clippy::disallowed_methods,
+    reason = "a build without git, or with a compiler that does not say its version, is one of no known commit"
+)]
+
 use std::path::{Path, PathBuf};
 use std::process::Command;
 

@@ -118,7 +118,7 @@ fn bad_machine_files_are_refused() {
 
 #[test]
 fn bad_host_files_are_refused() {
-    let host = stripmine::model::host::default_model().unwrap().to_toml();
+    let host = stripmine::model::host::default_model().unwrap().to_toml().unwrap();
     let ask = |folder: &Path, change: &str| {
         // The base is too long to be kept twice: the text of a case is the change, old and new.
         let (old, new) = change.trim_end().split_once('\n').unwrap();

@@ -39,6 +39,18 @@
 //! # Ok::<(), stripmine_kernels::isa::ProgramError>(())
 //! ```
 
+// Where a panic is possible, or an error is dropped, the reason stands beside it.
+#![cfg_attr(
+    not(test),
+    warn(
+        clippy::unwrap_used,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable,
+        clippy::let_underscore_must_use
+    )
+)]
+
 pub mod backend;
 pub mod flight;
 pub mod integrator;

@@ -51,11 +51,11 @@ impl AverageVerb {
             // Beside a table for programs, and not in it.
             doubts(std::slice::from_ref(&function));
             return match self.csv {
-                true => print(&String::from_utf8_lossy(&function.csv())),
+                true => print(&function.csv()),
                 false => print(&terminal::render(&of_function(&function))),
             };
         }
-        let functions = functions_of(folders());
+        let functions = functions_of(folders())?;
         if common.json {
             return print_json(&Said { averages: &averages, structure: &functions });
         }

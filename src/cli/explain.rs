@@ -204,9 +204,10 @@ impl ExplainVerb {
             return refusal();
         }
         let mut answer = String::new();
-        // Where nothing can be asked, the answer is no.
+        #[expect(clippy::let_underscore_must_use, reason = "where nothing can be asked, the answer is no")]
         let _ =
             write!(io::stderr(), "a run of the plan takes about {}: carry it out? [y/N] ", seconds(likely));
+        #[expect(clippy::let_underscore_must_use, reason = "where nothing is answered, the answer is no")]
         let _ = io::stdin().read_line(&mut answer);
         if matches!(answer.trim(), "y" | "Y" | "yes") { Ok(()) } else { refusal() }
     }

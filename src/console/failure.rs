@@ -145,7 +145,10 @@ struct Report {
 pub fn tell(failure: &Failure, as_data: bool) {
     match failure {
         Failure::Arguments(mistake) if is_plain(mistake) => {
-            // Where standard error is full or closed there is nowhere to say so.
+            #[expect(
+                clippy::let_underscore_must_use,
+                reason = "where standard error is full or closed there is nowhere to say so"
+            )]
             let _ = mistake.print();
         }
         // The parser's own words begin as ours do.
@@ -153,7 +156,10 @@ pub fn tell(failure: &Failure, as_data: bool) {
         _ => say(format_args!("error: {failure}")),
     }
     if as_data && is_untouched() {
-        // The first failure decides the exit code, whether it can be said or not.
+        #[expect(
+            clippy::let_underscore_must_use,
+            reason = "the first failure decides the exit code, said or not"
+        )]
         let _ = print_json(&Document { error: failure.report(), errors: failure.mistakes() });
     }
 }

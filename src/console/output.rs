@@ -25,7 +25,10 @@ fn shown() -> MutexGuard<'static, Option<ProgressBar>> {
 pub fn say(message: impl Display) {
     let line = || {
         let text = terminal::fitted(&quoted::message(&message.to_string()));
-        // Where standard error is full or closed there is nowhere to say so.
+        #[expect(
+            clippy::let_underscore_must_use,
+            reason = "where standard error is full or closed there is nowhere to say so"
+        )]
         let _ = writeln!(io::stderr().lock(), "{text}");
     };
     let bar = shown().clone();
@@ -46,6 +49,7 @@ pub fn bar(common: &Common, length: u64, template: &str) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(Some(length), target);
     let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
     bar.set_style(style.with_key("left", |state: &ProgressState, out: &mut dyn std::fmt::Write| {
+        #[expect(clippy::let_underscore_must_use, reason = "a bar that cannot be drawn is not drawn")]
         let _ = out.write_str(&remaining(state.fraction(), state.elapsed(), state.eta()));
     }));
     // Time goes on where nothing else does. Where nothing is drawn no thread is needed for it.

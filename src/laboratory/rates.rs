@@ -7,7 +7,7 @@
 mod case;
 mod process;
 
-pub use case::{Case, Own, Reading};
+pub use case::{Case, Own, Reading, given};
 pub use process::{VERB, serve};
 
 use crate::console::Failure;

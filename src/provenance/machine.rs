@@ -30,6 +30,10 @@ pub struct Machine {
 impl Machine {
     /// This machine. What the system does not say is left out; Linux says it in `/proc/cpuinfo` and `/sys/devices/system/cpu`.
     pub fn here() -> Machine {
+        #[expect(
+            clippy::disallowed_methods,
+            reason = "a system that does not name its processor leaves it out"
+        )]
         let cpuinfo = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
         let field = |name: &str| {
             let value = |line: &str| Some(line.strip_prefix(name)?.split_once(':')?.1.trim().to_owned());

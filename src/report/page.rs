@@ -1,5 +1,7 @@
 //! The page of a reproduction in Markdown, as a repository's site shows it.
 
+#![expect(clippy::let_underscore_must_use, reason = "a string takes whatever is written")]
+
 use super::section::JudgedClaim;
 use super::tally::Tally;
 use super::{Chapter, Section, markdown};

@@ -123,7 +123,9 @@ impl Folder {
         // A picture that is gone leaves a gap in the page, and is there again with the item's next making.
         let drawn = |section: &Section, figure: &Figure| {
             let file = self.0.file(&section.folder()).join(format!("{}.svg", figure.name));
-            String::from_utf8(regular_file::read(&file, LONGEST).unwrap_or_default()).unwrap_or_default()
+            let picture =
+                regular_file::read(&file, LONGEST).ok().and_then(|bytes| String::from_utf8(bytes).ok());
+            picture.unwrap_or_default()
         };
         let tally = Tally::of(&sections, &claims::all()?);
         let texts =

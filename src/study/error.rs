@@ -104,6 +104,11 @@ pub enum StudyError {
         /// Runs that were tried, and why they failed.
         tried: Vec<(String, String)>,
     },
+    /// A measuring process was asked for something else than it measures.
+    #[error(
+        "the measuring process cannot read its parameters: {0}\n  help: let both processes be of one version"
+    )]
+    Parameters(serde_json::Error),
     /// The journal cannot be read, or is another scene's.
     #[error(transparent)]
     Journal(#[from] JournalError),
@@ -115,7 +120,7 @@ impl Reported for StudyError {
             StudyError::OverBeforeOutput { .. }
             | StudyError::EveryRunFails { .. }
             | StudyError::Interrupted => Class::Precondition,
-            StudyError::Threads(_) => Class::InputOutput,
+            StudyError::Threads(_) | StudyError::Parameters(_) => Class::InputOutput,
             _ => self.passed_on().map_or(Class::Usage, Reported::class),
         }
     }

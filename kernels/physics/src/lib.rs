@@ -17,6 +17,18 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+// Where a panic is possible, or an error is dropped, the reason stands beside it.
+#![cfg_attr(
+    not(test),
+    warn(
+        clippy::unwrap_used,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable,
+        clippy::let_underscore_must_use
+    )
+)]
+
 pub mod averages;
 pub mod domain;
 pub mod grid;

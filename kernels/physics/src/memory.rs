@@ -172,6 +172,10 @@ pub fn available() -> Option<Available> {
 const RESERVED: u64 = 1 << 26;
 
 /// What the limits of this process leave.
+#[expect(
+    clippy::disallowed_methods,
+    reason = "a system that does not say its limits has none that are known"
+)]
 fn left_of_process() -> impl Iterator<Item = Available> {
     let [limits, status] =
         ["/proc/self/limits", "/proc/self/status"].map(|file| fs::read_to_string(file).unwrap_or_default());
@@ -191,6 +195,7 @@ fn soft_limit(limits: &str, name: &str) -> Option<u64> {
 }
 
 /// What the shares of the control groups of this process leave, from its own up to the root.
+#[expect(clippy::disallowed_methods, reason = "a system without control groups has no limits by them")]
 fn left_of_groups() -> Vec<u64> {
     let groups = fs::read_to_string("/proc/self/cgroup").unwrap_or_default();
     let mut left = Vec::new();

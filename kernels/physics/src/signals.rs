@@ -132,6 +132,10 @@ fn end(how: End) -> ! {
     };
     // Without another thread there are no last words.
     if std::thread::Builder::new().spawn(words).is_ok() {
+        #[expect(
+            clippy::let_underscore_must_use,
+            reason = "the process ends now, whatever the thread has said"
+        )]
         let _ = waiting.recv_timeout(PATIENCE);
     }
     std::process::exit(INTERRUPTED.into())

@@ -109,6 +109,15 @@ pub fn dispatch_native<L: Precision, T: Task<L>>(set: InstructionSet, task: T) -
     Ok(())
 }
 
+/// As [`dispatch_native`], on the widest set that this processor has.
+#[expect(clippy::unreachable, reason = "a set that is there is chosen above")]
+#[inline]
+pub fn dispatch_best<L: Precision, T: Task<L>>(task: T) {
+    if let Err(absent) = dispatch_native(InstructionSet::best(), task) {
+        unreachable!("{absent}, but the best set is one of those that this processor has");
+    }
+}
+
 /// As [`dispatch`], on registers that fuse products and sums and estimate inverse roots, where the set has such.
 pub(crate) fn dispatch_estimating<L: Precision, T: Task<L>, const RAW: bool>(
     set: InstructionSet,

@@ -43,8 +43,8 @@ enum Bytes {
 impl Bytes {
     fn holding(length: usize) -> Bytes {
         let Ok(map) = MmapMut::map_anon(length) else { return Bytes::Allocated(vec![0; length]) };
-        // Where there are no large pages, small ones do.
         #[cfg(target_os = "linux")]
+        #[expect(clippy::let_underscore_must_use, reason = "where there are no large pages, small ones do")]
         let _ = map.advise(memmap2::Advice::HugePage);
         Bytes::Mapped(map)
     }

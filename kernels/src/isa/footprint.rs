@@ -40,6 +40,7 @@ impl Footprint {
             .all(|access| access.strided && !access.indexed && (access.lowest, access.highest) == (0, 0))
     }
 
+    #[expect(clippy::expect_used, reason = "an element was pushed the line before")]
     pub(crate) fn record(&mut self, array: Array, element: &'static str, shift: Option<isize>, writes: bool) {
         let found = self.0.iter_mut().find(|access| access.array == array && access.element == element);
         let access = match found {

@@ -64,7 +64,7 @@ impl PlotVerb {
         let table = Observed::read(&run.join("thermo.csv"), methods)?;
         let wanted = table.wanted(&self.columns, methods)?;
         let mut figures = table.figures(&wanted);
-        figures.extend(structure::figures(&run));
+        figures.extend(structure::figures(&run)?);
         let colours = Colours::new(self.color.as_deref(), &run, methods);
         match particles::pictures(&run, &colours) {
             Ok(pictures) => figures.extend(pictures),

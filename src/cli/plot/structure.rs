@@ -3,16 +3,19 @@
 use crate::console::warn;
 use crate::report::figure::{Axis, Chart, Figure, Map, Picture, Series, Style};
 use std::path::Path;
-use stripmine_physics::run::{Function, Point, functions_of};
+use stripmine_physics::run::{FinishedError, Function, Point, functions_of};
 use stripmine_physics::structure::{Observable, Over, Seen};
 
 /// A figure of each file that is there and has rows; says why there is none of another.
-pub(super) fn figures(run: &Path) -> Vec<Figure> {
-    let functions = functions_of(std::iter::once(run));
+///
+/// # Errors
+/// As [`functions_of`].
+pub(super) fn figures(run: &Path) -> Result<Vec<Figure>, FinishedError> {
+    let functions = functions_of(std::iter::once(run))?;
     for Function { name, doubt, .. } in functions.iter().filter(|function| function.points.is_empty()) {
         doubt.iter().for_each(|doubt| warn(format_args!("{name}: {doubt}")));
     }
-    functions.iter().filter(|function| !function.points.is_empty()).filter_map(figure).collect()
+    Ok(functions.iter().filter(|function| !function.points.is_empty()).filter_map(figure).collect())
 }
 
 fn axis([label, unit]: [&str; 2]) -> Axis {

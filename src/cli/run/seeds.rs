@@ -155,12 +155,12 @@ impl RunVerb {
         let runs: Vec<Member> =
             members.map(|((folder, seeds), averages)| Member { folder, seeds, averages }).collect();
         let all: Vec<Averages> = runs.iter().map(|run| run.averages.clone()).collect();
-        let structure = functions_of(runs.iter().map(|run| run.folder.as_path()));
+        let structure = functions_of(runs.iter().map(|run| run.folder.as_path()))?;
         let structure: Vec<Function> = structure.into_iter().filter(|it| files.contains(&it.file)).collect();
         let seconds = begun.elapsed().as_secs_f64();
         let ensemble = Ensemble { averages: joined(&all), seconds, runs, structure };
         for function in &ensemble.structure {
-            own.write(function.file, |out| out.write_all(&function.csv()))?;
+            own.write(function.file, |out| out.write_all(function.csv().as_bytes()))?;
         }
         let summary = to_json(&ensemble)?;
         own.write(SUMMARY, |out| out.write_all(summary.as_bytes()))?;

@@ -4,6 +4,7 @@ use crate::console::Failure;
 use crate::frame::Cell;
 use crate::laboratory::running::{Running, on_threads};
 use crate::study::StudyError;
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::io;
@@ -18,6 +19,14 @@ pub struct Own {
     pub name: &'static str,
     /// Measures the work that some parameters describe.
     pub measure: fn(&serde_json::Value) -> Result<Reading, StudyError>,
+}
+
+/// The parameters that a measuring process was given.
+///
+/// # Errors
+/// [`StudyError::Parameters`] where they are of another kind.
+pub fn given<T: DeserializeOwned>(parameters: &serde_json::Value) -> Result<T, StudyError> {
+    T::deserialize(parameters).map_err(StudyError::Parameters)
 }
 
 /// One case of a grid.

@@ -51,7 +51,8 @@ fn answered(command: &mut Command, cases: &[&Case], heard: &mut dyn FnMut(Readin
     }
     let status = child.wait().map_err(failed)?;
     drop(asked);
-    let words = words.join().unwrap_or_default();
+    // Words that could not be read are missing; the exit code says the rest.
+    let words = words.join().unwrap_or_else(|_| String::new());
     match status.success() && readings == cases.len() {
         true => Ok(()),
         false => Err(failure(status, &words)),

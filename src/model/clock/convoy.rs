@@ -105,7 +105,8 @@ impl Issue<'_> {
         if let Some(unit) = unit {
             *self.used.entry(unit.resource).or_default() += 1.0;
         }
-        let convoy = self.convoys.last_mut().expect("one was just opened if there was none");
+        #[expect(clippy::expect_used, reason = "one was opened above if there was none")]
+        let convoy = self.convoys.last_mut().expect("one was opened above if there was none");
         convoy.start_up = convoy.start_up.max(first_element);
         convoy.chime = convoy.chime.max(1.0 / unit.map_or(1.0, |unit| unit.rate));
         convoy.instructions += 1;

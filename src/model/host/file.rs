@@ -31,11 +31,13 @@ impl HostModel {
     }
 
     /// The text of its file.
-    pub fn to_toml(&self) -> String {
-        // A model is tables of numbers and words, which TOML can always say.
-        let mut value = toml::Value::try_from(self).unwrap_or(toml::Value::Boolean(false));
+    ///
+    /// # Errors
+    /// Where TOML cannot say an entry.
+    pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
+        let mut value = toml::Value::try_from(self)?;
         readable(&mut value);
-        HEADING.to_owned() + &toml::to_string(&value).unwrap_or_default()
+        Ok(HEADING.to_owned() + &toml::to_string(&value)?)
     }
 
     /// The model, if its entries agree with each other.
@@ -119,12 +121,12 @@ mod tests {
     #[test]
     fn the_shipped_model_is_read_and_written_without_loss() {
         let model = default_model().unwrap();
-        assert_eq!(HostModel::parse("again", &model.to_toml()).unwrap(), model);
+        assert_eq!(HostModel::parse("again", &model.to_toml().unwrap()).unwrap(), model);
     }
 
     #[test]
     fn bad_entries_are_named_with_their_place() {
-        let text = default_model().unwrap().to_toml();
+        let text = default_model().unwrap().to_toml().unwrap();
         let complaint = |old: &str, new: &str| {
             assert!(text.contains(old), "{old}");
             HostModel::parse("bad.toml", &text.replacen(old, new, 1)).unwrap_err().to_string()

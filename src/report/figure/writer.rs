@@ -4,6 +4,8 @@
 //! A `<title>` names each series, band and cell, and the plane between the axes states in `data-x` and `data-y` where numbers lie on
 //! it: a script finds the values there.
 
+#![expect(clippy::let_underscore_must_use, reason = "a string takes whatever is written")]
+
 use super::picture::Figure;
 use super::{font, style};
 use std::collections::BTreeSet;

@@ -153,6 +153,7 @@ impl Planned<'_> {
                 StudyError::EveryRunFails { tried: vec![(run, failure.why)] }
             })
         })?;
+        #[expect(clippy::unreachable, reason = "there is an end for each of the three cases")]
         let [best, whole, other] = ends.as_slice() else { unreachable!("there are three cases") };
         let [halving, second] = [whole, other].map(|end| self.errors(end, &best.state));
         let mut floor = self.errors(best, &best.state);

@@ -121,8 +121,8 @@ impl Sink for Writer {
         let (mut file, spacing) = (GrowingFile::resume(path, mark)?, Spacing::of(header));
         let heading = file.first_bytes(HEADING)?;
         let number = |at: usize| {
-            let bytes = heading.get(at..at + 4).unwrap_or_default();
-            i32::from_le_bytes(bytes.try_into().unwrap_or_default())
+            let bytes = heading.get(at..).and_then(|rest| rest.first_chunk());
+            bytes.map_or(0, |bytes| i32::from_le_bytes(*bytes))
         };
         let [first, steps, dt, has_box, count] = [FIRST, STEPS, DT, BOX, COUNT].map(number);
         let positive = |number: i32| u64::try_from(number).unwrap_or(0);

@@ -95,9 +95,9 @@ impl Lock {
 
 impl Drop for Lock {
     fn drop(&mut self) {
-        // Safe while it is held: a process that has opened it meanwhile finds that the name is gone and opens another. A file
-        // that cannot be removed does no harm.
+        // Safe while it is held: a process that has opened it meanwhile finds that the name is gone and opens another.
         if cfg!(unix) && self.held && self.is_there() {
+            #[expect(clippy::let_underscore_must_use, reason = "a file that cannot be removed does no harm")]
             let _ = remove_if_there(&self.path);
         }
     }
@@ -114,6 +114,7 @@ fn sign(mut file: &File) -> io::Result<()> {
 
 /// Who holds a lock, by its file.
 fn holder(file: &File) -> String {
+    #[expect(clippy::disallowed_methods, reason = "who holds a lock is told where it can be read")]
     let text = text(file).unwrap_or_default();
     let said = |what: &str| {
         let value = text.lines().find_map(|line| line.strip_prefix(what)?.strip_prefix(' '))?;

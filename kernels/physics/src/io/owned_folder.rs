@@ -123,8 +123,9 @@ impl FolderKind {
                 || name == self.lock && is_lock(&path)
                 || below.contains(&name) && is_empty(&path))
         });
+        // A place that cannot be listed shows nothing of ours: the folder is then refused.
         let has_own = |place: PathBuf| {
-            let names = names_in(&place).unwrap_or_default().unwrap_or_default();
+            let names = names_in(&place).ok().flatten().unwrap_or_default();
             names.iter().any(|name| self.owns(&place, name).is_ok_and(|is_there| is_there))
         };
         let mut places = below.iter().map(|name| folder.join(name)).chain([folder.to_owned()]);
@@ -369,7 +370,7 @@ impl OwnedFolder {
         } else {
             renamed(part.path(), &folder)?;
         }
-        // It has another name now.
+        #[expect(clippy::let_underscore_must_use, reason = "it has another name now")]
         let _ = part.keep();
         Ok(folder)
     }

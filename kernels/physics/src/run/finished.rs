@@ -23,6 +23,19 @@ pub enum FinishedError {
     /// A file.
     #[error(transparent)]
     File(#[from] FileError),
+    /// A file of a run that is not as the run wrote it.
+    #[error(
+        "{}:{line}: expected {expected}\n  help: run it again, or take the file from a copy",
+        quoted::path(file)
+    )]
+    Damaged {
+        /// The file.
+        file: PathBuf,
+        /// Line, from 1.
+        line: usize,
+        /// The content of that line as it should be.
+        expected: String,
+    },
     /// Columns that no method observes.
     #[error("{}: its columns are not those of any method of this version", quoted::path(.0))]
     NoMethod(PathBuf),
@@ -89,7 +102,7 @@ impl Reported for FinishedError {
         match self {
             FinishedError::Table(error) => error.class(),
             FinishedError::File(_) => Class::InputOutput,
-            FinishedError::NoMethod(_) => Class::Input,
+            FinishedError::NoMethod(_) | FinishedError::Damaged { .. } => Class::Input,
             FinishedError::OtherScene { .. }
             | FinishedError::Twice { .. }
             | FinishedError::OneNoise { .. }
@@ -105,6 +118,9 @@ impl Reported for FinishedError {
         match self {
             FinishedError::Table(error) => error.place(),
             FinishedError::File(error) => Some(FilePlace::at(&error.file)),
+            FinishedError::Damaged { file, line, .. } => {
+                Some(FilePlace { line: Some(*line), ..FilePlace::at(file) })
+            }
             FinishedError::NoMethod(file)
             | FinishedError::OtherScene { other: file, .. }
             | FinishedError::Twice { other: file, .. }

@@ -3,11 +3,11 @@
 use super::finished::FinishedError;
 use super::folder::SUMMARY;
 use crate::averages::of_independent;
-use crate::io::regular_file;
+use crate::io::{FileError, regular_file};
 use crate::structure::{OBSERVABLES, Observable};
 use serde::Serialize;
 use serde_json::Value;
-use std::io::{self, Write};
+use std::io::ErrorKind;
 use std::path::Path;
 
 /// Longer than any of the files (bytes).
@@ -70,13 +70,17 @@ pub struct Number {
 
 /// The functions that every one of some runs has written, each where all of them have it. A mean is that of the runs, its bar from
 /// what lies between them; of one run they are its own.
-pub fn functions_of<'f>(folders: impl Iterator<Item = &'f Path>) -> Vec<Function> {
+///
+/// # Errors
+/// [`FinishedError::File`] and [`FinishedError::Damaged`]: a file that is there and cannot be read whole.
+pub fn functions_of<'f>(folders: impl Iterator<Item = &'f Path>) -> Result<Vec<Function>, FinishedError> {
     let folders: Vec<&Path> = folders.collect();
-    let summaries: Vec<Value> = folders.iter().map(|folder| summary(folder)).collect();
+    let summaries: Vec<Value> = folders.iter().map(|folder| summary(folder)).collect::<Result<_, _>>()?;
     let of = |observable: &'static Observable| {
-        let files: Option<Vec<Vec<Point>>> =
-            folders.iter().map(|folder| points(&folder.join(observable.file), observable)).collect();
-        let mut points = joined(&files?);
+        let files = folders.iter().map(|folder| points(&folder.join(observable.file), observable));
+        let files: Option<Vec<Vec<Point>>> = files.collect::<Result<_, _>>()?;
+        let Some(files) = files else { return Ok(None) };
+        let mut points = joined(&files);
         if observable.is_density_of_places() {
             // Where no disc was ever seen, nothing tells how seldom one is there.
             points.iter_mut().filter(|point| point.mean == 0.0).for_each(|point| point.bar = f64::NAN);
@@ -91,80 +95,103 @@ pub fn functions_of<'f>(folders: impl Iterator<Item = &'f Path>) -> Vec<Function
         let headlines = headlines.filter_map(|it| headline(it.name, it.unit)).collect();
         let Observable { name, file, .. } = *observable;
         let doubt = doubt(&summaries, name);
-        (!points.is_empty() || doubt.is_some()).then_some(Function {
-            name,
-            file,
-            runs: folders.len(),
-            points,
-            headlines,
-            doubt,
-            observable,
-        })
+        let runs = folders.len();
+        let is_known = !points.is_empty() || doubt.is_some();
+        Ok(is_known.then_some(Function { name, file, runs, points, headlines, doubt, observable }))
     };
-    OBSERVABLES.iter().filter_map(of).collect()
+    OBSERVABLES.iter().filter_map(|observable| of(observable).transpose()).collect()
 }
 
 /// One of the functions that every one of some runs has written.
 ///
 /// # Errors
-/// [`FinishedError::NoStructure`], if one has not.
+/// [`FinishedError::NoStructure`], if one has not; else as [`functions_of`].
 pub fn function_of<'f>(
     folders: impl Iterator<Item = &'f Path> + Clone,
     observable: &'static Observable,
 ) -> Result<Function, FinishedError> {
-    let found = functions_of(folders.clone()).into_iter().find(|it| it.name == observable.name);
+    let found = functions_of(folders.clone())?.into_iter().find(|it| it.name == observable.name);
     found.ok_or_else(|| {
-        let mut folders = folders.map(Path::to_owned);
-        let without = folders.find(|folder| points(&folder.join(observable.file), observable).is_none());
-        FinishedError::NoStructure { folder: without.unwrap_or_default(), name: observable.name }
+        let mut without = folders.clone().filter(|folder| !folder.join(observable.file).exists());
+        // Where each has written its file, no place is in all of them.
+        let folder = without.next().or(folders.clone().last()).map(Path::to_owned).unwrap_or_default();
+        FinishedError::NoStructure { folder, name: observable.name }
     })
 }
 
-/// Writes a function as comma-separated values: what it is over, its mean and its bar, lines without a mean left out.
-///
-/// # Errors
-/// Those of what is written to.
-pub(super) fn write_csv(observable: &Observable, points: &[Point], out: &mut dyn Write) -> io::Result<()> {
+/// The heading of a function's file, without its end.
+fn heading(observable: &Observable) -> String {
     let with_unit = |[name, unit]: [&str; 2]| match unit {
         "" => name.to_owned(),
         unit => format!("{name} ({unit})"),
     };
-    for &over in observable.over {
-        write!(out, "{},", with_unit(over))?;
-    }
-    writeln!(out, "{},error", with_unit(observable.value))?;
+    let columns = observable.over.iter().chain([&observable.value]);
+    let columns: Vec<String> = columns.map(|&column| with_unit(column)).chain(["error".to_owned()]).collect();
+    columns.join(",")
+}
+
+/// A function as comma-separated values: what it is over, its mean and its bar, lines without a mean left out.
+pub(super) fn csv(observable: &Observable, points: &[Point]) -> String {
+    let mut text = heading(observable) + "\n";
     for Point { over, mean, bar } in points.iter().filter(|point| !point.mean.is_nan()) {
-        over.iter().try_for_each(|over| write!(out, "{over:?},"))?;
-        writeln!(out, "{mean:?},{bar:?}")?;
+        over.iter().for_each(|over| text.extend([format!("{over:?}"), ",".to_owned()]));
+        text.push_str(&format!("{mean:?},{bar:?}\n"));
     }
-    Ok(())
+    text
 }
 
 impl Function {
     /// As comma-separated values.
-    pub fn csv(&self) -> Vec<u8> {
-        let mut bytes = vec![];
-        // Memory takes everything.
-        write_csv(self.observable, &self.points, &mut bytes).unwrap_or_default();
-        bytes
+    pub fn csv(&self) -> String {
+        csv(self.observable, &self.points)
+    }
+}
+
+/// The bytes of a file; none where there is no such file.
+fn read(path: &Path, most: u64) -> Result<Option<Vec<u8>>, FinishedError> {
+    match regular_file::read(path, most) {
+        Ok(bytes) => Ok(Some(bytes)),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(FileError::at(path, "reading")(error).into()),
     }
 }
 
 /// The points of a file; none where there is no such file.
-fn points(path: &Path, observable: &Observable) -> Option<Vec<Point>> {
-    let text = String::from_utf8(regular_file::read(path, LONGEST).ok()?).ok()?;
+fn points(path: &Path, observable: &Observable) -> Result<Option<Vec<Point>>, FinishedError> {
+    let damaged = |line, expected| FinishedError::Damaged { file: path.to_owned(), line, expected };
+    let Some(bytes) = read(path, LONGEST)? else { return Ok(None) };
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let line = regular_file::line_that_is_not_text(error.as_bytes());
+        damaged(line.unwrap_or(1), "text in UTF-8".to_owned())
+    })?;
     let point = |line: &str| -> Option<Point> {
         let mut over: Vec<f64> = line.split(',').map(str::parse).collect::<Result<_, _>>().ok()?;
         let (bar, mean) = (over.pop()?, over.pop()?);
         (over.len() == observable.over.len()).then_some(Point { over, mean, bar })
     };
-    Some(text.lines().skip(1).map_while(point).collect())
+    let mut lines = (1..).zip(text.split_inclusive('\n'));
+    let whole = |line: &str| line.strip_suffix('\n').map(|line| line.trim_end_matches('\r').to_owned());
+    let first = lines.next().and_then(|(_, line)| whole(line));
+    if first.is_none_or(|first| first != heading(observable)) {
+        return Err(damaged(1, format!("`{}`", heading(observable))));
+    }
+    let count = observable.over.len() + 2;
+    let row = |(number, line): (usize, &str)| {
+        let row = whole(line).and_then(|line| point(&line));
+        row.ok_or_else(|| damaged(number, format!("{count} numbers and the end of the line")))
+    };
+    lines.map(row).collect::<Result<_, _>>().map(Some)
 }
 
 /// What a run says at its end; nothing where it has not ended.
-fn summary(folder: &Path) -> Value {
-    let bytes = regular_file::read(&folder.join(SUMMARY), LONGEST << 4).unwrap_or_default();
-    serde_json::from_slice(&bytes).unwrap_or_default()
+fn summary(folder: &Path) -> Result<Value, FinishedError> {
+    let file = folder.join(SUMMARY);
+    let Some(bytes) = read(&file, LONGEST << 4)? else { return Ok(Value::Null) };
+    serde_json::from_slice(&bytes).map_err(|error| FinishedError::Damaged {
+        line: error.line().max(1),
+        file,
+        expected: "JSON, as a run writes it at its end".to_owned(),
+    })
 }
 
 /// A number that stands for an observable, as a point that is nowhere.

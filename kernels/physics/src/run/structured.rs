@@ -10,7 +10,7 @@
 use super::RunError;
 use super::block_means::Function;
 use super::folder::RunFolder;
-use super::functions::{Number, Point, write_csv};
+use super::functions::{Number, Point, csv};
 use crate::io::checkpoint::{Checkpoint, Column};
 use crate::io::run_moment::RunMoment;
 use crate::method::{Every, Prepared, Snapshot};
@@ -21,6 +21,7 @@ use crate::structure::{
     Whole, strides,
 };
 use serde::Serialize;
+use std::io::Write as _;
 
 /// What a run sums up of the structure.
 pub(super) struct Structured {
@@ -268,7 +269,8 @@ impl Structured {
             let Function { over, means, .. } = self.function(sum);
             let point = |(over, [mean, bar]): (Vec<f64>, [f64; 2])| Point { over, mean, bar };
             let points: Vec<Point> = over.into_iter().zip(means).map(point).collect();
-            folder.write(sum.observable.file, |out| write_csv(sum.observable, &points, out))?;
+            let text = csv(sum.observable, &points);
+            folder.write(sum.observable.file, |out| out.write_all(text.as_bytes()))?;
         }
         Ok(())
     }

@@ -41,7 +41,7 @@ impl StartFile {
         }
         let frame = read(&self.path, Which::Last)?;
         if let Some(shared) = &self.shared {
-            // Another thread has read the same meanwhile.
+            #[expect(clippy::let_underscore_must_use, reason = "another thread has read the same meanwhile")]
             let _ = shared.set((self.path.clone(), frame.clone()));
         }
         Ok(frame)

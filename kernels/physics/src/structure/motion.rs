@@ -3,8 +3,7 @@
 //! Lags are 0 to 7 looks, then 4 to 7 times each power of two: looks are kept only as long as a lag needs them, so that memory
 //! goes with the logarithm of the length of a run (the order-n algorithm of Frenkel and Smit, section 4.4.2, without coarse-graining).
 
-use stripmine_kernels::InstructionSet;
-use stripmine_kernels::backend::{Registers, Task, dispatch_native};
+use stripmine_kernels::backend::{Registers, Task, dispatch_best};
 
 /// Lags of one power of two, of which the upper half is new.
 const LAGS: u64 = 8;
@@ -161,7 +160,7 @@ impl Motion {
 fn means(earlier: &[[f64; 4]], later: &[[f64; 4]]) -> Option<[f64; 4]> {
     let mut sums = Sums { sums: [[0.0; 4]; LANES], count: 0 };
     // The best set is one of this processor.
-    dispatch_native(InstructionSet::best(), Meeting { earlier, later, to: &mut sums }).unwrap_or_default();
+    dispatch_best(Meeting { earlier, later, to: &mut sums });
     let total = |place: usize| sums.sums.iter().map(|lane| lane[place]).sum::<f64>();
     (sums.count > 0).then(|| [0, 1, 2, 3].map(|place| total(place) / sums.count as f64))
 }

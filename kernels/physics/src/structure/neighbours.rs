@@ -10,8 +10,7 @@ use rayon::iter::{
 };
 use std::f64::consts::PI;
 use std::ops::Range;
-use stripmine_kernels::InstructionSet;
-use stripmine_kernels::backend::{Registers, Task, dispatch_native};
+use stripmine_kernels::backend::{Registers, Task, dispatch_best};
 
 /// Neighbours are nearer than this many sums of the radii.
 const NEIGHBOURS: f64 = 1.5;
@@ -93,7 +92,7 @@ impl Neighbours {
             let rows = rows.clone();
             let domain = &setting.domain;
             let looking = Looking { discs, domain, cells, rows, looked_for, largest, keeps_each, around };
-            dispatch_native(InstructionSet::best(), looking).unwrap_or_default();
+            dispatch_best(looking);
         });
     }
 

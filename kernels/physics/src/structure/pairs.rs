@@ -8,8 +8,7 @@ use rayon::iter::{
     IndexedParallelIterator, IntoParallelRefIterator, IntoParallelRefMutIterator, ParallelIterator,
 };
 use std::ops::Range;
-use stripmine_kernels::InstructionSet;
-use stripmine_kernels::backend::{Registers, Task, dispatch_native};
+use stripmine_kernels::backend::{Registers, Task, dispatch_best};
 
 /// Bins of distances in a mean diameter, so that one of them begins at contact.
 pub(super) const BINS: f64 = 50.0;
@@ -43,7 +42,7 @@ impl Distances {
             let by_length = BINS / setting.diameter;
             let counting = Counting { cells, rows: rows.clone(), halves: &halves, by_length, counts };
             // The best set is one of this processor.
-            dispatch_native(InstructionSet::best(), counting).unwrap_or_default();
+            dispatch_best(counting);
         };
         self.parts.par_iter_mut().zip(cells.parts.par_iter()).for_each(of);
         self.counts.clear();

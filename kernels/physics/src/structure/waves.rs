@@ -5,8 +5,7 @@ use super::setting::Setting;
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
 use rayon::slice::ParallelSlice;
 use std::f64::consts::TAU;
-use stripmine_kernels::InstructionSet;
-use stripmine_kernels::backend::{Registers, Task, dispatch_native};
+use stripmine_kernels::backend::{Registers, Task, dispatch_best};
 
 /// Waves along an axis, the longest ones first, then others up to the largest wave number times the diameter: how many of each.
 const WAVES: [u32; 2] = [128, 128];
@@ -119,7 +118,7 @@ impl Waves {
                 sums.clear();
                 sums.resize(steps.len(), [[0.0; LANES]; 2]);
                 let summing = Summing { places, origin, by_length, different, steps, sums };
-                dispatch_native(InstructionSet::best(), summing).unwrap_or_default();
+                dispatch_best(summing);
             });
             for (wave, value) in values.by_ref().take(steps.len()).enumerate() {
                 let part = |sums: &Vec<Turns>| sums[wave].map(|lanes| lanes.iter().sum::<f64>());

@@ -36,6 +36,7 @@ pub const fn body_array(field: Field) -> Array {
     match field {
         Field::Mass => Array::BodyMass,
         Field::Velocity(axis) => [Array::BodyVx, Array::BodyVy, Array::BodyVz][axis as usize],
+        #[expect(clippy::panic, reason = "found when the program is built, by whoever writes such a law")]
         Field::Omega | Field::Radius | Field::InverseMass | Field::Occupied => {
             panic!("bodies have no such quantity")
         }
@@ -51,6 +52,7 @@ pub const fn body_sum_array(sum: Sum) -> Array {
     match sum {
         Sum::Force(axis) => [Array::BodyFx, Array::BodyFy, Array::BodyFz][axis as usize],
         Sum::ForceRate(axis) => [Array::BodyRateX, Array::BodyRateY, Array::BodyRateZ][axis as usize],
+        #[expect(clippy::panic, reason = "found when the program is built, by whoever writes such a law")]
         Sum::Torque => panic!("bodies have no torque"),
     }
 }
@@ -117,6 +119,7 @@ impl<M: Machine> Env<3> for &Behind<M> {
         cell.set(cell.get() + value);
     }
 
+    #[expect(clippy::unreachable, reason = "called only where `Env::BOTH_PARTNERS` says so")]
     #[inline]
     fn partner_sub(self, _: Sum, _: isize, _: M::V) {
         unreachable!("every pair is met from both sides")

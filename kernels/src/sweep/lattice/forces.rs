@@ -67,6 +67,7 @@ const fn sum_array(sum: Sum) -> Array {
     match sum {
         Sum::Force(axis) => [Array::Fx, Array::Fy][axis as usize],
         Sum::Torque => Array::Torque,
+        #[expect(clippy::panic, reason = "found when the program is built, by whoever writes such a law")]
         Sum::ForceRate(_) => panic!("a law of the plane states no rates of forces"),
     }
 }
@@ -132,6 +133,7 @@ impl<M: Machine> Env<2> for &Around<M> {
         cell.set(cell.get() + value);
     }
 
+    #[expect(clippy::unreachable, reason = "called only where `Env::BOTH_PARTNERS` says so")]
     #[inline]
     fn partner_sub(self, _: Sum, _: Neighbour, _: M::V) {
         unreachable!("every pair is met from both sides")

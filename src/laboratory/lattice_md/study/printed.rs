@@ -5,7 +5,7 @@ use super::efficiency_table::{Choice, SOURCES_PARTS, counting_model};
 use super::samples::Samples;
 use crate::console::Failure;
 use crate::frame::{Cell, Frame, Rows};
-use crate::laboratory::rates::{self, Case, Measured, Own, Reading, Spread, rates};
+use crate::laboratory::rates::{self, Case, Measured, Own, Reading, Spread, given, rates};
 use crate::results::{Lab, Made, Size};
 use rand::RngExt;
 use std::f64::consts::PI;
@@ -51,13 +51,9 @@ const FAST: &str = "fast";
 pub(crate) const EAGER: Own = Own {
     name: "eager-parts",
     measure: |parameters| {
-        let number = |name: &str| parameters[name].as_u64().unwrap_or(1) as usize;
-        let occupancy = parameters["occupancy"].as_f64().unwrap_or(OCCUPANCY);
-        let choice = match parameters["ours"] == true {
-            true => Choice::default(),
-            false => Choice::default().printed(),
-        };
-        Ok(eager(number("cells"), occupancy, choice, number("samples"))?)
+        let (cells, occupancy, is_ours, samples): (usize, f64, bool, usize) = given(parameters)?;
+        let choice = if is_ours { Choice::default() } else { Choice::default().printed() };
+        Ok(eager(cells, occupancy, choice, samples)?)
     },
 };
 
@@ -113,8 +109,7 @@ pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     let over_density = occupancies.iter().map(|&occupancy| (CELLS, occupancy, false));
     let places: Vec<_> = over_n.chain(over_density).chain([(CELLS, OCCUPANCY, true)]).collect();
     let parts = places.iter().map(|&(cells, occupancy, ours)| {
-        let parameters =
-            serde_json::json!({ "cells": cells, "occupancy": occupancy, "ours": ours, "samples": samples });
+        let parameters = serde_json::json!([cells, occupancy, ours, samples]);
         let occupancy = Cell::Number(occupancy, 2);
         Case::own(&EAGER, parameters).label("cells", cells as u64).label("occupancy", occupancy)
     });

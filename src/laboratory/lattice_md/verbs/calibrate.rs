@@ -3,6 +3,7 @@
 use crate::console::{Common, Failure, clear_progress, print, print_json, progress, say, warn};
 use crate::laboratory::lattice_md::study::calibration::calibrate;
 use clap::Args;
+use std::io;
 use std::path::PathBuf;
 use stripmine_physics::io::replace::{may_put, put, try_beside};
 use stripmine_physics::signals;
@@ -35,8 +36,9 @@ impl CalibrateVerb {
         if !model.measured.was_quiet() {
             warn(format_args!("the machine was {}; the host file says so", model.measured.state));
         }
+        let text = model.to_toml().map_err(io::Error::other).map_err(self.failed())?;
         // Before anything is printed: the reader of that may close the pipe.
-        signals::whole(|| put(&self.out, &model.to_toml(), self.force)).map_err(self.failed())?;
+        signals::whole(|| put(&self.out, &text, self.force)).map_err(self.failed())?;
         if !common.quiet {
             say(format_args!("written: {}", self.out.display()));
         }
@@ -54,7 +56,7 @@ impl CalibrateVerb {
         ))
     }
 
-    fn failed(&self) -> impl FnOnce(std::io::Error) -> Failure {
+    fn failed(&self) -> impl FnOnce(io::Error) -> Failure {
         Failure::writing(self.out.display().to_string())
     }
 }

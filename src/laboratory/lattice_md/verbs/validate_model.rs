@@ -11,6 +11,7 @@ use crate::results::Folder;
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
 use std::fmt;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use stripmine_kernels::InstructionSet;
@@ -111,7 +112,11 @@ impl ValidateModel {
         };
         let mut made = model_validation(&model, whose, &effort, |share| show(begun + (1.0 - begun) * share))?;
         clear_progress();
-        made.files.extend(self.calibrate.then(|| ("host.toml".to_owned(), model.to_toml())));
+        if self.calibrate {
+            let text =
+                model.to_toml().map_err(|cause| Failure::writing("host.toml")(io::Error::other(cause)))?;
+            made.files.push(("host.toml".to_owned(), text));
+        }
         if let Some(folder) = folder {
             written(&folder, ("validation", &made), start, common)?;
         }

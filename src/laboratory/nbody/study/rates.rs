@@ -2,7 +2,7 @@
 
 use crate::console::Failure;
 use crate::frame::Rows;
-use crate::laboratory::rates::{Case, Own, Reading, rates};
+use crate::laboratory::rates::{Case, Own, Reading, given, rates};
 use crate::laboratory::running::{Running, on_threads};
 use crate::results::{Lab, Made, Size};
 use crate::study::StudyError;
@@ -106,7 +106,7 @@ fn sphere(count: usize, way: usize) -> (Scene, Bodies) {
 
 /// Times evaluations of the forces: number of bodies, place among [`WAYS`], seconds at least.
 fn forces(parameters: &serde_json::Value) -> Result<Reading, StudyError> {
-    let [count, way] = [0, 1].map(|at| parameters[at].as_u64().unwrap_or_default() as usize);
+    let (count, way, least): (usize, usize, f64) = given(parameters)?;
     let (scene, all) = sphere(count, way);
     let mut field = Attraction::new(&scene, &all)?;
     let mut into = zeros(all.entries());
@@ -114,7 +114,7 @@ fn forces(parameters: &serde_json::Value) -> Result<Reading, StudyError> {
         || field.asking(false, &never).acceleration(&all.position, &mut into).map_err(method::Failure::from);
     sweep()?;
     let (begun, mut sweeps) = (Instant::now(), 0);
-    while begun.elapsed().as_secs_f64() < parameters[2].as_f64().unwrap_or_default() {
+    while begun.elapsed().as_secs_f64() < least {
         sweep()?;
         sweeps += 1;
     }

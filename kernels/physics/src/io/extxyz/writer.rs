@@ -90,7 +90,7 @@ struct Row {
 
 impl Row {
     fn word(&mut self, word: &dyn std::fmt::Display) {
-        // Writing to a string never fails.
+        #[expect(clippy::let_underscore_must_use, reason = "a string takes whatever is written")]
         let _ = std::fmt::Write::write_fmt(&mut self.text, format_args!(" {word}"));
     }
 

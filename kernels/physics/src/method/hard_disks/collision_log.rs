@@ -53,7 +53,7 @@ impl Log {
             Partner::Wall(_) => format!("{:?},", free[0]),
         };
         let id = id(number);
-        // A string takes whatever is written.
+        #[expect(clippy::let_underscore_must_use, reason = "a string takes whatever is written")]
         let _ = writeln!(self.0, "{event},{time:?},{id},{partner},{x:?},{y:?},{across:?},{along:?},{free}");
     }
 

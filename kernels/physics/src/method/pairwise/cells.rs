@@ -8,6 +8,7 @@ use std::ops::Range;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::over_pieces;
 use stripmine_kernels::sweep::fast::Grid;
+use stripmine_kernels::sweep::fast::lattice::Taken;
 
 /// What was found when discs were looked for: changes of cells, and discs that belong to no cell.
 #[derive(Default)]
@@ -267,8 +268,11 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
                 self.elapsed.crossings.add(self.state.number(to.disc), to.periods);
             }
             self.state.put(to.disc, to.place);
-            let entered = self.search.cells_mut().enter(to, &self.state);
-            debug_assert!(entered.is_ok(), "looked for above");
+            if let Err(Taken(owner)) = self.search.cells_mut().enter(to, &self.state) {
+                // Refused above: a disc that is in no cell would meet nobody, without a word.
+                let culprits = [self.culprit(owner), self.culprit_at(to)];
+                return Err(conflict(self.clock(), self.system.domain, culprits));
+            }
         }
         self.search.cells_mut().arrange(&self.state);
         Ok(moved)

@@ -71,7 +71,7 @@ impl<S: Precision> Cells<S> for LatticeCells {
             if occupancy.disc(cell[0], cell[1]).is_none() {
                 occupancy.leave(disc);
                 let entered = occupancy.enter(disc, cell, state.place(disc), state.radius(disc));
-                debug_assert!(entered.is_ok(), "the cell is empty");
+                assert!(entered.is_ok(), "nobody was in the cell");
             }
         }
         occupancy.repeat_images();
