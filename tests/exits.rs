@@ -122,7 +122,7 @@ fn every_verb_refuses_with_its_exit_code_in_words_and_as_data() {
     for &(arguments, code, kind, words) in CASES {
         let output = stripmine(folder, &[arguments, &["--json"]].concat());
         let said = String::from_utf8_lossy(&output.stderr);
-        let data: Value = serde_json::from_slice(&output.stdout).unwrap_or_default();
+        let data: Value = serde_json::from_slice(&output.stdout).unwrap_or(Value::Null);
         let error = &data["error"];
         let has_message = error["message"].as_str().is_some_and(|message| !message.is_empty())
             && ["place", "remedy"].iter().all(|key| error.get(key).is_some());

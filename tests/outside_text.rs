@@ -31,7 +31,7 @@ fn no_message_carries_what_a_terminal_obeys() {
     let machine =
         std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("src/model/machines/cray-1.toml"));
     let machine = machine.unwrap();
-    let host = stripmine::model::host::default_model().unwrap().to_toml();
+    let host = stripmine::model::host::default_model().unwrap().to_toml().unwrap();
     let escaped = |text: &str| text.chars().map(|c| format!("\\U{:08X}", c as u32)).collect::<String>();
     for nasty in NASTY {
         let key = escaped(nasty);

@@ -1,10 +1,18 @@
 //! The same bits on any number of ranks.
 
 use rand::RngExt;
-use std::sync::atomic::AtomicBool;
+use std::cell::RefCell;
+use std::fs;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
+use std::thread;
+use stripmine::provenance::built;
 use stripmine_kernels::noise::{self, Stream};
-use stripmine_physics::method::{METHODS, Prepared, Purpose, Snapshot, Until, load};
-use stripmine_physics::ranks;
+use stripmine_physics::method::{Entry, METHODS, Prepared, Purpose, RANK_ENDED, Snapshot, Until, load};
+use stripmine_physics::ranks::{self, Crew, Parcel, RankError, Ranks, local};
+use stripmine_physics::run::{Ending, Existing, Job, RunError, run};
 
 /// A scene of several bands, and how many steps of it are made.
 struct Scene {
@@ -99,31 +107,34 @@ const WHOLE: u64 = 15;
 
 /// A run on some ranks; why it does not begin.
 fn seen(prepared: &Prepared, ranks: usize, steps: u64) -> Result<Seen, String> {
-    ranks::over(ranks::Crew::Threads(ranks), || {
-        let mut simulation = prepared.start(Purpose::Run).map_err(|failure| failure.to_string())?;
-        let mut seen = Seen::default();
-        for part in 0..=LOOKS {
-            let until = Until::Steps(part * steps / LOOKS);
-            if let Err(failure) = simulation.advance(&[until], &AtomicBool::new(false)) {
-                let ids = failure.culprits.iter().map(|culprit| culprit.id).collect();
-                let at = failure.at.map_or(0, |at| at.steps);
-                seen.failure = Some((at, failure.kind.name().to_owned(), ids));
-                break;
-            }
-            seen.observed.push(simulation.observe().iter().map(|value| value.to_bits()).collect());
-            if part % WHOLE > 0 {
-                continue;
-            }
-            seen.snapshots.push(simulation.snapshot());
-            seen.checksums.push(simulation.particles().checksum());
-            seen.positions.push(
-                simulation.per_particle().positions().iter().map(|place| place.map(f32::to_bits)).collect(),
-            );
+    ranks::over(Crew::Threads(ranks), || seen_as_begun(prepared, steps))
+}
+
+/// As [`seen`], by the ranks of the current crew.
+fn seen_as_begun(prepared: &Prepared, steps: u64) -> Result<Seen, String> {
+    let mut simulation = prepared.start(Purpose::Run).map_err(|failure| failure.to_string())?;
+    let mut seen = Seen::default();
+    for part in 0..=LOOKS {
+        let until = Until::Steps(part * steps / LOOKS);
+        if let Err(failure) = simulation.advance(&[until], &AtomicBool::new(false)) {
+            let ids = failure.culprits.iter().map(|culprit| culprit.id).collect();
+            let at = failure.at.map_or(0, |at| at.steps);
+            seen.failure = Some((at, failure.kind.name().to_owned(), ids));
+            break;
         }
-        seen.events = simulation.take_events();
-        seen.words = simulation.in_words();
-        Ok(seen)
-    })
+        seen.observed.push(simulation.observe().iter().map(|value| value.to_bits()).collect());
+        if part % WHOLE > 0 {
+            continue;
+        }
+        seen.snapshots.push(simulation.snapshot());
+        seen.checksums.push(simulation.particles().checksum());
+        seen.positions.push(
+            simulation.per_particle().positions().iter().map(|place| place.map(f32::to_bits)).collect(),
+        );
+    }
+    seen.events = simulation.take_events();
+    seen.words = simulation.in_words();
+    Ok(seen)
 }
 
 /// The first that differs, in a sentence.
@@ -175,13 +186,13 @@ fn a_run_goes_on_with_on_another_number_of_ranks() {
         let [half, end] = [scene.steps / 2, scene.steps].map(Until::Steps);
         let whole = seen(&prepared, 1, scene.steps).unwrap();
         let Some(last) = whole.snapshots.last() else { continue };
-        let (clock, state) = ranks::over(ranks::Crew::Threads(2), || {
+        let (clock, state) = ranks::over(Crew::Threads(2), || {
             let mut first = prepared.start(Purpose::Run).unwrap();
             first.advance(&[half], &stop).unwrap();
             (first.clock(), first.snapshot())
         });
         for ranks in [1, 3] {
-            ranks::over(ranks::Crew::Threads(ranks), || {
+            ranks::over(Crew::Threads(ranks), || {
                 let mut second = prepared.start(Purpose::Run).unwrap();
                 second.restore(clock, state.clone()).unwrap();
                 second.advance(&[end], &stop).unwrap();
@@ -256,4 +267,209 @@ fn random_scenes_have_the_bits_of_one_rank() {
         compared += 1;
     }
     println!("{compared} runs, {failed} of them ended by a failure");
+}
+
+/// Fault of a process.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Fault {
+    None,
+    /// Ends when the first process has told it something so often.
+    Ends(usize),
+    /// Then sends a message to the first process that lacks a byte.
+    CutsOff(usize),
+    /// Then reads a message of the first process without its last byte.
+    Mishears(usize),
+}
+
+/// A thread of this test that takes part as a process does.
+#[derive(Clone)]
+struct Process {
+    ranks: Arc<Mutex<local::Local>>,
+    rank: usize,
+    count: usize,
+    fault: Fault,
+    told: Arc<AtomicUsize>,
+}
+
+thread_local! {
+    static PROCESS: RefCell<Option<Process>> = const { RefCell::new(None) };
+}
+
+fn join() -> Box<dyn Ranks> {
+    Box::new(PROCESS.with_borrow(|process| process.clone().unwrap()))
+}
+
+impl Ranks for Process {
+    fn rank(&self) -> usize {
+        self.rank
+    }
+
+    fn count(&self) -> usize {
+        self.count
+    }
+
+    fn halo(&self, to: [Parcel; 2], meanwhile: &mut dyn FnMut()) -> Result<[Parcel; 2], RankError> {
+        self.ranks.lock().unwrap().halo(to, meanwhile)
+    }
+
+    fn migrate(&self, to: Vec<Parcel>) -> Result<Vec<Parcel>, RankError> {
+        self.ranks.lock().unwrap().migrate(to)
+    }
+
+    fn gather(&self, mut own: Parcel) -> Result<Vec<Parcel>, RankError> {
+        if let Fault::CutsOff(after) = self.fault
+            && self.told.load(Ordering::Relaxed) == after
+        {
+            own.0.pop();
+        }
+        self.ranks.lock().unwrap().gather(own)
+    }
+
+    fn tell(&self, said: Option<Parcel>) -> Result<Parcel, RankError> {
+        let mut told = self.ranks.lock().unwrap().tell(said);
+        let count = self.told.fetch_add(1, Ordering::Relaxed) + 1;
+        if self.fault == Fault::Ends(count) {
+            resume_unwind(Box::new("this process ends"));
+        }
+        if self.fault == Fault::Mishears(count) {
+            told.iter_mut().for_each(|told| _ = told.0.pop());
+        }
+        told
+    }
+}
+
+/// Does the work of the first of several processes, while the others take their part in a scene.
+fn as_processes<R>(prepared: &Prepared, faults: &[Fault], first: impl FnOnce() -> R) -> R {
+    let count = faults.len();
+    let begin = |ranks: local::Local, fault: Fault| {
+        let (rank, told) = (ranks.rank(), Arc::default());
+        PROCESS.set(Some(Process { ranks: Arc::new(Mutex::new(ranks)), rank, count, fault, told }));
+    };
+    thread::scope(|scope| {
+        let mut all = local::ranks(count, 1).into_iter().zip(faults.iter().copied());
+        let own = all.next().unwrap();
+        for (ranks, fault) in all {
+            scope.spawn(move || {
+                begin(ranks, fault);
+                // A process that is not the first gets no simulation, but the reason why it has no other part.
+                let _ = catch_unwind(AssertUnwindSafe(|| {
+                    ranks::over(Crew::Processes(join), || prepared.start(Purpose::Run).map(drop))
+                }));
+            });
+        }
+        begin(own.0, own.1);
+        let found = ranks::over(Crew::Processes(join), first);
+        let _ = ranks::dismiss(join().as_ref());
+        PROCESS.take();
+        found
+    })
+}
+
+/// A run of a scene into a folder, as the first of several processes.
+fn run_as_processes(
+    (prepared, entry): (&Prepared, &'static Entry),
+    faults: &[Fault],
+    (folder, existing): (&Path, Existing),
+) -> Result<Ending, RunError> {
+    let job = Job { prepared, quantities: entry.quantities, program: &built() };
+    as_processes(prepared, faults, || run(job, folder, existing, &AtomicBool::new(false), |_, _| {}, |_| {}))
+}
+
+/// Scenes of every engine that ranks share, with the length of the run.
+const WRITTEN: [(&str, &[&str]); 4] = [
+    ("bench", &["run.steps=40", "search.by=lattice"]),
+    ("bench", &["run.steps=40", "search.by=neighbor-list"]),
+    ("langevin-dense", &["domain.sides=[12.0, 140.0]", "integrator.dt=0.002", "run.time=0.08"]),
+    ("plummer", &["particles.count=700", "run.steps=40"]),
+];
+/// Rows, frames and checkpoints that they write.
+const OUTPUT: [&str; 4] =
+    ["run.thermo_every=4", "run.snapshot_every=8", "run.checkpoint_every=12", "output.trajectory=true"];
+
+fn written((preset, more): (&'static str, &'static [&'static str])) -> (Prepared, &'static Entry) {
+    let hot: &[&str] = if preset == "bench" { HOT } else { &[] };
+    let sets = hot.iter().chain(more).chain(&OUTPUT).map(|&set| set.to_owned());
+    load(preset, &sets.collect::<Vec<_>>(), METHODS).unwrap()
+}
+
+/// The rows and frames of a folder, in lines.
+fn lines(folder: &Path) -> [Vec<String>; 2] {
+    ["thermo.csv", "trajectory.xyz"].map(|file| {
+        let text = fs::read_to_string(folder.join(file)).unwrap();
+        text.lines().map(str::to_owned).collect()
+    })
+}
+
+/// A rank that ends, or whose message is damaged, ends the run at whatever message that is, with an error that names the rank. What was
+/// written before is the beginning of what a whole run writes, and the run is gone on with from its checkpoint.
+#[test]
+fn a_lost_rank_ends_the_run_and_is_named() {
+    for scene in WRITTEN {
+        let (prepared, entry) = written(scene);
+        let folder = tempfile::tempdir().unwrap();
+        let carried_out = |faults: &[Fault], name: &str, existing| {
+            run_as_processes((&prepared, entry), faults, (&folder.path().join(name), existing))
+        };
+        carried_out(&[Fault::None; 3], "whole", Existing::Refuse).unwrap();
+        let expected = lines(&folder.path().join("whole"));
+        for (after, lost) in [(3, 1), (17, 2), (30, 2), (31, 1), (32, 2), (33, 1), (34, 2), (35, 1)] {
+            for (fault, named, words) in [
+                (Fault::Ends(after), lost, "has ended"),
+                (Fault::CutsOff(after), lost, "sent a message that cannot be read"),
+                (Fault::Mishears(after), 0, "sent a message that cannot be read"),
+            ] {
+                let mut faults = [Fault::None; 3];
+                faults[lost] = fault;
+                let name = format!("{fault:?}");
+                let what = format!("{scene:?}: rank {lost}: {name}");
+                let error = carried_out(&faults, &name, Existing::Refuse).map(drop).unwrap_err().to_string();
+                assert!(
+                    error.contains(&format!("rank {named} {words}\n  help: see what it said")),
+                    "{what}: {error}"
+                );
+                let out = folder.path().join(&name);
+                if !out.join("thermo.csv").exists() {
+                    continue;
+                }
+                for (found, expected) in lines(&out).iter().zip(&expected) {
+                    assert!(found.len() < expected.len() && expected.starts_with(found), "{what}: {found:?}");
+                }
+                carried_out(&[Fault::None; 2], &name, Existing::Resume { other_version: false }).unwrap();
+                assert!(lines(&out) == expected, "{what}: gone on with");
+            }
+        }
+    }
+}
+
+/// A simulation that has lost a rank gives no numbers, and no state to go on with.
+#[test]
+fn nothing_is_seen_without_a_rank() {
+    for scene in WRITTEN {
+        let (prepared, _) = written(scene);
+        as_processes(&prepared, &[Fault::None, Fault::Ends(20)], || {
+            let mut simulation = prepared.start(Purpose::Run).unwrap();
+            let failure = simulation.advance(&[Until::Steps(40)], &AtomicBool::new(false)).unwrap_err();
+            assert_eq!(
+                (failure.kind, failure.message.as_str()),
+                (RANK_ENDED, "rank 1 has ended"),
+                "{scene:?}"
+            );
+            assert_eq!(simulation.check_ranks(), Err(failure), "{scene:?}");
+            assert!(simulation.observe().iter().all(|value| value.is_nan()), "{scene:?}");
+            assert_eq!((simulation.snapshot(), simulation.in_words()), Default::default(), "{scene:?}");
+            assert!(simulation.summary().is_empty() && simulation.warnings().is_empty(), "{scene:?}");
+        });
+    }
+}
+
+/// Processes have the bits of one, also where they begin again without particles that were thrown out.
+#[test]
+fn processes_have_the_bits_of_one() {
+    for scene in [&SCENES[1], &SCENES[5]] {
+        let prepared = scene.prepared(&["search.by=neighbor-list".to_owned()]).unwrap();
+        let alone = seen(&prepared, 1, scene.steps).unwrap();
+        let faults = [Fault::None; 2];
+        let together = as_processes(&prepared, &faults, || seen_as_begun(&prepared, scene.steps)).unwrap();
+        assert_eq!(difference(&alone, &together), None, "{}", scene.preset);
+    }
 }

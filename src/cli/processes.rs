@@ -14,8 +14,8 @@ use crate::study::StudyError;
 use agreement::{Part, Verdict, agreed};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
-use stripmine_physics::method::{DISMISSED, Failure as Broken, FailureKind};
-use stripmine_physics::ranks::{self, Crew, Gone, Parcel, Ranks, dismiss, is_dismissed};
+use stripmine_physics::method::{DISMISSED, Failure as Broken, FailureKind, RANK_ENDED};
+use stripmine_physics::ranks::{self, Crew, RankError, Ranks, dismiss, is_dismissed};
 use stripmine_physics::reported::Class;
 
 /// Variables by which a launcher tells processes how many they are, and which one each is.
@@ -102,7 +102,7 @@ impl Session {
     pub(super) fn ended(&self, outcome: Result<(), Failure>) -> Result<(), Failure> {
         let Crew::Processes(join) = self.crew else { return outcome };
         let part = match &outcome {
-            Err(failure) if failure.exit_code() != 0 => Part::Refused(failure),
+            Err(failure) if failure.exit_code() != 0 => Part::refused(failure),
             _ => Part::Finished,
         };
         match first_exchange(join().as_ref(), part)? {
@@ -141,11 +141,11 @@ pub(super) fn have_met() -> bool {
 }
 
 /// The verdict on all processes, of the first exchange; later ones find nothing more.
-fn first_exchange(ranks: &dyn Ranks, part: Part<'_>) -> Result<Verdict, Failure> {
+fn first_exchange(ranks: &dyn Ranks, part: Part) -> Result<Verdict, Failure> {
     if HAVE_MET.swap(true, Ordering::SeqCst) {
         return Ok(Verdict::Own);
     }
-    agreed(ranks, part).map_err(gone)
+    agreed(ranks, part).map_err(lost)
 }
 
 /// Begins what all processes do together, if every one of them can begin and does `same`; for each of several processes to call before its first message.
@@ -153,7 +153,7 @@ fn first_exchange(ranks: &dyn Ranks, part: Part<'_>) -> Result<Verdict, Failure>
 /// # Errors
 /// [`Failure`] on all of them, naming the rank that cannot begin, or that does something else.
 pub(super) fn begin(ranks: &dyn Ranks, same: &str) -> Result<(), Failure> {
-    match first_exchange(ranks, Part::Begins(same))? {
+    match first_exchange(ranks, Part::Begins(same.to_owned()))? {
         Verdict::Own => Ok(()),
         Verdict::Failed(failure) => Err(failure),
     }
@@ -209,9 +209,9 @@ fn broken(what: String, remedy: &str) -> Failure {
     StudyError::Own(Box::new(Broken::new(PROCESSES, what, remedy))).into()
 }
 
-/// A rank has ended.
-pub(super) fn gone(gone: Gone) -> Failure {
-    broken(gone.to_string(), "see what it said last")
+/// A rank is lost.
+pub(super) fn lost(lost: RankError) -> Failure {
+    broken(lost.to_string(), "see what it said last")
 }
 
 /// The failure of another rank, with its exit code and words.
@@ -238,8 +238,14 @@ pub(super) fn ranks_twice() -> Failure {
 pub(super) fn serve(crew: Crew, start: impl FnOnce() -> Result<(), Broken>) {
     let Crew::Processes(join) = crew else { return };
     let Err(failure) = ranks::over(crew, start) else { return };
-    // Where the first rank has begun nothing, it was refused the same, and says so. Elsewhere it waits for this rank.
-    if failure.kind != DISMISSED && !is_dismissed(join().as_ref()) {
+    // Where the first rank has begun nothing, it was refused the same, and says so. Elsewhere it waits for this rank; and so do others, where
+    // this one has lost one of them in the middle of a step.
+    let is_waited_for = match failure.kind {
+        DISMISSED => false,
+        RANK_ENDED => true,
+        _ => !is_dismissed(join().as_ref()),
+    };
+    if is_waited_for {
         let failure = Failure::from(StudyError::Own(Box::new(failure)));
         let code = failure.exit_code();
         tell(&of_rank(join().rank(), code, &failure.words()), false);
@@ -262,7 +268,7 @@ pub(super) fn together(
     begin(ranks.as_ref(), same)?;
     if ranks.rank() == 0 {
         let outcome = first();
-        dismiss(ranks.as_ref()).map_err(gone)?;
+        dismiss(ranks.as_ref()).map_err(lost)?;
         return outcome;
     }
     serve();
@@ -281,19 +287,11 @@ pub(super) fn apart(
     let ranks = join();
     begin(ranks.as_ref(), same)?;
     let outcome = work(ranks.rank(), ranks.count());
-    let mut said = Parcel::new();
-    said.push(outcome.as_ref().err().map_or(0, |failure| failure.exit_code().into()));
-    said.text(&outcome.as_ref().err().map_or(String::new(), Failure::words));
-    let all = ranks.gather(said).map_err(gone)?;
+    let said = outcome.as_ref().err().map(|failure| (failure.exit_code(), failure.words()));
+    let all = ranks.gather_messages(said).map_err(lost)?;
     outcome?;
-    for (rank, parcel) in all.iter().enumerate() {
-        let mut reader = parcel.read();
-        let (code, said) = (reader.count(), reader.text());
-        if !said.is_empty() {
-            return Err(of_rank(rank, code as u8, &said));
-        }
-    }
-    Ok(())
+    let failed = all.into_iter().enumerate().find_map(|(rank, said)| Some((rank, said?)));
+    failed.map_or(Ok(()), |(rank, (code, words))| Err(of_rank(rank, code, &words)))
 }
 
 #[cfg(test)]

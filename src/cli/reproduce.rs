@@ -9,12 +9,12 @@ use clap::Args;
 use indicatif::ProgressBar;
 use serde::{Deserialize, Serialize};
 use std::cell::Cell;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 use stripmine_physics::method::Methods;
 use stripmine_physics::number::counted;
 use stripmine_physics::quoted;
-use stripmine_physics::ranks::{Crew, Parcel, Ranks};
+use stripmine_physics::ranks::{Crew, Ranks};
 use stripmine_physics::signals;
 
 /// Every table, figure and claim of the sources, with data and a page that says what came out. Interrupted, the same command goes on
@@ -41,8 +41,14 @@ struct Outcome {
     item: String,
     verdict: String,
     seconds: f64,
-    folder: PathBuf,
+    folder: String,
 }
+
+/// The names of the items of each process.
+type Names = Vec<Vec<String>>;
+
+/// Items that a process has made, or the exit code and words of its failure.
+type Made = Result<Vec<Outcome>, (u8, String)>;
 
 /// Where items go, and how.
 struct Job<'j> {
@@ -115,27 +121,14 @@ impl Reproduce {
     fn help(&self, ranks: &dyn Ranks, common: &Common, methods: Methods) {
         let effort = self.effort();
         let folder = Folder::of_another(&self.out);
-        while let Ok(told) = ranks.tell(None) {
-            let mut reader = told.read();
-            if reader.count() == 0 {
-                return;
-            }
-            let names: Vec<String> = (0..reader.count()).map(|_| reader.text()).collect();
-            let own = names.iter().skip(ranks.rank()).step_by(ranks.count());
+        while let Ok(Some(names)) = ranks.tell_message::<Option<Names>>(None) {
+            let own = names.get(ranks.rank()).into_iter().flatten();
             let own: Vec<&'static Item> =
                 own.filter_map(|name| items_of(methods).find(|item| item.name == name)).collect();
             let bar = ProgressBar::hidden();
             let job = Job { effort, common, folder: &folder, on_page: None, bar, before: Cell::new(0.0) };
-            let mut said = Parcel::new();
-            let made = job.make(&own);
-            said.push(made.as_ref().err().map_or(0, |failure| failure.exit_code().into()));
-            match made {
-                Ok(outcomes) => [serde_json::to_string(&outcomes).unwrap_or_default(), String::new()],
-                Err(failure) => ["[]".to_owned(), failure.words()],
-            }
-            .iter()
-            .for_each(|text| said.text(text));
-            if ranks.gather(said).is_err() {
+            let made: Made = job.make(&own).map_err(|failure| (failure.exit_code(), failure.words()));
+            if ranks.gather_messages(made).is_err() {
                 return;
             }
         }
@@ -209,6 +202,7 @@ impl Job<'_> {
             self.on_page.as_ref().map_or(Ok(()), |items| self.folder.write_page(items)).map(|()| written)
         })?;
         let verdict = section.outcome();
+        let folder = folder.to_string_lossy().into_owned();
         let outcome = Outcome { item: item.name.to_owned(), verdict, seconds, folder };
         self.say(&outcome);
         Ok(outcome)
@@ -216,7 +210,10 @@ impl Job<'_> {
 
     fn say(&self, Outcome { item, verdict, seconds, folder }: &Outcome) {
         if !self.common.quiet {
-            say(format_args!("{item:<20} {verdict:<18} {seconds:>6.1} s  {}", quoted::path(folder)));
+            say(format_args!(
+                "{item:<20} {verdict:<18} {seconds:>6.1} s  {}",
+                quoted::path(Path::new(folder))
+            ));
         }
     }
 
@@ -226,25 +223,14 @@ impl Job<'_> {
         ranks: &dyn Ranks,
         dealt: &[Vec<&'static Item>],
     ) -> Result<Vec<Outcome>, Failure> {
-        let longest = dealt.iter().map(Vec::len).max().unwrap_or(0);
-        let mut told = Parcel::new();
-        [1, longest * dealt.len()].into_iter().for_each(|word| told.push(word));
-        // The names of a process are every so-many-th one.
-        for place in 0..longest {
-            dealt.iter().for_each(|own| told.text(own.get(place).map_or("", |item| item.name)));
-        }
-        ranks.tell(Some(told)).map_err(processes::gone)?;
+        let names: Names =
+            dealt.iter().map(|own| own.iter().map(|item| item.name.to_owned()).collect()).collect();
+        ranks.tell_message(Some(Some(names))).map_err(processes::lost)?;
         let own = self.make(&dealt[0]);
-        let all = ranks.gather(Parcel::new()).map_err(processes::gone)?;
+        let all: Vec<Made> = ranks.gather_messages(Ok(vec![])).map_err(processes::lost)?;
         let mut outcomes = own?;
-        for (rank, parcel) in all.iter().enumerate().skip(1) {
-            let mut reader = parcel.read();
-            let code = reader.count();
-            let [made, failed] = [(); 2].map(|()| reader.text());
-            if !failed.is_empty() {
-                return Err(processes::of_rank(rank, code as u8, &failed));
-            }
-            let made: Vec<Outcome> = serde_json::from_str(&made).unwrap_or_default();
+        for (rank, made) in all.into_iter().enumerate() {
+            let made = made.map_err(|(code, words)| processes::of_rank(rank, code, &words))?;
             made.iter().for_each(|outcome| self.say(outcome));
             outcomes.extend(made);
         }
@@ -292,7 +278,6 @@ fn ticks(seconds: f64) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::path::Path;
     use stripmine_physics::method::METHODS;
 
     /// README promises five minutes and 2 GB for `reproduce` on two cores. Items are made one after the other, so the largest counts.

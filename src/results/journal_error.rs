@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use stripmine_physics::io::FileError;
 use stripmine_physics::quoted;
-use stripmine_physics::ranks::Gone;
+use stripmine_physics::ranks::RankError;
 use stripmine_physics::reported::{Class, FilePlace, Reported};
 
 /// Why there is no journal.
@@ -38,16 +38,16 @@ pub enum JournalError {
         "the processes have not the same scene, options and program: give all of them the same files and the same program"
     )]
     Differs,
-    /// Another process of the study has ended.
+    /// Another process of the study is lost.
     #[error("{0}: a study goes on with the runs that were finished when it is begun again")]
-    Gone(#[from] Gone),
+    Rank(#[from] RankError),
 }
 
 impl Reported for JournalError {
     fn class(&self) -> Class {
         match self {
             JournalError::Other { .. } | JournalError::Foreign(_) | JournalError::Differs => Class::Usage,
-            JournalError::File(_) | JournalError::Gone(_) => Class::InputOutput,
+            JournalError::File(_) | JournalError::Rank(_) => Class::InputOutput,
         }
     }
 
@@ -55,7 +55,7 @@ impl Reported for JournalError {
         match self {
             JournalError::Other { file, .. } | JournalError::Foreign(file) => Some(FilePlace::at(file)),
             JournalError::File(error) => error.place(),
-            JournalError::Differs | JournalError::Gone(_) => None,
+            JournalError::Differs | JournalError::Rank(_) => None,
         }
     }
 }

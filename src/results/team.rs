@@ -8,14 +8,14 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
-use stripmine_physics::ranks::{Crew, Gone, Parcel, Ranks};
+use stripmine_physics::ranks::{Crew, Parcel, RankError, Ranks};
 
 /// Runs by their keys.
 pub(super) type Runs = BTreeMap<String, Value>;
 
-/// What the first process says where the study goes on, and where it has ended.
-const GOES_ON: usize = 1;
-const ENDED: usize = 0;
+/// The runs that each process has made, as JSON; none of one that has ended its part. The first process tells all of them, or whose end is the
+/// end of the study.
+type Told = Result<Vec<Option<String>>, RankError>;
 
 /// One of the processes.
 pub struct Team {
@@ -53,26 +53,24 @@ impl Team {
     /// Runs that this one has made, for those that all have made. Waits for the others.
     ///
     /// # Errors
-    /// [`Gone`] if the study has ended on the first one, or another one has ended.
-    pub(super) fn exchanged(&self, own: &Runs) -> Result<Runs, Gone> {
-        let mut parcel = Parcel::new();
-        parcel.text(&serde_json::to_string(own).unwrap_or_default());
+    /// [`RankError`] if the study has ended on the first one, or another one is lost.
+    pub(super) fn exchanged(&self, own: &Runs) -> Result<Runs, RankError> {
+        let text = serde_json::to_string(own).map_err(|_| RankError::Unreadable(self.rank))?;
         let ranks = self.ranks();
-        let all = ranks.gather(parcel)?;
-        let said = self.is_first().then(|| {
-            let mut said = Parcel::new();
-            [GOES_ON, all.len()].into_iter().for_each(|word| said.push(word));
-            all.iter().for_each(|parcel| said.text(&parcel.read().text()));
-            said
-        });
-        let told = ranks.tell(said)?;
-        let mut reader = told.read();
-        if reader.count() == ENDED {
-            self.has_ended.store(true, Ordering::Relaxed);
-            return Err(Gone(0));
+        let gathered = ranks.gather_messages(Some(text));
+        let said = match gathered {
+            Err(lost) if !self.is_first() => return Err(lost),
+            gathered => self.is_first().then_some(gathered),
+        };
+        let told: Told = ranks.tell_message(said)?;
+        let all = told.inspect_err(|_| self.has_ended.store(true, Ordering::Relaxed))?;
+        let mut runs = Runs::new();
+        for (rank, text) in all.iter().enumerate() {
+            let Some(text) = text else { continue };
+            let of_rank: Runs = serde_json::from_str(text).map_err(|_| RankError::Unreadable(rank))?;
+            runs.extend(of_rank);
         }
-        let texts: Vec<String> = (0..reader.count()).map(|_| reader.text()).collect();
-        Ok(texts.iter().flat_map(|text| serde_json::from_str::<Runs>(text).unwrap_or_default()).collect())
+        Ok(runs)
     }
 
     fn ranks(&self) -> MutexGuard<'_, Box<dyn Ranks>> {
@@ -85,14 +83,11 @@ impl Drop for Team {
     fn drop(&mut self) {
         let ranks = self.ranks();
         while !self.has_ended.load(Ordering::Relaxed) {
-            let said = self.is_first().then(|| {
-                let mut said = Parcel::new();
-                said.push(ENDED);
-                said
-            });
-            let told = ranks.gather(Parcel::new()).and_then(|_| ranks.tell(said));
-            let ended = told.map_or(true, |told| told.read().count() == ENDED);
-            self.has_ended.store(ended, Ordering::Relaxed);
+            // Whatever runs the others have made, nobody needs them.
+            let gathered = ranks.gather(Parcel::of(&None::<String>));
+            let said = self.is_first().then_some(Err(RankError::Ended(0)));
+            let told = gathered.and_then(|_| ranks.tell_message::<Told>(said));
+            self.has_ended.store(!matches!(told, Ok(Ok(_))), Ordering::Relaxed);
         }
     }
 }

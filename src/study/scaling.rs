@@ -107,10 +107,10 @@ pub fn scaling(
     let measured = running.into_iter().map(|(pool, run, ..)| {
         pool.install(|| {
             let beside = run.beside();
-            (run.measured(), beside)
+            Ok((run.measured()?, beside))
         })
     });
-    Ok(told(&crews, measured.collect()))
+    Ok(told(&crews, measured.collect::<Result<_, MeasurementError>>()?))
 }
 
 fn told(crews: &[Crew], measured: Vec<(Throughput, [f64; 4])>) -> Scaling {

@@ -29,6 +29,7 @@ const DEPENDENCIES: [(&str, &[&str]); 3] = [
             "libm",
             "mpi",
             "nix",
+            "postcard",
             "rand",
             "rayon",
             "serde",

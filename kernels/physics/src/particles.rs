@@ -210,6 +210,11 @@ pub trait PerParticle {
     /// The particles, positions inside the box.
     fn particles(&self) -> Particles;
 
+    /// False once a part of them cannot be reached any more, for a rank is lost: nothing that was asked for since is to be used.
+    fn is_whole(&self) -> bool {
+        true
+    }
+
     /// Places and velocities of the grains in the plane, places inside the box.
     fn states(&self, states: &mut States) {
         states.take_up(&self.particles());

@@ -4,7 +4,7 @@ use super::quantity::{Field, Sum};
 use crate::isa::Vector;
 
 /// What is looked at beside the sums, while contacts are at hand.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Asked {
     /// Contacts deeper than this (length) are listed.
     pub watched: Option<f64>,

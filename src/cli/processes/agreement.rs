@@ -5,17 +5,24 @@
 
 use super::{broken, of_rank};
 use crate::console::Failure;
-use stripmine_physics::ranks::{Gone, Parcel, Ranks};
+use serde::{Deserialize, Serialize};
+use stripmine_physics::ranks::{RankError, Ranks};
 
 /// The part of a process before its first message.
-#[derive(Clone, Copy)]
-pub(super) enum Part<'p> {
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) enum Part {
     /// It begins what this text describes (scene and program).
-    Begins(&'p str),
+    Begins(String),
     /// It has ended well without the others.
     Finished,
     /// It cannot begin.
-    Refused(&'p Failure),
+    Refused { code: u8, words: String },
+}
+
+impl Part {
+    pub(super) fn refused(failure: &Failure) -> Part {
+        Part::Refused { code: failure.exit_code(), words: failure.words() }
+    }
 }
 
 /// The same on all processes.
@@ -26,38 +33,29 @@ pub(super) enum Verdict {
     Failed(Failure),
 }
 
-const BEGINS: usize = 0;
-const FINISHED: usize = 1;
-const REFUSED: usize = 2;
-
-/// Words by which the first rank announces the verdict.
-const ALIKE: usize = 0;
-const FAILED: usize = 1;
-const FAILED_ALONE: usize = 2;
-const DIFFERS: usize = 3;
+/// The verdict as the first rank announces it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+enum Announced {
+    /// All have the same part.
+    Alike,
+    /// A rank fails: the only one, where the others have ended well.
+    Failed { rank: usize, alone: bool, code: u8, words: String },
+    /// A rank does something else than the first one.
+    Differs(usize),
+}
 
 /// The verdict on the parts of all ranks.
 ///
 /// # Errors
-/// [`Gone`]
-pub(super) fn agreed(ranks: &dyn Ranks, part: Part<'_>) -> Result<Verdict, Gone> {
-    let mut own = Parcel::new();
-    let (kind, code, text) = match part {
-        Part::Begins(same) => (BEGINS, 0, same.to_owned()),
-        Part::Finished => (FINISHED, 0, String::new()),
-        Part::Refused(failure) => (REFUSED, failure.exit_code(), failure.words()),
-    };
-    [kind, code.into()].into_iter().for_each(|word| own.push(word));
-    own.text(&text);
-    let all = ranks.gather(own)?;
-    let told = ranks.tell((ranks.rank() == 0).then(|| verdict(&all)))?;
-    let mut reader = told.read();
-    let [verdict, rank, code] = [(); 3].map(|()| reader.count());
-    Ok(match verdict {
-        ALIKE => Verdict::Own,
-        FAILED_ALONE if ranks.rank() == rank => Verdict::Own,
-        FAILED | FAILED_ALONE => Verdict::Failed(of_rank(rank, code as u8, &reader.text())),
-        _ => Verdict::Failed(broken(
+/// [`RankError`]
+pub(super) fn agreed(ranks: &dyn Ranks, part: Part) -> Result<Verdict, RankError> {
+    let all = ranks.gather_messages(part)?;
+    let announced = ranks.tell_message((ranks.rank() == 0).then(|| verdict(&all)))?;
+    Ok(match announced {
+        Announced::Alike => Verdict::Own,
+        Announced::Failed { rank, alone: true, .. } if ranks.rank() == rank => Verdict::Own,
+        Announced::Failed { rank, code, words, .. } => Verdict::Failed(of_rank(rank, code, &words)),
+        Announced::Differs(rank) => Verdict::Failed(broken(
             format!(
                 "rank {rank} has another scene, other arguments, or another version of the program than rank 0"
             ),
@@ -66,27 +64,20 @@ pub(super) fn agreed(ranks: &dyn Ranks, part: Part<'_>) -> Result<Verdict, Gone>
     })
 }
 
-/// The verdict in words of a parcel: the first rank that fails where not all do for the same reason, else the first that differs.
-fn verdict(all: &[Parcel]) -> Parcel {
-    let read = |parcel: &Parcel| {
-        let mut reader = parcel.read();
-        (reader.count(), reader.count(), reader.text())
-    };
-    let mut said = Parcel::new();
-    let Some(differs) = all.iter().position(|parcel| *parcel != all[0]) else {
-        [ALIKE, 0, 0].into_iter().for_each(|word| said.push(word));
-        return said;
-    };
-    let fails = all.iter().map(read).enumerate().find(|(_, (kind, ..))| *kind == REFUSED);
-    let others_finished = all[1..].iter().all(|parcel| read(parcel).0 == FINISHED);
-    let (words, text) = match fails {
-        Some((0, (_, code, text))) if others_finished => ([FAILED_ALONE, 0, code], text),
-        Some((rank, (_, code, text))) => ([FAILED, rank, code], text),
-        None => ([DIFFERS, differs, 0], String::new()),
-    };
-    words.into_iter().for_each(|word| said.push(word));
-    said.text(&text);
-    said
+/// The first rank that fails where not all do for the same reason, else the first that differs.
+fn verdict(all: &[Part]) -> Announced {
+    let Some(differs) = all.iter().position(|part| *part != all[0]) else { return Announced::Alike };
+    let refused = all.iter().enumerate().find_map(|(rank, part)| match part {
+        Part::Refused { code, words } => Some((rank, *code, words.clone())),
+        Part::Begins(_) | Part::Finished => None,
+    });
+    match refused {
+        Some((rank, code, words)) => {
+            let alone = rank == 0 && all[1..].iter().all(|part| *part == Part::Finished);
+            Announced::Failed { rank, alone, code, words }
+        }
+        None => Announced::Differs(differs),
+    }
 }
 
 #[cfg(test)]
@@ -101,8 +92,8 @@ mod tests {
         let one = |ranks: local::Local, part: &str| {
             let failure = Failure::writing(part.to_owned())(ErrorKind::NotFound.into());
             let part = match part.split_once(' ') {
-                Some(("begins", same)) => Part::Begins(same),
-                Some(_) => Part::Refused(&failure),
+                Some(("begins", same)) => Part::Begins(same.to_owned()),
+                Some(_) => Part::refused(&failure),
                 None => Part::Finished,
             };
             match agreed(&ranks, part).unwrap() {

@@ -118,7 +118,9 @@ impl<S: Sink> OpenSink for Opened<S> {
     }
 
     fn add(&mut self, moment: &RunMoment<'_>) -> Result<bool, FileError> {
-        let Some(entry) = S::entry(moment) else { return Ok(false) };
+        let Some(entry) = S::entry(moment).filter(|_| moment.per_particle.is_whole()) else {
+            return Ok(false);
+        };
         let added = match S::DUE {
             Due::Frame => self.send(entry),
             Due::Events | Due::Row => self.here().and_then(|sink| sink.write(entry)),

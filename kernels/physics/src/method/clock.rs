@@ -4,7 +4,7 @@ use crate::scene::Run;
 use std::fmt;
 
 /// How far a simulation has come.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Clock {
     /// Steps done; 0 where a method takes none.
     pub steps: u64,

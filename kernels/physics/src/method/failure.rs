@@ -4,16 +4,42 @@
 use super::clock::Clock;
 use crate::number::significant;
 use crate::reported::{Class, Reported};
-use serde::ser::{Serialize, SerializeMap, Serializer};
+use serde::ser::{SerializeMap, Serializer};
+use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::{Map, Value, json};
+use std::collections::BTreeSet;
 use std::fmt;
+use std::sync::{Mutex, PoisonError};
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::sweep::fast::GridError;
 
 /// What broke, by its name in JSON. Here are the kinds that several methods have; a method names its own beside the physics that they
 /// are of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct FailureKind(&'static str);
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FailureKind(#[serde(deserialize_with = "interned")] Name);
+
+/// A name in a failure.
+type Name = &'static str;
+
+/// Reads a name that another rank has sent. Each is kept once, for as long as this program runs.
+fn interned<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Name, D::Error> {
+    static NAMES: Mutex<BTreeSet<Name>> = Mutex::new(BTreeSet::new());
+    let name = String::deserialize(deserializer)?;
+    let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
+    Ok(names.get(name.as_str()).copied().unwrap_or_else(|| {
+        let name: Name = name.leak();
+        names.insert(name);
+        name
+    }))
+}
+
+/// Reads values with their names.
+fn interned_values<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<(Name, f64)>, D::Error> {
+    #[derive(Deserialize)]
+    struct Named(#[serde(deserialize_with = "interned")] Name, f64);
+    let values = Vec::<Named>::deserialize(deserializer)?;
+    Ok(values.into_iter().map(|Named(name, value)| (name, value)).collect())
+}
 
 impl FailureKind {
     /// Positions or forces that are no numbers.
@@ -45,10 +71,11 @@ impl FailureKind {
 }
 
 /// A particle that a failure names.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Culprit {
     /// What its method calls it.
-    pub called: &'static str,
+    #[serde(deserialize_with = "interned")]
+    pub called: Name,
     /// Its id.
     pub id: u32,
     /// Where it is (length).
@@ -76,7 +103,7 @@ impl fmt::Display for Culprit {
 }
 
 /// The physics broke a precondition of the method. Found in the step in which it happens.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Failure {
     /// What broke.
     pub kind: FailureKind,
@@ -87,7 +114,8 @@ pub struct Failure {
     /// How many particles it is true of.
     pub count: u64,
     /// What was found and what it was held against, by name.
-    pub values: Vec<(&'static str, f64)>,
+    #[serde(deserialize_with = "interned_values")]
+    pub values: Vec<(Name, f64)>,
     /// What broke, in a sentence that names the particles, without the moment.
     pub message: String,
     /// What to do about it.
@@ -142,6 +170,19 @@ impl Failure {
         ];
         entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
     }
+
+    /// A failure, or none, as JSON has it.
+    pub(crate) fn in_json<S: Serializer>(
+        failure: &Option<Failure>,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        let Some(failure) = failure else { return serializer.serialize_none() };
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("message", &failure.what())?;
+        map.serialize_entry("remedy", &failure.remedy)?;
+        failure.data().iter().try_for_each(|(name, value)| map.serialize_entry(name, value))?;
+        map.end()
+    }
 }
 
 impl fmt::Display for Failure {
@@ -151,16 +192,6 @@ impl fmt::Display for Failure {
 }
 
 impl std::error::Error for Failure {}
-
-impl Serialize for Failure {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(None)?;
-        map.serialize_entry("message", &self.what())?;
-        map.serialize_entry("remedy", &self.remedy)?;
-        self.data().iter().try_for_each(|(name, value)| map.serialize_entry(name, value))?;
-        map.end()
-    }
-}
 
 impl Reported for Failure {
     fn class(&self) -> Class {
@@ -216,7 +247,7 @@ mod tests {
             "who": [{"called": "disc", "id": 7, "position": [1.0, null, 0.0], "velocity": [0.5, 0.0, 0.0]}],
         });
         assert_eq!(failure.details(), Some(data));
-        let whole = serde_json::to_value(&failure).unwrap();
+        let whole = Failure::in_json(&Some(failure), serde_json::value::Serializer).unwrap();
         assert_eq!((&whole["remedy"], &whole["kind"]), (&json!("halve dt"), &json!("not-finite")));
         // A method of events takes no steps.
         assert!(at(Clock { steps: 0, time: 0.5, events: 9 }).what().starts_with("event 9, time 0.5: first"));

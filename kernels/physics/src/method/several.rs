@@ -1,10 +1,12 @@
 //! What a method says where several ranks are asked for.
 
-use super::{Failure, FailureKind};
-use crate::ranks;
+use super::{Clock, Failure, FailureKind};
+use crate::ranks::{self, RankError};
 
 /// Why a simulation cannot be carried out by several ranks.
 const ONE_RANK: FailureKind = FailureKind::new("one-rank");
+/// A rank is lost.
+pub const RANK_ENDED: FailureKind = FailureKind::new("rank-ended");
 /// What a process ends its part with that is not the first rank: nothing is wrong.
 pub const DISMISSED: FailureKind = FailureKind::new("dismissed");
 
@@ -21,4 +23,11 @@ pub fn refuse_several_ranks(why: &str) -> Result<(), Failure> {
             Err(Failure::new(ONE_RANK, what, remedy))
         }
     }
+}
+
+/// The failure of the other ranks where one is lost.
+pub fn ended(lost: RankError, at: Clock) -> Failure {
+    let remedy =
+        "see what it said last; the last checkpoint is whole: go on with --resume, on any number of ranks";
+    Failure::new(RANK_ENDED, lost.to_string(), remedy).at(at)
 }

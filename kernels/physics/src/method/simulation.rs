@@ -55,6 +55,15 @@ pub trait Simulation: Send {
         Ok(())
     }
 
+    /// Checks that no rank is lost, where there are several: asked after a look at the simulation and before anything of it is written, for a
+    /// look lacks the particles of a rank that is lost.
+    ///
+    /// # Errors
+    /// [`Failure`] that names the first rank that was lost.
+    fn check_ranks(&self) -> Result<(), Failure> {
+        Ok(())
+    }
+
     /// A value for each of the method's quantities; means over an interval are of the time since the last [`row`](Self::row), or since the
     /// start.
     fn observe(&self) -> Vec<f64>;

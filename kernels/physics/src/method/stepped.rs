@@ -29,6 +29,14 @@ pub trait SteppedState: Send {
     /// Its particles.
     fn per_particle(&self) -> &dyn PerParticle;
 
+    /// Checks that no rank is lost, where there are several: looks since then lack its particles.
+    ///
+    /// # Errors
+    /// [`Failure`] that names the first rank that was lost.
+    fn check_ranks(&self) -> Result<(), Failure> {
+        Ok(())
+    }
+
     /// Everything that the next step depends on, by name.
     fn columns(&self) -> Vec<(String, Column)>;
 }
@@ -126,18 +134,29 @@ impl<M: Stepwise> Stepped<M> {
     pub fn clock(&self) -> Clock {
         self.state.elapsed().clock()
     }
-}
 
-impl<M: Stepwise> Simulation for Stepped<M> {
-    fn advance(&mut self, until: &[Until], interrupted: &AtomicBool) -> Result<(), Failure> {
-        let begun = Instant::now();
+    fn step_until(&mut self, until: &[Until], interrupted: &AtomicBool) -> Result<(), Failure> {
         while !until.iter().any(|moment| moment.has_come(&self.clock())) {
             if interrupted.load(Ordering::Relaxed) || !M::step(self, interrupted)? {
                 break;
             }
         }
-        self.seconds += begun.elapsed().as_secs_f64();
         Ok(())
+    }
+
+    /// Passes on a look; none where a rank is lost.
+    fn of_all_ranks<T>(&self, seen: T) -> Option<T> {
+        self.state.check_ranks().ok().map(|()| seen)
+    }
+}
+
+impl<M: Stepwise> Simulation for Stepped<M> {
+    fn advance(&mut self, until: &[Until], interrupted: &AtomicBool) -> Result<(), Failure> {
+        let begun = Instant::now();
+        let done = self.step_until(until, interrupted);
+        self.seconds += begun.elapsed().as_secs_f64();
+        // A step may fail by what it sees without the particles of a rank: the loss is named first.
+        self.state.check_ranks().and(done)
     }
 
     fn clock(&self) -> Clock {
@@ -156,14 +175,19 @@ impl<M: Stepwise> Simulation for Stepped<M> {
         M::check(self)
     }
 
+    fn check_ranks(&self) -> Result<(), Failure> {
+        self.state.check_ranks()
+    }
+
     fn observe(&self) -> Vec<f64> {
-        M::with_seen(self, |seen| values(M::OBSERVABLES, seen))
+        let seen = M::with_seen(self, |seen| values(M::OBSERVABLES, seen));
+        self.of_all_ranks(seen).unwrap_or_else(|| vec![f64::NAN; M::OBSERVABLES.len()])
     }
 
     fn snapshot(&self) -> Snapshot {
         let mut kept = Snapshot { columns: self.state.columns(), ..Snapshot::default() };
         M::keep(self, &mut kept);
-        kept
+        self.of_all_ranks(kept).unwrap_or_default()
     }
 
     fn restore(&mut self, clock: Clock, snapshot: Snapshot) -> Result<(), String> {
@@ -189,7 +213,8 @@ impl<M: Stepwise> Simulation for Stepped<M> {
     }
 
     fn summary(&self) -> Map<String, Value> {
-        M::summary(self).into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+        let entries = M::summary(self).into_iter().map(|(name, value)| (name.to_owned(), value)).collect();
+        self.of_all_ranks(entries).unwrap_or_default()
     }
 
     fn take_events(&mut self) -> String {
@@ -197,10 +222,10 @@ impl<M: Stepwise> Simulation for Stepped<M> {
     }
 
     fn warnings(&self) -> Vec<RunWarning> {
-        M::warnings(self)
+        self.of_all_ranks(M::warnings(self)).unwrap_or_default()
     }
 
     fn in_words(&self) -> String {
-        M::in_words(self)
+        self.of_all_ranks(M::in_words(self)).unwrap_or_default()
     }
 }

@@ -126,7 +126,7 @@ pub fn throughput(measurement: Measurement, progress: impl Fn(f64)) -> Result<Th
         progress((0.1 + repeat as f64) / (0.1 + repeats as f64));
         running.repeat()?;
     }
-    Ok(running.measured())
+    Ok(running.measured()?)
 }
 
 /// Wall seconds, processor seconds, work, and seconds in each phase of a repeat.
@@ -179,6 +179,7 @@ impl TimedRun {
             TimedRun { bench, prepared, simulation, start, steps, before, compared, at_end, repeats };
         running.advance(equilibration)?;
         running.before = running.simulation.row();
+        running.simulation.check_ranks()?;
         Ok(running)
     }
 
@@ -229,14 +230,17 @@ impl TimedRun {
 
     /// What came out.
     ///
+    /// # Errors
+    /// [`Failure`] if a rank was lost.
+    ///
     /// # Panics
     /// If there was no repeat.
-    pub fn measured(mut self) -> Throughput {
+    pub fn measured(mut self) -> Result<Throughput, Failure> {
         self.repeats.sort_by(|a, b| a.wall.total_cmp(&b.wall));
         let after = self.simulation.observe();
         let TimedRun { bench, prepared, simulation, steps, before, compared, at_end, repeats, .. } = self;
         let [best, median, worst] = [0, repeats.len() / 2, repeats.len() - 1].map(|place| &repeats[place]);
-        Throughput {
+        let measured = Throughput {
             what: bench.name,
             particles: prepared.particles().grain_count(),
             settings: prepared.settings,
@@ -254,7 +258,8 @@ impl TimedRun {
             phases: best.phases.clone(),
             compared: compared.into_iter().map(|(name, at)| (name, [before[at], after[at]])).collect(),
             at_end: at_end.into_iter().map(|(name, at)| (name, after[at])).collect(),
-        }
+        };
+        simulation.check_ranks().map(|()| measured)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Ranks as threads of this process.
 
-use super::{Gone, Parcel, Ranks};
+use super::{Parcel, RankError, Ranks};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread;
 
@@ -33,19 +33,21 @@ pub fn ranks(count: usize, threads: usize) -> Vec<Local> {
 }
 
 impl Local {
-    fn send(&self, to: usize, parcel: Parcel) -> Result<(), Gone> {
-        self.to[to].send(parcel).map_err(|_| Gone(to))
+    /// Sends to a rank. One that has ended is found by waiting for it: what it sent last may name another one that it has lost.
+    fn send(&self, to: usize, parcel: Parcel) {
+        #[expect(clippy::let_underscore_must_use, reason = "the receiver finds that it has ended")]
+        let _ = self.to[to].send(parcel);
     }
 
-    fn receive(&self, from: usize) -> Result<Parcel, Gone> {
+    fn receive(&self, from: usize) -> Result<Parcel, RankError> {
         for _ in 0..self.looks {
             match self.from[from].try_recv() {
                 Ok(parcel) => return Ok(parcel),
                 Err(TryRecvError::Empty) => std::hint::spin_loop(),
-                Err(TryRecvError::Disconnected) => return Err(Gone(from)),
+                Err(TryRecvError::Disconnected) => return Err(RankError::Ended(from)),
             }
         }
-        self.from[from].recv().map_err(|_| Gone(from))
+        self.from[from].recv().map_err(|_| RankError::Ended(from))
     }
 }
 
@@ -58,11 +60,10 @@ impl Ranks for Local {
         self.to.len()
     }
 
-    fn halo(&self, [down, up]: [Parcel; 2], meanwhile: &mut dyn FnMut()) -> Result<[Parcel; 2], Gone> {
-        let count = self.count();
-        let [below, above] = [(self.rank + count - 1) % count, (self.rank + 1) % count];
-        self.send(below, down)?;
-        self.send(above, up)?;
+    fn halo(&self, [down, up]: [Parcel; 2], meanwhile: &mut dyn FnMut()) -> Result<[Parcel; 2], RankError> {
+        let [below, above] = self.neighbours();
+        self.send(below, down);
+        self.send(above, up);
         meanwhile();
         // Of two ranks both messages come from the same one, in the order in which it sent them: down first.
         let from_above = self.receive(above)?;
@@ -70,19 +71,19 @@ impl Ranks for Local {
         Ok([from_below, from_above])
     }
 
-    fn migrate(&self, to: Vec<Parcel>) -> Result<Vec<Parcel>, Gone> {
-        to.into_iter().enumerate().try_for_each(|(rank, parcel)| self.send(rank, parcel))?;
+    fn migrate(&self, to: Vec<Parcel>) -> Result<Vec<Parcel>, RankError> {
+        to.into_iter().enumerate().for_each(|(rank, parcel)| self.send(rank, parcel));
         (0..self.count()).map(|rank| self.receive(rank)).collect()
     }
 
-    fn gather(&self, own: Parcel) -> Result<Vec<Parcel>, Gone> {
-        self.send(0, own)?;
+    fn gather(&self, own: Parcel) -> Result<Vec<Parcel>, RankError> {
+        self.send(0, own);
         if self.rank > 0 { Ok(vec![]) } else { (0..self.count()).map(|rank| self.receive(rank)).collect() }
     }
 
-    fn tell(&self, said: Option<Parcel>) -> Result<Parcel, Gone> {
+    fn tell(&self, said: Option<Parcel>) -> Result<Parcel, RankError> {
         let Some(said) = said else { return self.receive(0) };
-        (1..self.count()).try_for_each(|rank| self.send(rank, said.clone()))?;
+        (1..self.count()).for_each(|rank| self.send(rank, said.clone()));
         Ok(said)
     }
 }
@@ -92,7 +93,7 @@ mod tests {
     use super::*;
 
     fn parcel(words: &[usize]) -> Parcel {
-        Parcel(words.iter().map(|&word| word as u64).collect())
+        Parcel::of(words)
     }
 
     /// What is sent arrives, at whom and from whom it should, for one rank and for many.
@@ -120,11 +121,52 @@ mod tests {
         }
     }
 
-    /// Who waits for a rank that has ended is told, and does not wait for ever.
+    /// Messages of each kind come from whom they should, as they were sent.
+    #[test]
+    fn messages_are_opened_by_their_ranks() {
+        thread::scope(|scope| {
+            for ranks in ranks(3, 1) {
+                scope.spawn(move || {
+                    let ranks: &dyn Ranks = &ranks;
+                    let own = ranks.rank();
+                    let all = ranks.gather_messages(own).unwrap();
+                    assert_eq!(all, if own == 0 { vec![0, 1, 2] } else { vec![] });
+                    assert_eq!(ranks.tell_message((own == 0).then(|| "go on".to_owned())).unwrap(), "go on");
+                    // The second rank sends what is not a number.
+                    let sent = if own == 1 { Parcel(vec![7]) } else { Parcel::of(&own) };
+                    let all = ranks.gather(sent).unwrap();
+                    let opened: Vec<_> =
+                        all.iter().enumerate().map(|(rank, it)| it.open::<usize>(rank)).collect();
+                    let expected = [Ok(0), Err(RankError::Unreadable(1)), Ok(2)];
+                    assert_eq!(opened, if own == 0 { expected.to_vec() } else { vec![] });
+                });
+            }
+        });
+    }
+
+    /// Waiting for a rank that has ended is an error that names it; the others get what was sent to them.
     #[test]
     fn a_rank_that_has_ended_is_named() {
         let mut all = ranks(3, 1);
         drop(all.remove(1));
-        assert_eq!(all[0].migrate(vec![Parcel::new(); 3]), Err(Gone(1)));
+        let ended = Err(RankError::Ended(1));
+        assert_eq!(all[0].migrate(vec![Parcel::default(); 3]), ended);
+        assert_eq!(all[1].receive(0), Ok(Parcel::default()));
+        assert_eq!(all[0].tell(Some(parcel(&[42]))), Ok(parcel(&[42])));
+        assert_eq!(all[1].tell(None), Ok(parcel(&[42])));
+        all[1].gather(parcel(&[7])).unwrap();
+        assert_eq!(all[0].gather(parcel(&[])), ended);
+    }
+
+    /// A rank that has ended is heard to its last message, which may name another that it has lost.
+    #[test]
+    fn the_last_messages_of_a_rank_are_heard() {
+        let mut all = ranks(2, 1);
+        let last = all.remove(1);
+        [7, 8].into_iter().for_each(|word| last.send(0, parcel(&[word])));
+        drop(last);
+        let halo = || all[0].halo([parcel(&[]), parcel(&[])], &mut || {});
+        assert_eq!(halo(), Ok([parcel(&[8]), parcel(&[7])]));
+        assert_eq!(halo(), Err(RankError::Ended(1)));
     }
 }

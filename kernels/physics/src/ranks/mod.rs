@@ -18,14 +18,23 @@ pub mod local;
 pub mod mpi;
 mod parcel;
 
-pub use parcel::{Parcel, Reader};
+pub use parcel::{Parcel, numbers};
 
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 use std::cell::Cell;
+use std::iter::once;
 
-/// A rank has ended, and what was asked of it will not come.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("rank {0} has ended")]
-pub struct Gone(pub usize);
+/// A rank from which nothing that was asked of it will come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, thiserror::Error)]
+pub enum RankError {
+    /// The rank has ended.
+    #[error("rank {0} has ended")]
+    Ended(usize),
+    /// The rank has sent bytes that are not the message that was expected of it.
+    #[error("rank {0} sent a message that cannot be read")]
+    Unreadable(usize),
+}
 
 /// One of several ranks. What one sends to another arrives in the order in which it was sent.
 pub trait Ranks: Send {
@@ -35,30 +44,60 @@ pub trait Ranks: Send {
     /// How many there are.
     fn count(&self) -> usize;
 
+    /// The rank below and that above, in a ring.
+    fn neighbours(&self) -> [usize; 2] {
+        let (rank, count) = (self.rank(), self.count());
+        [(rank + count - 1) % count, (rank + 1) % count]
+    }
+
     /// Sends something to the rank below and to that above, does something else while these messages are under way, and gives what came from below and from above.
     /// The first rank is above the last one; of two ranks each is below and above the other.
     ///
     /// # Errors
-    /// [`Gone`]
-    fn halo(&self, to: [Parcel; 2], meanwhile: &mut dyn FnMut()) -> Result<[Parcel; 2], Gone>;
+    /// [`RankError`]
+    fn halo(&self, to: [Parcel; 2], meanwhile: &mut dyn FnMut()) -> Result<[Parcel; 2], RankError>;
 
     /// Sends something to each rank, and gives what came from each.
     ///
     /// # Errors
-    /// [`Gone`]
-    fn migrate(&self, to: Vec<Parcel>) -> Result<Vec<Parcel>, Gone>;
+    /// [`RankError`]
+    fn migrate(&self, to: Vec<Parcel>) -> Result<Vec<Parcel>, RankError>;
 
     /// Sends something to the first rank, which is given what came from each; the others get nothing.
     ///
     /// # Errors
-    /// [`Gone`]
-    fn gather(&self, own: Parcel) -> Result<Vec<Parcel>, Gone>;
+    /// [`RankError`]
+    fn gather(&self, own: Parcel) -> Result<Vec<Parcel>, RankError>;
 
     /// Gives what the first rank says; the others say nothing.
     ///
     /// # Errors
-    /// [`Gone`]
-    fn tell(&self, said: Option<Parcel>) -> Result<Parcel, Gone>;
+    /// [`RankError`]
+    fn tell(&self, said: Option<Parcel>) -> Result<Parcel, RankError>;
+}
+
+impl dyn Ranks + '_ {
+    /// As [`gather`](Ranks::gather), of messages.
+    ///
+    /// # Errors
+    /// [`RankError`]
+    pub fn gather_messages<T: Serialize + DeserializeOwned>(&self, own: T) -> Result<Vec<T>, RankError> {
+        if self.rank() > 0 {
+            return self.gather(Parcel::of(&own)).map(|_| vec![]);
+        }
+        let all = self.gather(Parcel::default())?;
+        let others = all.iter().enumerate().skip(1).map(|(rank, parcel)| parcel.open(rank));
+        once(Ok(own)).chain(others).collect()
+    }
+
+    /// As [`tell`](Ranks::tell), of a message.
+    ///
+    /// # Errors
+    /// [`RankError`]
+    pub fn tell_message<T: Serialize + DeserializeOwned>(&self, said: Option<T>) -> Result<T, RankError> {
+        let told = self.tell(said.as_ref().map(Parcel::of))?;
+        said.map_or_else(|| told.open(0), Ok)
+    }
 }
 
 /// By whom simulations are carried out that begin now.
@@ -107,17 +146,16 @@ pub fn over<R>(crew: Crew, work: impl FnOnce() -> R) -> R {
     work()
 }
 
-/// Says that there is no other simulation, to processes that wait for one; for the first rank to say.
+/// Tells processes that wait for a simulation that there is no other; for the first rank to call. The message is an option, which holds the
+/// next simulation where there is one.
 ///
 /// # Errors
-/// [`Gone`]
-pub fn dismiss(ranks: &dyn Ranks) -> Result<(), Gone> {
-    let mut none = Parcel::new();
-    none.push(0);
-    ranks.tell(Some(none)).map(drop)
+/// [`RankError`]
+pub fn dismiss(ranks: &dyn Ranks) -> Result<(), RankError> {
+    ranks.tell_message(Some(None::<()>)).map(drop)
 }
 
-/// Waits for the first rank; returns whether it said [`dismiss`], or has ended, in place of beginning a simulation.
+/// Waits for the first rank; returns whether it said [`dismiss`] in place of beginning a simulation.
 pub fn is_dismissed(ranks: &dyn Ranks) -> bool {
-    ranks.tell(None).is_ok_and(|parcel| parcel.read().count() == 0)
+    ranks.tell_message::<Option<()>>(None) == Ok(None)
 }

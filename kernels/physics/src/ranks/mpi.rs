@@ -3,7 +3,7 @@
 //! Messages go from one process to another, with a tag for each kind and direction: of two ranks in a ring each is below and above the other. Sums are left to no
 //! reduction of MPI, whose order depends on the number of ranks.
 
-use super::{Gone, Parcel, Ranks};
+use super::{Parcel, RankError, Ranks};
 use mpi::environment::Universe;
 use mpi::point_to_point::MatchedReceiveVec;
 use mpi::request::{WaitGuard, scope};
@@ -18,6 +18,8 @@ const UP: i32 = 2;
 const MIGRATING: i32 = 3;
 const GATHERED: i32 = 4;
 const TOLD: i32 = 5;
+/// Bytes of a piece of a message: MPI counts with 31 bits.
+const PIECE: usize = 1 << 30;
 /// How often it is looked for a message before other processes may have the core, and before this one sleeps for a moment.
 const LOOKS: u32 = 2000;
 const LOOKS_AWAKE: u32 = 200_000;
@@ -57,12 +59,29 @@ impl World {
         SimpleCommunicator::world()
     }
 
+    /// Sends a message, and returns once it may be forgotten here.
+    fn send(to: usize, parcel: &Parcel, tag: i32) {
+        let all = World::all();
+        pieces(parcel).for_each(|piece| all.process_at_rank(to as i32).send_with_tag(piece, tag));
+    }
+
     fn receive(from: usize, tag: i32) -> Parcel {
+        let mut bytes = World::receive_piece(from, tag);
+        let mut last = bytes.len();
+        while last == PIECE {
+            let piece = World::receive_piece(from, tag);
+            last = piece.len();
+            bytes.extend(piece);
+        }
+        Parcel(bytes)
+    }
+
+    fn receive_piece(from: usize, tag: i32) -> Vec<u8> {
         let (all, mut looks) = (World::all(), 0_u32);
         let from = all.process_at_rank(from as i32);
         loop {
             if let Some(there) = from.immediate_matched_probe_with_tag(tag) {
-                return Parcel(there.matched_receive_vec().0);
+                return there.matched_receive_vec().0;
             }
             looks = looks.saturating_add(1);
             // Where there are more ranks than cores, others need this one; MPI's own waiting keeps it.
@@ -75,6 +94,11 @@ impl World {
     }
 }
 
+/// A message in pieces, of which the last one alone is shorter than the others.
+fn pieces(Parcel(bytes): &Parcel) -> impl Iterator<Item = &[u8]> {
+    (0..=bytes.len() / PIECE).map(|piece| &bytes[piece * PIECE..bytes.len().min((piece + 1) * PIECE)])
+}
+
 impl Ranks for World {
     fn rank(&self) -> usize {
         World::all().rank() as usize
@@ -84,26 +108,30 @@ impl Ranks for World {
         World::all().size() as usize
     }
 
-    fn halo(&self, [down, up]: [Parcel; 2], meanwhile: &mut dyn FnMut()) -> Result<[Parcel; 2], Gone> {
-        let (all, rank, count) = (World::all(), self.rank(), self.count());
-        let [below, above] = [(rank + count - 1) % count, (rank + 1) % count];
+    fn halo(&self, [down, up]: [Parcel; 2], meanwhile: &mut dyn FnMut()) -> Result<[Parcel; 2], RankError> {
+        let (all, [below, above]) = (World::all(), self.neighbours());
         let [to_below, to_above] = [below, above].map(|rank| all.process_at_rank(rank as i32));
         Ok(scope(|scope| {
-            let _down = WaitGuard::from(to_below.immediate_send_with_tag(scope, &down.0[..], DOWN));
-            let _up = WaitGuard::from(to_above.immediate_send_with_tag(scope, &up.0[..], UP));
+            let down = pieces(&down).map(|piece| (to_below, piece, DOWN));
+            let up = pieces(&up).map(|piece| (to_above, piece, UP));
+            let sent = down
+                .chain(up)
+                .map(|(to, piece, tag)| WaitGuard::from(to.immediate_send_with_tag(scope, piece, tag)));
+            let _sent: Vec<_> = sent.collect();
             meanwhile();
             [World::receive(below, UP), World::receive(above, DOWN)]
         }))
     }
 
-    fn migrate(&self, mut to: Vec<Parcel>) -> Result<Vec<Parcel>, Gone> {
+    fn migrate(&self, mut to: Vec<Parcel>) -> Result<Vec<Parcel>, RankError> {
         let (all, rank) = (World::all(), self.rank());
-        let own = to.get_mut(rank).map(std::mem::take).unwrap_or_default();
+        let own = std::mem::take(&mut to[rank]);
         Ok(scope(|scope| {
             let others = to.iter().enumerate().filter(|(other, _)| *other != rank);
-            let sent = others.map(|(other, parcel)| {
+            let sent = others.flat_map(|(other, parcel)| pieces(parcel).map(move |piece| (other, piece)));
+            let sent = sent.map(|(other, piece)| {
                 let other = all.process_at_rank(other as i32);
-                WaitGuard::from(other.immediate_send_with_tag(scope, &parcel.0[..], MIGRATING))
+                WaitGuard::from(other.immediate_send_with_tag(scope, piece, MIGRATING))
             });
             let _sent: Vec<_> = sent.collect();
             let from = (0..to.len())
@@ -112,46 +140,44 @@ impl Ranks for World {
         }))
     }
 
-    fn gather(&self, own: Parcel) -> Result<Vec<Parcel>, Gone> {
+    fn gather(&self, own: Parcel) -> Result<Vec<Parcel>, RankError> {
         // By doubles: each takes up what the next ranks have taken up, and hands all of it on in the order of ranks.
-        let (all, rank, count) = (World::all(), self.rank(), self.count());
+        let (rank, count) = (self.rank(), self.count());
         let mut parcels = vec![own];
         let mut apart = 1;
         while apart < count {
             if rank % (2 * apart) == apart {
-                let mut packed = Parcel::new();
-                parcels.iter().for_each(|parcel| packed.counts(parcel.0.iter().copied()));
-                all.process_at_rank((rank - apart) as i32).send_with_tag(&packed.0[..], GATHERED);
+                World::send(rank - apart, &Parcel::of(&parcels), GATHERED);
                 return Ok(vec![]);
             }
-            if rank + apart < count {
-                let packed = World::receive(rank + apart, GATHERED);
-                let mut reader = packed.read();
-                while !reader.is_empty() {
-                    parcels.push(Parcel(reader.counts()));
-                }
+            let next = rank + apart;
+            if next < count {
+                let packed = World::receive(next, GATHERED).open::<Vec<Parcel>>(next);
+                // The first rank hears of it from all of them.
+                let lost = |lost| vec![Parcel::lost(lost); apart.min(count - next)];
+                parcels.extend(packed.unwrap_or_else(lost));
             }
             apart *= 2;
         }
         Ok(parcels)
     }
 
-    fn tell(&self, said: Option<Parcel>) -> Result<Parcel, Gone> {
+    fn tell(&self, said: Option<Parcel>) -> Result<Parcel, RankError> {
         // By halves: each that knows tells those as far from it as there are ranks left between it and the next that knows.
-        let (all, rank, count) = (World::all(), self.rank(), self.count());
+        let (rank, count) = (self.rank(), self.count());
         let mut apart = count.next_power_of_two();
         let mut known = said;
         while apart > 1 {
             let half = apart / 2;
             match &known {
                 Some(parcel) if rank % apart == 0 && rank + half < count => {
-                    all.process_at_rank((rank + half) as i32).send_with_tag(&parcel.0[..], TOLD);
+                    World::send(rank + half, parcel, TOLD);
                 }
                 None if rank % apart == half => known = Some(World::receive(rank - half, TOLD)),
                 _ => {}
             }
             apart = half;
         }
-        Ok(known.unwrap_or_default())
+        known.ok_or(RankError::Ended(0))
     }
 }

@@ -1,109 +1,112 @@
-//! What is sent from rank to rank: words of 64 bits, which every carrier can carry.
+//! Messages between ranks as bytes: derived, with numbers in bulk.
 
-/// Words, one after the other.
+use super::RankError;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+/// Bytes that carriers move unread; a message may hold a parcel.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Parcel(pub Vec<u64>);
+pub struct Parcel(pub Vec<u8>);
 
 impl Parcel {
-    /// An empty one.
-    pub fn new() -> Parcel {
-        Parcel::default()
+    /// A message.
+    pub fn of<T: Serialize + ?Sized>(message: &T) -> Parcel {
+        Parcel::sent(Ok(message))
     }
 
-    /// A count.
-    pub fn push(&mut self, count: usize) {
-        self.0.push(count as u64);
+    /// Sent in place of a message by a rank that lacks what another one should have sent.
+    pub fn lost(error: RankError) -> Parcel {
+        Parcel::sent(Err::<(), _>(error))
     }
 
-    /// Numbers, as many as the other side knows of.
-    pub fn numbers(&mut self, numbers: impl IntoIterator<Item = f64>) {
-        self.0.extend(numbers.into_iter().map(f64::to_bits));
+    fn sent<T: Serialize>(message: Result<T, RankError>) -> Parcel {
+        #[expect(
+            clippy::disallowed_methods,
+            reason = "no message has no bytes: who opens what cannot be written names this rank"
+        )]
+        let bytes = postcard::to_allocvec(&message).unwrap_or_default();
+        Parcel(bytes)
     }
 
-    /// Counts with how many they are.
-    pub fn counts(&mut self, counts: impl ExactSizeIterator<Item = u64>) {
-        self.push(counts.len());
-        self.0.extend(counts);
+    /// The message of a rank.
+    ///
+    /// # Errors
+    /// [`RankError`] if these bytes are not such a message, or tell that another rank is lost.
+    pub fn open<'p, T: Deserialize<'p>>(&'p self, from: usize) -> Result<T, RankError> {
+        match postcard::take_from_bytes::<Result<T, RankError>>(&self.0) {
+            Ok((message, [])) => message,
+            _ => Err(RankError::Unreadable(from)),
+        }
     }
 
-    /// A text.
-    pub fn text(&mut self, text: &str) {
-        self.push(text.len());
-        let words = text.as_bytes().chunks(8).map(|bytes| {
-            let mut word = [0; 8];
-            word[..bytes.len()].copy_from_slice(bytes);
-            u64::from_le_bytes(word)
-        });
-        self.0.extend(words);
-    }
-
-    /// What there is in it, from the beginning.
-    pub fn read(&self) -> Reader<'_> {
-        Reader(&self.0)
+    /// Numbers in bulk: as a derived message, each of them would take a call.
+    pub fn of_numbers(numbers: impl IntoIterator<Item = f64>) -> Parcel {
+        let bytes: Vec<[u8; size_of::<f64>()]> = numbers.into_iter().map(f64::to_le_bytes).collect();
+        Parcel(bytes.into_flattened())
     }
 }
 
-/// What is left of a parcel. Ranks are of one program: what one has put in, another takes out in the same order.
-#[derive(Clone, Debug)]
-pub struct Reader<'p>(&'p [u64]);
-
-impl Reader<'_> {
-    fn word(&mut self) -> u64 {
-        let (first, left) = self.0.split_first().map_or((0, self.0), |(first, left)| (*first, left));
-        self.0 = left;
-        first
+/// The [numbers](Parcel::of_numbers) of a rank, which should be so many.
+///
+/// # Errors
+/// [`RankError`] if they are not, or these bytes tell that another rank is lost.
+pub fn numbers(bytes: &[u8], from: usize, count: usize) -> Result<impl Iterator<Item = f64>, RankError> {
+    match bytes.as_chunks() {
+        (numbers, []) if numbers.len() == count => Ok(numbers.iter().map(|&it| f64::from_le_bytes(it))),
+        _ => Err(Parcel(bytes.to_vec()).open::<()>(from).err().unwrap_or(RankError::Unreadable(from))),
     }
+}
 
-    /// Whether nothing is left.
-    pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
+impl Serialize for Parcel {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_bytes(&self.0)
     }
+}
 
-    /// A count.
-    pub fn count(&mut self) -> usize {
-        self.word() as usize
-    }
-
-    /// A number.
-    pub fn number(&mut self) -> f64 {
-        f64::from_bits(self.word())
-    }
-
-    /// Some numbers.
-    pub fn numbers<const N: usize>(&mut self) -> [f64; N] {
-        [(); N].map(|()| self.number())
-    }
-
-    /// Counts.
-    pub fn counts(&mut self) -> Vec<u64> {
-        (0..self.count()).map(|_| self.word()).collect()
-    }
-
-    /// A text.
-    pub fn text(&mut self) -> String {
-        let length = self.count();
-        let mut bytes: Vec<u8> = (0..length.div_ceil(8)).flat_map(|_| self.word().to_le_bytes()).collect();
-        bytes.truncate(length);
-        String::from_utf8_lossy(&bytes).into_owned()
+impl<'de> Deserialize<'de> for Parcel {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Parcel, D::Error> {
+        <&[u8]>::deserialize(deserializer).map(|bytes| Parcel(bytes.to_vec()))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
+    type Message = (Option<bool>, Vec<u64>, String, Vec<Parcel>);
+
+    proptest! {
+        /// A message is read as it was sent, its numbers to the bit, and refused with the rank's name where bytes are missing or too many.
+        #[test]
+        fn messages_are_read_whole_or_refused(
+            flag: Option<bool>, counts: Vec<u64>, text: String, inner: Vec<Vec<u64>>, cut: prop::sample::Index
+        ) {
+            let sent = |bits: &Vec<u64>| Parcel::of_numbers(bits.iter().copied().map(f64::from_bits));
+            let message: Message = (flag, counts, text, inner.iter().map(sent).collect());
+            let parcel = Parcel::of(&message);
+            let found: Message = parcel.open(3).unwrap();
+            prop_assert_eq!(&found, &message);
+            let unreadable = Some(RankError::Unreadable(3));
+            for (Parcel(sent), expected) in found.3.iter().zip(&inner) {
+                let bits: Vec<u64> = numbers(sent, 3, expected.len()).unwrap().map(f64::to_bits).collect();
+                prop_assert_eq!(&bits, expected);
+                prop_assert_eq!(numbers(sent, 3, expected.len() + 1).map(drop).err(), unreadable);
+                let longer = [sent, &[0][..]].concat();
+                prop_assert_eq!(numbers(&longer, 3, expected.len()).map(drop).err(), unreadable);
+            }
+            let damaged = Parcel(parcel.0[..cut.index(parcel.0.len())].to_vec());
+            prop_assert_eq!(damaged.open::<Message>(3).err(), unreadable);
+            let damaged = Parcel([parcel.0, vec![0]].concat());
+            prop_assert_eq!(damaged.open::<Message>(3).err(), unreadable);
+        }
+    }
+
+    /// The loss of a rank that another one tells of is read as such, whatever message was expected.
     #[test]
-    fn what_goes_in_comes_out() {
-        let mut parcel = Parcel::new();
-        parcel.push(3);
-        parcel.numbers([0.1, f64::NAN, -0.0]);
-        parcel.text("größer als 8 bytes");
-        parcel.counts([7, u64::MAX].into_iter());
-        let mut reader = parcel.read();
-        assert_eq!(reader.count(), 3);
-        let numbers: [f64; 3] = reader.numbers();
-        assert_eq!(numbers.map(f64::to_bits), [0.1, f64::NAN, -0.0].map(f64::to_bits));
-        assert_eq!((reader.text().as_str(), reader.counts()), ("größer als 8 bytes", vec![7, u64::MAX]));
-        assert!(reader.is_empty());
+    fn losses_are_passed_on() {
+        for lost in [RankError::Ended(2), RankError::Unreadable(0)] {
+            assert_eq!(Parcel::lost(lost).open::<Message>(1), Err(lost));
+            assert_eq!(numbers(&Parcel::lost(lost).0, 1, 7).map(drop), Err(lost));
+        }
     }
 }

@@ -144,6 +144,9 @@ pub enum RunError {
     /// The physics of the first moment, before anything was written.
     #[error(transparent)]
     Start(Failure),
+    /// A rank was lost: the state of that step is not known, and is in no file.
+    #[error(transparent)]
+    Lost(Failure),
     /// The mean that should end the run is not known well enough at its latest end.
     #[error(
         "{bound} is over, and the mean of {} is {}, not to ± {} (95 %); what was found is in {}{}",
@@ -194,7 +197,9 @@ impl Reported for RunError {
     fn class(&self) -> Class {
         match self {
             RunError::Scene(errors) => errors.class(),
-            RunError::Physics { failure, .. } | RunError::Start(failure) => failure.class(),
+            RunError::Physics { failure, .. } | RunError::Start(failure) | RunError::Lost(failure) => {
+                failure.class()
+            }
             RunError::Exists(_)
             | RunError::FewerSteps { .. }
             | RunError::OtherScene { .. }
@@ -216,7 +221,9 @@ impl Reported for RunError {
     fn passed_on(&self) -> Option<&dyn Reported> {
         match self {
             RunError::Scene(errors) => Some(errors),
-            RunError::Physics { failure, .. } | RunError::Start(failure) => Some(failure),
+            RunError::Physics { failure, .. } | RunError::Start(failure) | RunError::Lost(failure) => {
+                Some(failure)
+            }
             RunError::Rows(error) => Some(error),
             RunError::Folder(error) => Some(error),
             RunError::File(error) => Some(error),
@@ -332,7 +339,10 @@ pub fn run(
         recorder.log(simulation.as_mut())?;
         let is_over = until.has_come(&simulation.clock());
         let failed = match advanced.and_then(|()| if is_over { simulation.check() } else { Ok(()) }) {
-            Ok(()) => recorder.write_what_is_due(simulation.as_mut())?,
+            Ok(()) => match recorder.write_what_is_due(simulation.as_mut()) {
+                Err(RunError::Lost(failure)) => Some(failure),
+                written => written?,
+            },
             Err(failure) => Some(failure),
         };
         if let Some(failure) = failed {
@@ -340,6 +350,7 @@ pub fn run(
             let averages = recorder.averages();
             let summary = Summary::of(job, simulation.as_ref(), averages, from, seconds, Some(&failure));
             recorder.fail(simulation.as_ref(), summary)?;
+            simulation.check_ranks().map_err(RunError::Lost)?;
             return Err(RunError::Physics { failure, snapshot: recorder.trajectory_path() });
         }
         let (done, all) = until.progress(&simulation.clock());

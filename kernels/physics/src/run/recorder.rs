@@ -184,7 +184,8 @@ impl Recorder {
             counters: std::mem::take(&mut checkpoint.counters),
             columns: std::mem::take(&mut checkpoint.columns),
         };
-        simulation.restore(clock, snapshot).map_err(foreign)?;
+        let restored = simulation.restore(clock, snapshot);
+        whole(simulation, restored)?.map_err(foreign)?;
 
         folder.claim(ALWAYS.into_iter().chain(names(prepared)), false)?;
         growing.cut(&folder, &header)?;
@@ -260,6 +261,7 @@ impl Recorder {
             self.structured.snapshot(&moment);
             self.growing.add(Due::Frame, &moment, clock)?;
         }
+        whole(simulation, ())?;
         // A checkpoint needs the room of its frame.
         drop(moment);
         if checkpoints {
@@ -283,6 +285,7 @@ impl Recorder {
             return Ok(Some(failure));
         }
         let (clock, row) = (simulation.clock(), simulation.row());
+        let row = whole(simulation, row)?;
         let named = self.quantities.iter().zip(&row);
         if let Some((quantity, &value)) = named.into_iter().find(|(it, value)| !is_sound(it.name, **value)) {
             return Ok(Some(overflow(clock, quantity.name, value)));
@@ -297,13 +300,17 @@ impl Recorder {
     /// A frame in each of the files that are asked for and do not have it yet.
     fn snapshot(&mut self, simulation: &dyn Simulation) -> Result<(), RunError> {
         let moment = moment_of(simulation, &self.header, &self.rows);
-        self.growing.add(Due::Frame, &moment, simulation.clock())
+        let added = self.growing.add(Due::Frame, &moment, simulation.clock());
+        whole(simulation, added)?
     }
 
-    /// The state of a failed step, whether snapshots are due or not, and what there is to say of it.
+    /// The state of a failed step, whether snapshots are due or not, and what there is to say of it. Where a rank is lost, its part of the
+    /// state is not known.
     pub(super) fn fail(&mut self, simulation: &dyn Simulation, summary: Summary) -> Result<(), RunError> {
-        let moment = moment_of(simulation, &self.header, &self.rows);
-        self.growing.add_to(self.trajectory().file, &moment, simulation.clock())?;
+        if simulation.check_ranks().is_ok() {
+            let moment = moment_of(simulation, &self.header, &self.rows);
+            self.growing.add_to(self.trajectory().file, &moment, simulation.clock())?;
+        }
         self.growing.mark()?;
         self.summary(summary).map(drop)
     }
@@ -328,7 +335,7 @@ impl Recorder {
         let mut counters = self.growing.mark()?;
         counters.insert("bits".to_owned(), Counter::Count(BITS));
         counters.insert(EVENT_COUNT.to_owned(), Counter::Count(clock.events));
-        let mut snapshot = simulation.snapshot();
+        let mut snapshot = whole(simulation, simulation.snapshot())?;
         self.structured.keep(&mut snapshot);
         counters.extend(snapshot.counters);
         let checkpoint = Checkpoint {
@@ -353,13 +360,16 @@ impl Recorder {
         simulation: &dyn Simulation,
         summary: Summary,
     ) -> Result<Summary, RunError> {
+        let summary = whole(simulation, summary)?;
         self.checkpoint(simulation)?;
         let moment = moment_of(simulation, &self.header, &self.rows);
         self.growing.add(Due::Frame, &moment, simulation.clock())?;
         self.growing.mark()?;
+        whole(simulation, ())?;
         for format in FORMATS.iter().filter(|format| self.output.asks_for(format)) {
             if let FrameWriting::Last(write) = format.writing {
-                self.folder.write(format.file, |out| write(moment.frame(), out))?;
+                let frame = whole(simulation, moment.frame())?;
+                self.folder.write(format.file, |out| write(frame, out))?;
             }
         }
         self.structured.write(&self.folder)?;
@@ -377,6 +387,11 @@ impl Recorder {
         self.folder.still_has(needed(self.checkpointed.is_some()))?;
         Ok(summary)
     }
+}
+
+/// Passes on a look at a simulation, to be written; an error where a rank is lost.
+fn whole<T>(simulation: &dyn Simulation, seen: T) -> Result<T, RunError> {
+    simulation.check_ranks().map(|()| seen).map_err(RunError::Lost)
 }
 
 /// The failure of a sum over all particles that no number holds.

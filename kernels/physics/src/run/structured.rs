@@ -199,6 +199,9 @@ impl Structured {
             let left = (images.len() < self.particles).then(|| moment.per_particle.particles());
             states.unfold(setting.domain.lengths(), &images, left.as_ref());
         }
+        if !moment.per_particle.is_whole() {
+            return;
+        }
         let of = |sum: &Sum| match sum.observable.seen {
             Seen::Twice { of, .. } => Some(of),
             Seen::Once { .. } => None,
@@ -222,12 +225,19 @@ impl Structured {
         let is_any_left = look.at(|states| {
             states.forget();
             moment.per_particle.states(states);
+            if !moment.per_particle.is_whole() {
+                states.forget();
+            }
         });
         if !is_any_left {
             return;
         }
         if let Some(forces) = &self.forces {
-            look.meet(&moment.frame().particles, forces);
+            let particles = &moment.frame().particles;
+            if !moment.per_particle.is_whole() {
+                return;
+            }
+            look.meet(particles, forces);
         }
         for sum in &mut self.sums {
             if let Seen::Once { .. } = sum.observable.seen {

@@ -41,6 +41,7 @@ pub struct Summary {
     /// like; known once it is written.
     pub notes: Vec<String>,
     /// What stopped the run, if the physics did.
+    #[serde(serialize_with = "Failure::in_json")]
     pub failure: Option<Failure>,
     /// The mean of each quantity with its error.
     pub averages: Averages,

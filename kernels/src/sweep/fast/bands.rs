@@ -69,7 +69,7 @@ pub struct Met {
 }
 
 /// What a band has met.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct OfBand {
     /// As of all.
     pub pairs: u64,

@@ -59,7 +59,7 @@ pub enum Counter {
 }
 
 /// Values of one type; all their bits are kept.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Column {
     /// Double precision.
     F64(Vec<f64>),

@@ -65,7 +65,7 @@ impl Running {
         if self.method.checked.has_pairs() {
             self.method.of_pairs = self.state.compute_forces(asked)?.energy;
         } else {
-            self.state.skip_forces();
+            self.state.skip_forces()?;
         }
         Ok(())
     }
@@ -73,11 +73,12 @@ impl Running {
     /// Goes on without the particles that a failure is of.
     fn lose(&mut self, failure: Failure) -> Result<(), Failure> {
         let unfit: BTreeSet<usize> = self.state.unfit().into_iter().collect();
+        let standing = self.state.unwrapped();
+        self.state.check_ranks()?;
         if unfit.is_empty() {
             return Err(Failure { kind: super::LOST, ..failure });
         }
         let clock = self.clock();
-        let standing = self.state.unwrapped();
         for &place in &unfit {
             let Particle { id, .. } = self.method.start.all()[place];
             self.method.losses.add(id, clock.steps, clock.time, standing.all()[place].place());
@@ -134,9 +135,11 @@ impl Running {
         let start = Particles::new(start.collect());
         let columns: Vec<(String, Column)> =
             self.state.columns().into_iter().map(|(name, column)| kept(name, column, &stays)).collect();
+        self.state.check_ranks().map_err(|failure| failure.what())?;
         let elapsed = self.state.elapsed();
         let (steps, timings, made) = (elapsed.steps, elapsed.timings, self.lists_made());
         let follows = self.method.purpose == Purpose::Run;
+        self.state.end();
         self.state =
             stepper(&self.method.checked, start.clone(), follows).map_err(|failure| failure.what())?;
         self.state.restore(steps, &columns)?;
@@ -229,6 +232,10 @@ impl Running {
 impl PerParticle for Running {
     fn particles(&self) -> Particles {
         self.state.particles()
+    }
+
+    fn is_whole(&self) -> bool {
+        self.state.check_ranks().is_ok()
     }
 
     fn states(&self, states: &mut States) {

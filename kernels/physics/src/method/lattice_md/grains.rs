@@ -195,6 +195,10 @@ impl SteppedState for Grains {
         self.stepping.as_ref()
     }
 
+    fn check_ranks(&self) -> Result<(), Failure> {
+        self.stepping.check_ranks()
+    }
+
     fn columns(&self) -> Vec<(String, Column)> {
         self.stepping.columns()
     }

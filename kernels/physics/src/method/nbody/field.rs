@@ -10,6 +10,7 @@ use super::sums::{Stop, Sums, go_on};
 pub use super::sums::{never, potential};
 use super::swept::Swept;
 use crate::method::{Failure, refuse_several_ranks};
+use crate::ranks::RankError;
 use crate::scene::Precision;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use stripmine_kernels::isa::ProgramError;
@@ -106,6 +107,14 @@ impl Attraction {
             (Engine::Programs, _) => Shifted::<f32>::bytes(count, has_rates),
         };
         pairs + 3 * size_of::<f64>() * count
+    }
+
+    /// The rank that was lost, if one was.
+    pub fn lost(&self) -> Option<RankError> {
+        match &self.pairs {
+            Pairs::Reference => None,
+            Pairs::Summed(sums) => sums.lost(),
+        }
     }
 
     /// For a step: whether the energy at its end is wanted, and what may stop it.

@@ -7,8 +7,9 @@ use super::bodies::{Bodies, Columns};
 use super::scene::Scene;
 use super::sums::{Stop, Sums, never};
 use super::swept::Swept;
-use crate::method::{DISMISSED, Failure, FailureKind};
-use crate::ranks::{self, Crew, Gone, Parcel, Ranks, Reader, local};
+use crate::method::{Clock, DISMISSED, Failure, FailureKind, ended};
+use crate::ranks::{self, Crew, Parcel, RankError, Ranks, local, numbers};
+use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
@@ -44,8 +45,10 @@ pub(super) fn summed<P: Precision>(
         Crew::Processes(join) => {
             let ranks = join();
             if ranks.rank() > 0 {
-                serve(ranks.as_ref(), own, false);
-                return Err(Failure::new(DISMISSED, "this rank is dismissed", ""));
+                return Err(match serve(ranks.as_ref(), own, false) {
+                    Ok(()) => Failure::new(DISMISSED, "this rank is dismissed", ""),
+                    Err(lost) => ended(lost, Clock::default()),
+                });
             }
             (ranks, vec![])
         }
@@ -57,7 +60,8 @@ pub(super) fn summed<P: Precision>(
                 let own = swept();
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(per_rank).build();
                 let pool = pool.map_err(|error| error.to_string())?;
-                let served = move || serve(&ranks, own, true);
+                // The first rank finds a loss itself.
+                let served = move || _ = serve(&ranks, own, true);
                 let work = move || pool.install(served);
                 thread::Builder::new().spawn(work).map_err(|error| error.to_string())
             };
@@ -69,7 +73,7 @@ pub(super) fn summed<P: Precision>(
             (first, threads?)
         }
     };
-    Ok(Box::new(RankedSums { ranks: Mutex::new(Some(ranks)), own, threads }))
+    Ok(Box::new(RankedSums { ranks: Mutex::new(Ok(ranks)), own, threads }))
 }
 
 /// The bands of a rank.
@@ -79,52 +83,55 @@ fn bands_of(rank: usize, ranks: usize, bands: usize) -> Range<usize> {
 
 /// The sums of the first rank.
 struct RankedSums<P> {
-    /// None once one of them has ended.
-    ranks: Mutex<Option<Box<dyn Ranks>>>,
+    /// The rank that was lost first, where one was.
+    ranks: Mutex<Result<Box<dyn Ranks>, RankError>>,
     own: Swept<P>,
     threads: Vec<JoinHandle<()>>,
 }
 
-/// What the first rank says: that no simulation follows ([`ranks::dismiss`]), that sums are wanted, that this simulation has ended.
-const DISMISS: usize = 0;
-const SUM: usize = 1;
-const END: usize = 2;
+/// Order of the first rank to the others, sent in an option: none where no simulation follows ([`ranks::dismiss`]).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+enum Order {
+    /// Sums are wanted.
+    Sum { observed: bool, position: Parcel, velocity: Option<Parcel> },
+    /// This simulation has ended.
+    End,
+}
 
 /// Does as the first rank says: a thread until this simulation ends, a process until no other follows.
-fn serve<P: Precision>(ranks: &dyn Ranks, mut own: Swept<P>, is_thread: bool) {
-    while let Ok(parcel) = ranks.tell(None) {
-        let mut reader = parcel.read();
-        match reader.count() {
-            SUM => {}
-            DISMISS => return,
-            _ if is_thread => return,
-            _ => continue,
-        }
-        let (observed, has_rates) = (reader.count() > 0, reader.count() > 0);
-        let position = take(&mut reader);
-        let velocity = has_rates.then(|| take(&mut reader));
-        let bands = bands_of(ranks.rank(), ranks.count(), own.bands());
-        let met = own.meet((&position, velocity.as_ref()), bands.clone(), observed, &never);
-        let mut parcel = Parcel::new();
-        // The first rank has the same processor and the same law: what fails here fails there.
-        if met.is_ok() {
-            bands.for_each(|band| parcel.numbers(own.band(band, has_rates)));
-        }
-        if ranks.gather(parcel).is_err() {
-            return;
-        }
+fn serve<P: Precision>(ranks: &dyn Ranks, mut own: Swept<P>, is_thread: bool) -> Result<(), RankError> {
+    loop {
+        let answer = match ranks.tell_message(None) {
+            Ok(Some(Order::Sum { observed, position, velocity })) => {
+                band_sums(ranks, &mut own, observed, (&position, velocity.as_ref()))
+            }
+            Ok(Some(Order::End)) if !is_thread => continue,
+            Ok(Some(Order::End) | None) => return Ok(()),
+            Err(lost) => Err(lost),
+        };
+        ranks.gather(answer.as_ref().map_or_else(|lost| Parcel::lost(*lost), Parcel::of))?;
+        answer?;
     }
 }
 
-fn put(columns: &Columns, parcel: &mut Parcel) {
-    for column in columns {
-        parcel.push(column.len());
-        parcel.numbers(column.iter().copied());
-    }
-}
-
-fn take(reader: &mut Reader<'_>) -> Columns {
-    [(); 3].map(|()| (0..reader.count()).map(|_| reader.number()).collect())
+/// The sums of each of the bands of a rank.
+fn band_sums<P: Precision>(
+    ranks: &dyn Ranks,
+    own: &mut Swept<P>,
+    observed: bool,
+    (position, velocity): (&Parcel, Option<&Parcel>),
+) -> Result<Vec<Parcel>, RankError> {
+    let entries = own.entries();
+    let columns = |parcel: &Parcel| -> Result<Columns, RankError> {
+        let mut numbers = numbers(&parcel.0, 0, 3 * entries)?;
+        Ok([(); 3].map(|()| numbers.by_ref().take(entries).collect()))
+    };
+    let (position, velocity) = (columns(position)?, velocity.map(columns).transpose()?);
+    let bands = bands_of(ranks.rank(), ranks.count(), own.bands());
+    let met = own.meet((&position, velocity.as_ref()), bands.clone(), observed, &never);
+    // The first rank has the same processor and the same law: what fails here fails there, with the reason.
+    met.map_err(|_| RankError::Ended(ranks.rank()))?;
+    Ok(bands.map(|band| Parcel::of_numbers(own.band(band, velocity.is_some()))).collect())
 }
 
 impl<P: Precision> RankedSums<P> {
@@ -134,25 +141,26 @@ impl<P: Precision> RankedSums<P> {
         (position, velocity): (&Columns, Option<&Columns>),
         observed: bool,
         stop: Stop<'_>,
-    ) -> Result<Result<(), ProgramError>, Gone> {
+    ) -> Result<Result<(), ProgramError>, RankError> {
         let ranks = self.ranks.get_mut().unwrap_or_else(PoisonError::into_inner);
-        let Some(ranks) = ranks else { return Err(Gone(0)) };
-        let mut parcel = Parcel::new();
-        [SUM, usize::from(observed), usize::from(velocity.is_some())]
-            .into_iter()
-            .for_each(|word| parcel.push(word));
-        put(position, &mut parcel);
-        velocity.into_iter().for_each(|velocity| put(velocity, &mut parcel));
-        ranks.tell(Some(parcel))?;
-        let (count, bands) = (ranks.count(), self.own.bands());
+        let ranks = ranks.as_ref().map_err(|lost| *lost)?;
+        let sent = |columns: &Columns| Parcel::of_numbers(columns.iter().flatten().copied());
+        let (from, rates) = (sent(position), velocity.map(sent));
+        ranks.tell_message(Some(Some(Order::Sum { observed, position: from, velocity: rates })))?;
+        let (count, bands, has_rates) = (ranks.count(), self.own.bands(), velocity.is_some());
         let met = self.own.meet((position, velocity), bands_of(0, count, bands), observed, stop);
-        for (rank, parcel) in ranks.gather(Parcel::new())?.iter().enumerate().skip(1) {
-            let mut reader = parcel.read();
-            if reader.is_empty() {
-                return Err(Gone(rank));
+        let all = ranks.gather(Parcel::default())?;
+        if met.is_err() {
+            return Ok(met);
+        }
+        for (rank, parcel) in all.iter().enumerate().skip(1) {
+            let of_bands: Vec<&[u8]> = parcel.open(rank)?;
+            let bands = bands_of(rank, count, bands);
+            if of_bands.len() != bands.len() {
+                return Err(RankError::Unreadable(rank));
             }
-            for band in bands_of(rank, count, bands) {
-                self.own.put_band(band, velocity.is_some(), || reader.number());
+            for (band, bytes) in bands.zip(of_bands) {
+                self.own.put_band(band, has_rates, (rank, bytes))?;
             }
         }
         Ok(met)
@@ -172,9 +180,9 @@ impl<P: Precision> Sums for RankedSums<P> {
                 met?;
                 self.own.finish(velocity.is_some())
             }
-            // Without the others it goes on alone, to the same bits.
-            Err(_) => {
-                self.ranks = Mutex::new(None);
+            // The step under way is finished alone, to the same bits; `lost` then ends the run.
+            Err(lost) => {
+                self.ranks = Mutex::new(Err(lost));
                 self.own.sum(position, velocity, observed, stop)
             }
         }
@@ -183,15 +191,17 @@ impl<P: Precision> Sums for RankedSums<P> {
     fn over(&self, per_mass: &[f64], into: [Option<&mut Columns>; 2]) {
         self.own.over(per_mass, into);
     }
+
+    fn lost(&self) -> Option<RankError> {
+        self.ranks.lock().unwrap_or_else(PoisonError::into_inner).as_ref().err().copied()
+    }
 }
 
 impl<P> Drop for RankedSums<P> {
     fn drop(&mut self) {
-        if let Some(ranks) = self.ranks.get_mut().unwrap_or_else(PoisonError::into_inner).take() {
-            let mut end = Parcel::new();
-            end.push(END);
-            // Who has ended already needs not be told.
-            let _ = ranks.tell(Some(end));
+        if let Ok(ranks) = self.ranks.get_mut().unwrap_or_else(PoisonError::into_inner) {
+            #[expect(clippy::let_underscore_must_use, reason = "a rank that has ended needs not be told")]
+            let _ = ranks.tell_message(Some(Some(Order::End)));
         }
         self.threads.drain(..).for_each(|thread| _ = thread.join());
     }

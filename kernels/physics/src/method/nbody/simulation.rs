@@ -13,7 +13,7 @@ use crate::io::checkpoint::Column;
 use crate::method::pairwise::Elapsed;
 use crate::method::stepped::{Stepped, SteppedState, Stepwise};
 use crate::method::{
-    Clock, Culprit, Failure, FailureKind, Observable, PerParticle, Purpose, RunWarning, Snapshot,
+    Clock, Culprit, Failure, FailureKind, Observable, PerParticle, Purpose, RunWarning, Snapshot, ended,
 };
 use crate::number::significant;
 use crate::particles::Particles;
@@ -288,6 +288,10 @@ impl SteppedState for Moved {
 
     fn per_particle(&self) -> &dyn PerParticle {
         self
+    }
+
+    fn check_ranks(&self) -> Result<(), Failure> {
+        self.field.borrow().lost().map_or(Ok(()), |lost| Err(ended(lost, self.elapsed.clock())))
     }
 
     fn columns(&self) -> Vec<(String, Column)> {

@@ -1,6 +1,7 @@
 //! Sums over pairs of bodies: what every way to them gives, and what the ways share.
 
 use super::bodies::Columns;
+use crate::ranks::RankError;
 use stripmine_kernels::backend;
 use stripmine_kernels::isa::ProgramError;
 
@@ -28,6 +29,11 @@ pub trait Sums: Send + Sync {
 
     /// The forces, and their rates, times `per_mass`.
     fn over(&self, per_mass: &[f64], into: [Option<&mut Columns>; 2]);
+
+    /// The rank that was lost, where there are several: sums are right, and are those of the first rank alone since.
+    fn lost(&self) -> Option<RankError> {
+        None
+    }
 }
 
 /// Stops where it should.

@@ -3,6 +3,7 @@
 use super::bodies::{Bodies, Columns};
 use super::rounded::Rounded;
 use super::sums::{Stop, Sums, over};
+use crate::ranks::{RankError, numbers};
 use std::ops::Range;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend;
@@ -50,6 +51,11 @@ impl<P: backend::Precision> Swept<P> {
     /// How many bands of rows there are.
     pub(super) fn bands(&self) -> usize {
         self.forces.bands()
+    }
+
+    /// Entries of a column: bodies and padding.
+    pub(super) fn entries(&self) -> usize {
+        self.sums[0].len()
     }
 
     /// Meets the pairs of some of the bands.
@@ -111,8 +117,16 @@ impl<P: backend::Precision> Swept<P> {
         }
     }
 
-    /// Puts there what [`band`](Self::band) gave elsewhere.
-    pub(super) fn put_band(&mut self, number: usize, has_rates: bool, mut value: impl FnMut() -> f64) {
+    /// Puts there what [`band`](Self::band) gave on another rank.
+    ///
+    /// # Errors
+    /// [`RankError`] if these are not as many numbers.
+    pub(super) fn put_band(
+        &mut self,
+        number: usize,
+        has_rates: bool,
+        (rank, bytes): (usize, &[u8]),
+    ) -> Result<(), RankError> {
         let Swept { count, forces, rates, .. } = self;
         let (sums, energy) = match has_rates {
             false => {
@@ -124,8 +138,11 @@ impl<P: backend::Precision> Swept<P> {
                 (sums.as_mut_slice(), energy)
             }
         };
-        energy.iter_mut().for_each(|energy| *energy = value());
-        sums.iter_mut().flatten().for_each(|sum| *sum = P::from_f64(value()));
+        let count = energy.len() + sums.iter().map(Vec::len).sum::<usize>();
+        let mut numbers = numbers(bytes, rank, count)?;
+        energy.iter_mut().zip(numbers.by_ref()).for_each(|(energy, number)| *energy = number);
+        sums.iter_mut().flatten().zip(numbers).for_each(|(sum, number)| *sum = P::from_f64(number));
+        Ok(())
     }
 }
 

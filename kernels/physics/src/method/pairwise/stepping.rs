@@ -61,6 +61,18 @@ pub trait Stepping: Named + PerParticle + Send {
     /// Force along x and y and torque on every particle, in the scene's order.
     fn forces(&self) -> Vec<[f64; 3]>;
 
+    /// As [`SteppedState::check_ranks`].
+    ///
+    /// # Errors
+    /// As there.
+    fn check_ranks(&self) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    /// Ends the simulation on the other ranks, where there are some: processes carry out one after the other. Nothing can be asked of it
+    /// afterwards.
+    fn end(&mut self) {}
+
     /// Everything that the next step depends on, by name.
     fn columns(&self) -> Vec<(String, Column)>;
 
@@ -94,7 +106,10 @@ pub trait Losing: Stepping {
     fn predicted_velocities(&self) -> Vec<[f64; 2]>;
 
     /// Takes the forces as found where no pair acts: there are none.
-    fn skip_forces(&mut self);
+    ///
+    /// # Errors
+    /// [`Failure`] if particles cannot be distributed to their ranks again.
+    fn skip_forces(&mut self) -> Result<(), Failure>;
 
     /// The particles, by their places in the scene and rising, that belong to no cell or of which a number is not finite.
     fn unfit(&self) -> Vec<usize>;
@@ -194,8 +209,9 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Losing for Engine
         velocities
     }
 
-    fn skip_forces(&mut self) {
+    fn skip_forces(&mut self) -> Result<(), Failure> {
         self.awaits_forces = false;
+        Ok(())
     }
 
     fn unfit(&self) -> Vec<usize> {
@@ -214,6 +230,10 @@ impl SteppedState for Box<dyn Losing> {
 
     fn per_particle(&self) -> &dyn PerParticle {
         self.as_ref()
+    }
+
+    fn check_ranks(&self) -> Result<(), Failure> {
+        self.as_ref().check_ranks()
     }
 
     fn columns(&self) -> Vec<(String, Column)> {

@@ -1,13 +1,13 @@
 //! Discs dealt out to the ranks: at the start, again when they have gone far, and from a state.
 
 use super::layout::{Layout, Side};
-use super::wire::{column_like, entries};
-use super::worker::{Columns, Worker};
+use super::wire::{Columns, column_like, entries};
+use super::worker::Worker;
 use crate::method::pairwise::Dynamics;
 use crate::method::pairwise::saved::CELL;
 use crate::method::pairwise::search::{Cells, Search};
 use crate::method::pairwise::state::Members;
-use crate::ranks::{Gone, Parcel};
+use crate::ranks::{Parcel, RankError, numbers};
 use std::collections::HashMap;
 use stripmine_kernels::backend::Precision;
 
@@ -41,8 +41,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Worker<S, P, Q, D
 
     /// Holds discs of this rank, those of others that are near, and walls, none of them in its cell yet.
     fn hold(&mut self, own: Vec<u32>, near: Vec<u32>, walls: Vec<u32>, row: impl Fn(u32) -> usize) {
-        let (rank, count) = (self.ranks.rank(), self.ranks.count());
-        let [below, above] = [(rank + count - 1) % count, (rank + 1) % count];
+        let (rank, [below, above]) = (self.ranks.rank(), self.ranks.neighbours());
         let on_side = |discs: &[u32], rank: usize, side: Side| -> Vec<u32> {
             discs.iter().copied().filter(|&disc| self.layout.side(rank, row(disc)) == Some(side)).collect()
         };
@@ -57,24 +56,17 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Worker<S, P, Q, D
     }
 
     /// Deals out the discs again: each to the rank of the row that it is in now.
-    pub(super) fn migrate(&mut self) -> Result<Result<(), String>, Gone> {
+    pub(super) fn migrate(&mut self) -> Result<Result<(), String>, RankError> {
         let state = &self.engine.state;
         let row = |disc: usize| self.engine.search.cells().cell(disc).map_or(0, |cell| cell[1]);
         let mut weights = vec![0; self.layout_bands()];
         (0..state.moving()).for_each(|disc| weights[self.layout.band(row(disc))] += 1);
-        let mut parcel = Parcel::new();
-        parcel.counts(weights.into_iter());
-        let gathered = self.ranks.gather(parcel)?;
-        let sums = gathered.iter().map(|parcel| parcel.read().counts()).reduce(|mut sums, of_rank| {
+        let gathered = self.ranks.gather_messages(weights)?;
+        let sums = gathered.into_iter().reduce(|mut sums: Vec<u64>, of_rank| {
             sums.iter_mut().zip(of_rank).for_each(|(sum, of_rank)| *sum += of_rank);
             sums
         });
-        let said = sums.map(|sums| {
-            let mut parcel = Parcel::new();
-            parcel.counts(sums.into_iter());
-            parcel
-        });
-        let weights = self.ranks.tell(said)?.read().counts();
+        let weights = self.ranks.tell_message(sums)?;
         self.deal_out(&weights);
         let state = &self.engine.state;
         let row = |disc: usize| self.engine.search.cells().cell(disc).map_or(0, |cell| cell[1]);
@@ -85,32 +77,38 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Worker<S, P, Q, D
                 (0..state.moving()).filter(is_sent).map(|disc| disc as u32).collect()
             };
             let (own, near) = (of(&own), of(&near));
-            let mut parcel = Parcel::new();
-            for discs in [&own, &near] {
-                parcel.counts(discs.iter().map(|&disc| state.number(disc as usize) as u64));
-            }
-            let sent = [own, near].concat();
-            self.engine.columns_of(&sent).iter().for_each(|(_, column)| parcel.numbers(entries(column)));
-            parcel
+            let columns = self.engine.columns_of(&[&own[..], &near].concat());
+            let discs = [own, near].map(|discs| self.numbers(&discs));
+            Parcel::of(&(discs, Parcel::of_numbers(columns.iter().flat_map(|(_, column)| entries(column)))))
         });
         let came = self.ranks.migrate(parcels.collect())?;
-        Ok(self.take_over(&came))
+        self.take_over(&came)
     }
 
     /// Takes over what came from every rank.
-    fn take_over(&mut self, came: &[Parcel]) -> Result<(), String> {
+    fn take_over(&mut self, came: &[Parcel]) -> Result<Result<(), String>, RankError> {
         let template = self.engine.columns_of(&[]);
         let mut discs: Vec<(bool, u32, Vec<f64>)> = vec![];
-        for parcel in came {
-            let mut reader = parcel.read();
-            let [own, near] = [(); 2].map(|()| reader.counts());
-            let numbers = own.iter().map(|number| (false, *number)).chain(near.iter().map(|it| (true, *it)));
+        for (rank, parcel) in came.iter().enumerate() {
+            let ([own, near], bytes): ([Vec<u32>; 2], &[u8]) = parcel.open(rank)?;
+            let mut numbers = numbers(bytes, rank, template.len() * (own.len() + near.len()))?;
             let begin = discs.len();
-            discs.extend(numbers.map(|(is_near, number)| (is_near, number as u32, vec![])));
-            for _ in 0..template.len() {
-                discs[begin..].iter_mut().for_each(|disc| disc.2.push(reader.number()));
+            discs.extend(own.into_iter().map(|number| (false, number, vec![])));
+            discs.extend(near.into_iter().map(|number| (true, number, vec![])));
+            for _ in &template {
+                let entries = discs[begin..].iter_mut().zip(numbers.by_ref());
+                entries.for_each(|(disc, number)| disc.2.push(number));
             }
         }
+        Ok(self.hold_again(discs, &template))
+    }
+
+    /// Holds discs of which some are only near, with the entries of each in the columns of a template.
+    fn hold_again(
+        &mut self,
+        mut discs: Vec<(bool, u32, Vec<f64>)>,
+        template: &Columns,
+    ) -> Result<(), String> {
         discs.sort_unstable_by_key(|&(is_near, number, _)| (is_near, number));
         let (grains, all) = (self.engine.state.grains(), self.engine.state.len());
         let mut walls: Vec<u32> = (grains..all).map(|disc| disc as u32).collect();

@@ -1,14 +1,14 @@
 //! A scene that is dealt out to ranks: who begins with what.
 
-use super::first::Ranked;
-use super::wire::put_failure;
+use super::first::{Ranked, Threads};
+use super::wire::Order;
 use super::worker::{Part, Worker, all_rows};
 use crate::method::pairwise::search::Search;
 use crate::method::pairwise::state::Members;
 use crate::method::pairwise::{Crossings, Dynamics, Elapsed, Engine, System};
-use crate::method::{DISMISSED, Failure, FailureKind};
+use crate::method::{Clock, DISMISSED, Failure, FailureKind, ended};
 use crate::particles::Particles;
-use crate::ranks::{Parcel, Ranks, local};
+use crate::ranks::{RankError, Ranks, local};
 use std::collections::HashSet;
 use std::sync::Arc;
 use std::thread;
@@ -75,7 +75,8 @@ impl<Q, D: Dynamics + Clone + 'static> Scene<Q, D> {
             let Scene { dynamics, system, set, .. } = self;
             let scene = Scene { dynamics: dynamics.clone(), system: system.clone(), set: *set, search };
             let start = start.clone();
-            let work = move || serve_one(scene.part::<S, P>(Box::new(ranks), start));
+            // The first rank finds a loss itself.
+            let work = move || _ = serve_one(scene.part::<S, P>(Box::new(ranks), start));
             let pool = rayon::ThreadPoolBuilder::new().num_threads(per_rank).build();
             let spawned = pool.map_err(|error| error.to_string()).and_then(|pool| {
                 thread::Builder::new().spawn(move || pool.install(work)).map_err(|error| error.to_string())
@@ -85,7 +86,7 @@ impl<Q, D: Dynamics + Clone + 'static> Scene<Q, D> {
                 Failure::new(TOO_MANY, what, "take fewer ranks or --threads")
             })?);
         }
-        Ranked::of(first, threads, |ranks| self.part(ranks, start))
+        Ranked::of(first, Threads(threads), |ranks| self.part(ranks, start))
     }
 
     /// The part of a process that is not the first, for one simulation after the other, until the first says that there is no other.
@@ -97,36 +98,39 @@ impl<Q, D: Dynamics + Clone + 'static> Scene<Q, D> {
     where
         Q: Search<S, P>,
     {
-        while let Ok(parcel) = join().tell(None) {
-            let mut reader = parcel.read();
-            if reader.count() == 0 {
-                break;
-            }
-            let ids: HashSet<u64> = reader.counts().into_iter().collect();
-            let there = particles.all().iter().filter(|particle| ids.contains(&particle.id.into()));
+        loop {
+            let ids: HashSet<u32> = match join().tell_message::<Option<Vec<u32>>>(None) {
+                Ok(Some(ids)) => ids.into_iter().collect(),
+                Ok(None) => return Failure::new(DISMISSED, "this rank is dismissed", ""),
+                Err(lost) => return ended(lost, Clock::default()),
+            };
+            let there = particles.all().iter().filter(|particle| ids.contains(&particle.id));
             let start = Particles::new(there.copied().collect());
-            serve_one(self.part::<S, P>(join(), Arc::new(start)));
+            match serve_one(self.part::<S, P>(join(), Arc::new(start))) {
+                // The first one says why.
+                Ok(()) | Err(RankError::Ended(0)) => {}
+                Err(lost) => return ended(lost, Clock::default()),
+            }
         }
-        Failure::new(DISMISSED, "this rank is dismissed", "")
     }
 }
 
 /// Says how a part has begun, and does what the first rank says.
-fn serve_one<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics>(part: Part<S, P, Q, D>) {
-    let mut begun = Parcel::new();
+///
+/// # Errors
+/// As [`Worker::serve`].
+fn serve_one<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics>(
+    part: Part<S, P, Q, D>,
+) -> Result<(), RankError> {
     match part {
         Ok(worker) => {
-            put_failure(None, &mut begun);
-            if worker.ranks.gather(begun).is_ok() {
-                worker.serve();
-            }
+            worker.ranks.gather_messages(None::<Failure>)?;
+            worker.serve()
         }
         Err((ranks, failure)) => {
-            put_failure(Some(&failure), &mut begun);
-            // Where the first rank has ended there is no one to hear it; else it says that this is the end.
-            if ranks.gather(begun).is_ok() {
-                let _ = ranks.tell(None);
-            }
+            ranks.gather_messages(Some(failure))?;
+            // The first rank says that this is the end.
+            ranks.tell_message::<Option<Order>>(None).map(drop)
         }
     }
 }

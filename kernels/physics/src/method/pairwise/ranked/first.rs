@@ -1,17 +1,18 @@
 //! The first rank: the simulation that everyone else sees.
 
-use super::orders::Do;
-use super::wire::{Record, column_like, ended, put_columns, put_failure, take_band, take_failure};
-use super::worker::{Part, What, Worker};
+use super::wire::{Crossed, Do, ForcesReport, Order, Record, StepReport, What, column_like, put_own};
+use super::worker::{Part, Worker};
 use crate::domain::Domain;
 use crate::io::checkpoint::Column;
 use crate::method::pairwise::observing::{Standing, contact_sums, sums_of_grains};
 use crate::method::pairwise::search::Search;
 use crate::method::pairwise::{Dynamics, Elapsed, Engine, Losing, Named, Stepping, Work, wrapped};
-use crate::method::{Clock, Failure, FailureKind, PerParticle};
+use crate::method::{Clock, Failure, FailureKind, PerParticle, ended};
 use crate::observe::{Scenery, Sums};
 use crate::particles::{Particles, States, in_space};
-use crate::ranks::{Gone, Parcel, Ranks};
+use crate::ranks::{Parcel, RankError, Ranks};
+use serde::de::DeserializeOwned;
+use std::cell::OnceCell;
 use std::ops::Range;
 use std::thread::JoinHandle;
 use stripmine_kernels::backend::Precision;
@@ -21,50 +22,59 @@ use stripmine_kernels::sweep::fast::{Met, OfBand};
 /// The first rank, which speaks for all.
 pub(super) struct Ranked<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> {
     worker: Worker<S, P, Q, D>,
-    threads: Vec<JoinHandle<()>>,
+    /// Dropped after the worker: a rank that waits for the first one ends when that one's end of the channel is gone.
+    _threads: Threads,
     /// What all are to know before they do something: periods crossed, by rank, and whether discs are dealt out again.
-    crossed: Vec<(usize, usize, [f64; 2])>,
+    crossed: Vec<(usize, Crossed)>,
     is_to_migrate: bool,
     shared_cells: usize,
     /// Discs that a step or its forces have given, grains first, whichever rank has them.
     named: Vec<Record>,
+    /// The reason why the other ranks have been told to end: the first loss that a step or a look has met. Looks since then lack a rank;
+    /// every later step and check fails by it.
+    stopped: OnceCell<Failure>,
+}
+
+/// Ranks that are threads, joined when they are dropped.
+pub(super) struct Threads(pub(super) Vec<JoinHandle<()>>);
+
+impl Drop for Threads {
+    fn drop(&mut self) {
+        self.0.drain(..).for_each(|thread| _ = thread.join());
+    }
 }
 
 impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Ranked<S, P, Q, D> {
     /// The first rank, once all have begun.
     pub(super) fn of(
         ranks: Box<dyn Ranks>,
-        threads: Vec<JoinHandle<()>>,
+        threads: Threads,
         part: impl FnOnce(Box<dyn Ranks>) -> Part<S, P, Q, D>,
     ) -> Result<Self, Failure> {
-        let clock = Clock::default();
-        let mut begun = Parcel::new();
-        put_failure(None, &mut begun);
-        let end = |ranks: &dyn Ranks| {
-            let mut parcel = Parcel::new();
-            [0, 0].into_iter().for_each(|word| parcel.push(word));
-            Do::End.put(&mut parcel);
-            ranks.tell(Some(parcel)).map(drop)
-        };
         let worker = match part(ranks) {
             Ok(worker) => worker,
             Err((ranks, failure)) => {
-                // The others have begun, or failed as well; who has ended needs not be told.
-                let _ = ranks.gather(begun).and_then(|_| end(ranks.as_ref()));
-                drop(ranks);
-                threads.into_iter().for_each(|thread| _ = thread.join());
+                // The others have begun, or failed as well.
+                #[expect(clippy::let_underscore_must_use, reason = "a rank that has ended needs not be told")]
+                let _ = ranks.gather_messages(None::<Failure>);
+                #[expect(clippy::let_underscore_must_use, reason = "a rank that has ended needs not be told")]
+                let _ = ranks.tell_message(Some(None::<Order>));
                 return Err(failure);
             }
         };
-        let all = worker.ranks.gather(begun).map_err(|gone| ended(gone, clock))?;
-        let mut failures = vec![];
-        for (rank, parcel) in all.iter().enumerate() {
-            failures.extend(take_failure(&mut parcel.read()).map(|failure| (rank, failure)));
-        }
         // Dropped where one has failed: it tells the others.
-        let ranked =
-            Ranked { worker, threads, crossed: vec![], is_to_migrate: false, shared_cells: 0, named: vec![] };
-        first_of(failures).map(|()| ranked)
+        let ranked = Ranked {
+            worker,
+            _threads: threads,
+            crossed: vec![],
+            is_to_migrate: false,
+            shared_cells: 0,
+            named: vec![],
+            stopped: OnceCell::new(),
+        };
+        let begun = ranked.worker.ranks.gather_messages(None::<Failure>);
+        let begun = begun.map_err(|lost| ranked.lose(lost))?;
+        first_of(begun).map(|()| ranked)
     }
 }
 
@@ -73,66 +83,69 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Ranked<S, P, Q, D
         &self.worker.engine
     }
 
-    /// What all say to something that they are told to do; nothing else is to be known before it.
-    fn ask(&self, what: Do) -> Result<Vec<Parcel>, Gone> {
-        let mut parcel = Parcel::new();
-        parcel.push(0);
-        parcel.push(0);
-        what.put(&mut parcel);
-        self.worker.ranks.tell(Some(parcel))?;
-        let own = match what {
-            Do::Look(what) => self.worker.each_own(what),
-            Do::Contacts => self.worker.contacts()?,
-            Do::Listed => self.worker.listed(),
-            _ => self.worker.unfit(),
-        };
-        self.worker.ranks.gather(own)
+    fn tell(&self, order: &Order) -> Result<(), RankError> {
+        self.worker.ranks.tell(Some(Parcel::of(&Some(order)))).map(drop)
     }
 
-    /// The same of what changes something.
-    fn order(&mut self, what: Do, more: impl FnOnce(&mut Parcel)) -> Result<Vec<Parcel>, Failure> {
-        let mut parcel = Parcel::new();
+    /// Has all ranks carry out an order that changes something; their answers.
+    fn order<T: DeserializeOwned>(&mut self, what: Do) -> Result<Vec<T>, Failure> {
+        self.check_ranks()?;
         let crossed = std::mem::take(&mut self.crossed);
-        parcel.push(crossed.len());
-        for (rank, number, periods) in crossed {
-            parcel.push(rank);
-            parcel.push(number);
-            parcel.numbers(periods);
-        }
-        parcel.push(usize::from(std::mem::take(&mut self.is_to_migrate)));
-        what.put(&mut parcel);
-        more(&mut parcel);
-        let clock = self.clock();
-        let said = || -> Result<Vec<Parcel>, Gone> {
-            let parcel = self.worker.ranks.tell(Some(parcel))?;
-            match self.worker.follow(&mut parcel.read())? {
-                Some(own) => self.worker.ranks.gather(own),
-                None => Ok(vec![]),
-            }
+        let order = Order { crossed, is_to_migrate: std::mem::take(&mut self.is_to_migrate), what };
+        let answered = self.tell(&order).and_then(|()| self.worker.follow(order));
+        let answers = answered.and_then(|own| self.worker.ranks.gather(own));
+        answers.and_then(|all| opened(&all)).map_err(|lost| self.lose(lost))
+    }
+
+    /// Has all ranks look at something that `found` makes of their answers; the default where a rank is lost.
+    fn look<R: Default>(&self, what: What, found: impl FnOnce(&[Parcel]) -> Result<R, RankError>) -> R {
+        let look = || {
+            self.tell(&Do::Look(what).into())?;
+            found(&self.worker.ranks.gather(self.worker.look(what)?)?)
         };
-        said().map_err(|gone| ended(gone, clock))
+        if self.stopped.get().is_some() {
+            return R::default();
+        }
+        match look() {
+            Ok(found) => found,
+            Err(lost) => {
+                self.lose(lost);
+                R::default()
+            }
+        }
+    }
+
+    /// Keeps the first loss of a rank, as a failure; all others end then, whatever message they wait for.
+    fn lose(&self, lost: RankError) -> Failure {
+        self.stop(&Parcel::lost(RankError::Ended(0)), || ended(lost, self.clock()))
+    }
+
+    /// Has the other ranks end, for a reason; gives the first one that there was.
+    fn stop(&self, told: &Parcel, why: impl FnOnce() -> Failure) -> Failure {
+        let stop = || {
+            #[expect(clippy::let_underscore_must_use, reason = "a rank that has ended needs not be told")]
+            let _ = self.worker.ranks.tell(Some(told.clone()));
+            why()
+        };
+        self.stopped.get_or_init(stop).clone()
     }
 
     /// What came of a step: discs that moved far.
-    fn heard(&mut self, reports: &[Parcel]) -> Result<Vec<u32>, Failure> {
-        let (mut failures, mut far, mut shared) = (vec![], vec![], 0);
-        for (rank, report) in reports.iter().enumerate() {
-            let mut reader = report.read();
-            failures.extend(take_failure(&mut reader).map(|failure| (rank, failure)));
-            let count = reader.count();
-            far.extend((0..count).map(|_| Record::take(&mut reader)));
-            let count = reader.count();
-            for _ in 0..count {
-                let (number, periods) = (reader.count(), reader.numbers());
+    fn heard(&mut self, reports: Vec<StepReport>) -> Result<Vec<u32>, Failure> {
+        let (mut failures, mut far) = (vec![], vec![]);
+        self.shared_cells = 0;
+        for (rank, report) in reports.into_iter().enumerate() {
+            failures.push(report.failure);
+            far.extend(report.far);
+            for (number, periods) in report.crossed {
                 if rank > 0 {
                     self.worker.engine.elapsed.crossings.add(number, periods);
                 }
-                self.crossed.push((rank, number, periods));
+                self.crossed.push((rank, (number, periods)));
             }
-            self.is_to_migrate |= reader.count() > 0;
-            shared += reader.count();
+            self.is_to_migrate |= report.has_strayed;
+            self.shared_cells += report.shared_cells;
         }
-        self.shared_cells = shared;
         first_of(failures)?;
         Ok(self.name(far))
     }
@@ -149,35 +162,32 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Ranked<S, P, Q, D
         places
     }
 
-    /// For each of the scene's discs what its rank says; nothing where a rank has ended: the next step says so.
+    /// For each of the scene's discs what its rank says; no numbers where a rank is lost.
     fn each<const N: usize>(&self, what: What) -> Vec<[f64; N]> {
-        let mut all = vec![[f64::NAN; N]; self.engine().start.len()];
-        for parcel in self.ask(Do::Look(what)).unwrap_or_default() {
-            let mut reader = parcel.read();
-            for number in reader.counts() {
-                all[number as usize] = reader.numbers();
-            }
-        }
-        all
+        let none = || vec![[f64::NAN; N]; self.engine().start.len()];
+        let found = |answers: &[Parcel]| {
+            let mut all = none();
+            answers.iter().enumerate().try_for_each(|(rank, own)| put_own(own, rank, &mut all))?;
+            Ok(Some(all))
+        };
+        self.look(what, found).unwrap_or_else(none)
     }
 
     /// Position, angle and their rates of each of the scene's discs at the end of the step.
     fn standing(&self) -> Vec<[f64; 6]> {
         self.each(What::Standing)
     }
-
-    /// The numbers of bands in their order, of all ranks.
-    fn bands(reports: &[Parcel]) -> Vec<OfBand> {
-        let of = |parcel: &Parcel| -> Vec<OfBand> {
-            let mut reader = parcel.read();
-            (0..reader.count()).map(|_| take_band(&mut reader)).collect()
-        };
-        reports.iter().flat_map(of).collect()
-    }
 }
 
-/// The failure that one rank alone would have named, with the rank that it comes from.
-fn first_of(failures: Vec<(usize, Failure)>) -> Result<(), Failure> {
+/// The messages of all ranks.
+fn opened<T: DeserializeOwned>(answers: &[Parcel]) -> Result<Vec<T>, RankError> {
+    answers.iter().enumerate().map(|(rank, answer)| answer.open(rank)).collect()
+}
+
+/// The failure that one rank alone would have named, of those of all ranks, with the rank that it comes from.
+fn first_of(failures: Vec<Option<Failure>>) -> Result<(), Failure> {
+    let failures = failures.into_iter().enumerate().filter_map(|(rank, it)| Some((rank, it?)));
+    let failures: Vec<(usize, Failure)> = failures.collect();
     let first = |failure: &Failure| failure.culprits.first().map(|culprit| culprit.id);
     let count = failures.iter().map(|(_, failure)| failure.count).max().unwrap_or(0);
     match failures.into_iter().min_by_key(|(_, failure)| first(failure)) {
@@ -191,9 +201,7 @@ fn first_of(failures: Vec<(usize, Failure)>) -> Result<(), Failure> {
 
 impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Drop for Ranked<S, P, Q, D> {
     fn drop(&mut self) {
-        // Who has ended already needs not be told.
-        let _ = self.order(Do::End, |_| {});
-        self.threads.drain(..).for_each(|thread| _ = thread.join());
+        self.end();
     }
 }
 
@@ -236,6 +244,10 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> PerParticle for R
         wrapped(self.unwrapped(), &self.engine().system.domain)
     }
 
+    fn is_whole(&self) -> bool {
+        self.stopped.get().is_none()
+    }
+
     fn states(&self, states: &mut States) {
         let domain = self.engine().system.domain;
         for (number, [x, y, _, vx, vy, _]) in self.standing().into_iter().enumerate() {
@@ -261,26 +273,28 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> PerParticle for R
 
 impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Ranked<S, P, Q, D> {
     fn advance(&mut self) -> Result<Vec<u32>, Failure> {
-        let reports = self.order(Do::Advance, |_| {})?;
-        self.heard(&reports)
+        let reports = self.order(Do::Advance)?;
+        self.heard(reports)
     }
 
     fn compute_forces(&mut self, asked: Asked) -> Result<Met, Failure> {
-        let reports = self.order(Do::Forces(asked), |_| {})?;
-        let (mut failures, mut deep) = (vec![], vec![]);
-        let mut of_bands = vec![];
-        for (rank, report) in reports.iter().enumerate() {
-            let mut reader = report.read();
-            refuse(&reader.text(), self.clock())?;
-            failures.extend(take_failure(&mut reader).map(|failure| (rank, failure)));
-            let count = reader.count();
-            of_bands.extend((0..count).map(|_| take_band(&mut reader)));
-            let count = reader.count();
-            deep.extend((0..2 * count).map(|_| Record::take(&mut reader)));
+        let reports: Vec<ForcesReport> = self.order(Do::Forces(asked))?;
+        let (mut failures, mut deep, mut of_bands) = (vec![], vec![], vec![]);
+        for report in reports {
+            refuse(report.distributed, self.clock())?;
+            failures.push(report.failure);
+            of_bands.extend(report.bands);
+            deep.extend(report.deep);
         }
         first_of(failures)?;
-        let deep = self.name(deep).chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
+        let deep = self.name(deep.concat()).chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
         Ok(Met { deep, ..Met::of(of_bands) })
+    }
+
+    fn end(&mut self) {
+        let what = "the other ranks have ended the simulation";
+        let why = || Failure::new(FailureKind::MACHINE, what, "report this with the scene");
+        self.stop(&Parcel::of(&None::<Order>), why);
     }
 
     fn elapsed(&self) -> &Elapsed {
@@ -301,8 +315,8 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Rank
 
     fn lists(&self) -> Option<(usize, u64)> {
         let made = self.engine().search.lists()?.made();
-        let listed = self.ask(Do::Listed).unwrap_or_default();
-        Some((listed.iter().map(|parcel| parcel.read().count()).sum(), made))
+        let listed: Vec<usize> = self.look(What::Listed, opened);
+        Some((listed.into_iter().sum(), made))
     }
 
     fn unwrapped(&self) -> Particles {
@@ -327,6 +341,10 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Rank
         self.each(What::Forces)
     }
 
+    fn check_ranks(&self) -> Result<(), Failure> {
+        self.stopped.get().map_or(Ok(()), |failure| Err(failure.clone()))
+    }
+
     fn columns(&self) -> Vec<(String, Column)> {
         let like = self.engine().columns_of(&[]).into_iter().enumerate();
         let columns = like.map(|(place, (name, like))| {
@@ -338,13 +356,8 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Rank
 
     fn restore(&mut self, steps: u64, columns: &[(String, Column)]) -> Result<(), String> {
         self.is_to_migrate = false;
-        let reports = self.order(Do::Restore, |parcel| {
-            parcel.push(steps as usize);
-            put_columns(columns, parcel);
-        });
-        let reports = reports.map_err(|failure| failure.what())?;
-        let why = reports.iter().map(|parcel| parcel.read().text()).find(|why| !why.is_empty());
-        why.map_or(Ok(()), Err)
+        let answers = self.order::<Result<(), String>>(Do::Restore { steps, columns: columns.to_vec() });
+        answers.map_err(|failure| failure.what())?.into_iter().collect()
     }
 
     fn sums(&self, scenery: &Scenery, work: &Work<'_>) -> Sums {
@@ -353,8 +366,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Rank
             let [x, y, _, vx, vy, omega] = standing[number];
             Standing { position: [x, y], velocity: [vx, vy], omega }
         });
-        let reports = self.ask(Do::Contacts).unwrap_or_default();
-        let met = Met::of(Self::bands(&reports));
+        let met = Met::of(self.look(What::Contacts, opened::<Vec<OfBand>>).concat());
         Sums { grains, contacts: contact_sums(&met) }
     }
 }
@@ -364,32 +376,28 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Losing for Ranked
         self.each(What::Velocities)
     }
 
-    fn skip_forces(&mut self) {
-        // What a rank says that has ended, the next step says.
-        let _ = self.order(Do::SkipForces, |_| {});
+    fn skip_forces(&mut self) -> Result<(), Failure> {
+        let answers: Vec<Result<(), String>> = self.order(Do::SkipForces)?;
+        answers.into_iter().try_for_each(|distributed| refuse(distributed, self.clock()))
     }
 
     fn unfit(&self) -> Vec<usize> {
-        let all = self.ask(Do::Unfit).unwrap_or_default();
-        let mut unfit: Vec<usize> =
-            all.iter().flat_map(|parcel| parcel.read().counts()).map(|number| number as usize).collect();
+        let mut unfit = self.look(What::Unfit, opened::<Vec<usize>>).concat();
         unfit.sort_unstable();
         unfit
     }
 
     fn settle(&mut self) -> Result<(), Failure> {
-        let reports = self.order(Do::Settle, |_| {})?;
+        let reports = self.order(Do::Settle)?;
         self.is_to_migrate = true;
-        self.heard(&reports).map(drop)
+        self.heard(reports).map(drop)
     }
 }
 
-/// A failure of what a rank says that went wrong, if it says something.
-fn refuse(why: &str, at: Clock) -> Result<(), Failure> {
-    if why.is_empty() {
-        return Ok(());
-    }
-    let what = format!("discs cannot be dealt out to the ranks: {why}");
-    let remedy = "report this with the scene";
-    Err(Failure::new(FailureKind::MACHINE, what, remedy).at(at))
+/// A failure where discs could not be distributed again.
+fn refuse(distributed: Result<(), String>, at: Clock) -> Result<(), Failure> {
+    distributed.map_err(|why| {
+        let what = format!("discs cannot be dealt out to the ranks: {why}");
+        Failure::new(FailureKind::MACHINE, what, "report this with the scene").at(at)
+    })
 }

@@ -20,16 +20,15 @@ mod worker;
 
 use super::search::Search;
 use super::{Dynamics, Engine, Losing, System};
-use crate::method::{Clock, Failure};
+use crate::method::{Clock, Failure, ended};
 use crate::particles::Particles;
-use crate::ranks::{self, Crew, Parcel};
+use crate::ranks::{self, Crew};
 use dealt::Scene;
-use first::Ranked;
+use first::{Ranked, Threads};
 use std::sync::Arc;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::sweep::fast::Rows;
-use wire::ended;
 
 /// Discs that are stepped by as many ranks as [`ranks::crew`] says: by an [`Engine`] alone, or by several.
 ///
@@ -56,12 +55,12 @@ where
         Crew::Processes(join) if join().rank() > 0 => return Err(scene.serve(join, particles)),
         Crew::Processes(join) => {
             let ranks = join();
-            let mut ids = Parcel::new();
-            ids.push(1);
-            ids.counts(particles.all().iter().map(|particle| particle.id.into()));
-            let told = ranks.tell(Some(ids));
-            told.map_err(|gone| ended(gone, Clock::default()))?;
-            Box::new(Ranked::<S, P, Q, D>::of(ranks, vec![], |ranks| scene.part(ranks, Arc::new(particles)))?)
+            let ids: Vec<u32> = particles.all().iter().map(|particle| particle.id).collect();
+            let told = ranks.tell_message(Some(Some(ids)));
+            told.map_err(|lost| ended(lost, Clock::default()))?;
+            Box::new(Ranked::<S, P, Q, D>::of(ranks, Threads(vec![]), |ranks| {
+                scene.part(ranks, Arc::new(particles))
+            })?)
         }
         Crew::One | Crew::Threads(_) => Box::new(scene.on_threads(crew.count(), particles)?),
     };

@@ -1,15 +1,88 @@
-//! What ranks tell each other, as words.
+//! Messages between ranks that step discs.
 
 use crate::io::checkpoint::Column;
-use crate::method::{Clock, Culprit, Failure, FailureKind};
-use crate::ranks::{Gone, Parcel, Reader};
+use crate::method::Failure;
+use crate::ranks::{Parcel, RankError, numbers};
+use serde::{Deserialize, Serialize};
+use stripmine_kernels::law::Asked;
 use stripmine_kernels::sweep::fast::OfBand;
 
-/// Ranks that have ended.
-const RANK_ENDED: FailureKind = FailureKind::new("rank-ended");
+/// Columns by their names.
+pub(super) type Columns = Vec<(String, Column)>;
+
+/// A disc, and the periods that it has crossed.
+pub(super) type Crossed = (usize, [f64; 2]);
+
+/// An order of the first rank to all. None follows the last one: the simulation has ended.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Order {
+    /// Discs that have crossed periods, with the ranks that reported them.
+    pub(super) crossed: Vec<(usize, Crossed)>,
+    /// Discs are distributed again first.
+    pub(super) is_to_migrate: bool,
+    pub(super) what: Do,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) enum Do {
+    Advance,
+    Forces(Asked),
+    SkipForces,
+    Look(What),
+    Settle,
+    Restore { steps: u64, columns: Columns },
+}
+
+/// A look changes nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) enum What {
+    /// Position, angle, and the rates of the three, of each disc at the end of the step.
+    Standing,
+    /// One of the columns that the next step depends on, by its place among them: with all of them at once, the first rank would hold them three times.
+    Column(usize),
+    /// Force along x and y and torque on each disc.
+    Forces,
+    /// The velocity of each disc that the last predictor left.
+    Velocities,
+    /// Sums over the contacts of each band at the end of the step.
+    Contacts,
+    /// The number of listed pairs.
+    Listed,
+    /// Discs that belong to no cell, or of which a number is not finite.
+    Unfit,
+}
+
+impl From<Do> for Order {
+    /// Nothing else is to be known before it.
+    fn from(what: Do) -> Order {
+        Order { crossed: vec![], is_to_migrate: false, what }
+    }
+}
+
+/// Discs of a rank after a step: failures, and those that the first rank is to know of.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct StepReport {
+    pub(super) failure: Option<Failure>,
+    /// Discs that moved far.
+    pub(super) far: Vec<Record>,
+    pub(super) crossed: Vec<Crossed>,
+    /// A disc is farther from its home than margins are for.
+    pub(super) has_strayed: bool,
+    pub(super) shared_cells: usize,
+}
+
+/// Sums over the pairs of each band of a rank.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct ForcesReport {
+    /// Why discs could not be distributed again, if they could not.
+    pub(super) distributed: Result<(), String>,
+    pub(super) failure: Option<Failure>,
+    pub(super) bands: Vec<OfBand>,
+    pub(super) deep: Vec<[Record; 2]>,
+}
 
 /// A disc as failures and checks know it, whichever rank has it.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Record {
     pub(super) number: usize,
     pub(super) is_grain: bool,
@@ -19,84 +92,22 @@ pub(super) struct Record {
     pub(super) radius: f64,
 }
 
-impl Record {
-    pub(super) fn put(&self, parcel: &mut Parcel) {
-        let &Record { number, is_grain, id, position: [x, y], velocity: [u, v], radius } = self;
-        [number, usize::from(is_grain), id as usize].into_iter().for_each(|count| parcel.push(count));
-        parcel.numbers([x, y, u, v, radius]);
+/// Puts the numbers of each disc that a rank speaks for into its place.
+///
+/// # Errors
+/// [`RankError`] if they are not `N` of each, or of discs that the scene does not have.
+pub(super) fn put_own<const N: usize>(
+    parcel: &Parcel,
+    rank: usize,
+    all: &mut [[f64; N]],
+) -> Result<(), RankError> {
+    let (discs, bytes): (Vec<u32>, &[u8]) = parcel.open(rank)?;
+    let mut numbers = numbers(bytes, rank, N * discs.len())?;
+    for disc in discs {
+        let place = all.get_mut(disc as usize).ok_or(RankError::Unreadable(rank))?;
+        place.iter_mut().zip(numbers.by_ref()).for_each(|(to, number)| *to = number);
     }
-
-    pub(super) fn take(reader: &mut Reader<'_>) -> Record {
-        let [number, is_grain, id] = [(); 3].map(|()| reader.count());
-        let [x, y, u, v, radius] = reader.numbers();
-        let (position, velocity) = ([x, y], [u, v]);
-        Record { number, is_grain: is_grain > 0, id: id as u32, position, velocity, radius }
-    }
-}
-
-pub(super) fn put_band(band: &OfBand, parcel: &mut Parcel) {
-    let &OfBand { pairs, dissipated, energy, contacts, deepest } = band;
-    parcel.0.extend([pairs, contacts]);
-    parcel.numbers([dissipated, energy[0], energy[1], deepest]);
-}
-
-pub(super) fn take_band(reader: &mut Reader<'_>) -> OfBand {
-    let [pairs, contacts] = [(); 2].map(|()| reader.count() as u64);
-    let [dissipated, potential, virial, deepest] = reader.numbers();
-    OfBand { pairs, dissipated, energy: [potential, virial], contacts, deepest }
-}
-
-/// What the engine may fail by, and what its failures hold.
-const KINDS: [FailureKind; 4] =
-    [FailureKind::NOT_FINITE, FailureKind::OUT_OF_BOX, FailureKind::CONFLICT, FailureKind::NO_SECTORS];
-const VALUES: [&str; 1] = ["distance"];
-
-/// A failure, or none.
-pub(super) fn put_failure(failure: Option<&Failure>, parcel: &mut Parcel) {
-    parcel.push(usize::from(failure.is_some()));
-    let Some(failure) = failure else { return };
-    parcel.text(failure.kind.name());
-    parcel.push(failure.at.map_or(0, |at| at.steps as usize));
-    parcel.numbers([failure.at.map_or(0.0, |at| at.time)]);
-    parcel.push(failure.count as usize);
-    parcel.push(failure.culprits.len());
-    for culprit in &failure.culprits {
-        parcel.push(culprit.id as usize);
-        parcel.numbers(culprit.position.into_iter().chain(culprit.velocity));
-    }
-    parcel.numbers(VALUES.map(|name| failure.value(name).unwrap_or(f64::NAN)));
-    parcel.text(&failure.message);
-    parcel.text(&failure.remedy);
-}
-
-pub(super) fn take_failure(reader: &mut Reader<'_>) -> Option<Failure> {
-    (reader.count() > 0).then(|| {
-        let name = reader.text();
-        let kind = KINDS.into_iter().find(|kind| kind.name() == name).unwrap_or(FailureKind::MACHINE);
-        let (steps, time) = (reader.count() as u64, reader.number());
-        let count = reader.count() as u64;
-        let culprits = (0..reader.count()).map(|_| {
-            let id = reader.count() as u32;
-            let [x, y, z, u, v, w] = reader.numbers();
-            Culprit { called: "disc", id, position: [x, y, z], velocity: [u, v, w] }
-        });
-        let culprits: Vec<Culprit> = culprits.collect();
-        let values: Vec<(&'static str, f64)> = VALUES
-            .map(|name| (name, reader.number()))
-            .into_iter()
-            .filter(|(_, value)| !value.is_nan())
-            .collect();
-        let (message, remedy) = (reader.text(), reader.text());
-        let failure = Failure::new(kind, message, remedy).at(Clock { steps, time, events: 0 });
-        failure.of(count, culprits).with(values)
-    })
-}
-
-/// What a rank that has ended means for the others.
-pub(super) fn ended(gone: Gone, at: Clock) -> Failure {
-    let remedy =
-        "see what it said last; the last checkpoint is whole: go on with --resume, on any number of ranks";
-    Failure::new(RANK_ENDED, gone.to_string(), remedy).at(at)
+    Ok(())
 }
 
 /// The entries of a column as numbers. Counts are below 2⁵³.
@@ -119,35 +130,173 @@ pub(super) fn column_like(like: &Column, values: Vec<f64>) -> Column {
     }
 }
 
-/// Columns with their names and types.
-pub(super) fn put_columns(columns: &[(String, Column)], parcel: &mut Parcel) {
-    parcel.push(columns.len());
-    for (name, column) in columns {
-        parcel.text(name);
-        let kind = match column {
-            Column::F64(_) => 0,
-            Column::F32(_) => 1,
-            Column::U32(_) => 2,
-            Column::U64(_) => 3,
-        };
-        parcel.push(kind);
-        parcel.push(column.len());
-        parcel.numbers(entries(column));
-    }
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::method::pairwise::{conflict, not_finite};
+    use crate::method::{Clock, Culprit, FailureKind};
+    use proptest::prelude::*;
+    use serde::de::DeserializeOwned;
+    use std::fmt::Debug;
+    use stripmine_kernels::isa::ProgramError;
 
-pub(super) fn take_columns(reader: &mut Reader<'_>) -> Vec<(String, Column)> {
-    let count = reader.count();
-    let one = |_| {
-        let (name, kind, length) = (reader.text(), reader.count(), reader.count());
-        let values = (0..length).map(|_| reader.number()).collect();
-        let like = match kind {
-            0 => Column::F64(vec![]),
-            1 => Column::F32(vec![]),
-            2 => Column::U32(vec![]),
-            _ => Column::U64(vec![]),
+    fn number() -> impl Strategy<Value = f64> {
+        any::<u64>().prop_map(f64::from_bits)
+    }
+
+    fn pair() -> impl Strategy<Value = [f64; 2]> {
+        prop::array::uniform2(number())
+    }
+
+    fn place() -> impl Strategy<Value = [f64; 3]> {
+        prop::array::uniform3(number())
+    }
+
+    fn record() -> impl Strategy<Value = Record> {
+        (any::<usize>(), any::<bool>(), any::<u32>(), pair(), pair(), number()).prop_map(
+            |(number, is_grain, id, position, velocity, radius)| Record {
+                number,
+                is_grain,
+                id,
+                position,
+                velocity,
+                radius,
+            },
+        )
+    }
+
+    fn failure() -> impl Strategy<Value = Option<Failure>> {
+        let clock = (any::<u64>(), number(), any::<u64>());
+        let clock = prop::option::of(clock.prop_map(|(steps, time, events)| Clock { steps, time, events }));
+        let name = || prop::sample::select(vec!["disc", "body", "not-finite"]);
+        let culprit = (name(), any::<u32>(), [place(), place()])
+            .prop_map(|(called, id, [position, velocity])| Culprit { called, id, position, velocity });
+        let (culprits, values) =
+            (prop::collection::vec(culprit, 0..3), prop::collection::vec((name(), number()), 0..3));
+        let sent = (name(), clock, culprits, any::<u64>(), values, any::<[String; 2]>());
+        prop::option::of(sent.prop_map(|(kind, at, culprits, count, values, [message, remedy])| Failure {
+            kind: FailureKind::new(kind),
+            at,
+            culprits,
+            count,
+            values,
+            message,
+            remedy,
+        }))
+    }
+
+    fn crossed() -> impl Strategy<Value = Crossed> {
+        (any::<usize>(), pair())
+    }
+
+    fn column() -> impl Strategy<Value = Column> {
+        use prop::collection::vec;
+        prop_oneof![
+            vec(number(), 0..5).prop_map(Column::F64),
+            vec(any::<u32>().prop_map(f32::from_bits), 0..5).prop_map(Column::F32),
+            any::<Vec<u32>>().prop_map(Column::U32),
+            any::<Vec<u64>>().prop_map(Column::U64),
+        ]
+    }
+
+    fn what() -> impl Strategy<Value = Do> {
+        let asked = (prop::option::of(number()), any::<bool>(), any::<bool>());
+        let asked = asked.prop_map(|(watched, dissipation, energy)| Asked { watched, dissipation, energy });
+        let look = prop_oneof![
+            Just(What::Standing),
+            any::<usize>().prop_map(What::Column),
+            Just(What::Forces),
+            Just(What::Velocities),
+            Just(What::Contacts),
+            Just(What::Listed),
+            Just(What::Unfit),
+        ];
+        let columns = prop::collection::vec((any::<String>(), column()), 0..3);
+        prop_oneof![
+            Just(Do::Advance),
+            asked.prop_map(Do::Forces),
+            Just(Do::SkipForces),
+            look.prop_map(Do::Look),
+            Just(Do::Settle),
+            (any::<u64>(), columns).prop_map(|(steps, columns)| Do::Restore { steps, columns }),
+        ]
+    }
+
+    fn band() -> impl Strategy<Value = OfBand> {
+        (any::<u64>(), number(), pair(), any::<u64>(), number()).prop_map(
+            |(pairs, dissipated, energy, contacts, deepest)| OfBand {
+                pairs,
+                dissipated,
+                energy,
+                contacts,
+                deepest,
+            },
+        )
+    }
+
+    /// Sends a message: it comes with all bits, and cut off it names the rank that it comes from.
+    fn returns<T: Serialize + DeserializeOwned + Debug>(message: &T) {
+        let parcel = Parcel::of(message);
+        let opened: T = parcel.open(4).unwrap();
+        assert_eq!((Parcel::of(&opened), format!("{opened:?}")), (parcel.clone(), format!("{message:?}")));
+        let cut = Parcel(parcel.0[..parcel.0.len() - 1].to_vec());
+        assert_eq!(cut.open::<T>(4).err(), Some(RankError::Unreadable(4)));
+    }
+
+    proptest! {
+        #[test]
+        fn messages_are_read_as_they_were_sent(
+            crossed in prop::collection::vec((any::<usize>(), crossed()), 0..3),
+            is_to_migrate: bool,
+            what in what(),
+            failure in failure(),
+            records in prop::collection::vec([record(), record()], 0..3),
+            counts: [usize; 2],
+            distributed: Result<(), String>,
+            bands in prop::collection::vec(band(), 0..3),
+        ) {
+            let order = Order { crossed, is_to_migrate, what };
+            let crossed = order.crossed.iter().map(|it| it.1).collect();
+            returns(&Some(order));
+            returns(&StepReport {
+                failure: failure.clone(),
+                far: records.concat(),
+                crossed,
+                has_strayed: is_to_migrate,
+                shared_cells: counts[0],
+            });
+            returns(&ForcesReport { distributed, failure: failure.clone(), bands: bands.clone(), deep: records });
+            returns(&failure);
+            returns(&bands);
+            returns(&counts.to_vec());
+        }
+    }
+
+    /// A failure is the same on the first rank, and of the same kind.
+    #[test]
+    fn failures_are_found_again() {
+        let clock = Clock { steps: 7, time: 0.7, events: 0 };
+        let disc = |id| Culprit::in_plane("disc", id, [1.0, 2.0], [3.0, 4.0]);
+        let domain = crate::domain::Domain::planar([0.0; 2], [9.0; 2], [true; 2]);
+        for failure in [
+            not_finite(clock, 3, disc(5)),
+            conflict(clock, domain, [disc(1), disc(2)]),
+            ProgramError::NoSuchInstructionSet("avx512").into(),
+        ] {
+            assert_eq!(Parcel::of(&failure).open(0), Ok(failure));
+        }
+    }
+
+    /// Numbers of discs that the scene does not have, or not as many as expected, are refused with the name of the rank.
+    #[test]
+    fn numbers_of_discs_are_put_where_they_belong() {
+        let sent = Parcel::of(&(vec![2_u32, 0], Parcel::of_numbers([1.0, 2.0, 3.0, 4.0])));
+        let put = |discs: usize| {
+            let mut all = vec![[0.0; 2]; discs];
+            put_own(&sent, 6, &mut all).map(|()| all)
         };
-        (name, column_like(&like, values))
-    };
-    (0..count).map(one).collect()
+        assert_eq!(put(3), Ok(vec![[3.0, 4.0], [0.0; 2], [1.0, 2.0]]));
+        assert_eq!(put(2), Err(RankError::Unreadable(6)));
+        assert_eq!(put_own(&sent, 6, &mut [[0.0; 3]; 3]), Err(RankError::Unreadable(6)));
+    }
 }

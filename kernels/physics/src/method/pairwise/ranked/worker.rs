@@ -9,24 +9,21 @@
 //! from their own rank at every step, and then change cells as these do there.
 
 use super::layout::Layout;
-use super::wire::{Record, entries, put_band, put_failure};
-use crate::io::checkpoint::Column;
+use super::wire::{Crossed, ForcesReport, Record, StepReport, entries};
 use crate::method::Failure;
 use crate::method::pairwise::cells::Moved;
 use crate::method::pairwise::observing::Corrected;
 use crate::method::pairwise::search::{Cells, Search};
 use crate::method::pairwise::{Dynamics, Engine, Named, Phase, Stepping};
-use crate::ranks::{Gone, Parcel, Ranks, Reader};
-use std::collections::HashMap;
+use crate::ranks::{Parcel, RankError, Ranks, numbers};
+use serde::{Deserialize, Serialize};
+use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 use std::time::Instant;
 use stripmine_kernels::backend::Precision;
-use stripmine_kernels::isa::ProgramError;
+use stripmine_kernels::isa::{Element, ProgramError};
 use stripmine_kernels::law::Asked;
-use stripmine_kernels::sweep::fast::{Passed, Rows, Share};
-
-/// Columns by their names.
-pub(super) type Columns = Vec<(String, Column)>;
+use stripmine_kernels::sweep::fast::{OfBand, Passed, Rows, Share};
 
 /// The part of a rank, or why it has none and who is to say so.
 pub(super) type Part<S, P, Q, D> = Result<Worker<S, P, Q, D>, (Box<dyn Ranks>, Failure)>;
@@ -103,7 +100,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Worker<S, P, Q, D
     }
 
     /// One step on; what the first rank is to know of it.
-    pub(super) fn advance(&mut self) -> Result<Parcel, Gone> {
+    pub(super) fn advance(&mut self) -> Result<StepReport, RankError> {
         self.engine.put_in_order_if_due();
         self.look_up_again();
         let passed = self.pass()?;
@@ -130,63 +127,56 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Worker<S, P, Q, D
     }
 
     /// Brings all cells up to date; what the first rank is to know of it.
-    pub(super) fn settle(&mut self) -> Parcel {
+    pub(super) fn settle(&mut self) -> StepReport {
         let moved = self.engine.settle_all();
         self.look_up_again();
         self.report(moved, &[])
     }
 
     /// Cells or lists after a step: lists are made again by all ranks or by none.
-    fn keep(&mut self, left: &[u32]) -> Result<Result<Vec<Moved>, Failure>, Gone> {
+    fn keep(&mut self, left: &[u32]) -> Result<Result<Vec<Moved>, Failure>, RankError> {
         if self.engine.search.lists().is_none() {
             return Ok(self.engine.keep_in_cells(left));
         }
-        // The largest that a rank says holds for all.
-        const FRESH: usize = 0;
-        const STALE: usize = 1;
-        const FAILED: usize = 2;
         let stale = self.engine.is_stale(left);
-        let mut own = Parcel::new();
-        own.push(stale.as_ref().map_or(FAILED, |&stale| if stale { STALE } else { FRESH }));
-        let all = self.ranks.gather(own)?;
-        let said = all.into_iter().max_by_key(|parcel| parcel.read().count());
-        let said = self.ranks.tell(said)?.read().count();
+        let own = match stale {
+            Ok(false) => Lists::Fresh,
+            Ok(true) => Lists::Stale,
+            Err(_) => Lists::Failed,
+        };
+        let all = self.ranks.gather_messages(own)?;
+        let said = self.ranks.tell_message(all.into_iter().max())?;
         Ok(match stale {
             Err(failure) => Err(failure),
-            Ok(_) if said == STALE => self.engine.list_again(),
+            Ok(_) if said == Lists::Stale => self.engine.list_again(),
             Ok(_) => Ok(vec![]),
         })
     }
 
     /// What became of discs that change cells, and discs that moved far.
-    pub(super) fn report(&mut self, moved: Result<Vec<Moved>, Failure>, far: &[u32]) -> Parcel {
-        let mut parcel = Parcel::new();
-        put_failure(moved.as_ref().err(), &mut parcel);
-        let moved = moved.unwrap_or_default();
-        parcel.push(far.len());
-        far.iter().for_each(|&disc| self.record(disc as usize).put(&mut parcel));
+    fn report(&mut self, moved: Result<Vec<Moved>, Failure>, far: &[u32]) -> StepReport {
+        let (moved, failure) = moved.map_or_else(|failure| (vec![], Some(failure)), |moved| (moved, None));
         // Walls cross nothing that is counted.
         let grains = self.engine.start.grain_count();
         let crosses = |it: &&Moved| it.periods != [0.0; 2] && (it.number as usize) < grains;
-        let crossed: Vec<&Moved> = moved.iter().filter(crosses).collect();
-        parcel.push(crossed.len());
-        for &&Moved { number, periods, .. } in &crossed {
-            parcel.push(number as usize);
-            parcel.numbers(periods);
-        }
+        let crossed = moved.iter().filter(crosses).map(|it| (it.number as usize, it.periods)).collect();
         let mut has_strayed = false;
         for &Moved { number, rows: [from, to], .. } in &moved {
             let home = *self.homes.entry(number).or_insert(from);
             has_strayed |= self.layout.has_strayed(home, to);
         }
-        parcel.push(usize::from(has_strayed));
-        parcel.push(self.engine.search.cells().shared_cells(&|disc| self.is_own(disc)));
-        parcel
+        StepReport {
+            failure,
+            far: far.iter().map(|&disc| self.record(disc)).collect(),
+            crossed,
+            has_strayed,
+            shared_cells: self.engine.search.cells().shared_cells(&|disc| self.is_own(disc)),
+        }
     }
 
     /// A disc as others know it.
-    pub(super) fn record(&self, disc: usize) -> Record {
-        let engine = &self.engine;
+    fn record(&self, disc: u32) -> Record {
+        let (engine, disc) = (&self.engine, disc as usize);
         Record {
             number: engine.number(disc),
             is_grain: disc < engine.state.grains(),
@@ -214,7 +204,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Worker<S, P, Q, D
     }
 
     /// Moves the discs one step on, those first of which the neighbours are told: while these messages are under way all others move.
-    fn pass(&mut self) -> Result<Result<Passed, ProgramError>, Gone> {
+    fn pass(&mut self) -> Result<Result<Passed, ProgramError>, RankError> {
         debug_assert_eq!(self.ordered, self.engine.orders, "places of discs in memory are those of before");
         let Worker { ranks, engine, .. } = self;
         let moving = engine.state.moving();
@@ -226,29 +216,20 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Worker<S, P, Q, D
             [Err(error), _] | [_, Err(error)] => return Ok(Err(error)),
         };
         let begun = Instant::now();
-        let parcels = self.to_in_memory.each_ref().map(|discs| {
-            let mut parcel = Parcel::new();
-            for column in engine.state.swept() {
-                parcel.numbers(discs.iter().map(|&disc| column[disc as usize].to_f64()));
-            }
-            parcel
-        });
-        parcels.iter().for_each(|parcel| engine.elapsed.timings.sent(8 * parcel.0.len() as u64));
+        let parcels = self.to_in_memory.each_ref().map(|discs| of_discs(engine.state.swept(), discs));
+        parcels.iter().for_each(|parcel| engine.elapsed.timings.sent(parcel.0.len() as u64));
         let (mut between, mut hidden) = (Ok(Passed::default()), 0.0);
         let heard = ranks.halo(parcels, &mut || {
             let begun = Instant::now();
             between = engine.pass(inner.clone());
             hidden = begun.elapsed().as_secs_f64();
         })?;
-        for (parcel, discs) in heard.iter().zip(&self.from_in_memory) {
-            let mut reader = parcel.read();
-            for column in self.engine.state.swept_mut() {
-                discs.iter().for_each(|&disc| column[disc as usize] = S::from_f64(reader.number()));
-            }
+        for ((from, parcel), discs) in ranks.neighbours().into_iter().zip(&heard).zip(&self.from_in_memory) {
+            put_discs((from, parcel), engine.state.swept_mut().collect(), discs)?;
             for &disc in discs {
                 let disc = disc as usize;
-                let place = self.engine.state.place(disc);
-                self.engine.search.cells_mut().settle(disc, place);
+                let place = engine.state.place(disc);
+                engine.search.cells_mut().settle(disc, place);
             }
         }
         self.engine.elapsed.timings.add(Phase::Halo, begun.elapsed().as_secs_f64() - hidden);
@@ -256,109 +237,111 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Worker<S, P, Q, D
     }
 
     /// All forces; what the first rank is to know of them.
-    pub(super) fn compute_forces(&mut self, asked: Asked) -> Result<Parcel, Gone> {
+    pub(super) fn compute_forces(&mut self, asked: Asked) -> ForcesReport {
         let met = self.engine.compute_forces(asked);
-        let mut parcel = Parcel::new();
-        put_failure(met.as_ref().err(), &mut parcel);
-        let met = met.unwrap_or_default();
-        parcel.push(met.of_bands.len());
-        met.of_bands.iter().for_each(|band| put_band(band, &mut parcel));
-        parcel.push(met.deep.len());
-        for disc in met.deep.iter().flatten() {
-            self.record(*disc as usize).put(&mut parcel);
-        }
-        Ok(parcel)
+        let (met, failure) = met.map_or_else(|failure| (Default::default(), Some(failure)), |met| (met, None));
+        let deep = met.deep.iter().map(|pair| pair.map(|disc| self.record(disc))).collect();
+        ForcesReport { distributed: Ok(()), failure, bands: met.of_bands, deep }
     }
 
-    /// The discs that it speaks for, each with what is asked of it.
-    pub(super) fn each_own(&self, what: What) -> Parcel {
+    /// The discs that it speaks for, each with some numbers.
+    pub(super) fn each_own<const N: usize>(&self, of: impl Fn(usize) -> [f64; N]) -> Parcel {
         let discs = self.own();
-        let mut parcel = Parcel::new();
+        let numbers = Parcel::of_numbers(discs.iter().flat_map(|&disc| of(disc as usize)));
+        Parcel::of(&(self.numbers(&discs), numbers))
+    }
+
+    /// Position, angle, and the rates of the three, of each at the end of the step.
+    pub(super) fn standing(&self) -> Parcel {
         let engine = &self.engine;
-        parcel.counts(discs.iter().map(|&disc| engine.number(disc as usize) as u64));
-        match what {
-            What::Standing => {
-                let columns = [0, 1, 2].map(|freedom| {
-                    let turns = freedom < engine.system.freedoms;
-                    if turns { engine.corrected_column(freedom) } else { [vec![], vec![]] }
-                });
-                for &disc in &discs {
-                    let disc = disc as usize;
-                    let [values, rates] = [0, 1]
-                        .map(|k| [0, 1, 2].map(|it: usize| columns[it][k].get(disc).copied().unwrap_or(0.0)));
-                    let position = engine.seen_from_origin(disc, [values[0], values[1]]);
-                    parcel.numbers(position.into_iter().chain([values[2]]).chain(rates));
-                }
-            }
-            What::Column(place) => {
-                parcel.numbers(entries(&engine.column_of(engine.sources()[place], &discs)));
-            }
-            What::Forces => {
-                discs.iter().for_each(|&disc| parcel.numbers(engine.force_on(disc as usize)));
-            }
-            What::Velocities => {
-                discs.iter().for_each(|&disc| parcel.numbers(engine.velocity(disc as usize)));
-            }
-        }
-        parcel
+        let columns = [0, 1, 2].map(|freedom| {
+            let turns = freedom < engine.system.freedoms;
+            if turns { engine.corrected_column(freedom) } else { [vec![], vec![]] }
+        });
+        self.each_own(|disc| {
+            let [[x, y, angle], [u, v, omega]] =
+                [0, 1].map(|k| [0, 1, 2].map(|it: usize| columns[it][k].get(disc).copied().unwrap_or(0.0)));
+            let [x, y] = engine.seen_from_origin(disc, [x, y]);
+            [x, y, angle, u, v, omega]
+        })
+    }
+
+    /// The entry of each in one of the columns that the next step depends on.
+    pub(super) fn column(&self, place: usize) -> Parcel {
+        let (discs, source) = (self.own(), self.engine.sources()[place]);
+        let entries = entries(&self.engine.column_of(source, &discs));
+        Parcel::of(&(self.numbers(&discs), Parcel::of_numbers(entries)))
+    }
+
+    /// Which of the scene's discs these are.
+    pub(super) fn numbers(&self, discs: &[u32]) -> Vec<u32> {
+        discs.iter().map(|&disc| self.engine.number(disc as usize) as u32).collect()
     }
 
     /// Those of its discs that belong to no cell, or of which a number is not finite.
-    pub(super) fn unfit(&self) -> Parcel {
-        let own: std::collections::HashSet<usize> =
-            self.own().into_iter().map(|disc| self.engine.number(disc as usize)).collect();
-        let unfit = self.engine.unfit_discs().into_iter().filter(|number| own.contains(number));
-        let unfit: Vec<u64> = unfit.map(|number| number as u64).collect();
-        let mut parcel = Parcel::new();
-        parcel.counts(unfit.into_iter());
-        parcel
+    pub(super) fn unfit(&self) -> Vec<usize> {
+        let own: HashSet<u32> = self.numbers(&self.own()).into_iter().collect();
+        self.engine.unfit_discs().into_iter().filter(|&number| own.contains(&(number as u32))).collect()
     }
 
     /// What its bands meet at the end of the step.
-    pub(super) fn contacts(&self) -> Result<Parcel, Gone> {
+    pub(super) fn contacts(&self) -> Result<Vec<OfBand>, RankError> {
         debug_assert_eq!(self.ordered, self.engine.orders, "places of discs in memory are those of before");
         let mut corrected = self.engine.corrected_discs();
-        let parcels = self.to_in_memory.each_ref().map(|discs| {
-            let mut parcel = Parcel::new();
-            discs
-                .iter()
-                .for_each(|&disc| parcel.numbers(of_corrected(&mut corrected, disc).map(|value| *value)));
-            parcel
-        });
+        let parcels = self
+            .to_in_memory
+            .each_ref()
+            .map(|discs| of_discs(of_corrected(&mut corrected).into_iter().map(|column| &*column), discs));
         let heard = self.ranks.halo(parcels, &mut || {})?;
-        for (parcel, discs) in heard.iter().zip(&self.from_in_memory) {
-            let mut reader = parcel.read();
-            for &disc in discs {
-                of_corrected(&mut corrected, disc).for_each(|value| *value = reader.number());
-            }
+        let neighbours = self.ranks.neighbours();
+        for ((from, parcel), discs) in neighbours.into_iter().zip(&heard).zip(&self.from_in_memory) {
+            put_discs((from, parcel), of_corrected(&mut corrected), discs)?;
         }
-        let met = self.engine.contacts_met(&corrected);
-        let mut parcel = Parcel::new();
-        parcel.push(met.of_bands.len());
-        met.of_bands.iter().for_each(|band| put_band(band, &mut parcel));
-        Ok(parcel)
+        Ok(self.engine.contacts_met(&corrected).of_bands)
     }
 
     /// Pairs that its rows have listed.
-    pub(super) fn listed(&self) -> Parcel {
+    pub(super) fn listed(&self) -> usize {
         let rows = self.layout.share(self.ranks.rank()).rows;
-        let mut parcel = Parcel::new();
-        parcel.push(self.engine.search.lists().map_or(0, |lists| lists.entries_of(rows)));
-        parcel
+        self.engine.search.lists().map_or(0, |lists| lists.entries_of(rows))
     }
 
     /// Periods that discs of other ranks have crossed. The first rank knows of them from their reports.
-    pub(super) fn hear_of_crossings(&mut self, reader: &mut Reader<'_>) {
+    pub(super) fn hear_of_crossings(&mut self, crossed: &[(usize, Crossed)]) {
         let own = self.ranks.rank();
-        let count = reader.count();
-        for _ in 0..count {
-            let (rank, number) = (reader.count(), reader.count());
-            let periods = reader.numbers();
+        for &(rank, (number, periods)) in crossed {
             if own > 0 && rank != own {
                 self.engine.elapsed.crossings.add(number, periods);
             }
         }
     }
+}
+
+/// Lists after a step. The largest that a rank says holds for all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+enum Lists {
+    Fresh,
+    Stale,
+    Failed,
+}
+
+/// Entries of some discs in some columns.
+fn of_discs<'c, T: Element>(columns: impl Iterator<Item = &'c [T]>, discs: &[u32]) -> Parcel {
+    Parcel::of_numbers(columns.flat_map(|column| discs.iter().map(|&disc| column[disc as usize].to_f64())))
+}
+
+/// Puts the entries that a rank has sent into columns.
+fn put_discs<T: Element>(
+    (from, parcel): (usize, &Parcel),
+    columns: Vec<&mut [T]>,
+    discs: &[u32],
+) -> Result<(), RankError> {
+    let mut numbers = numbers(&parcel.0, from, columns.len() * discs.len())?;
+    for column in columns {
+        let entries = discs.iter().zip(numbers.by_ref());
+        entries.for_each(|(&disc, number)| column[disc as usize] = T::from_f64(number));
+    }
+    Ok(())
 }
 
 /// The most that lie in memory beside each other, of some discs that move, and are none of those told of. Discs lie there by their rows, so these are all
@@ -371,24 +354,11 @@ fn inner_of(told: &[Vec<u32>; 2], moving: usize) -> Range<usize> {
     before.zip(behind).map(|(start, end)| start..end.max(start)).max_by_key(Range::len).unwrap_or(0..0)
 }
 
-/// What a sweep reads of a corrected disc.
-fn of_corrected(corrected: &mut Corrected, disc: u32) -> impl Iterator<Item = &mut f64> {
-    let disc = disc as usize;
+/// Columns of corrected discs that a sweep reads.
+fn of_corrected(corrected: &mut Corrected) -> Vec<&mut [f64]> {
     let Corrected { place, velocity, omega, .. } = corrected;
-    place.iter_mut().chain(velocity).map(move |along| &mut along[disc]).chain(omega.get_mut(disc))
-}
-
-/// What may be asked of each disc.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum What {
-    /// Position, angle, and the rates of the three, at the end of the step.
-    Standing,
-    /// One of the columns that the next step depends on, by its place among them: with all of them at once, the first rank would hold them three times.
-    Column(usize),
-    /// Force along x and y and torque.
-    Forces,
-    /// The velocity that the last predictor left.
-    Velocities,
+    let columns = place.iter_mut().chain(velocity).chain([omega]).filter(|column| !column.is_empty());
+    columns.map(Vec::as_mut_slice).collect()
 }
 
 /// All rows, for a search that holds no discs yet.
