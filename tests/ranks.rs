@@ -35,13 +35,19 @@ const HOT: &[&str] = &[
 
 const SCENES: &[Scene] = &[
     Scene { preset: "bench", overrides: HOT, steps: 5000 },
-    // All of one size, or not; heaps at one end.
+    // Of several sizes.
     Scene {
         preset: "bench",
         overrides: &[
+            "particles.generate=random",
+            "particles.count=900",
+            "particles.temperature=1.0",
             "particles.radius_spread=0.05",
             "particles.radius_cut=0.1",
-            "domain.gravity=[0.0, -5.0]",
+            "domain.sides=[10.0, 180.0]",
+            "law.stiffness=20000",
+            "integrator.dt=0.001",
+            "run.steps=6000",
         ],
         steps: 800,
     },
@@ -80,9 +86,7 @@ const RANKS: [usize; 3] = [2, 3, 7];
 
 impl Scene {
     fn prepared(&self, more: &[String]) -> Result<Prepared, String> {
-        let hot: &[&str] = if self.preset == "bench" { HOT } else { &[] };
-        let overrides =
-            hot.iter().chain(self.overrides).map(|&text| text.to_owned()).chain(more.iter().cloned());
+        let overrides = self.overrides.iter().map(|&text| text.to_owned()).chain(more.iter().cloned());
         let loaded = load(self.preset, &overrides.collect::<Vec<_>>(), METHODS);
         loaded.map(|(prepared, _)| prepared).map_err(|errors| errors.to_string())
     }
@@ -160,7 +164,12 @@ fn bits_are_those_of_one_rank() {
     for (number, scene) in SCENES.iter().enumerate() {
         for (search, precision) in SEARCHES.into_iter().zip(["f64", "mixed", "f32"]) {
             let more = [format!("search.by={search}"), format!("machine.precision={precision}")];
-            let Ok(prepared) = scene.prepared(&more) else { continue };
+            let prepared = match scene.prepared(&more) {
+                Ok(prepared) => prepared,
+                // Sectors find no discs of several sizes, and only granular scenes have lattices and mixed precision.
+                Err(why) if why.contains("search.by") || why.contains("machine.precision") => continue,
+                Err(why) => panic!("{} {number} {search} {precision}: {why}", scene.preset),
+            };
             let alone = seen(&prepared, 1, scene.steps).unwrap();
             for ranks in RANKS {
                 let what = format!("{} {number} {search} {precision} on {ranks} ranks", scene.preset);
@@ -410,7 +419,9 @@ fn a_lost_rank_ends_the_run_and_is_named() {
         let carried_out = |faults: &[Fault], name: &str, existing| {
             run_as_processes((&prepared, entry), faults, (&folder.path().join(name), existing))
         };
-        carried_out(&[Fault::None; 3], "whole", Existing::Refuse).unwrap();
+        if let Err(error) = carried_out(&[Fault::None; 3], "whole", Existing::Refuse) {
+            panic!("{scene:?}: {error}");
+        }
         let expected = lines(&folder.path().join("whole"));
         for (after, lost) in [(3, 1), (17, 2), (30, 2), (31, 1), (32, 2), (33, 1), (34, 2), (35, 1)] {
             for (fault, named, words) in [

@@ -126,7 +126,7 @@ fn the_cells_of_the_source_can_be_asked_for() {
 }
 
 /// Keys that no preset and no scene of the gallery gives, each with why it is there.
-const NOT_SHOWN: [(&str, &str); 34] = [
+const NOT_SHOWN: [(&str, &str); 35] = [
     ("integrator.damping", "the friction of the source's integrator, which the item of energies varies"),
     ("integrator.on_long_step", "a run goes on through rare discs that are too fast; thermo.csv counts them"),
     ("law.contact_arm", "contacts as LAMMPS has them, for comparison"),
@@ -134,6 +134,7 @@ const NOT_SHOWN: [(&str, &str); 34] = [
     ("law.inertia", "spheres that move in a plane; studies of stability vary it"),
     ("law.max_penetration", "soft contacts; studies of stability vary it"),
     ("law.noise_seed", "independent replicas of one start"),
+    ("law.screening", "charges in a solvent, which repel over a screening length"),
     ("law.stop_penetration", "soft contacts, beside max_penetration"),
     ("law.wall_restitution", "walls of another material"),
     ("machine.arithmetic", "fast inverse roots, which the item of rates compares"),

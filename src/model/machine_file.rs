@@ -218,7 +218,7 @@ mod tests {
             ("title = \"A machine\"", "title = ", "not TOML: "),
         ] {
             let complaint = complaint(old, new);
-            assert!(complaint.contains(expected) && complaint.starts_with("bad.toml:"), "{complaint}");
+            assert!(complaint.contains(expected) && complaint.contains("bad.toml:"), "{complaint}");
         }
     }
 

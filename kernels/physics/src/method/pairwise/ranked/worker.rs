@@ -239,7 +239,8 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Worker<S, P, Q, D
     /// All forces; what the first rank is to know of them.
     pub(super) fn compute_forces(&mut self, asked: Asked) -> ForcesReport {
         let met = self.engine.compute_forces(asked);
-        let (met, failure) = met.map_or_else(|failure| (Default::default(), Some(failure)), |met| (met, None));
+        let (met, failure) =
+            met.map_or_else(|failure| (Default::default(), Some(failure)), |met| (met, None));
         let deep = met.deep.iter().map(|pair| pair.map(|disc| self.record(disc))).collect();
         ForcesReport { distributed: Ok(()), failure, bands: met.of_bands, deep }
     }
