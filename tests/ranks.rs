@@ -388,7 +388,7 @@ fn run_as_processes(
 const WRITTEN: [(&str, &[&str]); 4] = [
     ("bench", &["run.steps=40", "search.by=lattice"]),
     ("bench", &["run.steps=40", "search.by=neighbor-list"]),
-    ("langevin-dense", &["domain.sides=[12.0, 140.0]", "integrator.dt=0.002", "run.time=0.08"]),
+    ("langevin-dense", &["domain.sides=[12.0, 280.0]", "integrator.dt=0.002", "run.time=0.08"]),
     ("plummer", &["particles.count=700", "run.steps=40"]),
 ];
 /// Rows, frames and checkpoints that they write.
