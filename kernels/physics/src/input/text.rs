@@ -87,7 +87,7 @@ fn count_characters(text: &[u8]) -> usize {
 /// Reads an input file of at most `longest` bytes as text.
 ///
 /// # Errors
-/// What `unreadable` makes of the system's error, or the line that is not UTF-8.
+/// The error that `unreadable` makes of the system's, or the first line that is not UTF-8.
 pub fn read_text(
     path: &Path,
     longest: u64,

@@ -19,7 +19,7 @@ pub enum FolderError {
         folder: PathBuf,
         /// The list that it would have.
         list: Option<&'static str>,
-        /// What it holds.
+        /// Names of files in it.
         names: String,
     },
     /// A file or folder of others has the name of one that would be written.
@@ -31,7 +31,7 @@ pub enum FolderError {
     InTheWay {
         /// The file or folder.
         path: PathBuf,
-        /// Whether it may be written over on request.
+        /// True where it may be written over on request.
         is_optional: bool,
     },
     /// A list of own files that is not as it was written.
@@ -41,9 +41,9 @@ pub enum FolderError {
         file: PathBuf,
         /// Line, from 1.
         line: usize,
-        /// What should stand there.
+        /// The line as it should be.
         expected: &'static str,
-        /// What stands there.
+        /// The line as it is.
         found: String,
     },
     /// Another process writes there: which one, on which host, and since when.
@@ -52,7 +52,7 @@ pub enum FolderError {
     /// A file is there that is to stay, with what to do.
     #[error("{file} is there already: {remedy}", file = quoted::path(.0), remedy = .1)]
     Exists(PathBuf, &'static str),
-    /// What is there is no file, and is not replaced by one.
+    /// A folder, a link or a device in the place of a file; it is not replaced.
     #[error("{} is not an ordinary file: choose another place", quoted::path(.0))]
     NoFile(PathBuf),
     /// The system.
@@ -72,7 +72,7 @@ impl FolderError {
     }
 }
 
-/// What stands in a folder, for a message: the first few names, with nothing in them that a terminal would obey.
+/// Names in a folder, for a message: the first few, without control characters.
 fn listing(names: &[String]) -> String {
     const NAMED: usize = 5;
     let plain = |name: &String| name.chars().flat_map(char::escape_debug).collect::<String>();

@@ -8,7 +8,7 @@ use std::fs::{File, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-/// How far a file has grown: enough to find that moment again, and to see whether what was there then still is.
+/// Length and checksum of a file at a moment: enough to find that moment again, and to see changes of the content before it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Mark {
     /// Bytes.
@@ -89,7 +89,7 @@ pub enum GrowingFileError {
 }
 
 impl GrowingFileError {
-    /// Whether the content is at fault, not the system that should have read it.
+    /// True where the content is at fault, not the system that should have read it.
     pub fn is_damage(&self) -> bool {
         !matches!(self, GrowingFileError::File(_))
     }
@@ -184,7 +184,7 @@ pub(super) fn created(path: &Path) -> Result<File, FileError> {
     created.map_err(FileError::at(path, "creating"))
 }
 
-/// The file at `path`, which is none but it, and at least as long as at a mark.
+/// Opens the file at `path`. It must be an ordinary file, no link, and at least as long as at a mark.
 pub(super) fn reopened(path: &Path, mark: Mark) -> Result<File, GrowingFileError> {
     let expected = mark.bytes;
     let file = match OpenOptions::new().read(true).write(true).open(path) {
@@ -203,7 +203,7 @@ pub(super) fn reopened(path: &Path, mark: Mark) -> Result<File, GrowingFileError
     }
 }
 
-/// Returns when a file of so many bytes is on the disk, and is still the one at `path`.
+/// Syncs a file to the disk; then it must have so many bytes and still be the one at `path`.
 pub(super) fn synced(path: &Path, file: &File, written: u64) -> Result<(), FileError> {
     let at = || FileError::at(path, "writing");
     file.sync_data().map_err(at())?;

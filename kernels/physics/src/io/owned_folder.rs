@@ -23,18 +23,18 @@ const START: u64 = 1000;
 /// A folder that is being replaced, in a temporary one.
 const ASIDE: &str = "item";
 
-/// What a folder's own files are, and what else it may hold.
+/// Kind of a folder: its own files, and other files that it may hold.
 #[derive(Clone, Copy, Debug)]
 pub struct FolderKind {
     /// File that keeps other processes out.
     pub lock: &'static str,
     /// File with the names of own files beside it.
     pub list: &'static str,
-    /// What the folder holds.
+    /// Content of the folder.
     pub holds: Holds,
 }
 
-/// What an owned folder holds.
+/// Content of an owned folder.
 #[derive(Clone, Copy, Debug)]
 pub enum Holds {
     /// Own files by a list, a name a line, and beside them those of others.
@@ -43,7 +43,7 @@ pub enum Holds {
         heading: &'static str,
         /// Reports whether an own file may be called so.
         is_own: fn(&str) -> bool,
-        /// Whether others' files may be there before the list is.
+        /// True where others' files may be there before the list is.
         is_shared: bool,
     },
     /// Folders of own files alone, each with its list (`files` of a JSON object), and marked files; beside them others' files.
@@ -71,7 +71,7 @@ pub fn names_in(folder: &Path) -> Result<Option<Vec<String>>, FileError> {
     Ok(Some(names))
 }
 
-/// Whether a file is there; if so, it bears the mark.
+/// Reports whether a file is there; if so, it bears the mark.
 ///
 /// # Errors
 /// [`FolderError::InTheWay`] if it bears none, or the system does not let it be read.
@@ -135,7 +135,7 @@ impl FolderKind {
         }
     }
 
-    /// Whether a marked file or a folder of own files is there; what has its name is ours.
+    /// Reports whether a marked file or a folder of own files is there; a file with its name is ours.
     fn owns(&self, folder: &Path, name: &str) -> Result<bool, FolderError> {
         let Holds::Folders { marked, .. } = self.holds else { return Ok(false) };
         let path = folder.join(name);
@@ -251,12 +251,12 @@ impl OwnedFolder {
         self.path.join(name)
     }
 
-    /// Whether there are names on its list.
+    /// Reports whether there are names on its list.
     pub fn has_own(&self) -> bool {
         self.listed.as_ref().is_some_and(|listed| !listed.is_empty())
     }
 
-    /// Whether the file system keeps others out.
+    /// True where the file system keeps others out.
     pub fn is_locked(&self) -> bool {
         self.lock.as_ref().is_some_and(Lock::is_held)
     }

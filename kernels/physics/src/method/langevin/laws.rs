@@ -22,7 +22,7 @@ macro_rules! define_pair_laws {
             $of:expr;)+
     })+) => {
         define_words! {
-            /// What particles do to each other.
+            /// Pair law of the particles.
             pub enum PairLaw {
                 /// Nothing.
                 None = "none",
@@ -112,7 +112,7 @@ macro_rules! define_pair_laws {
             }
         }
 
-        /// What a scene may be modelled without.
+        /// Parts that a scene may be modelled without.
         pub(super) const TWINS: &[Twin] = &[
             $($($(Twin {
                 name: $lacks,
@@ -173,7 +173,7 @@ impl PairLaw {
         self != PairLaw::None
     }
 
-    /// How near two particles are where the potential is so many ε, in diameters to two digits behind the point.
+    /// Distance of two particles at which the potential is so many ε, in diameters to two digits behind the point.
     pub(super) fn nearest(self, parameters: &Parameters, energies: f64) -> f64 {
         let closest = self.of(parameters, 1.0).potential().closest(energies * parameters.strength);
         (100.0 * closest).round() / 100.0
@@ -236,7 +236,7 @@ mod tests {
         }
     }
 
-    /// How a law is swept.
+    /// Sweep of a law.
     type How = (Execution, InstructionSet);
 
     /// Pairs at some distances on a lattice, swept in a precision: force apart, energy and virial of each pair.

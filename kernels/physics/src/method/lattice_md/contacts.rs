@@ -1,10 +1,10 @@
-//! How contacts of granular discs are found, and how the programs of a step are run.
+//! Search for contacts of granular discs, and execution of the programs of a step.
 
 use super::ListOptions;
 use super::fast::FastSearch;
 use stripmine_kernels::{Execution, InstructionSet};
 
-/// How contacts are found.
+/// Search for contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Contacts {
     /// On the lattice: the method of the source.
@@ -15,10 +15,10 @@ pub enum Contacts {
     Lists(ListOptions),
 }
 
-/// How the programs are run.
+/// Execution of the programs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Machine {
-    /// How instructions meet elements.
+    /// Eager, strip-mined or chained.
     pub execution: Execution,
     /// The instructions.
     pub set: InstructionSet,

@@ -88,7 +88,7 @@ impl Grains {
         Ok(met.dissipated)
     }
 
-    /// What moving walls put in (energy/time).
+    /// Power of moving walls (energy/time).
     fn wall_power(&self) -> f64 {
         let grains = self.stepping.start().grain_count();
         wall_power(&self.model, self.walls, self.time(), grains, || self.forces())
@@ -115,7 +115,7 @@ impl Grains {
         self.stepping.unwrapped()
     }
 
-    /// How many periods each particle has moved along x and y since the start, in the order of
+    /// Periods that each particle has moved along x and y since the start, in the order of
     /// [`particles`](Self::particles); empty where that is not followed.
     pub fn crossings(&self) -> &[[f64; 2]] {
         self.elapsed().crossings.counts()
@@ -133,7 +133,7 @@ impl Grains {
         self.stepping.forces()
     }
 
-    /// What has been counted and summed up since the start.
+    /// Counts and sums since the start.
     pub fn totals(&self) -> Totals {
         self.totals
     }
@@ -153,12 +153,12 @@ impl Grains {
         Ok(())
     }
 
-    /// What a step executes.
+    /// Operations of a step.
     pub fn ledger(&self) -> Ledger {
         self.stepping.ledger()
     }
 
-    /// How long vectors of a symbolic length are, or were in the last step.
+    /// Elements of vectors of a symbolic length, as of the last step.
     pub fn length(&self, length: Length) -> u64 {
         match (self.stepping.length(length), length) {
             (Some(own), _) => own,
