@@ -16,6 +16,7 @@
 //! # Ok::<(), stripmine::report::figure::FigureError>(())
 //! ```
 
+#![warn(unreachable_pub)]
 // Where a panic is possible, or an error is dropped, the reason stands beside it.
 #![cfg_attr(
     not(test),
@@ -34,7 +35,7 @@ pub mod console;
 pub mod frame;
 mod laboratory;
 pub mod model;
-pub mod pages;
+pub(crate) mod pages;
 pub mod provenance;
 pub mod report;
 pub mod results;

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use std::fmt;
 use stripmine_physics::averages::of_correlated;
-pub use stripmine_physics::averages::student;
+pub(crate) use stripmine_physics::averages::student;
 use stripmine_physics::number::with_bar;
 
 /// A figure over independent runs.
@@ -60,23 +60,23 @@ impl Mean {
     }
 
     /// Of values one after the other in time, at least one: their correlation counts.
-    pub fn of_course(values: &[f64]) -> Mean {
+    pub(crate) fn of_course(values: &[f64]) -> Mean {
         of_correlated(values).map_or_else(|| Mean::of(values), |[value, bar]| Mean { value, bar })
     }
 
     /// In parts of a known value: how far from it.
-    pub fn off(self, known: f64) -> Mean {
+    pub(crate) fn off(self, known: f64) -> Mean {
         Mean { value: self.value / known - 1.0, bar: (self.bar / known).abs() }
     }
 
     /// The same in percent.
-    pub fn percent(self) -> Mean {
+    pub(crate) fn percent(self) -> Mean {
         Mean { value: 100.0 * self.value, bar: 100.0 * self.bar }
     }
 }
 
 /// The middle one, the upper of two; not a number if there is none.
-pub fn median(values: impl Iterator<Item = f64>) -> f64 {
+pub(crate) fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.collect();
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
@@ -84,7 +84,7 @@ pub fn median(values: impl Iterator<Item = f64>) -> f64 {
 
 /// The probability that independent values of a distribution lie at least as far from it as these do, by the largest
 /// difference of the distribution functions (Kolmogorov and Smirnov, with Stephens' correction for few values).
-pub fn kolmogorov_smirnov(mut values: Vec<f64>, distribution: impl Fn(f64) -> f64) -> f64 {
+pub(crate) fn kolmogorov_smirnov(mut values: Vec<f64>, distribution: impl Fn(f64) -> f64) -> f64 {
     values.sort_by(f64::total_cmp);
     let count = values.len() as f64;
     let distance = values.iter().zip(0..).map(|(&value, before)| {
@@ -101,7 +101,7 @@ pub fn kolmogorov_smirnov(mut values: Vec<f64>, distribution: impl Fn(f64) -> f6
 }
 
 /// Returns the 95 % interval of a probability by Wilson's score, from the successes among independent trials (at least one).
-pub fn wilson(came_true: usize, trials: usize) -> [f64; 2] {
+pub(crate) fn wilson(came_true: usize, trials: usize) -> [f64; 2] {
     // The quantile of the normal distribution.
     const Z: f64 = 1.959_963_984_540_054;
     let (count, share) = (trials as f64, came_true as f64 / trials as f64);
@@ -111,13 +111,13 @@ pub fn wilson(came_true: usize, trials: usize) -> [f64; 2] {
 }
 
 /// The value below which a share of rising values lies; none of none.
-pub fn quantile(rising: &[f64], share: f64) -> Option<f64> {
+pub(crate) fn quantile(rising: &[f64], share: f64) -> Option<f64> {
     let last = rising.len().checked_sub(1)?;
     Some(rising[(share * last as f64).round() as usize])
 }
 
 /// Slope of the straight line of least squares through points; 0 through fewer than two.
-pub fn slope(x: &[f64], y: &[f64]) -> f64 {
+pub(crate) fn slope(x: &[f64], y: &[f64]) -> f64 {
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let (middle, height) = (mean(x), mean(y));
     let spread = x.iter().map(|x| (x - middle) * (x - middle)).sum::<f64>();
@@ -126,7 +126,7 @@ pub fn slope(x: &[f64], y: &[f64]) -> f64 {
 }
 
 /// The non-negative `x` of least `|A x - b|`, by coordinate descent on the normal equations; rows are (features, value).
-pub fn non_negative<const N: usize>(rows: &[([f64; N], f64)]) -> [f64; N] {
+pub(crate) fn non_negative<const N: usize>(rows: &[([f64; N], f64)]) -> [f64; N] {
     let mut square = [[0.0; N]; N];
     let mut right = [0.0; N];
     for (features, value) in rows {

@@ -39,6 +39,7 @@
 //! # Ok::<(), stripmine_kernels::isa::ProgramError>(())
 //! ```
 
+#![warn(unreachable_pub)]
 // Where a panic is possible, or an error is dropped, the reason stands beside it.
 #![cfg_attr(
     not(test),
@@ -64,7 +65,8 @@ mod program;
 pub mod sweep;
 mod threads;
 
-pub use backend::{GROUP, InstructionSet};
+pub(crate) use backend::GROUP;
+pub use backend::InstructionSet;
 pub use program::{Execution, Program, Runnable};
 pub use threads::{
     alone_if, in_parts, in_pieces, keep_awake, over_parts, over_pieces, put_in_order, reordered,

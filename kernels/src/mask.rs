@@ -12,7 +12,7 @@ pub struct Offset {
 impl Offset {
     /// Square of the smallest distance between points of the own cell and of this one, in cells².
     #[inline]
-    pub const fn clearance_squared(self) -> u32 {
+    pub(crate) const fn clearance_squared(self) -> u32 {
         let columns = self.columns.unsigned_abs().saturating_sub(1);
         let rows = self.rows.unsigned_abs().saturating_sub(1);
         columns * columns + rows * rows

@@ -66,9 +66,9 @@ pub struct Claim {
     /// Limit; its keys stand beside the others.
     pub limit: Limit,
     /// Origin of the expected value: paper and table, program with version and command, or a formula.
-    pub reference: Option<String>,
+    pub(crate) reference: Option<String>,
     /// Sentence that a reader needs.
-    pub note: Option<String>,
+    pub(crate) note: Option<String>,
     /// Verdict where no value is judged.
     pub verdict: Option<Unjudged>,
     /// Earlier limits, the newest first.
@@ -88,11 +88,11 @@ pub struct Limit {
     /// Expected value.
     pub expected: Option<Expected>,
     /// Relation of the value to the expected one.
-    pub relation: Option<Relation>,
+    pub(crate) relation: Option<Relation>,
     /// Tolerance in the unit of the value.
-    pub tolerance: Option<f64>,
+    pub(crate) tolerance: Option<f64>,
     /// Tolerance as a share of the expected value.
-    pub relative: Option<f64>,
+    pub(crate) relative: Option<f64>,
 }
 
 /// Keys of a [`Limit`].
@@ -115,7 +115,7 @@ pub enum Expected {
 /// Relation of a value to the expected one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Relation {
+pub(crate) enum Relation {
     /// Equal within the tolerance.
     Equals,
     /// Not smaller, but for the tolerance.

@@ -39,7 +39,7 @@ pub fn all() -> Result<Vec<Claim>, InputErrors> {
 }
 
 /// Judges the claims of an item by its frames, as far as these have what is needed: a quick study has fewer rows. Others are not tested.
-pub fn judge_where_possible<'c>(
+pub(crate) fn judge_where_possible<'c>(
     claims: &'c [Claim],
     item: &str,
     scope: &Scope,

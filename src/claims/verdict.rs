@@ -53,7 +53,7 @@ pub struct Judged<'c> {
     /// Value, for a reader; nothing where there is none.
     pub value: String,
     /// Set if the limit is newer than the result.
-    pub is_too_new: bool,
+    pub(crate) is_too_new: bool,
 }
 
 impl PartialEq for Claim {
@@ -64,7 +64,7 @@ impl PartialEq for Claim {
 
 impl Judged<'_> {
     /// A claim that no item judges.
-    pub fn unjudged(claim: &Claim) -> Judged<'_> {
+    pub(crate) fn unjudged(claim: &Claim) -> Judged<'_> {
         let verdict = match claim.verdict {
             Some(Unjudged::Contradiction) => Verdict::Contradiction,
             _ => Verdict::NotTested,

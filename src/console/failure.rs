@@ -142,7 +142,7 @@ struct Report {
 }
 
 /// Says a failure: in words on standard error and, where data is asked for and none is there yet, as data on standard output.
-pub fn tell(failure: &Failure, as_data: bool) {
+pub(crate) fn tell(failure: &Failure, as_data: bool) {
     match failure {
         Failure::Arguments(mistake) if is_plain(mistake) => {
             #[expect(

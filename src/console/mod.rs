@@ -4,34 +4,36 @@ mod failure;
 mod output;
 mod verb;
 
-pub use failure::{Failure, tell};
+pub use failure::Failure;
+pub(crate) use failure::tell;
+pub use output::is_untouched;
 pub(crate) use output::print_answer;
-pub use output::{
-    SHARES, STEPS, bar, clear_progress, is_untouched, print, print_json, progress, say, to_json, warn,
+pub(crate) use output::{
+    SHARES, STEPS, bar, clear_progress, print, print_json, progress, say, to_json, warn,
 };
-pub use verb::Verb;
+pub(crate) use verb::Verb;
 
 use clap::Args;
 use stripmine_physics::ranks::Crew;
 
 /// More threads than any machine at hand has cores; each takes memory of its own.
-pub const MOST_THREADS: u16 = 1024;
+pub(crate) const MOST_THREADS: u16 = 1024;
 
 /// What every verb takes.
 #[derive(Args, Clone, Debug)]
-pub struct Common {
+pub(crate) struct Common {
     /// One JSON document on standard output
     #[arg(long, global = true)]
     pub json: bool,
     /// Nothing on standard error but errors
     #[arg(long, global = true)]
-    pub quiet: bool,
+    pub(crate) quiet: bool,
     /// Threads, at most 1024; all cores by default. `bench` takes several numbers, such as 1,2,4
     #[arg(long, global = true, value_delimiter = ',', value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_THREADS)))]
     pub threads: Vec<u16>,
     /// By whom simulations are carried out that a verb may give to several ranks.
     #[arg(skip = Crew::One)]
-    pub crew: Crew,
+    pub(crate) crew: Crew,
     /// The whole command line, for the record of where results come from.
     #[arg(skip)]
     pub command: String,
@@ -44,7 +46,7 @@ const MOST: u64 = 1 << 53;
 ///
 /// # Errors
 /// A sentence, if it is none.
-pub fn count(text: &str) -> Result<u64, String> {
+pub(crate) fn count(text: &str) -> Result<u64, String> {
     count_up_to(MOST, text)
 }
 
@@ -52,7 +54,7 @@ pub fn count(text: &str) -> Result<u64, String> {
 ///
 /// # Errors
 /// A sentence, if it is none.
-pub fn count_up_to(most: u64, text: &str) -> Result<u64, String> {
+pub(crate) fn count_up_to(most: u64, text: &str) -> Result<u64, String> {
     let whole = text.parse::<u64>().ok().or_else(|| {
         let number: f64 = text.parse().ok()?;
         (number.fract() == 0.0 && (1.0..=MOST as f64).contains(&number)).then_some(number as u64)

@@ -22,7 +22,7 @@ fn shown() -> MutexGuard<'static, Option<ProgressBar>> {
 }
 
 /// Writes a line to standard error, above the progress.
-pub fn say(message: impl Display) {
+pub(crate) fn say(message: impl Display) {
     let line = || {
         let text = terminal::fitted(&quoted::message(&message.to_string()));
         #[expect(
@@ -39,12 +39,12 @@ pub fn say(message: impl Display) {
 }
 
 /// Writes a warning to standard error.
-pub fn warn(message: impl Display) {
+pub(crate) fn warn(message: impl Display) {
     say(format_args!("warning: {message}"));
 }
 
 /// Progress with ETA, on a terminal; nothing elsewhere.
-pub fn bar(common: &Common, length: u64, template: &str) -> ProgressBar {
+pub(crate) fn bar(common: &Common, length: u64, template: &str) -> ProgressBar {
     let target = if common.quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
     let bar = ProgressBar::with_draw_target(Some(length), target);
     let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
@@ -64,9 +64,9 @@ pub fn bar(common: &Common, length: u64, template: &str) -> ProgressBar {
 const TICK: Duration = Duration::from_millis(500);
 
 /// The template of a bar over shares, with a message.
-pub const SHARES: &str = "{wide_bar} {msg} {percent}% [{elapsed}{left}]";
+pub(crate) const SHARES: &str = "{wide_bar} {msg} {percent}% [{elapsed}{left}]";
 /// The template of a bar over steps.
-pub const STEPS: &str = "{wide_bar} {pos}/{len} [{elapsed}{left}]";
+pub(crate) const STEPS: &str = "{wide_bar} {pos}/{len} [{elapsed}{left}]";
 
 /// The time that is left, once enough is done to say so: two hundredths, and three seconds.
 fn remaining(share: f32, elapsed: Duration, eta: Duration) -> String {
@@ -77,14 +77,14 @@ fn remaining(share: f32, elapsed: Duration, eta: Duration) -> String {
 }
 
 /// Progress in thousandths.
-pub fn progress(common: &Common, what: &'static str) -> ProgressBar {
+pub(crate) fn progress(common: &Common, what: &'static str) -> ProgressBar {
     let bar = bar(common, 1000, SHARES);
     bar.set_message(what);
     bar
 }
 
 /// Takes the progress off the screen.
-pub fn clear_progress() {
+pub(crate) fn clear_progress() {
     if let Some(bar) = shown().take() {
         bar.finish_and_clear();
     }
@@ -105,12 +105,12 @@ pub fn is_untouched() -> bool {
 ///
 /// # Errors
 /// [`Failure::StandardOutput`], if it takes no more.
-pub fn print(text: &str) -> Result<(), Failure> {
+pub(crate) fn print(text: &str) -> Result<(), Failure> {
     write(|| io::stdout().write_all(quoted::shown(text).as_bytes()))
 }
 
 /// Writes what the reader of arguments answers, help or version, to standard output.
-pub fn print_answer(answer: &clap::Error) -> Result<(), Failure> {
+pub(crate) fn print_answer(answer: &clap::Error) -> Result<(), Failure> {
     write(|| answer.print())
 }
 
@@ -118,7 +118,7 @@ pub fn print_answer(answer: &clap::Error) -> Result<(), Failure> {
 ///
 /// # Errors
 /// [`Failure::StandardOutput`], if it takes no more.
-pub fn print_json(data: &impl serde::Serialize) -> Result<(), Failure> {
+pub(crate) fn print_json(data: &impl serde::Serialize) -> Result<(), Failure> {
     print(&(to_json(data)? + "\n"))
 }
 
@@ -126,7 +126,7 @@ pub fn print_json(data: &impl serde::Serialize) -> Result<(), Failure> {
 ///
 /// # Errors
 /// If it is nothing that JSON can hold.
-pub fn to_json(data: &impl serde::Serialize) -> Result<String, Failure> {
+pub(crate) fn to_json(data: &impl serde::Serialize) -> Result<String, Failure> {
     let text = serde_json::to_string_pretty(data).map_err(|cause| Failure::writing("JSON")(cause.into()))?;
     Ok(quoted::in_json(&text))
 }

@@ -4,7 +4,7 @@ use super::{Common, Failure};
 
 /// A verb of the command that the laboratory of a method brings.
 #[derive(Debug)]
-pub struct Verb {
+pub(crate) struct Verb {
     /// The name.
     pub name: &'static str,
     /// Its help and arguments.

@@ -25,7 +25,7 @@ pub struct Column {
     /// Unit; none for words, counts and ratios.
     pub unit: Option<String>,
     /// Part that it plays beside the columns of the same heading.
-    pub role: Role,
+    pub(crate) role: Role,
     /// Digits that a page shows.
     pub digits: Option<Digits>,
 }
@@ -33,7 +33,7 @@ pub struct Column {
 /// Part that a column plays beside the columns of the same heading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Role {
+pub(crate) enum Role {
     /// Words.
     Words,
     /// A count.

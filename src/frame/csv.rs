@@ -11,7 +11,7 @@ const FORMULA: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn write(frame: &Frame, out: impl std::io::Write) -> std::io::Result<()> {
+pub(crate) fn write(frame: &Frame, out: impl std::io::Write) -> std::io::Result<()> {
     let mut writer = csv::Writer::from_writer(out);
     writer.write_record(frame.columns.iter().map(|column| &column.name))?;
     for row in &frame.rows {
@@ -22,7 +22,7 @@ pub fn write(frame: &Frame, out: impl std::io::Write) -> std::io::Result<()> {
 
 /// Frames of a folder as a Frictionless data package: each file with its columns, their types, units and meanings.
 #[derive(Debug, Serialize, Deserialize)]
-pub struct Package {
+pub(crate) struct Package {
     name: String,
     title: String,
     profile: String,
@@ -30,12 +30,12 @@ pub struct Package {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub seeds: Vec<u64>,
     /// Files.
-    pub resources: Vec<Resource>,
+    pub(crate) resources: Vec<Resource>,
 }
 
 /// A file of a [`Package`].
 #[derive(Debug, Serialize, Deserialize)]
-pub struct Resource {
+pub(crate) struct Resource {
     name: String,
     title: String,
     /// The file's name.
@@ -68,7 +68,7 @@ struct Field {
 
 impl Package {
     /// Description of the frames of an item.
-    pub fn of<'f>(
+    pub(crate) fn of<'f>(
         name: &str,
         title: &str,
         seeds: &[u64],
@@ -126,7 +126,7 @@ impl Field {
 ///
 /// # Errors
 /// A sentence with the line and the column of a cell that is not of its column's type.
-pub fn read(resource: Resource, bytes: &[u8]) -> Result<Frame, String> {
+pub(crate) fn read(resource: Resource, bytes: &[u8]) -> Result<Frame, String> {
     let columns: Vec<Column> = resource.schema.fields.into_iter().map(Field::column).collect();
     let mut reader = csv::Reader::from_reader(bytes);
     let names: Vec<String> =

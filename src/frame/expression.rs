@@ -29,7 +29,7 @@ impl Scope {
     }
 
     /// Adds an element that expressions call `it`.
-    pub fn with_it(&self, it: &Value) -> Scope {
+    pub(crate) fn with_it(&self, it: &Value) -> Scope {
         Scope(Arc::new(Names(self.0.0.clone(), Some(it.clone()))))
     }
 
@@ -224,7 +224,7 @@ impl Expressions {
     ///
     /// # Errors
     /// A sentence that names a column that is not there, and those that are.
-    pub fn of_row(
+    pub(crate) fn of_row(
         &self,
         expression: &str,
         scope: &Scope,

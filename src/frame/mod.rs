@@ -3,13 +3,15 @@
 
 mod columns;
 mod convert;
-pub mod csv;
+pub(crate) mod csv;
 mod expression;
 mod names;
 mod rows;
 mod table;
 
-pub use columns::{Column, Digits, Frame, Role, Value};
+pub(crate) use columns::Role;
+pub use columns::{Column, Digits, Frame, Value};
 pub use expression::{Expressions, Scope};
 pub use rows::Rows;
-pub use table::{Cell, Table};
+pub use table::Cell;
+pub(crate) use table::Table;

@@ -50,7 +50,7 @@ const LETTERS: [(char, &str); 18] = [
 ];
 
 /// The unit at the end of a heading, in brackets; what stands in brackets and is no unit, as `95 %`, is none.
-pub fn unit(heading: &str) -> Option<&str> {
+pub(crate) fn unit(heading: &str) -> Option<&str> {
     let (_, unit) = heading.strip_suffix(')')?.rsplit_once(" (")?;
     let is_unit = unit.chars().count() <= 12
         && !unit.contains(' ')
@@ -59,7 +59,7 @@ pub fn unit(heading: &str) -> Option<&str> {
 }
 
 /// The name of a column with a heading.
-pub fn of(heading: &str) -> String {
+pub(super) fn of(heading: &str) -> String {
     let bare = unit(heading).map_or(heading, |unit| heading[..heading.len() - unit.len() - 2].trim_end());
     let same = SAME.iter().find(|(_, headings)| headings.contains(&bare));
     same.map_or_else(|| slug(bare), |(name, _)| (*name).to_owned())

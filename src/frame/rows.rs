@@ -79,7 +79,7 @@ impl<T> Rows<T> {
     }
 
     /// The table.
-    pub fn table(self, name: impl Into<String>, title: impl Into<String>) -> Table {
+    pub(crate) fn table(self, name: impl Into<String>, title: impl Into<String>) -> Table {
         let rows = self.rows.into_iter().map(|(_, cells)| cells).collect();
         Table { name: name.into(), title: title.into(), columns: self.columns, rows, notes: vec![] }
     }

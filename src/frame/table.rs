@@ -41,7 +41,7 @@ pub enum Cell {
 
 impl Cell {
     /// A number with its error; alone where it has none.
-    pub fn with_error(value: f64, error: Option<f64>, decimals: usize) -> Cell {
+    pub(crate) fn with_error(value: f64, error: Option<f64>, decimals: usize) -> Cell {
         match error {
             Some(error) => Cell::WithError { value, error, decimals },
             None => Cell::Number(value, decimals),
@@ -49,7 +49,7 @@ impl Cell {
     }
 
     /// As a person reads it: thousands set apart.
-    pub fn for_reading(&self) -> String {
+    pub(crate) fn for_reading(&self) -> String {
         match self {
             Cell::Text(text) => text.clone(),
             Cell::Count(count) => grouped(&count.to_string()),
@@ -164,7 +164,7 @@ fn grouped(digits: &str) -> String {
 
 /// A titled table with notes below.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Table {
+pub(crate) struct Table {
     /// A name for files, in lower case.
     pub name: String,
     /// What it shows.
@@ -174,17 +174,17 @@ pub struct Table {
     /// Rows, each as long as the headings.
     pub rows: Vec<Vec<Cell>>,
     /// What a reader must also know.
-    pub notes: Vec<String>,
+    pub(crate) notes: Vec<String>,
 }
 
 impl Table {
     /// With a note more.
-    pub fn note(self, note: impl Into<String>) -> Table {
+    pub(crate) fn note(self, note: impl Into<String>) -> Table {
         self.notes([note])
     }
 
     /// With further notes.
-    pub fn notes(mut self, notes: impl IntoIterator<Item = impl Into<String>>) -> Table {
+    pub(crate) fn notes(mut self, notes: impl IntoIterator<Item = impl Into<String>>) -> Table {
         self.notes.extend(notes.into_iter().map(Into::into));
         self
     }

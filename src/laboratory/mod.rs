@@ -1,12 +1,12 @@
 //! The laboratory: what is studied of each method beside a run, in a folder of the method's name: studies as functions from
 //! parameters to datasets, sections of the report, verbs. A method runs without a line here.
 
-pub mod hard_disks;
-pub mod langevin;
-pub mod lattice_md;
-pub mod nbody;
-pub mod programs;
-pub mod rates;
+pub(crate) mod hard_disks;
+pub(crate) mod langevin;
+pub(crate) mod lattice_md;
+pub(crate) mod nbody;
+pub(crate) mod programs;
+pub(crate) mod rates;
 mod running;
 
 use crate::console::{Common, Failure, Verb, say};
@@ -18,7 +18,7 @@ use stripmine_physics::signals;
 
 /// What the laboratory has of a method.
 #[derive(Debug)]
-pub struct Laboratory {
+pub(crate) struct Laboratory {
     /// The method's name.
     pub method: &'static str,
     /// What `reproduce` makes of it, in the order of the page.
@@ -26,7 +26,7 @@ pub struct Laboratory {
     /// Verbs of its own.
     pub verbs: &'static [Verb],
     /// Studies of its own, as verbs below `chart`.
-    pub charts: &'static [Verb],
+    pub(crate) charts: &'static [Verb],
     /// Work that its studies time and that is no run of a scene.
     pub works: &'static [rates::Own],
 }
@@ -36,7 +36,7 @@ static LABORATORIES: [&Laboratory; 4] =
     [&lattice_md::LABORATORY, &hard_disks::LABORATORY, &langevin::LABORATORY, &nbody::LABORATORY];
 
 /// Those of some methods, in the order of these.
-pub fn laboratories(methods: Methods) -> impl Iterator<Item = &'static Laboratory> {
+pub(crate) fn laboratories(methods: Methods) -> impl Iterator<Item = &'static Laboratory> {
     methods.iter().flat_map(|method| {
         LABORATORIES.into_iter().filter(|laboratory| laboratory.method == method.vocabulary.keys.method)
     })

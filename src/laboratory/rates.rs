@@ -7,8 +7,8 @@
 mod case;
 mod process;
 
-pub use case::{Case, Own, Reading, given};
-pub use process::{VERB, serve};
+pub(crate) use case::{Case, Own, Reading, given};
+pub(crate) use process::{VERB, serve};
 
 use crate::console::Failure;
 use crate::frame::{Cell, Frame, Rows};
@@ -17,42 +17,42 @@ use crate::statistics::median;
 use process::Failed;
 
 /// Processes that measure every case, one after the other.
-pub const PROCESSES: usize = 3;
+pub(crate) const PROCESSES: usize = 3;
 
 /// A figure over several processes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Spread {
+pub(crate) struct Spread {
     /// Median process.
-    pub median: f64,
+    pub(crate) median: f64,
     /// Lowest and highest process.
     pub range: [f64; 2],
 }
 
 impl Spread {
     /// Of the values of processes.
-    pub fn of(values: impl Iterator<Item = f64>) -> Spread {
+    pub(crate) fn of(values: impl Iterator<Item = f64>) -> Spread {
         let values: Vec<f64> = values.collect();
         let least = |sign: f64| sign * values.iter().map(|value| sign * value).fold(f64::INFINITY, f64::min);
         Spread { median: median(values.iter().copied()), range: [1.0, -1.0].map(least) }
     }
 
     /// The figure in a cell, in a unit that is so many times smaller.
-    pub fn cell(self, scale: f64, decimals: usize) -> Cell {
+    pub(crate) fn cell(self, scale: f64, decimals: usize) -> Cell {
         Cell::Spread { value: scale * self.median, range: self.range.map(|value| scale * value), decimals }
     }
 }
 
 /// A case as all processes measured it.
 #[derive(Clone, Debug)]
-pub struct Measured {
+pub(crate) struct Measured {
     labels: Vec<(String, Cell)>,
     /// Reading of each process.
-    pub readings: Vec<Reading>,
+    pub(crate) readings: Vec<Reading>,
 }
 
 impl Measured {
     /// A case without labels.
-    pub fn of(readings: impl IntoIterator<Item = Reading>) -> Measured {
+    pub(crate) fn of(readings: impl IntoIterator<Item = Reading>) -> Measured {
         Measured { labels: vec![], readings: readings.into_iter().collect() }
     }
 
@@ -61,34 +61,34 @@ impl Measured {
     }
 
     /// Work in a second.
-    pub fn rate(&self) -> Spread {
+    pub(crate) fn rate(&self) -> Spread {
         self.each(|it| it.work / it.seconds)
     }
 
     /// Seconds that a unit of work takes.
-    pub fn cost(&self) -> Spread {
+    pub(crate) fn cost(&self) -> Spread {
         self.each(|it| it.seconds / it.work)
     }
 
     /// Seconds that a part takes for a unit of work.
-    pub fn part(&self, name: &str) -> Spread {
+    pub(crate) fn part(&self, name: &str) -> Spread {
         self.each(|it| it.parts.get(name).copied().unwrap_or(0.0) / it.work)
     }
 
     /// Operations of a kind for a unit of work.
-    pub fn count(&self, name: &str) -> f64 {
+    pub(crate) fn count(&self, name: &str) -> f64 {
         self.each(|it| it.counts.get(name).copied().unwrap_or(0.0) / it.work).median
     }
 
     /// Rate over that of another case, process by process.
-    pub fn over(&self, other: &Measured) -> Spread {
+    pub(crate) fn over(&self, other: &Measured) -> Spread {
         let rate = |it: &Reading| it.work / it.seconds;
         Spread::of(self.readings.iter().zip(&other.readings).map(|(own, other)| rate(own) / rate(other)))
     }
 }
 
 /// The rates of cases in the order of these, as a frame with their labels; every case has the labels of the first.
-pub fn frame(
+pub(crate) fn frame(
     measured: &[Measured],
     (name, title): (&str, &str),
     (heading, scale, decimals): (&str, f64, usize),
@@ -102,7 +102,7 @@ pub fn frame(
 }
 
 /// Measures cases in [`PROCESSES`] processes, one after the other.
-pub fn rates(lab: &Lab<'_>, cases: &[Case]) -> Result<Vec<Measured>, Failure> {
+pub(crate) fn rates(lab: &Lab<'_>, cases: &[Case]) -> Result<Vec<Measured>, Failure> {
     rounds(cases, lab.progress, |cases, heard| match &lab.program {
         Some(program) => process::measure(program, cases, heard),
         None => cases.iter().try_for_each(|case| {

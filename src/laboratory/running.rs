@@ -9,12 +9,12 @@ use stripmine_physics::method::{self, Entry, METHODS, Prepared, Purpose, Quantit
 use stripmine_physics::scene::Overrides;
 
 /// A preset with overrides.
-pub fn prepared(preset: &str, overrides: &Overrides) -> Result<Prepared, StudyError> {
+pub(crate) fn prepared(preset: &str, overrides: &Overrides) -> Result<Prepared, StudyError> {
     Ok(load(preset, &overrides.texts(), METHODS)?.0)
 }
 
 /// Does something on a number of threads.
-pub fn on_threads<T: Send>(
+pub(crate) fn on_threads<T: Send>(
     threads: usize,
     work: impl FnOnce() -> Result<T, StudyError> + Send,
 ) -> Result<T, StudyError> {
@@ -23,7 +23,7 @@ pub fn on_threads<T: Send>(
 }
 
 /// Narrows a range, at whose lower end something holds and at whose upper end it does not, by the `middle` of both until it `is_narrow`.
-pub fn bisected<T: Copy, E>(
+pub(crate) fn bisected<T: Copy, E>(
     mut range: [T; 2],
     is_narrow: impl Fn([T; 2]) -> bool,
     middle: impl Fn(T, T) -> T,
@@ -37,7 +37,7 @@ pub fn bisected<T: Copy, E>(
 }
 
 /// A scene that runs.
-pub struct Running {
+pub(crate) struct Running {
     /// The simulation, as it stands.
     pub simulation: Box<dyn Simulation>,
     /// The box.
@@ -47,41 +47,45 @@ pub struct Running {
 
 impl Running {
     /// A preset with overrides, at its start, to be observed.
-    pub fn begin(preset: &str, overrides: &Overrides) -> Result<Running, StudyError> {
+    pub(super) fn begin(preset: &str, overrides: &Overrides) -> Result<Running, StudyError> {
         let (prepared, method) = load(preset, &overrides.texts(), METHODS)?;
         Running::of(method, &prepared, Purpose::Run)
     }
 
     /// A preset with overrides, at its start, of which nothing is followed that the motion does not need.
-    pub fn timed(preset: &str, overrides: &Overrides) -> Result<Running, StudyError> {
+    pub(crate) fn timed(preset: &str, overrides: &Overrides) -> Result<Running, StudyError> {
         let (prepared, method) = load(preset, &overrides.texts(), METHODS)?;
         Running::of(method, &prepared, Purpose::Measurement)
     }
 
     /// A scene of a method, at its start.
-    pub fn of(method: &'static Entry, prepared: &Prepared, purpose: Purpose) -> Result<Running, StudyError> {
+    pub(super) fn of(
+        method: &'static Entry,
+        prepared: &Prepared,
+        purpose: Purpose,
+    ) -> Result<Running, StudyError> {
         prepared.memory.fits("scene")?;
         let (simulation, domain) = (prepared.start(purpose)?, prepared.domain);
         Ok(Running { simulation, domain, quantities: method.quantities })
     }
 
     /// Goes on for some steps.
-    pub fn steps(&mut self, steps: u64) -> Result<(), method::Failure> {
+    pub(super) fn steps(&mut self, steps: u64) -> Result<(), method::Failure> {
         self.until(Until::Steps(steps).after(&self.simulation.clock()))
     }
 
     /// Lets some events happen.
-    pub fn events(&mut self, events: u64) -> Result<(), method::Failure> {
+    pub(super) fn events(&mut self, events: u64) -> Result<(), method::Failure> {
         self.until(Until::Events(events).after(&self.simulation.clock()))
     }
 
     /// Goes on until a moment has come.
-    pub fn until(&mut self, moment: Until) -> Result<(), method::Failure> {
+    pub(super) fn until(&mut self, moment: Until) -> Result<(), method::Failure> {
         self.simulation.advance(&[moment], &AtomicBool::new(false))
     }
 
     /// Probability by Kolmogorov and Smirnov that the components of the velocities are Maxwell's at a kT/m.
-    pub fn maxwell(&self, temperature: f64) -> f64 {
+    pub(crate) fn maxwell(&self, temperature: f64) -> f64 {
         let particles = self.simulation.particles();
         let components = particles.grains().iter().flat_map(|it| it.planar_velocity());
         let scaled = components.map(|v| v / temperature.sqrt()).collect();
@@ -89,7 +93,7 @@ impl Running {
     }
 
     /// What is observed now, by its name.
-    pub fn observed<const N: usize>(&self, names: [&str; N]) -> Result<[f64; N], UnknownName> {
+    pub(super) fn observed<const N: usize>(&self, names: [&str; N]) -> Result<[f64; N], UnknownName> {
         observed(self.quantities, &self.simulation.observe(), names)
     }
 }

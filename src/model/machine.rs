@@ -19,17 +19,17 @@ pub enum Provenance {
 /// A number or a fact with its provenance; the unit is that of the entry it stands for.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table of value, provenance and note")]
-pub struct Known<T> {
+pub(crate) struct Known<T> {
     /// The number, positive and finite, or the fact.
     pub value: T,
     /// Says whether it was printed somewhere, follows from something or is our choice.
     pub provenance: Provenance,
     /// The source, the derivation or the reason; never empty.
-    pub note: String,
+    pub(crate) note: String,
 }
 
 /// A number with its provenance.
-pub type Quantity = Known<f64>;
+pub(crate) type Quantity = Known<f64>;
 
 /// The vector registers of one processor.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -67,7 +67,7 @@ pub(super) struct MemoryPorts {
 }
 
 /// Executions per class of operations; classes that do not occur are absent.
-pub type ClassCounts = BTreeMap<OpClass, u64>;
+pub(crate) type ClassCounts = BTreeMap<OpClass, u64>;
 
 /// Executions that replace one operation of a class that a machine lacks.
 ///
@@ -84,7 +84,7 @@ pub(super) struct Expansion {
 
 /// Something that instructions compete for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Resource<'m> {
+pub(crate) enum Resource<'m> {
     /// Functional units of a kind, by name.
     Unit(&'m str),
     /// The ports of loads.
@@ -95,9 +95,9 @@ pub enum Resource<'m> {
 
 /// A resource that an instruction occupies.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Occupied<'m> {
+pub(crate) struct Occupied<'m> {
     /// The resource.
-    pub resource: Resource<'m>,
+    pub(crate) resource: Resource<'m>,
     /// Instructions that find place at once.
     pub count: f64,
     /// Elements a clock period.
@@ -148,7 +148,7 @@ impl MachineModel {
     /// The start-up D of an operation of `class`, in clock periods: BP93 section 3, the pipeline depth.
     ///
     /// Zero for a class that never executes because its expansion does without it.
-    pub fn start_up(&self, class: OpClass) -> f64 {
+    pub(crate) fn start_up(&self, class: OpClass) -> f64 {
         let start_up = self.start_up.get(class.name()).or_else(|| self.start_up.get(DEFAULT));
         start_up.map_or(0.0, |start_up| start_up.value)
     }
@@ -175,7 +175,7 @@ impl MachineModel {
     /// The same machine with every assumed start-up, and an assumed loop overhead, at zero: what a result keeps without
     /// them.
     #[must_use]
-    pub fn without_assumed_start_ups(&self) -> MachineModel {
+    pub(crate) fn without_assumed_start_ups(&self) -> MachineModel {
         let mut known = self.clone();
         let quantities = known.start_up.values_mut().chain(&mut known.loop_overhead);
         quantities
@@ -185,7 +185,7 @@ impl MachineModel {
     }
 
     /// Names of the entries that are our own choice, such as `start_up.add`.
-    pub fn assumed(&self) -> Vec<String> {
+    pub(crate) fn assumed(&self) -> Vec<String> {
         let mut all: Vec<(String, Option<Provenance>)> = vec![];
         let mut add = |name: String, it: Option<&Quantity>| all.push((name, it.map(|it| it.provenance)));
         let (registers, memory) = (self.vector_registers.as_ref(), self.memory.as_ref());
@@ -214,17 +214,17 @@ impl MachineModel {
     }
 
     /// Whether the machine says which operations can run at once.
-    pub fn has_units(&self) -> bool {
+    pub(crate) fn has_units(&self) -> bool {
         !self.units.is_empty()
     }
 
     /// Whether a result feeds the next instruction element by element.
-    pub fn chains(&self) -> bool {
+    pub(crate) fn chains(&self) -> bool {
         self.chaining.as_ref().is_some_and(|chaining| chaining.value)
     }
 
     /// The resource that an instruction of `class` occupies; none where the machine says nothing of it.
-    pub fn unit(&self, class: OpClass) -> Option<Occupied<'_>> {
+    pub(crate) fn unit(&self, class: OpClass) -> Option<Occupied<'_>> {
         let number =
             |quantity: &Option<Quantity>, otherwise| quantity.as_ref().map_or(otherwise, |q| q.value);
         if !class.moves_data() {

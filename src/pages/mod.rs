@@ -30,7 +30,7 @@ type Text = Spanned<String>;
 
 /// A template.
 #[derive(Debug)]
-pub struct Page {
+pub(crate) struct Page {
     name: String,
     header: Header,
     /// Whole file.
@@ -67,7 +67,7 @@ struct Header {
 /// Time and memory that an item takes on the two cores of the report's host.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Cost {
+pub(crate) struct Cost {
     /// Seconds of the quick size; none where the item is made in full only.
     pub quick: Option<f64>,
     /// Seconds in full.
@@ -76,6 +76,10 @@ pub struct Cost {
     pub all: Option<f64>,
     /// MiB of memory in full, at most.
     #[serde(default = "usual_memory")]
+    #[cfg_attr(
+        not(test),
+        expect(dead_code, reason = "a test holds it against the memory of the report's host")
+    )]
     pub memory: u64,
 }
 
@@ -120,13 +124,13 @@ fn first() -> usize {
 }
 
 /// Data of an item that its page shows.
-pub struct Shown<'d> {
+pub(crate) struct Shown<'d> {
     /// Frames.
     pub frames: &'d [Frame],
     /// Pictures that are no charts of frames, by name.
     pub pictures: &'d [(String, Picture)],
     /// Film.
-    pub film: Option<&'d Film>,
+    pub(crate) film: Option<&'d Film>,
     /// Further files: name and contents.
     pub files: &'d [(String, String)],
     /// Seeds of the random numbers.
@@ -138,7 +142,7 @@ impl Page {
     ///
     /// # Errors
     /// [`InputErrors`] with the line that cannot be understood.
-    pub fn of(name: &str) -> Result<Option<Page>, InputErrors> {
+    pub(crate) fn of(name: &str) -> Result<Option<Page>, InputErrors> {
         let Some(file) = Files::get(&format!("{name}.md")) else { return Ok(None) };
         Page::read(name, String::from_utf8_lossy(&file.data).into_owned()).map(Some)
     }
@@ -159,28 +163,28 @@ impl Page {
     }
 
     /// Title.
-    pub fn title(&self) -> &str {
+    pub(crate) fn title(&self) -> &str {
         &self.header.title
     }
 
     /// Names of the pictures that the study draws.
-    pub fn drawn(&self) -> Vec<&str> {
+    pub(crate) fn drawn(&self) -> Vec<&str> {
         self.header.figure.iter().filter(|it| it.is_drawn()).map(FigureSpec::name).collect()
     }
 
     /// Names of files that the page quotes or links.
-    pub fn files(&self) -> Vec<&str> {
+    pub(crate) fn files(&self) -> Vec<&str> {
         let quoted = self.header.excerpt.iter().map(|it| it.file.get_ref());
         quoted.chain(&self.header.files).map(String::as_str).collect()
     }
 
     /// Chapter of the report.
-    pub fn chapter(&self) -> Chapter {
+    pub(crate) fn chapter(&self) -> Chapter {
         self.header.chapter
     }
 
     /// Stated cost.
-    pub fn cost(&self) -> Cost {
+    pub(crate) fn cost(&self) -> Cost {
         self.header.cost
     }
 
@@ -188,7 +192,12 @@ impl Page {
     ///
     /// # Errors
     /// [`InputErrors`] if the template or a claim names a table or a column that is not there.
-    pub fn section(&self, shown: &Shown<'_>, claims: &[Claim], date: &str) -> Result<Section, InputErrors> {
+    pub(crate) fn section(
+        &self,
+        shown: &Shown<'_>,
+        claims: &[Claim],
+        date: &str,
+    ) -> Result<Section, InputErrors> {
         let scope = Scope::of(shown.frames.iter().cloned());
         let expressions = Expressions::new();
         let fill = Filling { page: self, scope: &scope, expressions: &expressions };

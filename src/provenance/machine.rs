@@ -9,27 +9,27 @@ use std::path::Path;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Machine {
     /// The processor's name and the platform.
-    pub processor: String,
+    pub(crate) processor: String,
     /// Family, model and stepping of the processor; none where the system does not say.
     #[serde(default)]
     pub model: Option<String>,
     /// Processors that the system shows.
-    pub cores: usize,
+    pub(crate) cores: usize,
     /// The clock of the first of them when it was asked (MHz).
     pub clock: Option<f64>,
     /// Caches of the first processor, such as `L1d 32K`.
-    pub caches: Vec<String>,
+    pub(crate) caches: Vec<String>,
     /// How the system sets the clock; none where it does not say, as in most virtual machines.
-    pub governor: Option<String>,
+    pub(crate) governor: Option<String>,
     /// Whether the system runs in a virtual machine; none where it does not say.
-    pub is_virtual: Option<bool>,
+    pub(crate) is_virtual: Option<bool>,
     /// The compiler of this program, and the flags that were given beside its profile.
-    pub compiler: String,
+    pub(crate) compiler: String,
 }
 
 impl Machine {
     /// This machine. What the system does not say is left out; Linux says it in `/proc/cpuinfo` and `/sys/devices/system/cpu`.
-    pub fn here() -> Machine {
+    pub(crate) fn here() -> Machine {
         #[expect(
             clippy::disallowed_methods,
             reason = "a system that does not name its processor leaves it out"
@@ -55,7 +55,7 @@ impl Machine {
 
 impl Machine {
     /// This without the clock, which differs from moment to moment on some machines.
-    pub fn without_clock(&self) -> Machine {
+    pub(crate) fn without_clock(&self) -> Machine {
         Machine { clock: None, ..self.clone() }
     }
 }

@@ -2,7 +2,7 @@
 
 mod machine;
 
-pub use machine::Machine;
+pub(crate) use machine::Machine;
 
 use serde::{Deserialize, Serialize};
 use std::ffi::OsString;
@@ -34,14 +34,14 @@ pub struct Provenance {
     /// Threads that were there to be used.
     pub threads: usize,
     /// The widest instructions.
-    pub instruction_set: String,
+    pub(crate) instruction_set: String,
     /// Seconds that it took.
     pub seconds: f64,
     /// When it was made: the day, in universal time, as year-month-day.
     pub date: String,
     /// Processes that measured its times; one where it has none.
     #[serde(default = "one")]
-    pub processes: usize,
+    pub(crate) processes: usize,
     /// Code that it depends on; none of results of earlier versions.
     #[serde(default)]
     pub code: Option<Fingerprints>,
@@ -58,14 +58,14 @@ fn one() -> usize {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Fingerprints {
     /// Kernels.
-    pub kernels: String,
+    pub(crate) kernels: String,
     /// Physics, without files, records and processes.
-    pub physics: String,
+    pub(crate) physics: String,
 }
 
 impl Fingerprints {
     /// Fingerprints of this program.
-    pub fn here() -> Fingerprints {
+    pub(crate) fn here() -> Fingerprints {
         Fingerprints {
             kernels: env!("STRIPMINE_KERNELS").to_owned(),
             physics: env!("STRIPMINE_PHYSICS").to_owned(),
@@ -83,12 +83,12 @@ pub struct Measurement {
     /// Command that measured.
     pub command: String,
     /// Processor.
-    pub host: String,
+    pub(crate) host: String,
 }
 
 impl Provenance {
     /// Of something that this program, called by `command`, has just made in `seconds`.
-    pub fn here(command: String, seconds: f64) -> Provenance {
+    pub(crate) fn here(command: String, seconds: f64) -> Provenance {
         Provenance {
             origin: built(),
             command,
@@ -104,12 +104,12 @@ impl Provenance {
     }
 
     /// Returns whether `reproduce` made it.
-    pub fn is_of_the_report(&self) -> bool {
+    pub(crate) fn is_of_the_report(&self) -> bool {
         self.command.split(' ').nth(1) == Some("reproduce")
     }
 
     /// Returns whether kernels or physics have changed since it was made.
-    pub fn is_stale(&self) -> bool {
+    pub(crate) fn is_stale(&self) -> bool {
         self.code != Some(Fingerprints::here())
     }
 
@@ -119,25 +119,25 @@ impl Provenance {
     }
 
     /// Whether the same command of the same program, from a source that is in a commit or was released, made it on the same host.
-    pub fn is_of_the_command(&self, other: &Provenance) -> bool {
+    pub(crate) fn is_of_the_command(&self, other: &Provenance) -> bool {
         let of = |it: &Provenance| (it.origin.clone(), it.command.clone(), it.machine.processor.clone());
         !other.origin.dirty && of(self) == of(other)
     }
 
     /// The program, in words that go on after how many were made.
-    pub fn of_program(&self) -> String {
+    pub(crate) fn of_program(&self) -> String {
         let Origin { version, commit, dirty, .. } = &self.origin;
         let state = if *dirty { ", with changes that are in no commit" } else { "" };
         format!("made on {} by stripmine {version} of source commit {commit}{state}", self.date)
     }
 
     /// The machine, in words.
-    pub fn of_machine(&self) -> String {
+    pub(crate) fn of_machine(&self) -> String {
         format!("{}, on {}", self.instruction_set, self.machine.without_clock())
     }
 
     /// When, how long, by which command and commit, in a sentence.
-    pub fn sentence(&self) -> String {
+    pub(crate) fn sentence(&self) -> String {
         let Provenance { origin, command, threads, seconds, date, repeated, processes, .. } = self;
         if !repeated.is_empty() {
             let one = |it: &Measurement| {
@@ -156,7 +156,7 @@ impl Provenance {
 
 /// A command line as a shell takes it again: the name of the program without its folder, and the arguments as they were
 /// given, in quotation marks where a shell needs them.
-pub fn command_line(arguments: &[OsString]) -> String {
+pub(crate) fn command_line(arguments: &[OsString]) -> String {
     let name = arguments.first().map(Path::new).and_then(Path::file_stem);
     let given = arguments.iter().skip(1).map(OsString::as_os_str);
     name.into_iter().chain(given).map(|word| in_shell(&word.to_string_lossy())).collect::<Vec<_>>().join(" ")

@@ -6,7 +6,7 @@ use super::Table;
 const ROWS: usize = 8;
 
 /// The table without its notes, which the page with charts has; of a long one, where it lies in an item's folder.
-pub fn render(table: &Table, folder: &str) -> String {
+pub(crate) fn render(table: &Table, folder: &str) -> String {
     let file = format!("{folder}/{}.csv", table.name);
     if table.rows.len() > ROWS {
         return format!("**{}**: {} rows in [{file}]({file}).\n", table.title, table.rows.len());

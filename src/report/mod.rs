@@ -1,18 +1,20 @@
 //! Reports: finished data as tables, figures and pages. Each export is one small file; none of them runs physics.
 
 pub mod figure;
-pub mod html;
-pub mod markdown;
-pub mod page;
-pub mod section;
+pub(crate) mod html;
+pub(crate) mod markdown;
+pub(crate) mod page;
+pub(crate) mod section;
 pub mod tally;
-pub mod terminal;
+pub(crate) mod terminal;
 
 use crate::provenance::Provenance;
 use stripmine_physics::number::counted;
 
-pub use crate::frame::{Cell, Rows, Table};
-pub use section::{Chapter, Section};
+pub(crate) use crate::frame::Table;
+pub use crate::frame::{Cell, Rows};
+pub(crate) use section::Chapter;
+pub use section::Section;
 
 /// Who made the items, and where: a sentence for each machine, with how many each program has made there, the most first.
 fn origins(sections: &[Section]) -> Vec<String> {

@@ -9,7 +9,7 @@ use crate::claims::Verdict;
 use std::fmt::Write;
 
 /// What stands near the beginning of every such page and of no other.
-pub const MARK: &str = "Written by `stripmine reproduce`; do not edit.";
+pub(crate) const MARK: &str = "Written by `stripmine reproduce`; do not edit.";
 
 /// Letters of an item's table of conclusions that the page shows below a picture; a longer one is linked.
 const TABLE: usize = 560;
@@ -20,7 +20,7 @@ const CAPTION: usize = 110;
 
 /// The page. Pictures and data lie in a folder for each item, which bears its name. `left_out` names items that the folder has,
 /// but of another version of the program.
-pub fn render(sections: &[Section], left_out: &[String], tally: &Tally) -> String {
+pub(crate) fn render(sections: &[Section], left_out: &[String], tally: &Tally) -> String {
     let mut page = format!(
         "# What came out\n\n{MARK} With charts to hover over and films: [index.html](index.html), one file, to be opened from a copy.\n\n",
     );

@@ -14,7 +14,7 @@ pub struct Section {
     /// What it is.
     pub title: String,
     /// Which chapter of the report it belongs to.
-    pub chapter: Chapter,
+    pub(crate) chapter: Chapter,
     /// What is asked.
     pub question: String,
     /// What is expected, and who says so: a source, theory, or our own aim.
@@ -22,21 +22,21 @@ pub struct Section {
     /// What came out, in one sentence with its number.
     pub answer: String,
     /// What else a reader must know, a paragraph each.
-    pub details: Vec<String>,
+    pub(crate) details: Vec<String>,
     /// Pictures.
     pub figures: Vec<Figure>,
     /// Tables.
-    pub tables: Vec<Table>,
+    pub(crate) tables: Vec<Table>,
     /// Some lines of a program's text, with a line that says what they are.
-    pub excerpt: Option<(String, String)>,
+    pub(crate) excerpt: Option<(String, String)>,
     /// Moving pictures.
-    pub film: Option<Film>,
+    pub(crate) film: Option<Film>,
     /// Seeds of the random numbers.
     pub seeds: Vec<u64>,
     /// Place among the results of the page's first screen; none if it is not among them.
-    pub front: Option<u8>,
+    pub(crate) front: Option<u8>,
     /// Whether anything in it depends on the host (times), and is therefore not the same everywhere.
-    pub depends_on_host: bool,
+    pub(crate) depends_on_host: bool,
     /// Claims of sources and aims of ours that it answers.
     pub claims: Vec<JudgedClaim>,
     /// How and where it was made; known once it is written. No author of a section says it.
@@ -67,7 +67,7 @@ impl Section {
     }
 
     /// The command that makes it again: of an item of the report that alone, of a study the whole command.
-    pub fn again(&self) -> String {
+    pub(crate) fn again(&self) -> String {
         match &self.provenance {
             Some(made) if !made.is_of_the_report() => made.command.clone(),
             made => {
@@ -93,7 +93,7 @@ impl Section {
     }
 
     /// Returns whether kernels or physics have changed since its results were made.
-    pub fn is_stale(&self) -> bool {
+    pub(crate) fn is_stale(&self) -> bool {
         self.provenance.as_ref().is_some_and(Provenance::is_stale)
     }
 
@@ -112,7 +112,7 @@ impl Section {
     }
 
     /// The folder of an item that is the same everywhere, and of one that depends on the host.
-    pub fn folders(name: &str) -> [String; 2] {
+    pub(crate) fn folders(name: &str) -> [String; 2] {
         [name.to_owned(), format!("host/{name}")]
     }
 }
@@ -120,7 +120,7 @@ impl Section {
 /// A chapter of the report. Items stand in the order of the chapters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Chapter {
+pub(crate) enum Chapter {
     /// Tables, figures and claims of the sources.
     Sources,
     /// What the sources do not ask.
@@ -131,10 +131,10 @@ pub enum Chapter {
 
 impl Chapter {
     /// All, in the order of the report.
-    pub const ALL: [Chapter; 3] = [Chapter::Sources, Chapter::Beyond, Chapter::Host];
+    pub(crate) const ALL: [Chapter; 3] = [Chapter::Sources, Chapter::Beyond, Chapter::Host];
 
     /// Its heading.
-    pub const fn title(self) -> &'static str {
+    pub(crate) const fn title(self) -> &'static str {
         match self {
             Chapter::Sources => "What the sources contain",
             Chapter::Beyond => "Beyond the sources",
@@ -159,7 +159,7 @@ pub struct JudgedClaim {
     /// Verdict.
     pub verdict: String,
     /// Reference and note.
-    pub notes: Vec<String>,
+    pub(crate) notes: Vec<String>,
 }
 
 impl From<&Judged<'_>> for JudgedClaim {
@@ -181,7 +181,7 @@ impl From<&Judged<'_>> for JudgedClaim {
 
 /// Discs that move, frame by frame.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Film {
+pub(crate) struct Film {
     /// What it shows.
     pub title: String,
     /// The units of lengths and of times.
@@ -191,31 +191,31 @@ pub struct Film {
     /// The sides of the box that are seen.
     pub sides: Vec<Side>,
     /// Whether gravity pulls along a long window, the way in which it is read.
-    pub falls: bool,
+    pub(crate) falls: bool,
     /// Radii of the discs that move (length), in the order of every frame's discs.
     pub radii: Vec<f64>,
     /// Centre and radius of the discs that do not move (length).
-    pub fixed: Vec<([f64; 2], f64)>,
+    pub(crate) fixed: Vec<([f64; 2], f64)>,
     /// The frames by increasing time.
     pub frames: Vec<Frame>,
     /// What the shade of a disc says, with its unit.
-    pub shade: String,
+    pub(crate) shade: String,
     /// Lowest and highest shade.
-    pub shades: [f64; 2],
+    pub(crate) shades: [f64; 2],
 }
 
 /// A side of a box.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Side {
+pub(crate) struct Side {
     /// Its ends (length).
     pub ends: [[f64; 2]; 2],
     /// Whether what leaves here comes in at the other side.
-    pub is_periodic: bool,
+    pub(crate) is_periodic: bool,
 }
 
 /// A moment of a [`Film`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Frame {
+pub(crate) struct Frame {
     /// When (time).
     pub time: f64,
     /// Centre and shade of every moving disc; the shade is no number where it says nothing, the centre where there is no disc.

@@ -42,7 +42,7 @@ impl Tally {
     }
 
     /// Claims that failed: the item's name and title, and the claim.
-    pub fn failed(&self) -> impl Iterator<Item = (&(String, String), &JudgedClaim)> {
+    pub(crate) fn failed(&self) -> impl Iterator<Item = (&(String, String), &JudgedClaim)> {
         let failed = |claim: &JudgedClaim| claim.verdict == Verdict::NotReproduced.words();
         let of_items = self.claims.iter().filter_map(|(item, claim)| Some((item.as_ref()?, claim)));
         of_items.filter(move |(_, claim)| failed(claim))

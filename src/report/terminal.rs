@@ -12,7 +12,7 @@ const BESIDE: usize = 2;
 const NARROWEST: usize = 20;
 
 /// The table as text, no wider than `COLUMNS` says, or the terminal where there is one.
-pub fn render(table: &Table) -> String {
+pub(crate) fn render(table: &Table) -> String {
     render_within(table, width())
 }
 
@@ -29,7 +29,7 @@ fn columns(reported: usize) -> usize {
 }
 
 /// A message whose lines are broken at blanks where they are longer than a line of the terminal.
-pub fn fitted(message: &str) -> String {
+pub(crate) fn fitted(message: &str) -> String {
     fitted_within(message, width())
 }
 
@@ -43,7 +43,7 @@ fn fitted_within(message: &str, width: Option<usize>) -> String {
 }
 
 /// The same within a number of columns, or as wide as it is.
-pub fn render_within(table: &Table, width: Option<usize>) -> String {
+pub(crate) fn render_within(table: &Table, width: Option<usize>) -> String {
     let rows: Vec<Vec<String>> =
         table.rows.iter().map(|row| row.iter().map(Cell::for_reading).collect()).collect();
     let least: Vec<usize> = (0..table.columns.len())

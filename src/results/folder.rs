@@ -68,7 +68,7 @@ impl Folder {
     /// # Errors
     /// If what stands there is not ours, is committed while the source of this program is not, or another process writes
     /// there.
-    pub fn open(path: &Path, items: &[&str], pages: bool) -> Result<Folder, Failure> {
+    pub(crate) fn open(path: &Path, items: &[&str], pages: bool) -> Result<Folder, Failure> {
         traceable(path, &built())?;
         let pages = PAGES.iter().filter(|_| pages).map(|(name, _)| (*name).to_owned());
         let wanted: Vec<String> = items.iter().flat_map(|name| Section::folders(name)).chain(pages).collect();
@@ -84,7 +84,7 @@ impl Folder {
     ///
     /// # Errors
     /// If what is there is not ours, or the system does not let the files be written.
-    pub fn write(
+    pub(crate) fn write(
         &self,
         name: &str,
         made: &Made,
@@ -109,7 +109,7 @@ impl Folder {
     ///
     /// # Errors
     /// As [`write`](Self::write).
-    pub fn write_page(&self, items: &[&str]) -> Result<(), Failure> {
+    pub(crate) fn write_page(&self, items: &[&str]) -> Result<(), Failure> {
         let (mut sections, mut left_out) = (Vec::new(), Vec::new());
         for item in items {
             match self.read(item)? {

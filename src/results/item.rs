@@ -6,14 +6,14 @@ use crate::pages::{Cost, Page};
 use crate::report::Chapter;
 
 /// Where the share of a piece of work that is done is heard.
-pub type Progress<'p> = &'p (dyn Fn(f64) + Sync);
+pub(crate) type Progress<'p> = &'p (dyn Fn(f64) + Sync);
 
 /// What makes an item.
 type Make = fn(&Lab<'_>, Size) -> Result<Made, console::Failure>;
 
 /// An item of the report.
 #[derive(Debug)]
-pub struct Item {
+pub(crate) struct Item {
     /// Name on the command line, and of its template.
     pub name: &'static str,
     make: Make,
@@ -24,7 +24,7 @@ const USUAL_MEMORY: u64 = 256;
 
 impl Item {
     /// An item whose template says title, chapter and cost.
-    pub const fn of(name: &'static str, make: Make) -> Item {
+    pub(crate) const fn of(name: &'static str, make: Make) -> Item {
         Item { name, make }
     }
 
@@ -33,12 +33,12 @@ impl Item {
     }
 
     /// Title.
-    pub fn title(&self) -> String {
+    pub(crate) fn title(&self) -> String {
         self.page().map_or_else(String::new, |page| page.title().to_owned())
     }
 
     /// Chapter of the report.
-    pub fn chapter(&self) -> Chapter {
+    pub(crate) fn chapter(&self) -> Chapter {
         self.page().map_or(Chapter::Beyond, |page| page.chapter())
     }
 
@@ -49,17 +49,17 @@ impl Item {
     }
 
     /// Returns whether `--quick` makes it.
-    pub fn is_quick(&self) -> bool {
+    pub(crate) fn is_quick(&self) -> bool {
         self.cost().quick.is_some()
     }
 
     /// Returns whether `reproduce` makes it without `--all`.
-    pub fn is_default(&self) -> bool {
+    pub(crate) fn is_default(&self) -> bool {
         self.chapter() == Chapter::Sources
     }
 
     /// Seconds that it takes about.
-    pub fn seconds(&self, size: Size) -> f64 {
+    pub(crate) fn seconds(&self, size: Size) -> f64 {
         let cost = self.cost();
         match size {
             Size::Quick => cost.quick.unwrap_or(cost.full),
@@ -69,7 +69,8 @@ impl Item {
     }
 
     /// MiB of memory that it takes in full, at most.
-    pub fn memory(&self) -> u64 {
+    #[cfg(test)]
+    pub(crate) fn memory(&self) -> u64 {
         self.cost().memory
     }
 
@@ -77,7 +78,7 @@ impl Item {
     ///
     /// # Errors
     /// Those of its study.
-    pub fn make(&self, lab: &Lab<'_>, size: Size) -> Result<Made, console::Failure> {
+    pub(crate) fn make(&self, lab: &Lab<'_>, size: Size) -> Result<Made, console::Failure> {
         (self.make)(lab, size)
     }
 }

@@ -28,11 +28,11 @@ const LONGEST: u64 = 1 << 30;
 
 /// Whose runs a journal holds.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Identity {
+pub(crate) struct Identity {
     /// The study and its scene, for a reader.
     pub of: String,
     /// A digest of all that results depend on.
-    pub digest: String,
+    pub(crate) digest: String,
 }
 
 impl Identity {
@@ -83,7 +83,7 @@ fn checksum(digest: &str, text: &str) -> u32 {
 }
 
 /// The runs that are finished.
-pub struct Journal {
+pub(crate) struct Journal {
     known: RwLock<Runs>,
     /// How many were known from the file.
     before: usize,
@@ -99,7 +99,7 @@ pub struct Journal {
 
 impl Journal {
     /// One that forgets: for studies that are made in one go.
-    pub fn none() -> Journal {
+    pub(crate) fn none() -> Journal {
         Journal {
             known: RwLock::default(),
             before: 0,
@@ -116,7 +116,11 @@ impl Journal {
     ///
     /// # Errors
     /// [`JournalError`] if it is another's, or the system does not let it be read and written.
-    pub fn open(folder: &Path, identity: &Identity, team: Option<Team>) -> Result<Journal, JournalError> {
+    pub(crate) fn open(
+        folder: &Path,
+        identity: &Identity,
+        team: Option<Team>,
+    ) -> Result<Journal, JournalError> {
         let Some(team) = team else { return Journal::read(folder, identity) };
         // The first puts the file in order before others read it, and nothing is added before all have read it.
         let first = team.is_first().then(|| Journal::read(folder, identity)).transpose()?;
@@ -171,17 +175,17 @@ impl Journal {
     }
 
     /// How many runs were finished before.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.before
     }
 
     /// Whether none was.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.before == 0
     }
 
     /// Whether this process writes what comes of the study, and takes times.
-    pub fn is_first(&self) -> bool {
+    pub(crate) fn is_first(&self) -> bool {
         self.team.as_ref().is_none_or(Team::is_first)
     }
 
@@ -190,7 +194,11 @@ impl Journal {
     ///
     /// # Errors
     /// The first failure of a run, and [`JournalError`].
-    pub fn over<T, R, E>(&self, all: &[T], run: impl Fn(&T) -> Result<R, E> + Sync) -> Result<Vec<R>, E>
+    pub(crate) fn over<T, R, E>(
+        &self,
+        all: &[T],
+        run: impl Fn(&T) -> Result<R, E> + Sync,
+    ) -> Result<Vec<R>, E>
     where
         T: Sync,
         R: Send,
@@ -210,7 +218,7 @@ impl Journal {
     ///
     /// # Errors
     /// As [`over`](Self::over).
-    pub fn once<R: Send, E: From<JournalError> + Send>(
+    pub(crate) fn once<R: Send, E: From<JournalError> + Send>(
         &self,
         run: impl Fn() -> Result<R, E> + Sync,
     ) -> Result<R, E> {
@@ -219,7 +227,7 @@ impl Journal {
     }
 
     /// What was found in lines that are not as they were written: a sentence for each, and for many one for the rest.
-    pub fn notes(&self) -> Vec<String> {
+    pub(crate) fn notes(&self) -> Vec<String> {
         const NAMED: usize = 5;
         let file = quoted::path(&self.path);
         let one = |line: &usize| {
@@ -239,7 +247,7 @@ impl Journal {
     ///
     /// # Errors
     /// Those of the run, and [`JournalError`] if it cannot be kept.
-    pub fn recall<T, E>(
+    pub(crate) fn recall<T, E>(
         &self,
         key: &str,
         fits: impl FnOnce(&T) -> bool,

@@ -8,7 +8,7 @@ use stripmine_physics::reported::{Class, FilePlace, Reported};
 
 /// Why there is no journal.
 #[derive(Debug, thiserror::Error)]
-pub enum JournalError {
+pub(crate) enum JournalError {
     /// The folder holds the runs of something else.
     #[error(
         "{} holds the runs of {}, not of {ours}: a study goes on only with the scene, the options and the version \

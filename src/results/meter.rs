@@ -5,7 +5,7 @@ use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIter
 use std::sync::Mutex;
 
 /// Hears of work that is done, and says the share that it is.
-pub struct Meter<'p> {
+pub(crate) struct Meter<'p> {
     done: Mutex<f64>,
     all: Mutex<f64>,
     progress: Progress<'p>,
@@ -13,12 +13,12 @@ pub struct Meter<'p> {
 
 impl<'p> Meter<'p> {
     /// Of work that is expected to come to `all`: cases, steps or seconds.
-    pub fn new(all: f64, progress: Progress<'p>) -> Self {
+    pub(crate) fn new(all: f64, progress: Progress<'p>) -> Self {
         Meter { done: Mutex::new(0.0), all: Mutex::new(all), progress }
     }
 
     /// The rest of the work is expected to come to `rest`.
-    pub fn expect(&self, rest: f64) {
+    pub(crate) fn expect(&self, rest: f64) {
         let done = self.done.lock().map_or(0.0, |done| *done);
         if let Ok(mut all) = self.all.lock() {
             *all = done + rest;
@@ -26,7 +26,7 @@ impl<'p> Meter<'p> {
     }
 
     /// So much more is done.
-    pub fn add(&self, more: f64) {
+    pub(crate) fn add(&self, more: f64) {
         let done = self.done.lock().map_or(0.0, |mut done| {
             *done += more;
             *done
@@ -39,7 +39,7 @@ impl<'p> Meter<'p> {
     ///
     /// # Errors
     /// That of a case.
-    pub fn each<C: Sync, T: Send, E: Send>(
+    pub(crate) fn each<C: Sync, T: Send, E: Send>(
         &self,
         cases: &[C],
         work: impl Fn(&C) -> Result<T, E> + Sync,
@@ -51,7 +51,7 @@ impl<'p> Meter<'p> {
     ///
     /// # Errors
     /// That of a case.
-    pub fn each_from_last<C: Sync, T: Send, E: Send>(
+    pub(crate) fn each_from_last<C: Sync, T: Send, E: Send>(
         &self,
         cases: &[C],
         work: impl Fn(&C) -> Result<T, E> + Sync,

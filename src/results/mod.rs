@@ -9,11 +9,11 @@ mod meter;
 mod team;
 
 pub use folder::Folder;
-pub use item::{Item, Progress};
-pub use journal::{Identity, Journal};
-pub use journal_error::JournalError;
-pub use meter::Meter;
-pub use team::Team;
+pub(crate) use item::{Item, Progress};
+pub(crate) use journal::{Identity, Journal};
+pub(crate) use journal_error::JournalError;
+pub(crate) use meter::Meter;
+pub(crate) use team::Team;
 
 use crate::frame::Frame;
 use crate::provenance::Measurement;
@@ -22,7 +22,7 @@ use crate::report::section::Film;
 use std::path::PathBuf;
 
 /// Surroundings of a study.
-pub struct Lab<'p> {
+pub(crate) struct Lab<'p> {
     /// Hears the share of the work that is done.
     pub progress: Progress<'p>,
     /// Program that measures in processes of its own; none where this process measures.
@@ -31,19 +31,20 @@ pub struct Lab<'p> {
 
 impl<'p> Lab<'p> {
     /// Surroundings in which everything happens in this process.
-    pub fn here(progress: Progress<'p>) -> Lab<'p> {
+    #[cfg(test)]
+    pub(crate) fn here(progress: Progress<'p>) -> Lab<'p> {
         Lab { progress, program: None }
     }
 
     /// Surroundings in which processes of their own measure.
-    pub fn apart(progress: Progress<'p>) -> Lab<'p> {
+    pub(crate) fn apart(progress: Progress<'p>) -> Lab<'p> {
         Lab { progress, program: std::env::current_exe().ok() }
     }
 }
 
 /// Size of a study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Size {
+pub(crate) enum Size {
     /// Under a minute in all.
     Quick,
     /// As much as the sources show, in five minutes.
@@ -54,56 +55,56 @@ pub enum Size {
 
 /// A finished item.
 #[derive(Default)]
-pub struct Made {
+pub(crate) struct Made {
     /// Frames.
     pub frames: Vec<Frame>,
     /// Pictures that are no charts of frames, by name.
     pub pictures: Vec<(String, Picture)>,
     /// Film.
-    pub film: Option<Film>,
+    pub(crate) film: Option<Film>,
     /// Further files: name and contents.
     pub files: Vec<(String, String)>,
     /// Seeds of the random numbers.
     pub seeds: Vec<u64>,
     /// Processes that measured times; none where the record has them.
-    pub processes: Option<usize>,
+    pub(crate) processes: Option<usize>,
     /// Measurements that it repeats.
     pub repeated: Vec<Measurement>,
 }
 
 impl Made {
     /// An item whose page is a template.
-    pub fn of(frames: impl IntoIterator<Item = Frame>) -> Made {
+    pub(crate) fn of(frames: impl IntoIterator<Item = Frame>) -> Made {
         Made { frames: frames.into_iter().collect(), ..Made::default() }
     }
 
     /// The data for programs: each frame by its name, as a list of rows.
-    pub fn json(&self) -> serde_json::Value {
+    pub(crate) fn json(&self) -> serde_json::Value {
         self.frames.iter().map(|frame| (frame.name.clone(), frame.json())).collect()
     }
 
     /// Adds a picture that is no chart of a frame.
     #[must_use]
-    pub fn with_picture(mut self, name: &str, picture: Picture) -> Made {
+    pub(crate) fn with_picture(mut self, name: &str, picture: Picture) -> Made {
         self.pictures.push((name.to_owned(), picture));
         self
     }
 
     /// Adds a film.
     #[must_use]
-    pub fn with_film(self, film: Film) -> Made {
+    pub(crate) fn with_film(self, film: Film) -> Made {
         Made { film: Some(film), ..self }
     }
 
     /// Adds the seeds of the random numbers.
     #[must_use]
-    pub fn with_seeds(self, seeds: impl IntoIterator<Item = u64>) -> Made {
+    pub(crate) fn with_seeds(self, seeds: impl IntoIterator<Item = u64>) -> Made {
         Made { seeds: seeds.into_iter().collect(), ..self }
     }
 
     /// With one more file.
     #[must_use]
-    pub fn with_file(mut self, name: &str, text: String) -> Made {
+    pub(crate) fn with_file(mut self, name: &str, text: String) -> Made {
         self.files.push((name.to_owned(), text));
         self
     }

@@ -18,7 +18,7 @@ pub(super) type Runs = BTreeMap<String, Value>;
 type Told = Result<Vec<Option<String>>, RankError>;
 
 /// One of the processes.
-pub struct Team {
+pub(crate) struct Team {
     ranks: Mutex<Box<dyn Ranks>>,
     rank: usize,
     count: usize,
@@ -27,7 +27,7 @@ pub struct Team {
 
 impl Team {
     /// The processes of a crew; none where this one is alone.
-    pub fn of(crew: Crew) -> Option<Team> {
+    pub(crate) fn of(crew: Crew) -> Option<Team> {
         match crew {
             Crew::Processes(join) => Some(Team::new(join())),
             Crew::One | Crew::Threads(_) => None,
@@ -35,13 +35,13 @@ impl Team {
     }
 
     /// This one of several ranks.
-    pub fn new(ranks: Box<dyn Ranks>) -> Team {
+    pub(crate) fn new(ranks: Box<dyn Ranks>) -> Team {
         let (rank, count) = (ranks.rank(), ranks.count());
         Team { ranks: Mutex::new(ranks), rank, count, has_ended: AtomicBool::new(false) }
     }
 
     /// Whether it is this one that writes, prints and takes times.
-    pub fn is_first(&self) -> bool {
+    pub(crate) fn is_first(&self) -> bool {
         self.rank == 0
     }
 

@@ -7,7 +7,7 @@ use stripmine_physics::number::significant;
 /// Moment and weight of an alarm, rising.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Finding {
+pub(crate) enum Finding {
     /// The step is within the limit.
     Within,
     /// A warning before the run.
@@ -20,16 +20,16 @@ pub enum Finding {
 
 impl Finding {
     /// True if the user is told.
-    pub fn is_told(self) -> bool {
+    pub(crate) fn is_told(self) -> bool {
         self != Finding::Within
     }
 }
 
 /// Finding of a check.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Alarm {
+pub(crate) struct Alarm {
     pub check: String,
-    pub finding: Finding,
+    pub(crate) finding: Finding,
     /// The value over its limit, above 1 where the user is told; none where nothing of the kind is allowed.
     pub share: Option<f64>,
     /// Sentence for a reader.
@@ -38,7 +38,7 @@ pub struct Alarm {
 
 impl Alarm {
     /// Findings of a scene before it runs: every limit of its step, within it or not, and every warning of its check.
-    pub fn before(scene: &Prepared) -> Vec<Alarm> {
+    pub(crate) fn before(scene: &Prepared) -> Vec<Alarm> {
         let mut alarms: Vec<Alarm> = vec![];
         let limits = scene.step_limits.iter().map(|limit| {
             let finding = if limit.is_passed() { Finding::Warned } else { Finding::Within };
@@ -61,7 +61,7 @@ impl Alarm {
     }
 
     /// The check, its value over the limit, and the warning that it led to.
-    pub fn words(&self) -> String {
+    pub(crate) fn words(&self) -> String {
         let share = self.share.map_or(String::new(), |share| format!(" {}", significant(share, 3)));
         let told = match self.finding {
             Finding::Within => "",
@@ -73,7 +73,7 @@ impl Alarm {
     }
 
     /// Warning of a run. Checks differ in the side on which their limit lies.
-    pub fn of_run(warning: &RunWarning) -> Alarm {
+    pub(crate) fn of_run(warning: &RunWarning) -> Alarm {
         let share = (warning.value / warning.limit).abs();
         let share = share.max(share.recip());
         Alarm {

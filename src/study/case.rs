@@ -10,7 +10,7 @@ use stripmine_physics::scene::{Overrides, SceneErrors, Values};
 const JOURNALED: &str = "11";
 
 /// A scene, its method, and its own configuration.
-pub struct Case {
+pub(crate) struct Case {
     what: String,
     /// Overrides as a user typed them; the values have them.
     overrides: Vec<String>,
@@ -29,7 +29,7 @@ impl Case {
     ///
     /// # Errors
     /// [`SceneErrors`] if the scene is bad, or takes more memory than there is.
-    pub fn load(what: &str, overrides: &[String], methods: Methods) -> Result<Case, SceneErrors> {
+    pub(crate) fn load(what: &str, overrides: &[String], methods: Methods) -> Result<Case, SceneErrors> {
         let text = Values::text(what, &vocabularies(methods))?;
         Case::parse(what, &text, overrides, methods)
     }
@@ -38,7 +38,7 @@ impl Case {
     ///
     /// # Errors
     /// As of [`load`](Case::load).
-    pub fn parse(
+    pub(crate) fn parse(
         what: &str,
         text: &str,
         overrides: &[String],
@@ -75,18 +75,18 @@ impl Case {
     }
 
     /// The arguments that name it on a command line.
-    pub fn arguments(&self) -> String {
+    pub(crate) fn arguments(&self) -> String {
         let set = self.overrides.iter().map(|text| format!(" --set {text}"));
         std::iter::once(self.what.clone()).chain(set).collect()
     }
 
     /// The step, where the method takes steps (time).
-    pub fn step(&self) -> Option<f64> {
+    pub(crate) fn step(&self) -> Option<f64> {
         self.values.number(self.entry.trials?.step)
     }
 
     /// Duration of the scene (time); none where its end is a number of events.
-    pub fn duration(&self) -> Option<f64> {
+    pub(crate) fn duration(&self) -> Option<f64> {
         match self.prepared.schedule.until {
             Until::Time(time) => Some(time),
             Until::Steps(steps) => Some(steps as f64 * self.step()?),
@@ -95,7 +95,7 @@ impl Case {
     }
 
     /// Identity of a study: digest of the resolved scene, the options and the version of the program.
-    pub fn identity(&self, study: &str, options: &str) -> Identity {
+    pub(crate) fn identity(&self, study: &str, options: &str) -> Identity {
         let mut sum = Sha256::new();
         for part in [study, JOURNALED, options, env!("CARGO_PKG_VERSION"), &self.prepared.scene] {
             sum.update(part.as_bytes());
@@ -107,12 +107,12 @@ impl Case {
     }
 
     /// The scene with further overrides.
-    pub fn prepared_with(&self, more: &Overrides) -> Result<Prepared, SceneErrors> {
+    pub(crate) fn prepared_with(&self, more: &Overrides) -> Result<Prepared, SceneErrors> {
         Ok(prepare(self.values.with(more)?, self.methods)?.0)
     }
 
     /// A scene by the same methods, from the same start file if it has one.
-    pub fn beside(&self, text: &str) -> Result<Case, SceneErrors> {
+    pub(crate) fn beside(&self, text: &str) -> Result<Case, SceneErrors> {
         Case::of(&self.what, text, &[], self.methods, Some(&self.values))
     }
 }

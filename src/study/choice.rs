@@ -8,7 +8,7 @@ pub(crate) const TIE: f64 = 1.1;
 
 /// A setting for each axis.
 #[derive(Clone, Debug)]
-pub struct Choice(Vec<(&'static Axis, &'static Setting)>);
+pub(crate) struct Choice(Vec<(&'static Axis, &'static Setting)>);
 
 impl PartialEq for Choice {
     fn eq(&self, other: &Self) -> bool {
@@ -18,7 +18,7 @@ impl PartialEq for Choice {
 
 impl Choice {
     /// Every combination of settings, those of the first axis changing slowest.
-    pub fn all(axes: &'static [Axis]) -> Vec<Choice> {
+    pub(crate) fn all(axes: &'static [Axis]) -> Vec<Choice> {
         let begin = vec![Choice(vec![])];
         axes.iter().fold(begin, |choices, axis| {
             let with_axis = |choice: Choice| {
@@ -31,7 +31,7 @@ impl Choice {
     }
 
     /// Configuration of a scene itself; the first setting where its own is not among those of an axis.
-    pub fn own(axes: &'static [Axis], prepared: &Prepared) -> Choice {
+    pub(crate) fn own(axes: &'static [Axis], prepared: &Prepared) -> Choice {
         let of = |axis: &'static Axis| {
             let own = (axis.own)(prepared).and_then(|name| axis.setting(&name));
             Some((axis, own.or(axis.settings.first())?))
@@ -41,7 +41,7 @@ impl Choice {
 
     /// Replaces some settings, by axis and name.
     #[must_use]
-    pub fn with(&self, settings: &[(&str, &str)]) -> Choice {
+    pub(crate) fn with(&self, settings: &[(&str, &str)]) -> Choice {
         let mut changed = self.clone();
         for (axis, setting) in &mut changed.0 {
             let named = settings.iter().find(|(name, _)| *name == axis.name);
@@ -51,22 +51,22 @@ impl Choice {
     }
 
     /// Names of its settings.
-    pub fn label(&self) -> String {
+    pub(crate) fn label(&self) -> String {
         self.0.iter().map(|(_, setting)| setting.name).collect::<Vec<_>>().join(" ")
     }
 
     /// The settings, by the names of their axes.
-    pub fn settings(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
+    pub(crate) fn settings(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
         self.0.iter().map(|(axis, setting)| (axis.name, setting.name))
     }
 
     /// The overrides that it makes in a scene.
-    pub fn overrides(&self) -> Overrides {
+    pub(crate) fn overrides(&self) -> Overrides {
         self.0.iter().fold(Overrides::new(), |made, (_, setting)| made.and(&(setting.overrides)()))
     }
 
     /// The setting that decides the order of convergence.
-    pub fn scheme(&self) -> Option<&'static Setting> {
+    pub(crate) fn scheme(&self) -> Option<&'static Setting> {
         self.of(Decides::Order).next()
     }
 
@@ -75,12 +75,12 @@ impl Choice {
     }
 
     /// The names of the settings of a kind.
-    pub fn names(&self, decides: Decides) -> Vec<&'static str> {
+    pub(crate) fn names(&self, decides: Decides) -> Vec<&'static str> {
         self.of(decides).map(|setting| setting.name).collect()
     }
 
     /// True if the settings of a kind are those of another choice.
-    pub fn agrees(&self, other: &Choice, decides: Decides) -> bool {
+    pub(crate) fn agrees(&self, other: &Choice, decides: Decides) -> bool {
         self.names(decides) == other.names(decides)
     }
 }

@@ -10,7 +10,7 @@ use stripmine_physics::scene::SceneErrors;
 
 /// Reason why a study has no result.
 #[derive(Debug, thiserror::Error)]
-pub enum StudyError {
+pub(crate) enum StudyError {
     /// The method states no trials.
     #[error(
         "scenes of the method {0} take no time steps, and this study varies the step\n  help: choose a scene of another method"

@@ -13,7 +13,7 @@ use stripmine_physics::method::METHODS;
 use stripmine_physics::signals;
 
 /// Every item, in the order of its chapter.
-pub const ITEMS: &[Item] = &[
+pub(crate) const ITEMS: &[Item] = &[
     Item::of("work-precision", speed_against_accuracy),
     Item::of("stability", where_it_works),
     Item::of("plans", plans_judged),

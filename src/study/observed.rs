@@ -5,19 +5,19 @@ use stripmine_physics::method::{Quantity, Trials};
 
 /// A quantity that has a mean in a run.
 #[derive(Debug)]
-pub struct Watched {
+pub(crate) struct Watched {
     pub name: &'static str,
     /// Place among those observed.
     pub place: usize,
     /// True if it comes and goes with single contacts, so that it has a mean over independent seeds alone.
-    pub fluctuates: bool,
+    pub(crate) fluctuates: bool,
     /// True if it is a velocity: a mean of it means nothing but beside the speeds.
-    pub is_velocity: bool,
+    pub(crate) is_velocity: bool,
 }
 
 /// The balance of energy.
 #[derive(Debug)]
-pub struct Balanced {
+pub(crate) struct Balanced {
     error: usize,
     energies: Vec<usize>,
     inputs: Vec<usize>,
@@ -25,38 +25,38 @@ pub struct Balanced {
 
 impl Balanced {
     /// Error of the balance (energy).
-    pub fn error(&self, values: &[f64]) -> f64 {
+    pub(crate) fn error(&self, values: &[f64]) -> f64 {
         values[self.error]
     }
 
     /// Magnitudes of the energies that move, added up (energy).
-    pub fn energies(&self, values: &[f64]) -> f64 {
+    pub(crate) fn energies(&self, values: &[f64]) -> f64 {
         self.energies.iter().map(|&place| values[place].abs()).sum()
     }
 
     /// The energies added up (energy).
-    pub fn energy(&self, values: &[f64]) -> f64 {
+    pub(crate) fn energy(&self, values: &[f64]) -> f64 {
         self.energies.iter().map(|&place| values[place]).sum()
     }
 
     /// Magnitudes of the work from outside, added up (energy).
-    pub fn inputs(&self, values: &[f64]) -> f64 {
+    pub(crate) fn inputs(&self, values: &[f64]) -> f64 {
         self.inputs.iter().map(|&place| values[place].abs()).sum()
     }
 }
 
 /// Quantities of a scene.
 #[derive(Debug)]
-pub struct Observed {
+pub(crate) struct Observed {
     /// Quantities that have a mean in a run.
-    pub means: Vec<Watched>,
+    pub(crate) means: Vec<Watched>,
     /// The balance of energy, where the method observes one.
     pub balance: Option<Balanced>,
 }
 
 impl Observed {
     /// Quantities that the trials of a method name, among those that it observes.
-    pub fn of(trials: &Trials, quantities: &[Quantity]) -> Result<Observed, UnknownName> {
+    pub(crate) fn of(trials: &Trials, quantities: &[Quantity]) -> Result<Observed, UnknownName> {
         let places = |names: &[&str]| -> Result<Vec<usize>, UnknownName> {
             names.iter().map(|name| find(quantities, name)).collect()
         };

@@ -12,11 +12,11 @@ use stripmine_physics::signals;
 const PROBED: u64 = 4096;
 
 /// A study under way.
-pub struct Runs<'r> {
-    pub subject: &'r Subject,
-    pub trial: Trial<'r>,
+pub(crate) struct Runs<'r> {
+    pub(crate) subject: &'r Subject,
+    pub(crate) trial: Trial<'r>,
     pub journal: &'r Journal,
-    pub meter: &'r Meter<'r>,
+    pub(crate) meter: &'r Meter<'r>,
 }
 
 impl Runs<'_> {
@@ -24,7 +24,7 @@ impl Runs<'_> {
     ///
     /// # Errors
     /// [`StudyError::Interrupted`], of which nothing is kept, and [`StudyError::Journal`].
-    pub fn recall<T: Serialize + DeserializeOwned>(
+    pub(crate) fn recall<T: Serialize + DeserializeOwned>(
         &self,
         key: &str,
         fits: impl FnOnce(&T) -> bool,
@@ -44,7 +44,7 @@ impl Runs<'_> {
     ///
     /// # Errors
     /// [`RunFailure`] if it breaks, or the user asks for the end.
-    pub fn follow(
+    pub(crate) fn follow(
         &self,
         scene: &Prepared,
         purpose: Purpose,
@@ -58,7 +58,7 @@ impl Runs<'_> {
     ///
     /// # Errors
     /// [`RunFailure`] if it breaks, or the user asks for the end.
-    pub fn probe(&self, scene: &Prepared) -> Result<f64, RunFailure> {
+    pub(crate) fn probe(&self, scene: &Prepared) -> Result<f64, RunFailure> {
         self.trial.seconds_of_a_step(scene, self.subject.steps.min(PROBED))
     }
 }

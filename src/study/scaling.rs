@@ -8,33 +8,33 @@ use stripmine_physics::ranks;
 
 /// The name of the whole step among its phases, of what is in no phase, and of what is done beside steps: the start, a row of observables, all particles
 /// as they stand, what a checkpoint keeps.
-pub const WHOLE: &str = "whole step";
+pub(crate) const WHOLE: &str = "whole step";
 const REST: &str = "in no phase";
 const BESIDE: [&str; 4] = ["start", "row", "particles", "snapshot"];
 
 /// A bench on several numbers of threads.
 #[derive(Clone, Debug)]
-pub struct Scaling {
+pub(crate) struct Scaling {
     pub what: &'static str,
     /// Particles that move.
     pub particles: usize,
     /// Steps or events of each repeat.
     pub steps: u64,
     /// Repeats, in turn.
-    pub repeats: usize,
+    pub(crate) repeats: usize,
     /// How: precision, integrator and the like.
     pub settings: Map<String, Value>,
     /// True if the final state has the same bits on all of them.
-    pub same_bits: bool,
+    pub(crate) same_bits: bool,
     /// By rising number of threads in all.
-    pub by_threads: Vec<OfThreads>,
+    pub(crate) by_threads: Vec<OfThreads>,
     /// Each phase of the step, the dearest first, then what is done beside steps.
     pub phases: Vec<Phase>,
 }
 
 /// How many ranks, and threads of each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Crew {
+pub(crate) struct Crew {
     pub ranks: usize,
     /// Threads of each.
     pub threads: usize,
@@ -42,40 +42,40 @@ pub struct Crew {
 
 impl Crew {
     /// Threads in all.
-    pub fn all(self) -> usize {
+    pub(crate) fn all(self) -> usize {
         self.ranks * self.threads
     }
 }
 
 /// The bench on some ranks and threads.
 #[derive(Clone, Debug)]
-pub struct OfThreads {
+pub(crate) struct OfThreads {
     /// How many.
-    pub crew: Crew,
+    pub(crate) crew: Crew,
     /// Work in a second: the best repeat, and the median one.
     pub rate: [f64; 2],
     /// The best rate over that of the fewest threads.
-    pub gain: f64,
+    pub(crate) gain: f64,
 }
 
 /// A phase on all numbers of threads.
 #[derive(Clone, Debug)]
-pub struct Phase {
+pub(crate) struct Phase {
     pub name: String,
     /// Nanoseconds of a particle and step, of the best repeat, or of a particle, once, for what is done beside steps.
-    pub nanoseconds: Vec<f64>,
+    pub(crate) nanoseconds: Vec<f64>,
     /// True if it is done beside steps.
-    pub is_beside: bool,
+    pub(crate) is_beside: bool,
     /// The part of it that does not gain by threads, by Amdahl's law from the fewest and the most threads; below 0 where it gains more than there are
     /// threads. None where there is one number of them, or nothing to be seen.
-    pub serial: Option<f64>,
+    pub(crate) serial: Option<f64>,
 }
 
 /// Measures; repeats are made in turn, so that other programs meet all numbers of threads alike.
 ///
 /// # Errors
 /// [`MeasurementError`] if the scene is bad or breaks while running, or there are no threads.
-pub fn scaling(
+pub(crate) fn scaling(
     measurement: &dyn Fn() -> Result<Measurement, MeasurementError>,
     crews: &[Crew],
     progress: impl Fn(f64) + Sync,
@@ -166,7 +166,7 @@ fn serial(threads: &[usize], times: &[f64]) -> Option<f64> {
 
 impl Scaling {
     /// What a number of threads would gain over one, were the parts that do not gain all that keeps it back; none where that was not seen.
-    pub fn foreseen(&self, threads: usize) -> Option<f64> {
+    pub(crate) fn foreseen(&self, threads: usize) -> Option<f64> {
         let serial = self.phases.iter().find(|phase| phase.name == WHOLE)?.serial?.max(0.0);
         Some(1.0 / (serial + (1.0 - serial) / threads as f64))
     }

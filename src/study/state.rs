@@ -17,11 +17,11 @@ struct Body {
 
 /// The particles that move, by id.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct State(Vec<Body>);
+pub(crate) struct State(Vec<Body>);
 
 impl State {
     /// Of particles as a simulation gives them.
-    pub fn of(particles: &Particles) -> State {
+    pub(super) fn of(particles: &Particles) -> State {
         let mut grains: Vec<&Particle> = particles.grains().iter().collect();
         grains.sort_by_key(|grain| grain.id);
         let body = |grain: &&Particle| {
@@ -32,17 +32,17 @@ impl State {
     }
 
     /// Number of particles that move.
-    pub fn len(&self) -> usize {
+    pub(super) fn len(&self) -> usize {
         self.0.len()
     }
 
     /// The centres (length).
-    pub fn positions(&self) -> impl Iterator<Item = [f64; 2]> {
+    pub(super) fn positions(&self) -> impl Iterator<Item = [f64; 2]> {
         self.0.iter().map(|body| body.position)
     }
 
     /// Root of the mean square distance between the particles of two states, and the largest (length).
-    pub fn distance(&self, other: &State, domain: &Domain) -> [f64; 2] {
+    pub(super) fn distance(&self, other: &State, domain: &Domain) -> [f64; 2] {
         let squares = self.0.iter().zip(&other.0).map(|(a, b)| {
             let way = domain.displacement(a.position, b.position);
             way.iter().map(|part| part * part).sum::<f64>()
@@ -55,14 +55,14 @@ impl State {
     }
 
     /// Root of the mean square speed (length/time).
-    pub fn speed(&self) -> f64 {
+    pub(super) fn speed(&self) -> f64 {
         let squares: f64 =
             self.0.iter().map(|body| body.velocity.iter().map(|part| part * part).sum::<f64>()).sum();
         (squares / self.0.len().max(1) as f64).sqrt()
     }
 
     /// Momentum, and the sum of its magnitudes (mass · length/time).
-    pub fn momentum(&self) -> ([f64; 2], f64) {
+    pub(crate) fn momentum(&self) -> ([f64; 2], f64) {
         let sum = |axis: usize| self.0.iter().map(|body| body.mass * body.velocity[axis]).sum();
         let scale = self.0.iter().map(|body| body.mass * body.velocity[0].hypot(body.velocity[1])).sum();
         ([sum(0), sum(1)], scale)
@@ -70,7 +70,7 @@ impl State {
 
     /// Angular momentum about the corner of the box, and the sum of its parts' magnitudes (mass · length²/time); none in a
     /// box with periodic sides, where it has no meaning.
-    pub fn angular_momentum(&self, domain: &Domain, inertia: Option<f64>) -> Option<(f64, f64)> {
+    pub(crate) fn angular_momentum(&self, domain: &Domain, inertia: Option<f64>) -> Option<(f64, f64)> {
         if domain.periodic().contains(&true) {
             return None;
         }
@@ -85,7 +85,7 @@ impl State {
 
     /// Relative velocity of two particles (length/time) and the distance of their surfaces (length); none unless there are
     /// just two.
-    pub fn pair(&self, domain: &Domain) -> Option<([f64; 2], f64)> {
+    pub(super) fn pair(&self, domain: &Domain) -> Option<([f64; 2], f64)> {
         let [a, b] = self.0.as_slice() else { return None };
         let way = domain.displacement(a.position, b.position);
         let relative = [0, 1].map(|axis| b.velocity[axis] - a.velocity[axis]);
@@ -94,7 +94,7 @@ impl State {
 }
 
 /// Particles with each that moves displaced along x and y by `by` (length), which is given its place among all.
-pub fn displaced(
+pub(crate) fn displaced(
     particles: &Particles,
     domain: &Domain,
     by: impl Fn(usize, &Particle) -> [f64; 2],
@@ -109,7 +109,7 @@ pub fn displaced(
 }
 
 /// A scene whose particles fly for a time longer before what happens first.
-pub fn delayed(scene: &Prepared, late: f64) -> Prepared {
+pub(crate) fn delayed(scene: &Prepared, late: f64) -> Prepared {
     let begin = displaced(scene.particles(), &scene.domain, |_, disc| {
         disc.planar_velocity().map(|part| -late * part)
     });

@@ -7,7 +7,7 @@ use stripmine_physics::method::{Every, Methods, Prepared, Setting, Theory, Trial
 use stripmine_physics::scene::{Overrides, SceneErrors, UNITS};
 
 /// A scene under study.
-pub struct Subject {
+pub(crate) struct Subject {
     case: Case,
     pub trials: &'static Trials,
     pub observed: Observed,
@@ -29,7 +29,7 @@ impl Subject {
     ///
     /// # Errors
     /// [`StudyError`] if the scene is bad, its method states no trials, or it is over before anything is seen of it.
-    pub fn load(what: &str, overrides: &[String], methods: Methods) -> Result<Subject, StudyError> {
+    pub(crate) fn load(what: &str, overrides: &[String], methods: Methods) -> Result<Subject, StudyError> {
         let case = Case::load(what, overrides, methods)?;
         let nothing = StudyError::NothingToVary(case.entry.vocabulary.keys.method);
         let schedule = case.prepared.schedule;
@@ -50,12 +50,17 @@ impl Subject {
     }
 
     /// The scene in a configuration, with a step (time) and further overrides.
-    pub fn prepared_as(&self, choice: &Choice, step: f64, more: &Overrides) -> Result<Prepared, SceneErrors> {
+    pub(crate) fn prepared_as(
+        &self,
+        choice: &Choice,
+        step: f64,
+        more: &Overrides,
+    ) -> Result<Prepared, SceneErrors> {
         self.prepared_with(&self.overrides(choice, step, more))
     }
 
     /// The scene in a configuration, even where theory refuses the step.
-    pub fn prepared_at_any_step(
+    pub(crate) fn prepared_at_any_step(
         &self,
         choice: &Choice,
         step: f64,
@@ -69,22 +74,22 @@ impl Subject {
     }
 
     /// Configuration of the reference, or of the second one (1).
-    pub fn reference(&self, number: usize) -> Choice {
+    pub(crate) fn reference(&self, number: usize) -> Choice {
         self.own.with(self.trials.references[number])
     }
 
     /// The time of the scene (time).
-    pub fn duration(&self) -> f64 {
+    pub(crate) fn duration(&self) -> f64 {
         self.steps as f64 * self.step
     }
 
     /// Order of convergence by theory, for a setting of the axis that decides it.
-    pub fn theory(&self, setting: &Setting) -> Option<Theory> {
+    pub(crate) fn theory(&self, setting: &Setting) -> Option<Theory> {
         (self.trials.theory)(&self.values, &self.prepared, setting)
     }
 
     /// Unit of a dimension, such as `1/time`, in the units that the scene names; none of a pure number.
-    pub fn unit(&self, dimension: &str) -> Option<String> {
+    pub(crate) fn unit(&self, dimension: &str) -> Option<String> {
         let label = self.values.choice(&UNITS).unwrap_or_default();
         match (dimension, label.as_str()) {
             ("", _) => None,
@@ -94,13 +99,13 @@ impl Subject {
     }
 
     /// Quantities that have a mean in a run of the scene.
-    pub fn watched(&self) -> impl Iterator<Item = &Watched> {
+    pub(crate) fn watched(&self) -> impl Iterator<Item = &Watched> {
         let has_seeds = self.prepared.seed.is_some();
         self.observed.means.iter().filter(move |watched| has_seeds || !watched.fluctuates)
     }
 
     /// True if a mean is of a velocity, which means nothing but beside the speeds.
-    pub fn is_velocity(&self, name: &str) -> bool {
+    pub(crate) fn is_velocity(&self, name: &str) -> bool {
         self.observed.means.iter().any(|watched| watched.name == name && watched.is_velocity)
     }
 }

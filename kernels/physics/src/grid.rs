@@ -17,7 +17,7 @@ const WIDEST: f64 = 100.0;
 ///
 /// # Errors
 /// [`GridError`] if the box is none for sectors.
-pub fn sectors_of(domain: &Domain, reach: f64, single: bool, discs: usize) -> Result<Grid, GridError> {
+pub(crate) fn sectors_of(domain: &Domain, reach: f64, single: bool, discs: usize) -> Result<Grid, GridError> {
     let most = SECTORS_A_DISC * discs as f64 + SECTORS_OF_FEW;
     let widest = match single {
         true => (domain.area() / most).sqrt().clamp(2.0 * reach, WIDEST * reach),

@@ -17,6 +17,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#![warn(unreachable_pub)]
 // Where a panic is possible, or an error is dropped, the reason stands beside it.
 #![cfg_attr(
     not(test),
@@ -31,7 +32,7 @@
 
 pub mod averages;
 pub mod domain;
-pub mod grid;
+pub(crate) mod grid;
 pub mod input;
 pub mod io;
 pub mod memory;

@@ -7,7 +7,7 @@ use std::fs;
 use stripmine_kernels::isa::aligned_column::taken;
 
 /// Bytes of the program itself: its text, its threads, its files.
-pub const PROGRAM: f64 = 17.0e6;
+pub(crate) const PROGRAM: f64 = 17.0e6;
 
 /// What a run needs and what there is (bytes).
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -31,7 +31,7 @@ pub struct Foreseen {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct OfRanks {
     /// Where discs are gathered, on the first rank.
-    pub gathered: f64,
+    pub(crate) gathered: f64,
     /// What every rank holds of the whole scene, whatever its own part.
     pub each: f64,
     /// How many rows of all discs there are, and how long one is: each rank has those of its own, rounded up.
@@ -45,7 +45,7 @@ const THREAD: f64 = (2 << 20) as f64 + (4 << 20) as f64;
 
 impl OfRanks {
     /// Of `count` discs in bands, with cells of which every rank has all (bytes), and rows of the discs.
-    pub fn in_bands(count: f64, cells: f64, rows: [f64; 2]) -> OfRanks {
+    pub(crate) fn in_bands(count: f64, cells: f64, rows: [f64; 2]) -> OfRanks {
         // Seven words a disc on their way, and six where they have arrived. Its row, the periods that it has crossed; the rest is what allocators of
         // several threads keep, as measured.
         OfRanks { gathered: 8.0 * (7.0 + 6.0) * count, each: 50.0 * count + cells, rows, threads: 0.0 }
@@ -160,7 +160,7 @@ impl Limit {
 
 /// What a program may still take without pushing others out or being refused: what the system calls available, or what the
 /// shares of its control groups or its own limits leave, if that is less. None where the system does not say.
-pub fn available() -> Option<Available> {
+pub(crate) fn available() -> Option<Available> {
     let meminfo = fs::read_to_string("/proc/meminfo").ok()?;
     let of_machine = Available { bytes: kibibytes(&meminfo, "MemAvailable:")?, by: Limit::Machine };
     let of_groups = left_of_groups().into_iter().map(|bytes| Available { bytes, by: Limit::ControlGroup });

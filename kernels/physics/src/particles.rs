@@ -37,7 +37,7 @@ pub const fn in_space([x, y]: [f64; 2]) -> [f64; 3] {
 }
 
 /// The first two coordinates, all that there is in the plane.
-pub const fn in_plane([x, y, _]: [f64; 3]) -> [f64; 2] {
+pub(crate) const fn in_plane([x, y, _]: [f64; 3]) -> [f64; 2] {
     [x, y]
 }
 
@@ -160,7 +160,7 @@ impl States {
 
     /// Where the grain of a number in the scene's order is, and how fast; others than grains do not count.
     #[inline]
-    pub fn put(&mut self, number: usize, [x, y]: [f64; 2], [vx, vy]: [f64; 2]) {
+    pub(crate) fn put(&mut self, number: usize, [x, y]: [f64; 2], [vx, vy]: [f64; 2]) {
         if let Some(row) = self.rows.get_mut(number) {
             *row = [x, y, vx, vy];
         }
@@ -183,7 +183,7 @@ impl States {
 
     /// Moves each grain by whole sides (length) to where it would be without: by the periods that particles have crossed, which are in
     /// the scene's order, or in that of `left` where some are lost.
-    pub fn unfold(&mut self, sides: [f64; 2], images: &[[i32; 2]], left: Option<&Particles>) {
+    pub(crate) fn unfold(&mut self, sides: [f64; 2], images: &[[i32; 2]], left: Option<&Particles>) {
         for (at, image) in images.iter().enumerate() {
             let number = match left {
                 None => Some(at),
@@ -237,7 +237,7 @@ pub trait PerParticle {
 ///
 /// Two discs that pass each other on parallel lines at the distance (1 − p) s, s the sum of their radii, overlap along the
 /// way 2 s √(1 − (1 − p)²); together they may move as far, each half of it.
-pub fn longest_step(smallest_radius: f64, max_penetration: f64) -> f64 {
+pub(crate) fn longest_step(smallest_radius: f64, max_penetration: f64) -> f64 {
     let closest = 1.0 - max_penetration;
     2.0 * smallest_radius * (1.0 - closest * closest).sqrt()
 }

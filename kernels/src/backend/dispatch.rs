@@ -12,7 +12,7 @@ use std::marker::PhantomData;
 
 /// Lanes of the widest register. Lattice vectors, bands and spans begin and end at multiples of it, so that what they are
 /// depends on no instruction set and no precision.
-pub const GROUP: usize = MAX_LANES;
+pub(crate) const GROUP: usize = MAX_LANES;
 
 macro_rules! define_instruction_sets {
     ($(($variant:ident, $name:literal, $doc:literal)),* $(,)?) => {
@@ -84,7 +84,7 @@ pub trait Task<L: Precision> {
 /// # Errors
 /// [`ProgramError`] if this processor has no such instructions.
 #[inline]
-pub fn dispatch<L: Precision, T: Task<L>>(set: InstructionSet, task: T) -> Result<(), ProgramError> {
+pub(crate) fn dispatch<L: Precision, T: Task<L>>(set: InstructionSet, task: T) -> Result<(), ProgramError> {
     match set {
         InstructionSet::Scalar => task.on(Scalar::default()),
         InstructionSet::Wide => task.on(Wide::default()),

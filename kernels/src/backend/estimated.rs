@@ -104,19 +104,19 @@ impl Estimates for f64 {
 
 /// Registers of the instruction set `S` with lanes of `T` that fuse and estimate; where they are `RAW`, estimates are left as they are.
 #[derive(Clone, Copy)]
-pub struct Estimating<S, T, const RAW: bool>(Pulp<S, T>, S);
+pub(crate) struct Estimating<S, T, const RAW: bool>(Pulp<S, T>, S);
 
 impl<S: Simd, T: Estimates, const RAW: bool> Estimating<S, T, RAW> {
     /// The registers that `simd` proves to exist.
     #[inline(always)]
-    pub fn new(simd: S) -> Self {
+    pub(super) fn new(simd: S) -> Self {
         Estimating(Pulp::new(simd), simd)
     }
 }
 
 /// One register.
 #[derive(Clone, Copy)]
-pub struct Estimated<S: Simd, T: PulpElement, const RAW: bool>(S, Register<S, T>);
+pub(crate) struct Estimated<S: Simd, T: PulpElement, const RAW: bool>(S, Register<S, T>);
 
 impl<S: Simd, T: Estimates, const RAW: bool> Registers for Estimating<S, T, RAW> {
     type Lane = T;

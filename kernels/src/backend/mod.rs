@@ -11,7 +11,8 @@ mod values;
 mod wide;
 
 pub(crate) use dispatch::dispatch_estimating;
-pub use dispatch::{GROUP, InstructionSet, Task, dispatch, dispatch_best, dispatch_native};
+pub(crate) use dispatch::{GROUP, dispatch};
+pub use dispatch::{InstructionSet, Task, dispatch_best, dispatch_native};
 pub use estimated::Estimates;
 pub use precision::Precision;
 pub use pulp::{Pulp, PulpElement};

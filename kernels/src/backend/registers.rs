@@ -6,7 +6,7 @@ use std::hint::select_unpredictable;
 use std::mem::MaybeUninit;
 
 /// The most lanes any register file has: bounds the buffers of lane-by-lane instructions.
-pub const MAX_LANES: usize = 16;
+pub(crate) const MAX_LANES: usize = 16;
 
 /// The entries of an index vector, one a lane.
 pub trait IndexLanes: Copy {

@@ -46,7 +46,7 @@ impl Inertia {
 
 /// F/m + g of one degree of freedom: along x, along y, of the angle. A component of gravity that is 0 costs nothing.
 #[inline(always)]
-pub fn acceleration<V: Vector>(
+pub(crate) fn acceleration<V: Vector>(
     uniform: impl Fn(f64) -> V,
     gravity: [f64; 2],
     freedom: usize,
@@ -91,7 +91,6 @@ fn gathered_acceleration<S: Element, P: Element, M: Machine>(
 pub struct Context<R: Registers> {
     pub(crate) registers: R,
     pub(crate) dt: f64,
-    pub(crate) freedom: usize,
     pub(crate) inverse: R::V,
     pub(crate) normal: R::V,
 }
@@ -107,12 +106,6 @@ impl<R: Registers> Context<R> {
     #[inline(always)]
     pub fn dt(&self) -> f64 {
         self.dt
-    }
-
-    /// The degree of freedom: 0 and 1 along x and y, 2 the angle.
-    #[inline(always)]
-    pub fn freedom(&self) -> usize {
-        self.freedom
     }
 
     /// Inverse mass of the discs, or inverse moment of inertia for the angle.

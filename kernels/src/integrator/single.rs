@@ -50,7 +50,6 @@ impl<C: Scheme> Single<C> {
         Context {
             registers: Scalar::default(),
             dt: self.dt,
-            freedom: 0,
             inverse: 1.0,
             // Theory is of the motion without noise.
             normal: 0.0,

@@ -15,9 +15,9 @@ use std::ptr::NonNull;
 use std::sync::Arc;
 
 /// Bytes of a cache line.
-pub const LINE: usize = 64;
+pub(crate) const LINE: usize = 64;
 /// Bytes after which addresses look alike to a first-level cache.
-pub const ALIKE: usize = 4096;
+pub(crate) const ALIKE: usize = 4096;
 /// Lines from where one row begins to where the next one does, addresses taken as such a cache sees them: an odd number, so
 /// that they spread over all of it.
 const APART: usize = 9;

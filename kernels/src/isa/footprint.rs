@@ -14,7 +14,7 @@ pub struct Access {
     /// Highest shift at which a strided access meets it.
     pub highest: isize,
     /// Whether it is met at unit stride.
-    pub strided: bool,
+    pub(crate) strided: bool,
     /// Whether it is met through an index vector, which is checked element by element.
     pub indexed: bool,
     /// Whether it is written.
@@ -27,13 +27,13 @@ pub struct Footprint(Vec<Access>);
 
 impl Footprint {
     /// One entry an array and element type, in order of first use.
-    pub fn accesses(&self) -> &[Access] {
+    pub(crate) fn accesses(&self) -> &[Access] {
         &self.0
     }
 
     /// Whether elements are independent: what is written is met only at the own place, so that parts of the elements may
     /// run at once.
-    pub fn is_elementwise(&self) -> bool {
+    pub(crate) fn is_elementwise(&self) -> bool {
         self.0
             .iter()
             .filter(|access| access.writes)

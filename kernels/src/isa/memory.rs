@@ -60,7 +60,7 @@ pub enum ProgramError {
 
 /// One slice as the machine sees it.
 #[derive(Clone, Copy)]
-pub struct Column<T> {
+pub(crate) struct Column<T> {
     origin: *mut T,
     length: usize,
     writable: bool,

@@ -70,7 +70,7 @@ pub fn seed_of_state(seed: u64, state: impl IntoIterator<Item = [u64; 2]>) -> u6
 
 /// Philox 4x32 with ten rounds (Salmon et al., SC11): four random words from a counter of four and a key of two.
 #[inline(always)]
-pub fn philox4x32(mut counter: [u32; 4], mut key: [u32; 2]) -> [u32; 4] {
+pub(crate) fn philox4x32(mut counter: [u32; 4], mut key: [u32; 2]) -> [u32; 4] {
     for _ in 0..10 {
         let product = |multiplier: u64, word: u32| multiplier * u64::from(word);
         let (even, odd) = (product(0xD251_1F53, counter[0]), product(0xCD9E_8D57, counter[2]));

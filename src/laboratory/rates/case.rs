@@ -14,24 +14,24 @@ use stripmine_physics::scene::Overrides;
 
 /// Work that is no run of a scene: its name, and the function that measures it.
 #[derive(Debug)]
-pub struct Own {
+pub(crate) struct Own {
     /// Name by which the measuring process finds it.
     pub name: &'static str,
     /// Measures the work that some parameters describe.
-    pub measure: fn(&serde_json::Value) -> Result<Reading, StudyError>,
+    pub(crate) measure: fn(&serde_json::Value) -> Result<Reading, StudyError>,
 }
 
 /// The parameters that a measuring process was given.
 ///
 /// # Errors
 /// [`StudyError::Parameters`] where they are of another kind.
-pub fn given<T: DeserializeOwned>(parameters: &serde_json::Value) -> Result<T, StudyError> {
+pub(crate) fn given<T: DeserializeOwned>(parameters: &serde_json::Value) -> Result<T, StudyError> {
     T::deserialize(parameters).map_err(StudyError::Parameters)
 }
 
 /// One case of a grid.
 #[derive(Clone, Debug)]
-pub struct Case {
+pub(crate) struct Case {
     pub(super) labels: Vec<(String, Cell)>,
     pub(super) task: Task,
     /// Threads, where wall time counts.
@@ -60,12 +60,12 @@ pub(super) enum Task {
 
 impl Case {
     /// A scene that is timed over some steps, after others that are not.
-    pub fn steps(preset: &str, overrides: &Overrides, warm_up: u64, steps: u64) -> Case {
+    pub(crate) fn steps(preset: &str, overrides: &Overrides, warm_up: u64, steps: u64) -> Case {
         Case::scene(preset, overrides, false, [warm_up, steps])
     }
 
     /// A scene that is timed over some events, after others that are not.
-    pub fn events(preset: &str, overrides: &Overrides, warm_up: u64, events: u64) -> Case {
+    pub(crate) fn events(preset: &str, overrides: &Overrides, warm_up: u64, events: u64) -> Case {
         Case::scene(preset, overrides, true, [warm_up, events])
     }
 
@@ -79,21 +79,21 @@ impl Case {
     }
 
     /// Work of another kind.
-    pub fn own(own: &'static Own, parameters: serde_json::Value) -> Case {
+    pub(crate) fn own(own: &'static Own, parameters: serde_json::Value) -> Case {
         let task = Task::Own { name: own.name.to_owned(), parameters, own: Some(own) };
         Case { labels: vec![], task, threads: None }
     }
 
     /// Adds a value by which the case differs from the others: a column of the frame, and a part of its name.
     #[must_use]
-    pub fn label(mut self, heading: &str, value: impl Into<Cell>) -> Case {
+    pub(crate) fn label(mut self, heading: &str, value: impl Into<Cell>) -> Case {
         self.labels.push((heading.to_owned(), value.into()));
         self
     }
 
     /// The case with more steps or events, until they have taken at least so many seconds.
     #[must_use]
-    pub fn for_seconds(mut self, least: f64) -> Case {
+    pub(crate) fn for_seconds(mut self, least: f64) -> Case {
         if let Task::Scene { seconds, .. } = &mut self.task {
             *seconds = least;
         }
@@ -102,7 +102,7 @@ impl Case {
 
     /// The case on a number of threads, timed by the clock on the wall. A case without is timed by the processor, on one thread.
     #[must_use]
-    pub fn on_threads(self, threads: usize) -> Case {
+    pub(crate) fn on_threads(self, threads: usize) -> Case {
         Case { threads: Some(threads), ..self }
     }
 
@@ -181,7 +181,7 @@ fn timed(
 
 /// One process's measurement of a case.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct Reading {
+pub(crate) struct Reading {
     /// Work done: particle-steps, events, interactions.
     pub work: f64,
     /// Seconds that it took.

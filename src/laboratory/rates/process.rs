@@ -14,7 +14,7 @@ use stripmine_physics::signals::INTERRUPTED;
 pub(super) type Failed = (Option<Class>, String);
 
 /// Verb of the measuring process.
-pub const VERB: &str = "measure-cases";
+pub(crate) const VERB: &str = "measure-cases";
 
 /// Measures some cases in a new process of the program, in their order.
 pub(super) fn measure(program: &Path, cases: &[&Case], heard: &mut dyn FnMut(Reading)) -> Result<(), Failed> {
@@ -80,7 +80,7 @@ fn failure(status: ExitStatus, words: &str) -> Failed {
 ///
 /// # Errors
 /// [`Failure`] of a case; standard input that names no cases.
-pub fn serve(all: &[&Own]) -> Result<(), Failure> {
+pub(crate) fn serve(all: &[&Own]) -> Result<(), Failure> {
     let mut line = String::new();
     let read = io::stdin().lock().read_line(&mut line);
     let cases = read.and_then(|_| Ok(serde_json::from_str::<Vec<(Task, Option<usize>)>>(&line)?));

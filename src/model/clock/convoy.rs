@@ -9,7 +9,7 @@ use stripmine_kernels::isa::{Array, OpClass};
 
 /// How loads and stores find memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Memory {
+pub(crate) enum Memory {
     /// As many ports as instructions, an element a clock period each.
     NeverBusy,
     /// The ports and rates that the machine states.
@@ -18,11 +18,11 @@ pub enum Memory {
 
 /// Instructions that run at once.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Convoy {
+pub(crate) struct Convoy {
     /// Clock periods until the last of its units delivers its first element.
-    pub start_up: f64,
+    pub(crate) start_up: f64,
     /// Clock periods an element: those of its slowest unit.
-    pub chime: f64,
+    pub(crate) chime: f64,
     /// Instructions, those of expansions each for itself.
     pub instructions: usize,
 }
@@ -33,7 +33,7 @@ pub struct Convoy {
 /// Registers are as many as the program needs and never in the way; only true dependences count. An expansion is a chain
 /// of dependent steps, its classes spread evenly over it: machine files say how many of each, not in which order. What a
 /// convoy has stored is not loaded by the same convoy.
-pub fn convoys(machine: &MachineModel, order: &[Outline], memory: Memory) -> Vec<Convoy> {
+pub(crate) fn convoys(machine: &MachineModel, order: &[Outline], memory: Memory) -> Vec<Convoy> {
     let mut issue = Issue { machine, memory, convoys: vec![], used: HashMap::new(), results: HashMap::new() };
     for outline in order {
         issue.instruction(outline);

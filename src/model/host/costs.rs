@@ -9,13 +9,13 @@ use stripmine_kernels::isa::{Array, OpClass};
 /// Prices of a kind of execution on lanes of one element type (ns).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Costs {
+pub(crate) struct Costs {
     /// A run of a program.
     pub run: f64,
     /// The start of a pass of the interpreter.
     pub start: f64,
     /// An operation of an element.
-    pub operation: f64,
+    pub(crate) operation: f64,
     /// The same through an index vector, in addition.
     pub indexed: f64,
     /// A byte, at each of the footprints.
@@ -27,29 +27,29 @@ pub struct Costs {
 #[serde(deny_unknown_fields)]
 pub struct LaneCosts {
     /// Bytes of an element in a register of each file: numbers, predicates, indices.
-    pub register_bytes: [f64; 3],
+    pub(crate) register_bytes: [f64; 3],
     /// Lanes of a hardware register.
     pub lanes: usize,
     /// Prices of the interpreter, pass by pass.
-    pub interpreted: Costs,
+    pub(crate) interpreted: Costs,
     /// Prices of a compiled loop.
-    pub chained: Costs,
+    pub(crate) chained: Costs,
 }
 
 /// What a run of a program is charged for: a run, starts of passes, operations of elements, those through an index vector, and bytes at
 /// each footprint.
-pub type Charges = Vec<f64>;
+pub(crate) type Charges = Vec<f64>;
 
 impl Costs {
     /// Prices in the order of `Charges`.
-    pub fn of(prices: &[f64]) -> Costs {
+    pub(crate) fn of(prices: &[f64]) -> Costs {
         let [run, start, operation, indexed] =
             std::array::from_fn(|at| prices.get(at).copied().unwrap_or(0.0));
         Costs { run, start, operation, indexed, bytes: prices.iter().skip(4).copied().collect() }
     }
 
     /// Nanoseconds of what is charged.
-    pub fn total(&self, charges: &Charges) -> f64 {
+    pub(crate) fn total(&self, charges: &Charges) -> f64 {
         let prices = [self.run, self.start, self.operation, self.indexed]
             .into_iter()
             .chain(self.bytes.iter().copied());
@@ -58,7 +58,7 @@ impl Costs {
 }
 
 /// What a run of a program over `n` elements is charged for, on registers of this shape, among the arrays of its step.
-pub fn charges(
+pub(crate) fn charges(
     outlines: &Outlines,
     (n, execution): (usize, Execution),
     (register_bytes, lanes): ([f64; 3], usize),
@@ -109,7 +109,7 @@ const LINE: f64 = 64.0;
 
 /// The arrays of a step by name and element type, and how many bytes each has.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Around(BTreeMap<(Array, &'static str), f64>);
+pub(crate) struct Around(BTreeMap<(Array, &'static str), f64>);
 
 /// Bytes that are moved, and how many are gone over before they are visited again.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -120,7 +120,7 @@ struct Moved {
 
 impl Around {
     /// Of programs that run one after the other over vectors of these lengths.
-    pub fn of_step(programs: &[(&Outlines, usize)]) -> Around {
+    pub(crate) fn of_step(programs: &[(&Outlines, usize)]) -> Around {
         // What is visited element by element somewhere is as long as there; an index vector says nothing about it.
         let [mut direct, mut indexed]: [BTreeMap<_, f64>; 2] = Default::default();
         for (outlines, n) in programs {

@@ -7,7 +7,7 @@ use stripmine_kernels::InstructionSet;
 use stripmine_physics::input::InputErrors;
 
 /// The version of the file format that this program reads.
-pub const FORMAT: u32 = 15;
+pub(crate) const FORMAT: u32 = 15;
 const KIND: Kind<HostModel> =
     Kind { format: FORMAT, remedy: Some("calibrate again"), wrong, completed: HostModel::checked };
 /// Above every number of a host file: with larger ones a sum of all that a step does might not be finite.

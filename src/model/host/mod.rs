@@ -8,8 +8,11 @@ mod model;
 mod out_of_range;
 mod rates;
 
-pub use costs::{Around, Costs, LaneCosts, charges};
-pub use file::{FORMAT, default_model};
-pub use model::{HostModel, Measured};
-pub use out_of_range::OutOfRange;
-pub use rates::{Amounts, MAKING, Rates, Units};
+pub use costs::LaneCosts;
+pub(crate) use costs::{Around, Costs, charges};
+pub(crate) use file::FORMAT;
+pub use file::default_model;
+pub use model::HostModel;
+pub(crate) use model::Measured;
+pub(crate) use out_of_range::OutOfRange;
+pub(crate) use rates::{Amounts, MAKING, Rates, Units};

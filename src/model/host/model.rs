@@ -12,7 +12,7 @@ use stripmine_physics::number::{counted, significant};
 /// How the numbers were measured.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Measured {
+pub(crate) struct Measured {
     /// In which state the machine was: quiet, busy, how noisy, or unknown.
     pub state: String,
     /// Load average of the last minute before it began; none where the system does not say.
@@ -25,13 +25,13 @@ pub struct Measured {
     pub spread: Option<f64>,
     /// Median, over all points, of how far the two halves of the measurement differ; none where most points have too few.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub disagreement: Option<f64>,
+    pub(crate) disagreement: Option<f64>,
     /// Shortest vectors.
-    pub shortest: usize,
+    pub(crate) shortest: usize,
     /// Longest vectors.
-    pub longest: usize,
+    pub(crate) longest: usize,
     /// Median deviation of the programs from the prices that were fitted to them.
-    pub residual: f64,
+    pub(crate) residual: f64,
 }
 
 impl Measured {
@@ -39,7 +39,11 @@ impl Measured {
     const UNSTEADY: f64 = 0.05;
 
     /// The state of a machine with so many cores and this load, whose samples lie so far apart, and the halves of whose measurement so.
-    pub fn state_of([spread, disagreement]: [Option<f64>; 2], load: Option<f64>, cores: usize) -> String {
+    pub(crate) fn state_of(
+        [spread, disagreement]: [Option<f64>; 2],
+        load: Option<f64>,
+        cores: usize,
+    ) -> String {
         // A core is free for what is measured, or half of the only one.
         let bearable = (cores as f64 - 1.0).max(0.5);
         let busy = load.filter(|load| *load > bearable).map(|load| {
@@ -64,7 +68,7 @@ impl Measured {
     }
 
     /// Whether it was quiet.
-    pub fn was_quiet(&self) -> bool {
+    pub(crate) fn was_quiet(&self) -> bool {
         self.state == "quiet"
     }
 }
@@ -74,15 +78,15 @@ impl Measured {
 #[serde(deny_unknown_fields)]
 pub struct HostModel {
     /// Version of the file format.
-    pub format: u32,
+    pub(crate) format: u32,
     /// The processor and the platform.
     pub title: String,
     /// The instructions it was measured with.
-    pub instruction_set: String,
+    pub(crate) instruction_set: String,
     /// Footprints at which a byte has a price, rising; between two of them it is in between, by the logarithm (bytes).
-    pub footprints: Vec<f64>,
+    pub(crate) footprints: Vec<f64>,
     /// How it was measured.
-    pub measured: Measured,
+    pub(crate) measured: Measured,
     /// Prices of programs by the element type of the lanes.
     pub programs: BTreeMap<String, LaneCosts>,
     /// Fewest and most discs of the steps that rates were fitted to.
@@ -93,7 +97,7 @@ pub struct HostModel {
 
 impl HostModel {
     /// By what the host differs from another one, in words; none where it is the same processor with the same instructions.
-    pub fn differs_from(&self, title: &str, instruction_set: &str) -> Option<String> {
+    pub(crate) fn differs_from(&self, title: &str, instruction_set: &str) -> Option<String> {
         ((&*self.title, &*self.instruction_set) != (title, instruction_set)).then(|| {
             format!(
                 "the model is of {} by {}, and this host is {title}, which measures by {instruction_set}",
@@ -106,7 +110,7 @@ impl HostModel {
     ///
     /// # Errors
     /// [`OutOfRange::Length`] where they do not.
-    pub fn admits(&self, n: usize) -> Result<(), OutOfRange> {
+    pub(crate) fn admits(&self, n: usize) -> Result<(), OutOfRange> {
         let Measured { shortest, longest, .. } = self.measured;
         if n < shortest || n > longest {
             return Err(OutOfRange::Length { n, shortest, longest });
@@ -118,7 +122,7 @@ impl HostModel {
     ///
     /// # Errors
     /// [`OutOfRange`] where nothing was measured that could say.
-    pub fn rated(
+    pub(crate) fn rated(
         &self,
         (method, name, precision): (&str, &str, &str),
         amounts: &Amounts,
@@ -135,7 +139,7 @@ impl HostModel {
     ///
     /// # Errors
     /// [`OutOfRange`] where nothing was measured that could say.
-    pub fn program(
+    pub(crate) fn program(
         &self,
         outlines: &Outlines,
         n: usize,

@@ -2,7 +2,7 @@
 
 /// Why there is no prediction.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum OutOfRange {
+pub(crate) enum OutOfRange {
     /// Vectors longer or shorter than those that were measured.
     #[error(
         "vectors of {n} elements lie outside the calibrated range of {shortest} to {longest}: calibrate on them, or ask \

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 /// How much there is to do in a step: measured in a run, or estimated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Amounts {
+pub(crate) struct Amounts {
     /// Steps, one: what a phase takes even without work.
     pub steps: f64,
     /// Discs.
@@ -14,39 +14,44 @@ pub struct Amounts {
     /// Cells of the lattice; none for lists.
     pub cells: f64,
     /// Entries of lists; on the lattice the occupied cells in half the mask, as if discs lay at random.
-    pub candidates: f64,
+    pub(crate) candidates: f64,
     /// Pairs that the law is asked about.
     pub contacts: f64,
     /// How often lists are rebuilt, on average.
-    pub makings: f64,
+    pub(crate) makings: f64,
     /// Discs whose lists are rebuilt, on average.
-    pub remade: f64,
+    pub(crate) remade: f64,
     /// Entries of the lists that are rebuilt, on average.
-    pub relisted: f64,
+    pub(crate) relisted: f64,
 }
 
 /// A number for each of the [`Amounts`].
-pub type Units = [f64; 8];
+pub(crate) type Units = [f64; 8];
 
 impl Amounts {
     /// The amounts by unit.
-    pub fn values(&self) -> Units {
+    pub(crate) fn values(&self) -> Units {
         let Amounts { steps, discs, cells, candidates, contacts, makings, remade, relisted } = *self;
         [steps, discs, cells, candidates, contacts, makings, remade, relisted]
     }
 }
 
 /// Nanoseconds of each unit in the phases of a method, by phase and precision.
-pub type Rates = BTreeMap<String, BTreeMap<String, Units>>;
+pub(crate) type Rates = BTreeMap<String, BTreeMap<String, Units>>;
 
 /// The part of the phase `index` in which lists are made.
-pub const MAKING: &str = "making lists";
+pub(crate) const MAKING: &str = "making lists";
 
 /// Nanoseconds of a phase.
 ///
 /// # Errors
 /// [`OutOfRange`] where the precision was not measured.
-pub fn phase(rates: &Rates, phase: &str, precision: &str, amounts: &Amounts) -> Result<f64, OutOfRange> {
+pub(crate) fn phase(
+    rates: &Rates,
+    phase: &str,
+    precision: &str,
+    amounts: &Amounts,
+) -> Result<f64, OutOfRange> {
     let of = |units: &BTreeMap<String, Units>| {
         let units = units.get(precision);
         let units = units.ok_or_else(|| OutOfRange::NotMeasured(format!("precision {precision}")))?;

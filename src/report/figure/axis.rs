@@ -20,7 +20,7 @@ const PARTS: [f64; 6] = [10.0, 5.0, 2.0, 1.0, 0.5, 0.2];
 
 /// An axis with its ends.
 #[derive(Clone, Debug)]
-pub struct Span {
+pub(crate) struct Span {
     /// Quantity and unit.
     pub heading: String,
     /// Positions of numbers.
@@ -30,11 +30,11 @@ pub struct Span {
 }
 
 /// A mark of an axis: its place as a part of the axis, and its label, empty for a small mark.
-pub type Mark = (f64, String);
+pub(crate) type Mark = (f64, String);
 
 impl Span {
     /// Fits an axis to values, or takes the ends that it has.
-    pub fn new(axis: &Axis, values: impl Iterator<Item = f64>) -> Result<Span, String> {
+    pub(super) fn new(axis: &Axis, values: impl Iterator<Item = f64>) -> Result<Span, String> {
         let ends = match (&axis.scale, axis.limits) {
             (Scale::Names(names), _) => [-0.5, names.len() as f64 - 0.5],
             (_, Some(limits)) => limits,
@@ -53,20 +53,20 @@ impl Span {
     }
 
     /// Returns the place of a value as a part of the axis. Values without a place on a logarithmic axis lie infinitely far below it.
-    pub fn part(&self, value: f64) -> f64 {
+    pub(super) fn part(&self, value: f64) -> f64 {
         let [low, high] = self.even_ends();
         ((if self.is_logarithmic() { log10(value.max(0.0)) } else { value }) - low) / (high - low)
     }
 
     /// Returns the value at a part of the axis.
-    pub fn value(&self, part: f64) -> f64 {
+    pub(super) fn value(&self, part: f64) -> f64 {
         let [low, high] = self.even_ends();
         let value = low + part * (high - low);
         if self.is_logarithmic() { pow(10.0, value) } else { value }
     }
 
     /// Describes the axis between two places of a picture for scripts: scale, places of its ends, ends, heading and names.
-    pub fn described(&self, from: f64, to: f64) -> String {
+    pub(crate) fn described(&self, from: f64, to: f64) -> String {
         let (scale, names) = match &self.scale {
             Scale::Linear => ("linear", String::new()),
             Scale::Logarithmic => ("log", String::new()),
@@ -77,7 +77,7 @@ impl Span {
     }
 
     /// Returns the marks of the axis with as many labels as its length allows. `room` is the length that a label needs.
-    pub fn marks(&self, length: f64, room: impl Fn(&str) -> f64) -> Vec<Mark> {
+    pub(crate) fn marks(&self, length: f64, room: impl Fn(&str) -> f64) -> Vec<Mark> {
         if let Scale::Names(names) = &self.scale {
             return (0..).zip(names).map(|(i, name)| (self.part(f64::from(i)), name.clone())).collect();
         }

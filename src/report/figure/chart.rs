@@ -42,7 +42,7 @@ impl Chart {
     }
 
     /// Marks a part of the plane.
-    pub fn band(mut self, band: Band) -> Chart {
+    pub(crate) fn band(mut self, band: Band) -> Chart {
         self.bands.push(band);
         self
     }
@@ -59,7 +59,7 @@ pub struct Axis {
 
 impl Axis {
     /// Makes a linear axis. Counts and ratios have no unit.
-    pub fn linear(label: &str, unit: Option<&str>) -> Axis {
+    pub(crate) fn linear(label: &str, unit: Option<&str>) -> Axis {
         Axis { label: label.to_owned(), unit: unit.map(str::to_owned), scale: Scale::Linear, limits: None }
     }
 
@@ -74,7 +74,7 @@ impl Axis {
     }
 
     /// Sets the limits.
-    pub fn between(self, ends: [f64; 2]) -> Axis {
+    pub(crate) fn between(self, ends: [f64; 2]) -> Axis {
         Axis { limits: Some(ends), ..self }
     }
 
@@ -98,16 +98,16 @@ pub(crate) enum Scale {
 pub(crate) struct Series {
     /// Empty for no entry in the legend.
     pub name: String,
-    pub style: Style,
+    pub(crate) style: Style,
     /// Index of a colour in the palette; series that belong together share one.
-    pub hue: usize,
+    pub(crate) hue: usize,
     /// By increasing x where they are joined.
-    pub points: Vec<Point>,
+    pub(crate) points: Vec<Point>,
 }
 
 impl Series {
     /// Makes a series of points.
-    pub fn new(
+    pub(crate) fn new(
         name: impl Into<String>,
         style: Style,
         hue: usize,
@@ -166,7 +166,7 @@ impl From<(f64, f64, [f64; 2])> for Point {
 /// Bands between values of x are grey, such as densities that no configuration has; those between values of y are a light ground, such as
 /// errors that are small enough.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Band {
+pub(crate) struct Band {
     pub(crate) label: String,
     /// Equal ones make a line.
     pub(crate) ends: [f64; 2],
@@ -175,12 +175,12 @@ pub struct Band {
 
 impl Band {
     /// Marks the plane between two values of x.
-    pub fn of_x(label: &str, ends: [f64; 2]) -> Band {
+    pub(crate) fn of_x(label: &str, ends: [f64; 2]) -> Band {
         Band { label: label.to_owned(), ends, along: Along::X }
     }
 
     /// Marks the plane between two values of y.
-    pub fn of_y(label: &str, ends: [f64; 2]) -> Band {
+    pub(crate) fn of_y(label: &str, ends: [f64; 2]) -> Band {
         Band { along: Along::Y, ..Band::of_x(label, ends) }
     }
 

@@ -11,7 +11,7 @@ pub struct FigureError {
     /// Name of the figure.
     pub figure: String,
     /// Place, value and reason.
-    pub problem: String,
+    pub(crate) problem: String,
 }
 
 impl Reported for FigureError {
@@ -27,7 +27,7 @@ const SIDES: [f64; 2] = [100.0, 50_000.0];
 const FARTHEST: f64 = 1e6;
 
 /// Finds the first fault of a picture.
-pub fn check(picture: &Picture) -> Result<(), String> {
+pub(crate) fn check(picture: &Picture) -> Result<(), String> {
     match picture {
         Picture::Charts(panels) => {
             let first = &panels.first().ok_or("there is nothing in it")?.1;
@@ -137,7 +137,7 @@ fn interval(place: &str, ends: [f64; 2]) -> Result<(), String> {
 }
 
 /// Describes ends that are no interval.
-pub fn no_interval(place: &str, ends: [f64; 2]) -> String {
+pub(crate) fn no_interval(place: &str, ends: [f64; 2]) -> String {
     let [low, high] = ends.map(|end| significant(end, 6));
     format!("{place} goes from {low} to {high}, which is not upwards or too far")
 }

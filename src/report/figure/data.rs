@@ -8,7 +8,7 @@ use crate::report::{Cell, Table};
 ///
 /// A chart gives a row for each point: its series, x, y, and the ends of its spread; panels have their name before it. A map gives a
 /// row for each of its rows from the bottom: the middle of the row, and its values under the middles of the columns.
-pub fn data(figure: &Figure) -> Option<Table> {
+pub(crate) fn data(figure: &Figure) -> Option<Table> {
     let (columns, rows) = match &figure.picture {
         Picture::Charts(panels) => {
             let (mut columns, rows) =
@@ -35,7 +35,7 @@ fn data_name(figure: &Figure) -> String {
 }
 
 /// Returns the name of the file with a figure's data, without its folder; none if it has no data.
-pub fn data_file(figure: &Figure) -> Option<String> {
+pub(crate) fn data_file(figure: &Figure) -> Option<String> {
     let has_data = match &figure.picture {
         Picture::Drawing(_) => false,
         Picture::Drawn { has_data, .. } => *has_data,

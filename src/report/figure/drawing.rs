@@ -16,7 +16,7 @@ const SMALL: f64 = 2.5;
 const ROW: i64 = 120;
 
 /// Draws shapes. Words and lines grow with a wide drawing: it is shown at a smaller scale.
-pub fn draw(title: &str, drawing: &Drawing) -> Svg {
+pub(crate) fn draw(title: &str, drawing: &Drawing) -> Svg {
     let zoom = (drawing.width / style::ZOOMED).max(1.0);
     let margin = style::MARGIN * zoom;
     let [[left, low], [right, high]] = drawing.window;

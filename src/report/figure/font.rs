@@ -3,9 +3,9 @@
 use super::style;
 
 /// Height of a capital letter, in sizes of the letters.
-pub const CAPITAL: f64 = 0.729;
+pub(crate) const CAPITAL: f64 = 0.729;
 /// Depth of letters below their line, in sizes of the letters.
-pub const DESCENT: f64 = 0.24;
+pub(crate) const DESCENT: f64 = 0.24;
 
 /// Letters by their width in hundredths of their size, rounded up to the next class. Any other letter may be as wide as [`WIDEST`].
 const WIDTHS: [(u32, &str); 10] = [
@@ -23,24 +23,24 @@ const WIDTHS: [(u32, &str); 10] = [
 const WIDEST: u32 = 110;
 
 /// Returns the width of words in one line, never less than the true one.
-pub fn width(words: &str, size: f64) -> f64 {
+pub(crate) fn width(words: &str, size: f64) -> f64 {
     let letter = |letter: char| WIDTHS.iter().find(|it| it.1.contains(letter)).map_or(WIDEST, |it| it.0);
     f64::from(words.chars().map(letter).sum::<u32>()) * size / 100.0
 }
 
 /// Returns the width of the widest of some lines.
-pub fn widest<'a>(lines: impl IntoIterator<Item = &'a String>, size: f64) -> f64 {
+pub(crate) fn widest<'a>(lines: impl IntoIterator<Item = &'a String>, size: f64) -> f64 {
     lines.into_iter().map(|line| width(line, size)).fold(0.0, f64::max)
 }
 
 /// Returns the height of a number of lines, from the top of the first one's capitals to the depth of the last one's letters.
-pub fn height(lines: usize, size: f64) -> f64 {
+pub(crate) fn height(lines: usize, size: f64) -> f64 {
     let lines = lines as f64;
     if lines == 0.0 { 0.0 } else { size * (CAPITAL + (lines - 1.0) * style::LINE_SPACING + DESCENT) }
 }
 
 /// Cuts words into lines that are no wider than a width; a single word may be. A no-break space is within a word.
-pub fn wrap(words: &str, size: f64, most: f64) -> Vec<String> {
+pub(crate) fn wrap(words: &str, size: f64, most: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     let words = words.split(|c: char| c.is_whitespace() && c != '\u{a0}').filter(|word| !word.is_empty());
     for word in words {

@@ -15,7 +15,7 @@ const THICKNESS: f64 = 16.0;
 const DIGITS: usize = 2;
 
 /// Draws a map.
-pub fn draw(title: &str, map: &Map) -> Result<Svg, String> {
+pub(crate) fn draw(title: &str, map: &Map) -> Result<Svg, String> {
     let [x, y] = [&map.x, &map.y].map(|axis| Span::new(axis, std::iter::empty()));
     let (x, y) = (x?, y?);
     let shades = shades(&map.value, map.rows.iter().flatten().copied().filter(|value| !value.is_nan()))?;
@@ -106,7 +106,7 @@ fn numbers(svg: &mut Svg, map: &Map, shades: &Span, plane: &Plane) {
 }
 
 /// Adds a bar with all shades below a picture: its marks, or its ends and its middle where it is short, and its heading.
-pub fn bar(svg: &mut Svg, shades: &Span, zoom: f64) {
+pub(crate) fn bar(svg: &mut Svg, shades: &Span, zoom: f64) {
     let [picture, top] = svg.size;
     let (size, margin, is_signed) = (style::LABEL * zoom, style::MARGIN * zoom, is_signed(shades));
     // Numbers at the bar's ends stand out.

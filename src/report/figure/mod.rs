@@ -12,15 +12,18 @@ mod picture;
 mod plane;
 mod plot;
 mod series;
-pub mod style;
+pub(crate) mod style;
 #[cfg(test)]
 mod tests;
 mod writer;
 
+pub(crate) use chart::Band;
 pub(crate) use chart::{Along, Scale, Series};
-pub use chart::{Axis, Band, Chart, Point, Style};
+pub use chart::{Axis, Chart, Point, Style};
 pub use check::FigureError;
-pub use data::{data, data_file};
-pub use output::{png, svg};
-pub use picture::{Drawing, Figure, Map, Picture};
+pub(crate) use data::{data, data_file};
+pub(crate) use output::png;
+pub use output::svg;
+pub use picture::Figure;
+pub(crate) use picture::{Drawing, Map, Picture};
 pub(crate) use picture::{Guide, Shape, Tint};

@@ -38,7 +38,7 @@ pub fn svg(figure: &Figure) -> Result<String, FigureError> {
 ///
 /// # Errors
 /// When the figure cannot be drawn, or has too many dots.
-pub fn png(figure: &Figure) -> Result<Vec<u8>, FigureError> {
+pub(crate) fn png(figure: &Figure) -> Result<Vec<u8>, FigureError> {
     let failed = |problem: String| FigureError { figure: figure.name.clone(), problem };
     let tree = tree(&svg(figure)?).map_err(failed)?;
     let size = tree.size();

@@ -13,7 +13,7 @@ pub struct Figure {
 
 /// The content of a figure.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Picture {
+pub(crate) enum Picture {
     /// Curves and points over two axes: a chart without a name, or several beside each other, on the same axes and with one legend.
     Charts(Vec<(String, Chart)>),
     /// A number for each place of a grid, as a colour.
@@ -31,7 +31,7 @@ pub enum Picture {
 
 impl Picture {
     /// Returns the figure of this picture, without a caption.
-    pub fn figure(self, name: impl Into<String>, title: impl Into<String>) -> Figure {
+    pub(crate) fn figure(self, name: impl Into<String>, title: impl Into<String>) -> Figure {
         Figure { name: name.into(), title: title.into(), caption: String::new(), picture: self }
     }
 }
@@ -45,7 +45,7 @@ impl Chart {
 
 impl Figure {
     /// Sets the caption.
-    pub fn caption(self, caption: impl Into<String>) -> Figure {
+    pub(crate) fn caption(self, caption: impl Into<String>) -> Figure {
         Figure { caption: caption.into(), ..self }
     }
 
@@ -82,7 +82,7 @@ impl Figure {
 ///
 /// The limits of its axes are the outer edges of the outermost cells; an axis of names needs none.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Map {
+pub(crate) struct Map {
     pub(crate) x: Axis,
     pub(crate) y: Axis,
     /// The quantity that colours show.
@@ -93,7 +93,7 @@ pub struct Map {
 
 /// A drawing in its own coordinates: x to the right, y upwards.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Drawing {
+pub(crate) struct Drawing {
     /// Lower left and upper right corner of the visible part.
     pub(crate) window: [[f64; 2]; 2],
     /// Width of the picture (pixels); its height follows from the window.

@@ -14,7 +14,7 @@ const GAP: f64 = 14.0;
 const LINE: f64 = style::LABEL * style::LINE_SPACING;
 
 /// A plane between two axes.
-pub struct Plane {
+pub(crate) struct Plane {
     /// The horizontal axis.
     pub x: Span,
     /// The vertical axis.
@@ -27,13 +27,13 @@ pub struct Plane {
 
 impl Plane {
     /// Returns the place of a point on the picture.
-    pub fn place(&self, x: f64, y: f64) -> [f64; 2] {
+    pub(super) fn place(&self, x: f64, y: f64) -> [f64; 2] {
         let Plane { corner: [left, top], size: [width, height], .. } = self;
         [left + width * self.x.part(x), top + height * (1.0 - self.y.part(y))]
     }
 
     /// Adds things on the plane; what reaches beyond it is cut off. `more` are further attributes.
-    pub fn fill(&self, svg: &mut Svg, more: &str, add: impl FnOnce(&mut Svg)) {
+    pub(super) fn fill(&self, svg: &mut Svg, more: &str, add: impl FnOnce(&mut Svg)) {
         let ([left, top], [width, height]) = (self.corner, self.size);
         let [x, y] = [self.x.described(left, left + width), self.y.described(top + height, top)];
         svg.window(self.corner, self.size);
@@ -79,7 +79,7 @@ impl Plane {
 }
 
 /// Words above a plane: its name, empty for none, and labels with their places as parts of the x axis.
-pub type Head<'a> = (&'a str, Vec<(f64, &'a str)>);
+pub(crate) type Head<'a> = (&'a str, Vec<(f64, &'a str)>);
 
 /// Places labels above a plane of a width so that none lies on another: row from below, middle and words of each.
 fn rows<'a>(labels: &[(f64, &'a str)], width: f64) -> Vec<(usize, f64, &'a str)> {
@@ -96,7 +96,7 @@ fn rows<'a>(labels: &[(f64, &'a str)], width: f64) -> Vec<(usize, f64, &'a str)>
 }
 
 /// Draws axes for a plane below each head. The picture's height so far is where they begin.
-pub fn draw(svg: &mut Svg, x: &Span, y: &Span, heads: &[Head]) -> Vec<Plane> {
+pub(crate) fn draw(svg: &mut Svg, x: &Span, y: &Span, heads: &[Head]) -> Vec<Plane> {
     let size = style::LABEL;
     let columns = [1, 1, 2, 3, 2].get(heads.len()).copied().unwrap_or(3);
     let height = match &y.scale {

@@ -16,7 +16,7 @@ const BESIDE: f64 = 18.0;
 const BETWEEN: f64 = 9.0;
 
 /// Draws charts with the axes of the first and one legend.
-pub fn draw(title: &str, panels: &[(String, Chart)]) -> Result<Svg, String> {
+pub(crate) fn draw(title: &str, panels: &[(String, Chart)]) -> Result<Svg, String> {
     let charts = || panels.iter().map(|panel| &panel.1);
     // Points, their spreads and the ends of bands along an axis.
     let values = |along: Along, axis: &Axis| {

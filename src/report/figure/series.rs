@@ -10,10 +10,10 @@ const LARGE: &str = "1.8";
 /// Half the width of the ends of an error bar (pixels). A script of the page knows it.
 const CAP: f64 = 4.5;
 /// Height of a ground's sample in a legend (pixels).
-pub const GROUND: f64 = 15.0;
+pub(crate) const GROUND: f64 = 15.0;
 
 /// Adds the ground between the ends of the spreads of a ribbon.
-pub fn ground(svg: &mut Svg, plane: &Plane, look: &Look, series: &Series) {
+pub(crate) fn ground(svg: &mut Svg, plane: &Plane, look: &Look, series: &Series) {
     let end = |which: usize| {
         let ends = series.points.iter().filter_map(move |it| Some((it.x, it.spread?[which])));
         ends.map(|(x, y)| plane.place(x, y))
@@ -25,7 +25,7 @@ pub fn ground(svg: &mut Svg, plane: &Plane, look: &Look, series: &Series) {
 }
 
 /// Adds the curve of a series, if it has one. It bears the series' name where no markers do.
-pub fn curve(svg: &mut Svg, plane: &Plane, look: &Look, series: &Series) {
+pub(crate) fn curve(svg: &mut Svg, plane: &Plane, look: &Look, series: &Series) {
     if is_scattered(look.style) || series.points.len() < 2 {
         return;
     }
@@ -39,7 +39,7 @@ pub fn curve(svg: &mut Svg, plane: &Plane, look: &Look, series: &Series) {
 }
 
 /// Adds the error bars and markers of a series, with its name. A single point has a marker in any case, and no marker is cut.
-pub fn points(svg: &mut Svg, plane: &Plane, look: &Look, series: &Series) {
+pub(crate) fn points(svg: &mut Svg, plane: &Plane, look: &Look, series: &Series) {
     let mut bars = String::new();
     for &Point { x, y, spread } in series.points.iter().filter(|_| look.style != Style::Ribbon) {
         let (Some(ends), cap) = (spread, 2.0 * CAP) else { continue };
@@ -71,7 +71,7 @@ pub fn points(svg: &mut Svg, plane: &Plane, look: &Look, series: &Series) {
 }
 
 /// Adds a sample for a legend, from a place to the right.
-pub fn sample(svg: &mut Svg, look: &Look, [left, y]: [f64; 2], length: f64) {
+pub(crate) fn sample(svg: &mut Svg, look: &Look, [left, y]: [f64; 2], length: f64) {
     let [x, y, half, right] = [left, y, 0.5 * length, left + length].map(tenths);
     let d = format!("M{x} {y}h{half}h{half}");
     if look.style == Style::Ribbon {

@@ -6,17 +6,17 @@ use std::fmt;
 
 /// A colour, as `0xrrggbb`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Colour(pub u32);
+pub(crate) struct Colour(pub u32);
 
 impl Colour {
     /// Returns the shares of red, green and blue.
-    pub fn channels(self) -> [u8; 3] {
+    pub(crate) fn channels(self) -> [u8; 3] {
         let [_, channels @ ..] = self.0.to_be_bytes();
         channels
     }
 
     /// Returns the perceived lightness, from 0 (black) to 255 (white).
-    pub fn lightness(self) -> f64 {
+    pub(crate) fn lightness(self) -> f64 {
         let [red, green, blue] = self.channels().map(f64::from);
         0.299 * red + 0.587 * green + 0.114 * blue
     }
@@ -29,17 +29,17 @@ impl fmt::Display for Colour {
 }
 
 /// The paper.
-pub const PAPER: Colour = Colour(0xffffff);
+pub(crate) const PAPER: Colour = Colour(0xffffff);
 /// Axes, words and outlines.
-pub const INK: Colour = Colour(0x1a1a1a);
+pub(crate) const INK: Colour = Colour(0x1a1a1a);
 /// Lines of the grid.
-pub const GRID: Colour = Colour(0xe2e2e2);
+pub(crate) const GRID: Colour = Colour(0xe2e2e2);
 /// Lines that mark a place on an axis.
-pub const MARK: Colour = Colour(0x787878);
+pub(crate) const MARK: Colour = Colour(0x787878);
 /// Light grounds, one upon another.
-pub const GROUNDS: [Colour; 2] = [Colour(0xecf2f7), Colour(0xd4e3ef)];
+pub(crate) const GROUNDS: [Colour; 2] = [Colour(0xecf2f7), Colour(0xd4e3ef)];
 /// Parts that do not move.
-pub const STILL: Colour = Colour(0xd0d0d0);
+pub(crate) const STILL: Colour = Colour(0xd0d0d0);
 
 /// Pairs of a colour on white paper and its replacement on dark paper.
 const DARK: [(Colour, Colour); 8] = [
@@ -54,7 +54,7 @@ const DARK: [(Colour, Colour); 8] = [
 ];
 
 /// Returns rules of a style sheet for dark paper: below elements that `within` selects, or everywhere if it is empty.
-pub fn dark_rules(within: &str) -> String {
+pub(crate) fn dark_rules(within: &str) -> String {
     let rule = |attribute: &str, (light, dark): &(Colour, Colour)| {
         format!("{within}[{attribute}=\"{light}\"]{{{attribute}:{dark}}}")
     };
@@ -75,7 +75,7 @@ pub(super) fn ink_on(ground: Colour) -> Colour {
 const HUES: [u32; 7] = [0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7, 0xe69f00, 0x56b4e9, 0x000000];
 
 /// Returns a colour of the palette; beyond its end it begins again.
-pub fn hue(index: usize) -> Colour {
+pub(crate) fn hue(index: usize) -> Colour {
     Colour(HUES[index % HUES.len()])
 }
 
@@ -100,11 +100,11 @@ const SHORT_DASHES: [&str; 5] = ["6 4", "7 3 2 3", "3 2.5", "7 3 2 3 2 3", "10 4
 /// if its markers are outlines.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Look {
-    pub style: Style,
-    pub colour: Colour,
-    pub marker: usize,
-    pub dash: &'static str,
-    pub is_hollow: bool,
+    pub(crate) style: Style,
+    pub(crate) colour: Colour,
+    pub(crate) marker: usize,
+    pub(crate) dash: &'static str,
+    pub(crate) is_hollow: bool,
 }
 
 /// Reports if points of a style stand alone, without a line.
@@ -141,15 +141,15 @@ pub(super) fn looks(all: &[&Series]) -> Vec<Look> {
 }
 
 /// Shades of one scale. Levels from 0 on are those of magnitudes, the next as many those of signed quantities.
-pub const SHADES: u8 = 128;
+pub(crate) const SHADES: u8 = 128;
 
 /// Reports if shades between these ends show a sign: 0 is in the middle and has a colour of its own.
-pub fn is_signed([low, high]: [f64; 2]) -> bool {
+pub(crate) fn is_signed([low, high]: [f64; 2]) -> bool {
     low < 0.0 && low == -high
 }
 
 /// Returns the levels of a scale.
-pub fn levels(signed: bool) -> std::ops::RangeInclusive<u8> {
+pub(crate) fn levels(signed: bool) -> std::ops::RangeInclusive<u8> {
     if signed { SHADES..=2 * (SHADES - 1) + 1 } else { 0..=SHADES - 1 }
 }
 
@@ -162,7 +162,7 @@ const MAGNITUDE: [u32; 17] = [
 const SIGNED: [u32; 5] = [0x003882, 0x3e94d6, 0xc4c4c4, 0xeb9642, 0x963800];
 
 /// Returns the colour of a level: of a magnitude from dark to bright, of a signed quantity from blue over grey to orange.
-pub fn shade(level: u8) -> Colour {
+pub(crate) fn shade(level: u8) -> Colour {
     let (level, stops) = if level < SHADES { (level, &MAGNITUDE[..]) } else { (level - SHADES, &SIGNED[..]) };
     let place = f64::from(level.min(SHADES - 1)) / f64::from(SHADES - 1) * (stops.len() - 1) as f64;
     let below = (place as usize).min(stops.len() - 2);
@@ -173,7 +173,7 @@ pub fn shade(level: u8) -> Colour {
 }
 
 /// Returns the level of a part of the way from the lowest (0) to the highest value (1).
-pub fn level(part: f64, signed: bool) -> u8 {
+pub(crate) fn level(part: f64, signed: bool) -> u8 {
     levels(signed).start() + (part.clamp(0.0, 1.0) * f64::from(SHADES - 1)).round() as u8
 }
 

@@ -17,11 +17,11 @@ const FARTHEST: f64 = 1e6;
 const SEEN: f64 = 0.05;
 
 /// Attributes of words that are centred on their place, or end there.
-pub const MIDDLE: &str = " text-anchor=\"middle\"";
-pub const END: &str = " text-anchor=\"end\"";
+pub(crate) const MIDDLE: &str = " text-anchor=\"middle\"";
+pub(crate) const END: &str = " text-anchor=\"end\"";
 
 /// A picture in the making.
-pub struct Svg {
+pub(crate) struct Svg {
     /// Width and height (pixels).
     pub size: [f64; 2],
     definitions: BTreeSet<String>,
@@ -32,7 +32,7 @@ pub struct Svg {
 
 impl Svg {
     /// Begins a picture of a width with a title, its letters enlarged. The height is that of the title so far.
-    pub fn new(title: &str, width: f64, zoom: f64) -> Svg {
+    pub(super) fn new(title: &str, width: f64, zoom: f64) -> Svg {
         let (size, margin) = (style::TITLE * zoom, style::MARGIN * zoom);
         let lines = font::wrap(title, size, width - 2.0 * margin);
         let width = width.max(font::widest(&lines, size) + 2.0 * margin);
@@ -45,42 +45,42 @@ impl Svg {
     }
 
     /// Adds an element, or the start or the end of a group.
-    pub fn add(&mut self, element: impl Display) {
+    pub(super) fn add(&mut self, element: impl Display) {
         let end = if self.lettering.is_empty() { "" } else { "</g>\n" };
         let _ = writeln!(self.body, "{end}{element}");
         self.lettering.clear();
     }
 
     /// Adds a path with attributes.
-    pub fn path(&mut self, look: &str, d: &str) {
+    pub(super) fn path(&mut self, look: &str, d: &str) {
         self.add(format_args!("<path{look} d=\"{d}\"/>"));
     }
 
     /// Begins a window, which cuts off what reaches beyond it.
-    pub fn window(&mut self, corner: [f64; 2], size: [f64; 2]) {
+    pub(crate) fn window(&mut self, corner: [f64; 2], size: [f64; 2]) {
         let view = [corner, size].map(|it| it.map(tenths).join(" ")).join(" ");
         self.add(format_args!("<svg{} viewBox=\"{view}\">", at(corner, size)));
     }
 
     /// Adds a definition, which has the same name in every picture.
-    pub fn define(&mut self, definition: String) {
+    pub(crate) fn define(&mut self, definition: String) {
         self.definitions.insert(definition);
     }
 
     /// Adds elements with a name for readers that point at them.
-    pub fn named(&mut self, name: &str, add: impl FnOnce(&mut Svg)) {
+    pub(crate) fn named(&mut self, name: &str, add: impl FnOnce(&mut Svg)) {
         self.add(format_args!("<g><title>{}</title>", escaped(name)));
         add(self);
         self.add("</g>");
     }
 
     /// Adds a line of words on a place of its base line. `look` are further attributes.
-    pub fn words(&mut self, at: [f64; 2], size: f64, look: &str, words: &str) {
+    pub(super) fn words(&mut self, at: [f64; 2], size: f64, look: &str, words: &str) {
         self.turned(at, 0, size, look, words);
     }
 
     /// Adds a line of words that is turned about its place (degrees).
-    pub fn turned(&mut self, at: [f64; 2], angle: i32, size: f64, look: &str, words: &str) {
+    pub(crate) fn turned(&mut self, at: [f64; 2], angle: i32, size: f64, look: &str, words: &str) {
         let look = format!(" font-size=\"{}\"{look}", tenths(size));
         if look != self.lettering {
             self.add(format_args!("<g{look}>"));
@@ -93,7 +93,7 @@ impl Svg {
     }
 
     /// Adds lines below each other; `top` is the upper edge of the first one's capitals. Returns the lower edge of the last.
-    pub fn block(&mut self, lines: &[String], [x, top]: [f64; 2], size: f64, look: &str) -> f64 {
+    pub(crate) fn block(&mut self, lines: &[String], [x, top]: [f64; 2], size: f64, look: &str) -> f64 {
         for (i, line) in lines.iter().enumerate() {
             let base = top + size * (font::CAPITAL + i as f64 * style::LINE_SPACING);
             self.words([x, base], size, look, line);
@@ -102,7 +102,7 @@ impl Svg {
     }
 
     /// Returns the text of a figure's picture.
-    pub fn finish(mut self, figure: &Figure) -> String {
+    pub(super) fn finish(mut self, figure: &Figure) -> String {
         if !self.lettering.is_empty() {
             self.body.push_str("</g>\n");
         }
@@ -124,26 +124,26 @@ impl Svg {
 }
 
 /// Returns the attributes of a line.
-pub fn stroke(colour: style::Colour, width: f64) -> String {
+pub(crate) fn stroke(colour: style::Colour, width: f64) -> String {
     let width = if width == 1.0 { String::new() } else { format!(" stroke-width=\"{}\"", tenths(width)) };
     format!(" stroke=\"{colour}\"{width}")
 }
 
 /// Returns the attributes of a box: its left and upper edge, its width and its height.
-pub fn at(corner: [f64; 2], size: [f64; 2]) -> String {
+pub(crate) fn at(corner: [f64; 2], size: [f64; 2]) -> String {
     let ([x, y], [width, height]) = (corner.map(tenths), size.map(tenths));
     format!(" x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\"")
 }
 
 /// Returns words with the signs of XML spelled out; letters that XML does not allow become blanks.
-pub fn escaped(words: &str) -> String {
+pub(crate) fn escaped(words: &str) -> String {
     let is_barred = |letter: char| letter.is_control() || ['\u{fffe}', '\u{ffff}'].contains(&letter);
     let words = words.replace(is_barred, " ").replace('&', "&amp;");
     words.replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 /// Returns a length to a tenth of a pixel.
-pub fn tenths(pixels: f64) -> String {
+pub(crate) fn tenths(pixels: f64) -> String {
     hundredths((pixels * 10.0).round() as i64 * 10)
 }
 
@@ -160,7 +160,7 @@ fn hundredths(number: i64) -> String {
 
 /// Returns a path through places, to a hundredth of a pixel: a script of the page reads values back. A single place is a line of length
 /// 0, for programs draw no markers on less.
-pub fn through(places: &[[f64; 2]]) -> String {
+pub(crate) fn through(places: &[[f64; 2]]) -> String {
     let whole = |pixels: f64| (pixels.clamp(-FARTHEST, FARTHEST) * 100.0).round() as i64;
     let mut path = String::new();
     let mut before = [0; 2];
@@ -180,7 +180,7 @@ pub fn through(places: &[[f64; 2]]) -> String {
 }
 
 /// Returns the places of a line without those that its straight pieces pass within [`SEEN`].
-pub fn bends(places: &[[f64; 2]]) -> Vec<[f64; 2]> {
+pub(crate) fn bends(places: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let [first, .., last] = places else { return places.to_vec() };
     let [right, down] = [last[0] - first[0], last[1] - first[1]];
     let length = right.hypot(down);

@@ -7,13 +7,13 @@ use maud::{Markup, PreEscaped, html};
 use serde_json::{Value, json};
 
 /// Data in the page, where no script or style can be made of them: in JSON, `<` stands in strings only.
-pub fn embedded(id: &str, data: &Value) -> Markup {
+pub(crate) fn embedded(id: &str, data: &Value) -> Markup {
     let text = data.to_string().replace('<', "\\u003c");
     html! { script type="application/json" id=[Some(id).filter(|id| !id.is_empty())] { (PreEscaped(text)) } }
 }
 
 /// Where the player puts a film; `instead` says where to look without it.
-pub fn holder(film: &Film, instead: &Markup) -> Markup {
+pub(crate) fn holder(film: &Film, instead: &Markup) -> Markup {
     html! {
         div.film data-label=(film.title) {
             (embedded("", &data(film)))
@@ -23,7 +23,7 @@ pub fn holder(film: &Film, instead: &Markup) -> Markup {
 }
 
 /// The colours of magnitudes, and those of signed quantities, from the lowest to the highest.
-pub fn shades() -> Value {
+pub(crate) fn shades() -> Value {
     let colours =
         |signed| style::levels(signed).map(|level| style::shade(level).to_string()).collect::<Vec<_>>();
     json!([colours(false), colours(true)])
@@ -37,7 +37,7 @@ const PIXELS: f64 = 6.0 * 2200.0;
 
 /// The film, all frames of a quantity behind one another. Every frame has a place for each of the radii; a disc that a
 /// frame does not have is no number there.
-pub fn data(film: &Film) -> Value {
+pub(crate) fn data(film: &Film) -> Value {
     let Film { units, window, sides, falls, radii, fixed, frames, shade, shades, .. } = film;
     let still =
         |number: fn(&([f64; 2], f64)) -> f64| Quantised::of(&fixed.iter().map(number).collect::<Vec<_>>());

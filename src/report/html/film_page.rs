@@ -6,7 +6,7 @@ use maud::{DOCTYPE, PreEscaped, html};
 
 /// The page of a film, with lines below it that a reader must know. It plays at once, unless the reader wants no motion or the address
 /// ends in `#frame=N`, which shows that frame.
-pub fn film_page(shown: &Film, notes: &[String]) -> String {
+pub(crate) fn film_page(shown: &Film, notes: &[String]) -> String {
     let title = html! { title { (shown.title) } }.into_string();
     let page = html! {
         (DOCTYPE)

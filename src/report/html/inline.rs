@@ -6,7 +6,7 @@ use maud::{Markup, PreEscaped, html};
 const WIDE: f64 = 700.0;
 
 /// A picture cut to its parts.
-pub struct Inline {
+pub(crate) struct Inline {
     size: String,
     definitions: String,
     body: String,
@@ -15,7 +15,7 @@ pub struct Inline {
 impl Inline {
     /// The parts of a picture as our files have it: an element a line. Title and description are left out, for they stand below the
     /// picture, and a browser would show the title wherever one points. A picture that is not there is empty.
-    pub fn new(svg: &str) -> Inline {
+    pub(super) fn new(svg: &str) -> Inline {
         let between = |start: &str, end: &str| {
             svg.split_once(start).and_then(|(_, rest)| rest.split_once(end)).map_or("", |(part, _)| part)
         };
@@ -29,7 +29,7 @@ impl Inline {
     }
 
     /// The picture of an element of this id once more, as wide as there is room.
-    pub fn again(&self, id: &str, title: &str) -> Markup {
+    pub(crate) fn again(&self, id: &str, title: &str) -> Markup {
         let sides: Vec<&str> = self.size.split(' ').skip(2).collect();
         let [width, height] = [0, 1].map(|at| sides.get(at).copied().unwrap_or("0"));
         html! {
@@ -40,12 +40,12 @@ impl Inline {
     }
 
     /// What it uses by name, each in a line.
-    pub fn definitions(&self) -> impl Iterator<Item = &str> {
+    pub(crate) fn definitions(&self) -> impl Iterator<Item = &str> {
         self.definitions.lines()
     }
 
     /// The picture, which an element of the page describes; `is_read` if the page's script tells values of it.
-    pub fn element(&self, id: &str, described_by: &str, is_read: bool) -> Markup {
+    pub(crate) fn element(&self, id: &str, described_by: &str, is_read: bool) -> Markup {
         let width: f64 = self.size.split(' ').nth(2).and_then(|width| width.parse().ok()).unwrap_or(0.0);
         html! {
             svg id=(id) class=[(width >= WIDE).then_some("wide")] viewBox=(self.size) width=(width) role="img" aria-labelledby=(described_by) tabindex=[is_read.then_some(0)] {

@@ -14,12 +14,12 @@ use stripmine_physics::number::counted;
 const FIGURES: usize = 4;
 
 /// The pictures of an item that the page shows.
-pub fn pictures(section: &Section, drawn: &dyn Fn(&Section, &Figure) -> String) -> Vec<Inline> {
+pub(crate) fn pictures(section: &Section, drawn: &dyn Fn(&Section, &Figure) -> String) -> Vec<Inline> {
     section.figures.iter().take(FIGURES).map(|each| Inline::new(&drawn(section, each))).collect()
 }
 
 /// The item: the answer, the picture and the table of conclusions, what was asked; all else is folded.
-pub fn render(section: &Section, pictures: &[Inline]) -> Markup {
+pub(crate) fn render(section: &Section, pictures: &[Inline]) -> Markup {
     let name = section.name.as_str();
     let mut figures = section.figures.iter().zip(pictures);
     let mut tables = section.tables.iter();
@@ -144,7 +144,7 @@ fn figure(section: &Section, figure: &Figure, picture: &Inline) -> Markup {
 }
 
 /// The id of a figure's picture in the page.
-pub fn picture_id(section: &Section, figure: &Figure) -> String {
+pub(crate) fn picture_id(section: &Section, figure: &Figure) -> String {
     format!("{}-{}-picture", section.name, figure.name)
 }
 

@@ -7,7 +7,7 @@ mod item;
 mod quantised;
 mod words;
 
-pub use film_page::film_page;
+pub(crate) use film_page::film_page;
 
 use super::figure::{Figure, style};
 use super::tally::Tally;
@@ -31,10 +31,10 @@ const POLICY: &str =
     "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
 
 /// What stands near the beginning of every such page and of no other.
-pub const MARK: &str = "<title>Stripmine: what came out</title>";
+pub(crate) const MARK: &str = "<title>Stripmine: what came out</title>";
 
 /// The page. `left_out` names items that another version of the program made. `drawn` gives the SVG of a figure.
-pub fn render(
+pub(crate) fn render(
     sections: &[Section],
     left_out: &[String],
     tally: &Tally,

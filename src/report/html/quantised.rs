@@ -8,7 +8,7 @@ use serde::Serialize;
 /// number.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(serde::Deserialize))]
-pub struct Quantised {
+pub(crate) struct Quantised {
     low: f64,
     high: f64,
     /// Bytes of a code, 1 or 2.
@@ -24,12 +24,12 @@ fn highest(bytes: u32) -> u16 {
 
 impl Quantised {
     /// The numbers, each off by no more than a 131 068th of their range. What is not finite becomes no number.
-    pub fn of(numbers: &[f64]) -> Quantised {
+    pub(super) fn of(numbers: &[f64]) -> Quantised {
         Quantised::in_bytes(numbers, 2)
     }
 
     /// The numbers, each off by no more than `tolerance` where one byte does that, else as of [`of`](Self::of).
-    pub fn within(numbers: &[f64], tolerance: f64) -> Quantised {
+    pub(super) fn within(numbers: &[f64], tolerance: f64) -> Quantised {
         let [low, high] =
             ends(numbers.iter().copied().filter(|number| number.is_finite())).unwrap_or_default();
         let step = (high - low) / f64::from(highest(1));
@@ -59,11 +59,11 @@ fn ends(numbers: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
 }
 
 #[cfg(test)]
-pub mod tests {
+pub(crate) mod tests {
     use super::*;
 
     /// What the scripts read: the twin of `numbers` in `strips.js`.
-    pub fn read(quantised: &Quantised) -> Vec<f64> {
+    pub(crate) fn read(quantised: &Quantised) -> Vec<f64> {
         let Quantised { low, high, bytes, codes } = quantised;
         let codes = STANDARD.decode(codes).unwrap();
         let whole = |code: &[u8]| code.iter().rev().fold(0, |code, &byte| 256 * code + u16::from(byte));

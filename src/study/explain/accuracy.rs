@@ -12,7 +12,7 @@ use crate::study::{Case, Choice};
 use stripmine_physics::method::Decides;
 
 /// Name of the item.
-pub const NAME: &str = "accuracy";
+pub(crate) const NAME: &str = "accuracy";
 
 /// Steps of a curve in parts of the longest.
 const STEPS: [f64; 3] = [1.0, 0.5, 0.25];
@@ -46,7 +46,7 @@ struct Point {
 ///
 /// # Errors
 /// [`ExplainError`] if every trial breaks, or the quantity has no mean.
-pub fn accuracy(
+pub(crate) fn accuracy(
     case: &Case,
     target: &Target,
     seconds: f64,

@@ -10,7 +10,7 @@ const PACKING: f64 = 0.05;
 
 /// What decides which way to run a scene is the cheapest.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Alike {
+pub(crate) struct Alike {
     method: String,
     particles: usize,
     /// Area of the particles over that of the box; 0 where there is none.
@@ -19,7 +19,7 @@ pub struct Alike {
 
 impl Alike {
     /// Of a scene.
-    pub fn of(case: &Case) -> Alike {
+    pub(super) fn of(case: &Case) -> Alike {
         let particles = case.prepared.particles();
         let discs: f64 = particles.grains().iter().map(|it| PI * it.radius * it.radius).sum();
         let packing_fraction = discs / case.prepared.domain.area();

@@ -19,7 +19,7 @@ const FULL: f64 = 0.95;
 
 /// The bias of a configuration.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Bias {
+pub(crate) struct Bias {
     /// The longest step that was compared (time).
     pub step: f64,
     /// The mean at that step less that of the limit of short steps (the quantity's unit).
@@ -29,7 +29,7 @@ pub struct Bias {
     #[serde(with = "any_number")]
     pub bar: f64,
     /// The power of the step with which it falls.
-    pub power: f64,
+    pub(crate) power: f64,
     /// The window over which runs were compared (time).
     #[serde(with = "any_number")]
     pub window: f64,
@@ -46,7 +46,7 @@ pub struct Bias {
     pub collisions: Option<f64>,
     /// Its growth by the drift of energy, where that adds up along a run (per unit of time).
     #[serde(with = "any_number")]
-    pub creep: f64,
+    pub(crate) creep: f64,
 }
 
 /// A difference at a step, for a window.
@@ -237,19 +237,19 @@ impl Bias {
     }
 
     /// True if it is beyond its bar.
-    pub fn is_significant(&self) -> bool {
+    pub(crate) fn is_significant(&self) -> bool {
         self.shift.abs() > self.bar
     }
 
     /// The most that it is at the step that was compared, with a probability of 95 % (the quantity's unit).
-    pub fn below(&self) -> f64 {
+    pub(crate) fn below(&self) -> f64 {
         self.shift.abs() + self.bar
     }
 
     /// The bias that is expected at the step that was compared (the quantity's unit).
     ///
     /// A significant one as it was measured; one that is not, less the part that its error makes of it.
-    pub fn expected(&self) -> f64 {
+    pub(crate) fn expected(&self) -> f64 {
         if self.is_significant() {
             return self.shift.abs();
         }
@@ -284,12 +284,12 @@ impl Bias {
     }
 
     /// The bias that is expected at a step (the quantity's unit), and the most that it is.
-    pub fn at(&self, step: f64) -> Off {
+    pub(crate) fn at(&self, step: f64) -> Off {
         self.over(step, 0.0)
     }
 
     /// Returns the expected bias of a run of a length (time) at a step, and its upper bound. It grows with the length where energy drifts.
-    pub fn over(&self, step: f64, time: f64) -> Off {
+    pub(crate) fn over(&self, step: f64, time: f64) -> Off {
         let [part, creep] = [1.0, self.creep * time].map(|it| self.part_at(step) * it);
         Off { shift: part * self.expected() + creep, below: part * self.below() + creep }
     }
@@ -297,7 +297,7 @@ impl Bias {
 
 /// Distance of a mean from the limit of short steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Off {
+pub(crate) struct Off {
     /// Expected distance.
     pub shift: f64,
     /// The most that it is, with a probability of 95 %.
@@ -306,17 +306,17 @@ pub struct Off {
 
 impl Off {
     /// A distance that is known.
-    pub fn exactly(shift: f64) -> Off {
+    pub(crate) fn exactly(shift: f64) -> Off {
         Off { shift, below: shift }
     }
 
     /// The most that a mean is off where chance takes it off by `chance` with a probability of 95 %.
-    pub fn with(self, chance: f64) -> f64 {
+    pub(crate) fn with(self, chance: f64) -> f64 {
         self.shift + chance
     }
 
     /// The part of an error that is left to chance; none where there is nothing left.
-    pub fn leaves(self, error: f64) -> Option<f64> {
+    pub(crate) fn leaves(self, error: f64) -> Option<f64> {
         Some(error - self.shift).filter(|left| *left > 0.0)
     }
 }

@@ -6,19 +6,19 @@ use serde::{Deserialize, Serialize};
 
 /// How far a quantity goes from its first value in a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Tried {
+pub(crate) struct Tried {
     /// The step (time).
     pub step: f64,
     /// The farthest (the quantity's unit); infinite where the run breaks.
     #[serde(with = "any_number")]
-    pub farthest: f64,
+    pub(crate) farthest: f64,
 }
 
 /// Runs of a configuration at several steps.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Drift {
+pub(crate) struct Drift {
     /// The longest step first.
-    pub tried: Vec<Tried>,
+    pub(crate) tried: Vec<Tried>,
 }
 
 impl Drift {
@@ -29,17 +29,17 @@ impl Drift {
     }
 
     /// The longest step that was tried at which it goes no farther than an error, as at no shorter one; none where there is none.
-    pub fn step_for(&self, error: f64) -> Option<Tried> {
+    pub(crate) fn step_for(&self, error: f64) -> Option<Tried> {
         self.tried.iter().rev().take_while(|it| it.farthest <= error).last().copied()
     }
 
     /// How far it goes at a step that was tried.
-    pub fn at(&self, step: f64) -> Option<f64> {
+    pub(crate) fn at(&self, step: f64) -> Option<f64> {
         self.tried.iter().find(|it| rounded(it.step, 4) == rounded(step, 4)).map(|it| it.farthest)
     }
 
     /// The least that was seen (the quantity's unit); infinite where nothing was.
-    pub fn least(&self) -> f64 {
+    pub(crate) fn least(&self) -> f64 {
         self.tried.iter().map(|it| it.farthest).fold(f64::INFINITY, f64::min)
     }
 

@@ -20,7 +20,7 @@ pub(super) const SHARES: [f64; 5] = [0.15, 0.3, 0.35, 0.12, 0.08];
 
 /// A way to run the scene, as measured.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Way {
+pub(crate) struct Way {
     /// What it is called.
     pub label: String,
     /// Its settings, by axis.
@@ -30,7 +30,7 @@ pub struct Way {
     pub overrides: Overrides,
     /// Wall seconds of a unit of time at `step`; none where it was given up.
     #[serde(with = "any_number")]
-    pub cost: Option<f64>,
+    pub(crate) cost: Option<f64>,
     /// The longest step that nothing speaks against (time); none where the method takes none.
     pub step: Option<f64>,
     /// What bounds it, with its numbers.
@@ -40,27 +40,27 @@ pub struct Way {
     /// Wall seconds of a unit of time in each phase, by name, at `step`; none where it was not timed.
     pub phases: Vec<(String, f64)>,
     /// What it is off by; none where it was not compared.
-    pub bias: Option<Bias>,
+    pub(crate) bias: Option<Bias>,
     /// How far what should keep its value goes, where that is asked for.
-    pub drift: Option<Drift>,
+    pub(crate) drift: Option<Drift>,
     /// Why it was followed no further.
-    pub dropped: Option<String>,
+    pub(crate) dropped: Option<String>,
 }
 
 /// What was measured.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Findings {
+pub(crate) struct Findings {
     /// Ways, the cheapest first, those that were given up last.
     pub ways: Vec<Way>,
     /// The mean.
     pub mean: Known,
     /// The label of the configuration that it was measured by.
-    pub mean_way: String,
+    pub(crate) mean_way: String,
     /// Where the quantity changes all along and its mean over the whole run is asked for: the scene's own time (time).
     pub whole: Option<f64>,
     /// By how much the mean of another start differs, where that is beyond both bars: what is kept of a start does not average out.
     #[serde(with = "any_number")]
-    pub starts_differ: Option<f64>,
+    pub(crate) starts_differ: Option<f64>,
     /// Wall seconds until the first step.
     #[serde(with = "any_number")]
     pub start: f64,
@@ -69,7 +69,7 @@ pub struct Findings {
     pub row: f64,
     /// Cost of one thread over that of all.
     #[serde(with = "any_number")]
-    pub one_thread: f64,
+    pub(crate) one_thread: f64,
     /// Threads.
     pub threads: usize,
     /// What the scene may be modelled without.
@@ -105,17 +105,17 @@ pub(super) struct Work<'w> {
 
 /// What the scene may be modelled without.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Without {
+pub(crate) struct Without {
     /// What is lacking.
     pub name: String,
     /// The mean less that with it, and its bar; none where it breaks or has no mean.
     #[serde(with = "any_number")]
-    pub difference: Option<[f64; 2]>,
+    pub(crate) difference: Option<[f64; 2]>,
     /// Cost over that with it.
     #[serde(with = "any_number")]
-    pub cost: Option<f64>,
+    pub(crate) cost: Option<f64>,
     /// Why there is nothing to compare.
-    pub failed: Option<String>,
+    pub(crate) failed: Option<String>,
 }
 
 /// Why a run gave nothing.

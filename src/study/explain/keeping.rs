@@ -18,7 +18,12 @@ use stripmine_physics::number::significant;
 ///
 /// # Errors
 /// [`Unreached`], where no way comes to what is asked for.
-pub fn keeping(case: &Case, target: &Target, findings: &Findings, origin: &str) -> Result<Plan, Unreached> {
+pub(crate) fn keeping(
+    case: &Case,
+    target: &Target,
+    findings: &Findings,
+    origin: &str,
+) -> Result<Plan, Unreached> {
     let usable = || findings.ways.iter().filter(|way| way.dropped.is_none());
     let time = case.duration().unwrap_or(0.0);
     let of_own = findings.ways.iter().find(|way| way.label == case.own.label());

@@ -32,7 +32,7 @@ const KEY: usize = 24;
 
 /// Why what is kept is of no use.
 #[derive(Debug, thiserror::Error)]
-pub enum KeptError {
+pub(crate) enum KeptError {
     /// A file that is not as it was written.
     #[error("{} is damaged: it is ignored, and written again after the trials", quoted::path(.0))]
     Damaged(PathBuf),
@@ -55,7 +55,7 @@ impl Reported for KeptError {
 
 /// Where measurements are kept; nowhere, where the user has no folder for it.
 #[derive(Clone, Debug)]
-pub struct Kept {
+pub(crate) struct Kept {
     folder: Option<PathBuf>,
     host: String,
 }
@@ -84,12 +84,12 @@ fn short(commit: &str) -> &str {
 
 impl Kept {
     /// In the user's folder of caches, for this processor, number of threads and version.
-    pub fn here() -> Kept {
+    pub(crate) fn here() -> Kept {
         Kept::within(PLACES.iter().find_map(|(variable, below)| place(&std::env::var_os(variable)?, below)))
     }
 
     /// In a folder.
-    pub fn within(folder: Option<PathBuf>) -> Kept {
+    pub(crate) fn within(folder: Option<PathBuf>) -> Kept {
         let here = Provenance::here(String::new(), 0.0);
         let host = format!(
             "{}, {} threads, stripmine {}{}",
@@ -107,7 +107,7 @@ impl Kept {
     }
 
     /// What a scene and a quantity are kept as: the error that is asked for matters only where it decides which runs are made.
-    pub fn key(&self, case: &Case, target: &Target) -> String {
+    pub(crate) fn key(&self, case: &Case, target: &Target) -> String {
         let mut sum = Sha256::new();
         let error =
             target.error.filter(|_| target.is_kept()).map_or(String::new(), |error| error.to_string());
@@ -127,7 +127,7 @@ impl Kept {
     ///
     /// # Errors
     /// [`KeptError`] if it is there and cannot be read, or is damaged.
-    pub fn recall(
+    pub(crate) fn recall(
         &self,
         case: &Case,
         key: &str,
@@ -199,7 +199,7 @@ impl Kept {
     ///
     /// # Errors
     /// [`KeptError`] if it cannot be written.
-    pub fn keep(
+    pub(crate) fn keep(
         &self,
         case: &Case,
         key: &str,
@@ -227,7 +227,7 @@ impl Kept {
     }
 
     /// Where measurements of just now come from, which took some seconds.
-    pub fn origin(&self, taken: f64) -> String {
+    pub(crate) fn origin(&self, taken: f64) -> String {
         format!("{} s of trials on {}", significant(taken, 2), self.host)
     }
 
@@ -235,7 +235,7 @@ impl Kept {
     ///
     /// # Errors
     /// [`KeptError`] if one cannot be removed.
-    pub fn forget(&self) -> Result<usize, KeptError> {
+    pub(crate) fn forget(&self) -> Result<usize, KeptError> {
         let files: Vec<PathBuf> = self.files()?.into_iter().filter(|file| is_marked(file)).collect();
         files.iter().try_for_each(|file| remove_if_there(file))?;
         let journals = self.entries(|name| name.split_once(BEGUN).is_some_and(|(key, _)| is_key_of(key)))?;

@@ -63,7 +63,11 @@ fn scenes() -> Vec<(&'static str, &'static str)> {
 ///
 /// # Errors
 /// [`StudyError`] if a scene is bad.
-pub fn compared(only: Option<&[&str]>, seconds: f64, progress: Progress<'_>) -> Result<Made, StudyError> {
+pub(crate) fn compared(
+    only: Option<&[&str]>,
+    seconds: f64,
+    progress: Progress<'_>,
+) -> Result<Made, StudyError> {
     let scenes: Vec<_> =
         scenes().into_iter().filter(|(name, _)| only.is_none_or(|only| only.contains(name))).collect();
     let meter = Meter::new(scenes.len() as f64, progress);

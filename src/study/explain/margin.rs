@@ -15,7 +15,7 @@ const CUT_OFF: f64 = 1.15;
 const ROUNDED_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
 
 /// The bars of runs of any length, as far as trials tell them.
-pub struct Bars {
+pub(crate) struct Bars {
     /// Square of the bar of a mean over one unit of time.
     square: f64,
     /// For each number of waves that a bar may be made of: the time from which it is (time), and how many times larger the square of the bar may come out than that
@@ -34,7 +34,7 @@ impl Known {
     ///
     /// The square of a bar is t² s² over the time, with t of Student's distribution. Its two values of s², that of the trials and that of the run, each a χ² over its
     /// degrees of freedom, have a ratio that follows the F distribution.
-    pub fn bars(&self) -> Bars {
+    pub(crate) fn bars(&self) -> Bars {
         let all = |margin| Bars { square: self.square, levels: vec![WaveLevel { from: 0.0, margin }] };
         if self.square == 0.0 || !self.freedoms.is_finite() {
             return all(1.0);
@@ -66,7 +66,7 @@ impl Known {
 
 impl Bars {
     /// The bar that a mean over some time has at most with a probability of 95 %.
-    pub fn over(&self, time: f64) -> f64 {
+    pub(crate) fn over(&self, time: f64) -> f64 {
         // What does not vary is known from any time.
         if self.square == 0.0 {
             return 0.0;
@@ -78,7 +78,7 @@ impl Bars {
     /// The shortest time over which a mean has a bar of at most `bar` with a probability of 95 % (time).
     ///
     /// [`over`](Self::over) falls with the time, by steps where there is one wave more, so that every longer time has as small a bar.
-    pub fn time_for(&self, bar: f64) -> f64 {
+    pub(crate) fn time_for(&self, bar: f64) -> f64 {
         let least = self.square / (bar * bar) * ROUNDED_UP;
         let next = self.levels.iter().skip(1).map(|level| level.from).chain([f64::INFINITY]);
         let times =

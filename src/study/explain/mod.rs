@@ -4,12 +4,12 @@
 //! mean scatters, and how far a long step takes it off (`bias`). From these follow the step and the run length that reach an error most cheaply
 //! (`optimum`), and with them a plan (`plan`). Nothing here is fitted: what trials could not see is counted as error, with its bar.
 
-pub mod accuracy;
+pub(crate) mod accuracy;
 mod alike;
 mod another_start;
 mod as_it_stands;
 mod bias;
-pub mod certified;
+pub(crate) mod certified;
 mod collisions;
 mod creep;
 mod decisions;
@@ -19,7 +19,7 @@ mod drifts;
 mod findings;
 mod keeping;
 mod kept;
-pub mod left_out;
+pub(crate) mod left_out;
 mod lengths;
 mod margin;
 mod mean;
@@ -38,12 +38,12 @@ mod unreached;
 mod whole;
 mod words;
 
-pub use kept::{Kept, KeptError};
+pub(crate) use kept::{Kept, KeptError};
 use plan::in_unit;
-pub use recommended::Plan;
-pub use tuned::tuned;
-pub use unreached::Unreached;
-pub use words::{page, seconds, with_unit};
+pub(crate) use recommended::Plan;
+pub(crate) use tuned::tuned;
+pub(crate) use unreached::Unreached;
+pub(crate) use words::{page, seconds, with_unit};
 
 use super::Case;
 use crate::results::{Journal, JournalError};
@@ -56,14 +56,14 @@ use stripmine_physics::reported::{Class, Reported};
 use stripmine_physics::scene::Width;
 
 /// Seconds of trials at most, where nothing else is asked for, and where one is patient.
-pub const SECONDS: [f64; 2] = [10.0, 60.0];
+pub(crate) const SECONDS: [f64; 2] = [10.0, 60.0];
 
 /// The most wall seconds that a plan may take by default.
-pub const LIMIT: f64 = 3600.0;
+pub(crate) const LIMIT: f64 = 3600.0;
 
 /// What is asked for.
 #[derive(Clone, Debug)]
-pub struct Target {
+pub(crate) struct Target {
     /// The quantity.
     pub quantity: Quantity,
     /// Its place among those observed.
@@ -80,7 +80,7 @@ pub struct Target {
 
 /// Why there is no plan.
 #[derive(Debug, thiserror::Error)]
-pub enum ExplainError {
+pub(crate) enum ExplainError {
     /// The scene observes nothing of that name.
     #[error("`{name}` is nothing that this scene observes\n  help: one of {}", known.join(", "))]
     NoSuchQuantity {
@@ -205,7 +205,7 @@ impl Target {
     ///
     /// # Errors
     /// [`ExplainError::NoSuchQuantity`]
-    pub fn of(case: &Case, name: Option<&str>, error: Option<Width>) -> Result<Target, ExplainError> {
+    pub(crate) fn of(case: &Case, name: Option<&str>, error: Option<Width>) -> Result<Target, ExplainError> {
         let quantities = case.entry.quantities;
         let is_judged = |quantity: &&Quantity| quantity.kind != Kind::Time;
         let known: Vec<&'static str> = quantities.iter().filter(is_judged).map(|it| it.name).collect();
@@ -224,7 +224,7 @@ impl Target {
     ///
     /// # Errors
     /// [`ExplainError::NoWindow`] if it does not end after it begins.
-    pub fn over(self, window: Option<&[f64]>) -> Result<Target, ExplainError> {
+    pub(crate) fn over(self, window: Option<&[f64]>) -> Result<Target, ExplainError> {
         match window {
             None => Ok(self),
             Some(&[from, to]) if 0.0 <= from && from < to && to.is_finite() => {
@@ -235,7 +235,7 @@ impl Target {
     }
 
     /// Whether it should keep its value: its error is then how far it goes from the first.
-    pub fn is_kept(&self) -> bool {
+    pub(crate) fn is_kept(&self) -> bool {
         self.quantity.kind == Kind::Kept
     }
 }
@@ -245,7 +245,7 @@ impl Target {
 ///
 /// # Errors
 /// [`ExplainError`]
-pub fn explain(
+pub(crate) fn explain(
     case: &Case,
     target: &Target,
     seconds: f64,

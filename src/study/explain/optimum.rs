@@ -4,13 +4,13 @@ use super::bias::Off;
 
 /// A way to run a scene, as far as its cost and error go.
 #[derive(Clone, Copy, Debug)]
-pub struct Terms {
+pub(crate) struct Terms {
     /// Wall seconds of a unit of time at the longest step.
-    pub cost: f64,
+    pub(crate) cost: f64,
     /// Wall seconds of the rows of a unit of time.
     pub rows: f64,
     /// Time that does not count (time).
-    pub transient: f64,
+    pub(crate) transient: f64,
 }
 
 /// A run length has settled that grows by no more than this factor.
@@ -20,11 +20,11 @@ const REPEATS: usize = 64;
 
 /// What reaches an error.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Optimum {
+pub(crate) struct Optimum {
     /// The step in parts of the longest.
     pub part: f64,
     /// What the step takes the mean off by.
-    pub bias: Off,
+    pub(crate) bias: Off,
     /// Time that is averaged over (time).
     pub time: f64,
     /// Wall seconds.
@@ -43,7 +43,7 @@ pub(super) const UNBIASED: f64 = 0.25;
 ///
 /// A shorter step costs more for a unit of time and has less bias, which leaves more of the error to chance and so asks for a shorter time. A bias that grows
 /// with the time asks for a longer one, which is found by repetition from below.
-pub fn optimum(
+pub(crate) fn optimum(
     terms: Terms,
     (error, shortest): (f64, f64),
     bias: impl Fn(f64, f64) -> Off,

@@ -22,7 +22,12 @@ const FEWEST_ROWS: f64 = 100.0;
 ///
 /// # Errors
 /// [`Unreached`], where no way comes to what is asked for.
-pub fn plan(case: &Case, target: &Target, findings: &Findings, origin: &str) -> Result<Plan, Unreached> {
+pub(crate) fn plan(
+    case: &Case,
+    target: &Target,
+    findings: &Findings,
+    origin: &str,
+) -> Result<Plan, Unreached> {
     let mean = &findings.mean;
     let own_way = findings.ways.iter().find(|way| way.label == case.own.label());
     let own = own_way.and_then(|way| own(case, way, findings));
@@ -155,7 +160,7 @@ fn no_shorter(time: f64) -> f64 {
 }
 
 /// An error in the quantity's unit.
-pub fn in_unit(width: Width, mean: f64) -> f64 {
+pub(crate) fn in_unit(width: Width, mean: f64) -> f64 {
     match width {
         Width::Percent(percent) => 0.01 * percent * mean.abs(),
         Width::Absolute(error) => error,

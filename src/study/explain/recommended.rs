@@ -6,11 +6,11 @@ use stripmine_physics::scene::Overrides;
 
 /// A number with the least and the most that it may be.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Interval {
+pub(crate) struct Interval {
     /// The least.
     pub least: f64,
     /// What is likely.
-    pub likely: f64,
+    pub(crate) likely: f64,
     /// The most.
     pub most: f64,
 }
@@ -24,31 +24,31 @@ impl Interval {
 
 /// Something that was chosen, and what stands beside it.
 #[derive(Clone, Debug, Serialize)]
-pub struct Decision {
+pub(crate) struct Decision {
     /// What about.
     pub what: String,
     /// What is recommended.
-    pub chosen: String,
+    pub(crate) chosen: String,
     /// Why.
-    pub why: String,
+    pub(crate) why: String,
     /// The others.
-    pub beside: Vec<Beside>,
+    pub(crate) beside: Vec<Beside>,
 }
 
 /// Something else that may be chosen.
 #[derive(Clone, Debug, Serialize)]
-pub struct Beside {
+pub(crate) struct Beside {
     /// What.
     pub name: String,
     /// Wall time over that of what is recommended, for the same error; none where it does not come to it.
-    pub cost: Option<f64>,
+    pub(crate) cost: Option<f64>,
     /// Why it is not recommended.
-    pub why: String,
+    pub(crate) why: String,
 }
 
 /// What a plan asks for and is expected to give.
 #[derive(Clone, Debug, Serialize)]
-pub struct Plan {
+pub(crate) struct Plan {
     /// The scene, as it is named on a command line.
     pub scene: String,
     /// Its method.
@@ -64,7 +64,7 @@ pub struct Plan {
     /// The error that is asked for, in the quantity's unit.
     pub error: Option<f64>,
     /// What is recommended, one after the other.
-    pub decisions: Vec<Decision>,
+    pub(crate) decisions: Vec<Decision>,
     /// The error that is expected, in the quantity's unit.
     pub expected: Expected,
     /// Wall seconds.
@@ -80,13 +80,13 @@ pub struct Plan {
     /// Rows of each run.
     pub rows: f64,
     /// Whether the mean is that over whole runs: the quantity changes all along.
-    pub is_whole: bool,
+    pub(crate) is_whole: bool,
     /// Time of the transient (time).
-    pub transient: f64,
+    pub(crate) transient: f64,
     /// Runs with seeds of their own.
     pub seeds: u64,
     /// By how much the mean of another start differs, where that was seen.
-    pub starts_differ: Option<f64>,
+    pub(crate) starts_differ: Option<f64>,
     /// The overrides that make the plan of the scene.
     pub overrides: Overrides,
     /// What the scene's own values cost and reach.
@@ -99,7 +99,7 @@ pub struct Plan {
 
 /// What the scene's own values cost and reach.
 #[derive(Clone, Debug, Serialize)]
-pub struct Own {
+pub(crate) struct Own {
     /// Wall seconds.
     pub seconds: f64,
     /// The error that is expected of them, in the quantity's unit.
@@ -108,11 +108,11 @@ pub struct Own {
 
 /// What an error is made of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Expected {
+pub(crate) struct Expected {
     /// What the step takes the mean off by.
-    pub bias: Off,
+    pub(crate) bias: Off,
     /// Half the width of the interval of 95 % of a mean of this length.
-    pub chance: f64,
+    pub(crate) chance: f64,
     /// The most that both are together with a probability of 95 %.
     pub most: f64,
 }
@@ -125,15 +125,15 @@ impl Expected {
 
 /// What the scene may be modelled without.
 #[derive(Clone, Debug, Serialize)]
-pub struct LeftOut {
+pub(crate) struct LeftOut {
     /// What.
     pub name: String,
     /// What it changes of the mean, and its bar; none where it was not seen.
     pub change: Option<[f64; 2]>,
     /// Cost over that with it.
-    pub cost: Option<f64>,
+    pub(crate) cost: Option<f64>,
     /// Whether the scene needs it for the error.
-    pub need: Need,
+    pub(crate) need: Need,
     /// The same in words.
     pub says: String,
 }
@@ -141,7 +141,7 @@ pub struct LeftOut {
 /// Whether a scene needs something for an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Need {
+pub(crate) enum Need {
     /// Without it the mean is off by more.
     Yes,
     /// Without it the mean is off by less.

@@ -99,7 +99,7 @@ pub(super) fn restore(ways: &mut [Way], case: &Case) {
 ///
 /// # Errors
 /// [`ExplainError`] if every trial breaks, or the quantity has no mean.
-pub fn seen(
+pub(crate) fn seen(
     case: &Case,
     target: &Target,
     seconds: f64,
@@ -140,7 +140,12 @@ fn seen_by(
 ///
 /// # Errors
 /// [`Unreached`], where no way comes to what is asked for.
-pub fn planned(case: &Case, target: &Target, findings: &Findings, origin: &str) -> Result<Plan, Unreached> {
+pub(crate) fn planned(
+    case: &Case,
+    target: &Target,
+    findings: &Findings,
+    origin: &str,
+) -> Result<Plan, Unreached> {
     if target.is_kept() {
         return Ok(keeping(case, target, findings, origin)?.or_as_it_stands(case, findings));
     }

@@ -7,7 +7,7 @@ use stripmine_physics::scene::{Key, Overrides, Value};
 
 /// What `auto` becomes.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Tuned {
+pub(crate) struct Tuned {
     /// The overrides that say so.
     pub overrides: Overrides,
     /// Where it comes from.
@@ -19,7 +19,7 @@ pub struct Tuned {
 ///
 /// # Errors
 /// [`KeptError`] if what is kept cannot be read.
-pub fn tuned(case: &Case, kept: &Kept) -> Result<Option<Tuned>, KeptError> {
+pub(crate) fn tuned(case: &Case, kept: &Kept) -> Result<Option<Tuned>, KeptError> {
     let Some((findings, origin)) = kept.alike(case)? else { return Ok(None) };
     let is_open = |key: &Key| case.values.choice(key).as_deref() == Some("auto");
     let holds =

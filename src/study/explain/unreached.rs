@@ -6,9 +6,9 @@ use stripmine_physics::number::significant;
 
 /// No plan reaches the error that is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Unreached {
+pub(crate) struct Unreached {
     /// The error that was asked for (the quantity's unit).
-    pub wanted: f64,
+    pub(crate) wanted: f64,
     /// The error to which the trials know the mean (the quantity's unit); not a number where it should keep its value.
     pub known: f64,
     /// The least error that is known to be reached (the quantity's unit); infinite where none is.
@@ -16,7 +16,7 @@ pub struct Unreached {
     /// Wall seconds of a run that is expected to reach it, by the trend of the steps that were tried.
     pub expected: Option<f64>,
     /// Wall seconds of the plan that would reach it, and the most that a plan may take.
-    pub takes: Option<[f64; 2]>,
+    pub(crate) takes: Option<[f64; 2]>,
     /// Wall seconds of the trials; 0 where nobody said.
     pub trials: f64,
 }

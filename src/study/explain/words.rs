@@ -5,12 +5,12 @@ use stripmine_physics::memory::in_words;
 use stripmine_physics::number::{significant, with_bar};
 
 /// A number with its unit.
-pub fn with_unit(value: &str, unit: &str) -> String {
+pub(crate) fn with_unit(value: &str, unit: &str) -> String {
     if unit.is_empty() { value.to_owned() } else { format!("{value} {unit}") }
 }
 
 /// The page: what is recommended and what it gives, then every choice with its reason and what stands beside it.
-pub fn page(plan: &Plan) -> String {
+pub(crate) fn page(plan: &Plan) -> String {
     let mut page = vec![answer(plan), expected(plan)];
     page.extend(plan.own.as_ref().map(|own| {
         let takes = seconds(own.seconds);
@@ -84,7 +84,7 @@ fn share(plan: &Plan, error: f64) -> String {
 }
 
 /// A wall time.
-pub fn seconds(seconds: f64) -> String {
+pub(crate) fn seconds(seconds: f64) -> String {
     match seconds {
         _ if seconds < 120.0 => format!("{} s", significant(seconds, 2)),
         _ if seconds < 7200.0 => format!("{} min", significant(seconds / 60.0, 2)),

@@ -115,7 +115,7 @@ fn rivals() -> Result<Vec<Rival>, Failure> {
 ///
 /// # Errors
 /// If a shipped file is not what the scripts write.
-pub fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let all = rivals()?;
     let repeated = all.iter().map(|rival| rival.source.clone()).collect();
     Ok(Made {

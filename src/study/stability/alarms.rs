@@ -56,7 +56,7 @@ impl Record {
 }
 
 /// A row for each limit and check of each map.
-pub fn alarms(maps: &[(String, Stability)]) -> Frame {
+pub(crate) fn alarms(maps: &[(String, Stability)]) -> Frame {
     let rows = maps.iter().flat_map(|(name, data)| {
         let [right, wrong] = [Cell::is_right, |cell: &Cell| cell.class.is_unseen()]
             .map(|belongs: fn(&Cell) -> bool| data.cells().filter(|cell| belongs(cell)).count());

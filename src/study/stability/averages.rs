@@ -7,33 +7,33 @@ use stripmine_physics::domain::Domain;
 use stripmine_physics::method::Simulation;
 
 /// Looks of a run after the first, which comes before its first step.
-pub const LOOKS: u64 = 64;
+pub(crate) const LOOKS: u64 = 64;
 /// Bins of the density profile along each side.
 const BINS: usize = 8;
 /// Name of the density profile among the means.
 const PROFILE: &str = "density profile";
 
 /// Means over time of a run: a value for each observable, and the profile.
-pub type Means = BTreeMap<String, Vec<f64>>;
+pub(crate) type Means = BTreeMap<String, Vec<f64>>;
 
 /// Means in the making.
-pub struct Averages<'s> {
+pub(crate) struct Averages<'s> {
     subject: &'s Subject,
     domain: Domain,
     looks: u64,
-    pub means: Means,
+    pub(crate) means: Means,
     /// Mean of the root mean square speed (length/time).
     pub speed: f64,
 }
 
 impl<'s> Averages<'s> {
     /// Begins a run in a box.
-    pub fn new(subject: &'s Subject, domain: Domain) -> Self {
+    pub(super) fn new(subject: &'s Subject, domain: Domain) -> Self {
         Averages { subject, domain, looks: 0, means: Means::new(), speed: 0.0 }
     }
 
     /// Takes a look, at which `values` were observed; those of the first half do not count.
-    pub fn look(&mut self, simulation: &dyn Simulation, values: &[f64]) {
+    pub(super) fn look(&mut self, simulation: &dyn Simulation, values: &[f64]) {
         self.looks += 1;
         if self.looks <= LOOKS / 2 {
             return;
@@ -52,7 +52,7 @@ impl<'s> Averages<'s> {
 }
 
 /// True if these may be means of a run of the scene: all of them, each with as many values as it has, all of them finite.
-pub fn are_of(subject: &Subject, means: &Means) -> bool {
+pub(crate) fn are_of(subject: &Subject, means: &Means) -> bool {
     let expected: BTreeMap<&str, usize> =
         subject.watched().map(|watched| (watched.name, 1)).chain([(PROFILE, 2 * BINS)]).collect();
     means.iter().map(|(name, values)| (name.as_str(), values.len())).eq(expected)

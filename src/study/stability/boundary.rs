@@ -2,7 +2,7 @@
 
 /// The edge of what works along the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Edge {
+pub(crate) enum Edge {
     /// Not even the smallest step works.
     Below,
     /// The largest step that was found to work and the smallest that was not (time), as far apart as the tolerance lets them.
@@ -12,7 +12,7 @@ pub enum Edge {
 
 impl Edge {
     /// The middle of the two steps (time).
-    pub fn step(self) -> Option<f64> {
+    pub(crate) fn step(self) -> Option<f64> {
         match self {
             Edge::Between([works, fails]) => Some((works * fails).sqrt()),
             Edge::Below | Edge::Above => None,
@@ -22,7 +22,7 @@ impl Edge {
 
 /// Finds the edge between rising steps, beginning at the place `guess` of the first that fails, until it lies within a part
 /// `tolerance` of the step.
-pub fn edge<E>(
+pub(crate) fn edge<E>(
     steps: &[f64],
     guess: usize,
     tolerance: f64,

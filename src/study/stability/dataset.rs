@@ -9,18 +9,18 @@ use stripmine_physics::method::{Beyond, Parameter};
 
 /// Runs of a scene over the step and a parameter, with the edges between classes.
 #[derive(Clone, Debug)]
-pub struct Stability {
+pub(crate) struct Stability {
     /// Name of the method.
     pub method: &'static str,
-    pub configuration: String,
-    pub time_unit: Option<String>,
+    pub(crate) configuration: String,
+    pub(crate) time_unit: Option<String>,
     /// Its own step (time).
     pub step: f64,
     /// The time of each run (time).
     pub duration: f64,
     /// Parts left out for want of time, in words.
     pub left_out: Option<String>,
-    pub parameter: Varied,
+    pub(crate) parameter: Varied,
     /// Values of the parameter, rising.
     pub values: Vec<f64>,
     /// The steps, rising (time).
@@ -28,35 +28,35 @@ pub struct Stability {
     /// `map[i][j]`: value i with step j, from the first seed.
     pub map: Vec<Vec<Cell>>,
     /// Edges at each value.
-    pub boundaries: Vec<Boundary>,
+    pub(crate) boundaries: Vec<Boundary>,
     /// Largest distance of the two ends of an edge, in parts of the step.
-    pub tolerance: f64,
+    pub(crate) tolerance: f64,
     /// Limits of the step by theory.
-    pub limits: Vec<Limit>,
+    pub(crate) limits: Vec<Limit>,
     /// Values of the parameter that theory names.
-    pub marks: Vec<(f64, String)>,
+    pub(crate) marks: Vec<(f64, String)>,
     /// Edges of every integrator, at the scene's own value.
-    pub schemes: Vec<SchemeLimit>,
+    pub(crate) schemes: Vec<SchemeLimit>,
     /// Values without a reference, and why.
-    pub unjudged: Vec<(f64, String)>,
+    pub(crate) unjudged: Vec<(f64, String)>,
     /// Seeds of the edges.
     pub seeds: Vec<u64>,
 }
 
 /// Parameter that is varied beside the step.
 #[derive(Clone, Debug)]
-pub struct Varied {
+pub(crate) struct Varied {
     pub name: &'static str,
     pub label: &'static str,
     /// Its unit; none of a pure number.
     pub unit: Option<String>,
     /// True if equal ratios lie at equal distances.
-    pub is_logarithmic: bool,
+    pub(crate) is_logarithmic: bool,
 }
 
 impl Varied {
     /// A parameter of a scene.
-    pub fn of(parameter: &Parameter, subject: &Subject) -> Varied {
+    pub(crate) fn of(parameter: &Parameter, subject: &Subject) -> Varied {
         let Parameter { name, label, unit, is_logarithmic, .. } = *parameter;
         Varied { name, label, unit: subject.unit(unit), is_logarithmic }
     }
@@ -64,7 +64,7 @@ impl Varied {
 
 /// Edges at a value, for each seed.
 #[derive(Clone, Debug)]
-pub struct Boundary {
+pub(crate) struct Boundary {
     /// Longest steps with which runs are right.
     pub works: Vec<Edge>,
     /// Longest steps with which runs come to their end.
@@ -72,7 +72,7 @@ pub struct Boundary {
 }
 
 /// Middle of edges over seeds, with the lowest and the highest (time); none unless every seed has one.
-pub fn over_seeds(edges: &[Edge]) -> Option<[f64; 3]> {
+pub(crate) fn over_seeds(edges: &[Edge]) -> Option<[f64; 3]> {
     let steps: Option<Vec<f64>> = edges.iter().map(|edge| edge.step()).collect();
     let mut steps = steps.filter(|steps| !steps.is_empty())?;
     steps.sort_by(f64::total_cmp);
@@ -81,19 +81,19 @@ pub fn over_seeds(edges: &[Edge]) -> Option<[f64; 3]> {
 
 /// Limit of the step by theory.
 #[derive(Clone, Debug)]
-pub struct Limit {
+pub(crate) struct Limit {
     pub name: &'static str,
     /// Effect of longer steps.
     pub beyond: Beyond,
     /// Value and step (time).
-    pub points: Vec<(f64, f64)>,
+    pub(crate) points: Vec<(f64, f64)>,
 }
 
 /// Edges of an integrator.
 #[derive(Clone, Debug)]
-pub struct SchemeLimit {
+pub(crate) struct SchemeLimit {
     pub scheme: String,
-    pub edges: Boundary,
+    pub(crate) edges: Boundary,
     /// Class of the first step that is no longer right, in the first seed.
     pub first: Option<Class>,
     /// Step beyond which theory says that errors grow (time), and its name.
@@ -102,26 +102,26 @@ pub struct SchemeLimit {
 
 /// Places of some classes, counted by the warnings that users get of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Said {
+pub(crate) struct Said {
     pub all: usize,
     /// The program refuses to run the scene.
     pub refused: usize,
     /// The program warns before the run.
-    pub warned_before: usize,
+    pub(crate) warned_before: usize,
     /// The run itself warns.
-    pub warned_by_run: usize,
+    pub(crate) warned_by_run: usize,
     /// No warning, neither before nor by the run.
-    pub unsaid: usize,
+    pub(crate) unsaid: usize,
 }
 
 impl Stability {
     /// Every place.
-    pub fn cells(&self) -> impl Iterator<Item = &Cell> {
+    pub(crate) fn cells(&self) -> impl Iterator<Item = &Cell> {
         self.map.iter().flatten()
     }
 
     /// Counts the places of some classes.
-    pub fn said(&self, belongs: impl Fn(&Cell) -> bool) -> Said {
+    pub(crate) fn said(&self, belongs: impl Fn(&Cell) -> bool) -> Said {
         self.cells().filter(|cell| belongs(cell)).fold(Said::default(), |mut said, cell| {
             said.all += 1;
             let is_warned = !cell.warned_by_run().is_empty();
@@ -136,7 +136,7 @@ impl Stability {
     }
 
     /// Smallest step of theory beyond which errors grow, at a value (time), and its name.
-    pub fn unstable_beyond(&self, value: f64) -> Option<(f64, &'static str)> {
+    pub(crate) fn unstable_beyond(&self, value: f64) -> Option<(f64, &'static str)> {
         let unstable = self.limits.iter().filter(|limit| limit.beyond == Beyond::Unstable);
         let at = unstable.filter_map(|limit| {
             let (_, step) = limit.points.iter().find(|(known, _)| *known == value)?;

@@ -19,24 +19,24 @@ const PLANNED: f64 = 0.38;
 
 /// Costs of runs.
 #[derive(Clone, Copy, Debug)]
-pub struct Costs {
+pub(crate) struct Costs {
     /// Seconds of a step.
-    pub each: f64,
+    pub(crate) each: f64,
     /// Seconds before the first step of a run.
     pub start: f64,
     /// Integrators whose edges are found at the scene's own value.
-    pub schemes: usize,
+    pub(crate) schemes: usize,
 }
 
 /// The extent of a map.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Extent {
+pub(crate) struct Extent {
     /// Values of the parameter, and steps.
     pub size: usize,
     /// Seeds of the edges.
     pub seeds: u64,
     /// Steps of the scene's own that each run lasts.
-    pub own_steps: f64,
+    pub(crate) own_steps: f64,
     pub seconds: f64,
 }
 
@@ -62,7 +62,7 @@ impl Costs {
     ///
     /// # Errors
     /// [`StudyError::TooLittleTime`] where the smallest map takes longer.
-    pub fn extent(&self, budget: f64, asked: (usize, u64), scene: f64) -> Result<Extent, StudyError> {
+    pub(crate) fn extent(&self, budget: f64, asked: (usize, u64), scene: f64) -> Result<Extent, StudyError> {
         let planned = PLANNED * budget;
         let fitting = |size: usize, seeds: u64, least: f64| {
             let [each, starts] = self.of_map(size, seeds);
@@ -84,7 +84,7 @@ impl Costs {
 
 impl Extent {
     /// Parts left out for want of time, in words; none where nothing is.
-    pub fn left_out(&self, (size, seeds): (usize, u64), scene: f64) -> Option<String> {
+    pub(crate) fn left_out(&self, (size, seeds): (usize, u64), scene: f64) -> Option<String> {
         let mut all = vec![];
         if self.size < size {
             all.push(format!("{size} values and steps: {} of each are tried", self.size));

@@ -15,7 +15,7 @@ type Maps = [(String, Stability)];
 const APART: f64 = 2.0;
 
 /// The frames of maps, each with a name for its rows.
-pub fn made(maps: &Maps) -> Made {
+pub(crate) fn made(maps: &Maps) -> Made {
     let seeds = maps.first().map_or(vec![], |(_, data)| data.seeds.clone());
     let frames = [
         of_maps(maps),

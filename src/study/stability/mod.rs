@@ -16,7 +16,7 @@ mod survey;
 #[cfg(test)]
 mod tests;
 
-pub use frames::made;
+pub(crate) use frames::made;
 
 use dataset::{Boundary, Limit, Stability, Varied};
 use outcome::{Cell, Class};
@@ -42,7 +42,7 @@ const TRIED: usize = 8;
 
 /// Extent and accuracy of a map.
 #[derive(Clone, Copy, Debug)]
-pub struct Effort {
+pub(crate) struct Effort {
     /// Processor seconds that it may take.
     pub budget: f64,
     /// Values of the parameter, and steps, at most.
@@ -50,12 +50,12 @@ pub struct Effort {
     /// Seeds of the edges, at most.
     pub seeds: u64,
     /// Largest distance of the two ends of an edge, in parts of the step.
-    pub tolerance: f64,
+    pub(crate) tolerance: f64,
 }
 
 /// Parameter that is varied, and its range.
 #[derive(Clone, Copy, Debug)]
-pub struct Over {
+pub(crate) struct Over {
     parameter: &'static Parameter,
     range: [f64; 2],
 }
@@ -65,7 +65,11 @@ impl Over {
     ///
     /// # Errors
     /// [`StudyError`] if it has nothing of that name, or the range is none.
-    pub fn of(subject: &Subject, name: Option<&str>, asked: Option<[f64; 2]>) -> Result<Over, StudyError> {
+    pub(crate) fn of(
+        subject: &Subject,
+        name: Option<&str>,
+        asked: Option<[f64; 2]>,
+    ) -> Result<Over, StudyError> {
         let all = subject.trials.parameters;
         let known = || all.iter().map(|parameter| parameter.name).collect();
         let is_meant = |parameter: &&Parameter| match name {
@@ -90,7 +94,7 @@ impl Over {
     }
 
     /// Name of the parameter.
-    pub fn name(&self) -> &'static str {
+    pub(crate) fn name(&self) -> &'static str {
         self.parameter.name
     }
 }
@@ -111,7 +115,7 @@ fn ladder([low, high]: [f64; 2], count: usize, is_logarithmic: bool) -> Vec<f64>
 ///
 /// # Errors
 /// [`StudyError`] if nothing works anywhere, the user asks for the end, or finished runs cannot be kept.
-pub fn stability(
+pub(crate) fn stability(
     subject: &Subject,
     Over { parameter, range }: Over,
     effort: &Effort,

@@ -7,11 +7,11 @@ use crate::study::trial::{Cause, RunFailure};
 use serde::{Deserialize, Serialize};
 
 /// The energy is wrong where its balance is off by more than this part of the energy that passed through.
-pub const DRIFT: f64 = 0.1;
+pub(crate) const DRIFT: f64 = 0.1;
 
 /// Class of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Class {
+pub(crate) enum Class {
     /// Ends, with the means of the reference.
     Works,
     /// Ends with wrong means, and nothing stops it.
@@ -26,7 +26,7 @@ pub enum Class {
 
 impl Class {
     /// Every class of a run that is begun, from `Works` on.
-    pub const BEGUN: [Class; 10] = [
+    pub(crate) const BEGUN: [Class; 10] = [
         Class::Works,
         Class::Silent,
         Class::EnergyLoss,
@@ -40,7 +40,7 @@ impl Class {
     ];
 
     /// Name for a reader.
-    pub const fn name(self) -> &'static str {
+    pub(crate) const fn name(self) -> &'static str {
         match self {
             Class::Works => "works",
             Class::Silent => "wrong but silent",
@@ -51,71 +51,71 @@ impl Class {
     }
 
     /// True if the run comes to its end.
-    pub const fn ends(self) -> bool {
+    pub(crate) const fn ends(self) -> bool {
         !matches!(self, Class::Failed(_))
     }
 
     /// True if the run comes to its end and is wrong: a user may take it for a result.
-    pub const fn is_unseen(self) -> bool {
+    pub(crate) const fn is_unseen(self) -> bool {
         self.ends() && !matches!(self, Class::Works)
     }
 }
 
 /// A run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Ran {
+pub(crate) struct Ran {
     /// Findings of the scene before the run.
-    pub foreseen: Vec<Alarm>,
+    pub(crate) foreseen: Vec<Alarm>,
     pub end: Result<Whole, RunFailure>,
 }
 
 /// A run that came to its end.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Whole {
+pub(crate) struct Whole {
     /// Means over its second half.
-    pub means: Means,
+    pub(crate) means: Means,
     /// Root mean square speed over it (length/time).
     pub speed: f64,
     /// Error of its energy over the energy that passed through; none where that is not followed.
     pub energy: Option<f64>,
     /// Warnings of the run.
-    pub warned: Vec<Alarm>,
+    pub(crate) warned: Vec<Alarm>,
 }
 
 /// A place of a map.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Cell {
-    pub class: Class,
+pub(crate) struct Cell {
+    pub(crate) class: Class,
     /// Reason for the class, in a line.
     pub what: String,
     /// True if the class is certain: means of a run that works might have told it from a wrong one.
-    pub is_decided: bool,
+    pub(crate) is_decided: bool,
     /// Findings of every limit and check.
-    pub alarms: Vec<Alarm>,
+    pub(crate) alarms: Vec<Alarm>,
 }
 
 impl Cell {
     /// The gravest finding before the run.
-    pub fn foreseen(&self) -> Finding {
+    pub(crate) fn foreseen(&self) -> Finding {
         let before = self.alarms.iter().map(|alarm| alarm.finding).filter(|it| *it != Finding::WarnedByRun);
         before.max().unwrap_or(Finding::Within)
     }
 
     /// Names of the checks that warned along the run.
-    pub fn warned_by_run(&self) -> Vec<&str> {
+    pub(crate) fn warned_by_run(&self) -> Vec<&str> {
         let warned = self.alarms.iter().filter(|alarm| alarm.finding == Finding::WarnedByRun);
         warned.map(|alarm| alarm.check.as_str()).collect()
     }
 
     /// True if the run works for certain.
-    pub fn is_right(&self) -> bool {
+    pub(crate) fn is_right(&self) -> bool {
         self.class == Class::Works && self.is_decided
     }
 }
 
 impl Ran {
     /// Compares the run with the means that are expected of it.
-    pub fn judged(&self, expected: Option<&Expected>) -> Cell {
+    pub(crate) fn judged(&self, expected: Option<&Expected>) -> Cell {
         let (class, what) = match &self.end {
             Err(failure) => (Class::Failed(failure.cause), failure.why.clone()),
             Ok(whole) => whole.judged(expected),

@@ -4,11 +4,11 @@ use super::averages::Means;
 use crate::statistics::{Spread, student};
 
 /// Runs that the expectation is made of, each from a seed of its own.
-pub const SEEDS: u64 = 8;
+pub(crate) const SEEDS: u64 = 8;
 /// Share of the runs that are right and lie within the interval.
 const WITHIN: f64 = 0.999;
 /// A mean that is off by less than this part of itself is not called wrong.
-pub const TOLERANCE: f64 = 0.05;
+pub(crate) const TOLERANCE: f64 = 0.05;
 /// A mean that is not known to this part of itself tells nothing.
 const KNOWN: f64 = 0.1;
 /// Means that may all be off by more than this part of themselves by chance do not tell a right run from a wrong one.
@@ -26,7 +26,7 @@ struct Interval {
 
 /// Intervals of all means of a run.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Expected(Vec<Interval>);
+pub(super) struct Expected(Vec<Interval>);
 
 fn rms(values: impl ExactSizeIterator<Item = f64>) -> f64 {
     let count = values.len().max(1) as f64;
@@ -44,19 +44,19 @@ fn middle<'m>(runs: impl Iterator<Item = &'m Vec<f64>>) -> Vec<f64> {
 
 impl Expected {
     /// By the means of several runs; none of fewer than three. A mean is compared with itself, or with `at_least` where that is larger.
-    pub fn of(runs: &[Means], at_least: impl Fn(&str) -> f64) -> Option<Expected> {
+    pub(super) fn of(runs: &[Means], at_least: impl Fn(&str) -> f64) -> Option<Expected> {
         let first = runs.first().filter(|_| runs.len() > 2)?;
         let interval = |name: &String| Interval::of(name, runs, at_least(name));
         Some(Expected(first.keys().filter_map(interval).collect()))
     }
 
     /// True if a wrong mean would be seen: one of them at least is known well enough.
-    pub fn decides(&self) -> bool {
+    pub(crate) fn decides(&self) -> bool {
         self.0.iter().any(|interval| interval.reach <= DECISIVE * interval.scale)
     }
 
     /// The mean that is farthest off by more than it may be, in words; none if none is.
-    pub fn worst(&self, means: &Means) -> Option<String> {
+    pub(crate) fn worst(&self, means: &Means) -> Option<String> {
         let off = self.0.iter().filter_map(|interval| {
             let value = means.get(&interval.observable)?;
             let off = distance(value, &interval.middle);

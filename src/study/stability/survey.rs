@@ -20,34 +20,34 @@ use stripmine_physics::scene::{Overrides, SEED, SceneErrors};
 const ANOTHER: u64 = 1000;
 
 /// A map under way.
-pub struct Survey<'s> {
+pub(crate) struct Survey<'s> {
     pub runs: &'s Runs<'s>,
-    pub parameter: &'static Parameter,
+    pub(crate) parameter: &'static Parameter,
     /// The steps, rising (time).
     pub steps: &'s [f64],
     /// Time of each run (time).
     pub duration: f64,
     /// Seconds that a step is expected to take.
-    pub each: f64,
+    pub(crate) each: f64,
     /// Seeds of the edges.
     pub seeds: &'s [u64],
     /// Largest distance of the two ends of an edge, in parts of the step.
-    pub tolerance: f64,
+    pub(crate) tolerance: f64,
 }
 
 /// Scene of a map: its configuration, and the value of the parameter, none for the scene's own.
 #[derive(Clone, Copy)]
-pub struct Variant<'v> {
-    pub choice: &'v Choice,
+pub(crate) struct Variant<'v> {
+    pub(crate) choice: &'v Choice,
     pub value: Option<f64>,
 }
 
 /// Means that are expected of the runs of a variant, or the reason why there are none.
-pub type Known = Result<Expected, String>;
+pub(crate) type Known = Result<Expected, String>;
 
 impl Survey<'_> {
     /// Reference of a value: the most accurate configuration with the smallest step, over seeds.
-    pub fn known(&self, value: Option<f64>) -> Result<Known, StudyError> {
+    pub(crate) fn known(&self, value: Option<f64>) -> Result<Known, StudyError> {
         let subject = self.runs.subject;
         let mut why = String::new();
         for number in 0..subject.trials.references.len() {
@@ -71,7 +71,7 @@ impl Survey<'_> {
 
     /// Place of a variant and a step. Means that are off in one run alone may be so by chance: they count if those of another seed are
     /// off, too.
-    pub fn cell(
+    pub(super) fn cell(
         &self,
         variant: Variant<'_>,
         known: &Known,
@@ -89,7 +89,7 @@ impl Survey<'_> {
     }
 
     /// Edges of a variant over seeds; `guesses` are the places of the first step that does not work, and that does not end.
-    pub fn boundary(
+    pub(crate) fn boundary(
         &self,
         variant: Variant<'_>,
         known: &Known,
@@ -110,7 +110,7 @@ impl Survey<'_> {
     }
 
     /// Edges of an integrator at the scene's own value.
-    pub fn scheme(&self, choice: &Choice, known: &Known) -> Result<SchemeLimit, StudyError> {
+    pub(super) fn scheme(&self, choice: &Choice, known: &Known) -> Result<SchemeLimit, StudyError> {
         let variant = Variant { choice, value: None };
         let edges = self.boundary(variant, known, [self.steps.len() / 2; 2])?;
         let first = match (edges.works.first(), self.seeds.first()) {
@@ -130,7 +130,7 @@ impl Survey<'_> {
     }
 
     /// Limits of the step of a variant by theory.
-    pub fn limits(&self, variant: Variant<'_>) -> Vec<StepLimit> {
+    pub(crate) fn limits(&self, variant: Variant<'_>) -> Vec<StepLimit> {
         let scene = self.prepared(variant, self.runs.subject.step, 1);
         scene.map_or(vec![], |scene| scene.step_limits)
     }

@@ -5,13 +5,13 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 /// A number as JSON can hold it.
 #[derive(Serialize, Deserialize)]
 #[serde(untagged)]
-pub enum Held {
+pub(crate) enum Held {
     Finite(f64),
     Word(String),
 }
 
 /// Values made of numbers, and how a file holds them.
-pub trait OfNumbers: Sized {
+pub(crate) trait OfNumbers: Sized {
     /// The same with each number as a file holds it.
     type Held: Serialize + for<'de> Deserialize<'de>;
 
@@ -63,11 +63,11 @@ impl<T: OfNumbers> OfNumbers for Option<T> {
     }
 }
 
-pub fn serialize<T: OfNumbers, S: Serializer>(value: &T, to: S) -> Result<S::Ok, S::Error> {
+pub(crate) fn serialize<T: OfNumbers, S: Serializer>(value: &T, to: S) -> Result<S::Ok, S::Error> {
     value.held().serialize(to)
 }
 
-pub fn deserialize<'de, T: OfNumbers, D: Deserializer<'de>>(from: D) -> Result<T, D::Error> {
+pub(crate) fn deserialize<'de, T: OfNumbers, D: Deserializer<'de>>(from: D) -> Result<T, D::Error> {
     let held = T::Held::deserialize(from)?;
     T::of(held).ok_or_else(|| serde::de::Error::custom("expected a number, inf, -inf or NaN"))
 }

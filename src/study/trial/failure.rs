@@ -8,7 +8,7 @@ use stripmine_physics::scene::SceneErrors;
 /// Kind of a failure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Cause {
+pub(crate) enum Cause {
     Penetration,
     /// A particle moves so far in a step that contacts pass unseen.
     MaskOutrun,
@@ -26,7 +26,7 @@ pub enum Cause {
 
 impl Cause {
     /// Name for a reader.
-    pub const fn name(self) -> &'static str {
+    pub(crate) const fn name(self) -> &'static str {
         match self {
             Cause::Penetration => "penetration",
             Cause::MaskOutrun => "mask outrun",
@@ -42,10 +42,10 @@ impl Cause {
 
 /// Reason why a run has no result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct RunFailure {
-    pub cause: Cause,
+pub(crate) struct RunFailure {
+    pub(crate) cause: Cause,
     /// One line, without advice.
-    pub why: String,
+    pub(crate) why: String,
 }
 
 impl RunFailure {
@@ -55,7 +55,7 @@ impl RunFailure {
     }
 
     /// True if the user asked for the end.
-    pub fn is_interruption(&self) -> bool {
+    pub(crate) fn is_interruption(&self) -> bool {
         self.cause == Cause::Interrupted
     }
 }

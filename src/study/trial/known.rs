@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use stripmine_physics::averages::{Estimate, foreseeing, of_independent};
 
 /// Rows of a run whose time is known, where nothing asks for more.
-pub const ROWS: f64 = 250.0;
+pub(crate) const ROWS: f64 = 250.0;
 /// Spacings of rows that are compared, in spacings of the sample; the widest first.
 const EVERY: [usize; 4] = [8, 4, 2, 1];
 /// Values that are left of a series at least.
@@ -15,7 +15,7 @@ const WORTH: f64 = 0.8;
 
 /// A mean as a run knows it.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub struct Known {
+pub(crate) struct Known {
     /// The mean.
     #[serde(with = "any_number")]
     pub mean: f64,
@@ -24,7 +24,7 @@ pub struct Known {
     pub bar: f64,
     /// Time that the mean is over (time).
     #[serde(with = "any_number")]
-    pub span: f64,
+    pub(crate) span: f64,
     /// Waves of the bar: its degrees of freedom.
     #[serde(with = "any_number")]
     pub waves: f64,
@@ -39,27 +39,27 @@ pub struct Known {
     pub single: f64,
     /// Time that does not count (time).
     #[serde(with = "any_number")]
-    pub transient: f64,
+    pub(crate) transient: f64,
     /// Time between independent samples (time).
     #[serde(with = "any_number")]
     pub apart: f64,
     /// Degrees of freedom of the square; infinite where it is exact.
     #[serde(with = "any_number")]
-    pub freedoms: f64,
+    pub(crate) freedoms: f64,
 }
 
 /// Cost of the time and of the rows of a run whose rows have values of moments, and nothing of those between.
 #[derive(Clone, Copy, Debug)]
-pub struct Pace {
+pub(crate) struct Pace {
     /// Wall seconds of a unit of time, rows apart.
-    pub cost: f64,
+    pub(crate) cost: f64,
     /// Wall seconds of a row.
     pub row: f64,
 }
 
 impl Known {
     /// A mean that chance does not touch.
-    pub fn exactly(mean: f64) -> Known {
+    pub(crate) fn exactly(mean: f64) -> Known {
         Known {
             mean,
             bar: 0.0,
@@ -75,7 +75,7 @@ impl Known {
     }
 
     /// Of the means of whole runs of a time (time); none of fewer than two.
-    pub fn of_whole_runs(means: &[f64], time: f64) -> Option<Known> {
+    pub(crate) fn of_whole_runs(means: &[f64], time: f64) -> Option<Known> {
         let count = means.len() as f64;
         let [mean, bar] = of_independent(means)?;
         let (span, waves) = (count * time, count - 1.0);
@@ -83,7 +83,7 @@ impl Known {
     }
 
     /// Of an estimate, and the values that it is of, each with its time (time). With a pace rows are as far apart as is cheapest for the error.
-    pub fn of(it: Estimate, values: &[[f64; 2]], pace: Option<Pace>) -> Known {
+    pub(crate) fn of(it: Estimate, values: &[[f64; 2]], pace: Option<Pace>) -> Known {
         let kept: Vec<f64> =
             values.iter().filter(|[time, _]| *time > it.equilibrated_at).map(|[_, value]| *value).collect();
         let [bar, freedoms] = foreseeing(&kept).unwrap_or([it.bar, it.freedoms]);
@@ -128,7 +128,7 @@ impl Known {
     /// The variance of a mean over rows Δ apart is that of values whose memory fades exponentially, v Δ coth(v Δ/s), with v that of a single value and s that of
     /// close rows in a unit of time: s where rows are close, and v Δ where each is independent of the next.
     #[must_use]
-    pub fn looked_at(&self, every: f64) -> Known {
+    pub(crate) fn looked_at(&self, every: f64) -> Known {
         if self.single == 0.0 || every <= self.every {
             return *self;
         }
@@ -145,12 +145,12 @@ impl Known {
     }
 
     /// Rows of a run of some time.
-    pub fn rows_in(&self, time: f64) -> f64 {
+    pub(crate) fn rows_in(&self, time: f64) -> f64 {
         if self.every > 0.0 { (time / self.every).max(ROWS) } else { ROWS }
     }
 
     /// Rows of a unit of time in long runs.
-    pub fn rows(&self) -> f64 {
+    pub(crate) fn rows(&self) -> f64 {
         if self.every > 0.0 { 1.0 / self.every } else { 0.0 }
     }
 }

@@ -7,11 +7,11 @@ mod pairs;
 mod sample;
 mod stopwatch;
 
-pub use failure::{Cause, RunFailure};
-pub use known::{Known, Pace, ROWS};
-pub use pairs::{Compared, Paired, TOGETHER, Window, pairs, part, steady};
-pub use sample::{Sample, Span, values};
-pub use stopwatch::Stopwatch;
+pub(crate) use failure::{Cause, RunFailure};
+pub(crate) use known::{Known, Pace, ROWS};
+pub(crate) use pairs::{Compared, Paired, TOGETHER, Window, pairs, part, steady};
+pub(crate) use sample::{Sample, Span, values};
+pub(crate) use stopwatch::Stopwatch;
 
 use crate::results::Meter;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -24,7 +24,7 @@ const TOGETHER_AT_LEAST: f64 = 1e-3;
 
 /// Clock of trials, and the flag that ends them before their time.
 #[derive(Clone, Copy, Debug)]
-pub struct Trial<'t> {
+pub(crate) struct Trial<'t> {
     /// Seconds that they take.
     pub watch: &'t Stopwatch,
     /// Set where a user asks for the end.
@@ -33,12 +33,12 @@ pub struct Trial<'t> {
 
 /// Length of a run, and the moments at which it is observed.
 #[derive(Clone, Copy, Debug)]
-pub struct Course {
+pub(crate) struct Course {
     pub steps: u64,
     /// Looks, evenly spread, the last one at the end.
     pub looks: u64,
     /// Seconds that a step is expected to take.
-    pub each: f64,
+    pub(crate) each: f64,
 }
 
 impl Trial<'_> {
@@ -46,7 +46,7 @@ impl Trial<'_> {
     ///
     /// # Errors
     /// [`RunFailure`] if it breaks, or the user asks for the end.
-    pub fn follow(
+    pub(crate) fn follow(
         &self,
         prepared: &Prepared,
         purpose: Purpose,
@@ -70,7 +70,11 @@ impl Trial<'_> {
     ///
     /// # Errors
     /// [`RunFailure`] if it breaks, or the user asks for the end.
-    pub fn advance_to_step(&self, simulation: &mut dyn Simulation, step: u64) -> Result<(), RunFailure> {
+    pub(crate) fn advance_to_step(
+        &self,
+        simulation: &mut dyn Simulation,
+        step: u64,
+    ) -> Result<(), RunFailure> {
         self.watch.during(simulation, |it| it.advance(&[Until::Steps(step)], self.stop))?;
         if self.stop.load(Ordering::Relaxed) { Err(RunFailure::interrupted()) } else { Ok(()) }
     }
@@ -79,7 +83,7 @@ impl Trial<'_> {
     ///
     /// # Errors
     /// [`RunFailure`] if it breaks, or the user asks for the end.
-    pub fn seconds_of_a_step(&self, prepared: &Prepared, most: u64) -> Result<f64, RunFailure> {
+    pub(crate) fn seconds_of_a_step(&self, prepared: &Prepared, most: u64) -> Result<f64, RunFailure> {
         let mut simulation = prepared.start(Purpose::Measurement)?;
         let begun = self.watch.now();
         let mut steps = 1;
@@ -97,7 +101,7 @@ impl Trial<'_> {
     ///
     /// # Errors
     /// [`RunFailure`] if it breaks, or the user asks for the end.
-    pub fn seconds_of_a_run(&self, prepared: &Prepared, steps: u64) -> Result<f64, RunFailure> {
+    pub(crate) fn seconds_of_a_run(&self, prepared: &Prepared, steps: u64) -> Result<f64, RunFailure> {
         let (mut spent, mut runs) = (0.0, 0);
         while spent < TOGETHER_AT_LEAST {
             let mut simulation = prepared.start(Purpose::Measurement)?;

@@ -18,10 +18,10 @@ const LATE: f64 = 3.0;
 /// A window that shows a bias but for this part shows it whole.
 const ALL: f64 = 1e-3;
 /// Runs stay together where differences scatter by no more than this part of those of independent runs.
-pub const TOGETHER: f64 = 0.2;
+pub(crate) const TOGETHER: f64 = 0.2;
 
 /// Configurations that are compared, the first of them the reference, and the states that each starts from.
-pub struct Compared<'c> {
+pub(crate) struct Compared<'c> {
     /// For each configuration its steps between two rows.
     pub steps: &'c [u64],
     /// Rows of the first half of the first window. Each next window is twice as long.
@@ -34,33 +34,33 @@ pub struct Compared<'c> {
 
 /// Differences from the reference over the second half of a window.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Window {
+pub(crate) struct Window {
     /// Its length (time).
     pub time: f64,
     /// For each configuration after the reference and each start the mean less that of the reference.
-    pub differences: Vec<Vec<f64>>,
+    pub(crate) differences: Vec<Vec<f64>>,
     /// The largest scatter of these over that of independent runs.
-    pub scatter: f64,
+    pub(crate) scatter: f64,
 }
 
 /// Means over windows from the same states.
 #[derive(Clone, Debug)]
-pub struct Paired {
+pub(crate) struct Paired {
     /// States.
     pub starts: usize,
     /// Windows, each twice as long as the one before.
-    pub windows: Vec<Window>,
+    pub(crate) windows: Vec<Window>,
     /// For each configuration, the first of them the reference: what checks warned of in any of its runs.
     pub warnings: Vec<Vec<RunWarning>>,
 }
 
 /// A configuration that broke.
 #[derive(Debug)]
-pub struct Broken {
+pub(crate) struct Broken {
     /// Its place among those compared.
     pub at: usize,
     /// Why.
-    pub why: String,
+    pub(crate) why: String,
 }
 
 /// A run with what it knows of a quantity at the end of a window, and at its middle.
@@ -104,7 +104,7 @@ impl Course {
 ///
 /// # Errors
 /// [`Broken`] names the configuration that broke.
-pub fn pairs(
+pub(crate) fn pairs(
     trial: &Trial<'_>,
     compared: &Compared<'_>,
     (quantities, place): (&'static [Quantity], usize),
@@ -175,7 +175,7 @@ impl Window {
 }
 
 /// The part of the bias of a steady state that the mean over the second half of a window (time) has, for a quantity with a memory (time).
-pub fn part(window: f64, memory: f64) -> f64 {
+pub(crate) fn part(window: f64, memory: f64) -> f64 {
     let ratio = window / memory;
     // The expansion for short windows, whose terms cancel.
     match ratio {
@@ -186,7 +186,7 @@ pub fn part(window: f64, memory: f64) -> f64 {
 }
 
 /// The bias in the steady state and the change at once, by differences over a window and over the one before, of which each shows a part: `[b, a]`.
-pub fn steady([difference, before]: [f64; 2], [part, part_before]: [f64; 2]) -> [f64; 2] {
+pub(crate) fn steady([difference, before]: [f64; 2], [part, part_before]: [f64; 2]) -> [f64; 2] {
     let more = part - part_before;
     // A quantity without a memory shows all at once.
     if 1.0 - part < ALL {

@@ -29,9 +29,9 @@ const KEPT: usize = 2_000_000;
 
 /// A run of some seconds.
 #[derive(Clone, Debug)]
-pub struct Sample {
+pub(crate) struct Sample {
     /// Wall seconds of a unit of time, rows apart.
-    pub cost: f64,
+    pub(crate) cost: f64,
     /// Wall seconds of a row.
     pub row: f64,
     /// Wall seconds until the first step.
@@ -43,11 +43,11 @@ pub struct Sample {
     /// Its mean of the quantity, or why there is none.
     pub outcome: Outcome,
     /// Set if it came beyond the end of the scene's own run.
-    pub comes_beyond_end: bool,
+    pub(crate) comes_beyond_end: bool,
     /// Warnings of its checks.
     pub warnings: Vec<RunWarning>,
     /// The quantity from stretch to stretch: when each ends (time), and its value there.
-    pub series: Vec<[f64; 2]>,
+    pub(crate) series: Vec<[f64; 2]>,
     /// Wall seconds of a unit of time in each phase, by name.
     pub phases: Vec<(String, f64)>,
     /// States along the run, evenly spread, each with its time (time).
@@ -57,12 +57,12 @@ pub struct Sample {
     /// The kind of the quantity, and its place in a row.
     pub observed: (Kind, usize),
     /// Set where values between rows are lost, and closer rows tell more: those of moments, but for what a driving repeats.
-    pub loses: bool,
+    pub(crate) loses: bool,
 }
 
 impl Sample {
     /// The mean, where there is one, however roughly known.
-    pub fn known(&self) -> Option<Known> {
+    pub(crate) fn known(&self) -> Option<Known> {
         match self.outcome {
             Outcome::Mean(estimate) | Outcome::TooShort { estimate: Some(estimate), .. } => {
                 let values = values(&self.rows, self.observed.1, &self.series, self.loses);
@@ -79,17 +79,17 @@ impl Sample {
 
 impl Sample {
     /// Cost of its time and of its rows, where values between rows are lost.
-    pub fn pace(&self) -> Option<Pace> {
+    pub(crate) fn pace(&self) -> Option<Pace> {
         self.loses.then_some(Pace { cost: self.cost, row: self.row })
     }
 
     /// Warnings of its checks, in words.
-    pub fn warned(&self) -> String {
+    pub(crate) fn warned(&self) -> String {
         self.warnings.iter().map(|warning| warning.message.as_str()).collect::<Vec<_>>().join("; ")
     }
 
     /// That it ended before a time, in words; none where it did not.
-    pub fn cut_off(&self, time: f64) -> Option<String> {
+    pub(crate) fn cut_off(&self, time: f64) -> Option<String> {
         // The last stretch may end by rounding before.
         (self.time < time * (1.0 - 1e-9)).then(|| {
             format!(
@@ -102,7 +102,7 @@ impl Sample {
     }
 
     /// Why it has no mean.
-    pub fn without_mean(&self) -> String {
+    pub(crate) fn without_mean(&self) -> String {
         let time = significant(self.time, 3);
         match self.outcome {
             Outcome::Changing { first, last } => format!(
@@ -120,7 +120,7 @@ impl Sample {
     /// The mean from one time to another, or to the end of the run.
     ///
     /// Values of moments lie on straight lines between rows: of a quantity that changes, a sum of rows would lag by half of their spacing.
-    pub fn mean_over(&self, [from, to]: [f64; 2]) -> f64 {
+    pub(crate) fn mean_over(&self, [from, to]: [f64; 2]) -> f64 {
         let (kind, place) = self.observed;
         let of = |rows: &[Vec<f64>]| {
             let [times, values] = [0, place].map(|at| [rows[0][at], rows[1][at]]);
@@ -146,7 +146,7 @@ impl Sample {
 }
 
 /// Values of a quantity with their times: those of all rows but the first where others are lost, else the ends of stretches with their means.
-pub fn values(rows: &[Vec<f64>], place: usize, series: &[[f64; 2]], loses: bool) -> Vec<[f64; 2]> {
+pub(crate) fn values(rows: &[Vec<f64>], place: usize, series: &[[f64; 2]], loses: bool) -> Vec<[f64; 2]> {
     match loses {
         true => rows.iter().skip(1).map(|row| [row[0], row[place]]).collect(),
         false => series.to_vec(),
@@ -155,7 +155,7 @@ pub fn values(rows: &[Vec<f64>], place: usize, series: &[[f64; 2]], loses: bool)
 
 /// How long a sample is.
 #[derive(Clone, Copy, Debug)]
-pub enum Span {
+pub(crate) enum Span {
     /// About so many wall seconds.
     Seconds(f64),
     /// A time (time), but no more wall seconds than these where they are given.
@@ -167,7 +167,7 @@ pub enum Span {
 impl Span {
     /// The same in no more than some wall seconds.
     #[must_use]
-    pub fn within(self, left: f64) -> Span {
+    pub(crate) fn within(self, left: f64) -> Span {
         match self {
             Span::Seconds(seconds) => Span::Seconds(seconds.min(left)),
             Span::Time(time, seconds) => Span::Time(time, Some(seconds.map_or(left, |it| it.min(left)))),
@@ -183,7 +183,7 @@ impl Trial<'_> {
     ///
     /// # Errors
     /// [`Failure`] if it breaks.
-    pub fn sample(
+    pub(crate) fn sample(
         &self,
         prepared: &Prepared,
         (quantities, place): (&'static [Quantity], usize),
@@ -353,7 +353,7 @@ impl Trial<'_> {
     ///
     /// # Errors
     /// [`Failure`] if it breaks.
-    pub fn timed(&self, prepared: &Prepared, seconds: f64) -> Result<UnitCost, Failure> {
+    pub(crate) fn timed(&self, prepared: &Prepared, seconds: f64) -> Result<UnitCost, Failure> {
         const STRETCHES: u32 = 4;
         let mut simulation = prepared.start(Purpose::Run)?;
         let simulation = simulation.as_mut();
@@ -431,7 +431,7 @@ fn first(prepared: &Prepared) -> Until {
 
 /// Cost of a unit of time.
 #[derive(Clone, Debug)]
-pub struct UnitCost {
+pub(crate) struct UnitCost {
     /// Wall seconds, by the fastest of some stretches.
     pub seconds: f64,
     /// Wall seconds in each phase, by name, over all stretches.

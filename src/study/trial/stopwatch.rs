@@ -8,7 +8,7 @@ use stripmine_physics::method::Simulation;
 
 /// Seconds that trials take. A test makes them of work, so that a plan does not depend on how fast the machine is at that moment.
 #[derive(Debug)]
-pub struct Stopwatch(Kind);
+pub(crate) struct Stopwatch(Kind);
 
 #[derive(Debug)]
 enum Kind {
@@ -21,23 +21,23 @@ enum Kind {
 
 impl Stopwatch {
     /// Of the wall; begins now.
-    pub fn wall() -> Stopwatch {
+    pub(crate) fn wall() -> Stopwatch {
         Stopwatch(Kind::Wall(Instant::now()))
     }
 
     /// Of the processor, over all threads of this process; begins now.
-    pub fn processor() -> Stopwatch {
+    pub(crate) fn processor() -> Stopwatch {
         Stopwatch(Kind::Processor(ProcessTime::now()))
     }
 
     /// Made of work: each unit of [`Simulation::work`] takes so many nanoseconds.
     #[cfg(test)]
-    pub fn made(nanoseconds: f64) -> Stopwatch {
+    pub(crate) fn made(nanoseconds: f64) -> Stopwatch {
         Stopwatch(Kind::Made(AtomicU64::new(0), nanoseconds))
     }
 
     /// Seconds since it began.
-    pub fn now(&self) -> f64 {
+    pub(crate) fn now(&self) -> f64 {
         match &self.0 {
             Kind::Wall(begun) => begun.elapsed().as_secs_f64(),
             Kind::Processor(begun) => begun.elapsed().as_secs_f64(),
@@ -47,7 +47,7 @@ impl Stopwatch {
     }
 
     /// Lets a simulation do something, and counts its work.
-    pub fn during<R>(
+    pub(crate) fn during<R>(
         &self,
         simulation: &mut dyn Simulation,
         act: impl FnOnce(&mut dyn Simulation) -> R,

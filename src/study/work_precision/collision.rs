@@ -23,19 +23,19 @@ const LARGE: f64 = 0.1;
 
 /// Errors of a collision.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Collision {
+pub(crate) struct Collision {
     /// Starts of each step, each a part of a step later than the one before.
     pub phases: u32,
     /// Errors by scheme and step.
-    pub errors: Vec<OutcomeError>,
+    pub(crate) errors: Vec<OutcomeError>,
     /// Orders fitted through them.
     pub orders: Vec<OutcomeOrder>,
 }
 
 /// Error of the outcomes of a scheme with a step.
 #[derive(Clone, Debug, PartialEq)]
-pub struct OutcomeError {
-    pub choice: String,
+pub(crate) struct OutcomeError {
+    pub(crate) choice: String,
     /// The step (time).
     pub step: f64,
     /// Root of the mean square over the phases, for each outcome.
@@ -46,8 +46,8 @@ pub struct OutcomeError {
 
 /// Power of the step with which the errors of a scheme fall.
 #[derive(Clone, Debug, PartialEq)]
-pub struct OutcomeOrder {
-    pub choice: String,
+pub(crate) struct OutcomeOrder {
+    pub(crate) choice: String,
     pub outcome: &'static str,
     /// Of the root of the mean square over the phases.
     pub spread: Option<Fitted>,
@@ -66,7 +66,11 @@ fn is_collision(subject: &Subject) -> bool {
 ///
 /// # Errors
 /// [`StudyError`] as of [`Runs::recall`].
-pub fn collision(runs: &Runs<'_>, steps: &[f64], phases: u32) -> Result<Option<Collision>, StudyError> {
+pub(crate) fn collision(
+    runs: &Runs<'_>,
+    steps: &[f64],
+    phases: u32,
+) -> Result<Option<Collision>, StudyError> {
     let Some(&smallest) = steps.first().filter(|_| is_collision(runs.subject)) else { return Ok(None) };
     let over_phases = |choice: &Choice, step: f64| -> Result<Option<Vec<[f64; 2]>>, StudyError> {
         let outcome = |phase: u32| {

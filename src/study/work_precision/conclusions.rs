@@ -5,14 +5,14 @@ use super::measures::Measure;
 use crate::study::TIE;
 
 /// Errors of positions that are asked for (the method's length).
-pub const WISHES: [f64; 5] = [3e-2, 1e-2, 1e-3, 1e-4, 1e-6];
+pub(crate) const WISHES: [f64; 5] = [3e-2, 1e-2, 1e-3, 1e-4, 1e-6];
 
 /// The cheapest run for an error.
 #[derive(Clone, Copy, Debug)]
-pub struct Cheapest<'d> {
+pub(crate) struct Cheapest<'d> {
     pub run: &'d Run,
     /// Its cost over that of the scene's own configuration with its own step; none where that one breaks.
-    pub of_own: Option<f64>,
+    pub(crate) of_own: Option<f64>,
 }
 
 /// The cheapest of some runs with an error of positions of at most `error`; of those that tie the scene's own configuration, or the first by the order of the
@@ -31,7 +31,7 @@ fn cheapest(data: &WorkPrecision, error: f64, is_meant: fn(&Run) -> bool) -> Opt
 
 /// Each error that is above the reference's own and that some run reaches, with the cheapest run without an objection; or the reason why no run is
 /// recommended.
-pub fn wishes(data: &WorkPrecision) -> Vec<(f64, Result<Cheapest<'_>, String>)> {
+pub(crate) fn wishes(data: &WorkPrecision) -> Vec<(f64, Result<Cheapest<'_>, String>)> {
     let floor = data.reference.floor.get(&Measure::Position).copied().unwrap_or(0.0);
     let answer = |wish: f64| {
         let first = cheapest(data, wish, |_| true)?.run;
@@ -48,7 +48,7 @@ pub fn wishes(data: &WorkPrecision) -> Vec<(f64, Result<Cheapest<'_>, String>)> 
 }
 
 /// The scene's own configuration with its own step.
-pub fn own_run(data: &WorkPrecision) -> Option<&Run> {
+pub(crate) fn own_run(data: &WorkPrecision) -> Option<&Run> {
     data.runs.iter().find(|run| run.power == 0 && data.of(run).label == data.own)
 }
 
@@ -63,7 +63,7 @@ fn multiple(power: i32) -> String {
 
 /// The cheapest run without an objection that is as accurate as the scene's own configuration; none where nothing is decided, or that one breaks
 /// or was not timed.
-pub fn as_good(data: &WorkPrecision) -> Option<Cheapest<'_>> {
+pub(crate) fn as_good(data: &WorkPrecision) -> Option<Cheapest<'_>> {
     let error = own_run(data).filter(|_| data.undecided.is_none())?.error(Measure::Position)?;
     cheapest(data, error, Run::is_sound).filter(|found| found.of_own.is_some())
 }

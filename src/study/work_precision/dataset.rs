@@ -12,26 +12,26 @@ use serde::{Deserialize, Serialize};
 
 /// Error over cost of a scene, for its configurations and steps.
 #[derive(Clone, Debug)]
-pub struct WorkPrecision {
+pub(crate) struct WorkPrecision {
     /// Particles that move.
     pub particles: usize,
     /// Unit of distances.
     pub unit: String,
-    pub time_unit: Option<String>,
+    pub(crate) time_unit: Option<String>,
     /// Its own step (time).
     pub step: f64,
     /// Label of its own configuration.
     pub own: String,
-    pub growth: Growth,
-    pub plan: Plan,
+    pub(crate) growth: Growth,
+    pub(crate) plan: Plan,
     /// The time that is compared (time).
     pub duration: f64,
     /// Events of a particle in that time.
-    pub encounters: Encounters,
+    pub(crate) encounters: Encounters,
     /// Reason why no configuration is recommended: too little happens in the time that is compared; none where enough does.
-    pub undecided: Option<String>,
-    pub reference: Reference,
-    pub configurations: Vec<Configuration>,
+    pub(crate) undecided: Option<String>,
+    pub(crate) reference: Reference,
+    pub(crate) configurations: Vec<Configuration>,
     pub runs: Vec<Run>,
     pub orders: Vec<Order>,
     /// Outcomes of the collision, where the scene is one of two discs.
@@ -41,38 +41,38 @@ pub struct WorkPrecision {
 }
 
 /// Diagrams, each with a name for its rows.
-pub type Scenes = [(String, WorkPrecision)];
+pub(crate) type Scenes = [(String, WorkPrecision)];
 
 impl WorkPrecision {
     /// Integrator of a configuration.
-    pub fn scheme(&self, label: &str) -> &str {
+    pub(crate) fn scheme(&self, label: &str) -> &str {
         self.configurations.iter().find(|it| it.label == label).map_or("", |it| &it.scheme)
     }
 
     /// Configuration of a run.
-    pub fn of(&self, run: &Run) -> &Configuration {
+    pub(crate) fn of(&self, run: &Run) -> &Configuration {
         &self.configurations[run.configuration]
     }
 }
 
 /// Runs that the others are compared with.
 #[derive(Clone, Debug)]
-pub struct Reference {
+pub(crate) struct Reference {
     /// Labels of its configuration, and of the second one.
-    pub configurations: [String; 2],
+    pub(crate) configurations: [String; 2],
     /// Its step (time).
     pub step: f64,
     /// Difference to a run with twice the step.
-    pub halving: Errors,
+    pub(crate) halving: Errors,
     /// Difference to the second configuration.
     pub second: Errors,
     /// Its own error: the larger of the two, and its own error of the balance.
-    pub floor: Errors,
+    pub(crate) floor: Errors,
 }
 
 /// A setting for each axis of the method.
 #[derive(Clone, Debug)]
-pub struct Configuration {
+pub(crate) struct Configuration {
     /// All settings.
     pub label: String,
     /// Settings that decide the order.
@@ -80,74 +80,74 @@ pub struct Configuration {
     /// Settings that decide the precision.
     pub digits: String,
     /// Settings that decide the cost alone.
-    pub cost: String,
+    pub(crate) cost: String,
     /// True if search and execution are the scene's own.
-    pub is_primary: bool,
+    pub(crate) is_primary: bool,
     /// True if integrator and precision are the scene's own.
-    pub is_own_arithmetic: bool,
+    pub(crate) is_own_arithmetic: bool,
     /// Seconds of a step, by its first steps, or the reason why the scene cannot be run so.
-    pub each: Result<f64, RunFailure>,
+    pub(crate) each: Result<f64, RunFailure>,
 }
 
 /// A run.
 #[derive(Clone, Debug)]
-pub struct Run {
+pub(crate) struct Run {
     /// Place of its configuration.
-    pub configuration: usize,
+    pub(crate) configuration: usize,
     /// The step (time).
     pub step: f64,
     /// The step is the scene's own times two to this power.
-    pub power: i32,
+    pub(crate) power: i32,
     pub outcome: Result<Finished, RunFailure>,
     /// Processor seconds for a unit of time in each repeat.
-    pub costs: Vec<f64>,
+    pub(crate) costs: Vec<f64>,
 }
 
 /// Findings of a run that came to its end.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Finished {
-    pub errors: Errors,
+pub(crate) struct Finished {
+    pub(crate) errors: Errors,
     /// Objections to it: a limit of the step by theory, a check, a warning of the run.
-    pub objections: Vec<String>,
+    pub(crate) objections: Vec<String>,
     /// Clock periods for a unit of time; none where no operations are counted.
     pub clocks: Option<f64>,
 }
 
 impl Run {
     /// Processor seconds for a unit of time: the median.
-    pub fn cost(&self) -> Option<f64> {
+    pub(crate) fn cost(&self) -> Option<f64> {
         (!self.costs.is_empty()).then(|| median(self.costs.iter().copied()))
     }
 
     /// An error.
-    pub fn error(&self, measure: Measure) -> Option<f64> {
+    pub(crate) fn error(&self, measure: Measure) -> Option<f64> {
         self.outcome.as_ref().ok()?.errors.get(&measure).copied()
     }
 
     /// Objections to it, in words; empty where there are none.
-    pub fn objections(&self) -> String {
+    pub(crate) fn objections(&self) -> String {
         self.outcome.as_ref().map_or(String::new(), |finished| finished.objections.join("; "))
     }
 
     /// True if it came to its end and there is no objection.
-    pub fn is_sound(&self) -> bool {
+    pub(crate) fn is_sound(&self) -> bool {
         self.outcome.as_ref().is_ok_and(|finished| finished.objections.is_empty())
     }
 
     /// True if its trajectories have parted from the reference's.
-    pub fn is_lost(&self) -> bool {
+    pub(crate) fn is_lost(&self) -> bool {
         self.error(Measure::Position).is_some_and(|error| error > COMPARABLE)
     }
 }
 
 /// Power of the step with which an error falls.
 #[derive(Clone, Debug)]
-pub struct Order {
+pub(crate) struct Order {
     /// Place of the configuration.
-    pub configuration: usize,
-    pub measure: Measure,
+    pub(crate) configuration: usize,
+    pub(crate) measure: Measure,
     /// Through the measured errors; none through too few points.
-    pub fitted: Option<Fitted>,
+    pub(crate) fitted: Option<Fitted>,
     /// By theory, with the reason.
     pub theory: Option<(f64, &'static str)>,
 }

@@ -19,16 +19,16 @@ const LOOKS: u64 = 1024;
 
 /// Events of a particle, in the mean.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Encounters {
+pub(crate) struct Encounters {
     /// True if contacts are counted, or turns of the motion.
-    pub of_contacts: bool,
+    pub(crate) of_contacts: bool,
     /// Contacts of a particle that begin, those of the start among them; or whole turns of its velocity.
-    pub each: f64,
+    pub(crate) each: f64,
 }
 
 impl Encounters {
     /// Name of the events.
-    pub fn name(&self) -> &'static str {
+    pub(crate) fn name(&self) -> &'static str {
         if self.of_contacts { "contacts" } else { "turns of the velocity" }
     }
 }
@@ -37,7 +37,12 @@ impl Encounters {
 ///
 /// # Errors
 /// [`StudyError`] as of [`Runs::recall`].
-pub fn encounters(runs: &Runs<'_>, step: f64, duration: f64, each: f64) -> Result<Encounters, StudyError> {
+pub(crate) fn encounters(
+    runs: &Runs<'_>,
+    step: f64,
+    duration: f64,
+    each: f64,
+) -> Result<Encounters, StudyError> {
     let of_contacts = runs.subject.trials.has_contacts;
     let fits = |it: &Encounters| it.of_contacts == of_contacts && it.each.is_finite() && it.each >= 0.0;
     let counted = runs.recall("encounters", fits, || {

@@ -35,7 +35,7 @@ fn is_time(seconds: &f64) -> bool {
 ///
 /// # Errors
 /// [`StudyError`] as of [`Runs::recall`].
-pub fn configurations(runs: &Runs<'_>, choices: &[Choice]) -> Result<Vec<Configuration>, StudyError> {
+pub(crate) fn configurations(runs: &Runs<'_>, choices: &[Choice]) -> Result<Vec<Configuration>, StudyError> {
     let subject = runs.subject;
     let of = |choice: &Choice| {
         let each = runs.recall(&format!("probe|{}", choice.label()), is_time, || {
@@ -56,13 +56,13 @@ pub fn configurations(runs: &Runs<'_>, choices: &[Choice]) -> Result<Vec<Configu
 }
 
 /// Runs of a diagram that were planned.
-pub struct Planned<'p> {
+pub(crate) struct Planned<'p> {
     pub runs: &'p Runs<'p>,
-    pub effort: &'p Effort,
+    pub(crate) effort: &'p Effort,
     pub choices: &'p [Choice],
     /// Seconds of a step, by place of the choice.
     pub rates: &'p [Option<f64>],
-    pub plan: &'p Plan,
+    pub(crate) plan: &'p Plan,
 }
 
 /// Findings at the end of a run.
@@ -83,7 +83,7 @@ impl Planned<'_> {
     }
 
     /// The time that is compared (time).
-    pub fn duration(&self) -> f64 {
+    pub(super) fn duration(&self) -> f64 {
         self.plan.own_steps as f64 * self.subject().step
     }
 
@@ -93,7 +93,7 @@ impl Planned<'_> {
     }
 
     /// The scene's own step times two to a power (time).
-    pub fn step(&self, power: i32) -> f64 {
+    pub(super) fn step(&self, power: i32) -> f64 {
         self.subject().step * 2f64.powi(power)
     }
 
@@ -137,7 +137,7 @@ impl Planned<'_> {
     ///
     /// # Errors
     /// [`StudyError::EveryRunFails`] if one of the three breaks.
-    pub fn reference(&self, each: f64) -> Result<(Reference, State), StudyError> {
+    pub(crate) fn reference(&self, each: f64) -> Result<(Reference, State), StudyError> {
         let choices = [0, 1].map(|number| self.subject().reference(number));
         let [first, second] = &choices;
         let power = -(self.plan.finest + BELOW);
@@ -171,7 +171,7 @@ impl Planned<'_> {
     ///
     /// # Errors
     /// [`StudyError`] as of [`Runs::recall`].
-    pub fn all(&self, reference: &Reference, state: &State) -> Result<Vec<Run>, StudyError> {
+    pub(super) fn all(&self, reference: &Reference, state: &State) -> Result<Vec<Run>, StudyError> {
         let floor = ABOVE_FLOOR * reference.floor.get(&Measure::Position).copied().unwrap_or(0.0);
         let runs: Vec<Vec<Run>> = self.runs.journal.over(&self.plan.choices, |&configuration| {
             let mut runs: Vec<Run> = vec![];
@@ -221,7 +221,7 @@ impl Planned<'_> {
     ///
     /// # Errors
     /// [`StudyError`] as of [`Runs::recall`].
-    pub fn time(&self, runs: &mut [Run], begun: f64) -> Result<(), StudyError> {
+    pub(super) fn time(&self, runs: &mut [Run], begun: f64) -> Result<(), StudyError> {
         let watch = self.runs.trial.watch;
         let repeats = if self.runs.journal.is_first() { MORE * self.effort.repeats } else { 0 };
         for repeat in 0..repeats {
@@ -248,7 +248,7 @@ impl Planned<'_> {
     }
 
     /// Convergence of positions and energy, for every scheme in the digits of the reference.
-    pub fn orders(&self, runs: &[Run], reference: &Reference) -> Vec<Order> {
+    pub(crate) fn orders(&self, runs: &[Run], reference: &Reference) -> Vec<Order> {
         let first = self.subject().reference(0);
         let is_fitted = |choice: &Choice| {
             choice.agrees(&first, Decides::Digits) && choice.agrees(&self.subject().own, Decides::Cost)

@@ -12,7 +12,7 @@ use crate::statistics::median;
 use crate::study::trial::RunFailure;
 
 /// Frames of diagrams, each with a name for its rows.
-pub fn made(scenes: &Scenes) -> Made {
+pub(crate) fn made(scenes: &Scenes) -> Made {
     Made::of([
         of_scenes(scenes),
         wishes(scenes),

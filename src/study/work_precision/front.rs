@@ -1,7 +1,7 @@
 //! The Pareto front: runs than which no other is both cheaper and more accurate.
 
 /// The places of the points (cost, error) that lie on the front, by rising cost.
-pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
+pub(crate) fn front(points: &[(f64, f64)]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..points.len()).collect();
     order.sort_by(|&a, &b| {
         let ((x, error), (y, other)) = (points[a], points[b]);

@@ -12,9 +12,9 @@ use stripmine_physics::number::significant;
 use stripmine_physics::scene::Overrides;
 
 /// Distance by which the particles of the disturbed run are moved at the start (the method's length).
-pub const DISTURBANCE: f64 = 1e-9;
+pub(crate) const DISTURBANCE: f64 = 1e-9;
 /// Trajectories are comparable while the error is below this (the method's length).
-pub const COMPARABLE: f64 = 0.1;
+pub(crate) const COMPARABLE: f64 = 0.1;
 /// Multiple of the scene's own step up to which trajectories are to be comparable.
 const COARSER: f64 = 4.0;
 /// Looks at the runs.
@@ -26,25 +26,25 @@ const HALVINGS: i32 = 3;
 
 /// Distances over time, and the window in which trajectories are comparable.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Growth {
+pub(crate) struct Growth {
     /// Step of the runs (time).
     pub step: f64,
     /// Times of the looks (time).
     pub times: Vec<f64>,
     /// Root mean square distance of the disturbed run (the method's length).
-    pub separation: Vec<f64>,
+    pub(crate) separation: Vec<f64>,
     /// Root mean square distance of a run with half the step (the method's length).
     pub error: Vec<f64>,
     /// Rate of the exponential growth (1/time); none where nothing grows.
     pub rate: Option<f64>,
     /// End of the window (time).
     pub window: f64,
-    pub ended_by: EndedBy,
+    pub(crate) ended_by: EndedBy,
 }
 
 /// End of the window in which trajectories are comparable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum EndedBy {
+pub(crate) enum EndedBy {
     Growth,
     Scene,
     Budget,
@@ -70,7 +70,7 @@ impl Growth {
 ///
 /// # Errors
 /// [`StudyError::EveryRunFails`] if no step works.
-pub fn growth(runs: &Runs<'_>, most: u64, each: f64) -> Result<Growth, StudyError> {
+pub(crate) fn growth(runs: &Runs<'_>, most: u64, each: f64) -> Result<Growth, StudyError> {
     let own = own_in_full_digits(runs.subject);
     let mut tried = vec![];
     for halvings in 0..=HALVINGS {
@@ -122,7 +122,7 @@ fn of_step(
 }
 
 /// The scene's own configuration with the digits of the reference: a small disturbance must not be lost in rounding.
-pub fn own_in_full_digits(subject: &Subject) -> Choice {
+pub(crate) fn own_in_full_digits(subject: &Subject) -> Choice {
     let is_of_digits = |name: &str| {
         subject.entry.axes.iter().any(|axis| axis.name == name && axis.decides == Decides::Digits)
     };

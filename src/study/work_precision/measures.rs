@@ -7,7 +7,7 @@ use stripmine_physics::domain::Domain;
 /// An error of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Measure {
+pub(crate) enum Measure {
     /// Root mean square distance of the particles from those of the reference (the method's length).
     Position,
     /// The largest such distance (the method's length).
@@ -22,7 +22,7 @@ pub enum Measure {
 
 impl Measure {
     /// Every measure.
-    pub const ALL: [Measure; 5] = [
+    pub(crate) const ALL: [Measure; 5] = [
         Measure::Position,
         Measure::LargestPosition,
         Measure::Energy,
@@ -31,7 +31,7 @@ impl Measure {
     ];
 
     /// Name with its unit.
-    pub const fn name(self) -> &'static str {
+    pub(crate) const fn name(self) -> &'static str {
         match self {
             Measure::Position => "position, RMS",
             Measure::LargestPosition => "position, largest",
@@ -43,10 +43,10 @@ impl Measure {
 }
 
 /// Errors of a run by measure, without those that the scene does not have.
-pub type Errors = std::collections::BTreeMap<Measure, f64>;
+pub(crate) type Errors = std::collections::BTreeMap<Measure, f64>;
 
 /// Errors of a state that follow from the reference's; distances are given in a `length`.
-pub fn errors(
+pub(crate) fn errors(
     state: &State,
     reference: &State,
     (domain, length): (&Domain, f64),

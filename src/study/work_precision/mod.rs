@@ -20,7 +20,7 @@ mod points;
 mod tests;
 
 use dataset::{Configuration, Run, WorkPrecision};
-pub use frames::made;
+pub(crate) use frames::made;
 
 use super::choice::Choice;
 use super::runs::Runs;
@@ -49,11 +49,11 @@ const TRIED: usize = 8;
 
 /// Extent of a diagram.
 #[derive(Clone, Debug)]
-pub struct Effort {
+pub(crate) struct Effort {
     /// Seconds that it may take about.
     pub budget: f64,
     /// Timed runs of each.
-    pub repeats: usize,
+    pub(crate) repeats: usize,
     /// Starts of each step of a collision.
     pub phases: u32,
     /// Machine whose clock periods are asked for.
@@ -65,7 +65,7 @@ pub struct Effort {
 /// # Errors
 /// [`StudyError`] if trajectories cannot be compared, no run of the scene comes to its end, the user asks for the end, or finished runs cannot be
 /// kept.
-pub fn work_precision(
+pub(crate) fn work_precision(
     subject: &Subject,
     effort: &Effort,
     trial: Trial<'_>,

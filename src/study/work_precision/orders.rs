@@ -11,17 +11,17 @@ const LEAST: usize = 3;
 
 /// Power of the step with which an error falls.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Fitted {
+pub(crate) struct Fitted {
     pub order: f64,
     /// The smallest and the largest step of the fit (time).
     pub range: [f64; 2],
     /// Points of the fit.
-    pub points: usize,
+    pub(crate) points: usize,
 }
 
 /// Fits a power law through errors over steps, by rising step: those above `floor`, up to which the error is that of the
 /// reference, and below `ceiling`, from which on it is none of convergence. None through fewer than three points.
-pub fn fit(errors: &[(f64, f64)], floor: f64, ceiling: f64) -> Option<Fitted> {
+pub(crate) fn fit(errors: &[(f64, f64)], floor: f64, ceiling: f64) -> Option<Fitted> {
     let in_range = errors.iter().filter(|(_, error)| *error > floor.max(ROUNDING) && *error < ceiling);
     let used: Vec<(f64, f64)> = in_range.copied().take(MOST).collect();
     if used.len() < LEAST {

@@ -4,9 +4,9 @@ use crate::study::choice::Choice;
 use stripmine_physics::method::Decides;
 
 /// Steps go up to this power of two times the scene's own.
-pub const COARSEST: i32 = 4;
+pub(crate) const COARSEST: i32 = 4;
 /// The reference's step is this power of two below the smallest that is tried.
-pub const BELOW: i32 = 3;
+pub(crate) const BELOW: i32 = 3;
 /// Share of the time for the runs of the ladder and their references; the rest is for the growth of a disturbance and for collisions.
 const SHARE: f64 = 0.6;
 
@@ -34,11 +34,11 @@ const SMALLEST: Scope = Scope { every_cost: false, every_precision: false, fines
 
 /// Runs of a diagram.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Plan {
+pub(crate) struct Plan {
     /// Steps of the scene's own that the runs last; divided by the coarsest step.
-    pub own_steps: u64,
+    pub(crate) own_steps: u64,
     /// The smallest step is this power of two below the scene's own.
-    pub finest: i32,
+    pub(crate) finest: i32,
     /// Places of the configurations that are run, among all.
     pub choices: Vec<usize>,
     /// Seconds that it takes about.
@@ -49,7 +49,7 @@ pub struct Plan {
 
 /// Plans the runs: `rates` are seconds of a step by place of the choice, none where it is refused; `own_steps` the steps of the
 /// scene's own for which trajectories are comparable; `repeats` the timed runs of each.
-pub fn plan(
+pub(crate) fn plan(
     choices: &[Choice],
     rates: &[Option<f64>],
     own: &Choice,

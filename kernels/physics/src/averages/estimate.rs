@@ -6,11 +6,11 @@ use super::waves::{WaveError, is_smooth_drift, mean};
 use serde::Serialize;
 
 /// Independent samples below which no mean is given: neither the cut nor the error can be relied on.
-pub const FEWEST_SAMPLES: f64 = 20.0;
+pub(crate) const FEWEST_SAMPLES: f64 = 20.0;
 /// Independent samples as they seem to be with which a run is likely to have as many: its own estimate is a rough one.
 pub const LIKELY_ENOUGH: f64 = 40.0;
 /// Bars hold the truth with this probability.
-pub const CONFIDENCE: f64 = 0.95;
+pub(crate) const CONFIDENCE: f64 = 0.95;
 /// A series is still changing where chance makes such a drift in one of a thousand stationary ones.
 const DRIFT: f64 = 0.999;
 /// The same where a transient has been cut off, of which more may be left.
@@ -35,7 +35,7 @@ pub struct Estimate {
     /// Degrees of freedom of the error.
     pub freedoms: f64,
     /// Statistical inefficiency g, in values of the series; below 1 where successive values make up for each other.
-    pub inefficiency: f64,
+    pub(crate) inefficiency: f64,
     /// Integrated autocorrelation time (g − 1)/2 (time); 0 where values are independent, or make up for each other.
     pub correlation_time: f64,
     /// When the transient ends (time): what was before does not count.

@@ -14,9 +14,7 @@ mod student;
 mod waves;
 mod words;
 
-pub use estimate::{
-    Estimate, FEWEST_SAMPLES, LIKELY_ENOUGH, Outcome, estimated, foreseeing, of_correlated, of_independent,
-};
+pub use estimate::{Estimate, LIKELY_ENOUGH, Outcome, estimated, foreseeing, of_correlated, of_independent};
 pub use joined::joined;
 pub use rows::Rows;
 pub use student::{student, variance_ratio};
@@ -26,7 +24,7 @@ use crate::method::{Kind, Quantity};
 use serde::Serialize;
 
 /// What a bar is, once for all of them.
-pub const BAR: &str = "half width of the 95 % interval, by Student's t";
+pub(crate) const BAR: &str = "half width of the 95 % interval, by Student's t";
 
 /// The averages of a run, or of several joined.
 #[derive(Clone, Debug, Serialize)]

@@ -62,7 +62,7 @@ impl Rows {
     }
 
     /// The newest row, if it is of that time.
-    pub fn row_at(&self, time: f64) -> Option<&[f64]> {
+    pub(crate) fn row_at(&self, time: f64) -> Option<&[f64]> {
         (self.count > 0 && self.now() == time).then_some(&self.last[..])
     }
 

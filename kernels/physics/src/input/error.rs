@@ -93,7 +93,7 @@ fn paragraph(error: &InputError) -> String {
 impl InputError {
     /// The same, with what should stand there.
     #[must_use]
-    pub fn expecting(self, expected: impl Into<String>) -> Self {
+    pub(crate) fn expecting(self, expected: impl Into<String>) -> Self {
         InputError { expected: Some(expected.into()), ..self }
     }
 

@@ -17,7 +17,7 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 
 /// The format.
-pub const FORMAT: OutputFormat = OutputFormat {
+pub(crate) const FORMAT: OutputFormat = OutputFormat {
     key: "dcd",
     doc: "Snapshots as trajectory.dcd: positions in single precision, small and fast to write. Its frames are evenly apart: the end of a run between two snapshots is left out.",
     is_default: false,
@@ -29,7 +29,7 @@ pub const FORMAT: OutputFormat = OutputFormat {
 
 /// Where every particle is at a step, in the order of the start.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Positions {
+pub(crate) struct Positions {
     /// The step, or, where a method takes none, the number of the frame.
     pub step: u64,
     /// Sides of the box (length); infinite where there is none.
@@ -88,7 +88,7 @@ fn whole(steps: u64) -> i32 {
 
 /// A file of evenly spaced frames being written.
 #[derive(Debug)]
-pub struct Writer {
+pub(crate) struct Writer {
     file: GrowingFile,
     spacing: Spacing,
     /// The step of the next frame; none before the first one.

@@ -144,7 +144,7 @@ impl GrowingFile {
     ///
     /// # Errors
     /// If the system does not let it be read.
-    pub fn first_bytes(&mut self, most: usize) -> Result<Vec<u8>, FileError> {
+    pub(crate) fn first_bytes(&mut self, most: usize) -> Result<Vec<u8>, FileError> {
         let summed = self.out.get_mut();
         let (end, file) = (summed.bytes, &mut summed.file);
         let mut bytes = Vec::new();

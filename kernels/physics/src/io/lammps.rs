@@ -16,7 +16,7 @@ use std::io::{self, Write};
 use std::sync::Arc;
 
 /// The format of a dump.
-pub const DUMP: OutputFormat = OutputFormat {
+pub(crate) const DUMP: OutputFormat = OutputFormat {
     key: "lammps_dump",
     doc: "Snapshots as a LAMMPS dump.",
     is_default: false,
@@ -27,7 +27,7 @@ pub const DUMP: OutputFormat = OutputFormat {
 };
 
 /// The format of a data file.
-pub const DATA: OutputFormat = OutputFormat {
+pub(crate) const DATA: OutputFormat = OutputFormat {
     key: "lammps_data",
     doc: "The final state as a LAMMPS data file.",
     is_default: false,

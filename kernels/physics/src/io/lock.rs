@@ -14,14 +14,14 @@ const LONGEST: u64 = 1000;
 
 /// The right to write into a folder, until it is dropped.
 #[derive(Debug)]
-pub struct Lock {
+pub(crate) struct Lock {
     path: PathBuf,
     file: File,
     held: bool,
 }
 
 /// Whether the file at `path` is a lock file, or became one no further than its creation.
-pub fn is_lock(path: &Path) -> bool {
+pub(crate) fn is_lock(path: &Path) -> bool {
     let is_file = path.symlink_metadata().is_ok_and(|there| there.is_file());
     is_file && File::open(path).and_then(|file| text(&file)).is_ok_and(|text| is_lock_text(&text))
 }
@@ -41,7 +41,7 @@ impl Lock {
     ///
     /// # Errors
     /// [`FolderError`] if another process has it, something else is called so, or the system does not let it be written.
-    pub fn take(path: &Path) -> Result<Lock, FolderError> {
+    pub(crate) fn take(path: &Path) -> Result<Lock, FolderError> {
         let at = || FileError::at(path, "locking");
         loop {
             let file = match OpenOptions::new().read(true).write(true).create_new(true).open(path) {
@@ -83,12 +83,12 @@ impl Lock {
     }
 
     /// Whether the file system keeps others out; some know no locks.
-    pub fn is_held(&self) -> bool {
+    pub(crate) fn is_held(&self) -> bool {
         self.held
     }
 
     /// Whether the lock file is still there.
-    pub fn is_there(&self) -> bool {
+    pub(crate) fn is_there(&self) -> bool {
         is_name_of(&self.path, &self.file).unwrap_or(false)
     }
 }

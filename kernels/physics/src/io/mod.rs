@@ -2,14 +2,14 @@
 //! their place, and folders that one process at a time writes into and that lose nothing of others.
 
 pub mod checkpoint;
-pub mod dcd;
+pub(crate) mod dcd;
 pub mod extxyz;
 mod folder_error;
 pub mod growing_file;
 pub mod gsd;
 pub mod lammps;
 pub(crate) mod lock;
-pub mod opened;
+pub(crate) mod opened;
 pub mod output_format;
 pub mod owned_folder;
 pub mod regular_file;

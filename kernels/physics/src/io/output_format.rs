@@ -13,7 +13,7 @@ pub struct OutputFormat {
     /// Help of the key.
     pub doc: &'static str,
     /// True where it is written by default. Its file is then begun in every run, for the state of a step that fails.
-    pub is_default: bool,
+    pub(crate) is_default: bool,
     /// True where particles must be in a box.
     pub needs_box: bool,
     /// The name of the file.

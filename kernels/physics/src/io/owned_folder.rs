@@ -108,7 +108,7 @@ impl FolderKind {
     ///
     /// # Errors
     /// [`FolderError`] if it holds something, but nothing of ours, or its list is damaged.
-    pub fn listed(&self, folder: &Path) -> Result<Option<BTreeSet<String>>, FolderError> {
+    pub(crate) fn listed(&self, folder: &Path) -> Result<Option<BTreeSet<String>>, FolderError> {
         let Some(mut names) = names_in(folder)? else { return Ok(None) };
         let (listed, list, below) = match self.holds {
             Holds::Files { is_shared: true, .. } => return self.read_if_ours(folder),
@@ -252,12 +252,12 @@ impl OwnedFolder {
     }
 
     /// Reports whether there are names on its list.
-    pub fn has_own(&self) -> bool {
+    pub(crate) fn has_own(&self) -> bool {
         self.listed.as_ref().is_some_and(|listed| !listed.is_empty())
     }
 
     /// True where the file system keeps others out.
-    pub fn is_locked(&self) -> bool {
+    pub(crate) fn is_locked(&self) -> bool {
         self.lock.as_ref().is_some_and(Lock::is_held)
     }
 
@@ -329,7 +329,7 @@ impl OwnedFolder {
     ///
     /// # Errors
     /// If something else has removed one meanwhile.
-    pub fn still_has(&self, names: &[&str]) -> Result<(), FolderError> {
+    pub(crate) fn still_has(&self, names: &[&str]) -> Result<(), FolderError> {
         let lock = self.lock.iter().find(|lock| !lock.is_there()).map(|_| self.kind.lock);
         let gone = names.iter().copied().find(|name| !is_file(&self.file(name))).or(lock);
         gone.map_or(Ok(()), |name| {

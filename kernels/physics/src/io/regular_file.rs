@@ -6,7 +6,7 @@ use std::path::Path;
 
 /// Why a file is not read though the system would let it be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Unfit {
+pub(crate) enum Unfit {
     /// A folder, a device, a pipe or a socket.
     #[error("it is {0}; expected an ordinary file")]
     Kind(&'static str),
@@ -22,7 +22,7 @@ pub enum Unfit {
 ///
 /// # Errors
 /// What the system says, or [`Unfit`] inside an error of kind `InvalidInput`.
-pub fn open(path: &Path) -> io::Result<File> {
+pub(crate) fn open(path: &Path) -> io::Result<File> {
     // Opening a pipe would wait for its writer: what it is must be known before.
     match kind(fs::metadata(path)?.file_type()) {
         None => File::open(path),
@@ -44,7 +44,7 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
 }
 
 /// The first line of some bytes that is not UTF-8, from 1; none if they are text.
-pub fn line_that_is_not_text(bytes: &[u8]) -> Option<usize> {
+pub(crate) fn line_that_is_not_text(bytes: &[u8]) -> Option<usize> {
     let good = std::str::from_utf8(bytes).err()?.valid_up_to();
     Some(1 + bytes[..good].iter().filter(|byte| **byte == b'\n').count())
 }

@@ -10,12 +10,12 @@ use tempfile::{Builder, NamedTempFile};
 const TEMPORARY: [&str; 2] = [".stripmine-", ".part"];
 
 /// Whether a temporary file or folder of this program is called so.
-pub fn is_temporary(name: &str) -> bool {
+pub(crate) fn is_temporary(name: &str) -> bool {
     name.starts_with(TEMPORARY[0]) && name.ends_with(TEMPORARY[1])
 }
 
 /// Names for temporary files or folders, with permissions as for any others: what the user's mask leaves of `mode`.
-pub fn temporary<'a>(mode: u32) -> Builder<'a, 'a> {
+pub(crate) fn temporary<'a>(mode: u32) -> Builder<'a, 'a> {
     let mut builder = Builder::new();
     builder.prefix(TEMPORARY[0]).suffix(TEMPORARY[1]).rand_bytes(16);
     #[cfg(unix)]
@@ -26,7 +26,7 @@ pub fn temporary<'a>(mode: u32) -> Builder<'a, 'a> {
 }
 
 /// The folder that a path lies in.
-pub fn folder_of(path: &Path) -> &Path {
+pub(crate) fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
@@ -79,7 +79,7 @@ pub fn try_beside(path: &Path) -> io::Result<()> {
 ///
 /// # Errors
 /// If the system does not let it be written.
-pub fn written_beside(
+pub(crate) fn written_beside(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>,
 ) -> io::Result<NamedTempFile> {
@@ -96,7 +96,7 @@ pub fn written_beside(
 ///
 /// # Errors
 /// If the folder cannot be opened or its entries not be written to the disk.
-pub fn sync_folder(folder: &Path) -> io::Result<()> {
+pub(crate) fn sync_folder(folder: &Path) -> io::Result<()> {
     if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
 }
 
@@ -116,7 +116,7 @@ pub fn remove_if_there(path: &Path) -> Result<(), FileError> {
 ///
 /// # Errors
 /// If the system does not say what is there.
-pub fn is_name_of(path: &Path, file: &File) -> io::Result<bool> {
+pub(crate) fn is_name_of(path: &Path, file: &File) -> io::Result<bool> {
     let there = match fs::symlink_metadata(path) {
         Ok(there) => there,
         Err(cause) if cause.kind() == ErrorKind::NotFound => return Ok(false),

@@ -45,7 +45,7 @@ pub struct RunMoment<'m> {
     /// Constants of the run.
     pub header: &'m RunHeader,
     /// Data of each particle.
-    pub per_particle: &'m dyn PerParticle,
+    pub(crate) per_particle: &'m dyn PerParticle,
     /// Steps done; 0 where a method takes none.
     pub steps: u64,
     /// Number of rows and frames: steps, or events.

@@ -40,7 +40,7 @@ impl TextFormat for ObservedRows {
 
 /// Rows of events, as the method says them.
 #[derive(Debug)]
-pub struct EventRows;
+pub(crate) struct EventRows;
 
 impl TextFormat for EventRows {
     const DUE: Due = Due::Events;

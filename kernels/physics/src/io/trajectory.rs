@@ -16,10 +16,10 @@ pub enum FrameReading {
 }
 
 /// Frames one after the other; ends after the first that is wrong.
-pub type FrameReader = Box<dyn Iterator<Item = Result<Frame, TrajectoryError>> + Send>;
+pub(crate) type FrameReader = Box<dyn Iterator<Item = Result<Frame, TrajectoryError>> + Send>;
 
 /// Returns frames of a format as those of a run.
-pub fn reader<E: Into<TrajectoryError>>(
+pub(crate) fn reader<E: Into<TrajectoryError>>(
     frames: impl Iterator<Item = Result<Frame, E>> + Send + 'static,
 ) -> FrameReader {
     Box::new(frames.map(|frame| frame.map_err(Into::into)))

@@ -65,7 +65,7 @@ impl Until {
     }
 
     /// Whether it lies behind.
-    pub fn has_passed(self, clock: &Clock) -> bool {
+    pub(crate) fn has_passed(self, clock: &Clock) -> bool {
         match self {
             Until::Steps(steps) => clock.steps > steps,
             Until::Time(time) => clock.time > time,

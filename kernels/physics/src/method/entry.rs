@@ -52,7 +52,7 @@ pub struct Quantity {
 
 /// Whether a value of a quantity is one of a run that has not broken: a finite number, or none of a temperature, which does not exist
 /// without a degree of freedom.
-pub fn is_sound(quantity: &str, value: f64) -> bool {
+pub(crate) fn is_sound(quantity: &str, value: f64) -> bool {
     value.is_finite() || value.is_nan() && quantity == "temperature"
 }
 
@@ -88,7 +88,7 @@ pub struct Observable<S: 'static> {
 }
 
 /// What is observed, without the values: the columns of a table of them.
-pub const fn quantities<S: 'static, const COUNT: usize>(
+pub(crate) const fn quantities<S: 'static, const COUNT: usize>(
     observables: &[Observable<S>; COUNT],
 ) -> [Quantity; COUNT] {
     let mut quantities = [observables[0].quantity; COUNT];
@@ -189,7 +189,7 @@ pub struct StepLimit {
     /// The scene's own step in parts of it.
     pub share: f64,
     /// The share beyond which the user is warned; infinite where the limit is for information.
-    pub warned_beyond: f64,
+    pub(crate) warned_beyond: f64,
     /// What becomes of longer ones.
     pub beyond: Beyond,
     /// Where it comes from, with its numbers.

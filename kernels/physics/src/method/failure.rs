@@ -55,9 +55,9 @@ impl FailureKind {
     /// Sums over all particles that no number holds.
     pub const OVERFLOW: FailureKind = FailureKind("overflow");
     /// Sectors do not fit the box.
-    pub const NO_SECTORS: FailureKind = FailureKind("no-sectors");
+    pub(crate) const NO_SECTORS: FailureKind = FailureKind("no-sectors");
     /// The machine refused a program.
-    pub const MACHINE: FailureKind = FailureKind("machine");
+    pub(crate) const MACHINE: FailureKind = FailureKind("machine");
 
     /// A method's own kind.
     pub const fn new(name: &'static str) -> FailureKind {
@@ -75,7 +75,7 @@ impl FailureKind {
 pub struct Culprit {
     /// What its method calls it.
     #[serde(deserialize_with = "interned")]
-    pub called: Name,
+    pub(crate) called: Name,
     /// Its id.
     pub id: u32,
     /// Where it is (length).
@@ -86,7 +86,7 @@ pub struct Culprit {
 
 impl Culprit {
     /// One that moves in a plane.
-    pub fn in_plane(called: &'static str, id: u32, [x, y]: [f64; 2], [u, v]: [f64; 2]) -> Culprit {
+    pub(crate) fn in_plane(called: &'static str, id: u32, [x, y]: [f64; 2], [u, v]: [f64; 2]) -> Culprit {
         Culprit { called, id, position: [x, y, 0.0], velocity: [u, v, 0.0] }
     }
 }

@@ -3,7 +3,7 @@
 mod clock;
 mod counted;
 mod entry;
-pub mod failure;
+pub(crate) mod failure;
 pub mod hard_disks;
 pub mod langevin;
 pub mod lattice_md;
@@ -25,17 +25,19 @@ pub use clock::{Clock, Every, Schedule, Until, steps_over};
 pub use counted::Counted;
 pub use entry::{
     Bench, BenchOption, Beyond, Entry, Fact, Kind, Observable, Prepared, Purpose, Quantity, Startable,
-    StepLimit, VectorProgram, is_sound, quantities,
+    StepLimit, VectorProgram,
 };
+pub(crate) use entry::{is_sound, quantities};
 pub use failure::{Culprit, Failure, FailureKind};
 pub use hard_disks::compress;
 pub use list::{METHODS, Methods, load, method, observer, prepare, vocabularies};
 pub use pairwise::Elapsed;
 use several::ended;
-pub use several::{DISMISSED, RANK_ENDED, refuse_several_ranks};
+pub(crate) use several::refuse_several_ranks;
+pub use several::{DISMISSED, RANK_ENDED};
 pub use simulation::{RunWarning, Simulation};
 pub use snapshot::Snapshot;
-pub use start_temperature::START_TEMPERATURE;
+pub(crate) use start_temperature::START_TEMPERATURE;
 pub use stepped::{Stepped, SteppedState, Stepwise};
 pub use trials::{
     Axis, Balance, Becomes, Decides, Encounter, Length, Parameter, Rewritten, SMALLEST_RADIUS, Setting,

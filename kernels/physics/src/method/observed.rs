@@ -50,7 +50,7 @@ pub(super) fn values<S>(observables: &[Observable<S>], seen: &S) -> Vec<f64> {
 /// # Panics
 /// If there is none of that name.
 #[expect(clippy::panic, reason = "a constant: a name that is misspelt does not compile")]
-pub const fn place(quantities: &[Quantity], name: &str) -> usize {
+pub(crate) const fn place(quantities: &[Quantity], name: &str) -> usize {
     let mut at = 0;
     while at < quantities.len() {
         if is_same(quantities[at].name, name) {

@@ -13,7 +13,7 @@ pub(super) const MOST: u64 = 1 << 53;
 ///
 /// # Errors
 /// A sentence that says what is missing or wrong.
-pub fn find_column<T: Element>(
+pub(crate) fn find_column<T: Element>(
     columns: &[(String, Column)],
     name: &str,
     length: usize,
@@ -35,7 +35,7 @@ pub fn find_column<T: Element>(
 ///
 /// # Errors
 /// As [`find_column`].
-pub fn find_counts<'c>(
+pub(crate) fn find_counts<'c>(
     columns: &'c [(String, Column)],
     name: &str,
     length: usize,
@@ -65,7 +65,7 @@ fn find<'c>(columns: &'c [(String, Column)], name: &str, length: usize) -> Resul
 ///
 /// # Errors
 /// A sentence that says what is missing or wrong.
-pub fn find_sum(counters: &BTreeMap<String, Counter>, name: &str) -> Result<f64, String> {
+pub(crate) fn find_sum(counters: &BTreeMap<String, Counter>, name: &str) -> Result<f64, String> {
     match counters.get(name) {
         Some(Counter::Sum(sum)) if sum.is_finite() => Ok(*sum),
         Some(Counter::Sum(sum)) => Err(format!("the sum {name} is {sum}, no finite number")),
@@ -77,7 +77,7 @@ pub fn find_sum(counters: &BTreeMap<String, Counter>, name: &str) -> Result<f64,
 ///
 /// # Errors
 /// As [`find_sum`].
-pub fn find_count(counters: &BTreeMap<String, Counter>, name: &str, most: u64) -> Result<u64, String> {
+pub(crate) fn find_count(counters: &BTreeMap<String, Counter>, name: &str, most: u64) -> Result<u64, String> {
     match counters.get(name) {
         Some(Counter::Count(count)) if *count <= most => Ok(*count),
         Some(Counter::Count(count)) => Err(format!("the count {name} is {count}, more than {most}")),
@@ -108,7 +108,7 @@ impl Clock {
     ///
     /// # Errors
     /// A sentence, if it is not.
-    pub fn of_events(&self) -> Result<(), String> {
+    pub(crate) fn of_events(&self) -> Result<(), String> {
         let Clock { steps, time, events } = *self;
         if steps > 0 {
             return Err(format!("it counts {steps} steps, of which this method has none"));

@@ -14,7 +14,7 @@ pub const DISMISSED: FailureKind = FailureKind::new("dismissed");
 ///
 /// # Errors
 /// [`Failure`] if there are several.
-pub fn refuse_several_ranks(why: &str) -> Result<(), Failure> {
+pub(crate) fn refuse_several_ranks(why: &str) -> Result<(), Failure> {
     match ranks::crew().count() {
         1 => Ok(()),
         count => {
@@ -26,7 +26,7 @@ pub fn refuse_several_ranks(why: &str) -> Result<(), Failure> {
 }
 
 /// The failure of the other ranks where one is lost.
-pub fn ended(lost: RankError, at: Clock) -> Failure {
+pub(crate) fn ended(lost: RankError, at: Clock) -> Failure {
     let remedy =
         "see what it said last; the last checkpoint is whole: go on with --resume, on any number of ranks";
     Failure::new(RANK_ENDED, lost.to_string(), remedy).at(at)

@@ -15,17 +15,17 @@ pub struct Snapshot {
 
 impl Snapshot {
     /// Adds a count.
-    pub fn add_count(&mut self, name: &str, count: u64) {
+    pub(crate) fn add_count(&mut self, name: &str, count: u64) {
         self.counters.insert(name.to_owned(), Counter::Count(count));
     }
 
     /// Adds a sum, of which all bits are kept.
-    pub fn add_sum(&mut self, name: &str, sum: f64) {
+    pub(crate) fn add_sum(&mut self, name: &str, sum: f64) {
         self.counters.insert(name.to_owned(), Counter::Sum(sum));
     }
 
     /// Adds a column.
-    pub fn add_column(&mut self, name: &str, column: Column) {
+    pub(crate) fn add_column(&mut self, name: &str, column: Column) {
         self.columns.push((name.to_owned(), column));
     }
 
@@ -41,7 +41,7 @@ impl Snapshot {
     ///
     /// # Errors
     /// A sentence, if it is missing or larger.
-    pub fn count_at_most(&self, name: &str, most: u64) -> Result<u64, String> {
+    pub(crate) fn count_at_most(&self, name: &str, most: u64) -> Result<u64, String> {
         find_count(&self.counters, name, most)
     }
 
@@ -105,7 +105,7 @@ impl Snapshot {
     ///
     /// # Errors
     /// A sentence, if it is missing or one is larger.
-    pub fn counts_at_most(&self, name: &str, length: usize, most: u64) -> Result<&[u64], String> {
+    pub(crate) fn counts_at_most(&self, name: &str, length: usize, most: u64) -> Result<&[u64], String> {
         find_counts(&self.columns, name, length, most)
     }
 
@@ -113,7 +113,7 @@ impl Snapshot {
     ///
     /// # Errors
     /// A sentence, if it is missing.
-    pub fn codes(&self, name: &str, length: usize) -> Result<&[u32], String> {
+    pub(crate) fn codes(&self, name: &str, length: usize) -> Result<&[u32], String> {
         match self.column(name) {
             Some(Column::U32(values)) if values.len() == length => Ok(values),
             _ => Err(format!("the column {name} is missing")),

@@ -11,7 +11,7 @@ use serde_json::json;
 const WORTH_A_WORD: f64 = 0.01;
 
 /// The name of the fact.
-pub const START_TEMPERATURE: &str = "start_temperature";
+pub(crate) const START_TEMPERATURE: &str = "start_temperature";
 
 /// The temperature that a generated start is asked to have; none where a bath or a wall brings it to its own.
 pub(super) fn asked_temperature(values: &Values, keys: &KeySet) -> Option<f64> {

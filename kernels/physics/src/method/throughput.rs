@@ -69,9 +69,9 @@ pub struct Throughput {
     /// Wall seconds of the best repeat.
     pub seconds: f64,
     /// Processor seconds of the best repeat, over all threads.
-    pub cpu_seconds: f64,
+    pub(crate) cpu_seconds: f64,
     /// Most memory the process ever held; none where the platform does not say.
-    pub peak_memory_bytes: Option<u64>,
+    pub(crate) peak_memory_bytes: Option<u64>,
     /// CRC-32 of the bits of the final state, by id.
     pub checksum: String,
     /// The name of the rate.
@@ -80,8 +80,6 @@ pub struct Throughput {
     pub rate: f64,
     /// The rate: the median repeat.
     pub median_rate: f64,
-    /// The rate: the worst repeat.
-    pub lowest_rate: f64,
     /// Seconds of the best repeat in each phase.
     pub phases: BTreeMap<&'static str, f64>,
     /// Quantities at the start and at the end of the measurement, where the bench compares them.
@@ -218,11 +216,6 @@ impl TimedRun {
         [self.start, row, particles, snapshot]
     }
 
-    /// Work in a second of processor time of the last repeat; not a number before the first.
-    pub fn last_rate(&self) -> f64 {
-        self.repeats.last().map_or(f64::NAN, |repeat| repeat.work / repeat.cpu)
-    }
-
     fn advance(&mut self, steps: u64) -> Result<(), Failure> {
         let moment = (self.bench.until)(steps).after(&self.simulation.clock());
         self.simulation.advance(&[moment], &AtomicBool::new(false))
@@ -239,7 +232,7 @@ impl TimedRun {
         self.repeats.sort_by(|a, b| a.wall.total_cmp(&b.wall));
         let after = self.simulation.observe();
         let TimedRun { bench, prepared, simulation, steps, before, compared, at_end, repeats, .. } = self;
-        let [best, median, worst] = [0, repeats.len() / 2, repeats.len() - 1].map(|place| &repeats[place]);
+        let [best, median] = [0, repeats.len() / 2].map(|place| &repeats[place]);
         let measured = Throughput {
             what: bench.name,
             particles: prepared.particles().grain_count(),
@@ -254,7 +247,6 @@ impl TimedRun {
             rate_name: bench.rate,
             rate: best.work / best.wall,
             median_rate: median.work / median.wall,
-            lowest_rate: worst.work / worst.wall,
             phases: best.phases.clone(),
             compared: compared.into_iter().map(|(name, at)| (name, [before[at], after[at]])).collect(),
             at_end: at_end.into_iter().map(|(name, at)| (name, after[at])).collect(),

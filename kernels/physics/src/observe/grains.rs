@@ -13,7 +13,7 @@ pub struct GrainSums {
     /// Kinetic energy of their translation.
     pub kinetic: f64,
     /// Σ m v² along x and y (energy).
-    pub twice_kinetic: [f64; 2],
+    pub(crate) twice_kinetic: [f64; 2],
     /// Kinetic energy of their rotation.
     pub rotational: f64,
     /// Potential energy in gravity, from the box's corner.
@@ -25,7 +25,7 @@ pub struct GrainSums {
     /// Square of the velocity (length²/time²).
     pub square: f64,
     /// What gravity has put in since the start (energy).
-    pub gravity_work: f64,
+    pub(crate) gravity_work: f64,
 }
 
 impl GrainSums {

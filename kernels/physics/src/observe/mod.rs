@@ -7,7 +7,8 @@ pub mod waves;
 
 pub use contacts::{ContactSums, contacts};
 pub use grains::GrainSums;
-pub use thermal::{AxisMotion, conserved_axes, relative_energy_error, temperature};
+pub use thermal::AxisMotion;
+pub(crate) use thermal::{conserved_axes, relative_energy_error, temperature};
 
 use crate::domain::Domain;
 use crate::particles::{Particle, Particles};
@@ -74,7 +75,7 @@ pub struct Sums {
 impl Sums {
     /// Of particles as a state has them, part by part on all threads. `work` gives what gravity has done to a grain, by its number,
     /// and is asked only where there is gravity.
-    pub fn over_parts(
+    pub(crate) fn over_parts(
         particles: &Particles,
         scenery: &Scenery,
         work: impl Fn(usize, &Particle, [f64; 2]) -> f64 + Sync,

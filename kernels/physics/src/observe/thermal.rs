@@ -6,7 +6,7 @@ use crate::domain::Domain;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AxisMotion {
     /// Σ m v² (energy).
-    pub twice_kinetic: f64,
+    pub(crate) twice_kinetic: f64,
     /// Σ m v (mass · length/time).
     pub momentum: f64,
 }
@@ -16,7 +16,7 @@ pub struct AxisMotion {
 /// Along an axis whose momentum is `conserved` (see [`conserved_axes`]) the mean motion is no heat: it is subtracted and `count` − 1 degrees of
 /// freedom are left; along the others all `count` move. `mass` is that of all particles. Without a degree of freedom (a single particle
 /// in a periodic box) there is no temperature, and the value is NaN.
-pub fn temperature(motion: [AxisMotion; 2], conserved: [bool; 2], mass: f64, count: f64) -> f64 {
+pub(crate) fn temperature(motion: [AxisMotion; 2], conserved: [bool; 2], mass: f64, count: f64) -> f64 {
     let (mut heat, mut freedoms) = (0.0, 0.0);
     for (AxisMotion { twice_kinetic, momentum }, conserved) in motion.into_iter().zip(conserved) {
         heat += twice_kinetic - if conserved { momentum * momentum / mass } else { 0.0 };
@@ -26,7 +26,7 @@ pub fn temperature(motion: [AxisMotion; 2], conserved: [bool; 2], mass: f64, cou
 }
 
 /// Axes along which particles without a bath keep a mean motion: the periodic ones. A closed side gives momentum back to the box.
-pub fn conserved_axes(domain: &Domain) -> [bool; 2] {
+pub(crate) fn conserved_axes(domain: &Domain) -> [bool; 2] {
     domain.periodic()
 }
 
@@ -35,7 +35,7 @@ pub fn conserved_axes(domain: &Domain) -> [bool; 2] {
 /// `change` is the total energy (kinetic and every potential term) less that of the start and less the work done on the
 /// particles since. The scale is the larger of |E| and the kinetic energy at the start, so it does not vanish where E does (two bodies on a parabola); where
 /// both vanish it is the kinetic energy now.
-pub fn relative_energy_error(change: f64, start: f64, kinetic_at_start: f64, kinetic: f64) -> f64 {
+pub(crate) fn relative_energy_error(change: f64, start: f64, kinetic_at_start: f64, kinetic: f64) -> f64 {
     let scale = start.abs().max(kinetic_at_start);
     match (scale > 0.0, kinetic > 0.0) {
         (true, _) => change / scale,

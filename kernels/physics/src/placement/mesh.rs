@@ -9,7 +9,7 @@ use stripmine_kernels::noise::{Purpose, Stream};
 ///
 /// # Panics
 /// If there are fewer places.
-pub fn mesh([columns, rows]: [usize; 2], count: usize, seed: u64) -> Vec<[usize; 2]> {
+pub(crate) fn mesh([columns, rows]: [usize; 2], count: usize, seed: u64) -> Vec<[usize; 2]> {
     let places = columns * rows;
     assert!(count <= places, "{count} of {places} places");
     let mut random = Stream::new(seed, Purpose::Placement, 0);

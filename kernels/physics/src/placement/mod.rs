@@ -4,10 +4,11 @@ mod mesh;
 mod random;
 mod rows;
 
-pub use mesh::mesh;
+pub(crate) use mesh::mesh;
+pub use random::Second;
 pub(crate) use random::stir;
-pub use random::{Filling, Jammed, Second, random};
-pub use rows::{Row, row};
+pub(crate) use random::{Filling, random};
+pub(crate) use rows::{Row, row};
 
 use crate::particles::{Kind, Particle, Particles, in_space};
 use rand::RngExt;

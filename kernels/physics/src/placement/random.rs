@@ -9,14 +9,14 @@ use stripmine_kernels::noise::{Purpose, Stream, normals};
 
 /// What is placed where.
 #[derive(Clone, Debug)]
-pub struct Filling<'a> {
+pub(crate) struct Filling<'a> {
     /// The box.
     pub domain: Domain,
     /// Lower and upper corner of the room for discs, surfaces included (length). Along a periodic side that it spans
     /// wholly, centres may be anywhere.
     pub room: [[f64; 2]; 2],
     /// Discs that are there already.
-    pub obstacles: &'a [Particle],
+    pub(crate) obstacles: &'a [Particle],
     /// How many discs.
     pub count: usize,
     /// Mean radius (length).
@@ -44,18 +44,18 @@ pub struct Second {
 
 impl Second {
     /// Whether the disc of an id, from 1 on, is of this kind: of any first n discs ⌊n · share⌋ are.
-    pub fn has(&self, id: u32) -> bool {
+    pub(crate) fn has(&self, id: u32) -> bool {
         let up_to = |count: u32| (f64::from(count) * self.share).floor();
         up_to(id) > up_to(id - 1)
     }
 
     /// The mean of the squared mean radii of both kinds, the first of radius `first` (length²).
-    pub fn mean_square(&self, first: f64) -> f64 {
+    pub(crate) fn mean_square(&self, first: f64) -> f64 {
         (1.0 - self.share) * first * first + self.share * self.radius * self.radius
     }
 
     /// The larger of the mean radii that there are, the first being `first` (length).
-    pub fn largest(&self, first: f64) -> f64 {
+    pub(crate) fn largest(&self, first: f64) -> f64 {
         if self.share > 0.0 { first.max(self.radius) } else { first }
     }
 }
@@ -63,13 +63,13 @@ impl Second {
 /// Random placement found no room.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("random placement found room for {placed} of {asked} discs; the next found none in {tries} tries")]
-pub struct Jammed {
+pub(crate) struct Jammed {
     /// Discs placed.
     pub placed: usize,
     /// Discs asked for.
     pub asked: usize,
     /// Tries for the one that found no room.
-    pub tries: usize,
+    pub(crate) tries: usize,
 }
 
 /// Tries for one disc. Near saturation one in some ten thousand succeeds.
@@ -79,7 +79,7 @@ const TRIES: usize = 200_000;
 ///
 /// # Errors
 /// [`Jammed`] if a disc finds no room.
-pub fn random(filling: &Filling<'_>) -> Result<Vec<Particle>, Jammed> {
+pub(crate) fn random(filling: &Filling<'_>) -> Result<Vec<Particle>, Jammed> {
     let Filling { domain, room, obstacles, count, radius: mean, cut, second, mass, seed, .. } = *filling;
     let obstacle = obstacles.iter().map(|disc| disc.radius).fold(0.0, f64::max);
     let largest = second.largest(mean) * (1.0 + cut);

@@ -5,7 +5,7 @@ use crate::particles::{Kind, Particle, in_space};
 
 /// A row of wall discs along x, across the whole box.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Row {
+pub(crate) struct Row {
     /// Height of the centres (length).
     pub y: f64,
     /// By how much of the spacing the row is shifted along x.
@@ -19,7 +19,7 @@ pub struct Row {
 }
 
 /// The discs of a row, ids from `first_id` on.
-pub fn row(domain: &Domain, row: &Row, first_id: u32) -> Vec<Particle> {
+pub(crate) fn row(domain: &Domain, row: &Row, first_id: u32) -> Vec<Particle> {
     let count = (domain.length(0) / row.spacing).round().clamp(1.0, f64::from(u32::MAX / 4)) as u32;
     let spacing = domain.length(0) / f64::from(count);
     let disc = |i: u32| Particle {

@@ -18,7 +18,8 @@ pub mod local;
 pub mod mpi;
 mod parcel;
 
-pub use parcel::{Parcel, numbers};
+pub use parcel::Parcel;
+pub(crate) use parcel::numbers;
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -127,7 +128,7 @@ thread_local! {
 }
 
 /// By whom simulations are carried out that begin now, on this thread.
-pub fn crew() -> Crew {
+pub(crate) fn crew() -> Crew {
     CREW.get()
 }
 

@@ -47,7 +47,7 @@ pub fn abort(code: u8) -> ! {
 
 /// This process among all.
 #[derive(Clone, Copy, Debug)]
-pub struct World;
+pub(crate) struct World;
 
 /// The same, as a [`Crew`](super::Crew) asks for it.
 pub fn world() -> Box<dyn Ranks> {

@@ -39,7 +39,7 @@ impl Parcel {
     }
 
     /// Numbers in bulk: as a derived message, each of them would take a call.
-    pub fn of_numbers(numbers: impl IntoIterator<Item = f64>) -> Parcel {
+    pub(crate) fn of_numbers(numbers: impl IntoIterator<Item = f64>) -> Parcel {
         let bytes: Vec<[u8; size_of::<f64>()]> = numbers.into_iter().map(f64::to_le_bytes).collect();
         Parcel(bytes.into_flattened())
     }
@@ -49,7 +49,11 @@ impl Parcel {
 ///
 /// # Errors
 /// [`RankError`] if they are not, or these bytes tell that another rank is lost.
-pub fn numbers(bytes: &[u8], from: usize, count: usize) -> Result<impl Iterator<Item = f64>, RankError> {
+pub(crate) fn numbers(
+    bytes: &[u8],
+    from: usize,
+    count: usize,
+) -> Result<impl Iterator<Item = f64>, RankError> {
     match bytes.as_chunks() {
         (numbers, []) if numbers.len() == count => Ok(numbers.iter().map(|&it| f64::from_le_bytes(it))),
         _ => Err(Parcel(bytes.to_vec()).open::<()>(from).err().unwrap_or(RankError::Unreadable(from))),

@@ -63,9 +63,9 @@ pub struct Summed {
     /// Every how many rows or snapshots are looked at.
     pub every: u64,
     /// Blocks that bars are from.
-    pub blocks: usize,
+    pub(crate) blocks: usize,
     /// Looks of each of them.
-    pub looks_of_a_block: u64,
+    pub(crate) looks_of_a_block: u64,
     /// What stands for the whole; nothing where there are too few blocks.
     pub headlines: Vec<Number>,
     /// What makes the values doubtful, or why no number stands for them.

@@ -165,7 +165,7 @@ pub struct List {
     /// Velocities (length/time).
     pub velocities: Vec<[f64; 2]>,
     /// Angular velocities (1/time).
-    pub omegas: Vec<f64>,
+    pub(crate) omegas: Vec<f64>,
     /// Radii (length).
     pub radii: Vec<f64>,
     /// Radius (length) of a disc of mass `mass`.
@@ -173,7 +173,7 @@ pub struct List {
     /// Mass of a disc of radius `radius`; others have it times (R/radius)².
     pub mass: f64,
     /// Centres of the wall discs (length).
-    pub wall_positions: Vec<[f64; 2]>,
+    pub(crate) wall_positions: Vec<[f64; 2]>,
     /// Radius of the wall discs (length).
     pub wall_radius: f64,
 }

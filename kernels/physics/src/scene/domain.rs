@@ -48,7 +48,7 @@ impl Domain {
     }
 
     /// The box, where the scene states it.
-    pub fn stated(&self) -> Option<crate::domain::Domain> {
+    pub(crate) fn stated(&self) -> Option<crate::domain::Domain> {
         let sides = self.sides?;
         Some(crate::domain::Domain::planar(self.origin, sides, self.periodic))
     }

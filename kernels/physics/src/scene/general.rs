@@ -16,7 +16,7 @@ use crate::number::significant;
 use crate::structure;
 
 /// The version of the scene format that this program reads.
-pub const FORMAT_VERSION: u64 = 2;
+pub(crate) const FORMAT_VERSION: u64 = 2;
 
 const ALWAYS: Use = None;
 /// As many steps as a run may have.
@@ -71,7 +71,7 @@ pub static OUTPUT: &[&Key] = &KEYS_OF_FORMATS.each_ref();
 
 define_keys! {
     /// What is summed up as a run goes, where there is a box.
-    pub static SUMMED;
+    pub(crate) static SUMMED;
     STRUCTURE = "output" "structure", Kind::Words(&structure::NAMES), "", Is("[]"), ALWAYS,
         "What of the structure is averaged over the second half of the run, each with its error in a file of its own: of snapshots, msd and vacf of rows of thermo.csv.";
     STRUCTURE_SHARE = "output" "structure_share", Number(Positive), "", Otherwise("0.05"), ALWAYS,
@@ -96,11 +96,11 @@ pub struct Run {
     /// The mean that ends the run before.
     pub target: Option<Target>,
     /// Steps between rows of observables.
-    pub thermo_every: u64,
+    pub(crate) thermo_every: u64,
     /// Steps between snapshots.
-    pub snapshot_every: u64,
+    pub(crate) snapshot_every: u64,
     /// Steps between checkpoints; by the wall clock if none.
-    pub checkpoint_every: Option<u64>,
+    pub(crate) checkpoint_every: Option<u64>,
 }
 
 impl Run {
@@ -132,11 +132,11 @@ pub fn too_many_steps(values: &Values) -> Vec<SceneError> {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Output {
     /// The formats that particles are written in, by their keys.
-    pub formats: Vec<&'static str>,
+    pub(crate) formats: Vec<&'static str>,
     /// The names of what is summed up of the structure.
     pub structure: Vec<String>,
     /// The largest share of the work that may take.
-    pub structure_share: Option<f64>,
+    pub(crate) structure_share: Option<f64>,
 }
 
 impl Output {
@@ -146,7 +146,7 @@ impl Output {
     }
 
     /// Whether displacements are asked for, for which discs are followed across periodic sides.
-    pub fn follows_motion(&self) -> bool {
+    pub(crate) fn follows_motion(&self) -> bool {
         self.structure.iter().filter_map(|name| structure::observable(name)).any(|it| it.follows_motion())
     }
 

@@ -79,7 +79,7 @@ pub enum Bounds {
 
 impl Bounds {
     /// Whether a number is in the range.
-    pub fn admit(self, value: f64) -> bool {
+    pub(crate) fn admit(self, value: f64) -> bool {
         value.is_finite()
             && match self {
                 Bounds::Finite => true,
@@ -363,7 +363,7 @@ pub enum Fallback {
 }
 
 /// Where a key is used: everywhere, or with some choices of another key.
-pub type Use = Option<(&'static Key, &'static [&'static str])>;
+pub(crate) type Use = Option<(&'static Key, &'static [&'static str])>;
 
 /// A key of a scene file.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -381,7 +381,7 @@ pub struct Key {
     /// Where it is used.
     pub used: Use,
     /// The choice of another key that giving this one makes.
-    pub implies: Option<(&'static Key, &'static str)>,
+    pub(crate) implies: Option<(&'static Key, &'static str)>,
     /// What it means.
     pub doc: &'static str,
 }
@@ -413,6 +413,7 @@ macro_rules! define_keys {
     ) => {
         $(
             #[doc = $doc]
+            #[allow(unreachable_pub, reason = "keys of some sections are public")]
             pub static $constant: $crate::scene::Key = $crate::scene::Key {
                 section: $section,
                 name: $name,

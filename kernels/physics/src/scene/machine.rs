@@ -22,21 +22,21 @@ define_words! {
 
 define_keys! {
     /// Precision.
-    pub static ARITHMETIC;
+    pub(crate) static ARITHMETIC;
     PRECISION = "machine" "precision", Choice(Precision::WORDS), "", Is("\"f64\""), None,
         "Precision; mixed keeps the state in f64 and computes forces in f32.";
 }
 
 define_keys! {
     /// Instructions.
-    pub static INSTRUCTIONS;
+    pub(crate) static INSTRUCTIONS;
     INSTRUCTION_SET = "machine" "instruction_set", Choice(&["auto", "scalar", "wide", "neon", "avx2", "avx512"]), "",
         Is("\"auto\""), None,
         "The SIMD instructions; auto takes the widest that the processor has.";
 }
 
 /// Meets the keys of precision and instructions; no instruction set is the widest there is.
-pub fn bind_arithmetic(
+pub(crate) fn bind_arithmetic(
     binding: &mut dyn Binding,
     precision: &mut Precision,
     instruction_set: &mut Option<InstructionSet>,
@@ -46,7 +46,7 @@ pub fn bind_arithmetic(
 }
 
 /// Meets a method's key of how its programs are executed.
-pub fn bind_execution(binding: &mut dyn Binding, key: &'static Key, execution: &mut Execution) {
+pub(crate) fn bind_execution(binding: &mut dyn Binding, key: &'static Key, execution: &mut Execution) {
     let mut name = execution_name(*execution);
     binding.word(key, &mut name);
     *execution = match name.strip_prefix("strip:").map(str::parse) {
@@ -57,7 +57,7 @@ pub fn bind_execution(binding: &mut dyn Binding, key: &'static Key, execution: &
 }
 
 /// The name of a way to execute programs, in scenes and on the command line.
-pub fn execution_name(execution: Execution) -> String {
+pub(crate) fn execution_name(execution: Execution) -> String {
     match execution {
         Execution::Chained => "chained".to_owned(),
         Execution::Eager => "eager".to_owned(),
@@ -66,7 +66,7 @@ pub fn execution_name(execution: Execution) -> String {
 }
 
 /// Meets the key of the instructions; none is the widest set there is.
-pub fn bind_instructions(binding: &mut dyn Binding, instruction_set: &mut Option<InstructionSet>) {
+pub(crate) fn bind_instructions(binding: &mut dyn Binding, instruction_set: &mut Option<InstructionSet>) {
     let mut name = instruction_set.map_or("auto", InstructionSet::name).to_owned();
     binding.word(&INSTRUCTION_SET, &mut name);
     *instruction_set = InstructionSet::ALL.iter().copied().find(|set| set.name() == name);

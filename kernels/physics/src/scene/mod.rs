@@ -26,23 +26,29 @@ mod warning;
 
 pub use crate::input::{InputError as SceneError, InputErrors as SceneErrors, Place, Reason, Spot};
 pub use binding::{Binding, Read, Write};
+pub(crate) use disc_keys::{
+    CLEAR_WIDTH, FILE, FILL_HEIGHT, GENERATE, RADII, RADIUS, RADIUS_CUT, RADIUS_SPREAD, SPEED,
+    WALL_AMPLITUDE, WALL_POSITIONS, WALL_RADIUS, WALL_SPACING,
+};
 pub use disc_keys::{
-    CLEAR_WIDTH, COUNT, DISC_RIVALS, DISCS, FILE, FILL_HEIGHT, GENERATE, MASS, PACKING_FRACTION, POSITIONS,
-    RADII, RADIUS, RADIUS_CUT, RADIUS_SPREAD, SECOND_RADIUS, SECOND_SHARE, SEED, SPACING, SPEED, TEMPERATURE,
-    VELOCITIES, WALL_AMPLITUDE, WALL_POSITIONS, WALL_RADIUS, WALL_SPACING,
+    COUNT, DISC_RIVALS, DISCS, PACKING_FRACTION, POSITIONS, SEED, SPACING, TEMPERATURE, VELOCITIES,
 };
 pub use discs::{Amount, Grains, Lining, List, Speed, Start, WallMotion};
-pub use domain::{Domain, GRAVITY, ORIGIN, PERIODIC, PLANAR_DOMAIN, SIDES};
+pub use domain::{Domain, GRAVITY, PLANAR_DOMAIN, SIDES};
+pub(crate) use domain::{ORIGIN, PERIODIC};
 pub use general::{
-    DT, DURATION, FORMAT_VERSION, HEADING, METHOD, OUTPUT, Output, Run, STEP, STEPPED_RUN, STEPS, STRUCTURE,
-    SUMMED, TARGET, TARGETED, THERMO_EVERY, TIME, UNITS, bind_heading, too_many_steps,
+    DT, DURATION, HEADING, METHOD, OUTPUT, Output, Run, STEP, STEPPED_RUN, STEPS, TARGETED, THERMO_EVERY,
+    TIME, UNITS, bind_heading, too_many_steps,
 };
+pub(crate) use general::{STRUCTURE, SUMMED, TARGET};
 pub use key_set::{KeySet, Rivals, SECTIONS};
-pub use keys::{Bounds, Fallback, Key, Kind, Use, Value};
-pub use machine::{
-    ARITHMETIC, INSTRUCTION_SET, INSTRUCTIONS, PRECISION, Precision, bind_arithmetic, bind_execution,
-    bind_instructions, execution_name,
+pub(crate) use keys::Use;
+pub use keys::{Bounds, Fallback, Key, Kind, Value};
+pub(crate) use machine::{
+    ARITHMETIC, INSTRUCTION_SET, INSTRUCTIONS, bind_arithmetic, bind_execution, bind_instructions,
+    execution_name,
 };
+pub use machine::{PRECISION, Precision};
 pub use overrides::Overrides;
 pub use rules::disagreements;
 pub use start_file::StartFile;

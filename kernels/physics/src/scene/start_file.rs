@@ -34,7 +34,7 @@ impl StartFile {
     ///
     /// # Errors
     /// [`ReadError`], where it cannot be read or holds no frame.
-    pub fn last_frame(&self) -> Result<Frame, ReadError> {
+    pub(crate) fn last_frame(&self) -> Result<Frame, ReadError> {
         let known = self.shared.as_ref().and_then(|shared| shared.get());
         if let Some((_, frame)) = known.filter(|(path, _)| *path == self.path) {
             return Ok(frame.clone());

@@ -32,7 +32,7 @@ impl Width {
     }
 
     /// Whether a bar is as short.
-    pub fn holds(self, mean: f64, bar: f64) -> bool {
+    pub(crate) fn holds(self, mean: f64, bar: f64) -> bool {
         match self {
             Width::Percent(percent) => bar <= 0.01 * percent * mean.abs(),
             Width::Absolute(width) => bar <= width,
@@ -40,7 +40,7 @@ impl Width {
     }
 
     /// A bar in the same terms.
-    pub fn same_of(self, mean: f64, bar: f64) -> Width {
+    pub(crate) fn same_of(self, mean: f64, bar: f64) -> Width {
         match self {
             Width::Percent(_) => Width::Percent(100.0 * bar / mean.abs()),
             Width::Absolute(_) => Width::Absolute(bar),

@@ -90,7 +90,7 @@ impl Values {
     }
 
     /// Those of no text: everything is as the program that made the scene says.
-    pub fn of_no_text(vocabulary: &'static Vocabulary) -> Values {
+    pub(crate) fn of_no_text(vocabulary: &'static Vocabulary) -> Values {
         Values::none("scene", vocabulary, &[])
     }
 
@@ -131,7 +131,7 @@ impl Values {
     }
 
     /// Where an item of a list stands.
-    pub fn item_spot(&self, key: &Key, item: usize) -> Spot {
+    pub(crate) fn item_spot(&self, key: &Key, item: usize) -> Spot {
         let place = self.entry(key).and_then(|entry| entry.items.get(item));
         let spot = self.spot(key);
         Spot { place: place.copied().or(spot.place), ..spot }
@@ -170,7 +170,7 @@ impl Values {
     }
 
     /// Whether a key was given, but not well.
-    pub fn is_faulty(&self, key: &Key) -> bool {
+    pub(crate) fn is_faulty(&self, key: &Key) -> bool {
         self.faulty.contains(&key.id())
     }
 

@@ -52,7 +52,7 @@ pub fn outside(stated: &Stated<'_>, domain: &Domain, particles: &Particles) -> V
 }
 
 /// A disc of a kind, in a word.
-pub fn noun(kind: Kind) -> &'static str {
+pub(crate) fn noun(kind: Kind) -> &'static str {
     match kind {
         Kind::Grain => "disc",
         Kind::Wall => "wall disc",
@@ -60,7 +60,7 @@ pub fn noun(kind: Kind) -> &'static str {
 }
 
 /// A number to nine digits: the last ones of a sum say nothing.
-pub fn readable(number: f64) -> f64 {
+pub(crate) fn readable(number: f64) -> f64 {
     format!("{number:.8e}").parse().unwrap_or(number)
 }
 
@@ -123,7 +123,12 @@ fn visit_overlaps(
 
 /// How many pairs overlap deeper than `limit`, and how deep the deepest of them is, both as fractions of the sum of their radii. Counting ends
 /// at the first pair that overlaps deeper than `enough`.
-pub fn deepest_overlap(domain: &Domain, particles: &Particles, limit: f64, enough: f64) -> (usize, f64) {
+pub(crate) fn deepest_overlap(
+    domain: &Domain,
+    particles: &Particles,
+    limit: f64,
+    enough: f64,
+) -> (usize, f64) {
     let (mut count, mut deepest) = (0, 0.0);
     visit_overlaps(domain, particles, limit, |_, _, penetration| {
         (count, deepest) = (count + 1, f64::max(deepest, penetration));
@@ -133,7 +138,7 @@ pub fn deepest_overlap(domain: &Domain, particles: &Particles, limit: f64, enoug
 }
 
 /// Pairs that overlap deeper than `limit`, a fraction of the sum of the radii; `reason` says why they must not.
-pub fn overlaps(
+pub(crate) fn overlaps(
     stated: &Stated<'_>,
     domain: &Domain,
     particles: &Particles,

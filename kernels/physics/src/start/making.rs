@@ -15,7 +15,7 @@ use crate::scene::{
 };
 
 /// Smallest and largest radius: those that the scene admits, and those that there are.
-pub fn radii(start: &Start, found: Option<[f64; 2]>) -> Option<[f64; 2]> {
+pub(crate) fn radii(start: &Start, found: Option<[f64; 2]>) -> Option<[f64; 2]> {
     let spread = |grains: &Grains| {
         let cut = if grains.spread > 0.0 { grains.cut } else { 0.0 };
         let has_second = grains.second.share > 0.0;

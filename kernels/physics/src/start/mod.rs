@@ -7,9 +7,11 @@ mod making;
 mod meshing;
 mod noise;
 
-pub use checks::{deepest_overlap, noun, outside, overlaps, readable};
-pub use making::{Made, make, radii};
-pub use noise::noise_seed;
+pub use checks::outside;
+pub(crate) use checks::{deepest_overlap, noun, overlaps, readable};
+pub(crate) use making::radii;
+pub use making::{Made, make};
+pub(crate) use noise::noise_seed;
 
 use crate::particles::Particle;
 use crate::scene::{Domain, Key, Spot, Start, Values, WallMotion};
@@ -30,7 +32,7 @@ pub struct Stated<'s> {
 }
 
 /// Lets grains in a box grow from a scale of their radii (below 1) to the whole, with a seed; their places change.
-pub type Compress = fn(&crate::domain::Domain, &mut [Particle], f64, u64) -> Result<(), Uncompressed>;
+pub(crate) type Compress = fn(&crate::domain::Domain, &mut [Particle], f64, u64) -> Result<(), Uncompressed>;
 
 /// Why grains did not come to their radii.
 #[derive(Clone, Copy, Debug, PartialEq)]

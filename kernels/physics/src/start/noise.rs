@@ -8,7 +8,7 @@ use stripmine_kernels::noise::seed_of_state;
 ///
 /// A generated start has it from the scene. A start that is listed or read from a file makes one of its own of that and of the state: a run that
 /// continues from a frame does not repeat the noise of the run before.
-pub fn noise_seed(start: &Start, seed: u64, particles: &Particles) -> u64 {
+pub(crate) fn noise_seed(start: &Start, seed: u64, particles: &Particles) -> u64 {
     if start.seed().is_some() {
         return seed;
     }

@@ -5,7 +5,7 @@ pub(super) const MOST: usize = 32;
 
 /// Sums of the values of a function over looks, by blocks of as many looks.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Blocks {
+pub(crate) struct Blocks {
     width: usize,
     /// Looks of a block.
     length: u64,
@@ -15,12 +15,12 @@ pub struct Blocks {
 
 impl Blocks {
     /// None yet, of a function of `width` values, at least one.
-    pub fn new(width: usize) -> Blocks {
+    pub(crate) fn new(width: usize) -> Blocks {
         Blocks { width: width.max(1), length: 1, rows: vec![] }
     }
 
     /// Those that [`Blocks::length`] and [`Blocks::column`] were of; none where they do not fit a function of `width` values.
-    pub fn restored(width: usize, length: u64, column: &[f64]) -> Option<Blocks> {
+    pub(crate) fn restored(width: usize, length: u64, column: &[f64]) -> Option<Blocks> {
         let width = width.max(1);
         let fits = length.is_power_of_two() && column.len().is_multiple_of(2 * width);
         let rows: Vec<Vec<f64>> = column.chunks(2 * width).map(<[f64]>::to_vec).collect();
@@ -28,17 +28,17 @@ impl Blocks {
     }
 
     /// Looks of a block.
-    pub fn length(&self) -> u64 {
+    pub(crate) fn length(&self) -> u64 {
         self.length
     }
 
     /// All sums in one column.
-    pub fn column(&self) -> Vec<f64> {
+    pub(crate) fn column(&self) -> Vec<f64> {
         self.rows.concat()
     }
 
     /// Adds a value that counts by its weight, of the look of a number, the first of which is 0.
-    pub fn add(&mut self, look: u64, place: usize, value: f64, weight: f64) {
+    pub(crate) fn add(&mut self, look: u64, place: usize, value: f64, weight: f64) {
         while look / self.length >= MOST as u64 {
             self.length *= 2;
             let pairs = self.rows.chunks(2);
@@ -58,7 +58,7 @@ impl Blocks {
 
     /// The means of the whole blocks of the second half of `looks` looks, but for `last` more at the end, each with its weights: what
     /// comes before is taken for the transient. A mean without weight is not a number.
-    pub fn second_half(&self, looks: u64, last: usize) -> Vec<Block> {
+    pub(crate) fn second_half(&self, looks: u64, last: usize) -> Vec<Block> {
         let whole = ((looks / self.length) as usize).min(self.rows.len()).saturating_sub(last);
         let mean = |row: &Vec<f64>| {
             let (sums, weights) = row.split_at(self.width);
@@ -73,11 +73,11 @@ impl Blocks {
 
 /// The values of a function in a block of looks.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Block {
+pub(crate) struct Block {
     /// Their means.
     pub means: Vec<f64>,
     /// How much is in each.
-    pub weights: Vec<f64>,
+    pub(crate) weights: Vec<f64>,
 }
 
 #[cfg(test)]

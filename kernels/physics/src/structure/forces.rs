@@ -18,7 +18,7 @@ const MOST_CELLS: f64 = 400.0;
 const COMPONENTS: usize = 3;
 
 /// The force along x and y on the first of a pair.
-pub type PairForce = dyn Fn(&Pair) -> [f64; 2] + Send + Sync;
+pub(crate) type PairForce = dyn Fn(&Pair) -> [f64; 2] + Send + Sync;
 
 /// What two particles do to each other at any moment.
 #[derive(Clone)]

@@ -20,14 +20,15 @@ mod single;
 mod waves;
 mod work;
 
-pub use blocks::{Block, Blocks};
-pub use forces::{PairForce, PairForces, forces_on_each, net_forces};
+pub(crate) use blocks::{Block, Blocks};
+pub use forces::{PairForces, forces_on_each, net_forces};
 pub use list::OBSERVABLES;
 pub use look::{Look, hexatic_orders, seen};
 pub use motion::{Motion, widening};
 pub use pairs::{pair_counts, pair_counts_of_all};
 pub use setting::Setting;
-pub use work::{bytes, strides};
+pub(crate) use work::bytes;
+pub use work::strides;
 
 /// A function of a distance, a time or the like that a run may sum up.
 #[derive(Debug)]
@@ -54,12 +55,12 @@ pub struct Observable {
 
 impl Observable {
     /// Whether discs are followed across periodic sides for it.
-    pub fn follows_motion(&self) -> bool {
+    pub(crate) fn follows_motion(&self) -> bool {
         matches!(self.seen, Seen::Twice { follows: true, .. })
     }
 
     /// Whether it counts discs by place: 0 says that none was seen, and not how seldom one is there.
-    pub fn is_density_of_places(&self) -> bool {
+    pub(crate) fn is_density_of_places(&self) -> bool {
         self.name.starts_with("density(")
     }
 }
@@ -139,7 +140,7 @@ pub struct Headline {
 }
 
 /// The mean over blocks of a number of each, with its bar; of a number that is of lags up to one at a place. None where blocks are too few.
-pub type Estimator<'e> = dyn Fn(&dyn Fn(&[f64]) -> f64, usize) -> Option<[f64; 2]> + 'e;
+pub(crate) type Estimator<'e> = dyn Fn(&dyn Fn(&[f64]) -> f64, usize) -> Option<[f64; 2]> + 'e;
 
 /// A function that was summed up, at least one value of it.
 pub struct Whole<'w> {

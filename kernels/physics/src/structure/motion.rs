@@ -67,7 +67,7 @@ impl Motion {
     }
 
     /// What was kept of discs, as [`Motion::ends`] and [`Motion::column`] gave it; none where it does not fit the discs.
-    pub fn restored(discs: usize, looks: u64, times: [f64; 2], column: &[f64]) -> Option<Motion> {
+    pub(crate) fn restored(discs: usize, looks: u64, times: [f64; 2], column: &[f64]) -> Option<Motion> {
         let mut motion = Motion::new(discs);
         let length = 1 + 4 * discs;
         let of = |row: &[f64]| {

@@ -14,9 +14,9 @@ pub struct Setting {
     /// The mean diameter of the discs at the start (length).
     pub diameter: f64,
     /// The largest radius at the start (length).
-    pub largest_radius: f64,
+    pub(crate) largest_radius: f64,
     /// The smallest radius at the start (length).
-    pub smallest_radius: f64,
+    pub(crate) smallest_radius: f64,
     /// How many discs there are at the start.
     pub discs: usize,
     /// How far pairs are looked at (length).

@@ -75,7 +75,7 @@ pub fn strides(
 
 /// Bytes that looking takes at one time, in a run of at most as many looks at rows: what is kept of earlier ones, twice while a
 /// checkpoint is written.
-pub fn bytes(observables: &[&Observable], discs: usize, rows: Option<u64>) -> u64 {
+pub(crate) fn bytes(observables: &[&Observable], discs: usize, rows: Option<u64>) -> u64 {
     let moves = observables.iter().any(|observable| matches!(observable.seen, Seen::Twice { .. }));
     let stands = observables.iter().any(|observable| matches!(observable.seen, Seen::Once { .. }));
     let state = size_of::<[f64; 4]>() as u64 * discs as u64;

@@ -20,7 +20,7 @@ impl File {
     pub const ALL: [File; 3] = [File::Number, File::Predicate, File::Index];
 
     /// The letter in a listing.
-    pub const fn letter(self) -> char {
+    pub(crate) const fn letter(self) -> char {
         match self {
             File::Number => 'V',
             File::Predicate => 'P',
@@ -232,13 +232,13 @@ impl<L: Element> Instruction<L> {
     }
 
     /// Whether it writes to the array that `reference` names.
-    pub fn overwrites(&self, reference: Reference) -> bool {
+    pub(crate) fn overwrites(&self, reference: Reference) -> bool {
         let is = |to: Reference| (to.array, to.element) == (reference.array, reference.element);
         matches!(self.action, Action::Effect(_)) && self.reference().is_some_and(is)
     }
 
     /// Calls `visit` with every operand of numbers.
-    pub fn operands(&mut self, mut visit: impl FnMut(&mut Operand<L>)) {
+    pub(crate) fn operands(&mut self, mut visit: impl FnMut(&mut Operand<L>)) {
         self.action.parts(|part| {
             if let Part::V(operand) = part {
                 visit(operand);

@@ -87,20 +87,6 @@ pub struct Outlines {
     pub registers: [usize; File::ALL.len()],
 }
 
-impl Outlines {
-    /// A name that programs share exactly if they do the same operations in the same order on lanes of one precision:
-    /// arrays, shifts and scalar operands may differ.
-    pub fn signature(&self) -> String {
-        // FNV-1a over the names.
-        let mut hash = 0xcbf2_9ce4_8422_2325_u64;
-        let kinds = self.instructions.iter().map(Outline::kind);
-        for byte in kinds.flat_map(|kind| (kind + " ").into_bytes()) {
-            hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-        }
-        format!("{}-{}-{hash:016x}", self.lane, self.instructions.len())
-    }
-}
-
 impl<L: Element> Tape<L> {
     /// The program as a timing model sees it.
     pub fn outlines(&self) -> Outlines {

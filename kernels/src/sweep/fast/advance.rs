@@ -99,8 +99,8 @@ pub struct Copies<'a> {
 impl<C: Scheme> Motion<C> {
     /// What the scheme may know of one degree of freedom.
     #[inline(always)]
-    fn context<R: Registers>(&self, registers: R, freedom: usize, inverse: R::V, normal: R::V) -> Context<R> {
-        Context { registers, dt: self.dt, freedom, inverse, normal }
+    fn context<R: Registers>(&self, registers: R, inverse: R::V, normal: R::V) -> Context<R> {
+        Context { registers, dt: self.dt, inverse, normal }
     }
 
     /// The random numbers of some discs along x and y in the pass that corrects the step numbered `step`.
@@ -148,7 +148,7 @@ impl<C: Scheme> Motion<C> {
         if C::DRAWS == Draws::InCorrector {
             self.draw(step, &[id], [&mut x, &mut y]);
         }
-        let context = self.context(Scalar::<S>::default(), freedom, inverse, [x, y, y][freedom][0]);
+        let context = self.context(Scalar::<S>::default(), inverse, [x, y, y][freedom][0]);
         let mut row = predicted;
         let acceleration =
             acceleration(|value| context.uniform(value), self.gravity, freedom, force, inverse);
@@ -347,7 +347,7 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
             });
             let context = |place: Draws| {
                 let normal = if C::DRAWS == place { normals[freedom.min(1)] } else { nothing };
-                motion.context(registers, freedom, inverse, normal)
+                motion.context(registers, inverse, normal)
             };
             let acceleration = acceleration(uniform, motion.gravity, freedom, force, inverse);
             let mut row = [uniform(0.0); DERIVATIVES];

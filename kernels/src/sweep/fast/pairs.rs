@@ -23,7 +23,7 @@ pub trait Pairs<P> {
 
 /// Two discs that may touch, and the cell offset between where their places are seen from (length).
 #[derive(Clone, Copy, Debug)]
-pub struct Touch<P> {
+pub(crate) struct Touch<P> {
     pub(super) discs: Pair,
     pub(super) cell_offset: [P; 2],
 }

@@ -138,7 +138,7 @@ impl LatticeShape {
 
     /// Elements before the first row (and again behind the last).
     #[inline]
-    pub fn lead(&self) -> usize {
+    pub(crate) fn lead(&self) -> usize {
         (self.half_width * (self.stride() + 1)).next_multiple_of(GROUP)
     }
 

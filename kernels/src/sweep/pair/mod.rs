@@ -34,7 +34,7 @@ impl Body {
 
     /// Its mirror image in the x axis.
     #[inline]
-    pub fn mirrored(self) -> Body {
+    pub(crate) fn mirrored(self) -> Body {
         let flip = |[x, y]: [f64; 2]| [x, -y];
         Body { position: flip(self.position), velocity: flip(self.velocity), omega: -self.omega, ..self }
     }
@@ -145,7 +145,7 @@ impl Pair {
 
     /// Its mirror image in the x axis.
     #[inline]
-    pub fn mirrored(self) -> Pair {
+    pub(crate) fn mirrored(self) -> Pair {
         Pair { bodies: self.bodies.map(Body::mirrored) }
     }
 }

@@ -38,7 +38,7 @@ struct Profile {
 }
 
 /// Follows the gases, and counts the entries of the source's look-up.
-pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let meter = Meter::new((GASES.len() + SCENES.len()) as f64, lab.progress);
     let profiles = meter.each(&GASES, profile)?;
     let look_ups = meter.each(&SCENES, |&scene| look_up(scene))?;

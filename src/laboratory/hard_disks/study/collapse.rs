@@ -36,7 +36,7 @@ fn of_a_row(discs: f64) -> f64 {
 }
 
 /// Surveys rows and gases.
-pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let places = DISCS.iter().flat_map(|&discs| RESTITUTIONS.map(|restitution| (discs, restitution)));
     let places: Vec<(u64, f64)> = places.collect();
     let meter = Meter::new((ROWS.len() + places.len()) as f64, lab.progress);

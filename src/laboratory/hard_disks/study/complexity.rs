@@ -58,7 +58,7 @@ impl Fit {
 }
 
 /// Measures both engines.
-pub fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
+pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     let grid = match size {
         Size::Quick => Grid {
             discs: &[1000, 10_000],

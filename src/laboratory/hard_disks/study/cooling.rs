@@ -45,7 +45,7 @@ impl Gas {
 }
 
 /// Follows gases that cool and gases that collapse.
-pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let meter = Meter::new((RESTITUTIONS.len() + COLLAPSING.len()) as f64, lab.progress);
     let gases = meter.each(&RESTITUTIONS, gas)?;
     let fates = meter.each(&COLLAPSING, fate)?;

@@ -55,7 +55,7 @@ pub(super) fn compressibility(discs: f64, [virial, time]: [f64; 2], temperature:
 }
 
 /// Measures every packing fraction that is known.
-pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let states =
         Meter::new(KNOWN.len() as f64, lab.progress).each_from_last(&KNOWN, |known| measured(known.0))?;
     let states = KNOWN.iter().zip(states);

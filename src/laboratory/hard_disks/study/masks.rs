@@ -41,7 +41,7 @@ struct Cost {
 type Choice = (f64, &'static str, String, f64);
 
 /// Measures every mask.
-pub fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
+pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     let (densities, collisions): (&[f64], _) = match size {
         Size::Quick => (&[0.10, 0.50], 3000),
         Size::Full | Size::All => (&[0.02, 0.10, 0.30, 0.50, 0.70], 10_000),

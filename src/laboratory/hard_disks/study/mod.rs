@@ -1,15 +1,15 @@
 //! Studies of hard discs, each a file.
 
-pub mod atmosphere;
-pub mod collapse;
-pub mod complexity;
-pub mod cooling;
-pub mod fluid;
-pub mod masks;
-pub mod precision;
-pub mod rates;
-pub mod soft_hard;
-pub mod structure;
+pub(crate) mod atmosphere;
+pub(crate) mod collapse;
+pub(crate) mod complexity;
+pub(crate) mod cooling;
+pub(crate) mod fluid;
+pub(crate) mod masks;
+pub(crate) mod precision;
+pub(crate) mod rates;
+pub(crate) mod soft_hard;
+pub(crate) mod structure;
 
 use crate::laboratory::running::Running;
 use stripmine_physics::method::hard_disks::INELASTIC_COLLAPSE;

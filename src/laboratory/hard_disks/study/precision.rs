@@ -32,7 +32,7 @@ struct Way {
 }
 
 /// Follows both engines with every number of discs and every seed, and measures their rates.
-pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let runs = DISCS.iter().flat_map(|&discs| ENGINES.map(|engine| (discs, engine)));
     let runs: Vec<(u64, &str, u64)> =
         runs.flat_map(|(discs, engine)| (1..=SEEDS).map(move |seed| (discs, engine, seed))).collect();

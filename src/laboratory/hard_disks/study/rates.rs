@@ -22,7 +22,7 @@ pub(super) fn fluid(engine: &str, discs: u64, packing_fraction: f64) -> Override
 }
 
 /// Measures both engines.
-pub fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
+pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     let (sizes, collisions): (&[u64], _) = match size {
         Size::Quick => (&[2500], 50_000),
         Size::Full | Size::All => (&[2500, 250_000], 100_000),

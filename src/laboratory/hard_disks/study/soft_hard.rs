@@ -13,15 +13,15 @@ use stripmine_physics::method::{Until, hard_disks};
 use stripmine_physics::scene::{COUNT, DT, Overrides, PACKING_FRACTION, SEED, STEPS, TEMPERATURE};
 
 /// The scene, and how much is measured. Diameter, mass and kT are 1.
-pub struct Question {
+pub(crate) struct Question {
     /// Discs, at least.
     pub discs: u64,
     /// Area of the discs over that of the box.
     pub packing_fraction: f64,
     /// Restitution of the gas that cools.
-    pub restitution: f64,
+    pub(crate) restitution: f64,
     /// Stiffnesses k_N of the soft discs (kT/diameter^2.5).
-    pub stiffnesses: &'static [f64],
+    pub(crate) stiffnesses: &'static [f64],
     /// Seeds, each an independent start.
     pub seeds: u64,
     /// Time over which the pressure is measured.
@@ -30,7 +30,7 @@ pub struct Question {
 
 impl Question {
     /// Question of the report.
-    pub const REPORT: Question = Question {
+    pub(crate) const REPORT: Question = Question {
         discs: 500,
         packing_fraction: 0.5,
         restitution: 0.9,
@@ -65,7 +65,7 @@ struct Model {
 }
 
 /// The question of the report.
-pub fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
+pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     let question = match size {
         Size::Quick => {
             Question { discs: 200, stiffnesses: &[1e3, 1e4, 1e5], seeds: 2, time: 4.0, ..Question::REPORT }
@@ -76,7 +76,7 @@ pub fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
 }
 
 /// Runs soft models from the softest on, then the hard one, with every seed.
-pub fn soft_hard(question: &Question, progress: Progress<'_>) -> Result<Made, Failure> {
+pub(crate) fn soft_hard(question: &Question, progress: Progress<'_>) -> Result<Made, Failure> {
     // A gas that keeps its temperature.
     let cooling_time = COOLING / collision_rate(luding(question.packing_fraction));
     // Mean normal speed of impacts at kT = m = 1: √π.

@@ -53,7 +53,7 @@ struct Structure {
 }
 
 /// Follows discs at every packing fraction, from a crystal in which all are equally fast.
-pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let all = Meter::new(PACKING_FRACTIONS.len() as f64, lab.progress).each(&PACKING_FRACTIONS, structure)?;
     let dilute: Vec<f64> = (0..TIMES.1).map(|bin| dilute(middle(TIMES, bin))).collect();
     let bins = |count: usize| all.iter().flat_map(move |it| (0..count).map(move |bin| (it, bin)));

@@ -73,7 +73,7 @@ impl Fluid {
 }
 
 /// Measures every step.
-pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let cases: Vec<(SchemeKind, f64)> =
         STEPS.iter().flat_map(|&dt| SCHEMES.map(|scheme| (scheme, dt))).collect();
     let meter = Meter::new(cases.len() as f64, lab.progress);

@@ -91,7 +91,7 @@ struct Heated {
 }
 
 /// Follows every system.
-pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let schemes = [SchemeKind::Stochastic, SchemeKind::AsPrinted, SchemeKind::Baoab];
     let cases: Vec<(SchemeKind, f64)> =
         schemes.into_iter().flat_map(|scheme| STEPS.map(|dt| (scheme, dt))).collect();

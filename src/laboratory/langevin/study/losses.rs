@@ -33,7 +33,7 @@ const PART: u64 = 8;
 const TOLERANCE: f64 = 0.05;
 
 /// Counts losses and interactions, and searches for the longest steps without a loss.
-pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let mut steps: Vec<f64> = SOURCE.iter().map(|(dt, ..)| *dt).chain(FINER).collect();
     steps.sort_by(|a, b| b.total_cmp(a));
     let choices: Vec<[f64; 2]> =

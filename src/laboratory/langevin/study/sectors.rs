@@ -59,7 +59,7 @@ struct Fluid {
 }
 
 /// Measures every number of sectors, neighbour lists, and fluids by every search.
-pub fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
+pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     let (fewest, seconds) = if size == Size::Quick { (100, 0.05) } else { (3, 0.06) };
     let counts = SOURCE.iter().filter(|(count, _)| *count >= fewest);
     let sides: Vec<Option<(u64, [f64; 2])>> = counts.copied().map(Some).chain([None]).collect();

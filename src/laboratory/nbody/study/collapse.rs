@@ -79,7 +79,7 @@ impl Sphere {
 }
 
 /// Follows a sphere of each seed.
-pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let all = Meter::new(SEEDS.len() as f64, lab.progress).each(&SEEDS, |&seed| sphere(seed))?;
     let mean = |of: &dyn Fn(&Sphere) -> f64, decimals: usize| {
         let Mean { value, bar } = Mean::of(&all.iter().map(of).collect::<Vec<_>>());

@@ -54,7 +54,7 @@ fn overrides(scheme: SchemeName, steps: u64, eccentricity: f64) -> Overrides {
 }
 
 /// Measures every scheme.
-pub fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let progress = lab.progress;
     let schemes: Vec<SchemeName> = SchemeName::ALL.iter().map(|(scheme, _)| *scheme).collect();
     let orbits: Vec<(SchemeName, u64)> =

@@ -40,7 +40,7 @@ const THREADS: [usize; 2] = [1, 2];
 pub(in crate::laboratory::nbody) static WORKS: [Own; 1] = [Own { name: "nbody-forces", measure: forces }];
 
 /// Measures every way.
-pub fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
+pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     let (counts, seconds): (&[usize], f64) =
         if size == Size::Quick { (&[1024], 0.05) } else { (&[1024, 4096, 16_384], 0.1) };
     let all: Vec<(usize, usize)> =

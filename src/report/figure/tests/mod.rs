@@ -1,6 +1,6 @@
 //! What must hold for every picture, as `resvg` sees it.
 
-pub mod samples;
+pub(crate) mod samples;
 
 use super::output::tree;
 use super::{Axis, Chart, Drawing, Figure, Map, Picture, Point, Scale, Style, svg};

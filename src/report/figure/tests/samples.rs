@@ -5,7 +5,7 @@ use super::super::{
 };
 
 /// All of them.
-pub fn all() -> Vec<Figure> {
+pub(crate) fn all() -> Vec<Figure> {
     vec![
         logarithmic(),
         linear(),
@@ -29,7 +29,7 @@ fn single(chart: Chart) -> Picture {
 }
 
 /// Models and measurements over decades, and a band.
-pub fn logarithmic() -> Figure {
+pub(crate) fn logarithmic() -> Figure {
     let models = ["clock of the paper: n + D", "clock with strips of 64", "chained, by level of memory"];
     let measured = ["CRAY's way, measured", "strip-mined, measured", "chained, measured (AVX-512, one core)"];
     let time = |kind: usize, length: f64| {
@@ -61,7 +61,7 @@ pub fn logarithmic() -> Figure {
 }
 
 /// Three curves over linear axes.
-pub fn linear() -> Figure {
+pub(crate) fn linear() -> Figure {
     let grid = |count: u32| (0..=count).map(move |i| 0.9 * f64::from(i) / f64::from(count));
     let friction = grid(90).map(|x| (x, (6.0 * x).sin() * 20.0 + 22.0 * x));
     let rival = grid(90).map(|x| (x, 18.0 * x * x - 4.0));
@@ -76,7 +76,7 @@ pub fn linear() -> Figure {
 }
 
 /// Density waves.
-pub fn map() -> Figure {
+pub(crate) fn map() -> Figure {
     let value = |i: usize, j: usize| {
         let (x, t) = (i as f64 / 120.0, j as f64 / 80.0);
         let wave = ((x * 14.0 - t * 9.0).sin() + 0.6 * (x * 31.0 + t * 7.0).cos()).max(-0.9);
@@ -93,7 +93,7 @@ pub fn map() -> Figure {
 }
 
 /// Two charts on one pair of axes, with lines that mark places.
-pub fn panels() -> Figure {
+pub(crate) fn panels() -> Figure {
     let chart = |factor: f64| {
         let curve = |power: f64| {
             (0..=40)
@@ -115,7 +115,7 @@ pub fn panels() -> Figure {
 }
 
 /// Points that belong to names.
-pub fn names() -> Figure {
+pub(crate) fn names() -> Figure {
     let maps = [
         "two-discs",
         "dense-gas",
@@ -134,7 +134,7 @@ pub fn names() -> Figure {
 }
 
 /// Points that belong to names on the vertical axis.
-pub fn named_rows() -> Figure {
+pub(crate) fn named_rows() -> Figure {
     let Picture::Charts(mut charts) = names().picture else { unreachable!() };
     let Chart { x, y, mut series, .. } = charts.remove(0).1;
     for point in &mut series[0].points {
@@ -145,7 +145,7 @@ pub fn named_rows() -> Figure {
 }
 
 /// Few cells, with values in them and one without.
-pub fn few_cells() -> Figure {
+pub(crate) fn few_cells() -> Figure {
     let rows = (0..5).map(|j| {
         (0..6).map(|i| if i + j == 9 { f64::NAN } else { 1.03 * f64::from(1 + i * j * j) }).collect()
     });
@@ -159,7 +159,7 @@ pub fn few_cells() -> Figure {
 }
 
 /// A neighbourhood with numbers in its cells.
-pub fn mask() -> Figure {
+pub(crate) fn mask() -> Figure {
     let mut shapes = Vec::new();
     let mut number = 0;
     for j in (-2..=2).rev() {
@@ -183,12 +183,12 @@ pub fn mask() -> Figure {
 }
 
 /// A piece of a pipe, with walls of discs and grains that spin.
-pub fn pipe() -> Figure {
+pub(crate) fn pipe() -> Figure {
     pipe_of("pipe", 30, 900.0, "Grains in a piece of the pipe")
 }
 
 /// A whole pipe, a hundred times as long as wide.
-pub fn long_pipe() -> Figure {
+pub(crate) fn long_pipe() -> Figure {
     pipe_of("long-pipe", 1000, 3600.0, "The whole pipe, a hundred times as long as wide")
 }
 

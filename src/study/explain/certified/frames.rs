@@ -16,7 +16,7 @@ const BASELINES: [&str; 3] = ["the scene's own values", "always lists", "f64 at 
 const PARTS: (u32, f64) = (40, 2.0);
 
 /// The frames of judged plans.
-pub fn made(certified: &Certified) -> Made {
+pub(crate) fn made(certified: &Certified) -> Made {
     let plans = &certified.plans;
     let frames =
         [within(plans), table(plans), costs(plans), errors(plans), cost_curves(plans), summary(certified)];

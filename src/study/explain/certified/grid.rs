@@ -40,21 +40,21 @@ struct Point {
 
 /// Wall times over that of the best of the grid.
 #[derive(Clone, Debug)]
-pub struct Costs {
+pub(crate) struct Costs {
     /// Of the plan.
-    pub plan: f64,
+    pub(crate) plan: f64,
     /// Of its configuration and step, were they run for as long as the reference says; none where their bias is more than the error.
-    pub choice: Option<f64>,
+    pub(crate) choice: Option<f64>,
     /// Of the scene's own values, of lists always, and of the scene's own integrator in f64 at its longest step; none where the error is not reached,
     /// or the method has none.
-    pub baselines: [Option<f64>; 3],
+    pub(crate) baselines: [Option<f64>; 3],
     /// The best of the grid, and its wall seconds.
-    pub best: String,
+    pub(crate) best: String,
     pub seconds: f64,
 }
 
 /// A scene with every configuration measured.
-pub struct Grid<'g> {
+pub(crate) struct Grid<'g> {
     of: &'g Ensemble<'g>,
     reference: Reference,
     chance: Chance,
@@ -71,7 +71,7 @@ pub struct Grid<'g> {
 
 impl<'g> Grid<'g> {
     /// Measures the grid, and plans, in about some wall seconds.
-    pub fn of(
+    pub(super) fn of(
         of: &'g Ensemble<'g>,
         reference: Reference,
         plans: &[&Plan],
@@ -120,7 +120,7 @@ impl<'g> Grid<'g> {
     }
 
     /// Costs of a plan of a number, by its runs, for an error; none where nothing reaches it or the plan was not measured.
-    pub fn costs(&self, number: usize, plan: &Plan, verdict: &Verdict, error: f64) -> Option<Costs> {
+    pub(crate) fn costs(&self, number: usize, plan: &Plan, verdict: &Verdict, error: f64) -> Option<Costs> {
         let all: Vec<(&Point, f64)> = (self.points.iter())
             .filter_map(|point| Some((point, self.seconds(point, bias(point.off), error)?)))
             .collect();

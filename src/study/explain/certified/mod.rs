@@ -9,8 +9,8 @@ mod scenes;
 mod tests;
 mod verdict;
 
-pub use frames::made;
-pub use scenes::{Asked, QUICK, SCENES};
+pub(crate) use frames::made;
+pub(crate) use scenes::{Asked, QUICK, SCENES};
 
 use super::recommended::Plan;
 use super::seen::{planned, seen};
@@ -29,22 +29,22 @@ use verdict::Verdict;
 
 /// Effort of a judgement, in wall seconds but for the runs.
 #[derive(Clone, Copy, Debug)]
-pub struct Effort {
+pub(crate) struct Effort {
     /// Trials of a plan; and where these give none, for scenes whose trials may be made again.
     pub trials: [f64; 2],
     /// The most that a plan may take: a longer one is refused.
     pub limit: f64,
     /// Estimates by each plan, from starts of their own.
-    pub estimates: usize,
+    pub(crate) estimates: usize,
     /// The most that a reference takes.
-    pub reference: f64,
+    pub(crate) reference: f64,
     /// A grid.
     pub grid: f64,
 }
 
 /// Plans, judged.
 #[derive(Clone, Debug)]
-pub struct Certified {
+pub(crate) struct Certified {
     plans: Vec<Judged>,
     effort: Effort,
 }
@@ -92,7 +92,11 @@ struct Planned {
 ///
 /// # Errors
 /// [`StudyError`] if a scene is bad, or there are no threads.
-pub fn certified(asked: &[Asked], effort: Effort, progress: Progress<'_>) -> Result<Certified, StudyError> {
+pub(crate) fn certified(
+    asked: &[Asked],
+    effort: Effort,
+    progress: Progress<'_>,
+) -> Result<Certified, StudyError> {
     let meter = Meter::new(asked.iter().map(|it| it.errors.len() as f64).sum(), progress);
     let (watch, never) = (Stopwatch::wall(), AtomicBool::new(false));
     let trial = Trial { watch: &watch, stop: &never };

@@ -22,7 +22,7 @@ const STARTS: usize = 10_000;
 
 /// The true mean.
 #[derive(Clone, Copy, Debug)]
-pub struct Reference {
+pub(crate) struct Reference {
     /// The mean of all its runs; exactly 0 for the change of what should be kept.
     pub known: Known,
     /// Its step (time); none where the method takes none.
@@ -31,14 +31,14 @@ pub struct Reference {
 
 impl Reference {
     /// The mean, and half the width of its interval of 95 %.
-    pub fn mean(&self) -> [f64; 2] {
+    pub(super) fn mean(&self) -> [f64; 2] {
         [self.known.mean, self.known.bar]
     }
 }
 
 impl Ensemble<'_> {
     /// The true mean, to a third of an error where some wall seconds are enough for that.
-    pub fn reference(&self, error: Width, seconds: f64) -> Result<Reference, String> {
+    pub(crate) fn reference(&self, error: Width, seconds: f64) -> Result<Reference, String> {
         if self.target.is_kept() {
             return Ok(Reference { known: Known::exactly(0.0), step: None });
         }

@@ -16,17 +16,17 @@ use stripmine_physics::scene::{Overrides, SEED};
 /// A run is ended where it takes this many times as long as a plan may.
 const LATE: f64 = 5.0;
 /// A whole run, from one time to another (time).
-pub const WHOLE: [f64; 2] = [0.0, f64::INFINITY];
+pub(crate) const WHOLE: [f64; 2] = [0.0, f64::INFINITY];
 /// Seeds from the scene's own on that trials may have used.
 const OF_TRIALS: u64 = 1000;
 
 /// Mean that a plan estimates: its runs, and the part of each run that is averaged.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Asking {
+pub(crate) struct Asking {
     /// The scene's own time, where the mean is that over whole runs (time).
     pub whole: Option<f64>,
     /// Set where the mean is that of the scene's own start: another seed has another mean.
-    pub is_of_own_start: bool,
+    pub(crate) is_of_own_start: bool,
 }
 
 impl From<&Plan> for Asking {
@@ -36,16 +36,16 @@ impl From<&Plan> for Asking {
 }
 
 /// Runs of a scene from any number of starts.
-pub struct Ensemble<'e> {
+pub(crate) struct Ensemble<'e> {
     pub case: &'e Case,
     pub target: &'e Target,
-    pub trial: Trial<'e>,
-    pub asking: Asking,
+    pub(crate) trial: Trial<'e>,
+    pub(crate) asking: Asking,
 }
 
 impl Ensemble<'_> {
     /// The scene from a start of a number: another seed, or, without seeds, particles displaced by next to nothing.
-    pub fn start(&self, overrides: &Overrides, number: usize) -> Result<Prepared, String> {
+    pub(super) fn start(&self, overrides: &Overrides, number: usize) -> Result<Prepared, String> {
         let prepared = |overrides: &Overrides| {
             self.case.prepared_with(overrides).map_err(|errors| first_line(&errors.to_string()))
         };
@@ -62,7 +62,7 @@ impl Ensemble<'_> {
     }
 
     /// A run that comes to the end of its span.
-    pub fn sample(&self, prepared: &Prepared, span: Span) -> Result<Sample, String> {
+    pub(crate) fn sample(&self, prepared: &Prepared, span: Span) -> Result<Sample, String> {
         let observed = (self.case.entry.quantities, self.target.place);
         let sample = self.trial.sample(prepared, observed, span);
         let sample = sample.map_err(|failure| first_line(&failure.what()))?;
@@ -73,7 +73,7 @@ impl Ensemble<'_> {
     }
 
     /// The result of a run: its mean, or how far it went from the first value of what should be kept.
-    pub fn value(&self, sample: &Sample) -> Result<f64, String> {
+    pub(super) fn value(&self, sample: &Sample) -> Result<f64, String> {
         match sample.outcome {
             Outcome::Kept { farthest, .. } => Ok(farthest),
             _ if self.asking.whole.is_some() => Ok(sample.mean_over(WHOLE)),
@@ -105,7 +105,7 @@ impl Ensemble<'_> {
     ///
     /// # Errors
     /// [`ThreadPoolBuildError`] if there are no threads.
-    pub fn estimates(
+    pub(crate) fn estimates(
         &self,
         plan: &Plan,
         count: usize,
@@ -119,7 +119,7 @@ impl Ensemble<'_> {
 }
 
 /// Does some work for each number, on all cores, one thread each: results in order.
-pub fn side_by_side<T: Send>(
+pub(crate) fn side_by_side<T: Send>(
     count: usize,
     work: impl Fn(usize) -> T + Sync,
 ) -> Result<Vec<T>, ThreadPoolBuildError> {

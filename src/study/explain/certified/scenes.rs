@@ -5,7 +5,7 @@ use stripmine_physics::method::METHODS;
 
 /// Kind of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Class {
+pub(crate) enum Class {
     /// Grains that gravity or a wall drives.
     Driven,
     /// Soft discs without a drive, elastic and not.
@@ -20,11 +20,11 @@ pub enum Class {
 
 impl Class {
     /// Every class.
-    pub const ALL: [Class; 5] =
+    pub(crate) const ALL: [Class; 5] =
         [Class::Driven, Class::Granular, Class::HardDiscs, Class::Bath, Class::Bodies];
 
     /// The class for a reader.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Class::Driven => "driven granular",
             Class::Granular => "other granular",
@@ -37,9 +37,9 @@ impl Class {
 
 /// A scene, a quantity and the errors that are asked for, each of them a plan.
 #[derive(Clone, Copy, Debug)]
-pub struct Asked {
+pub(crate) struct Asked {
     /// Kind of the scene.
-    pub class: Class,
+    pub(crate) class: Class,
     /// The preset; or the name of a scene with its text.
     preset: &'static str,
     text: Option<&'static str>,
@@ -48,11 +48,11 @@ pub struct Asked {
     /// The quantity.
     pub quantity: &'static str,
     /// Errors of its mean, or of its value where it should be kept.
-    pub errors: &'static [&'static str],
+    pub(crate) errors: &'static [&'static str],
     /// Set where plans are compared with the best of a grid.
-    pub is_compared: bool,
+    pub(crate) is_compared: bool,
     /// Set where trials are made again for longer if they give no plan.
-    pub is_patient: bool,
+    pub(crate) is_patient: bool,
 }
 
 impl Asked {
@@ -60,7 +60,7 @@ impl Asked {
     ///
     /// # Errors
     /// [`StudyError`] if it is bad.
-    pub fn load(&self) -> Result<Case, StudyError> {
+    pub(crate) fn load(&self) -> Result<Case, StudyError> {
         let overrides: Vec<String> = self.overrides.iter().map(|&text| text.to_owned()).collect();
         Ok(match self.text {
             Some(text) => Case::parse(self.preset, text, &overrides, METHODS)?,
@@ -123,7 +123,7 @@ const SHEARED: &[&str] =
 
 /// Sixty plans: packing fractions from 0.01 to 0.7, 2 to 50 000 particles, gas to liquid and cluster, elastic to sticky, flows and shaken beds, all
 /// methods.
-pub const SCENES: &[Asked] = &[
+pub(crate) const SCENES: &[Asked] = &[
     ask(Driven, "pipe-small", THIN_PIPE, "flow", &["10%", "3%", "1%"]).patient(),
     ask(Driven, "pipe-small", CALM_PIPE, "flow", &["10%", "3%", "1%"]).compared(),
     ask(Driven, "hopper", &[], "flow", &["10%", "3%", "1%"]).with_text(HOPPER).patient(),
@@ -242,7 +242,7 @@ pub const SCENES: &[Asked] = &[
 ];
 
 /// Scenes that take hardly any time.
-pub const QUICK: &[Asked] = &[
+pub(crate) const QUICK: &[Asked] = &[
     ask(Driven, "shaken-box", SHAKEN, "gravitational", &["20%"]).compared(),
     ask(Bath, "langevin-free", &["particles.count=100"], "temperature", &["5%"]),
     ask(Bodies, "kepler", &["run.time=31.4"], "energy_error", &["1e-4"]),

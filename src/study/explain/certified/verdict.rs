@@ -9,7 +9,7 @@ const BIASED: f64 = 0.5;
 
 /// The cause of the misses of a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Cause {
+pub(crate) enum Cause {
     /// The mean of all runs is off.
     Bias,
     /// Runs scatter.
@@ -18,7 +18,7 @@ pub enum Cause {
 
 impl Cause {
     /// The cause in a word.
-    pub fn word(self) -> &'static str {
+    pub(super) fn word(self) -> &'static str {
         match self {
             Cause::Bias => "bias",
             Cause::Statistics => "statistics",
@@ -28,28 +28,28 @@ impl Cause {
 
 /// Runs of a plan, judged.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Verdict {
+pub(super) struct Verdict {
     /// False where the reference is not known well enough.
-    pub is_decided: bool,
+    pub(crate) is_decided: bool,
     /// Runs.
     pub runs: usize,
     /// Errors of those that have a mean, over the error asked for.
-    pub errors: Vec<f64>,
+    pub(crate) errors: Vec<f64>,
     /// Runs within the error.
     pub within: usize,
     /// Those that broke or have no mean; they are misses.
-    pub broken: usize,
+    pub(crate) broken: usize,
     /// The cause of the other misses.
-    pub cause: Cause,
+    pub(crate) cause: Cause,
     /// The mean of the runs less the reference, with the bar of both, over the error.
-    pub bias: Mean,
+    pub(crate) bias: Mean,
     /// Standard deviation of the runs over the error; none of fewer than two.
-    pub scatter: Option<f64>,
+    pub(crate) scatter: Option<f64>,
 }
 
 impl Verdict {
     /// Judges runs by a reference and its bar, and an error, all in one unit.
-    pub fn of(runs: &[Result<f64, String>], [reference, bar]: [f64; 2], error: f64) -> Verdict {
+    pub(super) fn of(runs: &[Result<f64, String>], [reference, bar]: [f64; 2], error: f64) -> Verdict {
         let off: Vec<f64> = runs.iter().flatten().map(|value| (value - reference) / error).collect();
         let mean = Mean::of(&off);
         let count = off.len() as f64;
@@ -66,7 +66,7 @@ impl Verdict {
     }
 
     /// Runs that are off by more than the error, for a cause.
-    pub fn missed_by(&self, cause: Cause) -> usize {
+    pub(crate) fn missed_by(&self, cause: Cause) -> usize {
         if cause == self.cause { self.runs - self.broken - self.within } else { 0 }
     }
 }

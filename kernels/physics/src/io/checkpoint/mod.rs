@@ -25,7 +25,7 @@ pub use writing::WriteError;
 use std::collections::BTreeMap;
 
 /// The version of the format that this program writes and reads.
-pub const VERSION: u32 = 1;
+pub(crate) const VERSION: u32 = 1;
 
 const MAGIC: [u8; 8] = *b"\x93STRIPM\n";
 const HEADER: u64 = 28;

@@ -25,15 +25,16 @@ mod writer;
 pub use error::{Mistake, ReadError, Reason};
 pub use format::Format;
 pub use reader::{Frames, Which, read};
-pub use writer::{FORMAT, write};
+pub(crate) use writer::FORMAT;
+pub use writer::write;
 
 use crate::particles::Particles;
 
 /// The columns of a frame that are read again.
-pub const PROPERTIES: &str = "species:S:1:pos:R:3:id:I:1:velo:R:3:radius:R:1:mass:R:1:omega:R:3";
+pub(crate) const PROPERTIES: &str = "species:S:1:pos:R:3:id:I:1:velo:R:3:radius:R:1:mass:R:1:omega:R:3";
 
 /// The columns behind them: what ASE knows of masses and velocities, which it has from momenta. OVITO knows `mass` and `velo`.
-pub const OF_ASE: &str = "masses:R:1:momenta:R:3";
+pub(crate) const OF_ASE: &str = "masses:R:1:momenta:R:3";
 
 /// Extent of the box in z (length), of no meaning in the plane: from −1/2 to 1/2, as LAMMPS wants it for two
 /// dimensions.
@@ -41,7 +42,7 @@ pub(super) const DEPTH: [f64; 2] = [-0.5, 0.5];
 
 /// What a frame may be of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Room {
+pub(crate) enum Room {
     /// Discs in the plane, in a box: what scenes start from.
     Plane,
     /// Whatever runs write: bodies in space too, and frames without a box, whose sides are then infinite.

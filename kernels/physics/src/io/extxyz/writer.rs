@@ -12,7 +12,7 @@ use std::io::{self, Write};
 use std::sync::Arc;
 
 /// The format.
-pub const FORMAT: OutputFormat = OutputFormat {
+pub(crate) const FORMAT: OutputFormat = OutputFormat {
     key: "trajectory",
     doc: "Snapshots as trajectory.xyz, extended XYZ.",
     is_default: true,

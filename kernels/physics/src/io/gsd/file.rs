@@ -19,7 +19,7 @@ const BUFFER: usize = 1 << 18;
 
 /// A file being written at its end, by this process alone.
 #[derive(Debug)]
-pub struct GsdFile {
+pub(crate) struct GsdFile {
     path: PathBuf,
     out: BufWriter<File>,
     names: Vec<String>,
@@ -41,7 +41,7 @@ impl GsdFile {
     ///
     /// # Errors
     /// If something is there already, or the system does not let it be written.
-    pub fn create(path: impl Into<PathBuf>, names: Vec<String>) -> Result<Self, FileError> {
+    pub(super) fn create(path: impl Into<PathBuf>, names: Vec<String>) -> Result<Self, FileError> {
         let path = path.into();
         let created = created(&path)?;
         let mut file = GsdFile::empty(path, created, names);
@@ -55,7 +55,7 @@ impl GsdFile {
     /// # Errors
     /// If what was there at the mark is not there any more, the file is a link, or the system does not let it be read
     /// and written.
-    pub fn resume(
+    pub(super) fn resume(
         path: impl Into<PathBuf>,
         names: Vec<String>,
         mark: Mark,
@@ -189,7 +189,7 @@ impl GsdFile {
     ///
     /// # Errors
     /// If the system does not let it be cut.
-    pub fn cut(&mut self) -> Result<(), FileError> {
+    pub(super) fn cut(&mut self) -> Result<(), FileError> {
         self.cut_here().map_err(FileError::at(&self.path, "cutting"))
     }
 
@@ -211,7 +211,7 @@ impl GsdFile {
     }
 
     /// The file.
-    pub fn path(&self) -> &Path {
+    pub(super) fn path(&self) -> &Path {
         &self.path
     }
 
@@ -301,7 +301,7 @@ impl GsdFile {
     ///
     /// # Errors
     /// If the system does not let it be written, or the file has been removed, replaced or changed meanwhile.
-    pub fn sync(&mut self) -> Result<Mark, FileError> {
+    pub(super) fn sync(&mut self) -> Result<Mark, FileError> {
         synced(&self.path, self.out.get_ref(), self.end)?;
         Ok(Mark { bytes: self.end, checksum: self.checksum.clone().finalize() })
     }

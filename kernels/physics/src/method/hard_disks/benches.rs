@@ -5,7 +5,7 @@ use crate::method::entry::bench_options;
 use crate::method::{Bench, Until};
 
 /// The benchmark.
-pub const BENCHES: &[Bench] = &[Bench {
+pub(crate) const BENCHES: &[Bench] = &[Bench {
     name: "hard-disks",
     doc: "ISO99's event-driven hard discs",
     preset: "hard-disks",

@@ -24,7 +24,7 @@ const INVOLVED: &str = "watch.involved";
 
 /// Looks at how time passes.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Watch {
+pub(super) struct Watch {
     events: u64,
     begun: f64,
     /// The time in which a typical disc flies through a radius, and the events until it is worked out once more: as many as there
@@ -42,9 +42,9 @@ pub struct Watch {
 
 /// What was found: events, and how long they took (time).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Endless {
+pub(crate) struct Endless {
     /// Whether discs have come to rest; otherwise they collapse.
-    pub rests: bool,
+    pub(crate) rests: bool,
     /// Events.
     pub events: u64,
     /// How long they took (time).
@@ -54,7 +54,7 @@ pub struct Endless {
 impl Watch {
     /// From the start on: `crossing` is the time in which a typical one of `discs` discs flies through a radius, `fall` that in which
     /// one falls through a radius, infinite where nothing falls.
-    pub fn new(crossing: f64, fall: f64, discs: usize) -> Watch {
+    pub(super) fn new(crossing: f64, fall: f64, discs: usize) -> Watch {
         let discs = discs as u64;
         Watch {
             events: 0,
@@ -72,7 +72,7 @@ impl Watch {
     ///
     /// # Errors
     /// A sentence, if it was not kept.
-    pub fn restore(&mut self, kept: &Snapshot) -> Result<(), String> {
+    pub(super) fn restore(&mut self, kept: &Snapshot) -> Result<(), String> {
         self.events = kept.count("watch.events")?;
         self.begun = kept.time("watch.begun")?;
         self.crossing = kept.time("watch.crossing")?;
@@ -83,7 +83,7 @@ impl Watch {
     }
 
     /// What a checkpoint keeps of it.
-    pub fn keep(&self, kept: &mut Snapshot) {
+    pub(super) fn keep(&self, kept: &mut Snapshot) {
         kept.add_count("watch.events", self.events);
         kept.add_sum("watch.begun", self.begun);
         kept.add_sum("watch.crossing", self.crossing);
@@ -95,7 +95,7 @@ impl Watch {
 
     /// An event; `crossing` says how long a typical disc flies through a radius now.
     #[inline]
-    pub fn see(&mut self, happened: &Occurred, crossing: impl FnOnce() -> f64) -> Option<Endless> {
+    pub(crate) fn see(&mut self, happened: &Occurred, crossing: impl FnOnce() -> f64) -> Option<Endless> {
         self.events += 1;
         if self.fall.is_finite() && self.involved.len() <= FEW {
             self.involve(happened.disc);

@@ -7,7 +7,7 @@ use stripmine_kernels::InstructionSet;
 use stripmine_kernels::flight::Disc;
 
 /// A way to find events, with the discs under way. Discs are known by their numbers, in the order of their ids.
-pub trait Engine: Send {
+pub(crate) trait Engine: Send {
     /// How many discs there are.
     fn count(&self) -> usize;
 
@@ -42,7 +42,7 @@ pub trait Engine: Send {
 
 /// What a disc meets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Partner {
+pub(crate) enum Partner {
     /// A disc, by its number.
     Disc(u32),
     /// A closed side across an axis.
@@ -51,7 +51,7 @@ pub enum Partner {
 
 /// What has happened.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Occurred {
+pub(crate) struct Occurred {
     /// When (time).
     pub time: f64,
     /// To which disc, the one with the smaller number of two.
@@ -59,9 +59,9 @@ pub struct Occurred {
     /// With what.
     pub with: Partner,
     /// Of two discs: how.
-    pub impact: Option<Impact>,
+    pub(crate) impact: Option<Impact>,
     /// What a wall has done to the disc (mass · length/time); 0 between discs.
-    pub thrust: f64,
+    pub(crate) thrust: f64,
     /// Energy given to the discs; below 0 where it is taken.
     pub work: f64,
     /// Action of the flights that end here (energy · time); 0 where the kinetic energy never changes.
@@ -72,7 +72,7 @@ pub struct Occurred {
 
 /// Why the discs stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum EngineError {
+pub(crate) enum EngineError {
     /// Two discs have their centres in one cell: they overlap.
     SharedCell([u32; 2]),
     /// A disc is so high that the look-up of cells above a floor takes too many entries.
@@ -88,7 +88,7 @@ pub enum EngineError {
 impl Occurred {
     /// Two discs collide, known by their numbers and in any order.
     #[inline]
-    pub fn collision(arena: &Arena, a: (u32, &mut Disc), b: (u32, &mut Disc), time: f64) -> Occurred {
+    pub(crate) fn collision(arena: &Arena, a: (u32, &mut Disc), b: (u32, &mut Disc), time: f64) -> Occurred {
         let ((a, one), (b, other)) = if a.0 < b.0 { (a, b) } else { (b, a) };
         let free = [time - one.time, time - other.time];
         let action =
@@ -109,7 +109,7 @@ impl Occurred {
 
     /// A disc meets a closed side across an axis.
     #[inline]
-    pub fn at_wall(arena: &Arena, (number, disc): (u32, &mut Disc), axis: u8, time: f64) -> Occurred {
+    pub(crate) fn at_wall(arena: &Arena, (number, disc): (u32, &mut Disc), axis: u8, time: f64) -> Occurred {
         let free = [time - disc.time, 0.0];
         let action = if arena.keeps_kinetic { 0.0 } else { arena.action(disc, time) };
         let Bounce { thrust, work } = arena.rebound(disc, number, axis.into(), time);

@@ -9,28 +9,28 @@ use stripmine_kernels::noise::{Purpose, normals};
 
 /// What collisions do.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Law {
+pub(crate) struct Law {
     /// Restitution of two discs: relative normal speed after over that before.
     pub restitution: f64,
     /// Restitution at walls.
-    pub wall_restitution: f64,
+    pub(crate) wall_restitution: f64,
     /// A collision sooner than this after another event of either disc is elastic (time): the TC model of Luding and McNamara.
     pub contact_duration: f64,
     /// The side that gives back discs of a temperature; none where all reflect.
-    pub thermal: Option<Thermal>,
+    pub(crate) thermal: Option<Thermal>,
     /// How the floor, the lower end of the second side, moves; none where it is at rest.
     pub floor: Option<Floor>,
 }
 
 impl Law {
     /// Nothing is lost, and no side does more than reflect.
-    pub const ELASTIC: Law =
+    pub(crate) const ELASTIC: Law =
         Law { restitution: 1.0, wall_restitution: 1.0, contact_duration: 0.0, thermal: None, floor: None };
 }
 
 /// A wall that takes discs up and gives them back with velocities of its own temperature.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Thermal {
+pub(crate) struct Thermal {
     /// The side: axis, and whether it is the upper one.
     pub side: (usize, bool),
     /// Its temperature kT (energy).
@@ -41,7 +41,7 @@ pub struct Thermal {
 
 /// What a collision was.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Impact {
+pub(crate) struct Impact {
     /// What the disc with the smaller number is given (mass · length/time).
     pub impulse: [f64; 2],
     /// Impulse times the distance of the centres (mass · length²/time): what it adds to the virial.
@@ -49,34 +49,34 @@ pub struct Impact {
     /// Kinetic energy that it takes (energy): (1 − e²) of that of the approach.
     pub loss: f64,
     /// Whether it was made elastic because another one was so short a time ago.
-    pub was_made_elastic: bool,
+    pub(crate) was_made_elastic: bool,
 }
 
 /// Effect of a side on a disc.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bounce {
+pub(crate) struct Bounce {
     /// Size of the momentum it gives (mass · length/time).
-    pub thrust: f64,
+    pub(crate) thrust: f64,
     /// Energy it gives; below 0 where it takes some.
     pub work: f64,
 }
 
 /// The box of the discs, and what happens in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Arena {
+pub(crate) struct Arena {
     /// The box.
     pub domain: Domain,
     /// What they fly through.
-    pub space: Space,
+    pub(crate) space: Space,
     /// What collisions do.
     pub law: Law,
     /// Whether the kinetic energy never changes: nothing falls, and no collision and no side gives or takes energy.
-    pub keeps_kinetic: bool,
+    pub(crate) keeps_kinetic: bool,
 }
 
 impl Arena {
     /// Of a box, with an acceleration of all discs (length/time²).
-    pub fn new(domain: Domain, gravity: [f64; 2], law: Law) -> Arena {
+    pub(crate) fn new(domain: Domain, gravity: [f64; 2], law: Law) -> Arena {
         let period = |axis: usize| match domain.sides[axis] {
             Side::Periodic(period) => Some(period),
             _ => None,
@@ -90,7 +90,7 @@ impl Arena {
     }
 
     /// The same, of discs that grow.
-    pub fn growing(self, growth: Growth) -> Arena {
+    pub(crate) fn growing(self, growth: Growth) -> Arena {
         Arena { space: self.space.growing(growth), ..self }
     }
 
@@ -104,13 +104,13 @@ impl Arena {
     }
 
     /// Where a disc is at a time, inside the box along periodic sides (length).
-    pub fn place(&self, disc: &Disc, time: f64) -> [f64; 2] {
+    pub(crate) fn place(&self, disc: &Disc, time: f64) -> [f64; 2] {
         self.domain.wrapped(disc.at(&self.space, time))
     }
 
     /// Action of a disc's flight from its last event to a time: ∫ m v² dt (energy · time), twice the time integral of its kinetic energy.
     #[inline]
-    pub fn action(&self, disc: &Disc, time: f64) -> f64 {
+    pub(crate) fn action(&self, disc: &Disc, time: f64) -> f64 {
         let flown = time - disc.time;
         let [u, v] = disc.velocity;
         let mean_square = match self.space.gravity() {
@@ -121,7 +121,7 @@ impl Arena {
     }
 
     /// Potential energy of a disc in gravity at a time (energy), from the box's lower corner.
-    pub fn potential(&self, disc: &Disc, time: f64) -> f64 {
+    pub(crate) fn potential(&self, disc: &Disc, time: f64) -> f64 {
         let Some(gravity) = self.space.gravity() else { return 0.0 };
         let place = self.place(disc, time);
         let [along_x, along_y] = [0, 1].map(|axis| gravity[axis] * (place[axis] - self.domain.origin[axis]));
@@ -129,7 +129,7 @@ impl Arena {
     }
 
     /// Axes along which the discs keep their momentum: the periodic ones, unless a thermal side draws velocities anew.
-    pub fn conserved_axes(&self) -> [bool; 2] {
+    pub(crate) fn conserved_axes(&self) -> [bool; 2] {
         match self.law.thermal {
             None => conserved_axes(&self.domain),
             Some(_) => [false; 2],
@@ -151,7 +151,7 @@ impl Arena {
 
     /// When a disc meets a closed side, and along which axis; infinite where there is none ahead.
     #[inline]
-    pub fn wall(&self, disc: &Disc) -> (f64, usize) {
+    pub(crate) fn wall(&self, disc: &Disc) -> (f64, usize) {
         let along = |axis: usize| match self.domain.sides[axis] {
             Side::Closed(side) => self.wall_along(disc, axis, Some(side)),
             // An open side has an end below.
@@ -183,7 +183,7 @@ impl Arena {
     }
 
     /// Two discs collide; `a` is the one with the smaller number.
-    pub fn collide(&self, a: &mut Disc, b: &mut Disc, time: f64) -> Impact {
+    pub(crate) fn collide(&self, a: &mut Disc, b: &mut Disc, time: f64) -> Impact {
         let Law { restitution, .. } = self.law;
         let was_made_elastic = restitution < 1.0 && (self.is_too_soon(a, time) || self.is_too_soon(b, time));
         let restitution = if was_made_elastic { 1.0 } else { restitution };
@@ -209,7 +209,7 @@ impl Arena {
     }
 
     /// A disc is thrown back by a closed side across an axis, or given back by a thermal one; `number` is the disc's.
-    pub fn rebound(&self, disc: &mut Disc, number: u32, axis: usize, time: f64) -> Bounce {
+    pub(crate) fn rebound(&self, disc: &mut Disc, number: u32, axis: usize, time: f64) -> Bounce {
         let too_soon = self.is_too_soon(disc, time);
         self.advance(disc, time);
         let before = disc.velocity;

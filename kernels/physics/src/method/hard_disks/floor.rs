@@ -4,7 +4,7 @@ use super::fall::fall;
 
 /// A floor whose height over its lowest place is A (1 − cos ω t), ω = 2π f: at the start it is at rest there.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Floor {
+pub(crate) struct Floor {
     /// A (length).
     pub amplitude: f64,
     /// f (1/time).
@@ -17,13 +17,13 @@ impl Floor {
     }
 
     /// Its height over its lowest place at a time (length).
-    pub fn height(&self, time: f64) -> f64 {
+    pub(crate) fn height(&self, time: f64) -> f64 {
         // The portable sine and cosine: the same bits on every platform.
         self.amplitude * (1.0 - libm::cos(self.rate() * time))
     }
 
     /// Its velocity at a time, upwards (length/time).
-    pub fn velocity(&self, time: f64) -> f64 {
+    pub(crate) fn velocity(&self, time: f64) -> f64 {
         self.amplitude * self.rate() * libm::sin(self.rate() * time)
     }
 
@@ -33,7 +33,7 @@ impl Floor {
     /// The gap between both has nowhere a smaller second derivative than −m, m = A ω² − g. So it stays open for at least as long as
     /// gap + slope h − m h²/2 does: steps of that length never pass the first meeting, and come to it as Newton's do. Where the disc
     /// is above the highest place of the floor it falls there first.
-    pub fn meeting(&self, above: f64, velocity: f64, acceleration: f64, time: f64) -> f64 {
+    pub(crate) fn meeting(&self, above: f64, velocity: f64, acceleration: f64, time: f64) -> f64 {
         let highest = 2.0 * self.amplitude;
         let least = (self.amplitude * self.rate().powi(2) - acceleration).max(f64::MIN_POSITIVE);
         let mut passed = 0.0;

@@ -9,7 +9,7 @@ const MOST: usize = 4096;
 const ROUNDED_UP: f64 = 1.0 + 1e-9;
 
 /// Whether it is certain that no disc will ever meet another one or a side. What is not certain may happen.
-pub fn never(arena: &Arena, discs: &[Disc]) -> bool {
+pub(super) fn never(arena: &Arena, discs: &[Disc]) -> bool {
     if discs.iter().any(|disc| arena.wall(disc).0 < f64::INFINITY) {
         return false;
     }

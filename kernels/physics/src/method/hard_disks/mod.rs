@@ -1,6 +1,6 @@
 //! ISO99: event-driven hard discs, exact between collisions.
 
-pub mod benches;
+pub(crate) mod benches;
 mod checked;
 mod collapse;
 mod collision_log;
@@ -36,13 +36,13 @@ pub use entry::ENTRY;
 use crate::method::FailureKind;
 
 /// An event that lies before one that has happened.
-pub const BACK_IN_TIME: FailureKind = FailureKind::new("back-in-time");
+pub(crate) const BACK_IN_TIME: FailureKind = FailureKind::new("back-in-time");
 
 /// Collisions without end in a finite time.
 pub const INELASTIC_COLLAPSE: FailureKind = FailureKind::new("inelastic-collapse");
 
 /// Discs that lie still, where contacts do not last.
-pub const RESTING: FailureKind = FailureKind::new("resting");
+pub(crate) const RESTING: FailureKind = FailureKind::new("resting");
 
 /// Nothing will ever happen.
-pub const IDLE: FailureKind = FailureKind::new("idle");
+pub(crate) const IDLE: FailureKind = FailureKind::new("idle");

@@ -40,4 +40,4 @@ pub(super) const OBSERVABLES: [Observable<Seen>; 13] = observables! {
 };
 
 /// Their names, units and meanings.
-pub const QUANTITIES: &[Quantity] = &quantities(&OBSERVABLES);
+pub(crate) const QUANTITIES: &[Quantity] = &quantities(&OBSERVABLES);

@@ -13,7 +13,7 @@ use stripmine_kernels::InstructionSet;
 
 /// What is simulated. Units are the scene's own; `units` names them.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Scene {
+pub(super) struct Scene {
     /// The unit system: a label.
     pub units: String,
     /// The box.
@@ -23,9 +23,9 @@ pub struct Scene {
     /// What collisions do.
     pub law: Law,
     /// Seed of the thermal side, where it is not that of the start.
-    pub noise_seed: Option<u64>,
+    pub(crate) noise_seed: Option<u64>,
     /// Whether there is no ceiling.
-    pub open_top: bool,
+    pub(crate) open_top: bool,
     /// How events are found.
     pub engine: EngineChoice,
     /// The instructions; the widest set that there is if none.
@@ -37,22 +37,22 @@ pub struct Scene {
     /// Which files are written.
     pub output: Output,
     /// Whether every collision is written.
-    pub collision_log: bool,
+    pub(crate) collision_log: bool,
 }
 
 /// How long a run takes, and how often something is written (time; 0 is never).
 #[derive(Clone, Debug, PartialEq)]
-pub struct Run {
+pub(super) struct Run {
     /// The end.
     pub until: Until,
     /// The mean that ends the run before.
     pub target: Option<Target>,
     /// Time between rows of observables.
-    pub thermo_every: f64,
+    pub(crate) thermo_every: f64,
     /// Time between snapshots.
-    pub snapshot_every: f64,
+    pub(crate) snapshot_every: f64,
     /// Time between checkpoints; by the wall clock if none.
-    pub checkpoint_every: Option<f64>,
+    pub(crate) checkpoint_every: Option<f64>,
 }
 
 impl Default for Scene {
@@ -102,7 +102,7 @@ impl Run {
     }
 
     /// As every method states it.
-    pub fn schedule(&self) -> Schedule {
+    pub(super) fn schedule(&self) -> Schedule {
         Schedule {
             until: self.until,
             rows: Every::time(self.thermo_every),
@@ -171,7 +171,7 @@ impl Scene {
     }
 
     /// The whole scene as TOML, defaults written out. Parsing it gives an equal scene.
-    pub fn to_toml(&self) -> String {
+    pub(super) fn to_toml(&self) -> String {
         let mut write = Write::default();
         self.clone().bind(&mut write);
         write.to_toml(&VOCABULARY.keys)

@@ -23,4 +23,4 @@ pub use entry::ENTRY;
 use crate::method::FailureKind;
 
 /// More particles were thrown out than the scene allows.
-pub const LOST: FailureKind = FailureKind::new("lost");
+pub(crate) const LOST: FailureKind = FailureKind::new("lost");

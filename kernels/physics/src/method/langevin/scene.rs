@@ -11,7 +11,7 @@ use stripmine_kernels::integrator::langevin::Bath;
 
 /// What is simulated. Units are the scene's own; `units` names them.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Scene {
+pub(super) struct Scene {
     /// The unit system: a label.
     pub units: String,
     /// The box.
@@ -25,7 +25,7 @@ pub struct Scene {
     /// Friction and temperature.
     pub bath: Bath,
     /// Seed of the noise, where it is not that of the start.
-    pub noise_seed: Option<u64>,
+    pub(crate) noise_seed: Option<u64>,
     /// How pairs are found.
     pub by: By,
     /// Sectors along each side, where the scene says.
@@ -45,7 +45,7 @@ pub struct Scene {
     /// How long, and how often something is written.
     pub run: Run,
     /// How many particles may be lost.
-    pub most_lost: u64,
+    pub(crate) most_lost: u64,
     /// Which files are written.
     pub output: Output,
     /// Whether each loss is written.
@@ -118,7 +118,7 @@ impl Scene {
     }
 
     /// The whole scene as TOML, defaults written out. Parsing it gives an equal scene.
-    pub fn to_toml(&self) -> String {
+    pub(super) fn to_toml(&self) -> String {
         let mut write = Write::default();
         self.clone().bind(&mut write);
         write.to_toml(&VOCABULARY.keys)

@@ -108,7 +108,7 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
     }
 
     /// The same with forces disc by disc: for searches that let discs share a cell.
-    pub fn with_forces_by_disc(model: &Model, particles: &Particles) -> Self {
+    pub(crate) fn with_forces_by_disc(model: &Model, particles: &Particles) -> Self {
         Arrays::lay_out(model, particles, true)
     }
 
@@ -263,7 +263,7 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
     }
 
     /// The arrays as the corrector sees them: what it takes for a disc's cell is where the disc's forces stand.
-    pub fn memory_of_corrector(&mut self) -> (Memory<'_>, &Lengths) {
+    pub(crate) fn memory_of_corrector(&mut self) -> (Memory<'_>, &Lengths) {
         let Arrays { lengths, state, lattice, constant, cell, force_at, .. } = self;
         let mut memory = bound(state, lattice, constant);
         memory.bind_read(Slot::new(Array::DiscCell), force_at.as_deref().unwrap_or(cell));
@@ -271,7 +271,7 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
     }
 
     /// Where the forces of a disc stand in their columns.
-    pub fn force_at(&self, disc: usize) -> Option<usize> {
+    pub(crate) fn force_at(&self, disc: usize) -> Option<usize> {
         let number = self.force_at.as_deref().unwrap_or(&self.cell)[disc];
         (number as usize).checked_sub(1)
     }
@@ -282,7 +282,7 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
     }
 
     /// A column in state precision, to be changed.
-    pub fn state_mut(&mut self, array: Array) -> Option<&mut [S]> {
+    pub(crate) fn state_mut(&mut self, array: Array) -> Option<&mut [S]> {
         self.state.iter_mut().find(|(name, _)| *name == array).map(|(_, column)| &mut **column)
     }
 
@@ -292,12 +292,12 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
     }
 
     /// A column in force precision, to be changed.
-    pub fn lattice_mut(&mut self, array: Array) -> Option<&mut [P]> {
+    pub(crate) fn lattice_mut(&mut self, array: Array) -> Option<&mut [P]> {
         self.lattice.iter_mut().find(|(name, _)| *name == array).map(|(_, column)| &mut **column)
     }
 
     /// A column in force precision that stays as it is.
-    pub fn constant(&self, array: Array) -> Option<&[P]> {
+    pub(crate) fn constant(&self, array: Array) -> Option<&[P]> {
         self.constant.iter().find(|(name, _)| *name == array).map(|(_, column)| &**column)
     }
 
@@ -307,7 +307,7 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
     }
 
     /// The cell of every disc, to be changed.
-    pub fn cell_mut(&mut self) -> &mut [u32] {
+    pub(crate) fn cell_mut(&mut self) -> &mut [u32] {
         &mut self.cell
     }
 

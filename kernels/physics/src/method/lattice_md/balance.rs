@@ -68,11 +68,11 @@ pub struct Balance {
     /// What contacts have turned into heat: summed up contact by contact, step by step.
     pub dissipated: f64,
     /// What gravity has put in.
-    pub gravity_work: f64,
+    pub(crate) gravity_work: f64,
     /// What moving walls have put in.
     pub wall_work: f64,
     /// The energy that there is, less what there should be: the error of the integration, of the steps and of rounding.
-    pub balance_error: f64,
+    pub(crate) balance_error: f64,
 }
 
 impl Work {

@@ -1,18 +1,8 @@
 //! What is measured of granular discs.
 
-use super::document::Document;
 use super::quantities::QUANTITIES;
 use crate::method::entry::bench_options;
 use crate::method::{Bench, BenchOption, Until};
-use crate::words::Words;
-
-impl Document {
-    /// What measures its way of finding contacts.
-    pub fn bench(&self) -> &'static Bench {
-        let by = self.scene.search.by.word();
-        BENCHES.iter().find(|bench| bench.name == by).unwrap_or(&BENCHES[0])
-    }
-}
 
 /// One for each way of finding contacts, by its name.
 pub(super) const BENCHES: &[Bench] = &[

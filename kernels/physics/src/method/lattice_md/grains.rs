@@ -111,7 +111,7 @@ impl Grains {
 
     /// The same as the state has them: the last correction may have taken a position beyond a periodic side, and no
     /// [crossing](Self::crossings) is counted before the next step.
-    pub fn unwrapped(&self) -> Particles {
+    pub(crate) fn unwrapped(&self) -> Particles {
         self.stepping.unwrapped()
     }
 

@@ -49,7 +49,7 @@ mod trials;
 mod walls;
 
 pub use crate::method::pairwise::search::OnConflict;
-pub use crate::method::pairwise::{Halo, Phase, Timings, halo_rows};
+pub use crate::method::pairwise::{Halo, Phase, Timings};
 pub use arrays::{Arrays, Lengths};
 pub use assemble::{assemble, assemble_following_energy, model};
 pub use balance::Balance;
@@ -59,7 +59,8 @@ pub use document::Document;
 pub use entry::ENTRY;
 pub use fast::FastSearch;
 pub use grains::Grains;
-pub use model::{Discs, GearValues, Model, OnLongStep, Scheme, Watch};
+pub(crate) use model::OnLongStep;
+pub use model::{Discs, GearValues, Model, Scheme, Watch};
 pub use neighbor_list::{ListOptions, Rebuild};
 pub use options::ProgramText;
 pub use programs::{Part, StepProgram, execute, ledger, programs, rival_ledger};

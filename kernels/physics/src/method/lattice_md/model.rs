@@ -89,9 +89,9 @@ pub struct Watch {
     /// Deeper ones stop the run.
     pub stop_penetration: f64,
     /// The smallest radius (length), of walls too.
-    pub smallest_radius: f64,
+    pub(crate) smallest_radius: f64,
     /// What becomes of a disc that moves so far in a step that a contact may pass unseen.
-    pub on_long_step: OnLongStep,
+    pub(crate) on_long_step: OnLongStep,
     /// Whether energy is followed: what contacts dissipate, what moving walls put in, periods that discs cross along
     /// gravity.
     pub energy: bool,
@@ -101,7 +101,7 @@ pub struct Watch {
 
 define_words! {
     /// What becomes of a disc that moves farther in a step than contacts can be seen.
-    pub enum OnLongStep {
+    pub(crate) enum OnLongStep {
         /// The run stops.
         Stop = "stop",
         /// It is counted.
@@ -126,19 +126,19 @@ impl Watch {
     }
 
     /// How far a disc may move in a step (length).
-    pub fn longest_step(&self) -> f64 {
+    pub(crate) fn longest_step(&self) -> f64 {
         longest_step(self.smallest_radius, self.max_penetration)
     }
 }
 
 /// Sides of what a lattice fills (length).
-pub fn filled(shape: &LatticeShape, frame: &Frame) -> [f64; 2] {
+pub(crate) fn filled(shape: &LatticeShape, frame: &Frame) -> [f64; 2] {
     let counts = [shape.columns(), shape.rows()];
     [0, 1].map(|axis| counts[axis] as f64 * frame.edge[axis])
 }
 
 /// Sides of a box (length) as steps see them: along periodic sides exactly what the lattice fills.
-pub fn sides_of(domain: &Domain, shape: &LatticeShape, frame: &Frame) -> [f64; 2] {
+pub(crate) fn sides_of(domain: &Domain, shape: &LatticeShape, frame: &Frame) -> [f64; 2] {
     let filled = filled(shape, frame);
     [0, 1].map(|axis| if domain.is_periodic(axis) { filled[axis] } else { domain.length(axis) })
 }
@@ -199,7 +199,7 @@ impl Model {
 
     /// Whether state positions of precision `S` are measured from the cells' centres: from the origin single precision would
     /// lose motion in large boxes.
-    pub fn is_anchored<S: Storage>(&self) -> bool {
+    pub(crate) fn is_anchored<S: Storage>(&self) -> bool {
         S::NAME == f32::NAME && self.coordinates == Coordinates::CellRelative
     }
 
@@ -234,13 +234,13 @@ impl Model {
     }
 
     /// Whether a disc may be outside the box and yet on the lattice.
-    pub fn reaches_beyond_box(&self) -> bool {
+    pub(crate) fn reaches_beyond_box(&self) -> bool {
         let [x, y] = filled(&self.shape, &self.frame);
         x > self.sides[0] * (1.0 + 1e-12) || y > self.sides[1] * (1.0 + 1e-12)
     }
 
     /// Whether contacts turn energy into heat, and that is followed.
-    pub fn counts_dissipation(&self) -> bool {
+    pub(crate) fn counts_dissipation(&self) -> bool {
         self.follows_energy() && self.acceleration() == Acceleration::OfVelocities
     }
 
@@ -254,14 +254,14 @@ impl Model {
     }
 
     /// Along which axes it is followed how many periods discs cross: gravity works along them, or displacements are asked for.
-    pub fn counts_crossings(&self) -> [bool; 2] {
+    pub(crate) fn counts_crossings(&self) -> [bool; 2] {
         let periodic = self.shape.periodic();
         let motion = self.watch.is_some_and(|watch| watch.motion);
         [0, 1].map(|axis| periodic[axis] && (motion || self.does_gravity_work_along(axis)))
     }
 
     /// Whether crossings are counted for displacements alone: a run that was begun without these has no counts.
-    pub fn counts_crossings_for_motion_alone(&self) -> bool {
+    pub(crate) fn counts_crossings_for_motion_alone(&self) -> bool {
         let periodic = self.shape.periodic();
         (0..2).all(|axis| !(periodic[axis] && self.does_gravity_work_along(axis)))
     }
@@ -271,7 +271,7 @@ impl Model {
     }
 
     /// Whether energy is followed.
-    pub fn follows_energy(&self) -> bool {
+    pub(crate) fn follows_energy(&self) -> bool {
         self.watch.is_some_and(|watch| watch.energy)
     }
 

@@ -21,7 +21,7 @@ define_words! {
 
 impl Inertia {
     /// I/(m R²).
-    pub fn factor(self) -> f64 {
+    pub(crate) fn factor(self) -> f64 {
         match self {
             Inertia::Disc => 0.5,
             Inertia::Sphere => 0.4,

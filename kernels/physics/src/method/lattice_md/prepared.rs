@@ -30,7 +30,7 @@ impl Document {
     ///
     /// # Errors
     /// As [`check`](Self::check).
-    pub fn prepare_at_any_step(self) -> Result<Prepared, SceneErrors> {
+    pub(crate) fn prepare_at_any_step(self) -> Result<Prepared, SceneErrors> {
         Ok(self.check_at_any_step()?.prepared())
     }
 }

@@ -70,7 +70,7 @@ impl Default for Law {
 
 impl Law {
     /// Whether there is a tangential force, and with it rotation.
-    pub fn has_friction(&self) -> bool {
+    pub(crate) fn has_friction(&self) -> bool {
         self.contact.friction > 0.0 && self.contact.shear_damping > 0.0
     }
 
@@ -94,11 +94,11 @@ pub struct Search {
     /// Lattice or a rival.
     pub by: By,
     /// Side of a lattice cell (length); none: the fewest cells.
-    pub cell_edge: Option<f64>,
+    pub(crate) cell_edge: Option<f64>,
     /// Width of the mask in cells, 5 or 7; none: the smallest that serves.
     pub mask: Option<u64>,
     /// What becomes of a disc whose lattice cell is another's.
-    pub on_conflict: OnConflict,
+    pub(crate) on_conflict: OnConflict,
     /// How lists are made.
     pub rebuild: Rebuild,
     /// Listed pairs are up to this far from contact (length); none: as the engine finds best.
@@ -154,12 +154,12 @@ impl Default for Machine {
 
 impl Machine {
     /// Whether the fast engine steps the discs.
-    pub fn is_fast(&self) -> bool {
+    pub(crate) fn is_fast(&self) -> bool {
         self.engine != EngineChoice::Programs
     }
 
     /// What executes a step, in a word: `fast`, or how programs are executed.
-    pub fn execution_name(&self) -> String {
+    pub(crate) fn execution_name(&self) -> String {
         if self.is_fast() { EngineChoice::Fast.word().to_owned() } else { execution_name(self.execution) }
     }
 
@@ -192,7 +192,7 @@ pub struct Integrator {
     /// Time step (time).
     pub dt: f64,
     /// What becomes of a disc that moves farther in a step than contacts can be seen.
-    pub on_long_step: OnLongStep,
+    pub(crate) on_long_step: OnLongStep,
 }
 
 impl Default for Integrator {

@@ -8,7 +8,7 @@ pub struct Totals {
     /// The deepest penetration of such a contact (a fraction of the sum of the radii).
     pub deepest: f64,
     /// The step of the deepest.
-    pub deepest_step: u64,
+    pub(crate) deepest_step: u64,
     /// Discs in a lattice cell that was another disc's, summed over the steps; more than none only where such conflicts
     /// are resolved.
     pub shared_cells: u64,
@@ -46,7 +46,7 @@ macro_rules! define_entries {
             ///
             /// # Errors
             /// The name of one that is missing, or is no count but a sum or the other way round.
-            pub fn from_entries(find: impl Fn(&str) -> Option<Total>) -> Result<Totals, &'static str> {
+            pub(crate) fn from_entries(find: impl Fn(&str) -> Option<Total>) -> Result<Totals, &'static str> {
                 Ok(Totals {
                     $($field: match find($name) {
                         Some(Total::$kind(value)) => value,

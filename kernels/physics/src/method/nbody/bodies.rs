@@ -3,7 +3,7 @@
 use stripmine_kernels::sweep::all_pairs::{padded, padding};
 
 /// A quantity along three axes, an entry for every body and padding.
-pub type Columns = [Vec<f64>; 3];
+pub(crate) type Columns = [Vec<f64>; 3];
 
 /// Columns of zeros for `entries` bodies.
 pub fn zeros(entries: usize) -> Columns {
@@ -11,7 +11,7 @@ pub fn zeros(entries: usize) -> Columns {
 }
 
 /// `to += factor · of`, for every entry.
-pub fn add(to: &mut Columns, factor: f64, of: &Columns) {
+pub(crate) fn add(to: &mut Columns, factor: f64, of: &Columns) {
     for (to, of) in to.iter_mut().zip(of) {
         to.iter_mut().zip(of).for_each(|(to, of)| *to += factor * of);
     }
@@ -64,12 +64,12 @@ impl Bodies {
     }
 
     /// The position of a body (length).
-    pub fn position_of(&self, body: usize) -> [f64; 3] {
+    pub(crate) fn position_of(&self, body: usize) -> [f64; 3] {
         [0, 1, 2].map(|axis| self.position[axis][body])
     }
 
     /// The velocity of a body (length/time).
-    pub fn velocity_of(&self, body: usize) -> [f64; 3] {
+    pub(crate) fn velocity_of(&self, body: usize) -> [f64; 3] {
         [0, 1, 2].map(|axis| self.velocity[axis][body])
     }
 

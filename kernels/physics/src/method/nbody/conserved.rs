@@ -4,7 +4,7 @@ use super::bodies::Bodies;
 
 /// Sums over all bodies that gravity leaves as they are.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Conserved {
+pub(crate) struct Conserved {
     /// Kinetic energy.
     pub kinetic: f64,
     /// Potential energy of the softened pairs.
@@ -12,14 +12,14 @@ pub struct Conserved {
     /// Momentum.
     pub momentum: [f64; 3],
     /// Angular momentum about the origin.
-    pub angular_momentum: [f64; 3],
+    pub(crate) angular_momentum: [f64; 3],
     /// The centre of mass (length).
     pub centre: [f64; 3],
 }
 
 impl Conserved {
     /// Of bodies whose pairs have this potential energy.
-    pub fn of(bodies: &Bodies, potential: f64) -> Self {
+    pub(super) fn of(bodies: &Bodies, potential: f64) -> Self {
         let mut sums = Conserved { potential, ..Conserved::default() };
         let mut mass = 0.0;
         for body in 0..bodies.len() {
@@ -39,13 +39,13 @@ impl Conserved {
     }
 
     /// Whether all sums are finite numbers.
-    pub fn is_finite(&self) -> bool {
+    pub(super) fn is_finite(&self) -> bool {
         let vectors = [self.momentum, self.angular_momentum, self.centre];
         vectors.iter().flatten().chain([&self.kinetic, &self.potential]).all(|sum| sum.is_finite())
     }
 
     /// Kinetic and potential energy.
-    pub fn energy(&self) -> f64 {
+    pub(super) fn energy(&self) -> f64 {
         self.kinetic + self.potential
     }
 }

@@ -35,7 +35,7 @@ pub struct Attraction {
 }
 
 /// The ways.
-pub enum Pairs {
+pub(crate) enum Pairs {
     /// As the sum is written.
     Reference,
     /// By sums of forces, in the scene's precision.

@@ -32,4 +32,4 @@ pub use entry::ENTRY;
 use crate::method::FailureKind;
 
 /// Bodies that were bound are not any more.
-pub const UNBOUND: FailureKind = FailureKind::new("unbound");
+pub(crate) const UNBOUND: FailureKind = FailureKind::new("unbound");

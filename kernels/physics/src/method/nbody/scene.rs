@@ -18,15 +18,15 @@ pub struct Start {
     /// Kinetic over potential energy of spheres.
     pub virial: f64,
     /// Velocity outwards over distance of spheres (1/time).
-    pub expansion: f64,
+    pub(crate) expansion: f64,
     /// Of the ellipse.
     pub eccentricity: f64,
     /// Of the two bodies on it.
-    pub mass_ratio: f64,
+    pub(crate) mass_ratio: f64,
     /// Of two clusters (length).
     pub separation: f64,
     /// Their speed (length/time).
-    pub approach: f64,
+    pub(crate) approach: f64,
     /// Mass, position and velocity of each that is listed.
     pub bodies: Vec<Vec<f64>>,
 }

@@ -9,7 +9,7 @@ use std::ops::Range;
 use stripmine_kernels::noise::{Purpose, Stream};
 
 /// A body: mass, position (length) and velocity (length/time).
-pub type Body = (f64, [f64; 3], [f64; 3]);
+pub(crate) type Body = (f64, [f64; 3], [f64; 3]);
 
 /// The bodies of a start, softened by ε (length), that attract each other with G.
 pub fn bodies(start: &Start, softening: f64, constant: f64) -> Vec<Body> {

@@ -6,7 +6,7 @@ use stripmine_kernels::backend;
 use stripmine_kernels::isa::ProgramError;
 
 /// Asked now and then whether to stop.
-pub type Stop<'a> = &'a (dyn Fn() -> bool + Sync);
+pub(crate) type Stop<'a> = &'a (dyn Fn() -> bool + Sync);
 
 /// Never stops.
 pub fn never() -> bool {
@@ -14,7 +14,7 @@ pub fn never() -> bool {
 }
 
 /// A way to sum up forces and, where velocities are given, their rates.
-pub trait Sums: Send + Sync {
+pub(crate) trait Sums: Send + Sync {
     /// Sums up for a gravitational constant of 1; gives the energy of the pairs if it is observed, else 0.
     ///
     /// # Errors

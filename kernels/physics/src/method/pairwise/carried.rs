@@ -5,15 +5,15 @@ use stripmine_kernels::integrator::{DERIVATIVES, Scheme};
 
 /// In which form an integrator carries the state from step to step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Carried {
+pub(crate) struct Carried {
     /// How many derivatives of a degree of freedom, the position among them.
     pub derivatives: usize,
     /// What each is multiplied by, as [`Scheme::scales`] has it.
-    pub scales: [f64; DERIVATIVES],
+    pub(crate) scales: [f64; DERIVATIVES],
 }
 
 /// Asks an integrator for its [`Carried`], for steps of `dt` (time).
-pub struct CarriedBy {
+pub(crate) struct CarriedBy {
     /// The step (time).
     pub dt: f64,
 }

@@ -24,7 +24,7 @@ impl Crossings {
     }
 
     /// Whether there is anything to follow.
-    pub fn is_followed(&self) -> bool {
+    pub(crate) fn is_followed(&self) -> bool {
         self.followed.contains(&true)
     }
 
@@ -36,13 +36,13 @@ impl Crossings {
     }
 
     /// Whether every periodic side of a box is followed, and there is one.
-    pub fn follows(&self, domain: &Domain) -> bool {
+    pub(crate) fn follows(&self, domain: &Domain) -> bool {
         let periodic = domain.periodic();
         periodic.contains(&true) && (0..2).all(|axis| self.followed[axis] || !periodic[axis])
     }
 
     /// How many periods a disc has moved along x and y, as of its image inside the box; `place` is as of the counts (length).
-    pub fn image(&self, domain: &Domain, number: usize, place: [f64; 2]) -> [i32; 2] {
+    pub(crate) fn image(&self, domain: &Domain, number: usize, place: [f64; 2]) -> [i32; 2] {
         let (crossed, beyond) = (self.counts[number], domain.periods(place));
         [0, 1].map(|axis| (crossed[axis] + beyond[axis]) as i32)
     }
@@ -66,7 +66,7 @@ impl Crossings {
     }
 
     /// Adds counts of 0 to columns that have none: of a run in which nothing was followed.
-    pub fn begin_in(columns: &mut Vec<(String, Column)>, discs: usize) {
+    pub(crate) fn begin_in(columns: &mut Vec<(String, Column)>, discs: usize) {
         for name in CROSSINGS {
             if !columns.iter().any(|(there, _)| there == name) {
                 columns.push((name.to_owned(), Column::F64(vec![0.0; discs])));

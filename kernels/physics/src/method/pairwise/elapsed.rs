@@ -13,7 +13,7 @@ pub struct Elapsed {
     /// Periods that discs have crossed.
     pub crossings: Crossings,
     /// Seconds spent in each phase.
-    pub timings: Timings,
+    pub(crate) timings: Timings,
 }
 
 impl Elapsed {

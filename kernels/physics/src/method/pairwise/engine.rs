@@ -29,7 +29,7 @@ const FEW: usize = 5000;
 const SUMS_FROM: usize = 24;
 
 /// Discs with state of precision `S`, forces of precision `P`, search `Q` and dynamics `D`.
-pub struct Engine<S, P, Q, D> {
+pub(crate) struct Engine<S, P, Q, D> {
     pub(super) dynamics: D,
     pub(super) system: System,
     pub(super) set: InstructionSet,
@@ -57,7 +57,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     ///
     /// # Errors
     /// [`Failure`] if a disc is outside the box, or in another's cell.
-    pub fn new(
+    pub(crate) fn new(
         dynamics: D,
         system: System,
         search: Q,

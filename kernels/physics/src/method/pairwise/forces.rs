@@ -7,7 +7,7 @@ use stripmine_kernels::law::Law;
 use stripmine_kernels::sweep::pair::Pair;
 
 /// Makes pair forces of a law, up to a distance (length).
-pub struct ToReach(pub f64);
+pub(crate) struct ToReach(pub f64);
 
 impl WithLaw for ToReach {
     type Output = PairForces;

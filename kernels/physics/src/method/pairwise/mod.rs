@@ -24,23 +24,24 @@ mod named;
 mod observing;
 mod ranked;
 mod saved;
-pub mod search;
+pub(crate) mod search;
 mod state;
 mod stepping;
 mod timings;
 mod unwrapped;
 
-pub use carried::{Carried, CarriedBy};
-pub use columns::real_column;
-pub use crossings::Crossings;
+pub(crate) use carried::{Carried, CarriedBy};
+pub(crate) use columns::real_column;
+pub(super) use crossings::Crossings;
 pub use elapsed::Elapsed;
-pub use engine::Engine;
-pub use forces::ToReach;
-pub use named::{Named, conflict, not_finite, outside};
-pub use ranked::{begin, halo_rows};
-pub use stepping::{Losing, Stepping, Work};
+pub(super) use engine::Engine;
+pub(crate) use forces::ToReach;
+pub(super) use named::outside;
+pub(crate) use named::{Named, conflict, not_finite};
+pub(super) use ranked::begin;
+pub(crate) use stepping::{Losing, Stepping, Work};
 pub use timings::{Halo, Phase, Timings};
-pub use unwrapped::{unwrapped, wrapped};
+pub(crate) use unwrapped::{unwrapped, wrapped};
 
 use crate::domain::Domain;
 use stripmine_kernels::integrator::{Inertia, Scheme};
@@ -49,7 +50,7 @@ use stripmine_kernels::noise::NoiseSource;
 
 /// What moves, and where.
 #[derive(Clone, Debug)]
-pub struct System {
+pub(crate) struct System {
     /// The box.
     pub domain: Domain,
     /// Time step (time).
@@ -69,9 +70,9 @@ pub struct System {
     /// Discs that move farther in a step (length) are listed.
     pub longest_step: f64,
     /// Whether discs may cross any number of periods in a step; else one that goes farther than a period is outside.
-    pub crosses_any: bool,
+    pub(crate) crosses_any: bool,
     /// Along which axes it is followed how many periods discs cross.
-    pub followed: [bool; 2],
+    pub(crate) followed: [bool; 2],
     /// The random numbers, for a scheme that draws some.
     pub noise: NoiseSource,
     /// When discs are put in the order of their cells.
@@ -80,7 +81,7 @@ pub struct System {
 
 /// When discs are put in the order of their cells. No sum depends on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sort {
+pub(crate) enum Sort {
     /// As soon as a quarter of them has changed cells.
     WhenNeeded,
     /// At every step, as the source of 2017 does.
@@ -88,7 +89,7 @@ pub enum Sort {
 }
 
 /// By what discs move.
-pub trait Dynamics: Send + Sync {
+pub(crate) trait Dynamics: Send + Sync {
     /// Does something with the pair law.
     fn with_law<W: WithLaw>(&self, work: W) -> W::Output;
 
@@ -103,15 +104,15 @@ pub trait Dynamics: Send + Sync {
 
 /// Prescribed motion, the same for all discs that no force moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Prescribed {
+pub(crate) struct Prescribed {
     /// From their places at the start (length).
-    pub displacement: [f64; 2],
+    pub(crate) displacement: [f64; 2],
     /// Velocity (length/time).
     pub velocity: [f64; 2],
 }
 
 /// Something done with a law, whichever of its compiled variants that is.
-pub trait WithLaw {
+pub(crate) trait WithLaw {
     /// What comes of it.
     type Output;
     /// Does it.
@@ -119,7 +120,7 @@ pub trait WithLaw {
 }
 
 /// Something done with an integrator, whichever that is.
-pub trait WithScheme {
+pub(crate) trait WithScheme {
     /// What comes of it.
     type Output;
     /// Does it.

@@ -7,7 +7,7 @@ use crate::particles::in_plane;
 use std::ops::Range;
 
 /// Discs that can be named, by their numbers in memory.
-pub trait Named {
+pub(crate) trait Named {
     /// How far the simulation has come.
     fn clock(&self) -> Clock;
 
@@ -53,7 +53,7 @@ pub trait Named {
 }
 
 /// The failure of discs that no cell takes: outside the box, or at no finite place.
-pub fn outside(at: Clock, count: u64, first: Culprit) -> Failure {
+pub(crate) fn outside(at: Clock, count: u64, first: Culprit) -> Failure {
     match first.position.iter().all(|along| along.is_finite()) {
         true => out_of_box(at, count, first),
         false => not_finite(at, count, first),
@@ -69,7 +69,7 @@ fn out_of_box(at: Clock, count: u64, first: Culprit) -> Failure {
 }
 
 /// The failure of discs that are nowhere, or that no finite force acts on.
-pub fn not_finite(at: Clock, count: u64, first: Culprit) -> Failure {
+pub(crate) fn not_finite(at: Clock, count: u64, first: Culprit) -> Failure {
     let what = format!("{count} discs have a position or force that is no finite number, first {first}");
     let remedy =
         "the time step is too large for the stiffness or the damping: halve dt, or use fewer Gear values";
@@ -77,7 +77,7 @@ pub fn not_finite(at: Clock, count: u64, first: Culprit) -> Failure {
 }
 
 /// The failure of two discs in one cell: the exclusive lattice would lose one.
-pub fn conflict(at: Clock, domain: Domain, [first, second]: [Culprit; 2]) -> Failure {
+pub(crate) fn conflict(at: Clock, domain: Domain, [first, second]: [Culprit; 2]) -> Failure {
     let [first_place, second_place] = [first, second].map(|disc| in_plane(disc.position));
     let [dx, dy] = domain.displacement(first_place, second_place);
     let distance = dx.hypot(dy);

@@ -12,7 +12,7 @@ use stripmine_kernels::{in_pieces, put_in_order, reordered};
 
 /// A disc with the cell it goes to, its place there, seen from the cell's centre (length), and the periods that it crosses.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Move {
+pub(crate) struct Move {
     pub disc: usize,
     pub cell: [usize; 2],
     pub place: [f64; 2],
@@ -21,7 +21,7 @@ pub struct Move {
 
 /// Which of the scene's discs there are: those that are moved here, grains that another rank moves, and discs that no force moves.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Members {
+pub(crate) struct Members {
     /// Their numbers in the scene, in that order.
     pub numbers: Vec<u32>,
     /// How many are moved here.
@@ -32,7 +32,7 @@ pub struct Members {
 
 impl Members {
     /// All of a scene's.
-    pub fn all(particles: &Particles) -> Members {
+    pub(crate) fn all(particles: &Particles) -> Members {
         let grains = particles.grain_count();
         Members { numbers: (0..particles.len() as u32).collect(), moving: grains, grains }
     }
@@ -41,7 +41,7 @@ impl Members {
 /// Columns with an entry a disc, grains first, and two discs behind them that never touch. They begin at lines of their own in large pages: a pass over a
 /// million discs takes a fifth less than over vectors, which all begin at a page's border.
 #[derive(Clone, Debug)]
-pub struct State<S> {
+pub(crate) struct State<S> {
     /// For each degree of freedom the derivatives that are carried from step to step, as the scheme scales them.
     pub(super) columns: Vec<Vec<AlignedColumn<S>>>,
     /// What velocities are multiplied by in the columns.
@@ -69,7 +69,7 @@ const SWEPT: [Range<usize>; 3] = [0..2, 0..2, 1..2];
 
 impl<S: Precision> State<S> {
     /// Of those of `particles` that are members, in the form in which the scheme carries them from step to step.
-    pub fn new(system: &System, carried: &Carried, particles: &Particles, members: Members) -> Self {
+    pub(crate) fn new(system: &System, carried: &Carried, particles: &Particles, members: Members) -> Self {
         let velocity_scale = carried.scales[1];
         let Members { numbers: discs, moving, grains } = members;
         // The thread that fills a piece is the first to touch its memory.
@@ -122,70 +122,70 @@ impl<S: Precision> State<S> {
     }
 
     /// How many discs there are here.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.numbers.len()
     }
 
     /// How many of them are moved here: the first ones.
-    pub fn moving(&self) -> usize {
+    pub(crate) fn moving(&self) -> usize {
         self.moving
     }
 
     /// How many of them are grains: those that are moved here, and those that another rank moves behind them.
-    pub fn grains(&self) -> usize {
+    pub(crate) fn grains(&self) -> usize {
         self.grains
     }
 
     /// Which of the scene's discs a disc is.
-    pub fn number(&self, disc: usize) -> usize {
+    pub(crate) fn number(&self, disc: usize) -> usize {
         self.numbers[disc] as usize
     }
 
     /// The carried derivatives of a disc, the others zero.
-    pub fn row(&self, freedom: usize, disc: usize) -> [S; DERIVATIVES] {
+    pub(crate) fn row(&self, freedom: usize, disc: usize) -> [S; DERIVATIVES] {
         let mut row = [S::default(); DERIVATIVES];
         row.iter_mut().zip(&self.columns[freedom]).for_each(|(q, column)| *q = column[disc]);
         row
     }
 
     /// The rate of change (of a position, of the angle) that a row has in the scene's units.
-    pub fn rate(&self, row: &[S; DERIVATIVES]) -> f64 {
+    pub(crate) fn rate(&self, row: &[S; DERIVATIVES]) -> f64 {
         row[1].to_f64() / self.velocity_scale
     }
 
     /// The first entry of a row (a position, the angle) and its rate of change, in the scene's units.
-    pub fn value_and_rate(&self, row: &[S; DERIVATIVES]) -> [f64; 2] {
+    pub(crate) fn value_and_rate(&self, row: &[S; DERIVATIVES]) -> [f64; 2] {
         [row[0].to_f64(), self.rate(row)]
     }
 
     /// The place of a disc, seen from the centre of its cell (length).
-    pub fn place(&self, disc: usize) -> [f64; 2] {
+    pub(crate) fn place(&self, disc: usize) -> [f64; 2] {
         [self.columns[0][0][disc].to_f64(), self.columns[1][0][disc].to_f64()]
     }
 
     /// The places of all discs and sentinels.
-    pub fn places(&self) -> [&[S]; 2] {
+    pub(crate) fn places(&self) -> [&[S]; 2] {
         [&self.columns[0][0], &self.columns[1][0]]
     }
 
     /// Places and velocities of the discs, as the columns have them, and their spins where discs turn: all that a sweep reads of them and that changes.
-    pub fn swept(&self) -> impl Iterator<Item = &[S]> {
+    pub(crate) fn swept(&self) -> impl Iterator<Item = &[S]> {
         self.columns.iter().zip(SWEPT).flat_map(|(columns, swept)| &columns[swept]).map(|column| &**column)
     }
 
     /// The same, to be changed.
-    pub fn swept_mut(&mut self) -> impl Iterator<Item = &mut [S]> {
+    pub(crate) fn swept_mut(&mut self) -> impl Iterator<Item = &mut [S]> {
         let columns = self.columns.iter_mut().zip(SWEPT);
         columns.flat_map(|(columns, swept)| &mut columns[swept]).map(|column| &mut **column)
     }
 
     /// Puts a disc at a place.
-    pub fn put(&mut self, disc: usize, place: [f64; 2]) {
+    pub(crate) fn put(&mut self, disc: usize, place: [f64; 2]) {
         (0..2).for_each(|axis| self.columns[axis][0][disc] = S::from_f64(place[axis]));
     }
 
     /// Gives all wall discs a velocity (length/time).
-    pub fn set_wall_velocity(&mut self, velocity: [f64; 2]) {
+    pub(crate) fn set_wall_velocity(&mut self, velocity: [f64; 2]) {
         let (discs, scale) = (self.numbers.len(), self.velocity_scale);
         (0..2).for_each(|axis| {
             self.columns[axis][1][self.grains..discs].fill(S::from_f64(velocity[axis] * scale))
@@ -193,32 +193,32 @@ impl<S: Precision> State<S> {
     }
 
     /// Radius of a disc (length).
-    pub fn radius(&self, disc: usize) -> f64 {
+    pub(crate) fn radius(&self, disc: usize) -> f64 {
         self.alike.unwrap_or_else(|| self.radius[disc].to_f64())
     }
 
     /// Inverse masses or moments of inertia, for a degree of freedom.
-    pub fn inverse(&self, freedom: usize) -> &[S] {
+    pub(crate) fn inverse(&self, freedom: usize) -> &[S] {
         &self.inverse[freedom / 2]
     }
 
     /// The id of a disc.
-    pub fn id(&self, disc: usize) -> u32 {
+    pub(crate) fn id(&self, disc: usize) -> u32 {
         self.ids[disc]
     }
 
     /// Which of the scene's discs each is.
-    pub fn numbers(&self) -> &[u32] {
+    pub(crate) fn numbers(&self) -> &[u32] {
         &self.numbers
     }
 
     /// What a pass moves.
-    pub fn for_advance(&mut self) -> Moved<'_, S> {
+    pub(crate) fn for_advance(&mut self) -> Moved<'_, S> {
         (&mut self.columns, [&self.inverse[0], &self.inverse[1]], &self.ids)
     }
 
     /// The discs as a sweep reads them.
-    pub fn discs(&self, system: &System) -> fast::Discs<'_, S> {
+    pub(crate) fn discs(&self, system: &System) -> fast::Discs<'_, S> {
         let omega = if system.freedoms == 3 { &*self.columns[2][1] } else { &[] };
         fast::Discs {
             place: self.places(),
@@ -231,7 +231,7 @@ impl<S: Precision> State<S> {
     }
 
     /// Disc `n` is from now on what disc `order[n]` was.
-    pub fn renumber(&mut self, order: &[u32]) {
+    pub(crate) fn renumber(&mut self, order: &[u32]) {
         let discs = order.len() as u32;
         let with_sentinels: Vec<u32> = order.iter().copied().chain(discs..discs + SENTINELS as u32).collect();
         let derivatives = self.columns.iter_mut().flatten();

@@ -13,10 +13,10 @@ use stripmine_kernels::ledger::{Ledger, Length};
 use stripmine_kernels::sweep::fast::Met;
 
 /// What gravity has done to a grain, by its number in the scene, that is at a position.
-pub type Work<'w> = dyn Fn(usize, &Particle, [f64; 2]) -> f64 + Sync + 'w;
+pub(crate) type Work<'w> = dyn Fn(usize, &Particle, [f64; 2]) -> f64 + Sync + 'w;
 
 /// Discs that are stepped.
-pub trait Stepping: Named + PerParticle + Send {
+pub(crate) trait Stepping: Named + PerParticle + Send {
     /// Predicts the next step, after the last one was corrected, and finds the cells of the discs. Gives the discs that moved farther
     /// than contacts can be seen, or whose speed is no number.
     ///
@@ -101,7 +101,7 @@ pub trait Stepping: Named + PerParticle + Send {
 }
 
 /// Discs of which some may be taken away.
-pub trait Losing: Stepping {
+pub(crate) trait Losing: Stepping {
     /// Velocities as the last predictor left them (length/time), in the scene's order; at the start those of the start.
     fn predicted_velocities(&self) -> Vec<[f64; 2]>;
 

@@ -67,7 +67,7 @@ impl Timings {
     }
 
     /// A message was sent to another rank, of some bytes.
-    pub fn sent(&mut self, bytes: u64) {
+    pub(crate) fn sent(&mut self, bytes: u64) {
         self.halo.messages += 1;
         self.halo.bytes += bytes;
     }

@@ -9,7 +9,7 @@ use stripmine_kernels::in_pieces;
 ///
 /// Positions are those of the state: the last correction may have taken one beyond a periodic side, where no crossing is
 /// counted yet.
-pub fn unwrapped(
+pub(crate) fn unwrapped(
     start: &Particles,
     walls: [f64; 2],
     discs: impl Iterator<Item = (usize, [[f64; 2]; 3])>,
@@ -31,7 +31,7 @@ pub fn unwrapped(
 }
 
 /// The same particles, with positions inside the box.
-pub fn wrapped(mut particles: Particles, domain: &Domain) -> Particles {
+pub(crate) fn wrapped(mut particles: Particles, domain: &Domain) -> Particles {
     in_pieces(particles.all_mut(), |_, piece| {
         piece.iter_mut().for_each(|particle| particle.position = domain.wrapped(particle.position));
     });

@@ -341,7 +341,7 @@ impl Occupancy {
 
     /// Whether so few cells are occupied that places are not kept.
     #[inline]
-    pub fn is_sparse(&self) -> bool {
+    pub(crate) fn is_sparse(&self) -> bool {
         self.sparse
     }
 

@@ -68,7 +68,7 @@ pub(super) struct Flow {
     /// Variance over mean of the grains in bins of [`FANO_BIN`] radii, at each sample.
     pub fano: Vec<f64>,
     /// Strongest Fourier amplitude at wavelengths from [`SHORTEST_WAVE`] radii on, at each sample.
-    pub strongest_mode: Vec<f64>,
+    pub(crate) strongest_mode: Vec<f64>,
     /// Mean velocity along the pipe at each sample (m/s).
     pub flow: Vec<f64>,
     /// Grains in bins of [`MAP_BIN`] radii, at each sample.

@@ -15,7 +15,7 @@ const FILLED: f64 = 0.6;
 
 /// The lists.
 #[derive(Clone, Debug)]
-pub struct Lists {
+pub(crate) struct Lists {
     domain: Domain,
     displacement_limit: f64,
     /// Where each disc was registered (length).
@@ -47,7 +47,7 @@ const AROUND: isize = 2;
 
 /// How far discs may go from where they were registered (length): such that lists hold about `most` discs, and that no disc sees
 /// another one across two sides. None in a box too small for any.
-pub fn displacement_limit(
+pub(crate) fn displacement_limit(
     domain: &Domain,
     radii: impl Iterator<Item = f64> + Clone,
     most: f64,
@@ -70,7 +70,7 @@ pub fn displacement_limit(
 impl Lists {
     /// Of no disc yet; with room for lists of about `most` discs, and for discs that are `largest` (length). Rows have at least
     /// `stride` entries, a multiple of [`ROW_UNIT`], one of which is their count.
-    pub fn new(
+    pub(super) fn new(
         domain: Domain,
         count: usize,
         displacement_limit: f64,
@@ -91,39 +91,39 @@ impl Lists {
     }
 
     /// How long a row is.
-    pub fn stride(&self) -> usize {
+    pub(super) fn stride(&self) -> usize {
         self.stride
     }
 
     /// How far a disc may go from where it was registered (length).
     #[inline(always)]
-    pub fn displacement_limit(&self) -> f64 {
+    pub(crate) fn displacement_limit(&self) -> f64 {
         self.displacement_limit
     }
 
     /// Where a disc was registered (length).
     #[inline(always)]
-    pub fn place(&self, disc: u32) -> [f64; 2] {
+    pub(super) fn place(&self, disc: u32) -> [f64; 2] {
         self.places[disc as usize]
     }
 
     /// The discs that a disc may meet.
     #[inline(always)]
-    pub fn of(&self, disc: u32) -> &[u32] {
+    pub(super) fn of(&self, disc: u32) -> &[u32] {
         let (row, count) = self.row(disc);
         &row[..count]
     }
 
     /// The row of a disc, as [`earliest`](stripmine_kernels::flight::earliest) takes it: whole, and how many discs are listed in it.
     #[inline(always)]
-    pub fn row(&self, disc: u32) -> (&[u32], usize) {
+    pub(super) fn row(&self, disc: u32) -> (&[u32], usize) {
         let row = &self.rows[disc as usize * self.stride..][..self.stride];
         (row, row[self.stride - 1] as usize)
     }
 
     /// Asks for the line of the list of a disc and that of its place.
     #[inline(always)]
-    pub fn prefetch(&self, disc: usize) {
+    pub(crate) fn prefetch(&self, disc: usize) {
         self.rows.prefetch(disc * self.stride);
         self.places.prefetch(disc);
     }
@@ -133,7 +133,7 @@ impl Lists {
     ///
     /// # Errors
     /// A disc whose list is full.
-    pub fn begin(&mut self, places: &[[f64; 2]], radius: impl Fn(u32) -> f64) -> Result<(), u32> {
+    pub(super) fn begin(&mut self, places: &[[f64; 2]], radius: impl Fn(u32) -> f64) -> Result<(), u32> {
         for (disc, &place) in places.iter().enumerate() {
             self.enter(disc as u32, place, &radius)?;
         }
@@ -144,7 +144,12 @@ impl Lists {
     ///
     /// # Errors
     /// A disc whose list is full.
-    pub fn renew(&mut self, disc: u32, place: [f64; 2], radius: impl Fn(u32) -> f64) -> Result<(), u32> {
+    pub(crate) fn renew(
+        &mut self,
+        disc: u32,
+        place: [f64; 2],
+        radius: impl Fn(u32) -> f64,
+    ) -> Result<(), u32> {
         self.cells.remove(disc, self.cells.of(&self.domain, self.places[disc as usize]));
         let begin = disc as usize * self.stride;
         for entry in 0..self.rows[begin + self.stride - 1] as usize {

@@ -64,7 +64,7 @@ impl Expected {
 }
 
 /// Discs under way.
-pub struct Fast {
+pub(crate) struct Fast {
     arena: Arena,
     set: InstructionSet,
     /// By places in memory.
@@ -98,7 +98,12 @@ impl Fast {
     ///
     /// # Errors
     /// [`EngineError`] if a disc has more others around it than can be listed.
-    pub fn new(arena: Arena, discs: Vec<Disc>, set: InstructionSet, time: f64) -> Result<Fast, EngineError> {
+    pub(super) fn new(
+        arena: Arena,
+        discs: Vec<Disc>,
+        set: InstructionSet,
+        time: f64,
+    ) -> Result<Fast, EngineError> {
         let count = discs.len();
         let largest = discs.iter().map(|disc| disc.radius).fold(0.0, f64::max);
         let displacement_limit =
@@ -371,7 +376,7 @@ impl Engine for Fast {
 }
 
 /// How far discs may go from where they were registered (length); none in a box too small for lists.
-pub fn displacement_limit(arena: &Arena, radii: impl Iterator<Item = f64> + Clone) -> Option<f64> {
+pub(crate) fn displacement_limit(arena: &Arena, radii: impl Iterator<Item = f64> + Clone) -> Option<f64> {
     lists::displacement_limit(&arena.domain, radii, LISTED)
 }
 

@@ -75,7 +75,7 @@ impl Entry {
 
 /// The queue.
 #[derive(Clone, Debug)]
-pub struct Queue {
+pub(crate) struct Queue {
     /// The times, and above them, level by level, what none of a group comes before, but those that are among the next ones.
     levels: Vec<AlignedColumn<Group>>,
     /// The next events in order, and how many of them are over. Some hold no more: the disc has another time.
@@ -94,7 +94,7 @@ pub struct Queue {
 
 impl Queue {
     /// Of `count` discs that have no event.
-    pub fn new(count: usize) -> Queue {
+    pub(super) fn new(count: usize) -> Queue {
         let groups =
             |members: usize, level| AlignedColumn::filled(level, Group::NONE, members.div_ceil(GROUP).max(1));
         let mut levels = vec![groups(count, 3)];
@@ -119,7 +119,7 @@ impl Queue {
 
     /// When each disc has its next event (time); infinite ones behind them.
     #[inline(always)]
-    pub fn times(&self) -> &[f64] {
+    pub(super) fn times(&self) -> &[f64] {
         let groups = &self.levels[0];
         // SAFETY: a group is its numbers, as large together and aligned more strictly.
         unsafe { std::slice::from_raw_parts(groups.as_ptr().cast::<f64>(), groups.len() * GROUP) }
@@ -127,7 +127,7 @@ impl Queue {
 
     /// The next event of a disc, by its place and its number, is at a time (at least 0).
     #[inline(always)]
-    pub fn set(&mut self, place: usize, number: u32, time: f64) {
+    pub(super) fn set(&mut self, place: usize, number: u32, time: f64) {
         self.levels[0][place / GROUP].0[place % GROUP] = time;
         if time < self.end {
             return self.insert(Entry { time, number, place: place as u32 });
@@ -152,7 +152,11 @@ impl Queue {
 
     /// The first event: its time and the place of the disc; of several at that time, that of the disc with the smallest number.
     #[inline(always)]
-    pub fn first<R: Registers<Lane = f64>>(&mut self, registers: R, numbers: &[u32]) -> Option<(f64, u32)> {
+    pub(super) fn first<R: Registers<Lane = f64>>(
+        &mut self,
+        registers: R,
+        numbers: &[u32],
+    ) -> Option<(f64, u32)> {
         loop {
             while let Some(&Entry { time, place, .. }) = self.next.get(self.over) {
                 if self.times()[place as usize] == time {
@@ -168,13 +172,13 @@ impl Queue {
 
     /// Asks for the line of the time of a disc.
     #[inline(always)]
-    pub fn prefetch(&self, place: usize) {
+    pub(crate) fn prefetch(&self, place: usize) {
         self.levels[0].prefetch(place / GROUP);
     }
 
     /// The place of the disc whose event comes a number of events after the next one, as far as that is known.
     #[inline(always)]
-    pub fn coming(&self, ahead: usize) -> Option<u32> {
+    pub(crate) fn coming(&self, ahead: usize) -> Option<u32> {
         self.next.get(self.over + ahead).map(|entry| entry.place)
     }
 

@@ -15,16 +15,16 @@ pub fn mask(name: &str) -> Option<Mask> {
 
 /// A mask that may be chosen.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Candidate {
+pub(crate) struct Candidate {
     /// Its name.
     pub name: &'static str,
     /// Predictions of pairs for each collision, about; infinite where it does not serve.
-    pub predictions: f64,
+    pub(crate) predictions: f64,
 }
 
 /// What a mask costs: predictions around the two discs of a collision, and a share of those of filling the grid again, which
 /// comes after a flight of the slack at twice the largest speed. ISO99 section 4.
-pub fn candidates(domain: &Domain, radii: [f64; 2], count: usize) -> Vec<Candidate> {
+pub(crate) fn candidates(domain: &Domain, radii: [f64; 2], count: usize) -> Vec<Candidate> {
     let sizes = Sizes::new(domain, radii[0]);
     let occupancy = count as f64 / (sizes.cells[0] * sizes.cells[1]) as f64;
     let names = MASKS.iter().filter(|name| mask(name).is_some());

@@ -6,11 +6,11 @@ use crate::domain::{Domain, Side};
 use stripmine_kernels::mask::Mask;
 
 /// Stands for no disc.
-pub const EMPTY: u32 = u32::MAX;
+pub(crate) const EMPTY: u32 = u32::MAX;
 
 /// Sizes of the grid of a box.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sizes {
+pub(crate) struct Sizes {
     /// Cells along x and y.
     pub cells: [usize; 2],
     /// Sides of a cell (length).
@@ -22,7 +22,7 @@ impl Sizes {
     ///
     /// # As printed
     /// The names of the number of cells and of their side are swapped in (2)–(5).
-    pub fn new(domain: &Domain, smallest_radius: f64) -> Sizes {
+    pub(crate) fn new(domain: &Domain, smallest_radius: f64) -> Sizes {
         let bound = std::f64::consts::SQRT_2 * smallest_radius;
         // Without an end the most there can be.
         let cells = [0, 1].map(|axis| ((domain.length(axis) / bound) as usize).saturating_add(1));
@@ -35,24 +35,24 @@ impl Sizes {
     }
 
     /// The column or row of a cell along an axis (length from the lower end).
-    pub fn along(&self, axis: usize, from_low: f64) -> usize {
+    pub(crate) fn along(&self, axis: usize, from_low: f64) -> usize {
         ((from_low / self.edge[axis]) as usize).min(self.cells[axis] - 1)
     }
 
     /// Within which distance of a disc a mask shows every other one (length): r_NL.
-    pub fn reach(&self, mask: &Mask) -> f64 {
+    pub(crate) fn reach(&self, mask: &Mask) -> f64 {
         f64::from(mask.reach_squared()).sqrt() * self.edge[0].min(self.edge[1])
     }
 
     /// Whether periodic sides have enough cells for a mask not to meet itself.
-    pub fn bears(&self, domain: &Domain, mask: &Mask) -> bool {
+    pub(crate) fn bears(&self, domain: &Domain, mask: &Mask) -> bool {
         let least = 2 * mask.half_width() as usize + 1;
         (0..2).all(|axis| !domain.is_periodic(axis) || self.cells[axis] >= least)
     }
 }
 
 /// Where the discs were when they were last put into cells.
-pub trait Cells: Send {
+pub(crate) trait Cells: Send {
     /// Puts every disc into the cell of its place inside the box (length).
     ///
     /// # Errors
@@ -71,7 +71,7 @@ pub trait Cells: Send {
 
 /// Why discs cannot be put into cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Misfit {
+pub(crate) enum Misfit {
     /// Two of them are in one.
     Shared([u32; 2]),
     /// One is so high that the look-up takes more entries than are allowed.
@@ -80,7 +80,7 @@ pub enum Misfit {
 
 /// Every cell of a box.
 #[derive(Clone, Debug)]
-pub struct Grid {
+pub(crate) struct Grid {
     domain: Domain,
     sizes: Sizes,
     /// Cells beyond each side, which show what lies across a periodic one.
@@ -98,7 +98,7 @@ pub struct Grid {
 
 impl Grid {
     /// Of a box, for a mask; no disc is in it.
-    pub fn new(domain: Domain, sizes: Sizes, mask: &Mask) -> Grid {
+    pub(crate) fn new(domain: Domain, sizes: Sizes, mask: &Mask) -> Grid {
         let margin = mask.half_width() as usize;
         let [width, height] = sizes.cells.map(|cells| cells + 2 * margin);
         let offset = |columns: i32, rows: i32| columns as isize + rows as isize * width as isize;

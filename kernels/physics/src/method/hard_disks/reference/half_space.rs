@@ -23,7 +23,7 @@ const MOST: usize = 1 << 28;
 
 /// The occupied cells.
 #[derive(Clone, Debug)]
-pub struct HalfSpace {
+pub(crate) struct HalfSpace {
     domain: Domain,
     sizes: Sizes,
     /// From a cell to those of its mask: columns and rows.
@@ -39,7 +39,7 @@ pub struct HalfSpace {
 
 impl HalfSpace {
     /// Above a floor, for a mask; no disc is in it.
-    pub fn new(domain: Domain, sizes: Sizes, mask: &Mask) -> HalfSpace {
+    pub(super) fn new(domain: Domain, sizes: Sizes, mask: &Mask) -> HalfSpace {
         let offsets = mask.offsets().iter().map(|it| [it.columns as isize, it.rows as isize]).collect();
         HalfSpace { domain, sizes, offsets, occupied: vec![], starts: vec![], cell: vec![], places: vec![] }
     }

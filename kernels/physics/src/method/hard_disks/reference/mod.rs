@@ -2,7 +2,7 @@
 //! leaving a cell. ISO99.
 
 pub mod choice;
-pub mod grid;
+pub(crate) mod grid;
 mod half_space;
 mod tournament;
 
@@ -40,7 +40,7 @@ impl Event {
 
 /// Discs under way.
 #[derive(Clone, Debug)]
-pub struct Reference<C> {
+pub(crate) struct Reference<C> {
     arena: Arena,
     discs: Vec<Disc>,
     grid: C,
@@ -78,7 +78,12 @@ const ROUNDED_UP: f64 = 1.0 + 1e-9;
 ///
 /// # Errors
 /// An error of the engine if discs cannot be put into cells.
-pub fn begin(arena: Arena, discs: Vec<Disc>, mask: &Mask, time: f64) -> Result<Box<dyn Engine>, EngineError> {
+pub(crate) fn begin(
+    arena: Arena,
+    discs: Vec<Disc>,
+    mask: &Mask,
+    time: f64,
+) -> Result<Box<dyn Engine>, EngineError> {
     let smallest = discs.iter().map(|disc| disc.radius).fold(f64::INFINITY, f64::min);
     let sizes = Sizes::new(&arena.domain, smallest);
     let reach = sizes.reach(mask);

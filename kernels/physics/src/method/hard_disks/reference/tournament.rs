@@ -2,7 +2,7 @@
 
 /// The tree. Leaves are discs, by number.
 #[derive(Clone, Debug)]
-pub struct Tournament {
+pub(crate) struct Tournament {
     /// The winner of each node; the root is 1, the children of k are 2k and 2k + 1. Leaves are not kept.
     winners: Vec<u32>,
     /// Leaves: a power of two.
@@ -14,7 +14,7 @@ const NONE: u32 = u32::MAX;
 
 impl Tournament {
     /// Of `count` discs, of which `time` gives the key; ties go to the smaller number.
-    pub fn new(count: usize, time: impl Fn(u32) -> f64) -> Tournament {
+    pub(super) fn new(count: usize, time: impl Fn(u32) -> f64) -> Tournament {
         let leaves = count.next_power_of_two().max(2);
         let mut tree = Tournament { winners: vec![NONE; leaves], leaves };
         for node in (1..leaves).rev() {
@@ -25,12 +25,12 @@ impl Tournament {
 
     /// The disc with the smallest key.
     #[inline]
-    pub fn first(&self) -> u32 {
+    pub(super) fn first(&self) -> u32 {
         self.winners[1]
     }
 
     /// Makes all keys known again.
-    pub fn renew(&mut self, count: usize, time: impl Fn(u32) -> f64) {
+    pub(crate) fn renew(&mut self, count: usize, time: impl Fn(u32) -> f64) {
         for node in (1..self.leaves).rev() {
             self.winners[node] = self.play(node, count, &time);
         }
@@ -38,7 +38,7 @@ impl Tournament {
 
     /// The key of a disc is another.
     #[inline]
-    pub fn update(&mut self, disc: u32, count: usize, time: impl Fn(u32) -> f64) {
+    pub(super) fn update(&mut self, disc: u32, count: usize, time: impl Fn(u32) -> f64) {
         let mut node = (self.leaves + disc as usize) / 2;
         while node > 0 {
             let winner = self.play(node, count, &time);

@@ -28,14 +28,14 @@ pub struct Geometry {
     /// Smallest and largest radius, walls included (length).
     pub radii: [f64; 2],
     /// What the side of a square cell may be at this mask (length): 2 R_max/h and d_min/√2.
-    pub edge_bounds: [f64; 2],
+    pub(crate) edge_bounds: [f64; 2],
     /// Discs for each cell.
     pub occupancy: f64,
     /// Listed pairs are up to this far from contact (length), where there are lists.
     pub skin: f64,
     /// Sides of the cells or sectors from whose centres positions are measured, where they are not measured from the origin
     /// (length).
-    pub widest_cell: [f64; 2],
+    pub(crate) widest_cell: [f64; 2],
 }
 
 /// Rounding must not forbid what the bounds just allow.

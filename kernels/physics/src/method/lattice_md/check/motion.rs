@@ -23,21 +23,21 @@ use stripmine_kernels::sweep::lattice::Coordinates;
 pub struct Estimates {
     /// Typical speed of approach (length/time): √2 of the root mean square speed, that of a fall through a diameter, or
     /// that of the walls.
-    pub approach_speed: f64,
+    pub(crate) approach_speed: f64,
     /// Duration of an undamped contact at that speed (time); none if nothing moves.
     pub contact_duration: Option<f64>,
     /// The same in time steps.
-    pub steps_per_contact: Option<f64>,
+    pub(crate) steps_per_contact: Option<f64>,
     /// Depth of such a contact, as a fraction of the sum of the radii.
-    pub impact_penetration: f64,
+    pub(crate) impact_penetration: f64,
     /// Depth to which a grain sinks into another by its own weight, as a fraction of its radius.
-    pub resting_depth: f64,
+    pub(crate) resting_depth: f64,
     /// γ_N dt: what the damping of a single contact asks of the integrator.
     pub damping: f64,
     /// 3 γ_N dt: what the damping of a dense network of contacts asks.
-    pub network_damping: f64,
+    pub(crate) network_damping: f64,
     /// What the integrator bears.
-    pub damping_limit: f64,
+    pub(crate) damping_limit: f64,
 }
 
 /// Largest γ dt for which a scheme is stable for pure drag: 0.545, 0.300 and 0.163 with Gear's 4, 5 and 6 values. Beyond 1 a step

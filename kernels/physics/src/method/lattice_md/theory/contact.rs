@@ -4,28 +4,28 @@ use stripmine_kernels::law::granular::Contact;
 
 /// A contact of two discs that approach each other head on.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HeadOn {
+pub(crate) struct HeadOn {
     /// The contact law.
     pub law: Contact,
     /// Speed of approach (length/time).
     pub speed: f64,
     /// Effective mass m₁ m₂/(m₁ + m₂) (mass).
-    pub effective_mass: f64,
+    pub(crate) effective_mass: f64,
 }
 
 impl HeadOn {
     /// Largest overlap (length).
-    pub fn depth(&self) -> f64 {
+    pub(crate) fn depth(&self) -> f64 {
         self.law.impact_depth(self.effective_mass, self.speed)
     }
 
     /// How long it lasts (time); infinite at rest.
-    pub fn duration(&self) -> f64 {
+    pub(crate) fn duration(&self) -> f64 {
         self.law.impact_duration(self.effective_mass, self.speed)
     }
 
     /// Square of the angular frequency of a spring that is as stiff as the contact where it is deepest (1/time²).
-    pub fn stiffest(&self) -> f64 {
+    pub(crate) fn stiffest(&self) -> f64 {
         self.law.stiffness_at(self.depth()) / self.effective_mass
     }
 }

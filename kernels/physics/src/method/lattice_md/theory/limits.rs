@@ -16,7 +16,7 @@ const DENSE: f64 = 0.5;
 const UNSTABLE_ALONE: f64 = 1.732_050_807_568_877_2;
 
 /// Every limit of a scene's step.
-pub fn step_limits(checked: &Checked) -> Vec<StepLimit> {
+pub(crate) fn step_limits(checked: &Checked) -> Vec<StepLimit> {
     let all = [
         one_contact(checked),
         packing(checked),
@@ -29,7 +29,7 @@ pub fn step_limits(checked: &Checked) -> Vec<StepLimit> {
 }
 
 /// A head-on contact of the lightest grains at the typical speed of approach times a factor.
-pub fn contact(checked: &Checked, faster: f64) -> HeadOn {
+pub(crate) fn contact(checked: &Checked, faster: f64) -> HeadOn {
     let masses = checked.particles.grains().iter().map(|disc| disc.mass);
     HeadOn {
         law: checked.scene.law.contact,

@@ -1,6 +1,6 @@
 //! What theory says of the step: growth of errors by the matrix of a step, the duration and depth of a contact.
 
-pub mod contact;
-pub mod limits;
-pub mod step_matrix;
-pub mod trial_contact;
+pub(crate) mod contact;
+pub(crate) mod limits;
+pub(crate) mod step_matrix;
+pub(crate) mod trial_contact;

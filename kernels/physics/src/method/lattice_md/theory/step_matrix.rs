@@ -19,7 +19,7 @@ const ROUNDING: f64 = 1e-9;
 const BISECTIONS: u32 = 50;
 
 /// The largest magnitude of an eigenvalue of the matrix of one step of x″ = −ω² x − γ x′; `spring` is (ω dt)², `damper` γ dt.
-pub fn spectral_radius(scheme: Scheme, spring: f64, damper: f64) -> f64 {
+pub(crate) fn spectral_radius(scheme: Scheme, spring: f64, damper: f64) -> f64 {
     let kind = if damper == 0.0 { Acceleration::OfPositions } else { Acceleration::OfVelocities };
     match scheme {
         Scheme::Gear(GearValues::Four) => radius_of(Gear::<4>::new(kind), scheme.values(), spring, damper),
@@ -69,7 +69,7 @@ fn squared(matrix: &Matrix) -> Matrix {
 /// The largest step (time) up to which errors do not grow on a spring of frequency² `spring` (1/time²) and a damper of rate
 /// `damper` (1/time): by more than a tenth within half a period of the spring, or at all where there is none. None where there is
 /// neither spring nor damper.
-pub fn largest_step(scheme: Scheme, spring: f64, damper: f64) -> Option<f64> {
+pub(crate) fn largest_step(scheme: Scheme, spring: f64, damper: f64) -> Option<f64> {
     let frequency = spring.sqrt().max(damper);
     if frequency.is_nan() || frequency <= 0.0 || frequency.is_infinite() {
         return None;

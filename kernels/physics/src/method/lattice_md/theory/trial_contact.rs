@@ -18,7 +18,7 @@ const ENDLESS: f64 = 20.0;
 
 /// By how much a contact is followed wrongly.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
-pub struct ContactError {
+pub(crate) struct ContactError {
     /// Error of the energy after the contact, over the energy before: root of the mean square over the phases of the step.
     pub energy: f64,
     /// The power of the step with which it falls, from half the step.
@@ -30,7 +30,7 @@ pub struct ContactError {
 }
 
 /// Tries a contact; none where nothing moves, or discs do not part again.
-pub fn contact_error(contact: HeadOn, scheme: Scheme, dt: f64) -> Option<ContactError> {
+pub(crate) fn contact_error(contact: HeadOn, scheme: Scheme, dt: f64) -> Option<ContactError> {
     let duration = contact.duration();
     if !(duration.is_finite() && duration > 0.0) {
         return None;

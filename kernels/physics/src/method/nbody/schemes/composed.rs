@@ -6,7 +6,7 @@ use stripmine_kernels::isa::ProgramError;
 
 /// Leapfrogs (kick, drift, kick) one after the other, each over its part of the step.
 #[derive(Clone, Debug)]
-pub struct Composed {
+pub(crate) struct Composed {
     order: u32,
     /// Parts of the step; their sum is 1.
     parts: Vec<f64>,
@@ -24,22 +24,22 @@ impl Composed {
     }
 
     /// The leapfrog itself, second order.
-    pub fn leapfrog() -> Self {
+    pub(crate) fn leapfrog() -> Self {
         Composed::new(2, &[])
     }
 
     /// Fourth order.
-    pub fn yoshida_4() -> Self {
+    pub(crate) fn yoshida_4() -> Self {
         Composed::new(4, &[1.0 / (2.0 - libm::cbrt(2.0))])
     }
 
     /// Sixth order, Yoshida's solution A.
-    pub fn yoshida_6() -> Self {
+    pub(crate) fn yoshida_6() -> Self {
         Composed::new(6, &[-1.177_679_984_178_87, 0.235_573_213_359_357, 0.784_513_610_477_56])
     }
 
     /// Eighth order, Yoshida's solution D.
-    pub fn yoshida_8() -> Self {
+    pub(crate) fn yoshida_8() -> Self {
         let outwards = [
             0.102_799_849_391_985,
             -1.960_610_232_975_49,

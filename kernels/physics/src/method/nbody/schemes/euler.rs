@@ -10,14 +10,14 @@ use stripmine_kernels::isa::ProgramError;
 /// The source calls the ½ a dt² missing and the scheme a gain of energy; it is neither. Damping below 1 acts at every step, as a
 /// friction −ln(damping)/dt: the smaller dt, the sooner an orbit is lost.
 #[derive(Clone, Debug)]
-pub struct DampedEuler {
+pub(crate) struct DampedEuler {
     damping: f64,
     acceleration: Columns,
 }
 
 impl DampedEuler {
     /// With what velocities are multiplied by at every step.
-    pub fn new(damping: f64) -> Self {
+    pub(crate) fn new(damping: f64) -> Self {
         DampedEuler { damping, acceleration: Columns::default() }
     }
 }
@@ -46,14 +46,14 @@ impl Scheme for DampedEuler {
 
 /// The explicit Euler scheme: r ← r + v dt + share · a dt², v ← v + a dt, both by what was before the step. It gains energy.
 #[derive(Clone, Debug)]
-pub struct Euler {
+pub(crate) struct Euler {
     share: f64,
     acceleration: Columns,
 }
 
 impl Euler {
     /// With a share of a dt² in the positions: 0, or ½.
-    pub fn new(share: f64) -> Self {
+    pub(crate) fn new(share: f64) -> Self {
         Euler { share, acceleration: Columns::default() }
     }
 }

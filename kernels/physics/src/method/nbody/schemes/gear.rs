@@ -12,7 +12,7 @@ const CORRECTOR: [f64; VALUES] = [3.0 / 20.0, 251.0 / 360.0, 1.0, 11.0 / 18.0, 1
 
 /// Started exactly: with zeros in place of the higher derivatives it would be of second order only.
 #[derive(Clone, Debug, Default)]
-pub struct Gear {
+pub(crate) struct Gear {
     /// q_2 to q_5; q_0 and q_1 are position and velocity · dt.
     higher: Vec<Columns>,
     acceleration: Columns,

@@ -6,7 +6,7 @@ use stripmine_kernels::isa::ProgramError;
 
 /// One evaluation of acceleration and jerk a step, at the predicted positions.
 #[derive(Clone, Debug, Default)]
-pub struct Hermite {
+pub(crate) struct Hermite {
     /// Acceleration and jerk that the step begins with.
     begin: [Columns; 2],
     /// The same at its predicted end.

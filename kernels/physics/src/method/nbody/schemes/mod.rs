@@ -10,11 +10,11 @@ use super::bodies::{Bodies, Columns};
 use crate::words::define_words;
 use stripmine_kernels::isa::ProgramError;
 
-pub use composed::Composed;
-pub use euler::{DampedEuler, Euler};
-pub use gear::Gear;
-pub use hermite::Hermite;
-pub use runge_kutta::RungeKutta;
+pub(crate) use composed::Composed;
+pub(crate) use euler::{DampedEuler, Euler};
+pub(crate) use gear::Gear;
+pub(crate) use hermite::Hermite;
+pub(crate) use runge_kutta::RungeKutta;
 
 /// What bodies do to each other, as far as a scheme asks.
 pub trait Field {

@@ -6,7 +6,7 @@ use stripmine_kernels::isa::ProgramError;
 
 /// Four evaluations a step; nothing is carried.
 #[derive(Clone, Debug, Default)]
-pub struct RungeKutta {
+pub(crate) struct RungeKutta {
     /// Accelerations of the four stages.
     stages: [Columns; 4],
     at: Columns,

@@ -28,13 +28,12 @@ use first::{Ranked, Threads};
 use std::sync::Arc;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
-use stripmine_kernels::sweep::fast::Rows;
 
 /// Discs that are stepped by as many ranks as [`ranks::crew`] says: by an [`Engine`] alone, or by several.
 ///
 /// # Errors
 /// As [`Engine::new`], or if the scene has fewer bands than there are ranks.
-pub fn begin<S, P, Q, D>(
+pub(crate) fn begin<S, P, Q, D>(
     (dynamics, system, set): (D, System, InstructionSet),
     search: Q,
     particles: Particles,
@@ -65,11 +64,4 @@ where
         Crew::One | Crew::Threads(_) => Box::new(scene.on_threads(crew.count(), particles)?),
     };
     Ok(stepping)
-}
-
-/// How many rows on either side of a rank's own matter to it, and in how many of them it meets the pairs again.
-pub fn halo_rows(rows: Rows) -> [usize; 2] {
-    let margin = layout::margin(rows);
-    // Below the own rows pairs are met that add to discs in the margin; above it those of the margin.
-    [layout::reach(rows), rows.ahead + 2 * margin]
 }

@@ -22,7 +22,7 @@ define_words! {
 }
 
 /// Discs in the cells of a lattice.
-pub struct LatticeCells {
+pub(crate) struct LatticeCells {
     occupancy: Occupancy,
     on_conflict: OnConflict,
 }
@@ -99,7 +99,7 @@ impl<S: Precision> Cells<S> for LatticeCells {
 }
 
 /// Pairs of discs on a lattice.
-pub struct LatticeSearch<P> {
+pub(crate) struct LatticeSearch<P> {
     cells: LatticeCells,
     codes: Codes<P>,
     sweep: Sweep<Candidates>,
@@ -110,7 +110,7 @@ pub struct LatticeSearch<P> {
 
 impl<P: Precision> LatticeSearch<P> {
     /// An empty lattice for as many discs as there are radii (length).
-    pub fn new<S: Precision>(
+    pub(crate) fn new<S: Precision>(
         shape: LatticeShape,
         frame: Frame,
         on_conflict: OnConflict,

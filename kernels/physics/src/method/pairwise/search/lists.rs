@@ -12,7 +12,7 @@ use stripmine_kernels::sweep::fast::{
 };
 
 /// The sectors in which discs were when the lists were made, and the lists.
-pub struct ListSearch<S, P> {
+pub(crate) struct ListSearch<S, P> {
     sectors: Sectors,
     sweep: Sweep<Touches<P>>,
     share: Option<Share>,
@@ -23,7 +23,7 @@ pub struct ListSearch<S, P> {
 const MADE_AT: usize = 28;
 
 /// Lists, and what they were made from.
-pub struct Listed<S> {
+pub(crate) struct Listed<S> {
     list: Option<VerletList>,
     skin: f64,
     /// Places when the lists were made.
@@ -34,7 +34,7 @@ pub struct Listed<S> {
 impl<S: Precision, P: Precision> ListSearch<S, P> {
     /// No lists yet, for `discs` discs whose pairs act up to a distance `reach` (length); a listed pair may be farther
     /// apart by `skin` (length). Sectors are wide enough for both.
-    pub fn new(grid: Grid, discs: usize, reach: f64, skin: f64) -> Self {
+    pub(crate) fn new(grid: Grid, discs: usize, reach: f64, skin: f64) -> Self {
         let sectors = Sectors::new(grid, discs, reach);
         let sweep = Sweep::new(rows::<S, P, _>(&sectors));
         let listed = Listed { list: None, skin, made_at: Default::default(), made: 0 };
@@ -123,32 +123,32 @@ impl<S: Precision, P: Precision> Search<S, P> for ListSearch<S, P> {
 
 impl<S: Precision> Listed<S> {
     /// Pairs listed.
-    pub fn entries(&self) -> usize {
+    pub(crate) fn entries(&self) -> usize {
         self.list.as_ref().map_or(0, VerletList::entries)
     }
 
     /// Pairs listed in some rows of sectors.
-    pub fn entries_of(&self, rows: std::ops::Range<usize>) -> usize {
+    pub(crate) fn entries_of(&self, rows: std::ops::Range<usize>) -> usize {
         self.list.as_ref().map_or(0, |list| list.entries_of(rows))
     }
 
     /// How often lists were made.
-    pub fn made(&self) -> u64 {
+    pub(crate) fn made(&self) -> u64 {
         self.made
     }
 
     /// How much farther than contact a listed pair may be (length).
-    pub fn skin(&self) -> f64 {
+    pub(crate) fn skin(&self) -> f64 {
         self.skin
     }
 
     /// Where the discs were when the lists were made.
-    pub fn made_at(&self, axis: usize) -> &[S] {
+    pub(crate) fn made_at(&self, axis: usize) -> &[S] {
         &self.made_at[axis]
     }
 
     /// Whether a disc at a place is as far from there as it may be.
-    pub fn has_strayed(&self, disc: usize, place: [f64; 2]) -> bool {
+    pub(crate) fn has_strayed(&self, disc: usize, place: [f64; 2]) -> bool {
         let [dx, dy] = [0, 1].map(|axis| place[axis] - self.made_at[axis][disc].to_f64());
         dx * dx + dy * dy > 0.25 * self.skin * self.skin
     }

@@ -4,10 +4,10 @@ mod lattice;
 mod lists;
 mod sectors;
 
-pub use lattice::LatticeSearch;
+pub(crate) use lattice::LatticeSearch;
 pub use lattice::OnConflict;
-pub use lists::{ListSearch, Listed};
-pub use sectors::SectorSearch;
+pub(crate) use lists::{ListSearch, Listed};
+pub(crate) use sectors::SectorSearch;
 
 use super::state::{Move, State};
 use stripmine_kernels::InstructionSet;
@@ -20,7 +20,7 @@ use stripmine_kernels::sweep::fast::{
 };
 
 /// Cells, and which discs are in them. A disc's place is seen from the centre of its cell.
-pub trait Cells<S: Precision>: Send + Sync {
+pub(crate) trait Cells<S: Precision>: Send + Sync {
     /// Where the cells lie, how many there are, and which sides are periodic.
     fn grid(&self) -> Grid;
 
@@ -67,7 +67,7 @@ pub trait Cells<S: Precision>: Send + Sync {
 /// Pairs, found with the help of cells.
 ///
 /// The engine is compiled for each search: what a search does not need costs nothing.
-pub trait Search<S: Precision, P: Precision>: Send + Sync {
+pub(crate) trait Search<S: Precision, P: Precision>: Send + Sync {
     /// The kind of cells.
     type Cells: Cells<S>;
 

@@ -43,7 +43,7 @@ impl<S: Precision> Cells<S> for Sectors {
 }
 
 /// Pairs of discs in sectors.
-pub struct SectorSearch<P> {
+pub(crate) struct SectorSearch<P> {
     sectors: Sectors,
     sweep: Sweep<Touches<P>>,
     share: Option<Share>,
@@ -51,7 +51,7 @@ pub struct SectorSearch<P> {
 
 impl<P: Precision> SectorSearch<P> {
     /// Empty sectors for `discs` discs whose pairs act up to a distance `reach` (length).
-    pub fn new<S: Precision>(grid: Grid, discs: usize, reach: f64) -> Self {
+    pub(crate) fn new<S: Precision>(grid: Grid, discs: usize, reach: f64) -> Self {
         let sectors = Sectors::new(grid, discs, reach);
         let sweep = Sweep::new(rows::<S, P, _>(&sectors));
         SectorSearch { sectors, sweep, share: None }
