@@ -214,7 +214,7 @@ impl Failure {
         }
     }
 
-    /// The failure in words, as [`tell`] says it behind "error:".
+    /// The failure in words, as `tell` says it behind "error:".
     pub fn words(&self) -> String {
         let text = match self {
             Failure::Arguments(mistake) => mistake.render().to_string(),

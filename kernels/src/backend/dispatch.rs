@@ -93,11 +93,11 @@ pub(crate) fn dispatch<L: Precision, T: Task<L>>(set: InstructionSet, task: T) -
     Ok(())
 }
 
-/// As [`dispatch`], for work that is long to compile and of which a body on the `wide` registers is not worth that where the target has
+/// As `dispatch`, for work that is long to compile and of which a body on the `wide` registers is not worth that where the target has
 /// others: `wide` is then one lane at a time, to the same bits.
 ///
 /// # Errors
-/// As of [`dispatch`].
+/// As of `dispatch`.
 #[inline]
 pub fn dispatch_native<L: Precision, T: Task<L>>(set: InstructionSet, task: T) -> Result<(), ProgramError> {
     match set {

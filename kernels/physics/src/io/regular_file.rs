@@ -33,7 +33,7 @@ pub(crate) fn open(path: &Path) -> io::Result<File> {
 /// The bytes of an ordinary file of at most `most` bytes.
 ///
 /// # Errors
-/// As [`open`], and where the file is longer.
+/// As `open`, and where the file is longer.
 pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     open(path)?.take(most + 1).read_to_end(&mut bytes)?;

@@ -328,7 +328,7 @@ pub trait Startable: Send + Sync {
         false
     }
 
-    /// Whether a run counts the periods that each disc crosses ([`images`](crate::particles::PerParticle::images)) where the scene asks for displacements.
+    /// Reports whether a run counts the periods that each disc crosses (`Simulation::images`) where the scene asks for displacements.
     fn follows_crossings(&self) -> bool {
         false
     }

@@ -50,7 +50,7 @@ pub struct Observation {
     pub momentum_x: f64,
     /// Momentum of the grains along y.
     pub momentum_y: f64,
-    /// Temperature of the grains' translation ([`temperature()`]), about the mean motion along periodic axes.
+    /// Temperature of the grains' translation (`temperature()`), about the mean motion along periodic axes.
     pub temperature: f64,
     /// Pressure of the grains (force/length): (K + ½ Σ F_N |r_i − r_j|)/A over the contacts between grains, with their kinetic energy K
     /// about the mean motion along periodic axes and the area A of the whole box.

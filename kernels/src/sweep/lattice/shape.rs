@@ -71,9 +71,9 @@ pub struct Image {
 
 /// A lattice of `columns × rows` cells with a halo as wide as its mask on every side, stored row by row.
 ///
-/// Lattice vectors are *padded*: [`lead`](Self::lead) elements, the [`swept`](Self::swept) ones (all rows, each with
+/// Lattice vectors are *padded*: `lead` elements, the `swept` ones (all rows, each with
 /// the halo at its two ends), and `lead` elements more, so that a shift by any place of the mask stays inside.
-/// Lead and swept length are multiples of [`GROUP`].
+/// Lead and swept length are multiples of `GROUP`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LatticeShape {
     columns: usize,
