@@ -4,7 +4,57 @@
 //! run needs is a library (the crate `stripmine_physics`). This crate is the laboratory around them, and the command: the model
 //! that predicts what a step costs, studies that answer a user's question, and reports that show the answer.
 //!
-//! Draw what came out:
+//! | task | entry point |
+//! |---|---|
+//! | the command, from within a program | [`cli::run_with`] |
+//! | price a program on a vector machine | [`model::clock`], [`model::machines`] |
+//! | predict a run on this host | [`model::host`] |
+//! | draw a chart | [`report::figure`] |
+//! | tables with units, and expressions of their cells | [`frame`] |
+//! | judge claims by tables | [`claims`] |
+//! | read committed results | [`results::Folder`] |
+//!
+//! The paper's price of a program, NOP·(n + D), on its machine with D = 20: two loads, a product and a store over 100 elements:
+//!
+//! ```
+//! use stripmine::model::clock::{Clock, Work};
+//! use stripmine::model::machines;
+//! use stripmine_kernels::Program;
+//! use stripmine_kernels::isa::{Array, Machine, Slot, Text};
+//!
+//! struct Product;
+//!
+//! // SAFETY: the body names the same slots whenever it is called.
+//! unsafe impl Text for Product {
+//!     type Lane = f64;
+//!     fn body<M: Machine<Lane = f64>>(&self, m: M) {
+//!         m.store(Slot::new(Array::Fx), m.load(Slot::new(Array::X)) * m.load(Slot::new(Array::Y)));
+//!     }
+//! }
+//!
+//! let work = Work::of(&Program::new(Product));
+//! let paper = machines::preset("paper")?;
+//! assert_eq!(Clock::Paper.clocks(&paper, &work, 100), 4.0 * (100.0 + 20.0));
+//! assert_eq!(Clock::Scalar.clocks(&paper, &work, 100), 4.0 * 100.0 * 20.0);
+//! # Ok::<(), stripmine::model::machines::MachineError>(())
+//! ```
+//!
+//! A table, and an expression of its cells as claims have it:
+//!
+//! ```
+//! use stripmine::frame::{Expressions, Rows, Scope};
+//!
+//! let rates = Rows::of([(100_u64, 2.0), (200, 3.0)])
+//!     .count("particles", |&(particles, _)| particles)
+//!     .number("rate", 1, |&(_, rate)| rate)
+//!     .frame("rates", "Rates");
+//! let scope = Scope::of([rates]);
+//! let value = Expressions::new().value("rates.at(particles=200).rate / rates.at(particles=100).rate", &scope)?;
+//! assert_eq!(value.to_string(), "1.5");
+//! # Ok::<(), String>(())
+//! ```
+//!
+//! A chart with logarithmic axes:
 //!
 //! ```
 //! use stripmine::report::figure::{Axis, Chart, Style, svg};

@@ -6,6 +6,17 @@
 //!
 //! Slices in, slices out: this crate knows no scene, no time and no file.
 //!
+//! | task | entry point |
+//! |---|---|
+//! | write equations as a program, list it, run it | [`isa::Text`], [`Program`] |
+//! | count its operations, by part of a step | [`isa::OpCounts`], [`ledger::Ledger`] |
+//! | the laws of pairs | [`law`]; their sums over all pairs, lists, lattices, sectors: [`sweep`] |
+//! | the paper's own program, line by line | [`printed`] |
+//! | move particles by their forces | [`integrator`]; from collision to collision: [`flight`] |
+//! | random numbers that depend on no order | [`noise`] |
+//!
+//! A program of seven operations, executed in three ways:
+//!
 //! ```
 //! use stripmine_kernels::isa::{Array, Machine, Memory, Slot, Text, Vector};
 //! use stripmine_kernels::{Execution, InstructionSet, Program};
@@ -37,6 +48,33 @@
 //!     assert_eq!(lengths, [5.0; 10]);
 //! }
 //! # Ok::<(), stripmine_kernels::isa::ProgramError>(())
+//! ```
+//!
+//! The operations NOP of the paper's predictor: five derivatives of two coordinates take 15 products and 15 sums each:
+//!
+//! ```
+//! use stripmine_kernels::Program;
+//! use stripmine_kernels::isa::OpClass;
+//! use stripmine_kernels::ledger::{Ledger, Length};
+//! use stripmine_kernels::printed::Predictor;
+//!
+//! let mut ledger = Ledger::default();
+//! ledger.enter("predictor", Length::Grains, &Program::new(Predictor::<f64, 6, 2>::new(1e-4)));
+//! let counts = ledger.part("predictor");
+//! assert_eq!((counts.of_class(OpClass::Multiply), counts.of_class(OpClass::Add)), (30, 30));
+//! ```
+//!
+//! Two particles at a distance of one diameter, which a Lennard-Jones pair drives apart by 24 ε/σ:
+//!
+//! ```
+//! use stripmine_kernels::law::lennard_jones::LennardJones;
+//! use stripmine_kernels::law::potential::CutOff;
+//! use stripmine_kernels::sweep::pair::{Body, Pair};
+//!
+//! let law = CutOff::new(LennardJones::new(1.0, 1.0), 2.5);
+//! let pair = Pair { bodies: [Body::at(0.0, 0.0), Body::at(1.0, 0.0)] };
+//! let [[own, ..], [partner, ..]] = pair.sums(&law);
+//! assert_eq!((own, partner), (-24.0, 24.0));
 //! ```
 
 #![warn(unreachable_pub)]

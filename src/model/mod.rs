@@ -5,7 +5,7 @@
 //! formula of BP93 section 3 is its first vector rung, and every refinement is one rung more, so that a table can show what each of
 //! them adds.
 
-pub(crate) mod clock;
+pub mod clock;
 mod file;
 pub mod host;
 pub mod machine;

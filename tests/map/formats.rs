@@ -5,7 +5,8 @@ use std::fs;
 use std::path::Path;
 
 use crate::code::{CRATES, Code};
-use crate::documents::{quoted, root, section, text};
+use crate::documents::{root, text};
+use crate::recipes::recipe;
 use stripmine_physics::io::FORMATS;
 
 /// Other files that name one, each with the reason.
@@ -41,20 +42,11 @@ fn naming(words: &[String]) -> BTreeSet<String> {
     found
 }
 
-/// The text of a recipe, and the files and folders of the crates that it names.
-fn recipe(name: &str) -> (String, Vec<String>) {
-    let recipes = section(&text("ARCHITECTURE.md"), "Files to touch for");
-    let recipe = recipes.split("\n- ").find(|item| item.starts_with(&format!("*{name}*"))).unwrap();
-    let places = quoted(recipe).into_iter().filter(|word| word.starts_with("kernels/"));
-    (recipe.to_owned(), places.map(str::to_owned).collect())
-}
-
 /// A format takes the two files of the recipe: nothing but its own file has its key and the name of what it writes, and nothing but
 /// the list uses what is in that file.
 #[test]
 fn a_format_is_named_where_the_recipe_says() {
-    let (recipe, places) = recipe("A format of trajectories");
-    assert!(recipe.contains(", two files: "), "{recipe}");
+    let (_, places) = recipe("A format of trajectories");
     let [folder, example, list] = &places[..] else { panic!("{places:?}") };
     let arrows = Code::read(root()).arrows();
     let mut files = BTreeSet::new();

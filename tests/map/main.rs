@@ -5,6 +5,7 @@ mod code;
 mod documents;
 mod formats;
 mod graph;
+mod recipes;
 mod reports;
 mod tokens;
 

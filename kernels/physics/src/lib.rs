@@ -4,6 +4,18 @@
 //! ([`method`]), and a run is recorded ([`run`]). All SIMD code of a step is compiled in this crate; it knows nothing of studies,
 //! reports or a command line.
 //!
+//! | task | entry point |
+//! |---|---|
+//! | read a scene, with changes of its keys | [`method::load`] |
+//! | start it, advance it, see what it is like | [`method::Prepared`], [`method::Simulation`] |
+//! | record it in a folder; go on with it | [`run::run`] |
+//! | read what runs wrote: averages, structure, particles | [`run::Finished`], [`run::function_of`], [`io::extxyz`], [`io::checkpoint`] |
+//! | averages with their errors | [`averages`] |
+//! | the structure of particles that one has | [`structure`] |
+//! | a run on several ranks | [`ranks`] |
+//!
+//! Two discs that collide keep their momentum:
+//!
 //! ```
 //! use std::sync::atomic::AtomicBool;
 //! use stripmine_physics::method::observed::observed;
@@ -15,6 +27,59 @@
 //! let [momentum] = observed(method.quantities, &simulation.observe(), ["momentum_x"])?;
 //! assert!((momentum - 1.0).abs() < 1e-12);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! A run in a folder, and the mean of a column of its table:
+//!
+//! ```
+//! use std::sync::atomic::AtomicBool;
+//! use stripmine_physics::method::{METHODS, load};
+//! use stripmine_physics::origin::Origin;
+//! use stripmine_physics::run::{Existing, Finished, Job, averages_of, run};
+//!
+//! let changes = ["run.steps=200".to_owned(), "run.observe_every=10".to_owned()];
+//! let (prepared, method) = load("two-discs", &changes, METHODS)?;
+//! let folder = std::env::temp_dir().join(format!("two-discs-{}", std::process::id()));
+//! let program = Origin {
+//!     version: "0".to_owned(),
+//!     commit: "unknown".to_owned(),
+//!     dirty: false,
+//!     target: "any".to_owned(),
+//! };
+//! let job = Job { prepared: &prepared, quantities: method.quantities, program: &program };
+//! run(job, &folder, Existing::Overwrite, &AtomicBool::new(false), |_, _| (), |_| ())?;
+//!
+//! let averages = averages_of(&[Finished::read(&folder, METHODS)?])?;
+//! assert_eq!((averages.rows, averages.runs), (21, 1));
+//! assert!(averages.quantities.iter().any(|it| it.quantity == "momentum_x"));
+//! # std::fs::remove_dir_all(&folder)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! The order of seven discs in a hexagon: the one in the middle has ψ₆ = 1:
+//!
+//! ```
+//! use std::f64::consts::TAU;
+//! use stripmine_physics::domain::Domain;
+//! use stripmine_physics::particles::{Kind, Particle, Particles, in_space};
+//! use stripmine_physics::structure::{Setting, hexatic_orders};
+//!
+//! let disc = |id, [x, y]: [f64; 2]| Particle {
+//!     id,
+//!     kind: Kind::Grain,
+//!     position: in_space([5.0 + x, 4.0 + y]),
+//!     velocity: [0.0; 3],
+//!     angle: 0.0,
+//!     omega: 0.0,
+//!     radius: 0.5,
+//!     mass: 1.0,
+//! };
+//! let corner = |id: u32| disc(id, [(f64::from(id) / 6.0 * TAU).cos(), (f64::from(id) / 6.0 * TAU).sin()]);
+//! let discs = Particles::new((1..=6).map(corner).chain([disc(7, [0.0; 2])]).collect());
+//!
+//! let setting = Setting::new(Domain::planar([0.0; 2], [10.0, 8.0], [false; 2]), &discs);
+//! let [real, imaginary] = hexatic_orders(&setting, &discs)[6];
+//! assert!((real - 1.0).abs() < 1e-12 && imaginary.abs() < 1e-12);
 //! ```
 
 #![warn(unreachable_pub)]

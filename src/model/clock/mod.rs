@@ -11,7 +11,7 @@ mod tests;
 mod work;
 
 pub(crate) use convoy::{Memory, convoys};
-pub(crate) use work::Work;
+pub use work::Work;
 
 use super::machine::MachineModel;
 
@@ -19,21 +19,21 @@ macro_rules! define_clocks {
     ($(($variant:ident, $name:literal, $charge:path, $doc:literal)),* $(,)?) => {
         /// One way of charging the operations of a program, in clock periods of the machine.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-        pub(crate) enum Clock {
+        pub enum Clock {
             $(#[doc = $doc] $variant,)*
         }
 
         impl Clock {
             /// Every clock, in the order of the ladder.
-            pub(crate) const ALL: &'static [Clock] = &[$(Clock::$variant),*];
+            pub const ALL: &'static [Clock] = &[$(Clock::$variant),*];
 
             /// The name in tables and options.
-            pub(crate) const fn name(self) -> &'static str {
+            pub const fn name(self) -> &'static str {
                 match self { $(Clock::$variant => $name),* }
             }
 
             /// What the clock takes into account, in one line.
-            pub(crate) const fn meaning(self) -> &'static str {
+            pub const fn meaning(self) -> &'static str {
                 match self { $(Clock::$variant => $doc),* }
             }
 
@@ -66,7 +66,7 @@ impl Clock {
     /// Clock periods that `work` takes on `machine` over vectors of `n` elements.
     ///
     /// Empty vectors (`n` = 0) cost nothing: no instruction is issued for them.
-    pub(crate) fn clocks(self, machine: &MachineModel, work: &Work, n: u64) -> f64 {
+    pub fn clocks(self, machine: &MachineModel, work: &Work, n: u64) -> f64 {
         self.charge(machine, work).clocks(n)
     }
 }

@@ -7,26 +7,26 @@ use stripmine_kernels::isa::OpCounts;
 
 /// What a program executes: how often each operation and, where a program stands behind the counts, in which order.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Work {
+pub struct Work {
     counts: OpCounts,
     order: Vec<Outline>,
 }
 
 impl Work {
     /// The instructions of a program.
-    pub(crate) fn of(program: &dyn Runnable) -> Work {
+    pub fn of(program: &dyn Runnable) -> Work {
         Work::in_order(program.outlines().instructions)
     }
 
     /// These instructions, one after the other.
-    pub(crate) fn in_order(order: Vec<Outline>) -> Work {
+    pub fn in_order(order: Vec<Outline>) -> Work {
         let mut counts = OpCounts::default();
         order.iter().flat_map(Outline::operations).for_each(|op| counts.record(op));
         Work { counts, order }
     }
 
     /// The instructions in their order; none where only counts are known, which no clock can chain.
-    pub(crate) fn order(&self) -> Option<&[Outline]> {
+    pub fn order(&self) -> Option<&[Outline]> {
         (!self.order.is_empty()).then_some(&self.order)
     }
 

@@ -2,7 +2,7 @@
 
 use super::search::{Cells, Search};
 use super::state::Move;
-use super::{Dynamics, Engine, Named, conflict, outside};
+use super::{Engine, Named, conflict, outside};
 use crate::method::{Culprit, Failure};
 use std::ops::Range;
 use stripmine_kernels::backend::Precision;
@@ -28,7 +28,7 @@ pub(super) struct Moved {
     pub(super) periods: [f64; 2],
 }
 
-impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D> {
+impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
     /// A position (length), from the place in a cell.
     fn position_in_cell(&self, cell: [usize; 2], place: [f64; 2]) -> [f64; 2] {
         let frame = self.search.cells().grid().frame;

@@ -1,11 +1,9 @@
 //! The engine: all forces, then corrector and next predictor in one pass.
 
+use super::compiled::{Compiled, Correcting, Passing, Sweeping};
 use super::search::{Cells, Search};
 use super::state::{Members, Move, State};
-use super::{
-    CarriedBy, Crossings, Dynamics, Elapsed, Named, Phase, Prescribed, Sort, System, WithLaw, WithScheme,
-    not_finite,
-};
+use super::{Crossings, Elapsed, Named, Phase, Prescribed, Sort, System, not_finite};
 use crate::domain::Domain;
 use crate::method::{Clock, Failure};
 use crate::particles::Particles;
@@ -15,22 +13,24 @@ use std::sync::Arc;
 use std::time::Instant;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
-use stripmine_kernels::integrator::Scheme;
 use stripmine_kernels::isa::{AlignedColumn, ProgramError};
-use stripmine_kernels::law::{Asked, Law};
-use stripmine_kernels::sweep::fast::{Advance, Met, Motion, Passed};
+use stripmine_kernels::law::Asked;
+use stripmine_kernels::sweep::fast::{Met, Passed};
 use stripmine_kernels::{alone_if, keep_awake, over_parts, put_in_order};
 
 /// Fewer discs are one thread's: a step of them is over before others have begun. Measured on two cores: 2000 discs took twice as
 /// long on two threads, 4000 as long as on one, 8000 were faster by a fifth.
 const FEW: usize = 5000;
 
+/// Dynamics, system, and the instruction set of their loops.
+pub(super) type Ingredients<S, P, Q> = (Arc<dyn Compiled<S, P, Q>>, System, InstructionSet);
+
 /// Columns of the state have smaller numbers than the sums.
 const SUMS_FROM: usize = 24;
 
-/// Discs with state of precision `S`, forces of precision `P`, search `Q` and dynamics `D`.
-pub(crate) struct Engine<S, P, Q, D> {
-    pub(super) dynamics: D,
+/// Discs with state of precision `S`, forces of precision `P` and search `Q`.
+pub(crate) struct Engine<S, P, Q> {
+    pub(super) dynamics: Arc<dyn Compiled<S, P, Q>>,
     pub(super) system: System,
     pub(super) set: InstructionSet,
     /// All particles of the scene at its start.
@@ -52,13 +52,13 @@ pub(crate) struct Engine<S, P, Q, D> {
     pub(super) elapsed: Elapsed,
 }
 
-impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D> {
+impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
     /// Lays out `particles`. Their forces are not yet known: [`compute_forces`](super::Stepping::compute_forces) finds them.
     ///
     /// # Errors
     /// [`Failure`] if a disc is outside the box, or in another's cell.
-    pub(crate) fn new(
-        dynamics: D,
+    pub(super) fn new(
+        dynamics: Arc<dyn Compiled<S, P, Q>>,
         system: System,
         search: Q,
         set: InstructionSet,
@@ -74,13 +74,13 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
 
     /// Some of the particles of a scene, in no cells yet.
     pub(super) fn of(
-        (dynamics, system, set): (D, System, InstructionSet),
+        (dynamics, system, set): Ingredients<S, P, Q>,
         search: Q,
         start: Arc<Particles>,
         members: Members,
         elapsed: Elapsed,
     ) -> Self {
-        let carried = dynamics.with_scheme(CarriedBy { dt: system.dt });
+        let carried = dynamics.carried(system.dt);
         let [sums @ .., spare] = sums_of(members.numbers.len());
         let mut engine = Engine {
             state: State::new(&system, &carried, &start, members),
@@ -103,7 +103,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
 
     /// Has other members from now on, in no cells yet and all of them at the start.
     pub(super) fn hold(&mut self, members: Members, search: Q) {
-        let carried = self.dynamics.with_scheme(CarriedBy { dt: self.system.dt });
+        let carried = self.dynamics.carried(self.system.dt);
         [self.sums[0], self.sums[1], self.sums[2], self.spare] = sums_of(members.numbers.len());
         self.state = State::new(&self.system, &carried, &self.start, members);
         self.search = search;
@@ -191,7 +191,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         let begun = Instant::now();
         let Engine { dynamics, system, state, sums, search, set, elapsed, .. } = self;
         let steps = elapsed.steps;
-        let passed = dynamics.with_scheme(Passing { discs, system, state, sums, search, steps, set: *set });
+        let passed = dynamics.pass(Passing { discs, system, state, sums, search, steps, set: *set });
         elapsed.timings.add(Phase::CorrectPredict, begun.elapsed().as_secs_f64());
         passed
     }
@@ -206,7 +206,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         let Engine { dynamics, system, state, sums, search, set, .. } = self;
         // Those of discs that are moved are zero already.
         sums.iter_mut().for_each(|sum| sum[state.moving()..].fill(P::default()));
-        dynamics.with_law(Sweeping { system, state, sums, search, asked, set: *set })
+        dynamics.sweep(Sweeping { system, state, sums, search, asked, set: *set })
     }
 
     /// Stops at pairs of a grain whose force is no finite number.
@@ -240,7 +240,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
         let moving = moving.saturating_sub(first).min(values.len());
         let [(values, others), (rates, rates_of_others)] =
             [values, rates].map(|column| column.split_at_mut(moving));
-        self.dynamics.with_scheme(Correcting {
+        self.dynamics.correct(Correcting {
             system,
             state,
             sums: &sums[freedom],
@@ -255,7 +255,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
     }
 }
 
-impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Named for Engine<S, P, Q, D> {
+impl<S: Precision, P: Precision, Q: Search<S, P>> Named for Engine<S, P, Q> {
     fn clock(&self) -> Clock {
         self.elapsed.clock()
     }
@@ -292,92 +292,4 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Named for Engine<
 /// Sums of as many discs, and room for them when they are put in order; behind the columns of the state.
 fn sums_of<P: Precision>(discs: usize) -> [AlignedColumn<P>; 4] {
     [0, 1, 2, 3].map(|number| AlignedColumn::zeros(SUMS_FROM + number, discs))
-}
-
-/// How discs move by a scheme.
-fn motion<C: Scheme>(system: &System, scheme: C) -> Motion<C> {
-    let System { dt, inertia, gravity, noise, .. } = *system;
-    Motion { scheme, dt, inertia, gravity, noise }
-}
-
-/// A pass over some discs.
-struct Passing<'a, S, P, Q> {
-    discs: Range<usize>,
-    system: &'a System,
-    state: &'a mut State<S>,
-    sums: &'a mut [AlignedColumn<P>; 3],
-    search: &'a mut Q,
-    steps: u64,
-    set: InstructionSet,
-}
-
-impl<S: Precision, P: Precision, Q: Search<S, P>> WithScheme for Passing<'_, S, P, Q> {
-    type Output = Result<Passed, ProgramError>;
-
-    fn with<C: Scheme>(self, scheme: C) -> Self::Output {
-        let Passing { discs, system, state, sums, search, steps, set } = self;
-        let (columns, inverse, ids) = state.for_advance();
-        let (limit, copies) = search.displacement_limit();
-        let advance = Advance {
-            motion: &motion(system, scheme),
-            state: columns
-                .iter_mut()
-                .map(|row| row.iter_mut().map(|column| &mut **column).collect())
-                .collect(),
-            sums: sums.iter_mut().take(system.freedoms).map(|sum| &mut **sum).collect(),
-            inverse,
-            discs,
-            step: steps,
-            ids,
-            corrected: steps == 0,
-            longest_step: system.longest_step,
-        };
-        advance.run(limit, copies, set)
-    }
-}
-
-/// A degree of freedom of discs at the end of the step, from the rows that the pass left.
-struct Correcting<'a, S, P> {
-    system: &'a System,
-    state: &'a State<S>,
-    sums: &'a [P],
-    steps: u64,
-    freedom: usize,
-    first: usize,
-    to: [&'a mut [f64]; 2],
-}
-
-impl<S: Precision, P: Precision> WithScheme for Correcting<'_, S, P> {
-    type Output = ();
-
-    fn with<C: Scheme>(self, scheme: C) {
-        let Correcting { system, state, sums, steps, freedom, first, to: [values, rates] } = self;
-        let motion = motion(system, scheme);
-        for (disc, (value, rate)) in (first..).zip(values.iter_mut().zip(rates)) {
-            let force = S::from_f64(sums[disc].to_f64());
-            let inverse = system.inertia.inverse(freedom, S::from_f64, || state.inverse(freedom)[disc]);
-            let (who, row) = ((steps, state.id(disc)), state.row(freedom, disc));
-            let corrected = motion.corrected(who, freedom, row, force, inverse);
-            [*value, *rate] = state.value_and_rate(&corrected);
-        }
-    }
-}
-
-/// A sweep with the law.
-struct Sweeping<'a, S, P, Q> {
-    system: &'a System,
-    state: &'a State<S>,
-    sums: &'a mut [AlignedColumn<P>; 3],
-    search: &'a mut Q,
-    asked: Asked,
-    set: InstructionSet,
-}
-
-impl<S: Precision, P: Precision, Q: Search<S, P>> WithLaw for Sweeping<'_, S, P, Q> {
-    type Output = Result<Met, ProgramError>;
-
-    fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> Self::Output {
-        let sums = self.sums.each_mut().map(|sum| &mut **sum);
-        self.search.sweep(&law, &self.state.discs(self.system), sums, self.asked, self.set)
-    }
 }

@@ -1,12 +1,12 @@
 //! What lets a method go on without particles that were thrown out of the box.
 
+use super::Engine;
 use super::cells::Moved;
 use super::search::Search;
-use super::{Dynamics, Engine};
 use crate::method::Failure;
 use stripmine_kernels::backend::Precision;
 
-impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D> {
+impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
     /// The particles, by their places in the scene and rising, that belong to no cell or of which a number is not finite.
     pub(super) fn unfit_discs(&self) -> Vec<usize> {
         let is_finite = |disc: usize| {

@@ -15,6 +15,7 @@
 mod carried;
 mod cells;
 mod columns;
+mod compiled;
 mod crossings;
 mod elapsed;
 mod engine;
@@ -32,6 +33,7 @@ mod unwrapped;
 
 pub(crate) use carried::{Carried, CarriedBy};
 pub(crate) use columns::real_column;
+use compiled::Compiled;
 pub(super) use crossings::Crossings;
 pub use elapsed::Elapsed;
 pub(super) use engine::Engine;

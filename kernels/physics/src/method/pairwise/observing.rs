@@ -9,18 +9,17 @@
 //! Places are those of the cells or lists as they are: a correction may take a disc a little beyond its cell, by far less than cells
 //! leave room for. No sum depends on the numbers of threads, the order in memory, or how the run came here.
 
+use super::compiled::Observing;
 use super::search::Search;
-use super::{Dynamics, Engine, WithLaw, Work};
+use super::{Engine, Work};
 use crate::observe::{ContactSums, GrainSums, Scenery};
 use crate::particles::{Kind, Particle, Particles, in_space};
 use std::marker::PhantomData;
 use std::ops::Range;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::Inertia;
-use stripmine_kernels::isa::ProgramError;
-use stripmine_kernels::law::Law;
 use stripmine_kernels::sweep::fast::{Discs, Met, SENTINELS};
-use stripmine_kernels::{InstructionSet, alone_if, in_parts, in_pieces, over_parts};
+use stripmine_kernels::{alone_if, in_parts, in_pieces, over_parts};
 
 /// All discs at the end of a step, an entry a disc in the order in memory and sentinels behind.
 pub(super) struct Corrected {
@@ -32,7 +31,7 @@ pub(super) struct Corrected {
     moved: f64,
 }
 
-impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D> {
+impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
     /// The discs at the end of the step.
     pub(super) fn corrected_discs(&self) -> Corrected {
         alone_if(self.is_small(), || {
@@ -209,7 +208,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D
                 set: self.set,
                 precisions: PhantomData,
             };
-            let met = self.dynamics.with_law(observing);
+            let met = self.dynamics.observe(observing);
             // The machine has had this law and this instruction set in every step.
             met.unwrap_or_else(|_| Met { energy: [f64::NAN; 2], ..Met::default() })
         })
@@ -252,21 +251,4 @@ pub(super) fn sums_of_grains(
     let mut sums = GrainSums::default();
     parts.iter().for_each(|part| sums.join(part));
     sums
-}
-
-/// A sweep that observes.
-struct Observing<'a, S, P, Q> {
-    search: &'a Q,
-    discs: &'a Discs<'a, f64>,
-    moved: f64,
-    set: InstructionSet,
-    precisions: PhantomData<(S, P)>,
-}
-
-impl<S: Precision, P: Precision, Q: Search<S, P>> WithLaw for Observing<'_, S, P, Q> {
-    type Output = Result<Met, ProgramError>;
-
-    fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> Self::Output {
-        self.search.observe(&law, self.discs, self.moved, self.set)
-    }
 }

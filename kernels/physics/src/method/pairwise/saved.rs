@@ -2,7 +2,7 @@
 
 use super::search::{Cells, Search};
 use super::state::Move;
-use super::{Dynamics, Engine, real_column};
+use super::{Engine, real_column};
 use crate::io::checkpoint::Column;
 use crate::method::restored::find_column;
 use stripmine_kernels::backend::Precision;
@@ -40,7 +40,7 @@ impl Source {
     }
 }
 
-impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Engine<S, P, Q, D> {
+impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
     /// A column with an entry for each of some discs.
     fn column<T: Element>(&self, discs: &[u32], value: impl Fn(usize) -> T + Sync) -> Column {
         let mut column = vec![T::default(); discs.len()];

@@ -1,7 +1,7 @@
 //! What a method sees of discs that are stepped, whatever steps them: the engine alone, several ranks of it, or vector programs.
 
 use super::search::{Cells, Search};
-use super::{Dynamics, Elapsed, Engine, Named, Phase, wrapped};
+use super::{Elapsed, Engine, Named, Phase, wrapped};
 use crate::io::checkpoint::Column;
 use crate::method::{Failure, PerParticle, SteppedState};
 use crate::observe::{Scenery, Sums};
@@ -121,7 +121,7 @@ pub(crate) trait Losing: Stepping {
     fn settle(&mut self) -> Result<(), Failure>;
 }
 
-impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> PerParticle for Engine<S, P, Q, D> {
+impl<S: Precision, P: Precision, Q: Search<S, P>> PerParticle for Engine<S, P, Q> {
     fn particles(&self) -> Particles {
         wrapped(self.unwrapped(), &self.system.domain)
     }
@@ -141,7 +141,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> PerParticle for E
     }
 }
 
-impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Engine<S, P, Q, D> {
+impl<S: Precision, P: Precision, Q: Search<S, P>> Stepping for Engine<S, P, Q> {
     fn advance(&mut self) -> Result<Vec<u32>, Failure> {
         alone_if(self.is_small(), || self.moved_on())
     }
@@ -202,7 +202,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Engi
     }
 }
 
-impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Losing for Engine<S, P, Q, D> {
+impl<S: Precision, P: Precision, Q: Search<S, P>> Losing for Engine<S, P, Q> {
     fn predicted_velocities(&self) -> Vec<[f64; 2]> {
         let mut velocities = vec![[0.0; 2]; self.start.len()];
         (0..velocities.len()).for_each(|disc| velocities[self.state.number(disc)] = self.velocity(disc));

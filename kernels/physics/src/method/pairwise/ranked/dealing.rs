@@ -3,7 +3,6 @@
 use super::layout::{Layout, Side};
 use super::wire::{Columns, column_like, entries};
 use super::worker::Worker;
-use crate::method::pairwise::Dynamics;
 use crate::method::pairwise::saved::CELL;
 use crate::method::pairwise::search::{Cells, Search};
 use crate::method::pairwise::state::Members;
@@ -11,7 +10,7 @@ use crate::ranks::{Parcel, RankError, numbers};
 use std::collections::HashMap;
 use stripmine_kernels::backend::Precision;
 
-impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Worker<S, P, Q, D> {
+impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
     /// Holds those discs of the scene that are this rank's or near them, by the rows that all of the scene's are in.
     pub(super) fn take_part(&mut self, rows: &[u32]) {
         let grains = self.engine.start.grain_count();

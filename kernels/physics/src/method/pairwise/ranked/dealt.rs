@@ -1,11 +1,12 @@
 //! A scene that is dealt out to ranks: who begins with what.
 
 use super::first::{Ranked, Threads};
+use super::orders::serve;
 use super::wire::Order;
-use super::worker::{Part, Worker, all_rows};
+use super::worker::{Begun, Worker, all_rows};
 use crate::method::pairwise::search::Search;
 use crate::method::pairwise::state::Members;
-use crate::method::pairwise::{Crossings, Dynamics, Elapsed, Engine, System};
+use crate::method::pairwise::{Compiled, Crossings, Elapsed, Engine, System};
 use crate::method::{Clock, DISMISSED, Failure, FailureKind, ended};
 use crate::particles::Particles;
 use crate::ranks::{RankError, Ranks, local};
@@ -19,18 +20,15 @@ use stripmine_kernels::backend::Precision;
 const TOO_MANY: FailureKind = FailureKind::new("too-many-ranks");
 
 /// What every rank knows of a scene but its particles.
-pub(super) struct Scene<Q, D> {
-    pub(super) dynamics: D,
+pub(super) struct Scene<S, P, Q> {
+    pub(super) dynamics: Arc<dyn Compiled<S, P, Q>>,
     pub(super) system: System,
     pub(super) set: InstructionSet,
     pub(super) search: Q,
 }
 
-impl<Q, D: Dynamics + Clone + 'static> Scene<Q, D> {
-    pub(super) fn refuse_too_many<S: Precision, P: Precision>(&self, count: usize) -> Result<(), Failure>
-    where
-        Q: Search<S, P>,
-    {
+impl<S: Precision, P: Precision, Q: Search<S, P> + 'static> Scene<S, P, Q> {
+    pub(super) fn refuse_too_many(&self, count: usize) -> Result<(), Failure> {
         let bands = self.search.rows().bands().len();
         if count <= bands {
             return Ok(());
@@ -41,30 +39,17 @@ impl<Q, D: Dynamics + Clone + 'static> Scene<Q, D> {
     }
 
     /// The part of a rank at the start.
-    pub(super) fn part<S: Precision, P: Precision>(
-        &self,
-        ranks: Box<dyn Ranks>,
-        start: Arc<Particles>,
-    ) -> Part<S, P, Q, D>
-    where
-        Q: Search<S, P>,
-    {
+    pub(super) fn part(&self, ranks: Box<dyn Ranks>, start: Arc<Particles>) -> Begun {
         let elapsed = Elapsed::new(self.system.dt, Crossings::new(self.system.followed, start.len()));
         let none = Members { numbers: vec![], moving: 0, grains: 0 };
         let search = self.search.emptied(0, all_rows(self.search.rows()));
         let all = (self.dynamics.clone(), self.system.clone(), self.set);
-        Worker::new(ranks, Engine::of(all, search, start, none, elapsed))
+        let worker = Worker::new(ranks, Engine::of(all, search, start, none, elapsed))?;
+        Ok(Box::new(worker))
     }
 
     /// The first rank of several threads; the others begin.
-    pub(super) fn on_threads<S: Precision, P: Precision>(
-        &self,
-        count: usize,
-        particles: Particles,
-    ) -> Result<Ranked<S, P, Q, D>, Failure>
-    where
-        Q: Search<S, P> + 'static,
-    {
+    pub(super) fn on_threads(&self, count: usize, particles: Particles) -> Result<Ranked, Failure> {
         let start = Arc::new(particles);
         let per_rank = rayon::current_num_threads();
         let mut rest = local::ranks(count, per_rank);
@@ -76,7 +61,7 @@ impl<Q, D: Dynamics + Clone + 'static> Scene<Q, D> {
             let scene = Scene { dynamics: dynamics.clone(), system: system.clone(), set: *set, search };
             let start = start.clone();
             // The first rank finds a loss itself.
-            let work = move || _ = serve_one(scene.part::<S, P>(Box::new(ranks), start));
+            let work = move || _ = serve_one(scene.part(Box::new(ranks), start));
             let pool = rayon::ThreadPoolBuilder::new().num_threads(per_rank).build();
             let spawned = pool.map_err(|error| error.to_string()).and_then(|pool| {
                 thread::Builder::new().spawn(move || pool.install(work)).map_err(|error| error.to_string())
@@ -90,14 +75,7 @@ impl<Q, D: Dynamics + Clone + 'static> Scene<Q, D> {
     }
 
     /// The part of a process that is not the first, for one simulation after the other, until the first says that there is no other.
-    pub(super) fn serve<S: Precision, P: Precision>(
-        &self,
-        join: fn() -> Box<dyn Ranks>,
-        particles: Particles,
-    ) -> Failure
-    where
-        Q: Search<S, P>,
-    {
+    pub(super) fn serve(&self, join: fn() -> Box<dyn Ranks>, particles: Particles) -> Failure {
         loop {
             let ids: HashSet<u32> = match join().tell_message::<Option<Vec<u32>>>(None) {
                 Ok(Some(ids)) => ids.into_iter().collect(),
@@ -106,7 +84,7 @@ impl<Q, D: Dynamics + Clone + 'static> Scene<Q, D> {
             };
             let there = particles.all().iter().filter(|particle| ids.contains(&particle.id));
             let start = Particles::new(there.copied().collect());
-            match serve_one(self.part::<S, P>(join(), Arc::new(start))) {
+            match serve_one(self.part(join(), Arc::new(start))) {
                 // The first one says why.
                 Ok(()) | Err(RankError::Ended(0)) => {}
                 Err(lost) => return ended(lost, Clock::default()),
@@ -118,14 +96,12 @@ impl<Q, D: Dynamics + Clone + 'static> Scene<Q, D> {
 /// Says how a part has begun, and does what the first rank says.
 ///
 /// # Errors
-/// As [`Worker::serve`].
-fn serve_one<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics>(
-    part: Part<S, P, Q, D>,
-) -> Result<(), RankError> {
+/// As [`serve`].
+fn serve_one(part: Begun) -> Result<(), RankError> {
     match part {
-        Ok(worker) => {
-            worker.ranks.gather_messages(None::<Failure>)?;
-            worker.serve()
+        Ok(part) => {
+            part.ranks().gather_messages(None::<Failure>)?;
+            serve(part)
         }
         Err((ranks, failure)) => {
             ranks.gather_messages(Some(failure))?;

@@ -1,12 +1,11 @@
 //! The first rank: the simulation that everyone else sees.
 
 use super::wire::{Crossed, Do, ForcesReport, Order, Record, StepReport, What, column_like, put_own};
-use super::worker::{Part, Worker};
+use super::worker::{Begun, Part};
 use crate::domain::Domain;
 use crate::io::checkpoint::Column;
 use crate::method::pairwise::observing::{Standing, contact_sums, sums_of_grains};
-use crate::method::pairwise::search::Search;
-use crate::method::pairwise::{Dynamics, Elapsed, Engine, Losing, Named, Stepping, Work, wrapped};
+use crate::method::pairwise::{Elapsed, Losing, Named, Stepping, Work, wrapped};
 use crate::method::{Clock, Failure, FailureKind, PerParticle, ended};
 use crate::observe::{Scenery, Sums};
 use crate::particles::{Particles, States, in_space};
@@ -15,13 +14,12 @@ use serde::de::DeserializeOwned;
 use std::cell::OnceCell;
 use std::ops::Range;
 use std::thread::JoinHandle;
-use stripmine_kernels::backend::Precision;
 use stripmine_kernels::law::Asked;
 use stripmine_kernels::sweep::fast::{Met, OfBand};
 
 /// The first rank, which speaks for all.
-pub(super) struct Ranked<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> {
-    worker: Worker<S, P, Q, D>,
+pub(super) struct Ranked {
+    worker: Box<dyn Part>,
     /// Dropped after the worker: a rank that waits for the first one ends when that one's end of the channel is gone.
     _threads: Threads,
     /// What all are to know before they do something: periods crossed, by rank, and whether discs are dealt out again.
@@ -44,12 +42,12 @@ impl Drop for Threads {
     }
 }
 
-impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Ranked<S, P, Q, D> {
+impl Ranked {
     /// The first rank, once all have begun.
     pub(super) fn of(
         ranks: Box<dyn Ranks>,
         threads: Threads,
-        part: impl FnOnce(Box<dyn Ranks>) -> Part<S, P, Q, D>,
+        part: impl FnOnce(Box<dyn Ranks>) -> Begun,
     ) -> Result<Self, Failure> {
         let worker = match part(ranks) {
             Ok(worker) => worker,
@@ -72,19 +70,19 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Ranked<S, P, Q, D
             named: vec![],
             stopped: OnceCell::new(),
         };
-        let begun = ranked.worker.ranks.gather_messages(None::<Failure>);
+        let begun = ranked.worker.ranks().gather_messages(None::<Failure>);
         let begun = begun.map_err(|lost| ranked.lose(lost))?;
         first_of(begun).map(|()| ranked)
     }
 }
 
-impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Ranked<S, P, Q, D> {
-    fn engine(&self) -> &Engine<S, P, Q, D> {
-        &self.worker.engine
+impl Ranked {
+    fn engine(&self) -> &dyn Stepping {
+        self.worker.engine()
     }
 
     fn tell(&self, order: &Order) -> Result<(), RankError> {
-        self.worker.ranks.tell(Some(Parcel::of(&Some(order)))).map(drop)
+        self.worker.ranks().tell(Some(Parcel::of(&Some(order)))).map(drop)
     }
 
     /// Has all ranks carry out an order that changes something; their answers.
@@ -93,7 +91,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Ranked<S, P, Q, D
         let crossed = std::mem::take(&mut self.crossed);
         let order = Order { crossed, is_to_migrate: std::mem::take(&mut self.is_to_migrate), what };
         let answered = self.tell(&order).and_then(|()| self.worker.follow(order));
-        let answers = answered.and_then(|own| self.worker.ranks.gather(own));
+        let answers = answered.and_then(|own| self.worker.ranks().gather(own));
         answers.and_then(|all| opened(&all)).map_err(|lost| self.lose(lost))
     }
 
@@ -101,7 +99,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Ranked<S, P, Q, D
     fn look<R: Default>(&self, what: What, found: impl FnOnce(&[Parcel]) -> Result<R, RankError>) -> R {
         let look = || {
             self.tell(&Do::Look(what).into())?;
-            found(&self.worker.ranks.gather(self.worker.look(what)?)?)
+            found(&self.worker.ranks().gather(self.worker.look(what)?)?)
         };
         if self.stopped.get().is_some() {
             return R::default();
@@ -124,7 +122,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Ranked<S, P, Q, D
     fn stop(&self, told: &Parcel, why: impl FnOnce() -> Failure) -> Failure {
         let stop = || {
             #[expect(clippy::let_underscore_must_use, reason = "a rank that has ended needs not be told")]
-            let _ = self.worker.ranks.tell(Some(told.clone()));
+            let _ = self.worker.ranks().tell(Some(told.clone()));
             why()
         };
         self.stopped.get_or_init(stop).clone()
@@ -139,7 +137,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Ranked<S, P, Q, D
             far.extend(report.far);
             for (number, periods) in report.crossed {
                 if rank > 0 {
-                    self.worker.engine.elapsed.crossings.add(number, periods);
+                    self.worker.engine_mut().elapsed_mut().crossings.add(number, periods);
                 }
                 self.crossed.push((rank, (number, periods)));
             }
@@ -164,7 +162,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Ranked<S, P, Q, D
 
     /// For each of the scene's discs what its rank says; no numbers where a rank is lost.
     fn each<const N: usize>(&self, what: What) -> Vec<[f64; N]> {
-        let none = || vec![[f64::NAN; N]; self.engine().start.len()];
+        let none = || vec![[f64::NAN; N]; self.engine().start().len()];
         let found = |answers: &[Parcel]| {
             let mut all = none();
             answers.iter().enumerate().try_for_each(|(rank, own)| put_own(own, rank, &mut all))?;
@@ -199,13 +197,13 @@ fn first_of(failures: Vec<Option<Failure>>) -> Result<(), Failure> {
     }
 }
 
-impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Drop for Ranked<S, P, Q, D> {
+impl Drop for Ranked {
     fn drop(&mut self) {
         self.end();
     }
 }
 
-impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Named for Ranked<S, P, Q, D> {
+impl Named for Ranked {
     fn clock(&self) -> Clock {
         self.engine().clock()
     }
@@ -239,9 +237,9 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Named for Ranked<
     }
 }
 
-impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> PerParticle for Ranked<S, P, Q, D> {
+impl PerParticle for Ranked {
     fn particles(&self) -> Particles {
-        wrapped(self.unwrapped(), &self.engine().system.domain)
+        wrapped(self.unwrapped(), &self.engine().domain())
     }
 
     fn is_whole(&self) -> bool {
@@ -249,20 +247,20 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> PerParticle for R
     }
 
     fn states(&self, states: &mut States) {
-        let domain = self.engine().system.domain;
+        let domain = self.engine().domain();
         for (number, [x, y, _, vx, vy, _]) in self.standing().into_iter().enumerate() {
             states.put(number, domain.wrapped([x, y]), [vx, vy]);
         }
     }
 
     fn positions(&self) -> Vec<[f32; 3]> {
-        let domain = self.engine().system.domain;
+        let domain = self.engine().domain();
         let place = |[x, y, ..]: [f64; 6]| domain.wrapped(in_space([x, y])).map(|along| along as f32);
         self.standing().into_iter().map(place).collect()
     }
 
     fn images(&self) -> Vec<[i32; 2]> {
-        let (domain, crossings) = (&self.engine().system.domain, &self.engine().elapsed.crossings);
+        let (domain, crossings) = (&self.engine().domain(), &self.engine().elapsed().crossings);
         if !crossings.follows(domain) {
             return vec![];
         }
@@ -271,7 +269,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> PerParticle for R
     }
 }
 
-impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Ranked<S, P, Q, D> {
+impl Stepping for Ranked {
     fn advance(&mut self) -> Result<Vec<u32>, Failure> {
         let reports = self.order(Do::Advance)?;
         self.heard(reports)
@@ -298,15 +296,15 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Rank
     }
 
     fn elapsed(&self) -> &Elapsed {
-        &self.engine().elapsed
+        self.engine().elapsed()
     }
 
     fn elapsed_mut(&mut self) -> &mut Elapsed {
-        &mut self.worker.engine.elapsed
+        self.worker.engine_mut().elapsed_mut()
     }
 
     fn start(&self) -> &Particles {
-        &self.engine().start
+        self.engine().start()
     }
 
     fn shared_cells(&self) -> usize {
@@ -314,15 +312,15 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Rank
     }
 
     fn lists(&self) -> Option<(usize, u64)> {
-        let made = self.engine().search.lists()?.made();
+        let (_, made) = self.engine().lists()?;
         let listed: Vec<usize> = self.look(What::Listed, opened);
         Some((listed.into_iter().sum(), made))
     }
 
     fn unwrapped(&self) -> Particles {
-        let mut particles = Particles::clone(&self.engine().start);
+        let mut particles = self.engine().start().clone();
         let grains = particles.grain_count();
-        let walls = in_space(self.engine().prescribed().unwrap_or_default().velocity);
+        let walls = in_space(self.worker.prescribed().unwrap_or_default().velocity);
         let standing = self.standing();
         for (number, (particle, [x, y, angle, vx, vy, omega])) in
             particles.all_mut().iter_mut().zip(standing).enumerate()
@@ -346,12 +344,12 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Rank
     }
 
     fn columns(&self) -> Vec<(String, Column)> {
-        let like = self.engine().columns_of(&[]).into_iter().enumerate();
-        let columns = like.map(|(place, (name, like))| {
+        let [of_each, of_all] = self.worker.columns();
+        let columns = of_each.into_iter().enumerate().map(|(place, (name, like))| {
             let values = self.each(What::Column(place)).into_iter().map(|[value]| value).collect();
             (name, column_like(&like, values))
         });
-        columns.chain(self.engine().columns_of_all()).collect()
+        columns.chain(of_all).collect()
     }
 
     fn restore(&mut self, steps: u64, columns: &[(String, Column)]) -> Result<(), String> {
@@ -362,7 +360,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Rank
 
     fn sums(&self, scenery: &Scenery, work: &Work<'_>) -> Sums {
         let standing = self.standing();
-        let grains = sums_of_grains(self.engine().start.grains(), (scenery, work), |number| {
+        let grains = sums_of_grains(self.engine().start().grains(), (scenery, work), |number| {
             let [x, y, _, vx, vy, omega] = standing[number];
             Standing { position: [x, y], velocity: [vx, vy], omega }
         });
@@ -371,7 +369,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Stepping for Rank
     }
 }
 
-impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Losing for Ranked<S, P, Q, D> {
+impl Losing for Ranked {
     fn predicted_velocities(&self) -> Vec<[f64; 2]> {
         self.each(What::Velocities)
     }

@@ -19,7 +19,7 @@ mod wire;
 mod worker;
 
 use super::search::Search;
-use super::{Dynamics, Engine, Losing, System};
+use super::{Compiled, Dynamics, Engine, Losing, System};
 use crate::method::{Clock, Failure, ended};
 use crate::particles::Particles;
 use crate::ranks::{self, Crew};
@@ -42,11 +42,12 @@ where
     S: Precision,
     P: Precision,
     Q: Search<S, P> + 'static,
-    D: Dynamics + Clone + 'static,
+    D: Dynamics + 'static,
 {
+    let dynamics: Arc<dyn Compiled<S, P, Q>> = Arc::new(dynamics);
     let crew = ranks::crew();
     if crew.count() == 1 {
-        return Ok(Box::new(Engine::<S, P, Q, D>::new(dynamics, system, search, set, particles)?));
+        return Ok(Box::new(Engine::new(dynamics, system, search, set, particles)?));
     }
     let scene = Scene { dynamics, system, set, search };
     scene.refuse_too_many(crew.count())?;
@@ -57,9 +58,7 @@ where
             let ids: Vec<u32> = particles.all().iter().map(|particle| particle.id).collect();
             let told = ranks.tell_message(Some(Some(ids)));
             told.map_err(|lost| ended(lost, Clock::default()))?;
-            Box::new(Ranked::<S, P, Q, D>::of(ranks, Threads(vec![]), |ranks| {
-                scene.part(ranks, Arc::new(particles))
-            })?)
+            Box::new(Ranked::of(ranks, Threads(vec![]), |ranks| scene.part(ranks, Arc::new(particles)))?)
         }
         Crew::One | Crew::Threads(_) => Box::new(scene.on_threads(crew.count(), particles)?),
     };

@@ -1,37 +1,56 @@
 //! Orders of the first rank, as each rank carries them out.
 
-use super::wire::{Do, ForcesReport, Order, What};
-use super::worker::Worker;
+use super::wire::{Columns, Do, ForcesReport, Order, What};
+use super::worker::{Part, Worker};
 use crate::method::pairwise::search::Search;
-use crate::method::pairwise::{Dynamics, Named};
-use crate::ranks::{Parcel, RankError};
+use crate::method::pairwise::{Named, Prescribed, Stepping};
+use crate::ranks::{Parcel, RankError, Ranks};
 use stripmine_kernels::backend::Precision;
 
-impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Worker<S, P, Q, D> {
-    /// Carries out orders until none follows.
-    ///
-    /// # Errors
-    /// The rank that was lost, of which the first one is told; or that the first one has ended.
-    pub(super) fn serve(mut self) -> Result<(), RankError> {
-        loop {
-            let order = self.ranks.tell_message::<Option<Order>>(None);
-            match order.and_then(|order| order.map(|order| self.follow(order)).transpose()) {
-                Ok(None) => return Ok(()),
-                Ok(Some(own)) => self.ranks.gather(own)?,
-                Err(lost) => {
-                    #[expect(
-                        clippy::let_underscore_must_use,
-                        reason = "this rank ends with what it has lost, heard or not"
-                    )]
-                    let _ = self.ranks.gather(Parcel::lost(lost));
-                    return Err(lost);
-                }
-            };
-        }
+/// Carries out orders until none follows.
+///
+/// # Errors
+/// The rank that was lost, of which the first one is told; or that the first one has ended.
+pub(super) fn serve(mut part: Box<dyn Part>) -> Result<(), RankError> {
+    loop {
+        let order = part.ranks().tell_message::<Option<Order>>(None);
+        match order.and_then(|order| order.map(|order| part.follow(order)).transpose()) {
+            Ok(None) => return Ok(()),
+            Ok(Some(own)) => part.ranks().gather(own)?,
+            Err(lost) => {
+                #[expect(
+                    clippy::let_underscore_must_use,
+                    reason = "this rank ends with what it has lost, heard or not"
+                )]
+                let _ = part.ranks().gather(Parcel::lost(lost));
+                return Err(lost);
+            }
+        };
+    }
+}
+
+impl<S: Precision, P: Precision, Q: Search<S, P>> Part for Worker<S, P, Q> {
+    fn ranks(&self) -> &dyn Ranks {
+        self.ranks.as_ref()
     }
 
-    /// Carries out an order; the answer of this rank, for the first one to open.
-    pub(super) fn follow(&mut self, order: Order) -> Result<Parcel, RankError> {
+    fn engine(&self) -> &dyn Stepping {
+        &self.engine
+    }
+
+    fn engine_mut(&mut self) -> &mut dyn Stepping {
+        &mut self.engine
+    }
+
+    fn prescribed(&self) -> Option<Prescribed> {
+        self.engine.prescribed()
+    }
+
+    fn columns(&self) -> [Columns; 2] {
+        [self.engine.columns_of(&[]), self.engine.columns_of_all().collect()]
+    }
+
+    fn follow(&mut self, order: Order) -> Result<Parcel, RankError> {
         let Order { crossed, is_to_migrate, what } = order;
         self.hear_of_crossings(&crossed);
         let distributed = if is_to_migrate { self.migrate()? } else { Ok(()) };
@@ -48,8 +67,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Worker<S, P, Q, D
         })
     }
 
-    /// Answers a look, for the first rank to open.
-    pub(super) fn look(&self, what: What) -> Result<Parcel, RankError> {
+    fn look(&self, what: What) -> Result<Parcel, RankError> {
         Ok(match what {
             What::Standing => self.standing(),
             What::Column(place) => self.column(place),

@@ -9,12 +9,12 @@
 //! from their own rank at every step, and then change cells as these do there.
 
 use super::layout::Layout;
-use super::wire::{Crossed, ForcesReport, Record, StepReport, entries};
+use super::wire::{Columns, Crossed, ForcesReport, Order, Record, StepReport, What, entries};
 use crate::method::Failure;
 use crate::method::pairwise::cells::Moved;
 use crate::method::pairwise::observing::Corrected;
 use crate::method::pairwise::search::{Cells, Search};
-use crate::method::pairwise::{Dynamics, Engine, Named, Phase, Stepping};
+use crate::method::pairwise::{Engine, Named, Phase, Prescribed, Stepping};
 use crate::ranks::{Parcel, RankError, Ranks, numbers};
 use serde::{Deserialize, Serialize};
 use std::collections::{HashMap, HashSet};
@@ -26,12 +26,36 @@ use stripmine_kernels::law::Asked;
 use stripmine_kernels::sweep::fast::{OfBand, Passed, Rows, Share};
 
 /// The part of a rank, or why it has none and who is to say so.
-pub(super) type Part<S, P, Q, D> = Result<Worker<S, P, Q, D>, (Box<dyn Ranks>, Failure)>;
+pub(super) type Begun = Result<Box<dyn Part>, (Box<dyn Ranks>, Failure)>;
 
-/// The part of a rank.
-pub(super) struct Worker<S, P, Q, D> {
+/// The part of a rank, whatever its precisions and its search.
+pub(super) trait Part: Send {
+    /// The rank, and how it reaches the others.
+    fn ranks(&self) -> &dyn Ranks;
+
+    /// The engine with its discs.
+    fn engine(&self) -> &dyn Stepping;
+
+    /// The same, to be changed.
+    fn engine_mut(&mut self) -> &mut dyn Stepping;
+
+    /// How the discs that no force moves stand, where they move at all.
+    fn prescribed(&self) -> Option<Prescribed>;
+
+    /// Columns of what is each disc's own, without entries, and columns of what is no one disc's.
+    fn columns(&self) -> [Columns; 2];
+
+    /// Carries out an order; the answer of this rank, for the first one to open.
+    fn follow(&mut self, order: Order) -> Result<Parcel, RankError>;
+
+    /// Answers a look, for the first rank to open.
+    fn look(&self, what: What) -> Result<Parcel, RankError>;
+}
+
+/// The part of a rank, with an engine of some precisions and search.
+pub(super) struct Worker<S, P, Q> {
     pub(super) ranks: Box<dyn Ranks>,
-    pub(super) engine: Engine<S, P, Q, D>,
+    pub(super) engine: Engine<S, P, Q>,
     pub(super) layout: Layout,
     /// Discs by their numbers in the scene, rising: those to tell the ranks below and above of, and those that these tell of.
     pub(super) to: [Vec<u32>; 2],
@@ -46,14 +70,14 @@ pub(super) struct Worker<S, P, Q, D> {
     pub(super) homes: HashMap<u32, usize>,
 }
 
-impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Worker<S, P, Q, D> {
+impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
     /// Takes its part of the start; `engine` has no discs yet.
     ///
     /// # Errors
     /// The failure, and the rank, which is to say so.
     pub(super) fn new(
         ranks: Box<dyn Ranks>,
-        engine: Engine<S, P, Q, D>,
+        engine: Engine<S, P, Q>,
     ) -> Result<Self, (Box<dyn Ranks>, Failure)> {
         let rows = engine.search.rows();
         let is_periodic = engine.search.cells().grid().periodic[1];

@@ -1,0 +1,166 @@
+//! The loops that are compiled for each law and each scheme of a method. The engine calls them through one trait, so that all else of it is
+//! compiled once for its precisions and its search.
+
+use super::search::Search;
+use super::state::State;
+use super::{Carried, CarriedBy, Dynamics, Prescribed, System, WithLaw, WithScheme};
+use std::marker::PhantomData;
+use std::ops::Range;
+use stripmine_kernels::InstructionSet;
+use stripmine_kernels::backend::Precision;
+use stripmine_kernels::integrator::Scheme;
+use stripmine_kernels::isa::{AlignedColumn, ProgramError};
+use stripmine_kernels::law::{Asked, Law};
+use stripmine_kernels::sweep::fast::{Advance, Discs, Met, Motion, Passed};
+
+/// [`Dynamics`] of any method, for an engine with state of precision `S`, forces of precision `P` and search `Q`.
+pub(super) trait Compiled<S, P, Q>: Send + Sync {
+    /// In which form the scheme carries the state, for steps of `dt` (time).
+    fn carried(&self, dt: f64) -> Carried;
+
+    /// As [`Dynamics::prescribed`].
+    fn prescribed(&self, time: f64) -> Option<Prescribed>;
+
+    /// Moves some discs one step on.
+    fn pass(&self, pass: Passing<'_, S, P, Q>) -> Result<Passed, ProgramError>;
+
+    /// Corrects a degree of freedom of some discs.
+    fn correct(&self, discs: Correcting<'_, S, P>);
+
+    /// Adds up the forces of all pairs.
+    fn sweep(&self, sweep: Sweeping<'_, S, P, Q>) -> Result<Met, ProgramError>;
+
+    /// Observes all pairs.
+    fn observe(&self, sweep: Observing<'_, S, P, Q>) -> Result<Met, ProgramError>;
+}
+
+impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Compiled<S, P, Q> for D {
+    fn carried(&self, dt: f64) -> Carried {
+        self.with_scheme(CarriedBy { dt })
+    }
+
+    fn prescribed(&self, time: f64) -> Option<Prescribed> {
+        Dynamics::prescribed(self, time)
+    }
+
+    fn pass(&self, pass: Passing<'_, S, P, Q>) -> Result<Passed, ProgramError> {
+        self.with_scheme(pass)
+    }
+
+    fn correct(&self, discs: Correcting<'_, S, P>) {
+        self.with_scheme(discs);
+    }
+
+    fn sweep(&self, sweep: Sweeping<'_, S, P, Q>) -> Result<Met, ProgramError> {
+        self.with_law(sweep)
+    }
+
+    fn observe(&self, sweep: Observing<'_, S, P, Q>) -> Result<Met, ProgramError> {
+        self.with_law(sweep)
+    }
+}
+
+/// How discs move by a scheme.
+fn motion<C: Scheme>(system: &System, scheme: C) -> Motion<C> {
+    let System { dt, inertia, gravity, noise, .. } = *system;
+    Motion { scheme, dt, inertia, gravity, noise }
+}
+
+/// A pass over some discs.
+pub(super) struct Passing<'a, S, P, Q> {
+    pub(super) discs: Range<usize>,
+    pub(super) system: &'a System,
+    pub(super) state: &'a mut State<S>,
+    pub(super) sums: &'a mut [AlignedColumn<P>; 3],
+    pub(super) search: &'a mut Q,
+    pub(super) steps: u64,
+    pub(super) set: InstructionSet,
+}
+
+impl<S: Precision, P: Precision, Q: Search<S, P>> WithScheme for Passing<'_, S, P, Q> {
+    type Output = Result<Passed, ProgramError>;
+
+    fn with<C: Scheme>(self, scheme: C) -> Self::Output {
+        let Passing { discs, system, state, sums, search, steps, set } = self;
+        let (columns, inverse, ids) = state.for_advance();
+        let (limit, copies) = search.displacement_limit();
+        let advance = Advance {
+            motion: &motion(system, scheme),
+            state: columns
+                .iter_mut()
+                .map(|row| row.iter_mut().map(|column| &mut **column).collect())
+                .collect(),
+            sums: sums.iter_mut().take(system.freedoms).map(|sum| &mut **sum).collect(),
+            inverse,
+            discs,
+            step: steps,
+            ids,
+            corrected: steps == 0,
+            longest_step: system.longest_step,
+        };
+        advance.run(limit, copies, set)
+    }
+}
+
+/// A degree of freedom of discs at the end of the step, from the rows that the pass left.
+pub(super) struct Correcting<'a, S, P> {
+    pub(super) system: &'a System,
+    pub(super) state: &'a State<S>,
+    pub(super) sums: &'a [P],
+    pub(super) steps: u64,
+    pub(super) freedom: usize,
+    pub(super) first: usize,
+    pub(super) to: [&'a mut [f64]; 2],
+}
+
+impl<S: Precision, P: Precision> WithScheme for Correcting<'_, S, P> {
+    type Output = ();
+
+    fn with<C: Scheme>(self, scheme: C) {
+        let Correcting { system, state, sums, steps, freedom, first, to: [values, rates] } = self;
+        let motion = motion(system, scheme);
+        for (disc, (value, rate)) in (first..).zip(values.iter_mut().zip(rates)) {
+            let force = S::from_f64(sums[disc].to_f64());
+            let inverse = system.inertia.inverse(freedom, S::from_f64, || state.inverse(freedom)[disc]);
+            let (who, row) = ((steps, state.id(disc)), state.row(freedom, disc));
+            let corrected = motion.corrected(who, freedom, row, force, inverse);
+            [*value, *rate] = state.value_and_rate(&corrected);
+        }
+    }
+}
+
+/// A sweep with the law.
+pub(super) struct Sweeping<'a, S, P, Q> {
+    pub(super) system: &'a System,
+    pub(super) state: &'a State<S>,
+    pub(super) sums: &'a mut [AlignedColumn<P>; 3],
+    pub(super) search: &'a mut Q,
+    pub(super) asked: Asked,
+    pub(super) set: InstructionSet,
+}
+
+impl<S: Precision, P: Precision, Q: Search<S, P>> WithLaw for Sweeping<'_, S, P, Q> {
+    type Output = Result<Met, ProgramError>;
+
+    fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> Self::Output {
+        let sums = self.sums.each_mut().map(|sum| &mut **sum);
+        self.search.sweep(&law, &self.state.discs(self.system), sums, self.asked, self.set)
+    }
+}
+
+/// A sweep that observes.
+pub(super) struct Observing<'a, S, P, Q> {
+    pub(super) search: &'a Q,
+    pub(super) discs: &'a Discs<'a, f64>,
+    pub(super) moved: f64,
+    pub(super) set: InstructionSet,
+    pub(super) precisions: PhantomData<(S, P)>,
+}
+
+impl<S: Precision, P: Precision, Q: Search<S, P>> WithLaw for Observing<'_, S, P, Q> {
+    type Output = Result<Met, ProgramError>;
+
+    fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> Self::Output {
+        self.search.observe(&law, self.discs, self.moved, self.set)
+    }
+}
