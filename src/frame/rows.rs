@@ -18,12 +18,12 @@ impl<T> Rows<T> {
 
     /// A column of words.
     pub fn text<W: Into<String>>(self, heading: impl Into<String>, of: impl Fn(&T) -> W) -> Rows<T> {
-        self.cell(heading, |item| Cell::Text(of(item).into()))
+        self.column(heading.into(), &|item| Cell::Text(of(item).into()))
     }
 
     /// A column of counts.
     pub fn count<C: TryInto<u64>>(self, heading: impl Into<String>, of: impl Fn(&T) -> C) -> Rows<T> {
-        self.cell(heading, |item| of(item).try_into().map_or(Cell::Nothing, Cell::Count))
+        self.column(heading.into(), &|item| of(item).try_into().map_or(Cell::Nothing, Cell::Count))
     }
 
     /// A column of numbers with a number of decimals; an item may have none.
@@ -33,7 +33,9 @@ impl<T> Rows<T> {
         decimals: usize,
         of: impl Fn(&T) -> N,
     ) -> Rows<T> {
-        self.cell(heading, |item| of(item).into().map_or(Cell::Nothing, |it| Cell::Number(it, decimals)))
+        self.column(heading.into(), &|item| {
+            of(item).into().map_or(Cell::Nothing, |it| Cell::Number(it, decimals))
+        })
     }
 
     /// Two columns: a mean with a number of decimals, and its 95 % half-width; an item may have none.
@@ -52,12 +54,19 @@ impl<T> Rows<T> {
 
     /// A column of numbers of any size, shown with two digits; an item may have none.
     pub fn short<N: Into<Option<f64>>>(self, heading: impl Into<String>, of: impl Fn(&T) -> N) -> Rows<T> {
-        self.cell(heading, |item| of(item).into().map_or(Cell::Nothing, Cell::Short))
+        self.column(heading.into(), &|item| of(item).into().map_or(Cell::Nothing, Cell::Short))
     }
 
     /// A column of any cells.
     pub fn cell<C: Into<Cell>>(self, heading: impl Into<String>, of: impl Fn(&T) -> C) -> Rows<T> {
-        self.cells([heading], |item| [of(item)])
+        self.column(heading.into(), &|item| of(item).into())
+    }
+
+    /// A column, compiled once for all columns of such items.
+    fn column(mut self, heading: String, of: &dyn Fn(&T) -> Cell) -> Rows<T> {
+        self.columns.push(heading);
+        self.rows.iter_mut().for_each(|(item, cells)| cells.push(of(item)));
+        self
     }
 
     /// Several columns, whose number the data have.

@@ -5,9 +5,9 @@
 //! line that was cut off too, without a word.
 
 use super::journal_error::JournalError;
+use super::meter::{for_each_below, side_by_side};
 use super::team::{Runs, Team};
 use crc32fast::Hasher;
-use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -206,12 +206,13 @@ impl Journal {
     {
         if let Some(team) = &self.team {
             // What fails here fails again below.
-            team.part(all).into_par_iter().for_each(|one| _ = run(one));
+            let part = team.part(all);
+            for_each_below(part.len(), &|at| _ = run(part[at]));
             let made = std::mem::take(&mut *self.made.lock().unwrap_or_else(PoisonError::into_inner));
             let runs = team.exchanged(&made).map_err(JournalError::from)?;
             self.known.write().unwrap_or_else(PoisonError::into_inner).extend(runs);
         }
-        all.par_iter().map(&run).collect()
+        side_by_side(all, run)
     }
 
     /// What one process finds, and the others are told.

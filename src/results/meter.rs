@@ -1,8 +1,34 @@
 //! How much of a piece of work is done, while its parts go on side by side.
 
 use super::Progress;
-use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
-use std::sync::Mutex;
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+/// Does the work of every case on all threads: what comes of them, in their order. After a failure no other case is begun.
+///
+/// # Errors
+/// That of a case.
+pub(crate) fn side_by_side<C: Sync, T: Send, E: Send>(
+    cases: &[C],
+    work: impl Fn(&C) -> Result<T, E> + Sync,
+) -> Result<Vec<T>, E> {
+    let results: Vec<Mutex<Option<Result<T, E>>>> = cases.iter().map(|_| Mutex::new(None)).collect();
+    let has_failed = AtomicBool::new(false);
+    for_each_below(cases.len(), &|at| {
+        if !has_failed.load(Ordering::Relaxed) {
+            let result = work(&cases[at]);
+            has_failed.fetch_or(result.is_err(), Ordering::Relaxed);
+            *results[at].lock().unwrap_or_else(PoisonError::into_inner) = Some(result);
+        }
+    });
+    results.into_iter().filter_map(|it| it.into_inner().unwrap_or_else(PoisonError::into_inner)).collect()
+}
+
+/// Does something for every number below `count`, on all threads; compiled once, whatever is done.
+pub(super) fn for_each_below(count: usize, work: &(dyn Fn(usize) + Sync)) {
+    (0..count).into_par_iter().for_each(work);
+}
 
 /// Hears of work that is done, and says the share that it is.
 pub(crate) struct Meter<'p> {
@@ -44,7 +70,7 @@ impl<'p> Meter<'p> {
         cases: &[C],
         work: impl Fn(&C) -> Result<T, E> + Sync,
     ) -> Result<Vec<T>, E> {
-        cases.par_iter().map(|case| work(case).inspect(|_| self.add(1.0))).collect()
+        side_by_side(cases, |case| work(case).inspect(|_| self.add(1.0)))
     }
 
     /// The same, begun with the last case: for cases that take longer and longer.
@@ -56,8 +82,8 @@ impl<'p> Meter<'p> {
         cases: &[C],
         work: impl Fn(&C) -> Result<T, E> + Sync,
     ) -> Result<Vec<T>, E> {
-        let all = cases.par_iter().rev().map(|case| work(case).inspect(|_| self.add(1.0)));
-        let mut all: Vec<T> = all.collect::<Result<_, E>>()?;
+        let cases: Vec<&C> = cases.iter().rev().collect();
+        let mut all = side_by_side(&cases, |case| work(case).inspect(|_| self.add(1.0)))?;
         all.reverse();
         Ok(all)
     }

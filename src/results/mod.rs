@@ -12,7 +12,7 @@ pub use folder::Folder;
 pub(crate) use item::{Item, Progress};
 pub(crate) use journal::{Identity, Journal};
 pub(crate) use journal_error::JournalError;
-pub(crate) use meter::Meter;
+pub(crate) use meter::{Meter, side_by_side};
 pub(crate) use team::Team;
 
 use crate::frame::Frame;

@@ -3,9 +3,9 @@
 use super::ExplainError;
 use super::findings::{Findings, NO_TIME, NoRun, Way, Work, sort};
 use super::plan::in_unit;
+use crate::results::side_by_side;
 use crate::study::rounded;
 use crate::study::trial::{Known, Span, any_number};
-use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde::{Deserialize, Serialize};
 use stripmine_physics::averages::{Outcome, student};
 use stripmine_physics::method::Decides;
@@ -127,8 +127,9 @@ impl Work<'_> {
         if self.case.prepared.seed.is_none() || first.farthest > wanted {
             return Ok(first);
         }
-        let others = (1..STARTS).into_par_iter().map(|number| self.run_of_start(way, step, time, number));
-        let others: Result<Vec<WholeRun>, NoRun> = others.collect();
+        let others: Vec<u64> = (1..STARTS).collect();
+        let others: Result<Vec<WholeRun>, NoRun> =
+            side_by_side(&others, |&number| self.run_of_start(way, step, time, number));
         let Ok(others) = others else { return Ok(WholeRun { farthest: MARGIN * first.farthest, ..first }) };
         let all: Vec<f64> = others.iter().chain([&first]).map(|it| it.farthest).collect();
         Ok(WholeRun { farthest: farthest_of_another(&all), ..first })

@@ -2,10 +2,10 @@
 //! how far chance takes such a mean.
 
 use super::findings::{NO_TIME, NoRun, Way, Work};
+use crate::results::side_by_side;
 use crate::study::first_line;
 use crate::study::state::displaced;
 use crate::study::trial::{Known, Sample, Span, any_number};
-use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde::{Deserialize, Serialize};
 use stripmine_physics::method::Prepared;
 use stripmine_physics::number::significant;
@@ -109,7 +109,7 @@ impl Work<'_> {
         let known_before = samples.len();
         loop {
             let next: Vec<usize> = (samples.len()..samples.len() + at_once).collect();
-            let more: Result<Vec<WholeRun>, String> = next.into_par_iter().map(one).collect();
+            let more: Result<Vec<WholeRun>, String> = side_by_side(&next, |&number| one(number));
             match more {
                 Ok(more) => samples.extend(more),
                 Err(why) if samples.len() < RUNS[0] => return Err(why),

@@ -25,10 +25,9 @@ use super::choice::Choice;
 use super::runs::Runs;
 use super::trial::{RunFailure, Trial};
 use super::{StudyError, Subject};
-use crate::results::{Journal, Meter, Progress};
+use crate::results::{Journal, Meter, Progress, side_by_side};
 use crate::statistics::median;
 use extent::Costs;
-use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use stripmine_physics::method::{Decides, Parameter, Purpose};
 use stripmine_physics::number::significant;
 use survey::{Survey, Variant};
@@ -139,8 +138,7 @@ pub(crate) fn stability(
     let own = |value: f64| Variant { choice: &subject.own, value: Some(value) };
     let column = |&value: &f64| -> Result<(Vec<Cell>, Boundary, Option<String>), StudyError> {
         let known = survey.known(Some(value))?;
-        let cells = steps.par_iter().map(|&step| survey.cell(own(value), &known, step, 1));
-        let cells: Vec<Cell> = cells.collect::<Result<_, StudyError>>()?;
+        let cells = side_by_side(&steps, |&step| survey.cell(own(value), &known, step, 1))?;
         let first = |is_so: fn(Class) -> bool| {
             cells.iter().position(|cell| !is_so(cell.class)).unwrap_or(cells.len())
         };

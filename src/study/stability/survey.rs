@@ -5,6 +5,7 @@ use super::boundary::{Edge, edge};
 use super::dataset::{Boundary, SchemeLimit};
 use super::outcome::{Cell, Class, Ran, Whole};
 use super::reference::{Expected, SEEDS};
+use crate::results::side_by_side;
 use crate::statistics::Spread;
 use crate::study::StudyError;
 use crate::study::alarm::Alarm;
@@ -12,7 +13,6 @@ use crate::study::choice::Choice;
 use crate::study::runs::Runs;
 use crate::study::state::delayed;
 use crate::study::trial::{Course, RunFailure};
-use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use stripmine_physics::method::{Beyond, Decides, Parameter, Prepared, Purpose, Simulation, StepLimit};
 use stripmine_physics::scene::{Overrides, SEED, SceneErrors};
 
@@ -52,8 +52,9 @@ impl Survey<'_> {
         let mut why = String::new();
         for number in 0..subject.trials.references.len() {
             let choice = subject.reference(number);
-            let run = |seed| self.run(Variant { choice: &choice, value }, self.steps[0], seed + 1);
-            let runs: Vec<Ran> = (0..SEEDS).into_par_iter().map(run).collect::<Result<_, StudyError>>()?;
+            let seeds: Vec<_> = (1..=SEEDS).collect();
+            let run = |&seed: &_| self.run(Variant { choice: &choice, value }, self.steps[0], seed);
+            let runs: Vec<Ran> = side_by_side(&seeds, run)?;
             let whole: Result<Vec<Whole>, RunFailure> = runs.into_iter().map(|ran| ran.end).collect();
             match whole {
                 Ok(whole) => {

@@ -7,9 +7,8 @@ use crate::frame::{Frame, Rows};
 use crate::model::clock::Clock;
 use crate::model::machine::MachineModel;
 use crate::model::machines;
-use crate::results::{Lab, Made, Size};
+use crate::results::{Lab, Made, Size, side_by_side};
 use crate::statistics::slope;
-use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use std::f64::consts::PI;
 use stripmine_kernels::isa::OpCounts;
 use stripmine_kernels::ledger::{Ledger, Length};
@@ -73,8 +72,8 @@ pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
 
 /// The curves by the clock of a machine.
 pub(crate) fn density_cost(machine: &MachineModel) -> Result<Made, StudyError> {
-    let figures = OCCUPANCIES.into_par_iter().filter(|&occupancy| occupancy < CEILING).map(list_figures);
-    let figures: Vec<ListFigures> = figures.collect::<Result<_, _>>()?;
+    let occupancies: Vec<f64> = OCCUPANCIES.into_iter().filter(|&occupancy| occupancy < CEILING).collect();
+    let figures = side_by_side(&occupancies, |&occupancy| list_figures(occupancy))?;
     let model = Model::of(machine)?;
     let cells = LATTICES.iter().map(|&cells| model.over_particles(Some(cells), None));
     let densities = OCCUPANCIES.iter().map(|&occupancy| model.over_particles(None, Some(occupancy)));

@@ -5,8 +5,7 @@ use super::density_cost::{CEILING, ListFigures, OCCUPANCIES, list_figures};
 use super::efficiency_table::{Question, model_of, step};
 use crate::console::Failure;
 use crate::frame::{Cell, Rows};
-use crate::results::{Lab, Made, Size};
-use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
+use crate::results::{Lab, Made, Size, side_by_side};
 use stripmine_kernels::isa::OpClass;
 use stripmine_kernels::ledger::{Ledger, Length};
 use stripmine_physics::method::lattice_md::{Part, ledger, rival_ledger};
@@ -15,13 +14,12 @@ use stripmine_physics::method::lattice_md::{Part, ledger, rival_ledger};
 pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let occupancies = [0.01, 0.025].into_iter().chain(OCCUPANCIES);
     let reachable: Vec<f64> = occupancies.filter(|&occupancy| occupancy < CEILING).collect();
-    let figures = reachable.par_iter().map(|&occupancy| list_figures(occupancy));
-    let rows = figures.map(|figures| {
-        let figures = figures?;
+    let rows = side_by_side(&reachable, |&occupancy| -> Result<_, StudyError> {
+        let figures = list_figures(occupancy)?;
         Ok((figures, shares(figures)?))
-    });
+    })?;
     let shares = ["lattice, forces", "lattice, step", "lists, forces", "lists, step"];
-    let frame = Rows::of(rows.collect::<Result<Vec<_>, StudyError>>()?)
+    let frame = Rows::of(rows)
         .number("ρ", 3, |(figures, _)| figures.occupancy)
         .number("contacts a disc, each from both sides", 3, |(figures, _)| figures.contacts)
         .number("candidates a disc", 2, |(figures, _)| figures.candidates)

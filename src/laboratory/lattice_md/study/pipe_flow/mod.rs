@@ -5,9 +5,8 @@ mod pictures;
 use super::StudyError;
 use crate::console::Failure;
 use crate::frame::{Frame, Rows};
-use crate::results::{Lab, Made, Meter, Size};
+use crate::results::{Lab, Made, Meter, Size, side_by_side};
 use crate::statistics::Mean;
-use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use stripmine_physics::method::lattice_md::keys::{
     EXECUTION, FRICTION, NORMAL_DAMPING, SEARCH, SHEAR_DAMPING,
 };
@@ -158,12 +157,11 @@ impl Runs {
             seeds.iter().map(|&seed| (overrides, seed, draws && seed == seeds[0])).collect();
         cases.push((&control, seeds[0], false));
         let meter = Meter::new(cases.len() as f64, lab.progress);
-        let flows = cases.par_iter().map(|&(overrides, seed, keeps_frames)| {
+        let mut flows = side_by_side(&cases, |&(overrides, seed, keeps_frames)| {
             let mut before = 0.0;
             let progress = |share| meter.add(share - std::mem::replace(&mut before, share));
             flow(scene, overrides, seed, keeps_frames, progress)
-        });
-        let mut flows: Vec<Flow> = flows.collect::<Result<_, _>>()?;
+        })?;
         let control = flows.remove(seeds.len());
         let title = overrides.texts().iter().map(|text| format!(", {text}")).collect::<String>();
         Ok(Runs { title: format!("Runs of {scene}{title}"), flows, control })

@@ -3,8 +3,8 @@
 use super::gas::{Gas, PACKING_FRACTIONS, SEEDS, place};
 use crate::frame::{Cell, Frame, Rows};
 use crate::laboratory::lattice_md::study::StudyError;
+use crate::results::side_by_side;
 use crate::statistics::{Spread, slope};
-use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use stripmine_physics::method::lattice_md::keys::{ENGINE, INTEGRATOR};
 use stripmine_physics::method::lattice_md::options::IntegratorKind;
 use stripmine_physics::scene::{self, Overrides, PRECISION};
@@ -29,8 +29,8 @@ const LOST: f64 = 0.02;
 pub(super) fn frames() -> Result<[Frame; 2], StudyError> {
     let starts: Vec<(f64, u64)> =
         PACKING_FRACTIONS.iter().flat_map(|&fraction| SEEDS.map(|seed| (fraction, seed))).collect();
-    let runs = starts.par_iter().map(|&(fraction, seed)| distances(&place(PARTICLES, fraction, seed), STEPS));
-    let runs: Vec<[Vec<f64>; RIVALS.len()]> = runs.collect::<Result<_, StudyError>>()?;
+    let runs =
+        side_by_side(&starts, |&(fraction, seed)| distances(&place(PARTICLES, fraction, seed), STEPS))?;
     let times: Vec<f64> = (1..=STEPS / STRIDE).map(|sample| (sample * STRIDE) as f64 * DT).collect();
     // Packing fraction, variant; root of the mean square distance between a disc and its twin, over discs and seeds, at each sample; rate
     // of the exponential growth from PARTED on and up to LOST.
