@@ -34,11 +34,8 @@ pub struct Column {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Role {
-    /// Words.
     Words,
-    /// A count.
     Count,
-    /// A number.
     Number,
     /// 95 % half-width of the number before it, or the error that the table's note names.
     Error,

@@ -87,7 +87,6 @@ impl<T> Rows<T> {
         Frame::from(&self.table(name, title))
     }
 
-    /// The table.
     pub(crate) fn table(self, name: impl Into<String>, title: impl Into<String>) -> Table {
         let rows = self.rows.into_iter().map(|(_, cells)| cells).collect();
         Table { name: name.into(), title: title.into(), columns: self.columns, rows, notes: vec![] }

@@ -52,7 +52,6 @@ pub(super) struct Unit {
     rate: Option<Quantity>,
 }
 
-/// The ports to memory.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct MemoryPorts {
@@ -96,7 +95,6 @@ pub(crate) enum Resource<'m> {
 /// A resource that an instruction occupies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Occupied<'m> {
-    /// The resource.
     pub(crate) resource: Resource<'m>,
     /// Instructions that find place at once.
     pub count: f64,

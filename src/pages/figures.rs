@@ -46,7 +46,6 @@ impl FigureSpec {
     }
 }
 
-/// An axis.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct AxisSpec {

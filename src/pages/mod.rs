@@ -125,11 +125,9 @@ fn first() -> usize {
 
 /// Data of an item that its page shows.
 pub(crate) struct Shown<'d> {
-    /// Frames.
     pub frames: &'d [Frame],
     /// Pictures that are no charts of frames, by name.
     pub pictures: &'d [(String, Picture)],
-    /// Film.
     pub(crate) film: Option<&'d Film>,
     /// Further files: name and contents.
     pub files: &'d [(String, String)],
@@ -162,7 +160,6 @@ impl Page {
         Ok(Page { name: name.to_owned(), header, text, body })
     }
 
-    /// Title.
     pub(crate) fn title(&self) -> &str {
         &self.header.title
     }

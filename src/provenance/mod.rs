@@ -57,7 +57,6 @@ fn one() -> usize {
 /// Fingerprints of the code that results depend on, crate by crate.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Fingerprints {
-    /// Kernels.
     pub(crate) kernels: String,
     /// Physics, without files, records and processes.
     pub(crate) physics: String,

@@ -25,7 +25,6 @@ pub struct Section {
     pub(crate) details: Vec<String>,
     /// Pictures.
     pub figures: Vec<Figure>,
-    /// Tables.
     pub(crate) tables: Vec<Table>,
     /// Some lines of a program's text, with a line that says what they are.
     pub(crate) excerpt: Option<(String, String)>,
@@ -156,7 +155,6 @@ pub struct JudgedClaim {
     pub expected: String,
     /// Value of the result.
     pub value: String,
-    /// Verdict.
     pub verdict: String,
     /// Reference and note.
     pub(crate) notes: Vec<String>,

@@ -209,7 +209,6 @@ impl Folder {
 
 /// What a folder has of an item.
 enum Known {
-    /// Its section.
     There(Box<Section>),
     /// Files that another version of the program wrote.
     OfAnotherVersion,

@@ -32,7 +32,6 @@ impl Item {
         Page::of(self.name).ok().flatten()
     }
 
-    /// Title.
     pub(crate) fn title(&self) -> String {
         self.page().map_or_else(String::new, |page| page.title().to_owned())
     }

@@ -56,11 +56,9 @@ pub(crate) enum Size {
 /// A finished item.
 #[derive(Default)]
 pub(crate) struct Made {
-    /// Frames.
     pub frames: Vec<Frame>,
     /// Pictures that are no charts of frames, by name.
     pub pictures: Vec<(String, Picture)>,
-    /// Film.
     pub(crate) film: Option<Film>,
     /// Further files: name and contents.
     pub files: Vec<(String, String)>,

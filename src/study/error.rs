@@ -49,7 +49,6 @@ pub(crate) enum StudyError {
     /// The method names something in its trials that it does not observe.
     #[error(transparent)]
     Unknown(#[from] UnknownName),
-    /// The scene.
     #[error(transparent)]
     Scene(#[from] SceneErrors),
     /// The scene as it stands.
@@ -95,7 +94,6 @@ pub(crate) enum StudyError {
         range[0], range[1], significant(bounds[0], 3), significant(bounds[1], 3)
     )]
     OutOfRange { name: &'static str, range: [f64; 2], bounds: [f64; 2] },
-    /// No run came to its end.
     #[error(
         "no run of the scene came to its end as it should; tried were:{}\n  help: lower integrator.dt, or mend what the failures name",
         tried.iter().map(|(what, why)| format!("\n  {what}: {why}")).collect::<String>()

@@ -67,7 +67,6 @@ impl Measured {
         if said.is_empty() { "quiet".to_owned() } else { said.join("; ") }
     }
 
-    /// Whether it was quiet.
     pub(crate) fn was_quiet(&self) -> bool {
         self.state == "quiet"
     }

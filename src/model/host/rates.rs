@@ -9,7 +9,6 @@ use std::collections::BTreeMap;
 pub(crate) struct Amounts {
     /// Steps, one: what a phase takes even without work.
     pub steps: f64,
-    /// Discs.
     pub discs: f64,
     /// Cells of the lattice; none for lists.
     pub cells: f64,

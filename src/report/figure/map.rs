@@ -14,7 +14,6 @@ const THICKNESS: f64 = 16.0;
 /// Digits of a value in its cell.
 const DIGITS: usize = 2;
 
-/// Draws a map.
 pub(crate) fn draw(title: &str, map: &Map) -> Result<Svg, String> {
     let [x, y] = [&map.x, &map.y].map(|axis| Span::new(axis, std::iter::empty()));
     let (x, y) = (x?, y?);

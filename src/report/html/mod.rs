@@ -100,7 +100,6 @@ fn on_dark_paper() -> String {
     format!("@media screen and (prefers-color-scheme:dark){{{}}}\n", style::dark_rules(".picture "))
 }
 
-/// The sections of a chapter.
 fn of(chapter: Chapter, sections: &[Section]) -> Vec<&Section> {
     sections.iter().filter(|section| section.chapter == chapter).collect()
 }

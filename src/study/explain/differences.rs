@@ -34,7 +34,6 @@ struct Cases {
     prepared: Vec<(Prepared, f64)>,
     /// Steps between two rows.
     steps: Vec<u64>,
-    /// The choice of the reference.
     reference: Choice,
 }
 

@@ -52,7 +52,6 @@ pub(crate) struct Way {
 pub(crate) struct Findings {
     /// Ways, the cheapest first, those that were given up last.
     pub ways: Vec<Way>,
-    /// The mean.
     pub mean: Known,
     /// The label of the configuration that it was measured by.
     pub(crate) mean_way: String,
@@ -70,7 +69,6 @@ pub(crate) struct Findings {
     /// Cost of one thread over that of all.
     #[serde(with = "any_number")]
     pub(crate) one_thread: f64,
-    /// Threads.
     pub threads: usize,
     /// What the scene may be modelled without.
     pub without: Vec<Without>,

@@ -88,7 +88,6 @@ impl Kept {
         Kept::within(PLACES.iter().find_map(|(variable, below)| place(&std::env::var_os(variable)?, below)))
     }
 
-    /// In a folder.
     pub(crate) fn within(folder: Option<PathBuf>) -> Kept {
         let here = Provenance::here(String::new(), 0.0);
         let host = format!(

@@ -64,7 +64,6 @@ pub(crate) const LIMIT: f64 = 3600.0;
 /// What is asked for.
 #[derive(Clone, Debug)]
 pub(crate) struct Target {
-    /// The quantity.
     pub quantity: Quantity,
     /// Its place among those observed.
     pub place: usize,
@@ -101,7 +100,6 @@ pub(crate) enum ExplainError {
         longer_trials(*enough, *run)
     )]
     NoMean {
-        /// The quantity.
         quantity: &'static str,
         /// What was seen.
         why: String,
@@ -117,7 +115,6 @@ pub(crate) enum ExplainError {
         unreached.advice()
     )]
     OutOfReach {
-        /// The quantity.
         quantity: &'static str,
         /// What was asked for, and what is known.
         unreached: Unreached,
@@ -129,7 +126,6 @@ pub(crate) enum ExplainError {
         significant(*least, 2)
     )]
     TooQuick {
-        /// The quantity.
         quantity: &'static str,
         /// Wall seconds that were given.
         within: f64,
@@ -146,7 +142,6 @@ pub(crate) enum ExplainError {
         "nothing is known here of this scene\n  help: run it without --estimate once; what is measured is kept"
     )]
     NothingKept,
-    /// What is kept.
     #[error(transparent)]
     Kept(#[from] KeptError),
     /// The journal of trials.

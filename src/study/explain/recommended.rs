@@ -7,11 +7,8 @@ use stripmine_physics::scene::Overrides;
 /// A number with the least and the most that it may be.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct Interval {
-    /// The least.
     pub least: f64,
-    /// What is likely.
     pub(crate) likely: f64,
-    /// The most.
     pub most: f64,
 }
 
@@ -29,7 +26,6 @@ pub(crate) struct Decision {
     pub what: String,
     /// What is recommended.
     pub(crate) chosen: String,
-    /// Why.
     pub(crate) why: String,
     /// The others.
     pub(crate) beside: Vec<Beside>,
@@ -38,7 +34,6 @@ pub(crate) struct Decision {
 /// Something else that may be chosen.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Beside {
-    /// What.
     pub name: String,
     /// Wall time over that of what is recommended, for the same error; none where it does not come to it.
     pub(crate) cost: Option<f64>,
@@ -51,11 +46,9 @@ pub(crate) struct Beside {
 pub(crate) struct Plan {
     /// The scene, as it is named on a command line.
     pub scene: String,
-    /// Its method.
     pub method: &'static str,
     /// The configuration by which it is run: its settings.
     pub way: String,
-    /// The quantity.
     pub quantity: &'static str,
     /// Its unit, empty for a pure number.
     pub unit: &'static str,
@@ -126,7 +119,6 @@ impl Expected {
 /// What the scene may be modelled without.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct LeftOut {
-    /// What.
     pub name: String,
     /// What it changes of the mean, and its bar; none where it was not seen.
     pub change: Option<[f64; 2]>,

@@ -16,7 +16,6 @@ const WORTH: f64 = 0.8;
 /// A mean as a run knows it.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Known {
-    /// The mean.
     #[serde(with = "any_number")]
     pub mean: f64,
     /// Half the width of its interval of 95 %.

@@ -59,7 +59,6 @@ pub(crate) struct Paired {
 pub(crate) struct Broken {
     /// Its place among those compared.
     pub at: usize,
-    /// Why.
     pub(crate) why: String,
 }
 

@@ -49,7 +49,6 @@ impl WorkPrecision {
         self.configurations.iter().find(|it| it.label == label).map_or("", |it| &it.scheme)
     }
 
-    /// Configuration of a run.
     pub(crate) fn of(&self, run: &Run) -> &Configuration {
         &self.configurations[run.configuration]
     }
@@ -89,7 +88,6 @@ pub(crate) struct Configuration {
     pub(crate) each: Result<f64, RunFailure>,
 }
 
-/// A run.
 #[derive(Clone, Debug)]
 pub(crate) struct Run {
     /// Place of its configuration.
@@ -119,7 +117,6 @@ impl Run {
         (!self.costs.is_empty()).then(|| median(self.costs.iter().copied()))
     }
 
-    /// An error.
     pub(crate) fn error(&self, measure: Measure) -> Option<f64> {
         self.outcome.as_ref().ok()?.errors.get(&measure).copied()
     }

@@ -30,7 +30,6 @@ const DOUBTFUL: f64 = 20.0;
 /// that is better than that of independent ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct WaveError {
-    /// The mean.
     pub(super) mean: f64,
     /// Standard error of the mean.
     pub(super) standard_error: f64,

@@ -16,7 +16,6 @@ use super::trajectory::FrameReading;
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-/// The format.
 pub(crate) const FORMAT: OutputFormat = OutputFormat {
     key: "dcd",
     doc: "Snapshots as trajectory.dcd: positions in single precision, small and fast to write. Its frames are evenly apart: the end of a run between two snapshots is left out.",

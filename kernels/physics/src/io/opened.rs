@@ -31,7 +31,6 @@ type Begin = fn(PathBuf, &RunHeader) -> Result<Box<dyn OpenSink>, FileError>;
 type Resume = fn(PathBuf, &RunHeader, Mark, &mut Vec<String>) -> Result<Box<dyn OpenSink>, GrowingFileError>;
 
 impl SinkKind {
-    /// That of a sink.
     pub const fn of<S: Sink>() -> SinkKind {
         SinkKind {
             due: S::DUE,

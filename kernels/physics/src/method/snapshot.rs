@@ -14,7 +14,6 @@ pub struct Snapshot {
 }
 
 impl Snapshot {
-    /// Adds a count.
     pub(crate) fn add_count(&mut self, name: &str, count: u64) {
         self.counters.insert(name.to_owned(), Counter::Count(count));
     }
@@ -24,7 +23,6 @@ impl Snapshot {
         self.counters.insert(name.to_owned(), Counter::Sum(sum));
     }
 
-    /// Adds a column.
     pub(crate) fn add_column(&mut self, name: &str, column: Column) {
         self.columns.push((name.to_owned(), column));
     }

@@ -29,7 +29,6 @@ pub(crate) struct Filling<'a> {
     pub second: Second,
     /// Mass of a disc of the mean radius; others have it times (R/mean)².
     pub mass: f64,
-    /// Seed.
     pub seed: u64,
 }
 

@@ -27,7 +27,6 @@ pub(super) struct Known {
     pub(super) error: Option<Width>,
     /// About when it is known well enough (time); none where nothing tells.
     pub(super) enough_at: Option<f64>,
-    /// Whether it is.
     pub(super) is_enough: bool,
 }
 

@@ -19,7 +19,6 @@ define_words! {
         Mesh = "mesh",
         /// On a hexagonal lattice.
         Hexagonal = "hexagonal",
-        /// In a pipe.
         Pipe = "pipe",
         /// Above a floor.
         Box = "box",

@@ -9,13 +9,11 @@ use crate::words::nearest;
 /// A key that a method does not have.
 #[derive(Clone, Copy)]
 pub(super) struct Unknown<'u> {
-    /// The keys that there are.
     pub(super) keys: &'static KeySet,
     /// Every method.
     pub(super) methods: &'u [&'static Vocabulary],
     /// The section that it was given in.
     pub(super) section: &'static str,
-    /// The name.
     pub(super) name: &'u str,
     /// Whether it comes from the command line, where a key may be given without its section.
     pub(super) overrides: bool,

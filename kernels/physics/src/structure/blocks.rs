@@ -74,7 +74,6 @@ impl Blocks {
 /// The values of a function in a block of looks.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Block {
-    /// Their means.
     pub means: Vec<f64>,
     /// How much is in each.
     pub(crate) weights: Vec<f64>,

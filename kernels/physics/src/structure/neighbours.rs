@@ -325,7 +325,6 @@ pub(super) fn candidates(setting: &Setting, discs: usize) -> f64 {
     (PI * near * near * discs as f64 / (x * y)).min(discs as f64)
 }
 
-/// Numbers of neighbours.
 pub(super) fn neighbour_numbers(setting: &Setting) -> Vec<f64> {
     (0..=most_neighbours(setting)).map(|number| number as f64).collect()
 }

@@ -98,7 +98,6 @@ fn table(all: &[Structure]) -> Frame {
         .frame("structure", "Order, free times and velocities (diameter = m = kT = 1)")
 }
 
-/// Middle of a bin.
 fn middle((width, _): (f64, usize), bin: usize) -> f64 {
     (bin as f64 + 0.5) * width
 }

@@ -11,7 +11,6 @@ use stripmine_physics::method::lattice_md::Part;
 /// The vector instructions of a part of the step, as an assembly listing
 #[derive(Args)]
 pub(super) struct ListingVerb {
-    /// The part
     #[arg(value_parser = part_parser())]
     part: Part,
     #[command(flatten)]

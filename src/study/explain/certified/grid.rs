@@ -41,7 +41,6 @@ struct Point {
 /// Wall times over that of the best of the grid.
 #[derive(Clone, Debug)]
 pub(crate) struct Costs {
-    /// Of the plan.
     pub(crate) plan: f64,
     /// Of its configuration and step, were they run for as long as the reference says; none where their bias is more than the error.
     pub(crate) choice: Option<f64>,

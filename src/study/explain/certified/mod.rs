@@ -38,7 +38,6 @@ pub(crate) struct Effort {
     pub(crate) estimates: usize,
     /// The most that a reference takes.
     pub(crate) reference: f64,
-    /// A grid.
     pub grid: f64,
 }
 
@@ -213,7 +212,6 @@ fn carried_out(
     Ok(all)
 }
 
-/// A plan in a line.
 fn in_a_line(plan: &Plan) -> String {
     let step = plan.step.map(|step| format!(", dt {}", significant(step, 3)));
     let seeds = (plan.seeds > 1).then(|| format!(", {} seeds", plan.seeds));

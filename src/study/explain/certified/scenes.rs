@@ -10,7 +10,6 @@ pub(crate) enum Class {
     Driven,
     /// Soft discs without a drive, elastic and not.
     Granular,
-    /// Hard discs.
     HardDiscs,
     /// Particles in a bath.
     Bath,
@@ -45,7 +44,6 @@ pub(crate) struct Asked {
     text: Option<&'static str>,
     /// Differences from it.
     overrides: &'static [&'static str],
-    /// The quantity.
     pub quantity: &'static str,
     /// Errors of its mean, or of its value where it should be kept.
     pub(crate) errors: &'static [&'static str],

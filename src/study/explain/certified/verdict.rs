@@ -31,7 +31,6 @@ impl Cause {
 pub(super) struct Verdict {
     /// False where the reference is not known well enough.
     pub(crate) is_decided: bool,
-    /// Runs.
     pub runs: usize,
     /// Errors of those that have a mean, over the error asked for.
     pub(crate) errors: Vec<f64>,

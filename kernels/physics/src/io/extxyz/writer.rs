@@ -11,7 +11,6 @@ use crate::particles::Kind;
 use std::io::{self, Write};
 use std::sync::Arc;
 
-/// The format.
 pub(crate) const FORMAT: OutputFormat = OutputFormat {
     key: "trajectory",
     doc: "Snapshots as trajectory.xyz, extended XYZ.",

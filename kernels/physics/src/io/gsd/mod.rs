@@ -30,7 +30,6 @@ use super::opened::SinkKind;
 use super::output_format::{FrameWriting, OutputFormat};
 use super::trajectory::{FrameReading, reader};
 
-/// The format.
 pub(crate) const FORMAT: OutputFormat = OutputFormat {
     key: "gsd",
     doc: "Snapshots as trajectory.gsd, with an index: positions and velocities in single and in double precision, and the row of thermo.csv.",

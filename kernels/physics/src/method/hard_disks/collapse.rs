@@ -45,7 +45,6 @@ pub(super) struct Watch {
 pub(crate) struct Endless {
     /// Whether discs have come to rest; otherwise they collapse.
     pub(crate) rests: bool,
-    /// Events.
     pub events: u64,
     /// How long they took (time).
     pub duration: f64,

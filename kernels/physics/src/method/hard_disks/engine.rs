@@ -56,7 +56,6 @@ pub(crate) struct Occurred {
     pub time: f64,
     /// To which disc, the one with the smaller number of two.
     pub disc: u32,
-    /// With what.
     pub with: Partner,
     /// Of two discs: how.
     pub(crate) impact: Option<Impact>,

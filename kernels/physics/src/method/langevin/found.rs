@@ -24,7 +24,6 @@ const FEWEST: f64 = 3.0;
 pub(super) enum Found {
     /// On a lattice.
     Lattice(LatticeShape, Frame),
-    /// In sectors.
     Sectors(Grid),
     /// In lists, made of sectors, up to so much beyond the cut-off (length).
     Lists(Grid, f64),

@@ -19,7 +19,6 @@ pub(super) struct Colliding {
     pub(super) area: f64,
 }
 
-/// The limits of a scene.
 pub(super) fn step_limits(scene: &Scene, particles: Colliding) -> Vec<StepLimit> {
     let (dt, Colliding { diameter, mass, .. }) = (scene.dt, particles);
     let limit = |name, step: f64, beyond, why: String| StepLimit {

@@ -124,7 +124,6 @@ impl Stepped<Granular> {
 /// Part of a step.
 #[derive(Serialize)]
 struct LedgerRow {
-    /// The part.
     part: &'static str,
     /// Vector length, as a symbol.
     length: &'static str,

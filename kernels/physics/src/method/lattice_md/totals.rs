@@ -7,7 +7,6 @@ pub struct Totals {
     pub deep_disc_steps: u64,
     /// The deepest penetration of such a contact (a fraction of the sum of the radii).
     pub deepest: f64,
-    /// The step of the deepest.
     pub(crate) deepest_step: u64,
     /// Discs in a lattice cell that was another disc's, summed over the steps; more than none only where such conflicts
     /// are resolved.

@@ -9,7 +9,6 @@ pub(crate) struct Conserved {
     pub kinetic: f64,
     /// Potential energy of the softened pairs.
     pub potential: f64,
-    /// Momentum.
     pub momentum: [f64; 3],
     /// Angular momentum about the origin.
     pub(crate) angular_momentum: [f64; 3],

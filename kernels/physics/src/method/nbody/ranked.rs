@@ -76,7 +76,6 @@ pub(super) fn summed<P: Precision>(
     Ok(Box::new(RankedSums { ranks: Mutex::new(Ok(ranks)), own, threads }))
 }
 
-/// The bands of a rank.
 fn bands_of(rank: usize, ranks: usize, bands: usize) -> Range<usize> {
     rank * bands / ranks..(rank + 1) * bands / ranks
 }

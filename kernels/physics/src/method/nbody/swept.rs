@@ -24,7 +24,6 @@ pub(super) struct Swept<P> {
 }
 
 impl<P: backend::Precision> Swept<P> {
-    /// Of bodies.
     pub(super) fn new(softening: f64, bodies: &Bodies, arithmetic: Arithmetic, set: InstructionSet) -> Self {
         let (count, entries) = (bodies.len(), bodies.entries());
         let bodies = Rounded::new(bodies, entries, 1);

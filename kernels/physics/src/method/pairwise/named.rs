@@ -20,7 +20,6 @@ pub(crate) trait Named {
     /// Which of the scene's discs a disc is.
     fn number(&self, disc: usize) -> usize;
 
-    /// The id of a disc.
     fn id(&self, disc: usize) -> u32;
 
     /// Where a disc is (length).

@@ -202,7 +202,6 @@ impl<S: Precision> State<S> {
         &self.inverse[freedom / 2]
     }
 
-    /// The id of a disc.
     pub(crate) fn id(&self, disc: usize) -> u32 {
         self.ids[disc]
     }

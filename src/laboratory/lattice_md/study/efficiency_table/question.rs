@@ -148,7 +148,6 @@ pub(crate) fn counting_model(cells: usize, choice: Choice) -> Result<Model, Shap
     })
 }
 
-/// The model of a question.
 pub(crate) fn model_of(question: &Question) -> Result<Model, QuestionError> {
     let &Question { particles, occupancy, choice } = question;
     if particles == 0 {

@@ -13,7 +13,6 @@ const NONE: u32 = u32::MAX;
 /// Entries of a row that is filled on average to this part.
 const FILLED: f64 = 0.6;
 
-/// The lists.
 #[derive(Clone, Debug)]
 pub(crate) struct Lists {
     domain: Domain,

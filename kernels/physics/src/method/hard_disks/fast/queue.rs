@@ -73,7 +73,6 @@ impl Entry {
     }
 }
 
-/// The queue.
 #[derive(Clone, Debug)]
 pub(crate) struct Queue {
     /// The times, and above them, level by level, what none of a group comes before, but those that are among the next ones.

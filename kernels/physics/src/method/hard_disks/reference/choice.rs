@@ -16,7 +16,6 @@ pub fn mask(name: &str) -> Option<Mask> {
 /// A mask that may be chosen.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Candidate {
-    /// Its name.
     pub name: &'static str,
     /// Predictions of pairs for each collision, about; infinite where it does not serve.
     pub(crate) predictions: f64,

@@ -23,7 +23,6 @@ use tournament::Tournament;
 struct Event {
     /// When (time); infinite if nothing.
     time: f64,
-    /// What.
     with: Partner,
 }
 

@@ -5,7 +5,6 @@ use stripmine_kernels::law::granular::Contact;
 /// A contact of two discs that approach each other head on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct HeadOn {
-    /// The contact law.
     pub law: Contact,
     /// Speed of approach (length/time).
     pub speed: f64,

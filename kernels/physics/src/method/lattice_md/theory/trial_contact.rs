@@ -66,7 +66,6 @@ impl Trial {
         }
     }
 
-    /// The acceleration of the overlap.
     fn acceleration(&self, overlap: f64, velocity: f64) -> f64 {
         if overlap <= 0.0 {
             return 0.0;

@@ -54,7 +54,6 @@ impl Layout {
         Layout { rows, is_periodic, bands, first }
     }
 
-    /// The band of a row.
     pub(super) fn band(&self, row: usize) -> usize {
         self.bands.partition_point(|band| band.end <= row).min(self.bands.len() - 1)
     }

@@ -77,7 +77,6 @@ pub(crate) trait Search<S: Precision, P: Precision>: Send + Sync {
     /// The rows of cells that a sweep is made for.
     fn rows(&self) -> Rows;
 
-    /// The cells.
     fn cells(&self) -> &Self::Cells;
 
     /// The same, to be changed.
