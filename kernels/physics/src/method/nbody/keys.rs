@@ -41,8 +41,6 @@ define_keys! {
         "Eccentricity of the ellipse.";
     MASS_RATIO = "particles" "mass_ratio", Number(AtMost(1.0)), "", Is("1.0"), KEPLER,
         "Mass of the second body over that of the first.";
-    ANGLE = "particles" "angle", Number(Finite), "rad", Is("0.0"), KEPLER,
-        "Angle between the long axis of the ellipse and the axis x.";
     SEPARATION = "particles" "separation", Number(Positive), "length", Is("8.0"), CLUSTERS,
         "Distance of the centres of the two spheres.";
     APPROACH = "particles" "approach", Number(Finite), "length/time", Is("0.3"), CLUSTERS,

@@ -23,8 +23,6 @@ pub struct Start {
     pub eccentricity: f64,
     /// Of the two bodies on it.
     pub(crate) mass_ratio: f64,
-    /// Of its long axis to the axis x (rad).
-    pub angle: f64,
     /// Of two clusters (length).
     pub separation: f64,
     /// Their speed (length/time).
@@ -78,7 +76,6 @@ impl Default for Scene {
                 expansion: 0.0,
                 eccentricity: 0.5,
                 mass_ratio: 1.0,
-                angle: 0.0,
                 separation: 8.0,
                 approach: 0.3,
                 bodies: vec![],
@@ -106,7 +103,6 @@ impl Start {
             StartKind::Kepler => {
                 binding.number(&ECCENTRICITY, &mut self.eccentricity);
                 binding.number(&MASS_RATIO, &mut self.mass_ratio);
-                binding.number(&ANGLE, &mut self.angle);
             }
             StartKind::FigureEight => {}
             StartKind::List => binding.rows(&BODIES, &mut self.bodies),

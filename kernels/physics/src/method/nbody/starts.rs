@@ -15,7 +15,7 @@ pub(crate) type Body = (f64, [f64; 3], [f64; 3]);
 pub fn bodies(start: &Start, softening: f64, constant: f64) -> Vec<Body> {
     let root = constant.sqrt();
     match start.kind {
-        StartKind::Kepler => faster(turned(kepler(start.eccentricity, start.mass_ratio), start.angle), root),
+        StartKind::Kepler => faster(kepler(start.eccentricity, start.mass_ratio), root),
         StartKind::FigureEight => faster(figure_eight(), root),
         StartKind::List => {
             let body = |row: &Vec<f64>| (row[0], [row[1], row[2], row[3]], [row[4], row[5], row[6]]);
@@ -38,13 +38,6 @@ fn faster(mut bodies: Vec<Body>, times: f64) -> Vec<Body> {
 }
 
 /// Two bodies about their centre of mass, at their nearest: half axis, total mass and G are 1.
-/// Bodies turned by an angle (rad) about the axis z.
-fn turned(bodies: Vec<Body>, angle: f64) -> Vec<Body> {
-    let (sine, cosine) = (libm::sin(angle), libm::cos(angle));
-    let turn = |[x, y, z]: [f64; 3]| [cosine * x - sine * y, sine * x + cosine * y, z];
-    bodies.into_iter().map(|(mass, place, velocity)| (mass, turn(place), turn(velocity))).collect()
-}
-
 fn kepler(eccentricity: f64, mass_ratio: f64) -> Vec<Body> {
     let share = mass_ratio / (1.0 + mass_ratio);
     let distance = 1.0 - eccentricity;
