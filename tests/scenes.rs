@@ -126,7 +126,7 @@ fn the_cells_of_the_source_can_be_asked_for() {
 }
 
 /// Keys that no preset and no scene of the gallery gives, each with why it is there.
-const NOT_SHOWN: [(&str, &str); 36] = [
+const NOT_SHOWN: [(&str, &str); 35] = [
     ("integrator.damping", "the friction of the source's integrator, which the item of energies varies"),
     ("integrator.on_long_step", "a run goes on through rare discs that are too fast; thermo.csv counts them"),
     ("law.contact_arm", "contacts as LAMMPS has them, for comparison"),
@@ -146,7 +146,6 @@ const NOT_SHOWN: [(&str, &str); 36] = [
     ("output.lammps_data", "a run that LAMMPS continues"),
     ("output.lammps_dump", "for programs that read dumps"),
     ("output.losses", "no table where many particles may be lost"),
-    ("output.plain_xyz", "for viewers that read nothing but plain XYZ"),
     ("output.structure_share", "all rows and snapshots of a small system"),
     ("output.trajectory", "no text where another format is written"),
     ("particles.expansion", "a sphere or shell that expands"),

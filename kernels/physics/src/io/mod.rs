@@ -12,7 +12,6 @@ pub(crate) mod lock;
 pub(crate) mod opened;
 pub mod output_format;
 pub mod owned_folder;
-mod plain_xyz;
 pub mod regular_file;
 pub mod replace;
 pub mod run_moment;
@@ -26,8 +25,7 @@ use output_format::OutputFormat;
 use std::path::{Path, PathBuf};
 
 /// The formats that a run writes its particles in, in the order of their keys. Frames are read from the first that has any.
-pub static FORMATS: &[OutputFormat] =
-    &[extxyz::FORMAT, dcd::FORMAT, gsd::FORMAT, lammps::DUMP, lammps::DATA, plain_xyz::FORMAT];
+pub static FORMATS: &[OutputFormat] = &[extxyz::FORMAT, dcd::FORMAT, gsd::FORMAT, lammps::DUMP, lammps::DATA];
 
 /// A file that the system would not let be read or written.
 #[derive(Debug, thiserror::Error)]
