@@ -32,14 +32,13 @@ fn length(v: [f64; 3]) -> f64 {
 }
 
 /// What is observed, in the order of the columns.
-pub(super) const OBSERVABLES: [Observable<Seen>; 13] = observables! {
+pub(super) const OBSERVABLES: [Observable<Seen>; 12] = observables! {
     "time", "time", Time, |seen| seen.time, "The time.";
     "kinetic", "energy", Instant, |seen| seen.conserved.kinetic, "Kinetic energy.";
     "potential", "energy", Instant, |seen| seen.conserved.potential, "Energy of the softened pairs.";
     "energy_error", "", Kept, |seen| seen.energy_error, "The energy less that of the start, over the larger of its magnitude and the kinetic energy at the start.";
     "virial_ratio", "", Instant, |seen| seen.virial_ratio(), "Kinetic energy over the magnitude of the potential energy: 0.5 in equilibrium.";
     "momentum", "mass·length/time", Kept, |seen| seen.momentum(), "Magnitude of the momentum.";
-    "momentum_x", "mass·length/time", Kept, |seen| seen.conserved.momentum[0], "Momentum along x.";
     "angular_momentum_x", "mass·length²/time", Kept, |seen| seen.conserved.angular_momentum[0], "Angular momentum about the origin, along x.";
     "angular_momentum_y", "mass·length²/time", Kept, |seen| seen.conserved.angular_momentum[1], "The same along y.";
     "angular_momentum_z", "mass·length²/time", Kept, |seen| seen.conserved.angular_momentum[2], "The same along z.";
