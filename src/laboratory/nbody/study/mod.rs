@@ -1,5 +1,6 @@
 //! Studies of bodies that attract each other.
 
 pub(super) mod collapse;
+pub(super) mod ellipse;
 pub(super) mod energy;
 pub(super) mod rates;
