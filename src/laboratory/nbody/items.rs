@@ -1,6 +1,6 @@
 //! Items of this method: each a study, with its page in the folder `pages`.
 
-use super::study::{collapse, ellipse, energy, rates};
+use super::study::{collapse, energy, rates};
 use crate::console::Failure;
 use crate::laboratory::programs;
 use crate::laboratory::running::prepared;
@@ -13,7 +13,6 @@ pub(super) const ITEMS: &[Item] = &[
     Item::of("nbody-energy", energy::made),
     Item::of("nbody-rates", rates::made),
     Item::of("nbody-collapse", collapse::made),
-    Item::of("nbody-ellipse", ellipse::made),
     Item::of("nbody-programs", counted),
 ];
 

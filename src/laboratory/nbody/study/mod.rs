@@ -1,6 +1,5 @@
 //! Studies of bodies that attract each other.
 
 pub(super) mod collapse;
-pub(super) mod ellipse;
 pub(super) mod energy;
 pub(super) mod rates;
