@@ -13,8 +13,7 @@ macro_rules! embedded {
 }
 
 /// The machines that come with the program: name and text of the file.
-const PRESETS: &[(&str, &str)] =
-    embedded!["paper", "cray-1", "cray-1-unchained", "cyber-205", "cray-y-mp-el", "sx-aurora"];
+const PRESETS: &[(&str, &str)] = embedded!["paper", "cray-1", "cyber-205", "cray-y-mp-el", "sx-aurora"];
 
 /// Why there is no such machine.
 #[derive(Debug, thiserror::Error)]
