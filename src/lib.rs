@@ -22,13 +22,18 @@
 //! use stripmine_kernels::Program;
 //! use stripmine_kernels::isa::{Array, Machine, Slot, Text};
 //!
+//! /// fx = x y, for every element.
 //! struct Product;
+//!
+//! const X: Slot<f64> = Slot::new(Array::X);
+//! const Y: Slot<f64> = Slot::new(Array::Y);
+//! const FX: Slot<f64> = Slot::new(Array::Fx);
 //!
 //! // SAFETY: the body names the same slots whenever it is called.
 //! unsafe impl Text for Product {
 //!     type Lane = f64;
 //!     fn body<M: Machine<Lane = f64>>(&self, m: M) {
-//!         m.store(Slot::new(Array::Fx), m.load(Slot::new(Array::X)) * m.load(Slot::new(Array::Y)));
+//!         m.store(FX, m.load(X) * m.load(Y));
 //!     }
 //! }
 //!

@@ -37,7 +37,7 @@
 //! use stripmine_physics::origin::Origin;
 //! use stripmine_physics::run::{Existing, Finished, Job, averages_of, run};
 //!
-//! let changes = ["run.steps=200".to_owned(), "run.observe_every=10".to_owned()];
+//! let changes = ["run.steps=200".to_owned(), "run.thermo_every=10".to_owned()];
 //! let (prepared, method) = load("two-discs", &changes, METHODS)?;
 //! let folder = std::env::temp_dir().join(format!("two-discs-{}", std::process::id()));
 //! let program = Origin {
