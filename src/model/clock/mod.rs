@@ -2,7 +2,7 @@
 //!
 //! Every clock has the form of Hennessy and Patterson's strip-mining formula,
 //! `T(n) = ceil(n / MVL) (T_loop + T_start) + n T_chime`, and differs in what it takes for its three numbers
-//! ([`Charge`]). The list is a ladder: each rung after the first two adds one property of vector machines to the rung
+//! (its charge). The list is a ladder: each rung after the first two adds one property of vector machines to the rung
 //! before it, so that a table shows what that property is worth.
 
 mod convoy;
