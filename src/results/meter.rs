@@ -8,7 +8,7 @@ use std::sync::{Mutex, PoisonError};
 /// Does the work of every case on all threads: what comes of them, in their order. After a failure no other case is begun.
 ///
 /// # Errors
-/// That of a case.
+/// The first error, in the order of the cases.
 pub(crate) fn side_by_side<C: Sync, T: Send, E: Send>(
     cases: &[C],
     work: impl Fn(&C) -> Result<T, E> + Sync,

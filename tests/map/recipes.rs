@@ -24,7 +24,7 @@ pub fn recipe(name: &str) -> (String, Vec<String>) {
     (recipe.to_owned(), places.map(str::to_owned).collect())
 }
 
-/// What git says; nothing where there is no git or no history.
+/// The answer of git; nothing without git or a history.
 fn git(arguments: &[&str]) -> Option<String> {
     let output = Command::new("git").arg("-C").arg(root()).args(arguments).output().ok()?;
     output.status.success().then(|| String::from_utf8(output.stdout).unwrap())

@@ -10,7 +10,7 @@ use stripmine_kernels::backend::Precision;
 /// Carries out orders until none follows.
 ///
 /// # Errors
-/// The rank that was lost, of which the first one is told; or that the first one has ended.
+/// [`RankError`]: a rank was lost, which the first rank is told, or the first rank has ended.
 pub(super) fn serve(mut part: Box<dyn Part>) -> Result<(), RankError> {
     loop {
         let order = part.ranks().tell_message::<Option<Order>>(None);

@@ -36,7 +36,7 @@ pub(super) trait Part: Send {
     /// The engine with its discs.
     fn engine(&self) -> &dyn Stepping;
 
-    /// The same, to be changed.
+    /// Mutable access to the engine.
     fn engine_mut(&mut self) -> &mut dyn Stepping;
 
     /// How the discs that no force moves stand, where they move at all.
