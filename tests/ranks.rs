@@ -186,6 +186,24 @@ fn bits_are_those_of_one_rank() {
     assert!(compared >= 25, "{compared}");
 }
 
+/// At step 207 a disc is on the rim of its cell to the last bit of f32: all ranks must leave it in this cell.
+#[test]
+fn a_disc_on_a_rim_is_in_one_cell() {
+    let more = [
+        "search.by=lattice",
+        "machine.precision=f32",
+        "particles.seed=45",
+        "domain.periodic=[true, false]",
+        "domain.sides=[17.5, 161.5]",
+        "particles.count=1367",
+        "integrator.values=4",
+    ];
+    let prepared = SCENES[1].prepared(&more.map(str::to_owned)).unwrap();
+    let alone = seen(&prepared, 1, 220).unwrap();
+    assert_eq!(alone.failure, None);
+    assert_eq!(difference(&alone, &seen(&prepared, 8, 220).unwrap()), None);
+}
+
 /// A state goes on with on another number of ranks.
 #[test]
 fn a_run_goes_on_with_on_another_number_of_ranks() {

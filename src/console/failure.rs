@@ -120,7 +120,7 @@ impl<E: Reported + 'static> From<E> for Failure {
 #[derive(Serialize)]
 struct Document<'f> {
     error: Report,
-    /// All mistakes, where a scene has some; `error` is the first.
+    /// All mistakes of an input file, if there are any; `error` is the first.
     #[serde(skip_serializing_if = "Option::is_none")]
     errors: Option<&'f SceneErrors>,
 }
@@ -205,7 +205,7 @@ impl Failure {
         }
     }
 
-    /// The mistakes of a scene.
+    /// Mistakes of an input file.
     fn mistakes(&self) -> Option<&SceneErrors> {
         match self {
             Failure::Options(errors) => Some(errors),

@@ -278,7 +278,7 @@ fn invariants_name_their_tests() {
 #[test]
 fn the_readme_is_short_and_has_the_test_command_alone_on_a_line() {
     let text = text("README.md");
-    assert!(text.lines().count() <= 150);
+    assert!(text.lines().count() <= 90);
     assert!(text.lines().any(|line| line == "cargo test --workspace"));
 }
 

@@ -137,15 +137,11 @@ impl Reported for FolderError {
             | FolderError::InTheWay { path, .. }
             | FolderError::Held(path, _)
             | FolderError::Exists(path, _)
-            | FolderError::NoFile(path) => Some(FilePlace::at(path)),
+            | FolderError::NoFile(path, _) => Some(FilePlace::at(path)),
             FolderError::List { file, line, .. } => {
                 Some(FilePlace { line: Some(*line), ..FilePlace::at(file) })
             }
             FolderError::File(error) => error.place(),
         }
-    }
-
-    fn remedy(&self) -> Option<String> {
-        if let FolderError::Exists(_, remedy) = self { Some((*remedy).to_owned()) } else { None }
     }
 }

@@ -197,7 +197,10 @@ fn paragraphs(errors: &[InputError]) -> String {
         count => {
             let more = errors.iter().any(|error| error.reason == Reason::More);
             let count = if more { format!("more than {}", count - 1) } else { count.to_string() };
-            format!("{count} mistakes\n\n{}\n", all.join("\n\n"))
+            let file = &errors[0].file;
+            let is_one = errors.iter().all(|error| error.file == *file);
+            let place = if is_one { format!(" in {}", quoted::quoted(file)) } else { String::new() };
+            format!("{count} mistakes{place}\n\n{}\n", all.join("\n\n"))
         }
     }
 }

@@ -10,7 +10,8 @@ use std::path::{Path, PathBuf};
 pub enum FolderError {
     /// It holds something else.
     #[error(
-        "{} was not written by this command, or not by it alone: it {}holds {names}; move this away, or choose another --out",
+        "{} was not written by this command, or not by it alone: it {}holds {names}; expected a folder that is new, empty or the \
+         command's own; move these files away, or choose another --out",
         quoted::path(folder),
         list.map_or_else(String::new, |list| format!("has no {list}, and "))
     )]
@@ -52,9 +53,9 @@ pub enum FolderError {
     /// A file is there that is to stay, with what to do.
     #[error("{file} is there already: {remedy}", file = quoted::path(.0), remedy = .1)]
     Exists(PathBuf, &'static str),
-    /// A folder, a link or a device in the place of a file; it is not replaced.
-    #[error("{} is not an ordinary file: choose another place", quoted::path(.0))]
-    NoFile(PathBuf),
+    /// A folder or a device that has the name of a file to be written, and the advice. It is not replaced.
+    #[error("{file} is not an ordinary file: {remedy}", file = quoted::path(.0), remedy = .1)]
+    NoFile(PathBuf, &'static str),
     /// The system.
     #[error(transparent)]
     File(#[from] FileError),

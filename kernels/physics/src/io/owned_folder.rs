@@ -275,7 +275,10 @@ impl OwnedFolder {
         overwrite: bool,
     ) -> Result<(), FolderError> {
         let Holds::Files { heading, is_shared, .. } = self.kind.holds else { return Ok(()) };
-        let new: Vec<&str> = names.into_iter().filter(|name| !self.is_listed(name)).collect();
+        // A list that lacks its own name is still the list.
+        let is_new =
+            |name: &&str| !self.is_listed(name) && (*name != self.kind.list || self.listed.is_none());
+        let new: Vec<&str> = names.into_iter().filter(is_new).collect();
         // Without a list, a file of its name is another's, too.
         let list = self.listed.is_none().then_some(self.kind.list);
         let mut paths = new.iter().copied().chain(list).map(|name| self.file(name));

@@ -62,7 +62,9 @@ pub fn may_put(path: &Path, overwrite: bool, remedy: &'static str) -> Result<(),
     match path.symlink_metadata() {
         Ok(_) if !overwrite => Err(FolderError::Exists(path.to_owned(), remedy)),
         // A link is replaced, not followed.
-        Ok(there) if !there.is_file() && !there.is_symlink() => Err(FolderError::NoFile(path.to_owned())),
+        Ok(there) if !there.is_file() && !there.is_symlink() => {
+            Err(FolderError::NoFile(path.to_owned(), remedy))
+        }
         _ => Ok(()),
     }
 }

@@ -4,7 +4,7 @@
 //! a run      holds a dyn Simulation
 //! Stepped    the loop over steps, the clock, checkpoints: once, here
 //! Stepwise   what a method gives: how a step is done, what is seen of it, what is said at the end
-//! state      what a step changes: discs found in pairs (pairwise), vector programs (lattice_md), bodies (nbody)
+//! state      what a step changes: discs found in pairs (pairwise), discs on a lattice (lattice_md), bodies (nbody)
 //! ```
 
 use super::clock::{Clock, Until};
@@ -13,7 +13,7 @@ use super::observed::values;
 use super::pairwise::Elapsed;
 use super::simulation::{RunWarning, Simulation};
 use super::snapshot::Snapshot;
-use super::{Observable, PerParticle};
+use super::{Observable, PerParticle, RANK_ENDED};
 use crate::io::checkpoint::Column;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
@@ -155,8 +155,12 @@ impl<M: Stepwise> Simulation for Stepped<M> {
         let begun = Instant::now();
         let done = self.step_until(until, interrupted);
         self.seconds += begun.elapsed().as_secs_f64();
-        // A step may fail by what it sees without the particles of a rank: the loss is named first.
-        self.state.check_ranks().and(done)
+        match (self.state.check_ranks(), done) {
+            // The state was ended to continue with fewer particles, and that failed.
+            (Err(ended), Err(failure)) if ended.kind != RANK_ENDED => Err(failure),
+            // A step may fail by what it sees without the particles of a rank: the loss is named first.
+            (ranks, done) => ranks.and(done),
+        }
     }
 
     fn clock(&self) -> Clock {

@@ -95,6 +95,16 @@ pub enum FinishedError {
         /// The function.
         name: &'static str,
     },
+    /// A function that all runs have written, each over other distances, wave numbers or times.
+    #[error(
+        "{file} of these runs has no value of {name} that all of them have: expected runs of one box and one [output]; average them one by one"
+    )]
+    NothingShared {
+        /// The function.
+        name: &'static str,
+        /// The file that each run has.
+        file: &'static str,
+    },
 }
 
 impl Reported for FinishedError {
@@ -106,7 +116,8 @@ impl Reported for FinishedError {
             FinishedError::OtherScene { .. }
             | FinishedError::Twice { .. }
             | FinishedError::OneNoise { .. }
-            | FinishedError::NoStructure { .. } => Class::Usage,
+            | FinishedError::NoStructure { .. }
+            | FinishedError::NothingShared { .. } => Class::Usage,
         }
     }
 
@@ -126,6 +137,7 @@ impl Reported for FinishedError {
             | FinishedError::Twice { other: file, .. }
             | FinishedError::OneNoise { other: file, .. }
             | FinishedError::NoStructure { folder: file, .. } => Some(FilePlace::at(file)),
+            FinishedError::NothingShared { .. } => None,
         }
     }
 }

@@ -4,6 +4,7 @@ use super::finished::FinishedError;
 use super::folder::SUMMARY;
 use crate::averages::of_independent;
 use crate::io::{FileError, regular_file};
+use crate::quoted;
 use crate::structure::{OBSERVABLES, Observable};
 use serde::Serialize;
 use serde_json::Value;
@@ -77,10 +78,27 @@ pub fn functions_of<'f>(folders: impl Iterator<Item = &'f Path>) -> Result<Vec<F
     let folders: Vec<&Path> = folders.collect();
     let summaries: Vec<Value> = folders.iter().map(|folder| summary(folder)).collect::<Result<_, _>>()?;
     let of = |observable: &'static Observable| {
-        let files = folders.iter().map(|folder| points(&folder.join(observable.file), observable));
-        let files: Option<Vec<Vec<Point>>> = files.collect::<Result<_, _>>()?;
+        let Observable { name, file, .. } = *observable;
+        let runs = folders.len();
+        let files = folders.iter().map(|folder| table(&folder.join(file), observable));
+        let files: Option<Vec<Table>> = files.collect::<Result<_, _>>()?;
         let Some(files) = files else { return Ok(None) };
-        let mut points = joined(&files);
+        let files: Result<Vec<Vec<Point>>, String> = files.into_iter().map(Table::points).collect();
+        let mut points = match files {
+            Ok(files) => joined(&files),
+            Err(doubt) => {
+                let (points, headlines) = (vec![], vec![]);
+                return Ok(Some(Function {
+                    name,
+                    file,
+                    runs,
+                    points,
+                    headlines,
+                    doubt: Some(doubt),
+                    observable,
+                }));
+            }
+        };
         if observable.is_density_of_places() {
             // Where no disc was ever seen, nothing tells how seldom one is there.
             points.iter_mut().filter(|point| point.mean == 0.0).for_each(|point| point.bar = f64::NAN);
@@ -93,9 +111,7 @@ pub fn functions_of<'f>(folders: impl Iterator<Item = &'f Path>) -> Result<Vec<F
         };
         let headlines = observable.headlines.iter();
         let headlines = headlines.filter_map(|it| headline(it.name, it.unit)).collect();
-        let Observable { name, file, .. } = *observable;
         let doubt = doubt(&summaries, name);
-        let runs = folders.len();
         let is_known = !points.is_empty() || doubt.is_some();
         Ok(is_known.then_some(Function { name, file, runs, points, headlines, doubt, observable }))
     };
@@ -113,9 +129,10 @@ pub fn function_of<'f>(
     let found = functions_of(folders.clone())?.into_iter().find(|it| it.name == observable.name);
     found.ok_or_else(|| {
         let mut without = folders.clone().filter(|folder| !folder.join(observable.file).exists());
-        // Where each has written its file, no place is in all of them.
-        let folder = without.next().or(folders.clone().last()).map(Path::to_owned).unwrap_or_default();
-        FinishedError::NoStructure { folder, name: observable.name }
+        match without.next() {
+            Some(folder) => FinishedError::NoStructure { folder: folder.to_owned(), name: observable.name },
+            None => FinishedError::NothingShared { name: observable.name, file: observable.file },
+        }
     })
 }
 
@@ -156,8 +173,28 @@ fn read(path: &Path, most: u64) -> Result<Option<Vec<u8>>, FinishedError> {
     }
 }
 
-/// The points of a file; none where there is no such file.
-fn points(path: &Path, observable: &Observable) -> Result<Option<Vec<Point>>, FinishedError> {
+/// Content of a function's file.
+enum Table {
+    Points(Vec<Point>),
+    /// Columns that another version of the program has written: the heading.
+    OtherColumns(String),
+}
+
+impl Table {
+    /// The points; a sentence if there are none that this version can read.
+    fn points(self) -> Result<Vec<Point>, String> {
+        match self {
+            Table::Points(points) => Ok(points),
+            Table::OtherColumns(heading) => Err(format!(
+                "its file has the columns `{}` of another version of the program; run the scene again",
+                quoted::message(&heading)
+            )),
+        }
+    }
+}
+
+/// Table in a file; `None` if the file does not exist.
+fn table(path: &Path, observable: &Observable) -> Result<Option<Table>, FinishedError> {
     let damaged = |line, expected| FinishedError::Damaged { file: path.to_owned(), line, expected };
     let Some(bytes) = read(path, LONGEST)? else { return Ok(None) };
     let text = String::from_utf8(bytes).map_err(|error| {
@@ -171,16 +208,20 @@ fn points(path: &Path, observable: &Observable) -> Result<Option<Vec<Point>>, Fi
     };
     let mut lines = (1..).zip(text.split_inclusive('\n'));
     let whole = |line: &str| line.strip_suffix('\n').map(|line| line.trim_end_matches('\r').to_owned());
-    let first = lines.next().and_then(|(_, line)| whole(line));
-    if first.is_none_or(|first| first != heading(observable)) {
-        return Err(damaged(1, format!("`{}`", heading(observable))));
-    }
     let count = observable.over.len() + 2;
+    match lines.next().and_then(|(_, line)| whole(line)) {
+        Some(first) if first == heading(observable) => {}
+        // Versions differ in the number of columns; damage rarely leaves a heading whole.
+        Some(first) if first.ends_with(",error") && first.split(',').count() != count => {
+            return Ok(Some(Table::OtherColumns(first)));
+        }
+        _ => return Err(damaged(1, format!("`{}`", heading(observable)))),
+    }
     let row = |(number, line): (usize, &str)| {
         let row = whole(line).and_then(|line| point(&line));
         row.ok_or_else(|| damaged(number, format!("{count} numbers and the end of the line")))
     };
-    lines.map(row).collect::<Result<_, _>>().map(Some)
+    lines.map(row).collect::<Result<_, _>>().map(Table::Points).map(Some)
 }
 
 /// What a run says at its end; nothing where it has not ended.

@@ -30,7 +30,6 @@ const EVENT_COUNT: &str = "events";
 
 /// Writes the files of a run.
 pub(super) struct Recorder {
-    folder: RunFolder,
     identity: Identity,
     schedule: Schedule,
     output: Output,
@@ -39,6 +38,8 @@ pub(super) struct Recorder {
     /// When the next row, the next snapshot and the next checkpoint are due.
     due: [Option<Until>; 3],
     growing: Growing,
+    /// Dropped after what grows in it: until the last frame is written, no other process may have the folder.
+    folder: RunFolder,
     /// What is summed up of the structure.
     structured: Structured,
     /// The rows of observables, those of earlier sessions among them.

@@ -135,7 +135,7 @@ impl Running {
         self.method.seen.borrow_mut().get_or_insert_with(found).clone()
     }
 
-    /// The same; no numbers where the pairs' energy could not be found, which [`Simulation::check`] has said before.
+    /// The same; no numbers where the pairs' energy could not be found, which [`check`](crate::method::Simulation::check) has reported before.
     fn conserved_or_nothing(&self) -> Conserved {
         self.conserved().unwrap_or_else(|_| Conserved::of(&self.state.bodies, f64::NAN))
     }

@@ -7,8 +7,8 @@ use crate::method::{Culprit, Failure};
 use std::ops::Range;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::over_pieces;
-use stripmine_kernels::sweep::fast::Grid;
 use stripmine_kernels::sweep::fast::lattice::Taken;
+use stripmine_kernels::sweep::fast::{DisplacementLimit, Grid};
 
 /// What was found when discs were looked for: changes of cells, and discs that belong to no cell.
 #[derive(Default)]
@@ -116,7 +116,8 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
     /// Brings the cells up to date where there are no lists.
     pub(super) fn keep_in_cells(&mut self, left: &[u32]) -> Result<Vec<Moved>, Failure> {
         let walls = self.walls_now()?;
-        let left = left.iter().map(|&disc| disc as usize).chain(self.neighbours());
+        let left = left.iter().map(|&disc| disc as usize);
+        let left = left.chain(self.neighbours().filter(|&disc| !self.stays_in_cell(disc)));
         let mut moves = self.changes_of(vec![self.look(left)])?;
         self.changes += moves.len();
         moves.extend(walls);
@@ -130,6 +131,13 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
     /// The grains that another rank moves.
     pub(super) fn neighbours(&self) -> Range<usize> {
         self.state.moving()..self.state.grains()
+    }
+
+    /// True if a pass would leave the disc in its cell. The comparison is that of [`DisplacementLimit::Cell`], to the bit: a disc on the rim must be
+    /// in one cell on all ranks.
+    fn stays_in_cell(&self, disc: usize) -> bool {
+        let (place, edge) = (self.state.place(disc), self.search.cells().grid().frame.edge);
+        (0..2).all(|axis| place[axis].abs() <= S::from_f64(0.5 * edge[axis]).to_f64())
     }
 
     /// Whether a disc may be outside the box and yet in a cell.
