@@ -4,6 +4,8 @@
 //! characters of a line, a line `…` for any number of lines, and a line `? 3` says that the command ends with exit code 3. Blocks of one document share a
 //! folder. Blocks marked `console,slow` are run by the long suite. With `STRIPMINE_BLESS=1` outputs are written anew where they differ.
 
+#![cfg(unix)]
+
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
