@@ -67,7 +67,10 @@ fn a_law_that_forgets_a_field_or_a_sum_is_refused() {
         let recorded = message(|| system.clone().forces(&Case::new(13, 9), &law, how));
         assert_eq!(recorded, refusal.to_string());
     }
-    assert_eq!(RADIUS.to_string(), "the law asks for the radius, which it does not state");
+    assert_eq!(
+        RADIUS.to_string(),
+        "the law uses the radius without stating it; add it to its FIELDS or SUMS"
+    );
 }
 
 /// A law in safe code that looks right when it is tried stops at what it did not state; nothing is read out of bounds.

@@ -94,7 +94,7 @@ fn an_unbound_array_is_named() {
     for (execution, set) in ways() {
         let error = Program::new(Touch).run(&Memory::new(), 0..0, execution, set).unwrap_err();
         assert_eq!(error, ProgramError::Unbound { array: "Fy", element: "f64" });
-        assert_eq!(error.to_string(), "the program uses Fy (f64), which is bound to no slice");
+        assert_eq!(error.to_string(), "array Fy (f64) is not bound to a slice; bind it before the run");
 
         let (single, mut fx, mut fy) = (vec![1f32; 32], vec![-7.0; 32], vec![-7.0; 32]);
         let memory =
@@ -113,7 +113,10 @@ fn writing_an_array_bound_for_reading_is_refused() {
         let memory = Memory::new().read(X, &x).read(FX, &fx).write(FY, &mut fy);
         let error = Program::new(Touch).run(&memory, 3..30, execution, set).unwrap_err();
         assert_eq!(error, ProgramError::ReadOnly { array: "Fx" });
-        assert_eq!(error.to_string(), "the program writes Fx, which is bound for reading only");
+        assert_eq!(
+            error.to_string(),
+            "array Fx is bound read-only, but the kernel writes it; bind it for writing"
+        );
         assert!(fy.iter().all(|&f| f == -7.0));
 
         let (cell, index) = (vec![1; 4], vec![0; 4]);
@@ -136,7 +139,7 @@ fn too_short_an_array_is_refused_to_the_element() {
         // x is met from 3 before to 2 behind.
         let error = range(2, 8, [10, 10, 10], way);
         assert_eq!(error, ProgramError::TooShort { array: "x", first: -1, last: 9, length: 10 });
-        assert_eq!(error.to_string(), "the program touches elements -1 to 9 of x, which has 10");
+        assert_eq!(error.to_string(), "x has 10 elements, but the kernel touches elements -1 to 9");
         let error = range(3, 9, [10, 10, 10], way);
         assert_eq!(error, ProgramError::TooShort { array: "x", first: 0, last: 10, length: 10 });
         let error = range(3, 8, [10, 7, 8], way);

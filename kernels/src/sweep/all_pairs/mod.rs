@@ -292,7 +292,7 @@ fn suffices(length: usize, entries: usize) -> Result<(), ProgramError> {
     if length == entries {
         return Ok(());
     }
-    Err(ProgramError::TooShort { array: "the bodies", first: 0, last, length })
+    Err(ProgramError::TooShort { array: "a column of the bodies", first: 0, last, length })
 }
 
 /// Cuts the rows of a triangle of groups into bands of about equal area; row I has `groups` − I.
