@@ -290,6 +290,6 @@ fn gathering_from_an_empty_array_panics_in_every_execution() {
     for way in ways() {
         assert_eq!(through(Through::Gather, &[0, 0, 0], 0, way).unwrap().0, [-1.0; 3]);
         let message = through(Through::Gather, &[0, 1, 0], 0, way);
-        assert_eq!(message, Err("gather from element 0 of 0".to_owned()), "{way:?}");
+        assert_eq!(message, Err("gather from element 0, but the array has 0 elements".to_owned()), "{way:?}");
     }
 }
