@@ -196,7 +196,7 @@ unsafe impl Text for Hazard {
 
 /// A text that writes what it also meets at a shift is no program.
 #[test]
-#[should_panic(expected = "x is written and met at a shift: strips would see each other's results")]
+#[should_panic(expected = "x is written and read at a shift, so results would depend on the strip length")]
 fn a_text_that_writes_what_it_loads_at_a_shift_is_refused() {
     Program::new(Hazard);
 }
@@ -267,17 +267,21 @@ fn an_index_vector_numbers_elements_from_one() {
 #[test]
 fn a_wrong_index_vector_panics_with_element_and_length() {
     for way in ways() {
-        for (text, what) in [
-            (Through::Gather, "gather from"),
-            (Through::GatherIndex, "gather from"),
-            (Through::Scatter, "scatter to"),
+        for (text, what, why) in [
+            (Through::Gather, "gather from", "the array has 8 elements"),
+            (Through::GatherIndex, "gather from", "the array has 8 elements"),
+            (Through::Scatter, "scatter to", "the array must be writable and has 8 elements"),
         ] {
             for wrong in [9, 1000, u32::MAX] {
                 for at in [0, 1, 6, 16, 36] {
                     let mut cell = vec![3; 37];
                     cell[at] = wrong;
                     let message = through(text, &cell, 8, way).unwrap_err();
-                    assert_eq!(message, format!("{what} element {} of 8", wrong - 1), "{text:?} {way:?}");
+                    assert_eq!(
+                        message,
+                        format!("{what} element {}, but {why}", wrong - 1),
+                        "{text:?} {way:?}"
+                    );
                 }
             }
         }

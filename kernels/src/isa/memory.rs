@@ -130,7 +130,7 @@ impl<T: Storage> Column<T> {
     pub(crate) fn write(&self, position: usize, value: T) {
         assert!(
             self.writable && position < self.length,
-            "scatter to element {position}, but the array is read-only or has only {} elements",
+            "scatter to element {position}, but the array must be writable and has {} elements",
             self.length
         );
         // SAFETY: the position is below the length (asserted above), and a column is writable only if it was made from an
