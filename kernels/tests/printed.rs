@@ -355,7 +355,7 @@ fn empty_cells_at_one_place_make_sums_that_are_no_numbers() {
     let there = [right.state[0][0][disc], right.state[1][0][disc]];
     let (hit, _) = sums(&|_| Some(there));
     assert!(hit[0][disc].is_nan() && !numbers(&hit));
-    // The position of the last disc, slightly displaced from one that is still near. Products by Test cancel it.
+    // The position of the last disc, which has just left and is close by. Products by Test cancel it.
     let left = right.cell[disc] as usize - 1;
     let (stale, _) = sums(&|cell| (cell == left + 1).then_some([there[0] + 1e-3, there[1]]));
     assert!(right.lattice[test][left + 1] == 0.0 && stale == own);
