@@ -75,7 +75,7 @@ impl<P: Precision> System<P> {
         column.each_ref().map(|axis| axis[body].to_f64())
     }
 
-    /// The same bodies displaced, with positions rounded to single precision and their residues.
+    /// Displaced copy of the bodies, with positions rounded to single precision and their residues.
     fn moved(mut self, by: f64) -> Self {
         for (column, rest) in self.position.iter_mut().zip(&mut self.rest) {
             for (x, rest) in column.iter_mut().zip(rest).take(self.count) {
@@ -87,7 +87,7 @@ impl<P: Precision> System<P> {
         self
     }
 
-    /// The same bodies, `times` as far from the origin.
+    /// Copy of the bodies, `times` as far from the origin.
     fn spread(mut self, times: f64) -> Self {
         for column in &mut self.position {
             column[..self.count].iter_mut().for_each(|x| *x = P::from_f64(times * x.to_f64()));

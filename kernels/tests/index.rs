@@ -335,7 +335,7 @@ fn no_disc_next_to_a_periodic_side_is_a_stray() {
     assert!(found.is_empty(), "{} strays of 1800, the first: {}", found.len(), found[0]);
 }
 
-/// The same with the lattice at the origin of coordinates, where the far side is the period.
+/// With the lattice at the origin of coordinates no disc becomes a stray either; there the far side is the period.
 #[test]
 fn no_disc_next_to_a_periodic_side_of_a_lattice_at_the_origin_is_a_stray() {
     let found = strays_at_periodic_sides(|_| 0.0);

@@ -39,7 +39,7 @@ fn scale(k: usize) -> f64 {
     (1..=k).map(|k| DT / k as f64).product()
 }
 
-/// The same system with unscaled derivatives.
+/// Converts the state to unscaled derivatives.
 fn unscaled(mut system: Discs) -> Discs {
     for row in &mut system.state {
         for (k, q) in row.iter_mut().enumerate() {

@@ -69,7 +69,7 @@ impl Space {
         }
     }
 
-    /// The same space for growing discs.
+    /// Copy of the space for growing discs.
     #[inline]
     pub fn growing(self, growth: Growth) -> Space {
         Space { growth: Some(growth), ..self }

@@ -25,10 +25,9 @@ pub struct Earliest {
 /// where [`meeting`](super::meeting) is. The partners are the first `count` entries of a `row`. The entries behind them may be
 /// the number of any disc: the number of partners is random, so a branch would be mispredicted. `known` has the time of each
 /// disc's earliest known event.
-/// is known to meet first.
 ///
+/// # Panics
 /// If a row is longer than [`MOST_PARTNERS`] or not a multiple of [`ROW_UNIT`], or a number is beyond the discs.
-/// If a row is longer than [`MOST_PARTNERS`] or no multiple of [`ROW_UNIT`], or a number lies beyond the discs.
 #[inline(always)]
 pub fn earliest<R: Registers<Lane = f64>>(
     registers: R,

@@ -171,6 +171,7 @@ unsafe impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> 
 
 /// Gathers the forces from the lattice and corrects the predicted state. Vector length: the discs.
 ///
+/// # As printed
 /// Appendix A multiplies the coefficients by the new acceleration. It must be the difference from the predicted one: Δ =
 /// (dt²/2)(a − a_predicted), q_k += c_k Δ.
 #[derive(Clone, Copy, Debug)]
@@ -197,7 +198,7 @@ impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> Correct
         }
     }
 
-    /// The same kernel, which also counts in [`NOT_FINITE`] the discs whose correction is not finite.
+    /// Makes the kernel also count in [`NOT_FINITE`] the discs whose correction is not finite.
     #[must_use]
     #[inline]
     pub fn checked(self) -> Self {

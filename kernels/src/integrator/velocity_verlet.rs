@@ -119,7 +119,7 @@ impl<S: Element, P: Element, const FREEDOMS: usize> Kick<S, P, FREEDOMS> {
         Kick { dt, inertia, gravity, checked: false, precisions: PhantomData }
     }
 
-    /// The same kernel, which also counts in [`NOT_FINITE`] the discs whose acceleration is not finite.
+    /// Makes the kernel also count in [`NOT_FINITE`] the discs whose acceleration is not finite.
     #[must_use]
     #[inline]
     pub fn checked(self) -> Self {

@@ -34,7 +34,7 @@ pub trait Env<const DIM: usize>: Copy {
     fn displacement(self, own: [Self::V; DIM], place: Self::Place) -> [Self::V; DIM];
     /// A quantity of the partner.
     fn partner(self, field: Field, place: Self::Place) -> Self::V;
-    /// The same number for every pair.
+    /// Broadcasts a number to all pairs.
     fn uniform(self, value: f64) -> Self::V;
     /// True if the predicate is false for all pairs and this execution takes early exits.
     fn none(self, predicate: <Self::V as Vector>::Predicate) -> bool;

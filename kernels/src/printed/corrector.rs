@@ -33,7 +33,7 @@ impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> Correct
         Corrector { coefficients, gravity, checked: false, precisions: PhantomData }
     }
 
-    /// The same kernel, which also counts in [`NOT_FINITE`] the discs whose correction is not finite.
+    /// Makes the kernel also count in [`NOT_FINITE`] the discs whose correction is not finite.
     #[must_use]
     #[inline]
     pub fn checked(self) -> Self {

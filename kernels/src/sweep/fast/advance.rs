@@ -162,7 +162,7 @@ impl<C: Scheme> Motion<C> {
 ///
 /// The order in which discs are moved changes no bit. Positions are relative to the cells. The pass sets the sums to zero.
 pub struct Advance<'a, S, P, C> {
-    /// How discs move.
+    /// Equation of motion and its integration.
     pub motion: &'a Motion<C>,
     /// For each degree of freedom one column per carried derivative, with at least one entry per moving disc.
     pub state: Vec<Vec<&'a mut [S]>>,

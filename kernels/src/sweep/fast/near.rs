@@ -62,7 +62,7 @@ impl<'a, S: Element, P: Precision> Near<'a, S, P> {
     /// Position of a disc.
     ///
     /// # Safety
-    /// It is one of the discs.
+    /// `disc` is one of the discs.
     #[inline(always)]
     pub(super) unsafe fn at(&self, disc: u32) -> [f64; 2] {
         // SAFETY: every disc has a position, as `new` has checked.

@@ -66,7 +66,7 @@ impl Sectors {
         Sectors { grid, reach, sector: vec![NOWHERE; discs], starts, members: vec![] }
     }
 
-    /// The same sectors for `discs` discs, all empty.
+    /// Empty copy of the sectors for `discs` discs.
     #[inline]
     pub fn emptied(&self, discs: usize) -> Self {
         Sectors::new(self.grid, discs, self.reach)

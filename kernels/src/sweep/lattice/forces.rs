@@ -46,7 +46,7 @@ impl<P: Element, L: Law<2>> Forces<P, L> {
         Forces { law, places: places.collect(), relative, asked: Asked::default(), precision: PhantomData }
     }
 
-    /// The same kernel, which also writes the requested observations:
+    /// Makes the kernel also write the requested observations:
     ///
     /// - watched penetrations: the deepest penetration of each cell to the array `deepest`; cells deeper than the watched depth
     ///   are counted in [`DEEP`];

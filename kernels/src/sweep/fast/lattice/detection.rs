@@ -3,11 +3,11 @@
 //!
 //! ```text
 //! for every group of 16 cells of a row that has a disc:
-//!     for every place of the half mask:
-//!         dx = x[group] - x[group at the place] - cell offset,  dy likewise        a register of cells at a time
+//!     for every offset of the half mask:
+//!         dx = x[group] - x[group at the offset] - cell offset,  dy likewise       a register of cells at a time
 //!         16 bits: dx² + dy² < 1                                           in units of the largest contact distance;
-//!                                                                          (r_i + r_j)² in place of 1 where radii vary
-//!     and these bits with those of the occupied cells                      four places share a word of 64 bits
+//!                                                                          (r_i + r_j)² instead of 1 where radii vary
+//!     and these bits with those of the occupied cells                      four offsets share a word of 64 bits
 //!     append a candidate for every bit that is left
 //! ```
 //!

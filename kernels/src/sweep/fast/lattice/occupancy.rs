@@ -103,7 +103,7 @@ impl Occupancy {
         }
     }
 
-    /// The same lattice, sparse or not as before, empty and for `discs` discs.
+    /// Empty copy of the lattice for `discs` discs, sparse if this one is.
     ///
     /// # Panics
     /// If there are 2³² − 3 discs or more.

@@ -4,7 +4,7 @@
 //! for every row:
 //!     list the occupied cells                           64 bits at a time
 //!     for every one of them:
-//!         the bits at the places of the half mask       a word for each row of the mask, shifted together
+//!         the bits at the offsets of the half mask      a word for each row of the mask, shifted together
 //!         append a candidate for every bit
 //!         keep those whose distance is that of a contact, but for a margin
 //! ```
