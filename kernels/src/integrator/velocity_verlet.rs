@@ -131,7 +131,7 @@ impl<S: Element, P: Element, const FREEDOMS: usize> Kick<S, P, FREEDOMS> {
 unsafe impl<S: Element, P: Element, const FREEDOMS: usize> Text for Kick<S, P, FREEDOMS> {
     type Lane = S;
 
-    #[allow(clippy::needless_range_loop, reason = "several lists side by side, under one number")]
+    #[allow(clippy::needless_range_loop, reason = "several lists share one index")]
     #[inline(always)]
     fn body<M: Machine<Lane = S>>(&self, m: M) {
         m.section("gather");

@@ -47,7 +47,7 @@ unsafe impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> 
 {
     type Lane = S;
 
-    #[allow(clippy::needless_range_loop, reason = "several lists side by side, under one number")]
+    #[allow(clippy::needless_range_loop, reason = "several lists share one index")]
     #[inline(always)]
     fn body<M: Machine<Lane = S>>(&self, m: M) {
         m.section("step 5");

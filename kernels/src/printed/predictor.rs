@@ -30,7 +30,7 @@ pub(super) fn factor(dt: f64, k: usize) -> f64 {
 unsafe impl<S: Element, const VALUES: usize, const FREEDOMS: usize> Text for Predictor<S, VALUES, FREEDOMS> {
     type Lane = S;
 
-    #[allow(clippy::needless_range_loop, reason = "several lists side by side, under one number")]
+    #[allow(clippy::needless_range_loop, reason = "several lists share one index")]
     #[inline(always)]
     fn body<M: Machine<Lane = S>>(&self, m: M) {
         m.section("A 1");

@@ -222,7 +222,7 @@ impl<P: Precision> Env<2> for &OneByOne<'_, P> {
         let cell = &self.sums[sum.column::<2>()];
         cell.set(cell.get() + value);
     }
-    #[expect(clippy::unreachable, reason = "called only where `Env::BOTH_PARTNERS` says so")]
+    #[expect(clippy::unreachable, reason = "called only if `Env::BOTH_PARTNERS`")]
     #[inline]
     fn partner_sub(self, _: Sum, _: Partner<P>, _: P) {
         unreachable!("every pair is visited from both sides")

@@ -4,8 +4,8 @@
 //! with the bodies behind them, one register of partners at a time:
 //!
 //! ```text
-//! own group I     1 2 3 4        their sums stay in registers, a sum a lane, until the row is done
-//! partners        [J J J J J J J J J J J J J J J J] [...] [...]       their sums are loaded and stored once a block
+//! own group I     1 2 3 4        their sums stay in registers, one per lane, until the row is done
+//! partners        [J J J J J J J J J J J J J J J J] [...] [...]       their sums are loaded and stored once per block
 //! own group I with itself: every body with all others of the group, without the partner's share
 //! ```
 //!

@@ -119,7 +119,7 @@ impl<M: Machine> Env<3> for &Behind<M> {
         cell.set(cell.get() + value);
     }
 
-    #[expect(clippy::unreachable, reason = "called only where `Env::BOTH_PARTNERS` says so")]
+    #[expect(clippy::unreachable, reason = "called only if `Env::BOTH_PARTNERS`")]
     #[inline]
     fn partner_sub(self, _: Sum, _: isize, _: M::V) {
         unreachable!("every pair is visited from both sides")

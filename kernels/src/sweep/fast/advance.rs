@@ -326,7 +326,7 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
     }
 
     /// Advances one register of discs from `first` on, with their random numbers along x and y.
-    #[allow(clippy::needless_range_loop, reason = "columns side by side, under one number")]
+    #[allow(clippy::needless_range_loop, reason = "several columns share one index")]
     #[inline(always)]
     fn register<R: Registers<Lane = S>>(&mut self, registers: R, first: usize, noise: [&[S]; 2]) {
         let Pass { motion, arrays, corrected, .. } = *self;

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! pairs      (3,7) (3,9) (5,8) (6,8)            as many as a register has lanes
-//! gather     own     x: x[3] x[3] x[5] x[6]     a load a lane; the law names the columns
+//! gather     own     x: x[3] x[3] x[5] x[6]     one load per lane; the law names the columns
 //!            partner x: x[7] x[9] x[8] x[8]
 //! law        one evaluation for all lanes       -> forces on own and on partner
 //! add        F[3] += lane 0, F[7] -= lane 0,    lane after lane, own before partner
@@ -264,7 +264,7 @@ impl<S: Element, P: Precision, L: Law<2>, Q: Pairs<P>> Task<P> for Evaluate<'_, 
 }
 
 impl<S: Element, P: Precision, L: Law<2>, Q: Pairs<P>> Evaluate<'_, S, P, L, Q> {
-    #[allow(clippy::needless_range_loop, reason = "columns side by side, under one number")]
+    #[allow(clippy::needless_range_loop, reason = "several columns share one index")]
     #[inline(always)]
     fn register<R: Registers<Lane = P>>(&self, registers: R, first: usize, notes: &mut Notes) {
         let count = (self.pairs.count() - first).min(R::LANES);

@@ -12,7 +12,7 @@
 //!
 //! ```text
 //! starts    0  2  2  5 ...           sector 1 is empty
-//! members   8  3  1  4  9 ...        within a sector in an order that does not depend on what went before
+//! members   8  3  1  4  9 ...        within a sector in an order that does not depend on the past
 //! ```
 //!
 //! They are sorted by counting, on all threads: count the discs of each sector, compute where each begins, store the discs as

@@ -4,7 +4,7 @@
 //! touch. They are built from [`Sectors`] and stored one behind the other:
 //!
 //! ```text
-//! rows      0              3           4           where in `pairs` those of each row of sectors begin, and the end
+//! rows      0              3           4           index in `pairs` of the first pair of each row of sectors, and the end
 //! pairs     4-9 4-2 4-7    9-2         2-7         the second disc with the number of the cell offset in its upper three bits
 //! ```
 //!

@@ -133,7 +133,7 @@ impl<M: Machine> Env<2> for &Around<M> {
         cell.set(cell.get() + value);
     }
 
-    #[expect(clippy::unreachable, reason = "called only where `Env::BOTH_PARTNERS` says so")]
+    #[expect(clippy::unreachable, reason = "called only if `Env::BOTH_PARTNERS`")]
     #[inline]
     fn partner_sub(self, _: Sum, _: Neighbour, _: M::V) {
         unreachable!("every pair is visited from both sides")

@@ -8,7 +8,7 @@
 //!         16 bits: dx² + dy² < 1                                           in units of the largest contact distance;
 //!                                                                          (r_i + r_j)² instead of 1 where radii vary
 //!     and these bits with those of the occupied cells                      four offsets share a word of 64 bits
-//!     append a candidate for every bit that is left
+//!     append a candidate for every remaining bit
 //! ```
 //!
 //! Reasons for its speed:

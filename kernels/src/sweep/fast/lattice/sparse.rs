@@ -6,7 +6,7 @@
 //!     for every one of them:
 //!         the bits at the offsets of the half mask      a word for each row of the mask, shifted together
 //!         append a candidate for every bit
-//!         keep those whose distance is that of a contact, but for a margin
+//!         keep those within the contact distance plus a margin
 //! ```
 //!
 //! Comparing registers of cells would be wasted on mostly empty cells. The distance of every candidate is checked at once,
