@@ -16,7 +16,7 @@ pub struct Asked {
 
 /// Environment of a law: everything it may read and write.
 ///
-/// *Own* is the particle the law is evaluated for, *partner* the one at a place. A law never subtracts positions itself: the
+/// *Own* is the particle the law is evaluated for, *partner* the other one. A law never subtracts positions itself: the
 /// sweep handles images and cell-relative coordinates.
 pub trait Env<const DIM: usize>: Copy {
     /// Vector of numbers.

@@ -16,7 +16,7 @@ pub trait Pairs<P> {
     /// Two discs, and the cell offset from the reference point of the first disc's position to that of the second (length).
     ///
     /// # Panics
-    /// May, if there is no pair of that number.
+    /// May panic if there is no pair of that number.
     fn pair(&self, number: usize) -> (Pair, [P; 2]);
 }
 

@@ -111,7 +111,7 @@ impl Sectors {
         self.sector[disc] = (row * columns + column) as u32;
     }
 
-    /// Takes a disc out of its sector, if it is in one.
+    /// Removes a disc from its sector, if it is in one.
     #[inline]
     pub fn leave(&mut self, disc: usize) {
         self.sector[disc] = NOWHERE;

@@ -181,7 +181,7 @@ impl Occupancy {
     /// [`Taken`] if another disc is there; nothing has changed then.
     ///
     /// # Panics
-    /// If the disc is in a cell already, or there is no such disc or cell.
+    /// If the disc is already in a cell, or there is no such disc or cell.
     pub fn enter(
         &mut self,
         disc: usize,
@@ -212,7 +212,7 @@ impl Occupancy {
     /// Places a disc in a cell that belongs to another disc. The list of such discs stays in order of `number`.
     ///
     /// # Panics
-    /// If the disc is in a cell already, or there is no such disc or cell.
+    /// If the disc is already in a cell, or there is no such disc or cell.
     #[inline]
     pub fn share(&mut self, disc: usize, cell: [usize; 2], number: impl Fn(usize) -> usize) {
         assert!(self.cell[disc] == NOWHERE, "disc {disc} is already in a cell");
