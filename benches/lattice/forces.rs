@@ -1,6 +1,6 @@
-//! What does the force sweep over 24 places cost, cell by cell, in every execution, against a loop written by hand?
+//! Cost of the force sweep over 24 offsets, cell by cell, in every execution, compared with a hand-written loop.
 //!
-//! The sweep is branch-free: its cost does not depend on where the discs stand, so a frozen dense configuration will do.
+//! The sweep is branch-free, so its cost does not depend on the positions of the discs: a frozen dense configuration suffices.
 //! Throughput is in cells; `cargo bench --bench lattice forces`.
 
 use crate::intrinsics::{self, Numbers, Place, Vectors};
@@ -23,7 +23,7 @@ fn places<T: Precision>(model: &Model) -> Vec<Place<T>> {
     model.mask.offsets().iter().map(place).collect()
 }
 
-/// The hand-written loop on the widest instruction set that both it and this processor have.
+/// Runs the hand-written loop on the widest instruction set that it and this processor support.
 trait ByHand: Precision {
     fn sweep<const FRICTION: bool>(
         from: &Vectors<'_, Self>,
@@ -37,7 +37,7 @@ trait ByHand: Precision {
 macro_rules! by_hand {
     ($ty:ident, $avx2:ident, $avx512:ident) => {
         impl ByHand for $ty {
-            #[allow(unused_variables, reason = "other processors have no loop by hand")]
+            #[allow(unused_variables, reason = "other processors have no hand-written loop")]
             fn sweep<const FRICTION: bool>(
                 from: &Vectors<'_, Self>,
                 to: [&mut [Self]; 3],
@@ -109,7 +109,7 @@ fn hand_written<P: ByHand, const FRICTION: bool>(
         let ours = &column(ours)[range.clone()];
         let differing =
             ours.iter().zip(&by_hand[range.clone()]).filter(|(a, b)| a.bits() != b.bits()).count();
-        assert_eq!(differing, 0, "the loop by hand computes something else");
+        assert_eq!(differing, 0, "the hand-written loop gives other bits");
     }
 }
 
@@ -143,7 +143,7 @@ fn executions<P: ByHand>(criterion: &mut Criterion, precision: &str) {
                 bencher.iter(|| execute(&programs, &[Part::Forces], &memory, lengths, execution, set));
             });
         }
-        // What the checks of a run cost: the deepest contact watched in every cell.
+        // Cost of a run's checks: the deepest contact is watched in every cell.
         let watch = Some(Watch::new(0.1, 0.3, 0.5));
         let watching = programs_of::<P>(&Model { watch, ..model.clone() });
         let mut arrays = Arrays::<f64, P>::new(&Model { watch, ..model.clone() }, &particles);

@@ -1,5 +1,5 @@
-//! Benches of the lattice method, one file a question. One program, because every bench that steps compiles the texts for
-//! every instruction set again.
+//! Benches of the lattice method, one file per question. They are one program, because every bench that steps compiles the
+//! kernels for every instruction set.
 
 mod forces;
 mod intrinsics;
@@ -10,7 +10,7 @@ mod step;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 
-/// One core for all: the loop by hand uses one.
+/// Uses one core for all benches, as the hand-written loop does.
 fn alone(_: &mut Criterion) {
     rayon::ThreadPoolBuilder::new().num_threads(1).build_global().expect("the first pool");
 }

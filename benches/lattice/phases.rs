@@ -1,8 +1,7 @@
-//! What does each phase of a fast step cost: corrector and predictor, the upkeep of the Index, contacts and their forces?
+//! Cost of each phase of a fast step: corrector and predictor, update of the Index, contacts and their forces.
 //!
-//! The discs move: every iteration is a whole step of the bench scene, of which the method itself times the phases. A
-//! frozen configuration would favour branch prediction. Throughput is in discs; `cargo bench --bench lattice
-//! phases`.
+//! The discs move: every iteration is a whole step of the bench scene, whose phases the method itself times. A frozen
+//! configuration would favour branch prediction. Throughput is in discs; `cargo bench --bench lattice phases`.
 
 use criterion::{Criterion, SamplingMode, Throughput};
 use std::time::Duration;
@@ -10,16 +9,16 @@ use stripmine_physics::method::lattice_md::assemble;
 use stripmine_physics::method::lattice_md::{Checked, Document};
 use stripmine_physics::method::lattice_md::{Grains, Phase};
 
-/// Steps before anything is timed: the start on a lattice has no contacts.
+/// Steps before the timing: the initial lattice has no contacts.
 pub const EQUILIBRATION: u64 = 400;
-/// The phases, and how long each is to be timed (ms). The rest of its steps comes on top, so a short phase gets little.
+/// Phases with the time to measure each (ms). The rest of a step comes on top, so a short phase gets little.
 const PHASES: [(Phase, u64); 3] = [(Phase::CorrectPredict, 300), (Phase::Index, 50), (Phase::Forces, 1000)];
 
 pub fn advance(gas: &mut Grains, steps: u64) {
     (0..steps).for_each(|_| gas.step().expect("the bench scene runs on"));
 }
 
-/// A gas with friction, velocity Verlet, in the fast engine.
+/// Scene of a gas with friction, velocity Verlet, in the fast engine.
 pub fn scene(packing_fraction: f64, count: usize, precision: &str) -> Checked {
     let overrides = [
         format!("particles.count={count}"),
@@ -34,7 +33,7 @@ pub fn scene(packing_fraction: f64, count: usize, precision: &str) -> Checked {
 
 fn of_one_gas(criterion: &mut Criterion, packing_fraction: f64, count: usize, precision: &str) {
     let scene = scene(packing_fraction, count, precision);
-    // Made when first asked for: most calls ask for few of the benches.
+    // Created on first use: most calls run few of the benches.
     let mut moving: Option<Grains> = None;
     let mut group = criterion.benchmark_group(format!("phases/{precision}/{packing_fraction}/{count}"));
     group.throughput(Throughput::Elements(scene.particles.grain_count() as u64));

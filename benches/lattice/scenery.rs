@@ -1,4 +1,4 @@
-//! The scene of the benches: a dense packing of discs with all contacts at work.
+//! Scene of the benches: a dense packing of discs with all contacts active.
 
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::Storage;
@@ -24,7 +24,7 @@ pub const CONTACT: Contact = Contact {
     arm: ContactArm::Radius,
 };
 
-/// A dense packing (0.84) on a lattice of about `cells` cells of the radius's width.
+/// A dense packing (0.84) on a lattice of about `cells` cells as wide as the radius.
 pub fn dense<P: Precision>(cells: usize, friction: bool) -> (Model, Particles, Arrays<f64, P>) {
     let packing = hexagonal((cells as f64 * 0.84 / std::f64::consts::PI) as usize, 0.84, 0.01, 1);
     let radius = 0.5;
@@ -52,13 +52,13 @@ pub fn dense<P: Precision>(cells: usize, friction: bool) -> (Model, Particles, A
     (model, packing.particles, arrays)
 }
 
-/// The programs of a step whose forces have a precision.
+/// Programs of a step with forces of the given precision.
 pub fn programs_of<P: Precision>(model: &Model) -> Vec<StepProgram> {
     let is_double = P::NAME == f64::NAME;
     programs(model, if is_double { scene::Precision::F64 } else { scene::Precision::Mixed })
 }
 
-/// Everything of a step before the forces.
+/// Runs the parts of a step before the forces.
 pub fn warm_up<P: Precision>(steps: &[StepProgram], arrays: &mut Arrays<f64, P>) {
     let before = [Part::Predictor, Part::Index, Part::Lattice];
     let (memory, lengths) = arrays.memory();

@@ -1,7 +1,7 @@
-//! What does finding the contacts cost, before the law is asked: on the lattice, and in sectors?
+//! Cost of finding the contacts, without evaluating the law: on the lattice, and in sectors.
 //!
-//! Nothing is moved here, but the configurations are of a gas that has moved, and large: their branches cannot be predicted.
-//! Throughput is in discs; `cargo bench --bench lattice search`.
+//! Nothing moves here, but the configurations are of a large gas that has moved: their branches cannot be predicted. Throughput
+//! is in discs; `cargo bench --bench lattice search`.
 
 use crate::phases::{EQUILIBRATION, advance, scene};
 use criterion::{Criterion, Throughput};
@@ -13,7 +13,7 @@ use stripmine_kernels::sweep::fast::{Cursor, Finder, Grid, SENTINELS, Sectors};
 use stripmine_physics::method::lattice_md::{assemble, model};
 use stripmine_physics::particles::Particles;
 
-/// Cells and places in them, in the order of the cells, sentinels behind.
+/// Cells and positions in them, in the order of the cells, with sentinels behind.
 fn settled(particles: &Particles, grid: &Grid) -> (Vec<[usize; 2]>, [Vec<f64>; 2]) {
     let mut discs: Vec<([usize; 2], [f64; 2])> = particles
         .all()

@@ -1,4 +1,4 @@
-//! What does a whole step cost beside its force sweep, and what its checks?
+//! Cost of a whole step beside its force sweep, and of its checks.
 //!
 //! The discs move: every iteration is a step. Throughput is in discs; `cargo bench --bench lattice step`.
 
@@ -10,7 +10,7 @@ use stripmine_kernels::{Execution, InstructionSet};
 use stripmine_physics::method::lattice_md::{Arrays, Model, Part, StepProgram, Watch, execute, programs};
 use stripmine_physics::scene::Precision;
 
-/// The programs without the one that looks for lost discs: the last of the Index that runs over discs.
+/// Programs without the check for lost discs: the last kernel of the Index that runs over discs.
 fn without_check(mut programs: Vec<StepProgram>) -> Vec<StepProgram> {
     let check = programs.iter().rposition(|step| step.part == Part::Index && step.length == Length::Discs);
     programs.remove(check.expect("a step has an Index"));

@@ -1,30 +1,30 @@
-//! The ledger of a method's step: which part executes which operations, over vectors of which length. Filled from
-//! the tallies of the programs that run; the clocks read it.
+//! Ledger of a step: the operations that each part executes, and the lengths of its vectors. It is filled from the tallies of the
+//! kernels that run; the clocks read it.
 
 use crate::Runnable;
 use crate::isa::OpCounts;
 
-/// The length of the vectors a program runs over, before a scene says how much that is.
+/// Symbolic length of the vectors of a kernel; a scene gives its value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Length {
-    /// The discs that move: the source's NP.
+    /// Discs that move: NP of BP93.
     Grains,
-    /// The discs with those of the walls.
+    /// All discs, with those of the walls.
     Discs,
-    /// The cells with the halo at the ends of each row: the source's LMAX and a little.
+    /// Cells with the halo at the ends of each row: LMAX of BP93 and a little more.
     SweptCells,
-    /// The cells with the whole halo.
+    /// Cells with the whole halo.
     PaddedCells,
-    /// The halo cells that repeat a cell.
+    /// Halo cells that repeat a cell.
     HaloCells,
-    /// Entries of neighbour lists: depends on the data.
+    /// Entries of neighbour lists; depends on the data.
     Candidates,
-    /// Candidates near enough for the law to be asked: depends on the data.
+    /// Candidates near enough to evaluate the law; depends on the data.
     Pairs,
 }
 
 impl Length {
-    /// The symbol in tables.
+    /// Symbol in tables.
     pub const fn symbol(self) -> &'static str {
         match self {
             Length::Grains => "NP",
@@ -38,31 +38,31 @@ impl Length {
     }
 }
 
-/// What one section of one program executes, once a step.
+/// Operations of one section of one kernel, once a step.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Entry {
-    /// The part of the method.
+    /// Part of the method.
     pub part: &'static str,
-    /// The section of the program's text.
+    /// Section of the kernel.
     pub section: &'static str,
     /// Length of the vectors.
     pub length: Length,
-    /// The operations.
+    /// Operations.
     pub counts: OpCounts,
 }
 
-/// All that a step executes.
+/// All operations of a step.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Ledger(Vec<Entry>);
 
 impl Ledger {
-    /// Enters a program's tally.
+    /// Enters the tally of a kernel.
     pub fn enter(&mut self, part: &'static str, length: Length, program: &dyn Runnable) {
         let entry = |(section, counts)| Entry { part, section, length, counts };
         self.0.extend(program.tally().into_iter().map(entry));
     }
 
-    /// Enters counts that no program of its own stands behind.
+    /// Enters counts that come from no kernel.
     pub fn enter_counts(
         &mut self,
         part: &'static str,
@@ -73,12 +73,12 @@ impl Ledger {
         self.0.push(Entry { part, section, length, counts });
     }
 
-    /// The entries, in the order of the step.
+    /// Entries in the order of the step.
     pub fn entries(&self) -> &[Entry] {
         &self.0
     }
 
-    /// The parts and the lengths they run over, in the order of the step, with all they execute there.
+    /// Parts and their vector lengths in the order of the step, each with its operations.
     pub fn parts(&self) -> Vec<(&'static str, Length, OpCounts)> {
         let mut parts: Vec<(&'static str, Length, OpCounts)> = Vec::new();
         for entry in &self.0 {
@@ -90,7 +90,7 @@ impl Ledger {
         parts
     }
 
-    /// All operations of a part, whatever their length.
+    /// All operations of a part, summed over vector lengths.
     pub fn part(&self, part: &str) -> OpCounts {
         let mut sum = OpCounts::default();
         self.0.iter().filter(|entry| entry.part == part).for_each(|entry| sum.add(&entry.counts));

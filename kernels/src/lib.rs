@@ -1,21 +1,21 @@
 //! The vector machine of Stripmine.
 //!
-//! Equations are written once, as operations on whole vectors (a [`isa::Text`]). The same text is recorded, counted and
-//! listed (a [`backend::Tape`]), executed the way a 1993 CRAY did it, strip-mined, and chained through the SIMD registers
-//! of the processor at hand ([`Program::run`]): to the same bits.
+//! Equations are written once, as operations on whole vectors: a kernel ([`isa::Text`]). A kernel is recorded, counted and listed
+//! (a [`backend::Tape`]). It is executed as on a CRAY in 1993, strip-mined, or chained through the SIMD registers of the
+//! processor at hand ([`Program::run`]), with the same bits.
 //!
 //! Slices in, slices out: this crate knows no scene, no time and no file.
 //!
 //! | task | entry point |
 //! |---|---|
-//! | write equations as a program, list it, run it | [`isa::Text`], [`Program`] |
+//! | write equations as a kernel, list it, run it | [`isa::Text`], [`Program`] |
 //! | count its operations, by part of a step | [`isa::OpCounts`], [`ledger::Ledger`] |
-//! | the laws of pairs | [`law`]; their sums over all pairs, lists, lattices, sectors: [`sweep`] |
-//! | the paper's own program, line by line | [`printed`] |
-//! | move particles by their forces | [`integrator`]; from collision to collision: [`flight`] |
-//! | random numbers that depend on no order | [`noise`] |
+//! | evaluate pair laws | [`law`]; their sums over all pairs, lists, lattices, sectors: [`sweep`] |
+//! | run BP93's own program, line by line | [`printed`] |
+//! | move particles under forces | [`integrator`]; from collision to collision: [`flight`] |
+//! | draw random numbers that depend on no order | [`noise`] |
 //!
-//! A program of seven operations, executed in three ways:
+//! A kernel of seven operations, in three executions:
 //!
 //! ```
 //! use stripmine_kernels::isa::{Array, Machine, Memory, Slot, Text, Vector};
@@ -28,7 +28,7 @@
 //! const Y: Slot<f64> = Slot::new(Array::Y);
 //! const FX: Slot<f64> = Slot::new(Array::Fx);
 //!
-//! // SAFETY: the body names the same slots whenever it is called.
+//! SAFETY: the body names the same slots in every call.
 //! unsafe impl Text for Length {
 //!     type Lane = f64;
 //!     fn body<M: Machine<Lane = f64>>(&self, m: M) {
@@ -50,7 +50,7 @@
 //! # Ok::<(), stripmine_kernels::isa::ProgramError>(())
 //! ```
 //!
-//! The operations NOP of the paper's predictor: five derivatives of two coordinates take 15 products and 15 sums each:
+//! Number of operations NOP of BP93's predictor: five derivatives of two coordinates take 15 products and 15 sums each:
 //!
 //! ```
 //! use stripmine_kernels::Program;
@@ -64,7 +64,7 @@
 //! assert_eq!((counts.of_class(OpClass::Multiply), counts.of_class(OpClass::Add)), (30, 30));
 //! ```
 //!
-//! Two particles at a distance of one diameter, which a Lennard-Jones pair drives apart by 24 ε/σ:
+//! Force between two particles at a distance of one diameter: a Lennard-Jones pair repels with 24 ε/σ:
 //!
 //! ```
 //! use stripmine_kernels::law::lennard_jones::LennardJones;
@@ -78,7 +78,7 @@
 //! ```
 
 #![warn(unreachable_pub)]
-// Where a panic is possible, or an error is dropped, the reason stands beside it.
+// Every possible panic and every dropped error has its reason beside it.
 #![cfg_attr(
     not(test),
     warn(

@@ -1,6 +1,6 @@
-//! Neighbourhoods: the cells around a cell in which partners are looked for.
+//! Masks: the cells around a cell that are searched for partners.
 
-/// A cell seen from the own cell.
+/// Offset of a cell from the own cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Offset {
     /// Columns to the right.
@@ -19,7 +19,7 @@ impl Offset {
     }
 }
 
-/// A mask: the neighbourhood of a cell, without the cell itself, in a fixed order of visit.
+/// A mask: the neighbourhood of a cell, without the cell itself, in a fixed order.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mask {
     offsets: Vec<Offset>,
@@ -27,13 +27,13 @@ pub struct Mask {
 }
 
 impl Mask {
-    /// The square mask of `(2h + 1)² − 1` cells, numbered outwards ring by ring, each ring from the right-hand cell
-    /// against the clock. BP93 fig. 2 for `h = 2`.
+    /// The square mask of `(2h + 1)² − 1` cells, numbered ring by ring outwards, each ring counter-clockwise from the right-hand
+    /// cell. BP93 fig. 2 for `h = 2`.
     #[inline]
     pub fn square(half_width: u32) -> Mask {
         let mut offsets = Vec::new();
         for ring in 1..=half_width as i32 {
-            // The ring's sides, each from its first cell on: right side up, top left, left side down, bottom right.
+            // Sides of the ring, each from its first cell on: right side up, top left, left side down, bottom right.
             let up = (0..=ring).map(|rows| (ring, rows));
             let left = (-ring..ring).rev().map(|columns| (columns, ring));
             let down = (-ring..ring).rev().map(|rows| (-ring, rows));
@@ -54,26 +54,26 @@ impl Mask {
         mask
     }
 
-    /// The right-hand cell alone: what one place costs. It covers the neighbourhood of no disc.
+    /// Mask of the right-hand cell alone, to measure the cost of one offset. It covers the neighbourhood of no disc.
     #[inline]
     pub fn one_place() -> Mask {
         Mask { offsets: vec![Offset { columns: 1, rows: 0 }], half_width: 1 }
     }
 
-    /// The places in their order of visit; the source numbers them from 1.
+    /// Offsets in their order; BP93 numbers them from 1.
     #[inline]
     pub fn offsets(&self) -> &[Offset] {
         &self.offsets
     }
 
-    /// The farthest column or row.
+    /// Largest distance in columns or rows.
     #[inline]
     pub fn half_width(&self) -> u32 {
         self.half_width
     }
 
-    /// Square of the reach, in cells²: the smallest distance from a point of the own cell to a point outside the mask.
-    /// Everything closer is seen. ISO99 table 1.
+    /// Square of the reach, in cells²: the smallest distance from a point of the own cell to a point outside the mask. All closer
+    /// points are covered. ISO99 table 1.
     #[inline]
     pub fn reach_squared(&self) -> u32 {
         let beyond = self.half_width as i32 + 1;

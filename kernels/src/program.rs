@@ -1,4 +1,4 @@
-//! A text made ready to run: recorded once, checked before every run, executed in one of several ways.
+//! Programs: kernels recorded once, checked before every run, and executed in one of several ways.
 
 use crate::backend::tape::Outlines;
 use crate::backend::{
@@ -8,18 +8,18 @@ use crate::isa::{Footprint, Memory, OpCounts, ProgramError, Storage, Text};
 use crate::threads::{on_threads, pieces};
 use std::ops::Range;
 
-/// How a program's instructions meet the elements of its arrays. All ways give the same bits.
+/// Order in which instructions and elements are processed. All executions give the same bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Execution {
     /// Every instruction is a pass over all elements: the unchained CRAY.
     Eager,
-    /// The program runs instruction by instruction on strips of this many elements.
+    /// The kernel runs instruction by instruction on strips of this many elements.
     Strip(usize),
-    /// The program is compiled for one register at a time: every result feeds the next instruction directly.
+    /// The kernel is compiled for one register at a time: every result feeds the next instruction directly.
     Chained,
 }
 
-/// A text with its tape: what is counted, listed and executed is one and the same.
+/// A kernel with its tape: the same operations are counted, listed and executed.
 #[derive(Clone, Debug)]
 pub struct Program<T: Text> {
     text: T,
@@ -28,28 +28,28 @@ pub struct Program<T: Text> {
 }
 
 impl<T: Text> Program<T> {
-    /// Records the text.
+    /// Records the kernel.
     ///
     /// # Panics
-    /// If the text writes an array that it also meets at a shift: its result would depend on the strip length.
+    /// If the kernel writes an array that it also reads at a shift: its result would depend on the strip length.
     pub fn new(text: T) -> Self {
         let tape = Tape::record(&text);
         let footprint = tape.footprint();
         let hazard = footprint.accesses().iter().find(|a| a.writes && (a.lowest, a.highest) != (0, 0));
         assert!(
             hazard.is_none(),
-            "{} is written and met at a shift: strips would see each other's results",
+            "{} is written and read at a shift, so results would depend on the strip length",
             hazard.map_or("", |access| access.array.label()),
         );
         Program { text, tape, footprint }
     }
 
-    /// The recorded instructions.
+    /// Recorded instructions.
     pub fn tape(&self) -> &Tape<T::Lane> {
         &self.tape
     }
 
-    /// The text.
+    /// The kernel.
     pub fn text(&self) -> &T {
         &self.text
     }
@@ -59,11 +59,11 @@ impl<T: Text> Program<T>
 where
     T::Lane: Precision,
 {
-    /// Runs the program for the elements of `range` of the memory's arrays.
+    /// Runs the kernel for the elements of `range` of the memory's arrays.
     ///
     /// # Errors
-    /// [`ProgramError`] names the array that is missing, too short or read-only, a strip length that cannot be, or an
-    /// instruction set that the processor lacks. Nothing was executed then.
+    /// [`ProgramError`] names the array that is missing, too short or read-only, a strip length of zero, or an instruction set
+    /// that the processor lacks. Nothing was executed then.
     pub fn run(
         &self,
         memory: &Memory<'_>,
@@ -85,8 +85,8 @@ impl<T: Text + Sync> Program<T>
 where
     T::Lane: Precision,
 {
-    /// As [`Program::run`], on the threads of the current `rayon` pool: elements are cut into bands, which depend on
-    /// `range` alone. A program whose elements depend on each other (a scatter) runs on one thread.
+    /// Runs the kernel as [`Program::run`] does, on the threads of the current `rayon` pool. Elements are cut into bands, which
+    /// depend on `range` alone. A kernel with dependent elements (a scatter) runs on one thread.
     ///
     /// # Errors
     /// As [`Program::run`].
@@ -106,16 +106,16 @@ where
     }
 }
 
-/// What runs a program over one band.
+/// Function that runs a kernel over one band.
 type BandOf<'r> = dyn Fn(&Memory<'_>, Range<usize>) -> Result<(), ProgramError> + Sync + 'r;
 
-/// Runs a program over bands of a range, each with a part of the memory. The program is called through a pointer, so that this is compiled
-/// once. The memory was admitted, and the program is elementwise.
+/// Runs a kernel over bands of a range, each with a part of the memory. The kernel is called through a pointer, so that this
+/// function is compiled once. The memory was admitted, and the kernel is elementwise.
 fn in_bands(memory: &Memory<'_>, range: Range<usize>, run: &BandOf<'_>) -> Result<(), ProgramError> {
     let shared = Shared(memory);
     let counters = on_threads(pieces(range, BAND), |band| {
-        // SAFETY: bands do not overlap, and the program writes only at the own place and reads at others only what it
-        // does not write.
+        // SAFETY: bands do not overlap. The kernel writes only the own element, and reads at shifts only arrays that it does not
+        // write.
         let part = unsafe { shared.part() };
         run(&part, band).map(|()| part.counters())
     });
@@ -124,32 +124,32 @@ fn in_bands(memory: &Memory<'_>, range: Range<usize>, run: &BandOf<'_>) -> Resul
     Ok(())
 }
 
-/// Elements of a band: enough to be worth a thread's while.
+/// Elements of a band: enough to be worth a thread.
 const BAND: usize = 256 * GROUP;
 
-/// A memory that several threads take their parts of.
+/// A memory whose parts several threads use.
 struct Shared<'r, 'a>(&'r Memory<'a>);
 
-// SAFETY: `part` copies the columns and touches no counter; what threads then do with them is the caller's promise.
+// SAFETY: `part` copies the columns and touches no counter; the caller is responsible for their use by the threads.
 unsafe impl Sync for Shared<'_, '_> {}
 
 impl Shared<'_, '_> {
-    /// As [`Memory::part`].
+    /// Part of the memory, see [`Memory::part`].
     ///
     /// # Safety
-    /// As there.
+    /// As [`Memory::part`].
     unsafe fn part(&self) -> Memory<'_> {
         // SAFETY: the caller promises that no element is written through one part and touched through another.
         unsafe { self.0.part() }
     }
 }
 
-/// A program whatever its text: what a method keeps a list of.
+/// A program with its kernel type erased, for the lists of a method.
 pub trait Runnable: Send + Sync {
-    /// [`Program::run_on_threads`].
+    /// Runs the kernel on threads, see [`Program::run_on_threads`].
     ///
     /// # Errors
-    /// As there.
+    /// As [`Program::run_on_threads`].
     fn run(
         &self,
         memory: &Memory<'_>,
@@ -158,11 +158,11 @@ pub trait Runnable: Send + Sync {
         set: InstructionSet,
     ) -> Result<(), ProgramError>;
 
-    /// Bytes of the register files that an execution keeps for a range of elements, and the precision of the programs that
-    /// share them: of numbers, of predicates, of indices. None where instructions feed each other.
+    /// Precision of the lanes, and sizes in bytes of the register files that an execution allocates for a range of elements:
+    /// numbers, predicates, indices. Programs of one precision share them. They are zero where instructions feed each other.
     ///
     /// # Errors
-    /// [`ProgramError::NoSuchInstructionSet`].
+    /// [`ProgramError::NoSuchInstructionSet`] if this processor lacks it.
     fn register_bytes(
         &self,
         range: &Range<usize>,
@@ -170,16 +170,16 @@ pub trait Runnable: Send + Sync {
         set: InstructionSet,
     ) -> Result<(&'static str, [usize; 3]), ProgramError>;
 
-    /// What is executed, section by section.
+    /// Operations executed, section by section.
     fn tally(&self) -> Vec<(&'static str, OpCounts)>;
 
-    /// The vector instructions, as an assembly listing.
+    /// Vector instructions as an assembly listing.
     fn listing(&self) -> String;
 
-    /// The vector instructions as words.
+    /// Vector instructions in words.
     fn lines(&self) -> Vec<Line>;
 
-    /// The vector instructions, and the passes that execute them, as a timing model sees them.
+    /// Outlines of the vector instructions and of the passes that execute them, for a timing model.
     fn outlines(&self) -> Outlines;
 }
 
@@ -228,7 +228,7 @@ where
     }
 }
 
-/// An admitted run of a text compiled for registers.
+/// An admitted run of a kernel compiled for registers.
 struct Compiled<'r, T> {
     text: &'r T,
     memory: &'r Memory<'r>,
@@ -239,7 +239,7 @@ impl<T: Text> Task<T::Lane> for Compiled<'_, T>
 where
     T::Lane: Precision,
 {
-    /// The text on full registers, and what is left over element by element.
+    /// Runs the kernel on full registers, and on the rest element by element.
     #[inline(always)]
     fn on<R: Registers<Lane = T::Lane>>(self, registers: R) {
         let Range { start: mut base, end } = self.range;
@@ -255,7 +255,7 @@ impl<T: Text> Compiled<'_, T>
 where
     T::Lane: Precision,
 {
-    /// The text element by element from `base` on: the same bits, so not worth a copy for every register file.
+    /// Runs the kernel element by element from `base` on. The bits are the same, so one copy serves all register files.
     #[inline(never)]
     fn elements(&self, mut base: usize) {
         while base < self.range.end {

@@ -1,4 +1,4 @@
-//! Every pair once, against the sum that is written down.
+//! All-pairs sweep compared with the formula evaluated pair by pair.
 
 use rand::RngExt;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -13,16 +13,16 @@ fn never() -> bool {
     false
 }
 
-/// Everything summed up, to the end.
+/// Options that observe everything and never stop.
 fn manner(arithmetic: Arithmetic, set: InstructionSet) -> Manner<'static> {
     Manner { observed: true, arithmetic, set, interrupted: &never }
 }
 
-/// Positions and velocities of bodies at random in a cube, and their masses; padding behind them.
+/// Bodies at random positions in a cube, with velocities and masses; padding behind them.
 struct System<P> {
     count: usize,
     position: [Vec<P>; 3],
-    /// What rounding to single precision has left of them.
+    /// Rounding residues of the positions in single precision.
     rest: [Vec<P>; 3],
     velocity: [Vec<P>; 3],
     mass: Vec<P>,
@@ -49,7 +49,7 @@ impl<P: Precision> System<P> {
         }
     }
 
-    /// Sums, energy and virial as the sweep gives them.
+    /// Sums, energy and virial of the sweep.
     fn swept<const RATE: bool, const SUMS: usize>(
         &self,
         softening: f64,
@@ -75,7 +75,7 @@ impl<P: Precision> System<P> {
         column.each_ref().map(|axis| axis[body].to_f64())
     }
 
-    /// The same bodies elsewhere, their positions rounded to single precision and what that leaves.
+    /// Displaced copy of the bodies, with positions rounded to single precision and their residues.
     fn moved(mut self, by: f64) -> Self {
         for (column, rest) in self.position.iter_mut().zip(&mut self.rest) {
             for (x, rest) in column.iter_mut().zip(rest).take(self.count) {
@@ -87,7 +87,7 @@ impl<P: Precision> System<P> {
         self
     }
 
-    /// The same bodies at places so many times as far from the origin.
+    /// Copy of the bodies, `times` as far from the origin.
     fn spread(mut self, times: f64) -> Self {
         for column in &mut self.position {
             column[..self.count].iter_mut().for_each(|x| *x = P::from_f64(times * x.to_f64()));
@@ -100,7 +100,7 @@ impl<P: Precision> System<P> {
         [0, 1, 2].map(|axis| place[axis] + rest[axis])
     }
 
-    /// The sums of a body, its partners one after the other in double precision, and half its pairs' energy.
+    /// Sums of a body from the formula, one partner after the other in double precision, and half of its pairs' energy.
     fn written_down(&self, body: usize, softening: f64) -> ([f64; 6], f64) {
         let (r, v, m) = (self.place(body), Self::vector(&self.velocity, body), self.mass[body].to_f64());
         let (mut sums, mut energy) = ([0.0; 6], 0.0);
@@ -122,7 +122,7 @@ impl<P: Precision> System<P> {
     }
 }
 
-/// The worst deviation from what is written down, relative to the largest sum of its kind.
+/// Largest deviation from the formula, relative to the largest sum of its kind.
 fn error<P: Precision, const RATE: bool, const SUMS: usize>(
     count: usize,
     softening: f64,
@@ -156,7 +156,10 @@ fn error_of<P: Precision, const RATE: bool, const SUMS: usize>(
         "energy of {count}: {energy} {potential}"
     );
     if softening == 0.0 {
-        assert!((virial / energy - 1.0).abs() < 1e-5, "the virial of 1/r is its energy: {virial} {energy}");
+        assert!(
+            (virial / energy - 1.0).abs() < 1e-5,
+            "the virial of 1/r must be its energy: {virial} {energy}"
+        );
     }
     (0..SUMS / 3).map(|kind| worst[kind] / largest[kind]).fold(0.0, f64::max)
 }
@@ -186,7 +189,7 @@ fn sums_are_those_of_all_pairs() {
     }
 }
 
-/// Estimates without their correction are good to four digits where there is such an instruction, and wrong where one looks closer.
+/// Without correction, estimates are accurate to four digits if there is such an instruction, and no more.
 #[test]
 fn raw_estimates_are_coarse() {
     let set = InstructionSet::best();
@@ -198,7 +201,7 @@ fn raw_estimates_are_coarse() {
     }
 }
 
-/// Single precision knows how far bodies are apart as well a thousand lengths from the origin as about it.
+/// Single precision resolves distances between bodies as well a thousand lengths from the origin as near it.
 #[test]
 fn forces_in_single_precision_do_not_depend_on_the_origin() {
     for arithmetic in [Arithmetic::Exact, Arithmetic::Estimated] {
@@ -211,7 +214,7 @@ fn forces_in_single_precision_do_not_depend_on_the_origin() {
     }
 }
 
-/// Bodies at places where numbers are coarser than 1 attract each other as others do, with padding behind them and without.
+/// Bodies at positions where numbers are coarser than 1 attract each other as others do, with and without padding behind them.
 #[test]
 fn far_bodies_attract_each_other_without_softening() {
     for (count, double, single) in [(16, 1e16, 1e8), (17, 1e16, 1e8), (37, 1e40, 3e7), (5, 1e55, 1e6)] {
@@ -229,13 +232,13 @@ fn far_bodies_attract_each_other_without_softening() {
     }
 }
 
-/// Of sums, energy and virial.
+/// Bits of sums, energy and virial.
 fn bits<P: Precision, const SUMS: usize>((sums, observed): ([Vec<P>; SUMS], [f64; 2])) -> Vec<u64> {
     sums.iter().flatten().map(|sum| sum.to_f64()).chain(observed).map(f64::to_bits).collect()
 }
 
-/// The bits of exact sums, energy and virial depend neither on the instruction set nor on the number of threads; those of estimates not on the
-/// latter.
+/// Bits of exact sums, energy and virial depend neither on the instruction set nor on the number of threads. Bits of estimates do
+/// not depend on the number of threads.
 #[test]
 fn bits_depend_on_the_bodies_alone() {
     let system = System::<f64>::random(777, 2);
@@ -257,7 +260,7 @@ fn bits_depend_on_the_bodies_alone() {
     }
 }
 
-/// Every pair's forces are each other's opposite: what is left of the sum of all is rounding.
+/// The forces of every pair are opposite: the sum over all bodies is rounding error.
 #[test]
 fn no_momentum_comes_from_nowhere() {
     let system = System::<f64>::random(1000, 3);
@@ -294,11 +297,14 @@ fn columns_that_are_too_short_are_refused() {
     let into = three.each_mut().map(Vec::as_mut_slice);
     let manner = manner(Arithmetic::Exact, InstructionSet::Scalar);
     let rates = AllPairs::<f64, 3>::new(20).sweep(&law, &bodies, into, &manner);
-    assert!(matches!(rates, Err(ProgramError::Unstated(_))), "there is no room for the rates");
+    assert!(
+        matches!(rates, Err(ProgramError::Unstated(_))),
+        "a law with rates was accepted without columns for them"
+    );
 }
 
-/// A sweep looks between its groups of bodies whether it should stop, and says that it did; the next one has the same bits as
-/// if none had been stopped.
+/// A sweep checks between groups of bodies for an interruption and reports it; the next sweep has the bits of an uninterrupted
+/// one.
 #[test]
 fn a_sweep_stops_between_groups() {
     let system = System::<f64>::random(1000, 4);
@@ -322,7 +328,7 @@ fn a_sweep_stops_between_groups() {
             let into = sums.each_mut().map(Vec::as_mut_slice);
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
             let done = pool.install(|| sweep.sweep(&law, &bodies, into, &manner));
-            // No band goes on after it was told to stop.
+            // No band continues after the interruption.
             assert!(asked.into_inner() <= most + BANDS);
             match (stops, done) {
                 (true, done) => assert_eq!(done, Err(ProgramError::Interrupted), "{most}"),

@@ -1,5 +1,5 @@
-//! The Index of discs whose positions are seen from the cells in which they were last: against plain arithmetic, and the same
-//! bits in every execution.
+//! The Index of discs with positions relative to their last cells: compared with plain arithmetic, and bit-equal in every
+//! execution.
 
 mod support;
 
@@ -13,7 +13,7 @@ use stripmine_kernels::{Execution, InstructionSet, Program};
 
 const DISCS: usize = 300;
 
-/// What the program reads and writes.
+/// Inputs and outputs of the kernel.
 #[derive(Clone, Debug, PartialEq)]
 struct Discs {
     cell: Vec<u32>,
@@ -41,7 +41,7 @@ fn entered(start: &Discs, shape: LatticeShape, frame: Frame, how: (Execution, In
 
 #[test]
 fn discs_are_found_from_the_cells_in_which_they_were() {
-    // A box far from the origin, where single precision would not tell cells apart.
+    // A box far from the origin, where single precision could not distinguish cells.
     let frame = Frame { origin: [-3e7, 5e8], edge: [0.7, 0.9] };
     for (periodic, half_width) in [([true, true], 2), ([true, false], 3), ([false, false], 2)] {
         let (columns, rows) = (23_usize, 11_usize);
@@ -51,7 +51,7 @@ fn discs_are_found_from_the_cells_in_which_they_were() {
         let mut draw = |most: f64| (most * random.random::<f64>()) as usize;
         let from: Vec<[usize; 2]> = (0..DISCS).map(|_| [draw(columns as f64), draw(rows as f64)]).collect();
         let mut random = Stream::new(6, Purpose::Test, half_width);
-        // A third stays in its cell, the others go up to three cells away.
+        // A third of the discs stays in its cell, the others move up to three cells away.
         let place: [Vec<f32>; 2] = [0, 1].map(|axis| {
             let reach = |disc: usize| if disc.is_multiple_of(3) { 0.49 } else { 3.0 };
             (0..DISCS)
@@ -85,7 +85,7 @@ fn discs_are_found_from_the_cells_in_which_they_were() {
                 strays += 1;
                 assert_eq!(first.cell[disc], 0);
                 let stays = (0..2).all(|axis| first.place[axis][disc] == start.place[axis][disc]);
-                assert!(stays, "a stray is seen from where it was");
+                assert!(stays, "a stray must keep its reference cell");
                 continue;
             }
             assert_eq!(first.cell[disc], number(to), "disc {disc}");
@@ -95,7 +95,7 @@ fn discs_are_found_from_the_cells_in_which_they_were() {
                 assert_eq!(found, first.on_lattice[axis][disc]);
                 assert!(
                     !disc.is_multiple_of(3) || found == start.place[axis][disc],
-                    "what stays is not touched"
+                    "a disc that stays in its cell must not change"
                 );
             }
         }

@@ -1,4 +1,5 @@
-//! Power, energy and virial: every sweep gives those of all pairs, and the lattice's texts cost nothing where none is asked for.
+//! Power, energy and virial: every sweep gives those of all pairs, and kernels on the lattice contain no operation for
+//! observations that are not requested.
 
 mod support;
 
@@ -14,27 +15,27 @@ use support::{CONTACT, Case, System, all_ways, varying};
 
 const ASKED: Asked = Asked { watched: None, dissipation: true, energy: true };
 
-/// Discs at random places, of which every fifth is fixed.
+/// Discs at random positions, every fifth of them fixed.
 fn some_fixed(case: &Case) -> System<f64, f64> {
     let mut system = System::random(case);
     system.lattice_inverse_mass.iter_mut().step_by(5).for_each(|inverse| *inverse = 0.0);
     system
 }
 
-/// What all pairs come to, each looked at alone.
+/// Totals over all pairs, each evaluated alone.
 #[derive(Default)]
 struct Alone {
     /// Energy and virial.
     energy: [f64; 2],
-    /// Contacts of which at least one disc may move, and the deepest of them.
+    /// Contacts with at least one mobile disc, and the deepest of them.
     contacts: u64,
     deepest: f64,
-    /// Contacts of fixed discs alone.
+    /// Contacts between two fixed discs.
     fixed: usize,
 }
 
-/// Energy, virial and contacts of all pairs, each looked at alone. The virial is by the forces: (r_i − r_j)·F_i, where neither is
-/// fixed.
+/// Energy, virial and contacts of all pairs, each evaluated alone. The virial follows from the forces: (r_i − r_j)·F_i, where
+/// neither is fixed.
 fn by_pairs<L: Law<2>>(system: &System<f64, f64>, law: &L) -> Alone {
     let sides = [system.shape.columns(), system.shape.rows()];
     let body = |disc: usize| Body {
@@ -65,7 +66,7 @@ fn by_pairs<L: Law<2>>(system: &System<f64, f64>, law: &L) -> Alone {
                 let expected = if fixed == 0 { apart[0] * fx + apart[1] * fy } else { 0.0 };
                 assert!(
                     (virial - expected).abs() < 1e-12 * (1.0 + expected.abs()),
-                    "{virial}, not {expected}"
+                    "virial {virial}, expected {expected}"
                 );
                 all.fixed += usize::from(fixed == 2);
                 all.contacts += u64::from(fixed < 2);
@@ -78,7 +79,7 @@ fn by_pairs<L: Law<2>>(system: &System<f64, f64>, law: &L) -> Alone {
     all
 }
 
-/// Power, energy and virial as the lattice's sweep gives them: shares summed over the discs that may move.
+/// Power, energy and virial from the lattice's sweep: shares summed over the mobile discs.
 fn on_lattice<L: Law<2>>(
     start: &System<f64, f64>,
     case: &Case,
@@ -94,14 +95,17 @@ fn on_lattice<L: Law<2>>(
     unasked.forces(case, law, how).unwrap();
     let bits =
         |system: &System<f64, f64>| -> Vec<u64> { system.sums.iter().flatten().map(|x| x.bits()).collect() };
-    assert!(bits(&asked) == bits(&unasked), "what is asked for changes no force");
-    assert!(unasked.observed.iter().flatten().all(|&x| x == 0.0), "nothing is written unasked");
+    assert!(bits(&asked) == bits(&unasked), "observations changed a force");
+    assert!(
+        unasked.observed.iter().flatten().all(|&x| x == 0.0),
+        "an observation was written without a request"
+    );
     let moving = (0..start.discs).filter(|&disc| start.lattice_inverse_mass[disc] != 0.0);
     let cells: Vec<usize> = moving.map(|disc| asked.cell[disc] as usize - 1).collect();
     asked.observed.each_ref().map(|column| cells.iter().map(|&cell| column[cell]).sum())
 }
 
-/// The same by lists, disc by disc.
+/// Power, energy and virial from lists, disc by disc.
 fn by_lists<L: Law<2>>(start: &System<f64, f64>, case: &Case, law: &L) -> [f64; 3] {
     let mut system = start.clone();
     system.index(case, law, (Execution::Chained, InstructionSet::best()));
@@ -142,7 +146,10 @@ fn every_sweep_gives_power_energy_and_virial_of_all_pairs() {
         assert!(expected.iter().all(|&sum| sum > 1.0), "{expected:?}");
         let agrees = |found: [f64; 3], by: &str| {
             for (found, expected) in found.into_iter().zip(expected) {
-                assert!((found / expected - 1.0).abs() < 1e-11, "{by}: {found}, not {expected}, in {case:?}");
+                assert!(
+                    (found / expected - 1.0).abs() < 1e-11,
+                    "{by}: {found}, expected {expected}, in {case:?}"
+                );
             }
         };
         agrees([power, fast.energy[0], fast.energy[1]], "fast");
@@ -151,10 +158,10 @@ fn every_sweep_gives_power_energy_and_virial_of_all_pairs() {
             agrees(on_lattice(&system, &case, &law, how), &format!("{how:?}"));
         }
     }
-    assert!(fixed_pairs > 0, "no two fixed discs touch");
+    assert!(fixed_pairs > 0, "the cases have no contact of two fixed discs");
 }
 
-/// Energy is a section of its own on the tape; asked for nothing, a text is the one that knows of nothing to ask.
+/// Energy is a section of its own on the tape; without requests, the kernel contains no observation.
 #[test]
 fn what_is_not_asked_for_is_not_recorded() {
     let case = Case::new(9, 7);

@@ -1,5 +1,5 @@
-//! The fast sweep against the faithful one, whose forces `oracle.rs` holds against all pairs: the same but for rounding;
-//! and against itself: the same bits for any instruction set, threads and order of the discs in memory.
+//! The fast sweep equals the sweep of BP93 up to rounding (`oracle.rs` compares that one with all pairs). It has the same bits
+//! for any instruction set, threads and order of the discs in memory.
 
 mod support;
 
@@ -21,7 +21,7 @@ fn shuffled(count: usize, seed: u64) -> Vec<u32> {
     order
 }
 
-/// Fast against chained within `bound` of the rms force; every way of running it to the same bits.
+/// Compares fast with chained forces within `bound` of the rms force, and the bits of every way of running the fast sweep.
 fn agree<S: Precision, P: Precision, L: Law<2> + Sync>(case: &Case, law: &L, bound: f64) {
     let mut faithful = System::<S, P>::random(case);
     let start = faithful.clone();
@@ -39,7 +39,7 @@ fn agree<S: Precision, P: Precision, L: Law<2> + Sync>(case: &Case, law: &L, bou
             let off = (found[sum.column::<2>()].to_f64() - expected).abs();
             assert!(
                 off <= bound * rms,
-                "{sum:?} of disc {disc} is off by {:e} of the rms: {case:?}",
+                "{sum:?} of disc {disc} differs by {:e} of the rms: {case:?}",
                 off / rms
             );
         }
@@ -99,7 +99,7 @@ fn fast_forces_are_those_of_the_faithful_sweep_when_full_sparse_or_empty() {
     }
 }
 
-/// Action and reaction: the sums of all forces vanish but for rounding.
+/// Action and reaction: the sum of all forces vanishes up to rounding.
 #[test]
 fn forces_add_up_to_nothing() {
     let case = Case { seed: 9, ..Case::new(60, 75) };

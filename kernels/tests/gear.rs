@@ -1,11 +1,11 @@
-//! Gear's schemes: their orders, their limits of stability, and what they do exactly.
+//! Gear's schemes: orders, stability limits, and exact solutions.
 
 use stripmine_kernels::integrator::Inertia;
 use stripmine_kernels::integrator::gear::{Acceleration, Corrector, Predictor, STATE, coefficients};
 use stripmine_kernels::isa::{Array, Memory, Slot};
 use stripmine_kernels::{Execution, InstructionSet, Program};
 
-/// Discs driven by the programs alone: the forces are what the test says.
+/// Discs driven by the kernels alone, with forces given by the test.
 struct Discs {
     dt: f64,
     count: usize,
@@ -17,7 +17,7 @@ struct Discs {
 }
 
 impl Discs {
-    /// `derivatives(disc, freedom, k)` is the k-th time derivative at the start.
+    /// Initial state: `derivatives(disc, freedom, k)` is the k-th time derivative.
     fn new(dt: f64, count: usize, derivatives: impl Fn(usize, usize, usize) -> f64) -> Discs {
         let scale = |k: usize| (1..=k).fold(1.0, |scale, m| scale * dt / m as f64);
         let column = |freedom, k| (0..count).map(|disc| scale(k) * derivatives(disc, freedom, k)).collect();
@@ -49,7 +49,7 @@ impl Discs {
         memory.read(Slot::new(Array::DiscCell), &self.cell)
     }
 
-    /// Steps of the scheme with `force(disc, freedom, r, v)`, masses and moments of inertia 1.
+    /// Runs steps of the scheme with `force(disc, freedom, r, v)`; masses and moments of inertia are 1.
     fn run<const VALUES: usize, const FREEDOMS: usize>(
         &mut self,
         steps: usize,
@@ -79,8 +79,8 @@ impl Discs {
     }
 }
 
-/// The damped oscillator r'' = −ω² r − 2βr' from r = 1, r' = −β: r = e^(−βt) cos(νt), ν² = ω² − β², one for
-/// each disc and direction.
+/// Damped oscillator r'' = −ω² r − 2βr' from r = 1, r' = −β: r = e^(−βt) cos(νt), ν² = ω² − β². Each disc and direction has its
+/// own.
 #[derive(Clone, Copy)]
 struct Oscillator {
     nu: f64,
@@ -147,11 +147,10 @@ fn slopes<const VALUES: usize>(acceleration: Acceleration, damped: bool, exact_s
 }
 
 fn of_order(order: f64, slopes: [f64; 2]) {
-    assert!(slopes.iter().all(|slope| (slope - order).abs() < 0.3), "{slopes:?}, not {order}");
+    assert!(slopes.iter().all(|slope| (slope - order).abs() < 0.3), "slopes {slopes:?}, expected {order}");
 }
 
-/// The coefficients of Allen & Tildesley's table; other first coefficients would pass the
-/// tests of order and stability.
+/// Coefficients of Allen & Tildesley's table. Other first coefficients would pass the tests of order and stability.
 #[test]
 fn coefficients_are_those_of_the_table() {
     for (values, first, first_of_velocities, rest) in [
@@ -170,8 +169,7 @@ fn coefficients_are_those_of_the_table() {
     }
 }
 
-/// On harmonic oscillators with exact starting derivatives the schemes of 4, 5, 6 values are of order 3, 4,
-/// 5.
+/// On harmonic oscillators with exact initial derivatives, the schemes of 4, 5, 6 values are of order 3, 4, 5.
 #[test]
 fn four_five_and_six_values_are_of_order_three_four_and_five() {
     of_order(3.0, slopes::<4>(Acceleration::OfPositions, false, true));
@@ -179,8 +177,7 @@ fn four_five_and_six_values_are_of_order_three_four_and_five() {
     of_order(5.0, slopes::<6>(Acceleration::OfPositions, false, true));
 }
 
-/// The first coefficient for velocity-dependent forces has the same orders, on damped oscillators; so has the
-/// other.
+/// On damped oscillators, both first coefficients give these orders: the one for velocity-dependent forces and the other.
 #[test]
 fn either_first_coefficient_has_the_same_order_with_damping() {
     for acceleration in [Acceleration::OfVelocities, Acceleration::OfPositions] {
@@ -190,7 +187,7 @@ fn either_first_coefficient_has_the_same_order_with_damping() {
     }
 }
 
-/// Started with zeros for the derivatives beyond the velocity, every scheme is of first order.
+/// With zeros for the initial derivatives beyond the velocity, every scheme is of first order.
 #[test]
 fn zero_starting_derivatives_spoil_the_order() {
     of_order(1.0, slopes::<4>(Acceleration::OfPositions, false, false));
@@ -205,8 +202,8 @@ fn speed<const VALUES: usize>(drag: f64, acceleration: Acceleration) -> f64 {
     discs.state[0][1][0].abs()
 }
 
-/// Stable at 0.9 of the limit, blown up at 1.15 of it, and the limit itself to 0.01, with either first
-/// coefficient.
+/// Checks that a scheme is stable at 0.9 of the limit and diverges at 1.15 of it, and the limit itself to 0.01, with both first
+/// coefficients.
 fn stable_below<const VALUES: usize>(limit: f64) {
     for acceleration in [Acceleration::OfVelocities, Acceleration::OfPositions] {
         assert!(speed::<VALUES>(0.9 * limit, acceleration) < 1e-9);
@@ -218,7 +215,7 @@ fn stable_below<const VALUES: usize>(limit: f64) {
             *(if speed::<VALUES>(middle, acceleration) < 1.0 { &mut stable } else { &mut unstable }) = middle;
         }
         println!("{VALUES} values, {acceleration:?}: stable below gamma dt = {stable:.4}");
-        assert!((stable - limit).abs() < 0.01, "{stable}, not {limit}");
+        assert!((stable - limit).abs() < 0.01, "stable below {stable}, expected {limit}");
     }
 }
 
@@ -230,7 +227,7 @@ fn pure_drag_is_stable_below_the_stated_limits_only() {
     stable_below::<6>(0.17);
 }
 
-/// x and y do not know whether discs rotate; the angle moves with rotation and stays without.
+/// x and y do not depend on rotation; the angle changes with rotation only.
 #[test]
 fn rotation_changes_no_bit_of_x_and_y() {
     let start =
@@ -252,8 +249,7 @@ fn rotation_changes_no_bit_of_x_and_y() {
     assert_eq!(bits(&without, 2), bits(&before, 2));
 }
 
-/// Under gravity alone the path is the parabola: to the bit where all numbers have few bits, else to
-/// rounding.
+/// Under gravity alone the path is a parabola: to the bit if all numbers have few bits, else to rounding.
 fn parabola<const VALUES: usize>() {
     let velocity = [0.75, 3.5];
     let path = |gravity: [f64; 2], dt: f64| {
@@ -275,11 +271,11 @@ fn parabola<const VALUES: usize>() {
     assert_eq!(found, expected);
     let (found, expected) = path([0.0, -9.81], 1e-3);
     for axis in 0..2 {
-        assert!((found[axis] - expected[axis]).abs() < 1e-12, "{found:?}, not {expected:?}");
+        assert!((found[axis] - expected[axis]).abs() < 1e-12, "{found:?}, expected {expected:?}");
     }
 }
 
-/// Free fall is exact with every number of values.
+/// Free fall is exact for every number of values.
 #[test]
 fn free_fall_is_the_exact_parabola() {
     parabola::<4>();
@@ -287,7 +283,7 @@ fn free_fall_is_the_exact_parabola() {
     parabola::<6>();
 }
 
-/// A component of gravity that is 0 costs no operation, one that is not costs one sum.
+/// A zero component of gravity costs no operation, a non-zero one costs one sum.
 #[test]
 fn gravity_costs_one_sum_a_component() {
     let inertia = Inertia::Equal { inverse_mass: 1.0, inverse_inertia: 1.0 };
@@ -300,7 +296,7 @@ fn gravity_costs_one_sum_a_component() {
     assert_eq!(sums([1.0, -9.81]), sums([0.0, 0.0]) + 2);
 }
 
-/// A disc in no cell (a stray) feels gravity and no force; no other disc's force is taken for its own.
+/// A disc in no cell (a stray) is subject to gravity and no force; it gets no other disc's force.
 #[test]
 fn a_disc_in_no_cell_feels_no_force() {
     let mut discs = Discs::new(1e-2, 5, |_, _, _| 0.0);
@@ -313,7 +309,7 @@ fn a_disc_in_no_cell_feels_no_force() {
     let found =
         |freedom: usize| discs.state[freedom][2].iter().map(|q| q / (0.5 * 1e-2 * 1e-2)).collect::<Vec<_>>();
     for (found, expected) in found(0).into_iter().zip([5.0, 0.0, 4.0, 1.0, 2.0]) {
-        assert!((found - expected).abs() < 1e-12, "{found}, not {expected}");
+        assert!((found - expected).abs() < 1e-12, "{found}, expected {expected}");
     }
     assert!(found(1).iter().all(|a| (a + 2.0).abs() < 1e-12));
 }

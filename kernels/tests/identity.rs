@@ -1,4 +1,4 @@
-//! Every execution of every program gives the same bits, on every instruction set this processor has.
+//! Every execution of every kernel gives the same bits, on every instruction set of this processor.
 
 mod support;
 
@@ -13,7 +13,7 @@ use support::{CONTACT, Case, System, all_ways, equal, varying};
 
 const ORACLE: (Execution, InstructionSet) = (Execution::Chained, InstructionSet::Scalar);
 
-/// Two whole steps of each way against the scalar oracle.
+/// Compares two whole steps of every execution with the scalar oracle.
 fn whole_steps_agree<S: Precision, P: Precision, L: Law<2>, const VALUES: usize, const FREEDOMS: usize>(
     case: &Case,
     law: &L,

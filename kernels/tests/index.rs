@@ -1,4 +1,4 @@
-//! The Index of the lattice against plain arithmetic: cells, strays, conflicts, and the places on the lattice.
+//! The Index of the lattice compared with plain arithmetic: cells, strays, conflicts, and positions on the lattice.
 
 mod support;
 
@@ -10,12 +10,12 @@ use stripmine_kernels::sweep::pair::Body;
 use stripmine_kernels::{Execution, InstructionSet};
 use support::{Case, System, equal};
 
-/// The ways a text is compiled that matter here; `identity.rs` compares the others.
+/// Executions that matter here; `identity.rs` compares the others.
 fn ways() -> [(Execution, InstructionSet); 2] {
     [InstructionSet::Scalar, InstructionSet::best()].map(|set| (Execution::Chained, set))
 }
 
-/// What the Index program must leave behind.
+/// Expected result of the Index kernels.
 #[derive(Debug, Default, PartialEq)]
 struct Cells {
     /// Number of each disc's cell, from 1.
@@ -63,7 +63,7 @@ fn naive_cells(places: &[[f64; 2]], frame: Frame, case: &Case) -> Cells {
     found
 }
 
-/// Indexes discs at `places` in every way and hands the first of the equal results back.
+/// Indexes discs at `places` with every execution and returns the first of the equal results.
 fn indexed<S: Precision>(case: &Case, frame: Frame, places: &[[f64; 2]]) -> System<S, f64> {
     let discs: Vec<_> = places.iter().map(|&[x, y]| Body::at(x, y)).collect();
     let law = equal::<false>(case.contact);
@@ -81,7 +81,7 @@ fn result<S>(system: &System<S, f64>) -> Cells {
     Cells { cell: system.cell.clone(), strays: system.strays, conflicts: system.conflicts }
 }
 
-/// The positions the lattice got, read back as places in space.
+/// Positions in space from the lattice's coordinates.
 fn places_on_the_lattice<S>(system: &System<S, f64>, case: &Case) -> Vec<[f64; 2]> {
     (0..system.discs)
         .map(|disc| {
@@ -101,7 +101,7 @@ fn places_on_the_lattice<S>(system: &System<S, f64>, case: &Case) -> Vec<[f64; 2
         .collect()
 }
 
-/// Random places, up to most of a period outside: cells, strays, conflicts, Index and coordinates.
+/// Compares cells, strays, conflicts, Index and coordinates for random positions up to most of a period outside.
 fn index_agrees<S: Precision>(case: &Case) {
     let mut random = Stream::new(case.seed, Purpose::Test, 1);
     let frame = Frame { origin: [-3.0, 2.0], edge: [1.1, 1.3] };
@@ -112,12 +112,12 @@ fn index_agrees<S: Precision>(case: &Case) {
     };
     let places: Vec<_> = (0..200).map(|_| [draw(0), draw(1)]).collect();
     let expected = naive_cells(&places, frame, case);
-    assert!(expected.conflicts > 10, "the case must have conflicts");
+    assert!(expected.conflicts > 10, "the case has no conflicts");
     assert_eq!(expected.strays > 10, case.periodic != [true, true]);
     let system = indexed::<S>(case, frame, &places);
     assert_eq!(result(&system), expected, "{case:?}");
 
-    // Of two discs in a cell the later stays; everything else is empty; images repeat.
+    // Of two discs in a cell the later stays; all other cells are empty; images repeat.
     let mut index = vec![0; system.shape.padded()];
     for (disc, &cell) in expected.cell.iter().enumerate().filter(|(_, cell)| **cell != 0) {
         index[cell as usize - 1] = disc as u32 + 1;
@@ -134,7 +134,7 @@ fn index_agrees<S: Precision>(case: &Case) {
     assert_eq!(system.index, index, "{case:?}");
 }
 
-/// Cells, Index, strays and conflicts are those of plain arithmetic, in either state precision.
+/// Cells, Index, strays and conflicts equal those of plain arithmetic, in both state precisions.
 #[test]
 fn the_index_is_that_of_plain_arithmetic() {
     for periodic in [[true, true], [false, false], [true, false], [false, true]] {
@@ -146,8 +146,8 @@ fn the_index_is_that_of_plain_arithmetic() {
     }
 }
 
-/// The lattice's copy of a position is the disc's place, absolute or from the middle of its cell, never
-/// beyond it.
+/// The lattice's copy of a position is the disc's position, absolute or relative to the centre of its cell, and never beyond the
+/// cell.
 #[test]
 fn coordinates_on_the_lattice_are_the_places_of_the_discs() {
     for coordinates in [Coordinates::Absolute, Coordinates::CellRelative] {
@@ -170,8 +170,8 @@ fn coordinates_on_the_lattice_are_the_places_of_the_discs() {
     }
 }
 
-/// Outside a closed side, not a number, infinite, or more than a period away: no cell, counted as a stray and
-/// (its Index does not name it) as a conflict; no other disc is disturbed.
+/// Discs outside a closed side, at NaN or infinity, or more than a period away are in no cell. They count as strays and (their
+/// Index entry is missing) as conflicts; no other disc is affected.
 #[test]
 fn strays_belong_to_no_cell_and_are_counted() {
     let frame = Frame { origin: [-3.0, 2.0], edge: [1.5, 1.25] };
@@ -220,15 +220,15 @@ fn discs_that_share_a_cell_are_counted() {
     assert_eq!(system.index[system.shape.position(3, 4)], 5);
     assert_eq!(system.index[system.shape.position(7, 1)], 6);
     assert_eq!(system.index[system.shape.position(0, 0)], 4);
-    // Meeting across a seam is no conflict; being in the same cell by wrapping is.
+    // Touching across a seam is no conflict; being in the same cell after wrapping is.
     let places = [[9.99, 4.5], [0.01, 4.5], [10.02, 4.4]];
     let system = indexed::<f64>(&case, frame, &places);
     assert_eq!((system.strays, system.conflicts), (0, 1));
     assert_eq!(system.index[system.shape.position(0, 4)], 3);
 }
 
-/// Representable borders (an edge and an origin of few bits): a disc exactly on one belongs to the cell to
-/// its right or above; on the far side of a closed lattice to the last cell, of a periodic one to the first.
+/// With exactly representable borders, a disc on a border belongs to the cell to its right or above. On the far side it belongs
+/// to the last cell of a closed lattice and to the first of a periodic one.
 #[test]
 fn a_disc_on_a_border_belongs_to_the_cell_behind_it() {
     let frame = Frame { origin: [-3.0, 2.0], edge: [1.5, 1.25] };
@@ -260,7 +260,7 @@ fn a_disc_on_a_border_belongs_to_the_cell_behind_it() {
     }
 }
 
-/// Borders that no double number is: the disc is in one of the two cells, and where the lattice says.
+/// On borders that no double represents, the disc is in one of the two cells, and its position is unchanged.
 #[test]
 fn a_disc_on_a_rounded_border_is_in_one_of_the_two_cells_and_where_it_was() {
     let frame = Frame { origin: [-3.1, 2.7], edge: [1.1, 0.7] };
@@ -279,13 +279,13 @@ fn a_disc_on_a_rounded_border_is_in_one_of_the_two_cells_and_where_it_was() {
     }
 }
 
-/// A disc so little below a periodic side that one period more rounds to exactly the far side stays inside.
+/// A disc so slightly below a periodic side that adding a period rounds to exactly the far side stays inside.
 #[test]
 fn a_coordinate_that_wraps_by_rounding_to_exactly_the_period_stays_inside() {
     let frame = Frame { origin: [0.0, 0.0], edge: [1.5, 1.25] };
     let case = Case::new(10, 8);
     for little in [f64::MIN_POSITIVE, 1e-300, 1e-30, 1e-17] {
-        assert_eq!(-little + 15.0, 15.0, "the case must round to the period");
+        assert_eq!(-little + 15.0, 15.0, "the case does not round to the period");
         let system = indexed::<f64>(&case, frame, &[[-little, -little]]);
         assert_eq!((system.strays, system.conflicts), (0, 0), "{little}");
         let stored = [system.state[0][0][0], system.state[1][0][0]];
@@ -294,8 +294,7 @@ fn a_coordinate_that_wraps_by_rounding_to_exactly_the_period_stays_inside() {
         let at = system.cell[0] as usize - 1;
         assert!(corner.iter().any(|&(c, r)| at == system.shape.position(c, r)), "cell {at}");
     }
-    // In single precision the stored coordinate may be the far side itself; the next step's wrap takes it
-    // home.
+    // In single precision the stored coordinate may be the far side itself; the wrap of the next step corrects it.
     let frame = Frame { origin: [0.0, 0.0], edge: [1.1, 1.3] };
     let mut system = indexed::<f32>(&case, frame, &[[-1e-9, -1e-9]]);
     for _ in 0..3 {
@@ -304,12 +303,12 @@ fn a_coordinate_that_wraps_by_rounding_to_exactly_the_period_stays_inside() {
     }
 }
 
-/// The positions next to a side, one number of the precision further in or out, and on it.
+/// Positions on a side and one number of the precision further in or out.
 fn next_to(side: f64) -> [f64; 3] {
     [side.next_down(), side, side.next_up()]
 }
 
-/// How many discs of those next to the periodic sides of random lattices become strays.
+/// Discs next to the periodic sides of random lattices that become strays.
 fn strays_at_periodic_sides(origin: impl Fn(&mut Stream) -> f64) -> Vec<String> {
     let mut random = Stream::new(11, Purpose::Test, 3);
     let mut found = vec![];
@@ -329,22 +328,21 @@ fn strays_at_periodic_sides(origin: impl Fn(&mut Stream) -> f64) -> Vec<String> 
     found
 }
 
-/// A disc within a rounding error of a periodic side belongs to the first or the last column, whatever the
-/// origin.
+/// A disc within a rounding error of a periodic side belongs to the first or the last column, for any origin.
 #[test]
 fn no_disc_next_to_a_periodic_side_is_a_stray() {
     let found = strays_at_periodic_sides(|random| 20.0 * random.random::<f64>() - 10.0);
     assert!(found.is_empty(), "{} strays of 1800, the first: {}", found.len(), found[0]);
 }
 
-/// The same with the lattice at the origin of coordinates, where the far side is the period.
+/// With the lattice at the origin of coordinates no disc becomes a stray either; there the far side is the period.
 #[test]
 fn no_disc_next_to_a_periodic_side_of_a_lattice_at_the_origin_is_a_stray() {
     let found = strays_at_periodic_sides(|_| 0.0);
     assert!(found.is_empty(), "{} strays of 1800, the first: {}", found.len(), found[0]);
 }
 
-/// A disc inside a closed lattice, however near its far side, is no stray.
+/// A disc inside a closed lattice is no stray, however near the far side it is.
 #[test]
 fn no_disc_inside_a_closed_side_is_a_stray() {
     let case = Case { periodic: [false, false], ..Case::new(17, 6) };

@@ -1,4 +1,4 @@
-//! What a law states is held to, and its energy is that of its force.
+//! Laws can use only the quantities they state, and their energies match their forces.
 
 mod support;
 
@@ -14,11 +14,11 @@ use stripmine_kernels::sweep::pair::Pair;
 use stripmine_kernels::{Execution, InstructionSet};
 use support::{CONTACT, Case, System, equal, random_pairs, varying};
 
-/// Asks for the radius and adds to the torque, and states neither.
+/// Reads the radius and adds to the torque, and states neither.
 #[derive(Clone, Debug, Default)]
 struct Forgetful {
     torque: bool,
-    /// It asks for nothing the first time, so that it looks right when it is tried.
+    /// Reads nothing the first time, so that it passes the check.
     hides: bool,
     tried: std::sync::Arc<AtomicBool>,
 }
@@ -67,10 +67,13 @@ fn a_law_that_forgets_a_field_or_a_sum_is_refused() {
         let recorded = message(|| system.clone().forces(&Case::new(13, 9), &law, how));
         assert_eq!(recorded, refusal.to_string());
     }
-    assert_eq!(RADIUS.to_string(), "the law asks for the radius, which it does not state");
+    assert_eq!(
+        RADIUS.to_string(),
+        "the law uses the radius without stating it; add it to its FIELDS or SUMS"
+    );
 }
 
-/// A law in safe code that looks right when it is tried stops at what it did not state; nothing is read out of bounds.
+/// A law in safe code that passes the check is stopped at the first unstated quantity; nothing is read out of bounds.
 #[test]
 fn a_law_that_hides_what_it_asks_for_is_stopped() {
     let system = System::<f64, f64>::random(&Case::new(13, 9));
@@ -82,10 +85,10 @@ fn a_law_that_hides_what_it_asks_for_is_stopped() {
     }
 }
 
-/// Dashpots in space: each particle is slowed by its velocity against the partner's. A planar one would not see the third axis.
+/// Dashpots in space: each particle is slowed by its velocity relative to the partner. A planar law would ignore the third axis.
 #[derive(Clone, Copy, Debug)]
 struct Dashpot {
-    /// Whether the law also turns the partner, which no law in space can state.
+    /// True if the law also adds a torque, which no law in space can state.
     turns: bool,
 }
 
@@ -113,7 +116,7 @@ impl Law<3> for Dashpot {
     }
 }
 
-/// Two particles in space, and the sums on them.
+/// Environment of two particles in space, with their sums.
 struct InSpace {
     velocity: [[f64; 3]; 2],
     sums: RefCell<[[f64; 3]; 2]>,
@@ -190,7 +193,7 @@ fn a_law_in_space_reads_and_adds_along_z_and_turns_nothing() {
     assert_eq!(message(|| meet(turning)), TORQUE.to_string());
 }
 
-/// A law of the plane that asks for what the third axis has is refused like any that asks for what it does not state.
+/// A law of the plane that reads a quantity of the third axis is rejected like any that reads an unstated one.
 #[test]
 fn a_law_of_the_plane_is_given_nothing_along_z() {
     #[derive(Clone)]
@@ -211,7 +214,7 @@ fn a_law_of_the_plane_is_given_nothing_along_z() {
     assert_eq!(message(|| Pair::touching().sums(&Lifting)), refusal.to_string());
 }
 
-/// The lists hold every field and sum that their dimensions have, each under one column.
+/// The lists contain every field and sum of their dimensions, each in one column.
 #[test]
 fn the_lists_of_the_plane_are_those_without_z() {
     let planar: Vec<Field> = Field::ALL.into_iter().filter(|field| field.is_in(2)).collect();
@@ -231,7 +234,7 @@ fn the_laws_that_run_state_what_they_ask_for() {
     assert_eq!(check(&equal::<false>(CONTACT)), Ok(()));
 }
 
-/// Of springs alone the force is the energy's slope, and the virial is that force along the way between the centres.
+/// For springs alone, the force is the slope of the energy, and the virial is that force times the vector between the centres.
 #[test]
 fn the_energy_is_that_of_the_force_and_the_virial_is_the_forces() {
     let springs = Contact { normal_damping: 0.0, shear_damping: 0.0, friction: 0.0, ..CONTACT };
@@ -263,8 +266,8 @@ fn the_energy_is_that_of_the_force_and_the_virial_is_the_forces() {
     assert!(touching > 100, "{touching} touch, {apart} do not");
 }
 
-/// The Lennard-Jones force is minus the slope of its energy, the same on both with opposite signs, and nothing beyond the cut-off, where
-/// the energy comes to 0; with the cut-off at 2^(1/6) σ the force does too.
+/// The Lennard-Jones force is minus the slope of its energy, opposite on the two particles, and zero beyond the cut-off, where
+/// the energy reaches 0. With the cut-off at 2^(1/6) σ the force vanishes there too.
 #[test]
 fn lennard_jones_forces_are_slopes_of_the_energy() {
     let sigma = 0.7;
@@ -277,7 +280,7 @@ fn lennard_jones_forces_are_slopes_of_the_energy() {
             pair.bodies[1].position = [1.0 + distance * angle.cos(), 2.0 + distance * angle.sin()];
             let [own, partner] = pair.sums(&law);
             assert_eq!([own[0], own[1], own[2]], [-partner[0], -partner[1], 0.0]);
-            // Positive where the particles repel each other.
+            // Positive if the particles repel each other.
             let outwards = -(own[0] * angle.cos() + own[1] * angle.sin());
             let [energy, virial] = pair.energy_and_virial(&law);
             assert!((virial - outwards * distance).abs() <= 1e-13 * (1.0 + virial.abs()));
@@ -286,7 +289,7 @@ fn lennard_jones_forces_are_slopes_of_the_energy() {
         for step in 0..200 {
             let distance = sigma * (0.85 + 0.01 * f64::from(step));
             let (force, energy) = at(distance);
-            // At the very edge either is right.
+            // At the very edge either value is right.
             if (distance / cutoff - 1.0).abs() < 1e-12 {
                 continue;
             }

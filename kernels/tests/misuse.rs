@@ -1,4 +1,4 @@
-//! What cannot run is refused before anything is written, and says why.
+//! Kernels that cannot run are rejected before anything is written, with the reason.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use stripmine_kernels::isa::{Array, Counter, Machine, Memory, ProgramError, Slot, Text, Vector};
@@ -13,15 +13,14 @@ const COUNTED: Counter = Counter(2);
 
 const BEST: fn() -> InstructionSet = InstructionSet::best;
 
-/// The ways to execute that differ in how they reach memory.
+/// Executions that differ in how they access memory.
 fn ways() -> impl Iterator<Item = (Execution, InstructionSet)> {
     [Execution::Chained, Execution::Strip(5), Execution::Eager]
         .into_iter()
         .flat_map(|execution| [InstructionSet::Scalar, BEST()].map(|set| (execution, set)))
 }
 
-/// Fx = x three elements back + x two ahead, Fy = 1, and a count: touches memory in every way that is
-/// checked.
+/// Fx = x three elements back + x two ahead, Fy = 1, and a count: makes every kind of access that is checked.
 #[derive(Clone, Copy)]
 struct Touch;
 
@@ -37,7 +36,7 @@ unsafe impl Text for Touch {
     }
 }
 
-/// The arrays of [`Touch`].
+/// Arrays of [`Touch`].
 struct Touched {
     x: Vec<f64>,
     fx: Vec<f64>,
@@ -58,7 +57,7 @@ impl Touched {
     }
 }
 
-/// Runs a program that must be refused; nothing may have been written or counted.
+/// Runs a kernel that must be rejected; nothing may have been written or counted.
 fn refused<T: Text<Lane = f64>>(
     text: T,
     arrays: &mut Touched,
@@ -72,7 +71,7 @@ fn refused<T: Text<Lane = f64>>(
     error
 }
 
-/// The control of the tests below: where nothing is wrong, the same program writes and counts in every way.
+/// Control of the tests below: without an error, the same kernel writes and counts in every execution.
 #[test]
 fn a_program_with_nothing_wrong_runs() {
     for (execution, set) in ways() {
@@ -87,14 +86,13 @@ fn a_program_with_nothing_wrong_runs() {
     }
 }
 
-/// An array bound to no slice is named with the element type asked for; another type's slice does not stand
-/// in.
+/// The error names an unbound array with the requested element type; a slice of another type is no substitute.
 #[test]
 fn an_unbound_array_is_named() {
     for (execution, set) in ways() {
         let error = Program::new(Touch).run(&Memory::new(), 0..0, execution, set).unwrap_err();
         assert_eq!(error, ProgramError::Unbound { array: "Fy", element: "f64" });
-        assert_eq!(error.to_string(), "the program uses Fy (f64), which is bound to no slice");
+        assert_eq!(error.to_string(), "array Fy (f64) is not bound to a slice; bind it before the run");
 
         let (single, mut fx, mut fy) = (vec![1f32; 32], vec![-7.0; 32], vec![-7.0; 32]);
         let memory =
@@ -105,7 +103,7 @@ fn an_unbound_array_is_named() {
     }
 }
 
-/// An array that is written must have been bound for writing, by stores as by scatters.
+/// An array that is written must be bound for writing, for stores and for scatters.
 #[test]
 fn writing_an_array_bound_for_reading_is_refused() {
     for (execution, set) in ways() {
@@ -113,7 +111,10 @@ fn writing_an_array_bound_for_reading_is_refused() {
         let memory = Memory::new().read(X, &x).read(FX, &fx).write(FY, &mut fy);
         let error = Program::new(Touch).run(&memory, 3..30, execution, set).unwrap_err();
         assert_eq!(error, ProgramError::ReadOnly { array: "Fx" });
-        assert_eq!(error.to_string(), "the program writes Fx, which is bound for reading only");
+        assert_eq!(
+            error.to_string(),
+            "array Fx is bound read-only, but the kernel writes it; bind it for writing"
+        );
         assert!(fy.iter().all(|&f| f == -7.0));
 
         let (cell, index) = (vec![1; 4], vec![0; 4]);
@@ -124,8 +125,7 @@ fn writing_an_array_bound_for_reading_is_refused() {
     }
 }
 
-/// Shifts that reach before the first or behind the last element are refused, to the element, with the
-/// numbers.
+/// Shifts before the first or behind the last element are rejected, with the exact elements.
 #[test]
 fn too_short_an_array_is_refused_to_the_element() {
     let range = |start: usize, end: usize, arrays: [usize; 3], way| {
@@ -133,17 +133,17 @@ fn too_short_an_array_is_refused_to_the_element() {
         refused(Touch, &mut Touched::new(x, fx, fy), start..end, way)
     };
     for way in ways() {
-        // x is met from 3 before to 2 behind.
+        // x is read from 3 before to 2 behind.
         let error = range(2, 8, [10, 10, 10], way);
         assert_eq!(error, ProgramError::TooShort { array: "x", first: -1, last: 9, length: 10 });
-        assert_eq!(error.to_string(), "the program touches elements -1 to 9 of x, which has 10");
+        assert_eq!(error.to_string(), "x has 10 elements, but the kernel touches elements -1 to 9");
         let error = range(3, 9, [10, 10, 10], way);
         assert_eq!(error, ProgramError::TooShort { array: "x", first: 0, last: 10, length: 10 });
         let error = range(3, 8, [10, 7, 8], way);
         assert_eq!(error, ProgramError::TooShort { array: "Fx", first: 3, last: 7, length: 7 });
         let error = range(3, 8, [10, 8, 0], way);
         assert_eq!(error, ProgramError::TooShort { array: "Fy", first: 3, last: 7, length: 0 });
-        // Just enough is enough, and an empty range touches nothing.
+        // The exact size suffices, and an empty range touches nothing.
         for (range, written) in [(3..8, 5), (0..0, 0), (500..500, 0)] {
             let mut arrays = Touched::new(10, 8, 8);
             let memory = arrays.memory();
@@ -153,7 +153,7 @@ fn too_short_an_array_is_refused_to_the_element() {
     }
 }
 
-/// Strips of no elements.
+/// Strips without elements.
 #[test]
 fn impossible_strips_are_refused() {
     for set in [InstructionSet::Scalar, BEST()] {
@@ -163,7 +163,7 @@ fn impossible_strips_are_refused() {
     }
 }
 
-/// An instruction set that this processor has not (no processor has both AVX2 and Neon) is named.
+/// The error names an instruction set that this processor lacks (no processor has both AVX2 and Neon).
 #[test]
 fn an_absent_instruction_set_is_named() {
     let mut absent = InstructionSet::ALL.iter().copied().filter(|set| !set.is_available()).peekable();
@@ -178,7 +178,7 @@ fn an_absent_instruction_set_is_named() {
     }
 }
 
-/// Reads x beside its own place and writes it: of strips, the one would see what the other wrote.
+/// Reads x beside the own element and writes it: strips would read each other's results.
 #[derive(Clone, Copy)]
 struct Hazard;
 
@@ -191,14 +191,14 @@ unsafe impl Text for Hazard {
     }
 }
 
-/// A text that writes what it also meets at a shift is no program.
+/// A kernel that writes an array it also reads at a shift is rejected.
 #[test]
-#[should_panic(expected = "x is written and met at a shift: strips would see each other's results")]
+#[should_panic(expected = "x is written and read at a shift, so results would depend on the strip length")]
 fn a_text_that_writes_what_it_loads_at_a_shift_is_refused() {
     Program::new(Hazard);
 }
 
-/// Meets memory through the index vector in `DiscCell`.
+/// Accesses memory through the index vector in `DiscCell`.
 #[derive(Clone, Copy, Debug)]
 enum Through {
     Gather,
@@ -220,8 +220,7 @@ unsafe impl Text for Through {
     }
 }
 
-/// What running `text` over all of `cell` leaves in Fx and Index, both of `length` elements, or the panic's
-/// message.
+/// Runs `text` over all of `cell`. Returns Fx and Index, both of `length` elements, or the panic message.
 fn through(
     text: Through,
     cell: &[u32],
@@ -259,34 +258,37 @@ fn an_index_vector_numbers_elements_from_one() {
     }
 }
 
-/// A wrong entry anywhere panics, naming the element (from 0) and how many there are; it never reads or
-/// writes beyond.
+/// A wrong entry anywhere panics with the element (from 0) and the length; nothing is read or written out of bounds.
 #[test]
 fn a_wrong_index_vector_panics_with_element_and_length() {
     for way in ways() {
-        for (text, what) in [
-            (Through::Gather, "gather from"),
-            (Through::GatherIndex, "gather from"),
-            (Through::Scatter, "scatter to"),
+        for (text, what, why) in [
+            (Through::Gather, "gather from", "the array has 8 elements"),
+            (Through::GatherIndex, "gather from", "the array has 8 elements"),
+            (Through::Scatter, "scatter to", "the array must be writable and has 8 elements"),
         ] {
             for wrong in [9, 1000, u32::MAX] {
                 for at in [0, 1, 6, 16, 36] {
                     let mut cell = vec![3; 37];
                     cell[at] = wrong;
                     let message = through(text, &cell, 8, way).unwrap_err();
-                    assert_eq!(message, format!("{what} element {} of 8", wrong - 1), "{text:?} {way:?}");
+                    assert_eq!(
+                        message,
+                        format!("{what} element {}, but {why}", wrong - 1),
+                        "{text:?} {way:?}"
+                    );
                 }
             }
         }
     }
 }
 
-/// An array without elements has none to gather: an entry that numbers one panics, whatever the execution.
+/// An empty array has no element to gather: an entry that numbers one panics in every execution.
 #[test]
 fn gathering_from_an_empty_array_panics_in_every_execution() {
     for way in ways() {
         assert_eq!(through(Through::Gather, &[0, 0, 0], 0, way).unwrap().0, [-1.0; 3]);
         let message = through(Through::Gather, &[0, 1, 0], 0, way);
-        assert_eq!(message, Err("gather from element 0 of 0".to_owned()), "{way:?}");
+        assert_eq!(message, Err("gather from element 0, but the array has 0 elements".to_owned()), "{way:?}");
     }
 }

@@ -1,4 +1,4 @@
-//! Forces of the lattice against naive ones: all pairs, plain numbers, written from the printed equations. `index.rs` does
+//! Forces of the lattice compared with naive ones: all pairs, plain numbers, written from the printed equations. `index.rs` does
 //! the same for the Index.
 
 mod support;
@@ -10,12 +10,12 @@ use stripmine_kernels::sweep::lattice::Coordinates;
 use stripmine_kernels::{Execution, InstructionSet};
 use support::{CONTACT, Case, System, equal, varying};
 
-/// The ways a text is compiled that matter here; `identity.rs` compares the others.
+/// Executions that matter here; `identity.rs` compares the others.
 fn ways() -> [(Execution, InstructionSet); 2] {
     [InstructionSet::Scalar, InstructionSet::best()].map(|set| (Execution::Chained, set))
 }
 
-/// A disc as a textbook has it.
+/// A disc in textbook notation.
 #[derive(Clone, Copy)]
 struct Ball {
     r: [f64; 2],
@@ -25,7 +25,7 @@ struct Ball {
     mass: f64,
 }
 
-/// What happened among the pairs of a system, so that a test can insist on having met it.
+/// Events among the pairs of a system, so that a test can require them.
 #[derive(Clone, Copy, Debug, Default)]
 struct Met {
     contacts: usize,
@@ -33,9 +33,9 @@ struct Met {
     sliding: usize,
     sticking: usize,
     pulling: usize,
-    /// Energy a time that leaves motion and springs.
+    /// Power that leaves motion and springs.
     dissipated: f64,
-    /// Energy in springs, and the virial of all forces.
+    /// Energy in springs, and virial of all forces.
     energy: [f64; 2],
 }
 
@@ -91,7 +91,7 @@ fn naive_forces(
                     normal = 0.0;
                 }
             }
-            // What shortens the torque's arm, and the surface's.
+            // Reduction of the torque's arm, and of the surface's radius.
             let (shortening, shrinking) = match law.arm {
                 ContactArm::Radius => (0.0, 0.0),
                 ContactArm::Overlap => (xi / 2.0, xi / 2.0),
@@ -111,7 +111,7 @@ fn naive_forces(
                 }
                 shear = -slip.signum() * viscous.min(bound);
             }
-            // What the pair gets, and what goes into its spring.
+            // Work done on the pair, and energy stored in its spring.
             let spins = if friction { arm_a * a.spin + arm_b * b.spin } else { 0.0 };
             let work = normal * (v[0] * n[0] + v[1] * n[1]) + shear * (v[0] * s[0] + v[1] * s[1] - spins);
             let stored = -law.stiffness * xi.powf(1.5) * (v[0] * n[0] + v[1] * n[1]);
@@ -130,7 +130,7 @@ fn naive_forces(
     (total, met)
 }
 
-/// The system's discs, read back from the numbers the programs are given.
+/// Discs of the system, read back from the numbers given to the kernels.
 fn balls<P: Precision>(system: &System<f64, P>, all_alike: bool) -> Vec<Ball> {
     let number = |column: &[P], disc: usize| column[disc].to_f64();
     (0..system.discs)
@@ -151,7 +151,7 @@ fn periods<S, P>(system: &System<S, P>) -> [Option<f64>; 2] {
     })
 }
 
-/// Every component of every disc within 10⁻¹² of the system's rms force (torque).
+/// Compares every component of every disc within 10⁻¹² of the system's rms force (torque).
 fn compare<L: Law<2> + Sync>(case: &Case, law: &L, all_alike: bool, friction: bool) -> (f64, Met) {
     let start = System::<f64, f64>::random(case);
     let (expected, met) = naive_forces(&balls(&start, all_alike), periods(&start), case.contact, friction);
@@ -183,12 +183,12 @@ fn compare<L: Law<2> + Sync>(case: &Case, law: &L, all_alike: bool, friction: bo
             let rms = (expected.iter().map(|f| f[sum.column::<2>()].powi(2)).sum::<f64>()
                 / found.len() as f64)
                 .sqrt();
-            assert!(rms > 1e-3, "nothing to compare in {case:?}");
+            assert!(rms > 1e-3, "no forces to compare in {case:?}");
             for (disc, (found, expected)) in found.iter().zip(&expected).enumerate() {
                 let difference = (found - expected[sum.column::<2>()]).abs() / rms;
                 assert!(
                     difference < 1e-12,
-                    "{sum:?} of disc {disc} is off by {difference} of the rms in {case:?}"
+                    "{sum:?} of disc {disc} differs by {difference} of the rms in {case:?}"
                 );
                 worst = worst.max(difference);
             }
@@ -197,7 +197,7 @@ fn compare<L: Law<2> + Sync>(case: &Case, law: &L, all_alike: bool, friction: bo
     (worst, met)
 }
 
-/// All options of the law and the lattice for one of the law's four compilations.
+/// Compares all options of the law and the lattice for one of the law's four compilations.
 fn compare_everywhere<L: Law<2> + Sync>(law: impl Fn(Contact) -> L, all_alike: bool, friction: bool) {
     let (mut worst, mut met, mut seed) = (0.0f64, Met::default(), 100);
     for (half_width, columns, rows) in [(2, 13, 9), (3, 11, 14)] {
@@ -253,7 +253,7 @@ fn forces_are_those_of_all_pairs_for_equal_discs_without_friction() {
     compare_everywhere(equal::<false>, true, false);
 }
 
-/// The smallest periodic lattice, 2h + 1 cells a side, meets every pair exactly once.
+/// On the smallest periodic lattice, 2h + 1 cells a side, every pair is visited exactly once.
 #[test]
 fn the_shortest_periodic_sides_meet_no_pair_twice() {
     for seed in 0..50 {
@@ -262,8 +262,7 @@ fn the_shortest_periodic_sides_meet_no_pair_twice() {
     }
 }
 
-/// Root-mean-square error of single-precision forces, relative to the rms force, 10⁴ from the origin of
-/// coordinates.
+/// Relative rms error of single-precision forces at a distance of 10⁴ from the origin of coordinates.
 fn single_precision_error(coordinates: Coordinates) -> f64 {
     let how = (Execution::Chained, InstructionSet::best());
     let (mut square, mut scale) = (0.0, 0.0);
@@ -290,8 +289,7 @@ fn single_precision_error(coordinates: Coordinates) -> f64 {
     (square / scale).sqrt()
 }
 
-/// Cell-relative coordinates keep single precision where the lattice lies far from the origin; absolute ones
-/// do not.
+/// Cell-relative coordinates preserve single precision far from the origin; absolute ones do not.
 #[test]
 fn single_precision_forces_far_from_the_origin_need_cell_relative_coordinates() {
     let relative = single_precision_error(Coordinates::CellRelative);

@@ -1,4 +1,4 @@
-//! What the contact law conserves, bounds and mirrors, on the lattice and off it.
+//! Contact law: conservation, bounds and symmetry, on the lattice and without it.
 
 mod support;
 
@@ -11,15 +11,14 @@ use stripmine_kernels::sweep::pair::{Body, Pair};
 use stripmine_kernels::{Execution, InstructionSet};
 use support::{CONTACT, Case, System, contacts, random_pairs, varying};
 
-/// The ways a text is compiled that matter here; `identity.rs` compares the others.
+/// Executions that matter here; `identity.rs` compares the others.
 fn ways() -> [(Execution, InstructionSet); 2] {
     [InstructionSet::Scalar, InstructionSet::best()].map(|set| (Execution::Chained, set))
 }
 
 // ---- on the lattice -------------------------------------------------------------------------------------
 
-/// A pair on an 8×8 lattice, periodic both ways, somewhere within the side lengths; and whether a seam is
-/// between them.
+/// Sums of a pair on an 8×8 lattice, periodic both ways, placed anywhere within the box; true if a seam is between the two.
 fn pair_on_the_lattice(
     contact: Contact,
     pair: Pair,
@@ -41,8 +40,7 @@ fn pair_on_the_lattice(
     ([on(0), on(1)], wrapped(0) || wrapped(1))
 }
 
-/// In cell-relative coordinates the two forces of a pair are each other's negatives to the bit, also across a
-/// seam.
+/// In cell-relative coordinates the two forces of a pair are opposite to the bit, also across a seam.
 #[test]
 fn action_is_reaction_to_the_bit() {
     let (mut seams, mut inside, mut random) = (0, 0, Stream::new(1, Purpose::Test, 1));
@@ -66,7 +64,7 @@ fn action_is_reaction_to_the_bit() {
     assert!(seams > 100 && inside > 100);
 }
 
-/// The lattice's pair gives what the law gives without a lattice, torques included.
+/// A pair on the lattice has the same forces and torques as without a lattice.
 #[test]
 fn a_pair_on_the_lattice_is_a_pair_without_one() {
     for contact in contacts() {
@@ -81,7 +79,7 @@ fn a_pair_on_the_lattice_is_a_pair_without_one() {
     }
 }
 
-/// The forces of a whole random system sum to zero.
+/// The forces of a random system sum to zero.
 #[test]
 fn the_total_force_of_a_system_is_zero() {
     for periodic in [[true, true], [false, false], [true, false]] {
@@ -93,7 +91,7 @@ fn the_total_force_of_a_system_is_zero() {
         for sum in [Sum::Force(Axis::X), Sum::Force(Axis::Y)] {
             let forces = system.on_discs(sum);
             let (total, scale) = (forces.iter().sum::<f64>(), forces.iter().map(|f| f.abs()).sum::<f64>());
-            assert!(scale > 100.0, "the case must have contacts");
+            assert!(scale > 100.0, "the case has no contacts");
             assert!(total.abs() < 1e-14 * scale, "{total} of {scale} on {periodic:?}");
         }
     }
@@ -112,14 +110,17 @@ fn angular_momentum_changes_by_the_depth_times_the_shear_force_alone() {
             let [normal, shear] = pair.normal_and_shear(&law);
             let expected = if contact.arm == ContactArm::Radius { -depth * shear } else { 0.0 };
             let off = (pair.angular_momentum_rate(&law) - expected).abs();
-            assert!(off < 1e-13 * (1.0 + normal.abs()), "off by {off} for {pair:?}");
+            assert!(
+                off < 1e-13 * (1.0 + normal.abs()),
+                "angular momentum rate differs by {off} for {pair:?}"
+            );
             largest = largest.max(depth * shear.abs());
         }
     }
-    assert!(largest > 0.1, "the rule must have something to say: {largest}");
+    assert!(largest > 0.1, "the test is void: largest term {largest}");
 }
 
-/// |F_S| ≤ μ|F_N|; F_S opposes the slip; below the bound it is γ_S M_eff times the slip; both signs are met.
+/// |F_S| ≤ μ|F_N|; F_S opposes the slip; below the bound it is γ_S M_eff times the slip; both signs occur.
 #[test]
 fn friction_opposes_slip_within_the_coulomb_bound_on_both_sides_of_zero() {
     let contact = Contact { shear_damping: 20.0, ..CONTACT };
@@ -143,7 +144,7 @@ fn friction_opposes_slip_within_the_coulomb_bound_on_both_sides_of_zero() {
     assert!(bound.into_iter().chain(free).all(|met| met > 100), "{bound:?} {free:?}");
 }
 
-/// A mirrored pair feels the mirrored forces, to the bit.
+/// A mirrored pair has the mirrored forces, to the bit.
 #[test]
 fn the_law_is_mirror_symmetric() {
     for contact in contacts() {
@@ -153,7 +154,7 @@ fn the_law_is_mirror_symmetric() {
     }
 }
 
-/// Gears that roll on each other feel no shear force and no torque; equal spins rub.
+/// Gears that roll on each other have no shear force and no torque; equal spins rub.
 #[test]
 fn a_gear_pair_does_not_rub_and_equal_spins_do() {
     for arm in [ContactArm::Radius, ContactArm::Overlap] {
@@ -164,11 +165,11 @@ fn a_gear_pair_does_not_rub_and_equal_spins_do() {
         assert_eq!(Pair::gears(1.0).sums(&law).map(|sums| sums[2]), [0.0, 0.0]);
         let mut rubbing = Pair::gears(1.0);
         rubbing.bodies[1].omega = 3.0;
-        // The first disc's surface faces its partner at +x and moves up: it is pushed down.
+        // The first disc's surface faces its partner at +x and moves up, so it is pushed down.
         assert!(rubbing.normal_and_shear(&law)[1].abs() > 0.5);
         let sums = rubbing.sums(&law);
         assert!(sums[0][1] < -0.5 && sums[1][1] > 0.5);
-        assert!(sums.iter().all(|sums| sums[2] < -0.5), "rubbing slows both spins");
+        assert!(sums.iter().all(|sums| sums[2] < -0.5), "rubbing does not slow both spins");
     }
     let law = varying::<true>(CONTACT);
     for radius in [0.9, 1.05, 1.1] {
@@ -176,8 +177,7 @@ fn a_gear_pair_does_not_rub_and_equal_spins_do() {
     }
 }
 
-/// Discs that separate fast: clamped, the normal force is zero; unclamped, it pulls. Slow ones repel either
-/// way.
+/// For discs that separate fast, the clamped normal force is zero and the unclamped one pulls. Slow ones repel with either law.
 #[test]
 fn only_the_unclamped_law_pulls() {
     let mut pulled = 0;
@@ -191,13 +191,13 @@ fn only_the_unclamped_law_pulls() {
         pulled += usize::from(drawn < 0.0);
         pair.bodies[0].velocity = n.map(|n| 10.0 * n);
         pair.bodies[1].velocity = [0.0; 2];
-        assert_eq!(pair.sums(&clamped), [[0.0; 3]; 2], "no normal force, hence no friction");
+        assert_eq!(pair.sums(&clamped), [[0.0; 3]; 2], "friction without a normal force");
         assert!(pair.normal_and_shear(&free)[0] < -1.0);
     }
     assert!(pulled > 100, "{pulled}");
 }
 
-/// A fixed disc has infinite mass: the effective mass is the other's, half of it being that of a like pair.
+/// A fixed disc has infinite mass: the effective mass is the other's, twice that of an equal pair.
 #[test]
 fn a_fixed_disc_gives_the_effective_mass_of_the_other() {
     let contact = Contact { cohesionless: false, friction: 1e6, ..CONTACT };
@@ -222,20 +222,19 @@ fn a_fixed_disc_gives_the_effective_mass_of_the_other() {
     }
 }
 
-/// Two fixed discs in contact, as in a wall: what they do to each other moves nothing, so it must be a
-/// number.
+/// Sums of two fixed discs in contact, as in a wall. The forces move nothing, so they must be numbers.
 fn fixed_pair(cohesionless: bool) -> [[f64; 3]; 2] {
     let bodies = Pair::touching().bodies.map(|body| Body { inverse_mass: 0.0, ..body });
     Pair { bodies }.sums(&varying::<true>(Contact { cohesionless, ..CONTACT }))
 }
 
-/// With the clamp, two fixed discs in contact feel finite forces.
+/// With the clamp, two fixed discs in contact have finite forces.
 #[test]
 fn two_fixed_discs_in_contact_feel_numbers() {
     assert!(fixed_pair(true).as_flattened().iter().all(|f| f.is_finite()), "{:?}", fixed_pair(true));
 }
 
-/// Without the clamp the sums of two touching fixed discs may be no numbers; those of a grain beside them are.
+/// Without the clamp the sums of two touching fixed discs may be NaN; those of a grain beside them are finite.
 #[test]
 fn fixed_discs_in_contact_leave_the_forces_on_others_alone() {
     let case = Case {
@@ -252,10 +251,10 @@ fn fixed_discs_in_contact_leave_the_forces_on_others_alone() {
     system.forces(&case, &law, (Execution::Chained, InstructionSet::best())).unwrap();
     let on_grain = Sum::PLANAR.map(|sum| system.on_discs(sum)[0]);
     assert!(on_grain.iter().all(|f| f.is_finite()), "{on_grain:?}");
-    assert!(on_grain[1] > 1.0, "the grain rests on both: {on_grain:?}");
+    assert!(on_grain[1] > 1.0, "the grain does not rest on both: {on_grain:?}");
 }
 
-/// Discs that are all alike need no arrays of radii and masses: the same forces from the law's own numbers.
+/// Equal discs need no arrays of radii and masses: the law's constants give the same forces.
 #[test]
 fn equal_discs_feel_what_varying_ones_of_one_kind_do() {
     for contact in contacts() {

@@ -1,5 +1,5 @@
-//! BP93's own program: the same bits by every execution, those of a scalar program with branches, our own forces but for
-//! rounding; every operation named by an equation; and what an empty cell may hold.
+//! BP93's own program has the same bits in every execution, the bits of a scalar program with branches, and our own forces up to
+//! rounding. Every operation is named by an equation. Readings of an empty cell.
 
 mod support;
 
@@ -22,7 +22,7 @@ type Discs = System<f64, f64>;
 type Way = (Execution, InstructionSet);
 
 const ORACLE: Way = (Execution::Chained, InstructionSet::Scalar);
-/// The source has no clamp.
+/// BP93 has no clamp.
 const LAW: Contact = Contact { cohesionless: false, normal_damping: 60.0, ..CONTACT };
 const GRAVITY: [f64; 2] = [0.0, -9.81];
 
@@ -34,12 +34,12 @@ fn sides() -> [[bool; 2]; 4] {
     [[true, true], [false, false], [true, false], [false, true]]
 }
 
-/// dt^k/k!, by which our scheme scales derivatives.
+/// Scale factor dt^k/k! of our scheme's derivatives.
 fn scale(k: usize) -> f64 {
     (1..=k).map(|k| DT / k as f64).product()
 }
 
-/// Derivatives as they are.
+/// Converts the state to unscaled derivatives.
 fn unscaled(mut system: Discs) -> Discs {
     for row in &mut system.state {
         for (k, q) in row.iter_mut().enumerate() {
@@ -118,8 +118,8 @@ fn whole_steps_are_the_same_bits_by_every_execution() {
     }
 }
 
-/// Forces as a scalar program finds them, disc by disc: it looks into 24 cells, leaves out those that are empty and the discs
-/// that do not touch, and sums in the order of the mask.
+/// Forces of a scalar program, disc by disc: it visits 24 cells, skips empty cells and discs that do not touch, and sums in the
+/// order of the mask.
 fn scalar(system: &Discs, case: &Case) -> (Vec<[f64; 3]>, usize) {
     let Contact { stiffness, normal_damping, shear_damping, friction, .. } = case.contact;
     let cells = [system.shape.columns() as isize, system.shape.rows() as isize];
@@ -190,10 +190,10 @@ fn products_by_test_and_contact_are_branches_to_the_bit() {
             let on_discs = system.on_discs(found);
             for (disc, force) in expected.iter().enumerate() {
                 let expected = force[found.column::<2>()];
-                // 0 and −0 are one force.
+                // 0 and −0 are the same force.
                 assert!(
                     on_discs[disc] == expected,
-                    "{found:?} of disc {disc}: {} and not {expected} in {case:?}",
+                    "{found:?} of disc {disc}: {}, expected {expected} in {case:?}",
                     on_discs[disc]
                 );
             }
@@ -202,7 +202,7 @@ fn products_by_test_and_contact_are_branches_to_the_bit() {
     assert!(met > 5000, "{met} contacts");
 }
 
-/// Our text sums the same forces in another order of operations.
+/// Our kernel sums the same forces with another order of operations.
 #[test]
 fn forces_are_ours_but_for_rounding() {
     let way = (Execution::Chained, InstructionSet::best());
@@ -220,13 +220,13 @@ fn forces_are_ours_but_for_rounding() {
             let rms = (ours.iter().map(|f| f * f).sum::<f64>() / ours.len() as f64).sqrt();
             for (disc, (ours, printed)) in ours.iter().zip(&printed).enumerate() {
                 let off = (ours - printed).abs() / rms;
-                assert!(off < 1e-13, "{force:?} of disc {disc} is off by {off} of the rms in {case:?}");
+                assert!(off < 1e-13, "{force:?} of disc {disc} differs by {off} of the rms in {case:?}");
             }
         }
     }
 }
 
-/// Whole steps beside ours: the scheme of scaled derivatives is the same scheme.
+/// Whole steps equal ours: the scheme of scaled derivatives is the same scheme.
 #[test]
 fn steps_are_ours_but_for_rounding() {
     use stripmine_kernels::integrator::Inertia;
@@ -265,8 +265,8 @@ fn steps_are_ours_but_for_rounding() {
     beside::<6>(&case);
 }
 
-/// A section is an equation, an array is the print's, and nothing else is executed: one comparison and one merge, of 1 and 0,
-/// both of (7); min and max of (15).
+/// Every section is an equation and every array is in the paper. Nothing else is executed: one comparison and one merge, of 1 and
+/// 0, both of (7); min and max of (15).
 #[test]
 fn every_operation_and_array_is_named_by_an_equation() {
     let case = case([true, true], 1);
@@ -284,7 +284,11 @@ fn every_operation_and_array_is_named_by_an_equation() {
     ];
     let (mut sections, mut arrays) = (vec![], vec![]);
     for line in programs.iter().flat_map(|program| program.lines()) {
-        assert!(EQUATIONS.iter().any(|(name, _)| *name == line.section), "no equation is {:?}", line.section);
+        assert!(
+            EQUATIONS.iter().any(|(name, _)| *name == line.section),
+            "no equation is named {:?}",
+            line.section
+        );
         sections.push(line.section);
         for word in line.sources.iter().chain([&line.destination]).filter(|word| word.starts_with('[')) {
             let label = word[1..].split([']', '+']).next().unwrap();
@@ -293,7 +297,7 @@ fn every_operation_and_array_is_named_by_an_equation() {
                 .filter(|(_, shift)| shift.parse::<u32>().is_ok())
                 .map_or(label, |(label, _)| label);
             let known = ARRAYS.iter().find(|(array, _)| array.label() == label);
-            assert!(known.is_some(), "the print has no {label}: {line:?}");
+            assert!(known.is_some(), "the paper has no {label}: {line:?}");
             arrays.push(label.to_owned());
         }
         match line.operation {
@@ -303,7 +307,7 @@ fn every_operation_and_array_is_named_by_an_equation() {
             ),
             "lt" => assert_eq!(line.section, "(7)"),
             "min" | "max" | "abs" => assert_eq!(line.section, "(15)"),
-            "le" | "eq" | "and" | "not" | "cnt" => panic!("not in the print: {line:?}"),
+            "le" | "eq" | "and" | "not" | "cnt" => panic!("not in the paper: {line:?}"),
             _ => {}
         }
     }
@@ -311,11 +315,11 @@ fn every_operation_and_array_is_named_by_an_equation() {
         assert!(sections.contains(name), "nothing is executed for {name}");
     }
     for (array, _) in ARRAYS {
-        assert!(arrays.iter().any(|label| label == array.label()), "{} is not met", array.label());
+        assert!(arrays.iter().any(|label| label == array.label()), "no kernel uses {}", array.label());
     }
 }
 
-/// What an empty cell may hold: the readings of the module's documentation.
+/// Readings of an empty cell, as listed in the module's documentation.
 #[test]
 fn empty_cells_at_one_place_make_sums_that_are_no_numbers() {
     let case = Case { fill: 0.3, ..case([true, true], 5) };
@@ -323,7 +327,7 @@ fn empty_cells_at_one_place_make_sums_that_are_no_numbers() {
     map(&mut right, ORACLE);
     let [x, y, test] = [Array::X, Array::Y, Array::Test]
         .map(|array| LATTICE.iter().position(|&other| other == array).unwrap());
-    // Sums by the lattice vectors as they stand, with an empty cell's place as said.
+    // Sums from the current lattice vectors, with a given position for each empty cell.
     let sums = |place: &dyn Fn(usize) -> Option<[f64; 2]>| {
         let mut system = right.clone();
         for cell in 0..system.shape.padded() {
@@ -340,18 +344,18 @@ fn empty_cells_at_one_place_make_sums_that_are_no_numbers() {
     };
     let numbers = |forces: &[Vec<f64>; 3]| forces.iter().flatten().all(|force| force.is_finite());
 
-    // A place of its own: everything is finite.
+    // A position of its own: everything is finite.
     let (own, finite) = sums(&|_| None);
     assert!(finite && numbers(&own));
-    // One place: the sums of empty cells are no numbers, those of discs are right.
+    // One common position: the sums of empty cells are NaN, those of discs are right.
     let (one, finite) = sums(&|_| Some([0.1234, 0.5678]));
     assert!(!finite && one == own);
-    // The place of a disc: its neighbours in empty cells are at its own centre.
+    // The position of a disc: its neighbours in empty cells are at its own centre.
     let disc = right.discs / 2;
     let there = [right.state[0][0][disc], right.state[1][0][disc]];
     let (hit, _) = sums(&|_| Some(there));
     assert!(hit[0][disc].is_nan() && !numbers(&hit));
-    // Where the last disc was: one that has just left, a little way off. Products by Test make it nothing.
+    // The position of the last disc, which has just left and is close by. Products by Test cancel it.
     let left = right.cell[disc] as usize - 1;
     let (stale, _) = sums(&|cell| (cell == left + 1).then_some([there[0] + 1e-3, there[1]]));
     assert!(right.lattice[test][left + 1] == 0.0 && stale == own);
@@ -369,7 +373,7 @@ fn a_fixed_disc_is_so_heavy_that_the_effective_mass_is_the_grains_own() {
     }
 }
 
-/// A position that is rounded up into a cell beyond the lattice is a period lower.
+/// A position that would be rounded up into a cell beyond the lattice is moved down by a period.
 #[test]
 fn every_position_in_the_box_has_a_cell() {
     for seed in 0..200u64 {
@@ -410,7 +414,7 @@ fn every_position_in_the_box_has_a_cell() {
     }
 }
 
-/// What a run asks for beside the print is that of our own law.
+/// Observations beyond the paper equal those of our own law.
 #[test]
 fn dissipation_energy_and_virial_are_those_of_our_own_law() {
     use stripmine_kernels::law::Asked;
@@ -431,7 +435,7 @@ fn dissipation_energy_and_virial_are_those_of_our_own_law() {
     }
 }
 
-/// The law asks for what it states.
+/// The law reads only the quantities it states.
 #[test]
 fn the_law_states_what_it_asks_for() {
     stripmine_kernels::law::check(&Printed { contact: LAW }).unwrap();

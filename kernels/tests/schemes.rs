@@ -1,4 +1,4 @@
-//! Schemes of one's own: what they get beside the state. Noise depends on seed, disc and step alone.
+//! Custom schemes: their context beside the state. Noise depends on seed, disc and step alone.
 
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Registers;
@@ -40,7 +40,7 @@ fn normals(id: u32, step: u64) -> [f64; 2] {
     [x[0], y[0]]
 }
 
-/// Places of the discs after some steps, by id; `force` is that at a place along each axis.
+/// Positions of the discs after some steps, by id; `force` is a function of the position along each axis.
 fn places<C: Scheme>(
     motion: &Motion<C>,
     force: impl Fn(f64) -> f64,
@@ -99,7 +99,8 @@ fn noise_depends_on_seed_disc_and_step_alone() {
     }
 }
 
-/// Free discs with steps three times as long: each number is made of three, by hand as the recursion v' = c v + s ξ has them.
+/// For free discs with steps three times as long, each number combines three. They are compared with the recursion v' = c v + s
+/// ξ.
 #[test]
 fn numbers_of_a_long_step_are_made_of_those_of_its_parts() {
     const PARTS: u32 = 3;
@@ -153,7 +154,8 @@ fn naive_baoab(id: u32, steps: u64, stiffness: f64) -> [f64; 2] {
     r
 }
 
-/// The source's scheme likewise, friction by the velocity after half a kick or, as printed, by that of the step before.
+/// Scheme of LAN17 in plain numbers, with friction from the velocity after half a kick or, as printed, from that of the previous
+/// step.
 fn naive_stochastic(id: u32, steps: u64, stiffness: f64, old: bool) -> [f64; 2] {
     let strength = (2.0 * BATH.friction * BATH.temperature / DT).sqrt();
     let (mut r, mut v) = ([0.0; 2], [0.0; 2]);
@@ -176,7 +178,7 @@ fn naive_stochastic(id: u32, steps: u64, stiffness: f64, old: bool) -> [f64; 2] 
     r
 }
 
-/// A scheme with friction and noise gets force, mass and noise, and moves discs as plain numbers have it.
+/// Schemes with friction and noise receive force, mass and noise, and move discs as plain numbers do.
 #[test]
 fn langevin_schemes_move_discs_as_in_plain_numbers() {
     fn hold<C: Scheme>(scheme: C, expected: impl Fn(u32) -> [f64; 2]) {
@@ -194,7 +196,7 @@ fn langevin_schemes_move_discs_as_in_plain_numbers() {
     hold(Stochastic::<true> { bath: BATH }, |id| naive_stochastic(id, 40, 3.0, true));
 }
 
-/// In a harmonic trap BAOAB has ⟨r²⟩ = kT/k for every step, here of ω dt = 0.7.
+/// In a harmonic trap BAOAB has ⟨r²⟩ = kT/k for every step, here with ω dt = 0.7.
 #[test]
 fn baoab_has_the_width_of_boltzmann_in_a_trap() {
     let bath = Bath { friction: 0.5, temperature: 0.5 };

@@ -1,4 +1,5 @@
-//! Sectors and Verlet lists against all pairs: every pair in reach found once, and the way to it the nearest one.
+//! Sectors and Verlet lists compared with all pairs: every pair in reach is found once, with the displacement to the nearest
+//! image.
 
 use proptest::prelude::*;
 use rand::RngExt;
@@ -19,7 +20,7 @@ use stripmine_kernels::sweep::fast::{
 };
 use stripmine_kernels::sweep::lattice::{Frame, LatticeShape};
 
-/// Discs in a box: where they are, the sectors they are in, and their places there.
+/// Discs in a box: positions, sectors, and positions relative to the sectors.
 struct Scattered {
     positions: Vec<[f64; 2]>,
     sectors: Sectors,
@@ -60,7 +61,7 @@ fn scattered(
 /// Pairs, the smaller number first, with the displacement from the first disc to the second.
 type Found = BTreeMap<[u32; 2], [f64; 2]>;
 
-/// What a finder finds, band by band.
+/// Pairs that a finder finds, band by band.
 fn found<F: Finder<f64, f64>>(finder: &F, places: &[Vec<f64>; 2]) -> Found {
     let (rows, mut all) = (finder.rows().count, Found::new());
     for band in [0..rows / 2, rows / 2..rows] {
@@ -80,7 +81,7 @@ fn found<F: Finder<f64, f64>>(finder: &F, places: &[Vec<f64>; 2]) -> Found {
     all
 }
 
-/// All pairs nearer than `reach`, the nearest image on periodic sides.
+/// All pairs nearer than `reach`, with the nearest image on periodic sides.
 fn naive(positions: &[[f64; 2]], sides: [f64; 2], periodic: [bool; 2], reach: f64) -> Found {
     let mut pairs = Found::new();
     for (a, from) in positions.iter().enumerate() {
@@ -125,7 +126,7 @@ proptest! {
         let mut list = VerletList::new(&sectors, [&places[0][..], &places[1][..]], skin);
         assert_same(&found(&list, &places), &expected, reach);
         prop_assert!(list.entries() >= expected.len());
-        // Everybody goes as far as the skin allows: the list is still good.
+        // Every disc moves as far as the skin allows: the list is still valid.
         let (mut places, mut positions) = (places, positions);
         let mut random = Stream::new(seed, Purpose::Test, 1);
         for (disc, position) in positions.iter_mut().enumerate() {
@@ -136,7 +137,7 @@ proptest! {
             }
         }
         assert_same(&found(&list, &places), &naive(&positions, sides, periodic, reach), reach);
-        // Renumbered, lists made again: the same pairs by their new numbers.
+        // Renumbered and rebuilt, lists have the same pairs with their new numbers.
         let Scattered { mut sectors, places, .. } = scattered(sides, periodic, reach, skin, discs, seed);
         let order = sectors.order();
         sectors.renumber(&order);
@@ -158,7 +159,7 @@ proptest! {
     }
 }
 
-/// An empty lattice for discs that touch 1 apart, and what a search of it wants.
+/// An empty lattice for discs that touch at a distance of 1, with its frame.
 fn lattice(columns: usize) -> (Occupancy, Frame) {
     let shape = LatticeShape::new(columns, 20, &Mask::square(2), [false; 2]).unwrap();
     let frame = Frame { origin: [0.0; 2], edge: [0.6, 0.6] };
@@ -172,7 +173,7 @@ fn search(lattice: &Lattice<'_, f64>, entries: usize) -> Candidates {
     found
 }
 
-/// Tables and columns that are too short for a lattice are refused before they are read unchecked.
+/// Tables and columns that are too short for a lattice are rejected before they are read unchecked.
 #[test]
 fn a_lattice_takes_only_its_own_codes_and_columns() {
     let [(narrow, frame), (wide, _)] = [lattice(20), lattice(40)];
@@ -186,7 +187,7 @@ fn a_lattice_takes_only_its_own_codes_and_columns() {
     assert!(refused(&of_wide, 1 + SENTINELS));
 }
 
-/// Making lists is shared by threads; what is made is not.
+/// Threads share the construction of lists; the result does not depend on their number.
 #[test]
 fn lists_are_the_same_on_any_number_of_threads() {
     let made = |threads: usize| {
@@ -252,8 +253,8 @@ unsafe impl Finder<f64, f64> for Counted<'_> {
     }
 }
 
-/// Sectors that are too few for as many bands as threads are searched in parts, by all of these; forces, energy and pairs are
-/// the same to the bit as on one thread. Where there are bands for all, each is one thread's.
+/// If there are fewer bands than threads, sectors are searched in parts by all threads; forces, energy and pairs equal those of
+/// one thread to the bit. If there are enough bands, each thread takes whole bands.
 #[test]
 fn few_sectors_are_searched_by_all_threads_to_the_same_bits() {
     let law = CutOff::new(LennardJones::new(1.0, 0.9), 1.0);
@@ -264,7 +265,7 @@ fn few_sectors_are_searched_by_all_threads_to_the_same_bits() {
         ([3.0, 3.0], [false, false], 300, true),
         ([200.0, 200.0], [true, true], 3000, false),
     ] {
-        // Some hundred discs to a sector, but for the last.
+        // Some hundred discs per sector, except in the last case.
         let wide = if is_coarse { sides.map(|side| (side / 3.0_f64).max(1.0)) } else { [1.0; 2] };
         let reach = wide[0].min(wide[1]);
         let grid = Grid::new(ORIGIN, sides, periodic, reach, f64::INFINITY, discs).unwrap();

@@ -1,4 +1,4 @@
-//! What a tape promises about its instructions: registers, tallies, listings, folded arithmetic.
+//! Properties of tapes: registers, tallies, listings, folded arithmetic.
 
 use std::collections::HashMap;
 use stripmine_kernels::backend::tape::{Action, Effect, File, Indices, Number, Operand, RegisterName, Truth};
@@ -34,12 +34,12 @@ fn lattice(mask: &Mask) -> (LatticeShape, Frame) {
     (shape, Frame { origin: [0.0, 0.0], edge: [1.1, 1.2] })
 }
 
-/// What an instruction reads, by its action alone.
+/// Registers that an instruction reads, from its action alone.
 fn reads<L: Copy>(action: &Action<L>) -> Vec<RegisterName> {
     let register = |operand: &Operand<L>| match operand {
         Operand::Register(name) => Some(*name),
         Operand::Uniform(_) => None,
-        Operand::Memory(there) => panic!("a tape holds {there} as an operand"),
+        Operand::Memory(there) => panic!("a tape has {there} as an operand"),
     };
     let names: Vec<Option<RegisterName>> = match action {
         Action::Number(_, number) => match number {
@@ -70,7 +70,7 @@ fn reads<L: Copy>(action: &Action<L>) -> Vec<RegisterName> {
     names.into_iter().flatten().collect()
 }
 
-/// The register file an instruction's result goes to.
+/// Register file of an instruction's result.
 fn result_file<L>(action: &Action<L>) -> Option<File> {
     match action {
         Action::Number(..) => Some(File::Number),
@@ -80,8 +80,8 @@ fn result_file<L>(action: &Action<L>) -> Option<File> {
     }
 }
 
-/// Follows the registers through a tape: read only what was written, read before it is overwritten, and no more
-/// registers than values are alive at once.
+/// Follows the registers through a tape. Only written registers are read, values are read before they are overwritten, and there
+/// are no more registers than values alive at once.
 fn registers_are_sound<L: Element>(name: &str, tape: &Tape<L>) {
     let mut held: HashMap<RegisterName, usize> = HashMap::new();
     let mut last_read: Vec<(File, usize, usize)> = Vec::new();
@@ -116,8 +116,7 @@ fn registers_are_sound<L: Element>(name: &str, tape: &Tape<L>) {
     }
 }
 
-/// Sums the instructions' operations by section and compares with the tally; conversions are found
-/// independently.
+/// Compares the tally with the sum of the instructions' operations by section; conversions are counted independently.
 fn tally_is_the_sum_over_instructions<L: Element>(name: &str, tape: &Tape<L>) {
     let mut sections: Vec<(usize, OpCounts)> = vec![];
     for instruction in tape.instructions() {
@@ -150,8 +149,7 @@ fn tally_is_the_sum_over_instructions<L: Element>(name: &str, tape: &Tape<L>) {
     assert_eq!(total, executed as u64, "{name}");
 }
 
-/// One line an instruction, numbered, with its mnemonic and registers, and a comment where the section
-/// changes.
+/// Checks that each instruction has a numbered line with its mnemonic and registers, and that a comment marks each new section.
 fn listing_has_a_line_for_each_instruction<L: Element>(name: &str, tape: &Tape<L>) {
     let listing = tape.listing().to_string();
     let mut lines = listing.lines();
@@ -182,7 +180,7 @@ fn listing_has_a_line_for_each_instruction<L: Element>(name: &str, tape: &Tape<L
     assert_eq!(lines.next(), None, "{name}");
 }
 
-/// Every kernel text with its options, recorded.
+/// Records every kernel with its options.
 fn every_tape(mut double: impl FnMut(&str, &Tape<f64>), mut single: impl FnMut(&str, &Tape<f32>)) {
     let inertia = Inertia::Equal { inverse_mass: 1.0, inverse_inertia: 2.0 };
     let fall = [0.0, -9.81];
@@ -219,19 +217,19 @@ fn every_tape(mut double: impl FnMut(&str, &Tape<f64>), mut single: impl FnMut(&
     single("Folded f32", &Tape::record(&Folded::<f32>::default()));
 }
 
-/// Registers of every kernel text.
+/// Registers of every kernel.
 #[test]
 fn registers_are_read_as_written_and_no_more_than_values_alive() {
     every_tape(registers_are_sound, registers_are_sound);
 }
 
-/// The tally of every kernel text.
+/// Tally of every kernel.
 #[test]
 fn tallies_are_sums_over_instructions() {
     every_tape(tally_is_the_sum_over_instructions, tally_is_the_sum_over_instructions);
 }
 
-/// The listing of every kernel text.
+/// Listing of every kernel.
 #[test]
 fn listings_have_a_line_for_each_instruction() {
     every_tape(listing_has_a_line_for_each_instruction, listing_has_a_line_for_each_instruction);
@@ -254,7 +252,7 @@ fn changes_of_precision_are_counted() {
     assert_eq!(widened(&Enter::<f64, f32>::new(shape, frame, Coordinates::CellRelative)), 2);
 }
 
-/// Stores numbers that are known when the text is recorded, and one that is not.
+/// Stores numbers that are known when the kernel is recorded, and one that is not.
 #[derive(Clone, Copy, Default)]
 struct Folded<L>(std::marker::PhantomData<L>);
 
@@ -270,8 +268,7 @@ unsafe impl<L: Element> Text for Folded<L> {
     }
 }
 
-/// Arithmetic between scalar operands costs no instruction, is done in the lanes' precision, and gives what
-/// executing it gives.
+/// Arithmetic between scalar operands costs no instruction, is evaluated in the lanes' precision, and equals the executed result.
 fn folding_costs_nothing<L: Precision>(expected: L) {
     let program = Program::new(Folded::<L>::default());
     let instructions = program.tape().instructions();
@@ -298,7 +295,7 @@ fn folding_costs_nothing<L: Precision>(expected: L) {
     }
 }
 
-/// Uniform arithmetic is folded, in either precision.
+/// Arithmetic on uniform values is folded, in both precisions.
 #[test]
 fn uniform_arithmetic_is_folded() {
     let (a, b) = (0.1f64, 0.2f64);

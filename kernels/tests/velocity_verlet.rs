@@ -1,4 +1,4 @@
-//! Velocity Verlet: what its state is, its order, what it does exactly; programs and the fast pass give the same bits.
+//! Velocity Verlet: state, order and exact solutions; kernels and the fast pass give the same bits.
 
 use stripmine_kernels::integrator::gear::STATE;
 use stripmine_kernels::integrator::velocity_verlet::{Drift, Kick, VelocityVerlet};
@@ -11,7 +11,7 @@ use stripmine_kernels::{Execution, InstructionSet, Program};
 const INERTIA: Inertia = Inertia::Equal { inverse_mass: 0.5, inverse_inertia: 4.0 };
 const FREEDOMS: usize = 3;
 
-/// One row of position, velocity and acceleration for each degree of freedom, an entry a disc.
+/// One row of position, velocity and acceleration for each degree of freedom, one entry per disc.
 type State = [[Vec<f64>; 3]; FREEDOMS];
 
 /// Discs of different speeds, without acceleration.
@@ -23,12 +23,12 @@ fn start(discs: usize) -> State {
     std::array::from_fn(|freedom| std::array::from_fn(|k| column(freedom, k)))
 }
 
-/// How discs are pulled back, and slowed by their velocities.
+/// A spring force with drag.
 fn force(r: f64, v: f64) -> f64 {
     -2.0 * r - 0.25 * v
 }
 
-/// By programs; the accelerations of the start are given.
+/// Runs the kernels; the initial accelerations are given.
 fn by_programs(state: &mut State, dt: f64, gravity: [f64; 2], steps: usize, force: impl Fn(f64, f64) -> f64) {
     let discs = state[0][0].len();
     let (execution, set) = (Execution::Chained, InstructionSet::best());
@@ -69,12 +69,12 @@ fn by_programs(state: &mut State, dt: f64, gravity: [f64; 2], steps: usize, forc
     }
 }
 
-/// By the fast pass, which leaves predicted states; the last one is corrected as an observer does it.
+/// Runs the fast pass, which leaves predicted states; the last one is corrected as an observer does it.
 fn by_passes(state: &State, dt: f64, gravity: [f64; 2], steps: u64) -> [[Vec<f64>; 2]; FREEDOMS] {
     let discs = state[0][0].len();
     let motion = Motion { scheme: VelocityVerlet, dt, inertia: INERTIA, gravity, noise: NoiseSource::new(0) };
     let mut columns: Vec<Vec<Vec<f64>>> = state.iter().map(|row| row[..2].to_vec()).collect();
-    // At the start the discs have the accelerations given, and no force gives gravity back.
+    // Forces that give the initial accelerations, without gravity.
     let mut sums: Vec<Vec<f64>> = (0..FREEDOMS)
         .map(|freedom| {
             let inverse = INERTIA.inverse(freedom, |value| value, || f64::NAN);
@@ -113,7 +113,7 @@ fn by_passes(state: &State, dt: f64, gravity: [f64; 2], steps: u64) -> [[Vec<f64
 #[test]
 fn the_state_is_position_and_velocity_in_the_scenes_units() {
     assert_eq!(VelocityVerlet::scales(1e-3)[..3], [1.0; 3]);
-    // Without forces a disc keeps its velocity to the bit, whatever dt is.
+    // Without forces a disc keeps its velocity to the bit, for any dt.
     let mut state = start(5);
     let before = state.clone();
     by_programs(&mut state, 1e-3, [0.0; 2], 7, |_, _| 0.0);
@@ -142,7 +142,7 @@ fn programs_and_passes_give_the_same_bits() {
     }
 }
 
-/// Of second order on a harmonic oscillator.
+/// Second order on a harmonic oscillator.
 #[test]
 fn the_error_falls_with_the_square_of_the_step() {
     let error = |steps: usize| {
@@ -160,7 +160,7 @@ fn the_error_falls_with_the_square_of_the_step() {
     }
 }
 
-/// Numbers of few bits: the parabola to the bit.
+/// With numbers of few bits, the parabola is exact to the bit.
 #[test]
 fn free_fall_is_the_exact_parabola() {
     let (gravity, dt) = ([0.5, -8.0], 1.0 / 1024.0);

@@ -1,12 +1,11 @@
-//! Threads that wait without falling asleep never wait for each other for ever, and a stage ends when all of it is done: the very file
-//! `kernels/src/threads/waiting.rs`, explored by `loom` in every order in which its threads take their turns, up to one or two
-//! interruptions.
+//! Threads that wait awake never deadlock, and a stage ends when all of it is done. `loom` explores the source file
+//! `kernels/src/threads/waiting.rs` in every interleaving of its threads, up to one or two preemptions.
 
 #[path = "../src/threads/waiting.rs"]
 mod waiting;
 
-/// In the place of `kernels/src/threads/pool.rs`: a pool of [`WORKERS`] that behaves as rayon's where it matters. A worker that waits for
-/// others takes up whatever work is in the queue meanwhile, and a thread from outside sleeps until all that it asked for is done.
+/// Replaces `kernels/src/threads/pool.rs` by a pool of [`WORKERS`] that behaves as rayon's where it matters. A waiting worker
+/// takes other work from the queue meanwhile, and a thread from outside sleeps until all of its work is done.
 mod pool {
     use loom::sync::{Condvar, Mutex};
     use std::cell::Cell;
@@ -58,7 +57,7 @@ mod pool {
         }
     }
 
-    /// What `work` does beside a pool, which is closed after it.
+    /// Runs `work` beside a pool, which is closed after it.
     pub(crate) fn with(work: impl FnOnce()) {
         let workers: Vec<_> = (0..WORKERS)
             .map(|number| {
@@ -83,14 +82,14 @@ mod pool {
     }
 
     pub(crate) fn on_each(count: usize, work: &(dyn Fn() + Sync)) {
-        // SAFETY: this comes back only when every task that has it is done.
+        // SAFETY: this function returns only when every task that has the reference is done.
         let work: &'static (dyn Fn() + Sync) = unsafe { transmute(work) };
         let left = Arc::new(AtomicUsize::new(count));
         let task = || {
             let left = Arc::clone(&left);
             move || {
                 work();
-                // Under the lock: who looks between two looks at the queue would sleep through it.
+                // Under the lock: a thread between two checks of the queue would miss the change and sleep.
                 let _queue = QUEUE.lock().unwrap();
                 left.fetch_sub(1, Ordering::AcqRel);
                 CHANGED.notify_all();
@@ -100,7 +99,7 @@ mod pool {
         (usize::from(is_worker)..count).for_each(|_| push(Box::new(task())));
         if is_worker {
             task()();
-            // The newest first: those are its own.
+            // Newest first: those are its own.
             work_until(|_| left.load(Ordering::Acquire) == 0, VecDeque::pop_back);
         } else {
             work_until(|_| left.load(Ordering::Acquire) == 0, |_| None);
@@ -112,14 +111,14 @@ use loom::sync::atomic::{AtomicUsize, Ordering};
 use pool::WORKERS;
 use waiting::{each, keep_awake};
 
-/// Explores all orders in which threads are interrupted, where they did not have to wait, at most so many times.
+/// Explores all interleavings with at most this many preemptions of threads that did not have to wait.
 fn explored(interruptions: usize, work: impl Fn() + Sync + Send + 'static) {
     let mut builder = loom::model::Builder::new();
     builder.preemption_bound = Some(interruptions);
     builder.check(move || pool::with(&work));
 }
 
-/// Parts in stages: each once, and none before the stage before is done.
+/// Parts in stages: each runs once, and none before the previous stage is done.
 fn stages(parts: usize) {
     let done = [AtomicUsize::new(0), AtomicUsize::new(0)];
     each(WORKERS, [2, parts], &|stage, _| {
@@ -148,8 +147,8 @@ fn simulation() {
     keep_awake(WORKERS - 1, || each(WORKERS, [1, 2], &|_, _| ()));
 }
 
-/// Two simulations that keep workers awake, and then have parts for them, beside the pool: were they not let go, both workers would be
-/// kept by simulations that wait for them.
+/// Two simulations beside the pool keep workers awake, and then have parts for them. Unless they release them, both workers stay
+/// with simulations that wait for them.
 #[test]
 fn two_simulations_do_not_wait_for_each_other() {
     explored(1, || {
@@ -159,7 +158,7 @@ fn two_simulations_do_not_wait_for_each_other() {
     });
 }
 
-/// One of them in the pool.
+/// One of the two is in the pool.
 #[test]
 fn a_simulation_in_the_pool_does_not_wait_for_one_beside_it() {
     explored(2, || {

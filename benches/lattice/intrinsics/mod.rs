@@ -1,7 +1,7 @@
-//! The force sweep as one writes it by hand with intrinsics: what the machine's chained execution is measured against.
-//! The same operations in the same order, so that the results can be compared bit by bit.
+//! Force sweep written by hand with intrinsics: the reference for the machine's chained execution. The operations and their order
+//! are the same, so that the results can be compared bit by bit.
 
-/// The lattice vectors a sweep reads.
+/// Lattice vectors that a sweep reads.
 pub struct Vectors<'a, T> {
     pub x: &'a [T],
     pub y: &'a [T],
@@ -12,7 +12,7 @@ pub struct Vectors<'a, T> {
     pub inverse_mass: &'a [T],
 }
 
-/// The law's numbers.
+/// Parameters of the law.
 #[derive(Clone, Copy)]
 pub struct Numbers<T> {
     pub stiffness: T,
@@ -21,17 +21,17 @@ pub struct Numbers<T> {
     pub friction: T,
 }
 
-/// A mask place: shift, and way between the cells' centres.
+/// A mask offset: shift, and vector between the centres of the cells.
 pub type Place<T> = (isize, [T; 2]);
 
 #[cfg(target_arch = "x86_64")]
 macro_rules! sweep {
     ($name:ident, $feature:literal, $ty:ty, $v:ty, $lanes:literal, $load:ident $store:ident $set1:ident $add:ident
      $sub:ident $mul:ident $div:ident $sqrt:ident $min:ident $max:ident, $abs:expr, $contact:expr, $masked:expr) => {
-        /// One sweep; `FRICTION` as in the law, cohesionless, arms R.
+        /// Runs one sweep; `FRICTION` as in the law, cohesionless, arms R.
         ///
         /// # Safety
-        /// The processor has the feature; every place's shift stays inside the slices.
+        /// The processor has the feature; the shift of every offset stays inside the slices.
         #[target_feature(enable = $feature)]
         pub unsafe fn $name<const FRICTION: bool>(
             from: &Vectors<'_, $ty>,

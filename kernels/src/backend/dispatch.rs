@@ -1,4 +1,4 @@
-//! Instruction sets, and how work comes into a function compiled for one of them.
+//! Instruction sets, and dispatch of work to a function compiled for one of them.
 
 use super::estimated::Estimating;
 use super::precision::Precision;
@@ -10,13 +10,13 @@ use crate::isa::ProgramError;
 use pulp::{Simd, WithSimd};
 use std::marker::PhantomData;
 
-/// Lanes of the widest register. Lattice vectors, bands and spans begin and end at multiples of it, so that what they are
-/// depends on no instruction set and no precision.
+/// Lanes of the widest register. Lattice vectors, bands and spans begin and end at multiples of it, so that they depend on no
+/// instruction set and no precision.
 pub(crate) const GROUP: usize = MAX_LANES;
 
 macro_rules! define_instruction_sets {
     ($(($variant:ident, $name:literal, $doc:literal)),* $(,)?) => {
-        /// The instructions a program is compiled to.
+        /// Instruction set that a kernel is compiled for.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
         pub enum InstructionSet {
             $(#[doc = $doc] $variant,)*
@@ -26,7 +26,7 @@ macro_rules! define_instruction_sets {
             /// Every set, in the order of the list.
             pub const ALL: &'static [InstructionSet] = &[$(InstructionSet::$variant),*];
 
-            /// The name on the command line.
+            /// Name on the command line.
             #[inline]
             pub const fn name(self) -> &'static str {
                 match self { $(InstructionSet::$variant => $name),* }
@@ -37,14 +37,14 @@ macro_rules! define_instruction_sets {
 
 define_instruction_sets! {
     (Scalar, "scalar", "One lane, no SIMD: the oracle."),
-    (Wide, "wide", "256 bits, whatever the build's target offers; fast sweeps on x86-64 and ARM one lane at a time."),
+    (Wide, "wide", "256 bits, with the instructions of the build's target; fast sweeps on x86-64 and ARM one lane at a time."),
     (Neon, "neon", "128 bits, 64-bit ARM."),
     (Avx2, "avx2", "256 bits, x86-64-v3."),
     (Avx512, "avx512", "512 bits, x86-64-v4."),
 }
 
 impl InstructionSet {
-    /// Whether this processor has it.
+    /// True if this processor has the instruction set.
     #[inline]
     pub fn is_available(self) -> bool {
         match self {
@@ -59,30 +59,30 @@ impl InstructionSet {
         }
     }
 
-    /// The sets this processor has, in the order of the list.
+    /// Instruction sets of this processor, in the order of the list.
     #[inline]
     pub fn available() -> impl Iterator<Item = InstructionSet> {
         Self::ALL.iter().copied().filter(|set| set.is_available())
     }
 
-    /// The widest set this processor has.
+    /// Widest instruction set of this processor.
     #[inline]
     pub fn best() -> InstructionSet {
         Self::available().last().unwrap_or(InstructionSet::Scalar)
     }
 }
 
-/// A task compiled once for each register file. All that it calls on its way to registers is to be inlined into it: a function
-/// of its own is compiled for the build's target.
+/// A task compiled once for each register file. Everything between it and the registers must be inlined: a separate function is
+/// compiled for the build's target.
 pub trait Task<L: Precision> {
-    /// The task on one register file.
+    /// Runs the task on one register file.
     fn on<R: Registers<Lane = L>>(self, registers: R);
 }
 
-/// Carries a task into the function compiled for the instruction set.
+/// Runs a task in the function compiled for the instruction set.
 ///
 /// # Errors
-/// [`ProgramError`] if this processor has no such instructions.
+/// [`ProgramError::NoSuchInstructionSet`] if this processor lacks it.
 #[inline]
 pub(crate) fn dispatch<L: Precision, T: Task<L>>(set: InstructionSet, task: T) -> Result<(), ProgramError> {
     match set {
@@ -93,11 +93,11 @@ pub(crate) fn dispatch<L: Precision, T: Task<L>>(set: InstructionSet, task: T) -
     Ok(())
 }
 
-/// As `dispatch`, for work that is long to compile and of which a body on the `wide` registers is not worth that where the target has
-/// others: `wide` is then one lane at a time, to the same bits.
+/// As `dispatch`, for work that compiles slowly and is not worth a version on `wide` registers where the target has others:
+/// `wide` is then one lane at a time, with the same bits.
 ///
 /// # Errors
-/// As of `dispatch`.
+/// As for `dispatch`.
 #[inline]
 pub fn dispatch_native<L: Precision, T: Task<L>>(set: InstructionSet, task: T) -> Result<(), ProgramError> {
     match set {
@@ -109,16 +109,16 @@ pub fn dispatch_native<L: Precision, T: Task<L>>(set: InstructionSet, task: T) -
     Ok(())
 }
 
-/// As [`dispatch_native`], on the widest set that this processor has.
-#[expect(clippy::unreachable, reason = "a set that is there is chosen above")]
+/// As [`dispatch_native`], on the widest set of this processor.
+#[expect(clippy::unreachable, reason = "an available set is chosen above")]
 #[inline]
 pub fn dispatch_best<L: Precision, T: Task<L>>(task: T) {
     if let Err(absent) = dispatch_native(InstructionSet::best(), task) {
-        unreachable!("{absent}, but the best set is one of those that this processor has");
+        unreachable!("{absent}, but the best set is always available");
     }
 }
 
-/// As [`dispatch`], on registers that fuse products and sums and estimate inverse roots, where the set has such.
+/// As [`dispatch`], on registers that fuse products and sums and estimate inverse roots, if the set has such instructions.
 pub(crate) fn dispatch_estimating<L: Precision, T: Task<L>, const RAW: bool>(
     set: InstructionSet,
     task: T,
@@ -129,7 +129,7 @@ pub(crate) fn dispatch_estimating<L: Precision, T: Task<L>, const RAW: bool>(
     }
 }
 
-/// Carries a task as `pulp` wants it into the function compiled for a set of `pulp`'s.
+/// Runs a task in the function that `pulp` compiles for a set.
 fn vectorized(set: InstructionSet, task: impl WithSimd<Output = ()>) -> Result<(), ProgramError> {
     let absent = ProgramError::NoSuchInstructionSet(set.name());
     match set {
@@ -144,7 +144,7 @@ fn vectorized(set: InstructionSet, task: impl WithSimd<Output = ()>) -> Result<(
     Ok(())
 }
 
-/// A task as `pulp` wants it.
+/// Adapter of a task for `pulp`.
 struct OnSimd<T, L>(T, PhantomData<L>);
 
 impl<L: Precision, T: Task<L>> WithSimd for OnSimd<T, L> {
@@ -155,7 +155,7 @@ impl<L: Precision, T: Task<L>> WithSimd for OnSimd<T, L> {
     }
 }
 
-/// A task as `pulp` wants it, on registers that estimate.
+/// Adapter of a task for `pulp`, on registers that estimate.
 struct OnEstimating<T, L, const RAW: bool>(T, PhantomData<L>);
 
 impl<L: Precision, T: Task<L>, const RAW: bool> WithSimd for OnEstimating<T, L, RAW> {

@@ -1,6 +1,6 @@
-//! Registers that are fast at the cost of the last bits: products and sums fused, inverse roots from the processor's estimate.
+//! Registers that trade the last bits for speed: fused products and sums, inverse roots from the processor's estimate.
 //!
-//! A sweep on them promises a bound of the error, not bits: what comes out depends on the instruction set.
+//! Sweeps on them guarantee an error bound, not bits: results depend on the instruction set.
 //!
 //! The estimate y of 1/√a has the relative error δ, so that e = 1 − a y² is about 2 δ, and
 //!
@@ -8,9 +8,9 @@
 //! 1/(a √a) = y³ (1 − e)^(−3/2) = y³ (1 + 3/2 e + 15/8 e² + 35/16 e³ + ...)
 //! ```
 //!
-//! The correction is folded into the cube: no root is ever rounded by itself. As many terms are taken as the precision needs:
-//! AVX-512 has δ < 2⁻¹⁴ in both precisions, AVX2 δ < 1.5 · 2⁻¹² in single precision only. Where there is no estimate the root
-//! and the quotient are the processor's own.
+//! The correction is part of the cube: no root is ever rounded by itself. The number of terms depends on the precision: AVX-512
+//! has δ < 2⁻¹⁴ in both precisions, AVX2 δ < 1.5 · 2⁻¹² in single precision only. Without an estimate, root and quotient are the
+//! processor's own.
 
 use super::pulp::{Pulp, PulpElement, Register, Truth};
 use super::registers::Registers;
@@ -23,7 +23,7 @@ use pulp::x86::{V3, V4};
 #[cfg(target_arch = "x86_64")]
 use std::any::TypeId;
 
-/// A precision in which there is something to fuse and to estimate.
+/// A precision with fused operations and estimates.
 pub trait Estimates: PulpElement {
     /// `a · b + c`, rounded once.
     fn fused<S: Simd>(simd: S, a: Self::V<S>, b: Self::V<S>, c: Self::V<S>) -> Self::V<S>;
@@ -31,15 +31,15 @@ pub trait Estimates: PulpElement {
     /// `c − a · b`, rounded once.
     fn fused_from<S: Simd>(simd: S, a: Self::V<S>, b: Self::V<S>, c: Self::V<S>) -> Self::V<S>;
 
-    /// 1/√a to a few digits, and the terms that the correction takes; none where the processor has no such instruction.
+    /// Returns 1/√a to a few digits and the terms of the correction; `None` if the processor has no such instruction.
     fn inverse_root<S: Simd>(simd: S, a: Self::V<S>) -> Option<(Self::V<S>, &'static [f64])>;
 }
 
-/// The terms of the correction behind the 1.
+/// Terms of the correction after the 1.
 #[cfg(target_arch = "x86_64")]
 const TERMS: [f64; 3] = [3.0 / 2.0, 15.0 / 8.0, 35.0 / 16.0];
 
-/// `work` on the register as the processor's own type, if the instruction set `S` is `Set`.
+/// Applies `work` to the register in the processor's own type, if the instruction set `S` is `Set`.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
 fn on<S: Simd, Set: Simd, R: Copy, Native: Copy>(
@@ -53,7 +53,7 @@ fn on<S: Simd, Set: Simd, R: Copy, Native: Copy>(
     // SAFETY: S and Set are one type; the register and the processor's type are plain data of one size.
     let (set, native) = unsafe { (std::mem::transmute_copy(&simd), std::mem::transmute_copy(&register)) };
     let result = work(set, native);
-    // SAFETY: R and Native are of one size, as the early return has made sure, and both are plain data.
+    // SAFETY: R and Native are of one size, as the early return ensures, and both are plain data.
     Some(unsafe { std::mem::transmute_copy(&result) })
 }
 
@@ -102,12 +102,12 @@ impl Estimates for f64 {
     }
 }
 
-/// Registers of the instruction set `S` with lanes of `T` that fuse and estimate; where they are `RAW`, estimates are left as they are.
+/// Registers of the instruction set `S` with lanes of `T` that fuse and estimate. If `RAW`, estimates are not corrected.
 #[derive(Clone, Copy)]
 pub(crate) struct Estimating<S, T, const RAW: bool>(Pulp<S, T>, S);
 
 impl<S: Simd, T: Estimates, const RAW: bool> Estimating<S, T, RAW> {
-    /// The registers that `simd` proves to exist.
+    /// Registers whose existence `simd` proves.
     #[inline(always)]
     pub(super) fn new(simd: S) -> Self {
         Estimating(Pulp::new(simd), simd)
@@ -135,7 +135,7 @@ impl<S: Simd, T: Estimates, const RAW: bool> Registers for Estimating<S, T, RAW>
     }
     #[inline(always)]
     unsafe fn store(self, to: *mut T, value: Self::V) {
-        // SAFETY: the caller promises room for LANES numbers, and the register inside has as many lanes.
+        // SAFETY: the caller promises space for LANES numbers, and the register inside has as many lanes.
         unsafe { self.0.store(to, value.1) };
     }
     #[inline(always)]
@@ -148,7 +148,7 @@ impl<S: Simd, T: Estimates, const RAW: bool> Registers for Estimating<S, T, RAW>
     }
 }
 
-/// An operation of registers that estimate is that of the registers inside.
+/// Forwards an operation to the register inside.
 macro_rules! of_register {
     (() V merge $op:ident $f:ident ($predicate:ident $a:ident $b:ident) $result:tt) => {
         Estimated($a.0, Register::$f($predicate, $a.1, $b.1))

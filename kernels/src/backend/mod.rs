@@ -1,4 +1,4 @@
-//! The machines a text runs on: register files (scalar, `pulp`, `wide`) and the tape.
+//! Machines that a kernel runs on: register files (scalar, `pulp`, `wide`) and the tape.
 
 mod dispatch;
 mod estimated;

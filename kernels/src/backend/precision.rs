@@ -1,4 +1,4 @@
-//! The precisions that programs may have.
+//! Precisions of kernels.
 
 use super::dispatch::InstructionSet;
 use super::estimated::Estimates;
@@ -7,8 +7,8 @@ use super::wide::WideElement;
 use crate::isa::{Memory, ProgramError};
 use std::ops::Range;
 
-/// A precision that every register file has lanes for. The interpreter of tapes is compiled here, once for each, and not in every crate that
-/// has a program.
+/// A precision supported by every register file. The interpreter of tapes is compiled here, once per precision, and not in every
+/// crate that has a kernel.
 pub trait Precision: Estimates + WideElement {
     /// As [`Tape::interpret`].
     #[doc(hidden)]

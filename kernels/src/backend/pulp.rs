@@ -1,4 +1,4 @@
-//! Registers of the processor at hand, chosen at run time: AVX-512, AVX2, NEON, or scalar, by the crate `pulp`.
+//! Registers of the processor at hand, chosen at run time: AVX-512, AVX2, NEON, or scalar, from the crate `pulp`.
 
 use super::registers::{IndexLanes, Registers};
 use super::values::{implement_operator, implement_predicate, implement_vector};
@@ -9,7 +9,7 @@ use pulp::Simd;
 use std::any::TypeId;
 use std::marker::PhantomData;
 
-/// The operations of an element.
+/// Declares the operations of an element.
 macro_rules! declare {
     (() machine $($row:tt)*) => {};
     (() operator $op:ident $doc:literal $trait:ident::$f:ident $($row:tt)*) => {
@@ -21,14 +21,14 @@ macro_rules! declare {
     };
 }
 
-/// A precision that `pulp` has registers for. Its operations are named per type, hence this table.
+/// A precision with registers in `pulp`. Its operations are named per type, hence this table.
 pub trait PulpElement: Element {
     /// A register of `S`.
     type V<S: Simd>: Copy;
     /// A register of truth values of `S`.
     type P<S: Simd>: Copy;
-    /// An index vector, of as many entries as the widest registers have lanes: with more, what is loaded would be
-    /// laid out on the stack and read back in wider pieces, which waits.
+    /// Index vector, with as many entries as the widest registers have lanes. With more, loaded entries would be written to the
+    /// stack and read back in wider pieces, which stalls.
     type Index: IndexLanes;
 
     #[doc(hidden)]
@@ -40,7 +40,7 @@ pub trait PulpElement: Element {
     fn bits<S: Simd>(simd: S, a: Self::P<S>) -> u64;
 }
 
-/// An operation of registers is the one of their elements.
+/// Forwards an operation of registers to their elements.
 macro_rules! of_element {
     (() V $group:ident $op:ident $f:ident ($a:ident $($b:ident)*) $result:tt) => {
         Register($a.0, <T as PulpElement>::$f($a.0, $a.1 $(, $b.1)*))
@@ -60,7 +60,7 @@ impl<S: Simd, T: PulpElement> Predicate for Truth<S, T> {
     for_each_op!(each implement_predicate (of_element ()));
 }
 
-/// Functions of an element: `V` is its register of numbers, `P` that of truth values.
+/// Defines the functions of an element: `V` is its register of numbers, `P` that of truth values.
 macro_rules! instructions {
     ($simd:ident $v:ident $p:ident: $($f:ident($($operand:ident: $kind:ident),+) -> $result:ident $body:block)*) => {$(
         #[inline(always)]
@@ -85,7 +85,7 @@ macro_rules! pulp_element {
                 mul(a: V, b: V) -> V { simd.$mul(a, b) }
                 div(a: V, b: V) -> V { simd.$div(a, b) }
                 min(a: V, b: V) -> V {
-                    // Only x86's instruction is the machine's "a < b ? a : b" to the bit.
+                    // Only x86's instruction equals the machine's "a < b ? a : b" to the bit.
                     if cfg!(target_arch = "x86_64") && !S::IS_SCALAR {
                         simd.$min(a, b)
                     } else {
@@ -127,7 +127,7 @@ macro_rules! pulp_element {
             }
             #[cfg_attr(
                 not(target_arch = "x86_64"),
-                expect(unused_variables, reason = "x86-64 has more ways")
+                expect(unused_variables, reason = "x86-64 has faster instructions")
             )]
             #[inline(always)]
             fn bits<S: Simd>(simd: S, a: S::$truth) -> u64 {
@@ -136,7 +136,7 @@ macro_rules! pulp_element {
                     if let (Some(v3), Some(truth)) = (same_value::<S, pulp::x86::V3>(simd), same_value(a)) {
                         return u64::from(v3.avx.$movemask(truth) as u32);
                     }
-                    // From a mask register: by way of memory it would be a store and a load.
+                    // Reads a mask register directly: through memory it would be a store and a load.
                     if let Some(truth) = same_value::<_, pulp::$bits>(a) {
                         return u64::from(truth.0);
                     }
@@ -156,18 +156,19 @@ pulp_element!(
     less_than_f32s less_than_or_equal_f32s equal_f32s select_f32s and_m32s not_m32s first_true_m32s _mm256_movemask_ps b16
 );
 
-/// A value whose type turns out to be another of the same size: `pulp` has no instruction for this in all its sets.
+/// Converts a value to another type of the same size if the types allow it: `pulp` has no such instruction for all its sets.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
 fn same_value<A: Copy + 'static, B: Copy + 'static>(value: A) -> Option<B> {
     let register = [TypeId::of::<pulp::m64x4>(), TypeId::of::<pulp::m32x8>()].contains(&TypeId::of::<A>());
     let same = TypeId::of::<A>() == TypeId::of::<B>() || (register && size_of::<A>() == size_of::<B>());
-    // SAFETY: A and B are one type, or A is a 256-bit register of truth values and B plain data of the same size, for which
-    // every pattern of bits is a value.
+    // SAFETY: A and B are one type, or A is a 256-bit register of truth values and B plain data of the same size, for which every
+    // bit pattern is a value.
     (same && size_of::<A>() == size_of::<B>()).then(|| unsafe { std::mem::transmute_copy(&value) })
 }
 
-/// Truth values as bits: already bits (a register of them is at most 8 bytes), or all bits of a lane set or clear.
+/// Converts truth values to bits. They are already bits (a register of them has at most 8 bytes), or lanes with all bits set or
+/// clear.
 #[inline(always)]
 fn bits_by_lane(bytes: &[u8], lanes: usize) -> u64 {
     if bytes.len() < lanes {
@@ -185,7 +186,7 @@ pub struct Pulp<S, T> {
 }
 
 impl<S: Simd, T: PulpElement> Pulp<S, T> {
-    /// The registers that `simd` proves to exist.
+    /// Registers whose existence `simd` proves.
     #[inline(always)]
     pub fn new(simd: S) -> Self {
         Pulp { simd, lane: PhantomData }
@@ -197,13 +198,13 @@ impl<S: Simd, T: PulpElement> Pulp<S, T> {
 pub struct Register<S: Simd, T: PulpElement>(S, T::V<S>);
 
 impl<S: Simd, T: PulpElement> Register<S, T> {
-    /// Of what `pulp` has it made.
+    /// Wraps a register of `pulp`.
     #[inline(always)]
     pub(super) fn new(simd: S, value: T::V<S>) -> Self {
         Register(simd, value)
     }
 
-    /// What `pulp` has it made of.
+    /// The register of `pulp` inside.
     #[inline(always)]
     pub(super) fn value(self) -> T::V<S> {
         self.1
@@ -226,14 +227,13 @@ impl<S: Simd, T: PulpElement> Registers for Pulp<S, T> {
     }
     #[inline(always)]
     unsafe fn load(self, from: *const T) -> Self::V {
-        // SAFETY: the caller promises LANES initialised numbers; a register is those and no more, of any bits, and is
-        // read without its own alignment.
+        // SAFETY: the caller promises LANES initialised numbers; a register consists of just those, allows any bits, and is read
+        // unaligned.
         Register(self.simd, unsafe { from.cast::<T::V<S>>().read_unaligned() })
     }
     #[inline(always)]
     unsafe fn store(self, to: *mut T, value: Self::V) {
-        // SAFETY: the caller promises room for LANES numbers; a register is those and no more, and is written without its
-        // own alignment.
+        // SAFETY: the caller promises space for LANES numbers; a register consists of just those, and is written unaligned.
         unsafe { to.cast::<T::V<S>>().write_unaligned(value.1) };
     }
     #[inline(always)]

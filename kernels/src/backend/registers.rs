@@ -1,18 +1,18 @@
-//! The machine made of registers: one body of every instruction over any register file.
+//! Machine over registers: one implementation of every instruction for any register file.
 
 use crate::isa::list::for_each_op;
 use crate::isa::{Column, Counter, Element, Machine, Memory, Slot, Storage, Vector, same};
 use std::hint::select_unpredictable;
 use std::mem::MaybeUninit;
 
-/// The most lanes any register file has: bounds the buffers of lane-by-lane instructions.
+/// Largest number of lanes of any register file; bounds the buffers of lane-by-lane instructions.
 pub(crate) const MAX_LANES: usize = 16;
 
-/// The entries of an index vector, one a lane.
+/// Index vector, one entry per lane.
 pub trait IndexLanes: Copy {
-    /// All entries none.
+    /// Index vector whose entries are all 0, which is none.
     fn none() -> Self;
-    /// The entry of `lane`.
+    /// Entry of `lane`.
     fn lane(&self, lane: usize) -> u32;
     /// Sets the entry of `lane`.
     fn set_lane(&mut self, lane: usize, number: u32);
@@ -33,9 +33,9 @@ impl<const N: usize> IndexLanes for [u32; N] {
     }
 }
 
-/// A register file: how vectors of one width come from memory and go back.
+/// A register file: loads, stores and broadcasts of vectors of one width.
 pub trait Registers: Copy + 'static {
-    /// The number a lane holds.
+    /// Number type of a lane.
     type Lane: Element;
     /// A register.
     type V: Vector;
@@ -44,29 +44,29 @@ pub trait Registers: Copy + 'static {
     /// Lanes of `V`, at most 16.
     const LANES: usize;
 
-    /// The same number in every lane.
+    /// Broadcasts a number to every lane.
     fn splat(self, value: Self::Lane) -> Self::V;
     /// Loads `LANES` consecutive numbers.
     ///
     /// # Safety
-    /// `from` points to as many initialised numbers of one allocation, is aligned for one of them, and nothing writes them
-    /// meanwhile.
+    /// `from` points to that many initialised numbers of one allocation and is aligned for one of them; nothing writes them
+    /// during the call.
     unsafe fn load(self, from: *const Self::Lane) -> Self::V;
     /// Stores `LANES` consecutive numbers.
     ///
     /// # Safety
-    /// `to` points to room for as many numbers in one allocation, is aligned for one of them, and nothing else reads or
-    /// writes there meanwhile.
+    /// `to` points to space for that many numbers in one allocation and is aligned for one of them; nothing else reads or writes
+    /// there during the call.
     unsafe fn store(self, to: *mut Self::Lane, value: Self::V);
-    /// Whether no lane holds.
+    /// True if the predicate is false in every lane.
     fn none(self, predicate: <Self::V as Vector>::Predicate) -> bool;
-    /// The truth values as bits, lane 0 lowest.
+    /// Truth values as bits, lane 0 lowest.
     fn bits(self, predicate: <Self::V as Vector>::Predicate) -> u64;
 }
 
 /// A strip of `R::LANES` elements of a memory, from element `base` on.
 ///
-/// The memory was admitted for the text's footprint over every strip that is run, which makes the raw loads sound.
+/// The memory was admitted for the kernel's footprint over every strip that is run, which makes the raw loads sound.
 #[derive(Clone, Copy)]
 pub(crate) struct Strip<'m, R> {
     registers: R,
@@ -74,8 +74,8 @@ pub(crate) struct Strip<'m, R> {
     base: usize,
 }
 
-/// Lanes spilled to memory, for instructions that no portable SIMD offers: at a line of its own, or it would be
-/// a matter of where the stack happens to be whether a wide register lies across two.
+/// Lanes spilled to memory, for instructions that no portable SIMD offers. The spill is cache-line-aligned; otherwise the stack
+/// position would decide whether a wide register straddles two lines.
 #[repr(align(64))]
 struct Spill<T>(MaybeUninit<[T; MAX_LANES]>);
 
@@ -90,11 +90,11 @@ impl<T: Copy> Spill<T> {
     }
 }
 
-/// The bodies of the machine's instructions, each under the name of its method of [`Machine`].
+/// Implementations of the machine's instructions, each named as its method of [`Machine`].
 ///
-/// Instructions that touch memory take its column by value: looked up lane by lane or register by register, behind stores to
-/// the stack, a pass took a tenth longer or twice as long at some depths of the stack and not at others. A load waits for an
-/// earlier store at the same last 12 bits of its address.
+/// Instructions that touch memory take the column by value. With a lookup per lane or per register behind stores to the stack, a
+/// pass took a tenth longer or twice as long at some stack depths: a load waits for an earlier store with the same last 12 bits
+/// of its address.
 impl<'m, R: Registers> Strip<'m, R> {
     #[inline(always)]
     pub(crate) fn new(registers: R, memory: &'m Memory<'m>, base: usize) -> Self {
@@ -129,10 +129,10 @@ impl<'m, R: Registers> Strip<'m, R> {
     pub(crate) fn store<T: Element>(self, column: Column<T>, value: R::V) {
         let to = self.place(column, 0);
         if same::<T, R::Lane>() {
-            // SAFETY: T is Lane, and the admitted footprint has the LANES elements from base on as written ones.
+            // SAFETY: T is Lane, and the admitted footprint marks the LANES elements from base on as written.
             unsafe { self.registers.store(to.cast(), value) };
         } else {
-            // SAFETY: lane < LANES, and the admitted footprint has the LANES elements from base on as written ones.
+            // SAFETY: lane < LANES, and the admitted footprint marks the LANES elements from base on as written.
             self.disperse(value, |lane, number| unsafe { *to.add(lane) = T::from_f64(number.to_f64()) });
         }
     }
@@ -140,16 +140,16 @@ impl<'m, R: Registers> Strip<'m, R> {
     #[inline(always)]
     pub(crate) fn gather<T: Element>(self, column: Column<T>, index: R::Index, elsewhere: R::V) -> R::V {
         let mut spill = Spill::new();
-        // SAFETY: the spill has room for MAX_LANES >= LANES elements.
+        // SAFETY: the spill has space for MAX_LANES >= LANES elements.
         unsafe { self.registers.store(spill.start(), elsewhere) };
-        // Read for "none" and thrown away, for a branch would be mispredicted at every other cell; and no element of the
-        // column, which would always be the same, where stores to the spill may seem to be.
+        // Read and discarded where the index is 0, because a branch would be mispredicted at every other cell. It is no element
+        // of the column: that would always be the same one, which pending stores to the spill may seem to overlap.
         let nothing = T::default();
         for lane in 0..R::LANES {
             let number = index.lane(lane);
             let is_none = number == 0;
             let from = select_unpredictable(is_none, &raw const nothing, column.entry(number));
-            // SAFETY: `entry` has made sure that the number is an element's; where it is 0 the pointer is to `nothing`.
+            // SAFETY: `entry` has checked that the number is an element's; where it is 0 the pointer is to `nothing`.
             let element = R::Lane::from_f64(unsafe { *from }.to_f64());
             // SAFETY: lane < LANES, and the store of `elsewhere` has written LANES elements of the spill.
             let to = unsafe { &mut *spill.start().add(lane) };
@@ -174,7 +174,7 @@ impl<'m, R: Registers> Strip<'m, R> {
     pub(crate) fn store_index(self, column: Column<u32>, value: R::Index) {
         let to = self.place(column, 0);
         for lane in 0..R::LANES {
-            // SAFETY: lane < LANES, and the admitted footprint has the LANES elements from base on as written ones.
+            // SAFETY: lane < LANES, and the admitted footprint marks the LANES elements from base on as written.
             unsafe { *to.add(lane) = value.lane(lane) };
         }
     }
@@ -219,7 +219,7 @@ impl<'m, R: Registers> Strip<'m, R> {
     #[inline(always)]
     pub(crate) fn to_index(self, numbers: R::V) -> R::Index {
         let mut index = R::Index::none();
-        // A cast saturates: negative numbers and NaN become 0, none.
+        // A cast saturates: negative numbers and NaN become 0, which is none.
         self.disperse(numbers, |lane, number| index.set_lane(lane, number.to_f64() as u32));
         index
     }
@@ -232,7 +232,7 @@ impl<'m, R: Registers> Strip<'m, R> {
     #[inline(always)]
     pub(crate) fn count(self, counter: Counter, predicate: <R::V as Vector>::Predicate) {
         if self.none(predicate) {
-            return; // What is counted is rare.
+            return; // Counted events are rare.
         }
         let zero = self.uniform(0.0);
         let mut holding = 0;
@@ -247,18 +247,18 @@ impl<'m, R: Registers> Strip<'m, R> {
     fn assemble(self, mut number: impl FnMut(usize) -> R::Lane) -> R::V {
         let mut spill = Spill::<R::Lane>::new();
         for lane in 0..R::LANES {
-            // SAFETY: lane < LANES <= MAX_LANES, the elements that the spill has room for.
+            // SAFETY: lane < LANES <= MAX_LANES, the capacity of the spill.
             unsafe { spill.start().add(lane).write(number(lane)) };
         }
         // SAFETY: the loop has written the spill's first LANES elements.
         unsafe { self.registers.load(spill.start()) }
     }
 
-    /// Takes a vector apart, lane by lane.
+    /// Splits a vector into lanes.
     #[inline(always)]
     fn disperse(self, value: R::V, mut take: impl FnMut(usize, R::Lane)) {
         let mut spill = Spill::new();
-        // SAFETY: the spill has room for MAX_LANES >= LANES elements, all of them written by the store.
+        // SAFETY: the spill has space for MAX_LANES >= LANES elements, and the store writes the LANES that are read.
         unsafe { self.registers.store(spill.start(), value) };
         for lane in 0..R::LANES {
             // SAFETY: lane < LANES, and the store of `value` has written LANES elements of the spill.
@@ -267,7 +267,7 @@ impl<'m, R: Registers> Strip<'m, R> {
     }
 }
 
-/// The method of an instruction: arrays are looked up, and the instruction has its body.
+/// Implements the method of an instruction: looks up its arrays and calls its implementation.
 macro_rules! implement {
     ($strip:ident $about:tt [$($signature:tt)*]
      $file:ident $form:ident $f:ident $(($($x:ident $($shift:ident)?: $kind:ident),+))?) => {

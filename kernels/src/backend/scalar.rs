@@ -1,4 +1,4 @@
-//! The scalar oracle: plain numbers, one lane, no SIMD. Every other backend must give its bits.
+//! The scalar oracle: plain numbers, one lane, no SIMD. Every other backend must agree to the bit.
 
 use super::registers::Registers;
 use super::values::{implement_predicate, implement_vector};
@@ -6,7 +6,7 @@ use crate::isa::list::for_each_op;
 use crate::isa::{Element, Predicate, Vector};
 use std::marker::PhantomData;
 
-/// The meaning for one lane, as the table has it.
+/// Result for one lane, from the table.
 macro_rules! as_listed {
     (() $kind:ident $group:ident $op:ident $method:ident $operands:tt $result:tt) => {
         $result
@@ -48,7 +48,7 @@ impl<T: Element> Registers for Scalar<T> {
     }
     #[inline(always)]
     unsafe fn store(self, to: *mut T, value: T) {
-        // SAFETY: the caller promises aligned room for LANES = 1 number, which has no destructor.
+        // SAFETY: the caller promises aligned space for LANES = 1 number, which has no destructor.
         unsafe { *to = value }
     }
     #[inline(always)]

@@ -1,9 +1,9 @@
-//! Vectors and predicates of any kind, each operation by one expression.
+//! Implementation of vectors and predicates of any kind, each operation by one expression.
 //!
-//! Called for each row of the table, the macros ask the macro `$by` for an operation's expression, with `$with`, the kind of the
-//! result, the group and the name of the operation, its method, the operands, and the result for one lane as the table has it.
+//! The macros are called for each row of the table. They call the macro `$by` for the expression, with `$with`, the kind of the
+//! result, the group and the name of the operation, its method, the operands, and the result for one lane from the table.
 
-/// The operators of a vector.
+/// Implements the operators of a vector.
 macro_rules! implement_operator {
     (([$($generics:tt)*] $vector:ty, $by:ident $with:tt)
      operator $op:ident $doc:literal $trait:ident::$f:ident($a:ident: V, $b:ident: V) -> V $result:tt) => {
@@ -20,7 +20,7 @@ macro_rules! implement_operator {
 }
 pub(crate) use implement_operator;
 
-/// The methods of a vector.
+/// Implements the methods of a vector.
 macro_rules! implement_vector {
     (($by:ident $with:tt) merge $op:ident $doc:literal
      $f:ident($p:ident: P, $a:ident: V, $b:ident: V) -> V $result:tt) => {
@@ -49,7 +49,7 @@ macro_rules! implement_vector {
 }
 pub(crate) use implement_vector;
 
-/// The methods of a predicate.
+/// Implements the methods of a predicate.
 macro_rules! implement_predicate {
     (($by:ident $with:tt) $group:ident $op:ident $doc:literal
      $f:ident($a:ident: P $(, $b:ident: P)?) -> P $result:tt) => {

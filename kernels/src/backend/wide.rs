@@ -1,4 +1,4 @@
-//! Registers of a width fixed at compile time, by the crate `wide`: what a build without run-time dispatch gets.
+//! Registers of a width fixed at compile time, from the crate `wide`: for builds without run-time dispatch.
 
 use super::registers::{IndexLanes, Registers};
 use super::values::{implement_operator, implement_predicate, implement_vector};
@@ -7,21 +7,21 @@ use crate::isa::{Element, Predicate, Vector};
 use ::wide::{f32x8, f64x4};
 use std::marker::PhantomData;
 
-/// A precision that `wide` has a register for.
+/// A precision with a register in `wide`.
 pub trait WideElement: Element {
-    /// The register: 256 bits, whatever the processor.
+    /// Register of 256 bits on every processor.
     type Register: WideRegister<Self>;
-    /// An index vector as wide.
+    /// Index vector of the same width.
     type Index: IndexLanes;
 }
 
-/// A register of `wide` as the machine needs it.
+/// Operations of a `wide` register beyond [`Vector`].
 pub trait WideRegister<T>: Vector {
-    /// The same number in every lane.
+    /// Broadcasts a number to every lane.
     fn splat(value: T) -> Self;
-    /// Whether no lane holds.
+    /// True if the predicate is false in every lane.
     fn none(predicate: Self::Predicate) -> bool;
-    /// The truth values as bits.
+    /// Truth values as bits.
     fn bits(predicate: Self::Predicate) -> u64;
 }
 
@@ -37,7 +37,7 @@ pub struct Truth<W>(W);
 #[derive(Clone, Copy, Default)]
 pub struct Wide<T>(PhantomData<T>);
 
-/// The instructions of the crate, those of numbers on what a register is made of.
+/// Instructions of the crate, those of numbers on the inner value of a register.
 #[rustfmt::skip]
 macro_rules! of_wide {
     (($ty:ident $wide:ident) V $group:ident $op:ident $f:ident ($($a:ident)*) $result:tt) => {
@@ -50,7 +50,7 @@ macro_rules! of_wide {
     (Subtract $ty:ident $wide:ident $a:tt $b:tt) => { $a - $b };
     (Multiply $ty:ident $wide:ident $a:tt $b:tt) => { $a * $b };
     (Divide $ty:ident $wide:ident $a:tt $b:tt) => { $a / $b };
-    // Only x86's instruction is the machine's "a < b ? a : b" to the bit.
+    // Only x86's instruction equals the machine's "a < b ? a : b" to the bit.
     (Minimum $ty:ident $wide:ident $a:tt $b:tt) => {
         if cfg!(target_arch = "x86_64") { $a.fast_min($b) } else { $a.simd_lt($b).select($a, $b) }
     };
@@ -118,14 +118,13 @@ impl<T: WideElement> Registers for Wide<T> {
     }
     #[inline(always)]
     unsafe fn load(self, from: *const T) -> Self::V {
-        // SAFETY: the caller promises LANES initialised numbers; a register is those and no more, of any bits, and is
-        // read without its own alignment.
+        // SAFETY: the caller promises LANES initialised numbers; a register consists of just those, allows any bits, and is read
+        // unaligned.
         unsafe { from.cast::<T::Register>().read_unaligned() }
     }
     #[inline(always)]
     unsafe fn store(self, to: *mut T, value: Self::V) {
-        // SAFETY: the caller promises room for LANES numbers; a register is those and no more, and is written without its
-        // own alignment.
+        // SAFETY: the caller promises space for LANES numbers; a register consists of just those, and is written unaligned.
         unsafe { to.cast::<T::Register>().write_unaligned(value) };
     }
     #[inline(always)]

@@ -1,7 +1,7 @@
-//! Discs in free flight, and when two of them meet: one text for a pair and for a disc with all its candidates.
+//! Discs in free flight and the times of their collisions: one implementation for a pair and for a disc with all its candidates.
 //!
-//! The arithmetic is canonical. A disc's position, velocity and local time change at its own events only, and the time of a
-//! pair's event depends on nothing but the states of both. So every way to find events gives the same ones, to the bit.
+//! The arithmetic is canonical. A disc's position, velocity and local time change only at its own events, and the time of a
+//! pair's event depends only on the states of both. So every search for events gives the same ones, to the bit.
 
 mod partners;
 
@@ -9,7 +9,7 @@ use crate::backend::{Registers, Scalar};
 use crate::isa::{Predicate, Vector};
 pub use partners::{Earliest, MOST_PARTNERS, ROW_UNIT, earliest};
 
-/// A disc, as it was after its last event. One line of the cache.
+/// State of a disc after its last event, in one cache line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(64))]
 pub struct Disc {
@@ -17,40 +17,40 @@ pub struct Disc {
     pub position: [f64; 2],
     /// Velocity at its local time (length/time).
     pub velocity: [f64; 2],
-    /// Its local time: that of its last event.
+    /// Local time: that of its last event.
     pub time: f64,
     /// Radius (length).
     pub radius: f64,
     /// Mass (mass).
     pub mass: f64,
-    /// Its events since the start.
+    /// Number of events since the start.
     pub events: u64,
 }
 
-/// What discs fly through.
+/// Space in which the discs fly: periodic sides, gravity, growth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Space {
-    /// Lengths of the periodic sides along x and y; 0 along an axis without (length).
+    /// Lengths of the periodic sides along x and y (length); 0 for a non-periodic axis.
     sides: [f64; 2],
-    /// Their inverses; 0 along an axis without (1/length).
+    /// Inverse lengths (1/length); 0 for a non-periodic axis.
     inverse_sides: [f64; 2],
-    /// Acceleration of all discs; none where they fly straight (length/time²).
+    /// Acceleration of all discs (length/time²); `None` if they fly straight.
     gravity: Option<[f64; 2]>,
-    /// How the radii grow, if they do.
+    /// Growth of the radii, if any.
     growth: Option<Growth>,
 }
 
-/// Discs that grow while they move: radii are those of the discs times a scale that is linear in time.
+/// Growth of the discs: radii are multiplied by a scale that is linear in time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Growth {
-    /// The scale at the time 0.
+    /// Scale at time 0.
     pub from: f64,
-    /// How fast it grows (1/time).
+    /// Growth rate of the scale (1/time).
     pub rate: f64,
 }
 
 impl Growth {
-    /// The scale at a time.
+    /// Scale at a time.
     #[inline(always)]
     pub fn scale(&self, time: f64) -> f64 {
         self.from + self.rate * time
@@ -58,7 +58,7 @@ impl Growth {
 }
 
 impl Space {
-    /// With the lengths of its periodic sides, none along axes without (length), and an acceleration (length/time²).
+    /// Space with the lengths of its periodic sides, `None` for a non-periodic axis (length), and an acceleration (length/time²).
     #[inline]
     pub fn new(periods: [Option<f64>; 2], gravity: [f64; 2]) -> Space {
         Space {
@@ -69,19 +69,19 @@ impl Space {
         }
     }
 
-    /// The same, of discs that grow.
+    /// Copy of the space for growing discs.
     #[inline]
     pub fn growing(self, growth: Growth) -> Space {
         Space { growth: Some(growth), ..self }
     }
 
-    /// How the radii grow, if they do.
+    /// Growth of the radii, if any.
     #[inline(always)]
     pub fn growth(&self) -> Option<Growth> {
         self.growth
     }
 
-    /// The acceleration of all discs (length/time²).
+    /// Acceleration of all discs (length/time²).
     #[inline(always)]
     pub fn gravity(&self) -> Option<[f64; 2]> {
         self.gravity
@@ -89,26 +89,26 @@ impl Space {
 }
 
 impl Disc {
-    /// Where it is at a time, as if nothing happened until then; beyond periodic sides too (length).
+    /// Position at a time without events until then (length); it may be beyond periodic sides.
     #[inline(always)]
     pub fn at(&self, space: &Space, time: f64) -> [f64; 2] {
         Flight::of(self).at(Scalar::default(), space, time).0
     }
 
-    /// Its velocity then (length/time).
+    /// Velocity at that time (length/time).
     #[inline(always)]
     pub fn velocity_at(&self, space: &Space, time: f64) -> [f64; 2] {
         Flight::of(self).at(Scalar::default(), space, time).1
     }
 
-    /// Its speed at its local time (length/time).
+    /// Speed at its local time (length/time).
     #[inline(always)]
     pub fn speed(&self) -> f64 {
         (self.velocity[0] * self.velocity[0] + self.velocity[1] * self.velocity[1]).sqrt()
     }
 }
 
-/// What of a disc decides when it meets another one.
+/// Quantities of a disc that determine its collisions.
 #[derive(Clone, Copy)]
 struct Flight<V> {
     position: [V; 2],
@@ -142,15 +142,15 @@ impl<V: Vector> Flight<V> {
     }
 }
 
-/// When two discs meet that have not met up to `now` (time); infinite if they do not, or if it is clear at once that they do not
-/// before the `horizon` (time). Of the images across periodic sides those meet that are the nearest now; the time follows from
-/// the later of the local times on, and so does not depend on when it is asked for, nor on which of the two is named first.
+/// Time of the collision of two discs that have not collided up to `now` (time). It is infinite if they do not collide, or if
+/// they clearly do not before the `horizon` (time). Across periodic sides, the images that are nearest at `now` collide. The time
+/// is computed from the later of the two local times, so it depends neither on the time of the query nor on the order of the two.
 #[inline(always)]
 pub fn meeting(space: &Space, a: &Disc, b: &Disc, now: f64, horizon: f64) -> f64 {
     meetings(Scalar::default(), space, &Flight::of(a), &Flight::of(b), now, horizon)
 }
 
-/// The text of [`meeting`].
+/// Implementation of [`meeting`] for a register of pairs.
 #[inline(always)]
 fn meetings<R: Registers<Lane = f64>>(
     registers: R,
@@ -171,10 +171,10 @@ fn meetings<R: Registers<Lane = f64>>(
     let x = (dx + ahead * u) * uniform(space.inverse_sides[0]);
     let y = (dy + ahead * v) * uniform(space.inverse_sides[1]);
     let half = uniform(0.5);
-    // Few are nearer across a side: nothing waits for what would be taken off the others, for that is nothing.
+    // Few pairs are nearer across a side. Behind a branch, the others need not wait for their correction, which is zero.
     if !registers.none(x.abs().less_than(half).and(y.abs().less_than(half)).not()) {
         let nearest = |side: f64, way: R::V, periods: R::V| {
-            // To the nearest whole number.
+            // Rounds to the nearest whole number.
             let whole = (periods + periods).truncate() - periods.truncate();
             way - whole * uniform(side)
         };
@@ -184,7 +184,7 @@ fn meetings<R: Registers<Lane = f64>>(
     let (mut reach, mut approach, mut speed) = (a.radius + b.radius, dx * u + dy * v, u * u + v * v);
     let mut approaches = approach.less_than(zero);
     if let Some(growth) = space.growth {
-        // The distance at which they touch grows.
+        // The contact distance grows.
         let swelling = reach * uniform(growth.rate);
         reach = reach * (uniform(growth.from) + uniform(growth.rate) * from);
         approach = approach - reach * swelling;
@@ -195,9 +195,9 @@ fn meetings<R: Registers<Lane = f64>>(
     if registers.none(approaches) {
         return never;
     }
-    // Discs that rounding has brought into each other meet at once.
+    // Discs that overlap because of rounding collide at once.
     let apart = (dx * dx + dy * dy - reach * reach).max(zero);
-    // The root below is no larger than the approach; of discs that grow nothing is said beforehand.
+    // The root below is at most the approach speed; for growing discs there is no such bound.
     let soon = match space.growth {
         None => apart.less_equal(uniform(-2.0) * approach * (uniform(horizon) - from)),
         Some(_) => approaches,
@@ -225,7 +225,7 @@ mod tests {
         meeting(space, a, b, 0.0, f64::INFINITY)
     }
 
-    /// By hand: head on, at half a radius off the line of centres, and past each other.
+    /// By hand: head on, half a radius off the line of centres, and a miss.
     #[test]
     fn pairs_meet_where_they_touch() {
         let space = Space::new(PERIODIC, [0.0; 2]);
@@ -235,14 +235,14 @@ mod tests {
         assert!((off - (3.0 - 0.75f64.sqrt())).abs() < 1e-15, "{off}");
         assert_eq!(when(&space, &still, &disc([8.0, 6.1], [-1.0, 0.0])), f64::INFINITY);
         assert_eq!(when(&space, &still, &disc([8.0, 5.0], [1.0, 0.0])), f64::INFINITY);
-        // Two are left out where the horizon is clearly nearer.
+        // The pair is omitted if the horizon is clearly nearer.
         let before = |horizon: f64| meeting(&space, &still, &disc([8.0, 5.0], [-2.0, 0.0]), 0.0, horizon);
         assert_eq!([before(1.0), before(0.3)], [1.0, f64::INFINITY]);
         // Across a periodic side.
         assert_eq!(when(&space, &disc([1.0, 5.0], [0.0; 2]), &disc([18.0, 5.0], [1.0, 0.0])), 2.0);
     }
 
-    /// Two discs that part meet again on the other side of the box.
+    /// Two discs that move apart collide on the other side of the box.
     #[test]
     fn the_nearest_image_is_that_of_now() {
         let space = Space::new(PERIODIC, [0.0; 2]);
@@ -251,7 +251,7 @@ mod tests {
         assert_eq!([at(0.0), at(5.0), at(8.0)], [f64::INFINITY, 8.5, 8.5]);
     }
 
-    /// Discs at rest meet by growing, and such as part more slowly than they grow; others do not.
+    /// Discs at rest collide by growing, as do discs that separate more slowly than they grow; others do not.
     #[test]
     fn discs_that_grow_meet_sooner() {
         let growing = |rate: f64| Space::new([None; 2], [0.0; 2]).growing(Growth { from: 0.5, rate });
@@ -264,13 +264,13 @@ mod tests {
         assert_eq!(when(&growing(0.25), &a, &coming), 1.0);
     }
 
-    /// What falls together meets as if nothing fell, whatever the local times.
+    /// Discs that fall together collide as without gravity, for any local times.
     #[test]
     fn gravity_changes_no_meeting_of_two() {
         let falling = Space::new([None; 2], [0.0, -2.0]);
         let (a, b) = (disc([0.0, 9.0], [0.0, 0.0]), disc([3.0, 9.0], [-1.0, 0.0]));
         assert_eq!(when(&falling, &a, &b), 2.0);
-        // The same flight, seen from a later moment of one of them.
+        // The same flight, from a later moment of one of the discs.
         let (position, velocity) = (b.at(&falling, 0.5), b.velocity_at(&falling, 0.5));
         let later = Disc { position, velocity, time: 0.5, ..b };
         assert!((when(&falling, &a, &later) - 2.0).abs() < 1e-15);

@@ -1,33 +1,33 @@
-//! A disc and all that it may meet next, a register of partners at a time.
+//! Next collision of a disc among all its partners, one register of partners at a time.
 
 use super::{Disc, Flight, Space, meetings};
 use crate::backend::Registers;
 use crate::isa::{Predicate, Vector};
 
-/// Entries of a row of partners at most.
+/// Largest number of entries in a row of partners.
 pub const MOST_PARTNERS: usize = 64;
 
-/// A row of partners is a whole number of so many entries, and so of registers of every instruction set.
+/// Unit of the length of a row of partners; registers of every instruction set divide it.
 pub const ROW_UNIT: usize = 16;
 
-/// What comes first.
+/// The earliest collision of a disc.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Earliest {
-    /// When the first partner is met (time); infinite if none is.
+    /// Time of the first collision; infinite if there is none.
     pub time: f64,
-    /// The partners that are met then, a bit each.
+    /// Partners that collide at that time, one bit each.
     pub partners: u64,
-    /// The partners that are met no later than what they were known to meet first, a bit each.
+    /// Partners that collide no later than their earliest known event, one bit each.
     pub surprised: u64,
 }
 
-/// Whom of its partners the disc `own` meets first, with the time of every meeting in `times`; infinite ones as in
-/// [`meeting`](super::meeting). The partners are the first `count` of a `row`; what stands behind them is a number of any disc, for
-/// a branch for each would be mispredicted: how many partners a disc has is a matter of luck. `known` is the time of what each disc
-/// is known to meet first.
+/// Finds the earliest collision of the disc `own` with its partners and writes the time of every collision to `times`, infinite
+/// where [`meeting`](super::meeting) is. The partners are the first `count` entries of a `row`. The entries behind them may be
+/// the number of any disc: the number of partners is random, so a branch would be mispredicted. `known` has the time of each
+/// disc's earliest known event.
 ///
 /// # Panics
-/// If a row is longer than [`MOST_PARTNERS`] or no multiple of [`ROW_UNIT`], or a number lies beyond the discs.
+/// If a row is longer than [`MOST_PARTNERS`] or not a multiple of [`ROW_UNIT`], or a number is beyond the discs.
 #[inline(always)]
 pub fn earliest<R: Registers<Lane = f64>>(
     registers: R,
@@ -62,7 +62,7 @@ pub fn earliest<R: Registers<Lane = f64>>(
             for lane in 0..R::LANES {
                 lanes.0[lane] = of(lane);
             }
-            // SAFETY: there are sixteen numbers, and a register has at most as many lanes.
+            // SAFETY: there are sixteen numbers, and a register has at most that many lanes.
             unsafe { registers.load(lanes.0.as_ptr()) }
         };
         let column = |of: &dyn Fn(usize) -> f64| by_lane(&|lane| of(numbers[lane]));
@@ -74,9 +74,9 @@ pub fn earliest<R: Registers<Lane = f64>>(
         };
         let met = meetings(registers, space, &flight, &others, now, f64::INFINITY);
         let here = (count - begin).min(ROW_UNIT);
-        // SAFETY: behind any of the first seventeen entries there are sixteen.
+        // SAFETY: any of the first seventeen entries has sixteen from it on.
         let met = met.max(unsafe { registers.load(ABSENT.0.as_ptr().add(ROW_UNIT - here)) });
-        // SAFETY: a whole number of registers fits, for their lanes are a power of two up to sixteen.
+        // SAFETY: a whole number of registers fits, because their lanes are a power of two up to sixteen.
         unsafe { registers.store(times.as_mut_ptr().add(begin), met) };
         let finite = met.less_than(splat(f64::INFINITY));
         let sooner = met.less_equal(column(&|it| known[it])).and(finite);
@@ -84,7 +84,7 @@ pub fn earliest<R: Registers<Lane = f64>>(
         least = least.min(met);
     }
     let mut lanes = Lanes([f64::INFINITY; 16]);
-    // SAFETY: there are sixteen numbers, and a register has at most as many lanes.
+    // SAFETY: there are sixteen numbers, and a register has at most that many lanes.
     unsafe { registers.store(lanes.0.as_mut_ptr(), least) };
     let time = smallest(&lanes.0, R::LANES);
     let mut first = 0;
@@ -98,7 +98,7 @@ pub fn earliest<R: Registers<Lane = f64>>(
     Earliest { time, partners: first, surprised }
 }
 
-/// The smallest of the first numbers, by halves.
+/// Smallest of the first `count` numbers, by repeated halving.
 #[inline(always)]
 fn smallest(numbers: &[f64; 16], count: usize) -> f64 {
     let mut halves = *numbers;
@@ -113,7 +113,8 @@ fn smallest(numbers: &[f64; 16], count: usize) -> f64 {
     halves[0]
 }
 
-/// The soonest that partners may be met, from any entry on: at once where there is one, and then never.
+/// Lower bounds of collision times: 0 for partners, then infinity for absent ones. A row reads it from the entry that matches its
+/// length.
 static ABSENT: Absent = {
     let mut soonest = [0.0; 2 * ROW_UNIT];
     let mut lane = ROW_UNIT;
@@ -124,11 +125,11 @@ static ABSENT: Absent = {
     Absent(soonest)
 };
 
-/// Two rows' units of numbers, at lines of their own.
+/// Aligned array of two row units.
 #[repr(align(64))]
 struct Absent([f64; 2 * ROW_UNIT]);
 
-/// Numbers of a register on their way to it; at a line of its own.
+/// Aligned buffer of a register's numbers.
 #[repr(align(64))]
 struct Lanes([f64; 16]);
 
@@ -157,7 +158,7 @@ mod tests {
         }
     }
 
-    /// The bits of the pair's own text, on every instruction set.
+    /// Bit-equal to the result for each pair, on every instruction set.
     #[test]
     fn all_partners_at_a_time_are_each_of_them() {
         let mut stream = Stream::new(3, Purpose::Test, 0);
@@ -179,7 +180,7 @@ mod tests {
                     .collect();
                 let known: Vec<f64> = discs.iter().map(|_| draw(3.0, 9.0)).collect();
                 let mut row: Vec<u32> = (1..=count as u32).collect();
-                // Behind them is the disc itself, and one that it may meet.
+                // Behind the partners are the disc itself, and one that it may collide with.
                 row.resize(count.next_multiple_of(ROW_UNIT), 0);
                 if let Some(behind) = row.get_mut(count) {
                     *behind = 1;

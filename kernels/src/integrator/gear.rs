@@ -1,21 +1,21 @@
 //! Gear's predictor–corrector for second-order equations. BP93 appendix A; Allen & Tildesley, appendix E.
 //!
-//! The state is a row of scaled derivatives q_k = (dt^k/k!) d^k r/dt^k for each degree of freedom: x, y and, with
-//! rotation, the angle.
+//! The state has a row of scaled derivatives q_k = (dt^k/k!) d^k r/dt^k for each degree of freedom: x, y and, with rotation, the
+//! angle.
 
 use super::{Context, DERIVATIVES, Inertia, NOT_FINITE, Scheme, VELOCITY, gathered_acceleration};
 use crate::backend::Registers;
 use crate::isa::{Array, Element, Machine, Predicate, Slot, Text, Vector};
 use std::marker::PhantomData;
 
-/// The arrays of the state, a row for each degree of freedom: the position and its derivatives, as the scheme scales them.
+/// Arrays of the state, a row for each degree of freedom: the position and its derivatives, scaled as the scheme requires.
 pub const STATE: [[Array; DERIVATIVES]; 3] = [
     [Array::X0, Array::X1, Array::X2, Array::X3, Array::X4, Array::X5],
     [Array::Y0, Array::Y1, Array::Y2, Array::Y3, Array::Y4, Array::Y5],
     [Array::Phi0, Array::Phi1, Array::Phi2, Array::Phi3, Array::Phi4, Array::Phi5],
 ];
 
-/// What the accelerations depend on, which decides the first coefficient.
+/// Arguments of the accelerations, which determine the first coefficient.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Acceleration {
     /// Positions only.
@@ -24,10 +24,10 @@ pub enum Acceleration {
     OfVelocities,
 }
 
-/// The corrector's coefficients c_0 … c_(values−1) for 4, 5 or 6 values (orders 3, 4, 5).
+/// Corrector coefficients c_0 … c_(values−1) for 4, 5 or 6 values (orders 3, 4, 5).
 ///
 /// # Panics
-/// If `values` is none of these.
+/// If `values` is another number.
 pub const fn coefficients(values: usize, acceleration: Acceleration) -> [f64; 6] {
     let of_velocities = matches!(acceleration, Acceleration::OfVelocities);
     match values {
@@ -49,7 +49,7 @@ pub const fn coefficients(values: usize, acceleration: Acceleration) -> [f64; 6]
     }
 }
 
-/// dt^k/k!, by which the derivatives are multiplied in the state.
+/// Scale factors dt^k/k! of the derivatives in the state.
 #[inline(always)]
 fn scales(dt: f64) -> [f64; DERIVATIVES] {
     let second = 0.5 * dt * dt;
@@ -58,7 +58,7 @@ fn scales(dt: f64) -> [f64; DERIVATIVES] {
     [1.0, dt, second, third, fourth, fourth * dt / 5.0]
 }
 
-/// Taylor expansion of one row over a step: Pascal's triangle, by sums alone.
+/// Taylor expansion of one row over a step: Pascal's triangle, computed with sums alone.
 #[inline(always)]
 fn advance<V: Vector, const VALUES: usize>(q: &mut [V]) {
     for lowest in 0..VALUES - 1 {
@@ -89,7 +89,7 @@ pub struct Gear<const VALUES: usize> {
 }
 
 impl<const VALUES: usize> Gear<VALUES> {
-    /// For accelerations of some kind.
+    /// Scheme for accelerations with these arguments.
     #[inline]
     pub const fn new(acceleration: Acceleration) -> Self {
         Gear { coefficients: coefficients(VALUES, acceleration) }
@@ -121,7 +121,7 @@ impl<const VALUES: usize> Scheme for Gear<VALUES> {
     }
 }
 
-/// The row of `VALUES` scaled derivatives of one degree of freedom.
+/// Loads the row of `VALUES` scaled derivatives of one degree of freedom.
 #[inline(always)]
 fn row<S: Element, M: Machine, const VALUES: usize>(m: M, freedom: usize) -> [M::V; VALUES] {
     let mut q = [m.uniform(0.0); VALUES];
@@ -131,7 +131,7 @@ fn row<S: Element, M: Machine, const VALUES: usize>(m: M, freedom: usize) -> [M:
     q
 }
 
-/// Predicts the state one step ahead and hands the velocities to the lattice. Vector length: the discs.
+/// Predicts the state one step ahead and passes the velocities to the lattice. Vector length: the discs.
 ///
 /// `S` is the state's precision, `P` the forces'; `FREEDOMS` is 2, or 3 with rotation.
 #[derive(Clone, Copy, Debug)]
@@ -141,7 +141,7 @@ pub struct Predictor<S, P, const VALUES: usize, const FREEDOMS: usize> {
 }
 
 impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> Predictor<S, P, VALUES, FREEDOMS> {
-    /// For steps of `dt` (time).
+    /// Kernel for steps of `dt` (time).
     #[inline]
     pub fn new(dt: f64) -> Self {
         Predictor { inverse_dt: 1.0 / dt, precisions: PhantomData }
@@ -172,8 +172,8 @@ unsafe impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> 
 /// Gathers the forces from the lattice and corrects the predicted state. Vector length: the discs.
 ///
 /// # As printed
-/// Appendix A multiplies the coefficients by the new acceleration; it must be its difference from the predicted one:
-/// Δ = (dt²/2)(a − a_predicted), q_k += c_k Δ.
+/// Appendix A multiplies the coefficients by the new acceleration. It must be the difference from the predicted one: Δ =
+/// (dt²/2)(a − a_predicted), q_k += c_k Δ.
 #[derive(Clone, Copy, Debug)]
 pub struct Corrector<S, P, const VALUES: usize, const FREEDOMS: usize> {
     dt: f64,
@@ -185,7 +185,7 @@ pub struct Corrector<S, P, const VALUES: usize, const FREEDOMS: usize> {
 }
 
 impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> Corrector<S, P, VALUES, FREEDOMS> {
-    /// For steps of `dt` (time) under `gravity` (length/time²); a component of 0 costs nothing.
+    /// Kernel for steps of `dt` (time) under `gravity` (length/time²); a component of 0 costs nothing.
     #[inline]
     pub fn new(dt: f64, acceleration: Acceleration, inertia: Inertia, gravity: [f64; 2]) -> Self {
         Corrector {
@@ -198,7 +198,7 @@ impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> Correct
         }
     }
 
-    /// The same program, which also counts the discs whose correction is no finite number in [`NOT_FINITE`].
+    /// Makes the kernel also count in [`NOT_FINITE`] the discs whose correction is not finite.
     #[must_use]
     #[inline]
     pub fn checked(self) -> Self {
@@ -206,13 +206,13 @@ impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> Correct
     }
 }
 
-// SAFETY: the slots depend on the const parameters, the inertia and which components gravity has.
+// SAFETY: the slots depend on the const parameters, the inertia and the non-zero components of gravity.
 unsafe impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> Text
     for Corrector<S, P, VALUES, FREEDOMS>
 {
     type Lane = S;
 
-    #[allow(clippy::needless_range_loop, reason = "several lists side by side, under one number")]
+    #[allow(clippy::needless_range_loop, reason = "several lists share one index")]
     #[inline(always)]
     fn body<M: Machine<Lane = S>>(&self, m: M) {
         m.section("gather");

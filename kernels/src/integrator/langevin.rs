@@ -4,7 +4,7 @@ use super::velocity_verlet::{drift, kick};
 use super::{Context, DERIVATIVES, Draws, Scheme};
 use crate::backend::Registers;
 
-/// A bath.
+/// A heat bath.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bath {
     /// Friction γ (mass/time).
@@ -13,11 +13,11 @@ pub struct Bath {
     pub temperature: f64,
 }
 
-/// The scheme of the source: velocity Verlet with friction and noise inside the acceleration, −γ v + √(2 γ kT/dt) η. With friction by
-/// the velocity v_h after half a kick ⟨v²⟩ is kT/m exactly.
+/// Scheme of LAN17: velocity Verlet with friction and noise inside the acceleration, −γ v + √(2 γ kT/dt) η. If the friction uses
+/// the velocity v_h after half a kick, ⟨v²⟩ is exactly kT/m.
 ///
 /// # As printed
-/// The friction uses the velocity of the step before (`OLD`), which heats the particles to kT/(1 − γ dt/2m).
+/// The friction uses the velocity of the previous step (`OLD`), which heats the particles to kT/(1 − γ dt/2m).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stochastic<const OLD: bool> {
     /// The bath.
@@ -25,7 +25,7 @@ pub struct Stochastic<const OLD: bool> {
 }
 
 impl<const OLD: bool> Stochastic<OLD> {
-    /// The acceleration by the force, by friction at a velocity and by noise.
+    /// Total acceleration from the force, the friction at a velocity, and the noise.
     #[inline(always)]
     fn whole<R: Registers>(&self, context: &Context<R>, velocity: R::V, acceleration: R::V) -> R::V {
         let Bath { friction, temperature } = self.bath;
@@ -63,18 +63,19 @@ impl<const OLD: bool> Scheme for Stochastic<OLD> {
     }
 }
 
-/// Half a kick, half a drift, friction and noise exactly, half a drift, the forces, half a kick (BAOAB; Leimkuhler & Matthews 2013).
-/// Positions have errors of order dt², and none in a harmonic trap, where velocities after the bath have none either; those of the
-/// end of the step have m⟨v²⟩ = kT − dt²⟨F²⟩/(4 m), in a trap of frequency ω kT (1 − ω²dt²/4).
+/// The BAOAB scheme (Leimkuhler & Matthews 2013): half a kick, half a drift, friction and noise exactly, half a drift, the
+/// forces, half a kick. Positions have errors of order dt², and none in a harmonic trap. There the velocities right after the
+/// bath are exact too. Velocities at the end of the step have m⟨v²⟩ = kT − dt²⟨F²⟩/(4 m); in a trap of frequency ω this is kT (1
+/// − ω²dt²/4).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Baoab {
     kept: f64,
-    /// kT (1 − e^(−2 γ dt/m)), the variance that the noise gives, times a mass (energy).
+    /// kT (1 − e^(−2 γ dt/m)), the variance of the noise times a mass (energy).
     drawn: f64,
 }
 
 impl Baoab {
-    /// With steps of `dt` (time), for particles of one mass.
+    /// Scheme with steps of `dt` (time), for particles of equal mass.
     #[inline]
     pub fn new(bath: Bath, dt: f64, mass: f64) -> Self {
         let kept = libm::exp(-bath.friction * dt / mass);
@@ -86,7 +87,7 @@ impl Scheme for Baoab {
     const CARRIED: usize = 2;
     const DRAWS: Draws = Draws::InPredictor;
 
-    /// The bath is exact, so the noise of a part has decayed by the end of the step: v' = c v + s Σ_j c^((p−1−j)/p) ξ_j / norm.
+    /// The bath is exact, so the noise of a part decays until the end of the step: v' = c v + s Σ_j c^((p−1−j)/p) ξ_j / norm.
     fn noise_weights(&self, parts: u32) -> Vec<f64> {
         let of_part = libm::pow(self.kept, 1.0 / f64::from(parts));
         let decayed: Vec<f64> = (0..parts).rev().map(|left| libm::pow(of_part, f64::from(left))).collect();

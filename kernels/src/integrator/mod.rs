@@ -1,4 +1,4 @@
-//! Integrators, one file each, and what they share: F/m + g, and what a scheme may know beside the state.
+//! Integrators, one file each, and their common parts: F/m + g, and the context of a scheme beside the state.
 
 pub mod gear;
 pub mod langevin;
@@ -8,32 +8,31 @@ pub mod velocity_verlet;
 use crate::backend::Registers;
 use crate::isa::{Array, Counter, Element, Machine, Slot, Vector};
 
-/// Most entries that a row of the state has: the position and its derivatives.
+/// Largest number of entries in a row of the state: the position and its derivatives.
 pub const DERIVATIVES: usize = 6;
 
 const VELOCITY: [Array; 3] = [Array::DiscVx, Array::DiscVy, Array::DiscOmega];
 pub(crate) const FORCE: [Array; 3] = [Array::Fx, Array::Fy, Array::Torque];
 
-/// Counts discs whose new state is no finite number. Written by programs that are
-/// [`checked`](gear::Corrector::checked).
+/// Counts discs whose new state is not finite. Written by kernels that are [`checked`](gear::Corrector::checked).
 pub const NOT_FINITE: Counter = Counter(3);
 
-/// What the forces are divided by.
+/// Divisor of the forces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Inertia {
-    /// All discs alike: inverse mass and inverse moment of inertia.
+    /// Equal discs: inverse mass and inverse moment of inertia.
     Equal {
         /// Inverse mass.
         inverse_mass: f64,
         /// Inverse moment of inertia.
         inverse_inertia: f64,
     },
-    /// Each disc its own, from arrays.
+    /// Individual values, from arrays.
     Varying,
 }
 
 impl Inertia {
-    /// Inverse mass, or moment of inertia for the third degree of freedom; `own` gives the discs' where they vary.
+    /// Inverse mass, or inverse moment of inertia for the third degree of freedom; `own` returns individual values.
     #[inline(always)]
     pub fn inverse<V>(self, freedom: usize, uniform: impl Fn(f64) -> V, own: impl FnOnce() -> V) -> V {
         match (self, freedom) {
@@ -44,7 +43,7 @@ impl Inertia {
     }
 }
 
-/// F/m + g of one degree of freedom: along x, along y, of the angle. A component of gravity that is 0 costs nothing.
+/// F/m + g of one degree of freedom: x, y or the angle. A zero component of gravity costs nothing.
 #[inline(always)]
 pub(crate) fn acceleration<V: Vector>(
     uniform: impl Fn(f64) -> V,
@@ -56,7 +55,7 @@ pub(crate) fn acceleration<V: Vector>(
     pulled(uniform, gravity, freedom, force * inverse)
 }
 
-/// An acceleration with that of gravity added.
+/// Adds gravity to an acceleration.
 #[inline(always)]
 fn pulled<V: Vector>(uniform: impl Fn(f64) -> V, gravity: [f64; 2], freedom: usize, acceleration: V) -> V {
     if freedom < 2 && gravity[freedom] != 0.0 {
@@ -66,7 +65,7 @@ fn pulled<V: Vector>(uniform: impl Fn(f64) -> V, gravity: [f64; 2], freedom: usi
     }
 }
 
-/// The acceleration of one degree of freedom, from the force gathered from the lattice.
+/// Acceleration of one degree of freedom, from the force gathered from the lattice.
 #[inline(always)]
 fn gathered_acceleration<S: Element, P: Element, M: Machine>(
     m: M,
@@ -86,7 +85,7 @@ fn gathered_acceleration<S: Element, P: Element, M: Machine>(
     pulled(uniform, gravity, freedom, acceleration)
 }
 
-/// What a scheme may know beside a row of the state: of the step, and of the discs in the lanes.
+/// Context of a scheme beside a row of the state: the step, and the discs in the lanes.
 #[derive(Clone, Copy, Debug)]
 pub struct Context<R: Registers> {
     pub(crate) registers: R,
@@ -96,7 +95,7 @@ pub struct Context<R: Registers> {
 }
 
 impl<R: Registers> Context<R> {
-    /// The same number in every lane.
+    /// Broadcasts a number to every lane.
     #[inline(always)]
     pub fn uniform(&self, value: f64) -> R::V {
         self.registers.splat(R::Lane::from_f64(value))
@@ -114,18 +113,18 @@ impl<R: Registers> Context<R> {
         self.inverse
     }
 
-    /// A standard normal number for every disc, of its own for each degree of freedom, where the scheme [draws](Scheme::DRAWS)
-    /// at this place; no number elsewhere. It depends on the run's seed, the disc's id and the step alone.
+    /// A standard normal number for every disc and degree of freedom at the point where the scheme [draws](Scheme::DRAWS), NaN
+    /// elsewhere. It depends on the run's seed, the disc's id and the step alone.
     #[inline(always)]
     pub fn normal(&self) -> R::V {
         self.normal
     }
 }
 
-/// Where a scheme draws a random number for each degree of freedom.
+/// Point of a step at which a scheme draws a random number for each degree of freedom.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Draws {
-    /// Nowhere.
+    /// Never.
     Never,
     /// In the corrector, and at the start.
     InCorrector,
@@ -135,22 +134,23 @@ pub enum Draws {
 
 /// A predictor and a corrector for one degree of freedom.
 ///
-/// The state is a row for each degree of freedom, q_k = s_k d^k r/dt^k, in which s_k are the scheme's own
-/// [scales](Self::scales). What puts velocities in or reads them asks for these; the acceleration comes in the scene's units.
+/// The state has a row for each degree of freedom, q_k = s_k d^k r/dt^k, with the scheme's own [scales](Self::scales) s_k. Code
+/// that sets or reads velocities applies them; accelerations are in the scene's units.
 pub trait Scheme: Copy + Send + Sync {
-    /// How many derivatives a step hands on to the next, where corrector and next predictor are one.
+    /// Number of derivatives passed from step to step if corrector and next predictor are fused.
     const CARRIED: usize;
-    /// Where it draws random numbers, for which the discs' ids are needed.
+    /// Point at which it draws random numbers, which requires the discs' ids.
     const DRAWS: Draws = Draws::Never;
 
-    /// The scales s_k of the row for steps of `dt` (time). That of the position is 1.
+    /// Scales s_k of the row for steps of `dt` (time). The scale of the position is 1.
     fn scales(dt: f64) -> [f64; DERIVATIVES];
 
-    /// Takes up the acceleration of the start (length/time²): the row is that of the start already.
+    /// Sets the initial acceleration (length/time²) of an initial row.
     fn begin<R: Registers>(&self, context: &Context<R>, row: &mut [R::V; DERIVATIVES], acceleration: R::V);
     /// Corrects the predicted row with the acceleration found (length/time²).
     fn correct<R: Registers>(&self, context: &Context<R>, row: &mut [R::V; DERIVATIVES], acceleration: R::V);
-    /// The weights of the normal numbers of as many shorter steps in that of a step, the first first. Their squares add up to 1.
+    /// Weights with which the normal numbers of `parts` shorter steps add up to that of a step, in order of time. Their squares
+    /// sum to 1.
     fn noise_weights(&self, parts: u32) -> Vec<f64> {
         vec![1.0 / f64::from(parts).sqrt(); parts as usize]
     }

@@ -1,25 +1,25 @@
-//! A scheme that moves a single degree of freedom: what theory asks of it, through the code that moves the discs.
+//! A single degree of freedom, moved by the code that moves the discs: for theory and tests of a scheme.
 
 use super::{Context, DERIVATIVES, Scheme};
 use crate::backend::Scalar;
 
-/// One degree of freedom under an acceleration of its own.
+/// One degree of freedom under a given acceleration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Single<C> {
     scheme: C,
     dt: f64,
-    /// The derivatives as the scheme scales them.
+    /// Derivatives, scaled as the scheme requires.
     pub row: [f64; DERIVATIVES],
 }
 
 impl<C: Scheme> Single<C> {
-    /// At rest in the origin, in steps of `dt` (time).
+    /// At rest at the origin, with steps of `dt` (time).
     #[inline]
     pub fn new(scheme: C, dt: f64) -> Self {
         Single { scheme, dt, row: [0.0; DERIVATIVES] }
     }
 
-    /// The same at a position (length) with a velocity (length/time), with the acceleration there (length/time²).
+    /// Sets the initial position (length) and velocity (length/time), and the acceleration there (length/time²).
     #[must_use]
     #[inline]
     pub fn starting(self, position: f64, velocity: f64, acceleration: impl Fn(f64, f64) -> f64) -> Self {
@@ -30,13 +30,13 @@ impl<C: Scheme> Single<C> {
         Single { row, ..self }
     }
 
-    /// The position (length) and the velocity (length/time).
+    /// Position (length) and velocity (length/time).
     #[inline]
     pub fn motion(&self) -> [f64; 2] {
         [self.row[0], self.row[1] / C::scales(self.dt)[1]]
     }
 
-    /// Makes a step; `acceleration` (length/time²) is that of a position and a velocity as the scheme predicts them.
+    /// Makes a step; `acceleration` (length/time²) is a function of the predicted position and velocity.
     #[inline]
     pub fn step(&mut self, acceleration: impl Fn(f64, f64) -> f64) {
         let mut row = self.row;
@@ -51,7 +51,7 @@ impl<C: Scheme> Single<C> {
             registers: Scalar::default(),
             dt: self.dt,
             inverse: 1.0,
-            // Theory is of the motion without noise.
+            // Theory considers the motion without noise.
             normal: 0.0,
         }
     }
@@ -63,7 +63,7 @@ mod tests {
     use crate::integrator::gear::{Acceleration, Gear};
     use crate::integrator::velocity_verlet::VelocityVerlet;
 
-    /// A quarter of a period of x″ = −x from rest at 1 ends in the origin with velocity −1.
+    /// A quarter of a period of x″ = −x from rest at 1 ends at the origin with velocity −1.
     fn off<C: Scheme>(scheme: C, steps: u32) -> f64 {
         let spring = |position: f64, _: f64| -position;
         let dt = std::f64::consts::FRAC_PI_2 / f64::from(steps);

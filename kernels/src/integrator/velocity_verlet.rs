@@ -1,7 +1,7 @@
 //! The velocity Verlet scheme: half a kick, a drift, the forces, half a kick.
 //!
-//! The state is position, velocity and acceleration. Half a kick is v += (dt/2) a and a drift r += dt v. Forces that depend
-//! on velocities are those of the velocities after the first half kick, as is usual.
+//! The state is position, velocity and acceleration. Half a kick is v += (dt/2) a, and a drift is r += dt v. Forces that depend
+//! on velocities use those after the first half kick, as is usual.
 
 use super::gear::STATE;
 use super::{Context, DERIVATIVES, Inertia, NOT_FINITE, Scheme, VELOCITY, gathered_acceleration};
@@ -9,12 +9,12 @@ use crate::backend::Registers;
 use crate::isa::{Array, Element, Machine, Predicate, Slot, Text, Vector};
 use std::marker::PhantomData;
 
-/// The scheme.
+/// The velocity Verlet scheme.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct VelocityVerlet;
 
 impl Scheme for VelocityVerlet {
-    // The acceleration comes from the forces again.
+    // The acceleration is recomputed from the forces.
     const CARRIED: usize = 2;
 
     #[inline(always)]
@@ -38,7 +38,7 @@ impl Scheme for VelocityVerlet {
     }
 }
 
-/// The second half kick.
+/// Applies the second half kick.
 #[inline(always)]
 pub(super) fn kick<V: Vector>(
     uniform: impl Fn(f64) -> V,
@@ -50,14 +50,14 @@ pub(super) fn kick<V: Vector>(
     row[2] = acceleration;
 }
 
-/// The first half kick and the drift.
+/// Applies the first half kick and the drift.
 #[inline(always)]
 pub(super) fn drift<V: Vector>(uniform: impl Fn(f64) -> V, dt: f64, row: &mut [V; DERIVATIVES]) {
     row[1] = row[1] + row[2] * uniform(0.5 * dt);
     row[0] = row[0] + row[1] * uniform(dt);
 }
 
-/// The first half kick and the drift; hands the velocities to the lattice. Vector length: the discs.
+/// Applies the first half kick and the drift, and passes the velocities to the lattice. Vector length: the discs.
 ///
 /// `S` is the state's precision, `P` the forces'; `FREEDOMS` is 2, or 3 with rotation.
 #[derive(Clone, Copy, Debug)]
@@ -67,14 +67,14 @@ pub struct Drift<S, P, const FREEDOMS: usize> {
 }
 
 impl<S: Element, P: Element, const FREEDOMS: usize> Drift<S, P, FREEDOMS> {
-    /// For steps of `dt` (time).
+    /// Kernel for steps of `dt` (time).
     #[inline]
     pub fn new(dt: f64) -> Self {
         Drift { dt, precisions: PhantomData }
     }
 }
 
-/// The row of one degree of freedom; entries that the scheme has no use for are zero.
+/// Loads the row of one degree of freedom; entries that the scheme does not use are zero.
 #[inline(always)]
 fn row<S: Element, M: Machine>(m: M, freedom: usize) -> [M::V; DERIVATIVES] {
     let mut row = [m.uniform(0.0); DERIVATIVES];
@@ -102,7 +102,7 @@ unsafe impl<S: Element, P: Element, const FREEDOMS: usize> Text for Drift<S, P, 
     }
 }
 
-/// Gathers the forces from the lattice and gives the second half kick. Vector length: the discs.
+/// Gathers the forces from the lattice and applies the second half kick. Vector length: the discs.
 #[derive(Clone, Copy, Debug)]
 pub struct Kick<S, P, const FREEDOMS: usize> {
     dt: f64,
@@ -113,14 +113,13 @@ pub struct Kick<S, P, const FREEDOMS: usize> {
 }
 
 impl<S: Element, P: Element, const FREEDOMS: usize> Kick<S, P, FREEDOMS> {
-    /// For steps of `dt` (time) under `gravity` (length/time²); a component of 0 costs nothing.
+    /// Kernel for steps of `dt` (time) under `gravity` (length/time²); a component of 0 costs nothing.
     #[inline]
     pub fn new(dt: f64, inertia: Inertia, gravity: [f64; 2]) -> Self {
         Kick { dt, inertia, gravity, checked: false, precisions: PhantomData }
     }
 
-    /// The same program, which also counts the discs whose acceleration is no finite number in
-    /// [`NOT_FINITE`].
+    /// Makes the kernel also count in [`NOT_FINITE`] the discs whose acceleration is not finite.
     #[must_use]
     #[inline]
     pub fn checked(self) -> Self {
@@ -128,11 +127,11 @@ impl<S: Element, P: Element, const FREEDOMS: usize> Kick<S, P, FREEDOMS> {
     }
 }
 
-// SAFETY: the slots depend on the const parameters, the inertia and which components gravity has.
+// SAFETY: the slots depend on the const parameters, the inertia and the non-zero components of gravity.
 unsafe impl<S: Element, P: Element, const FREEDOMS: usize> Text for Kick<S, P, FREEDOMS> {
     type Lane = S;
 
-    #[allow(clippy::needless_range_loop, reason = "several lists side by side, under one number")]
+    #[allow(clippy::needless_range_loop, reason = "several lists share one index")]
     #[inline(always)]
     fn body<M: Machine<Lane = S>>(&self, m: M) {
         m.section("gather");

@@ -1,10 +1,10 @@
-//! Elements in a row whose place in the caches is no matter of luck.
+//! Cache-line-aligned columns in huge pages.
 //!
-//! A general allocator puts an array at some sixteenth byte, so that vectors of 64 bytes may lie across two lines; large
-//! arrays all begin at a page's border, so that they fall upon the same few lines of a first-level cache; and which pages of
-//! the memory they are made of decides what meets what in the larger ones. Each makes a loop half as fast again or not, in
-//! one process and not in the next: a copy of the predictor took 2.1 or 5.1 µs. So rows begin at lines of their own, one
-//! behind the other in large pages, as far as the system has some.
+//! A general allocator makes timings irreproducible. It aligns an array to 16 bytes, so that vectors of 64 bytes may straddle two
+//! cache lines. Large arrays all begin at a page boundary, so that they compete for the same few lines of a first-level cache.
+//! And the physical pages decide which data collide in larger caches. Each effect can slow a loop by half, in one process and not
+//! in the next: a copy of the predictor took 2.1 or 5.1 µs. So each column begins at a cache line of its own, and columns are
+//! stored one behind the other in huge pages where the system has them.
 
 use super::Element;
 use memmap2::MmapMut;
@@ -14,29 +14,29 @@ use std::ops::{Deref, DerefMut};
 use std::ptr::NonNull;
 use std::sync::Arc;
 
-/// Bytes of a cache line.
+/// Size of a cache line in bytes.
 pub(crate) const LINE: usize = 64;
-/// Bytes after which addresses look alike to a first-level cache.
+/// Period in bytes after which addresses map to the same line of a first-level cache.
 pub(crate) const ALIKE: usize = 4096;
-/// Lines from where one row begins to where the next one does, addresses taken as such a cache sees them: an odd number, so
-/// that they spread over all of it.
+/// Lines between the beginnings of consecutive columns, modulo that period: an odd number, so that they spread over the whole
+/// cache.
 const APART: usize = 9;
-/// Bytes of a large page.
+/// Size of a huge page in bytes.
 const LARGE: usize = 1 << 21;
 
-/// Large pages, zero at first.
+/// Huge pages, initially zero.
 struct Pages {
-    /// Where the first of them begins.
+    /// Address of the first page.
     origin: NonNull<u8>,
     length: usize,
-    /// Keeps them.
+    /// Owns the memory.
     _bytes: Bytes,
 }
 
-/// Bytes that are kept for pages.
+/// Owner of the memory of pages.
 enum Bytes {
     Mapped(MmapMut),
-    /// Of the allocator, which has the last word where the system maps no more pages.
+    /// From the allocator, the fallback if the system maps no more pages.
     Allocated(Vec<u8>),
 }
 
@@ -44,7 +44,7 @@ impl Bytes {
     fn holding(length: usize) -> Bytes {
         let Ok(map) = MmapMut::map_anon(length) else { return Bytes::Allocated(vec![0; length]) };
         #[cfg(target_os = "linux")]
-        #[expect(clippy::let_underscore_must_use, reason = "where there are no large pages, small ones do")]
+        #[expect(clippy::let_underscore_must_use, reason = "small pages are a valid fallback")]
         let _ = map.advise(memmap2::Advice::HugePage);
         Bytes::Mapped(map)
     }
@@ -57,17 +57,17 @@ impl Bytes {
     }
 }
 
-// SAFETY: the memory belongs to no thread; who may use which part of it is the rows' affair, and no two rows share any.
+// SAFETY: the memory belongs to no thread; columns decide who uses which part of it, and no two columns share any.
 unsafe impl Send for Pages {}
 // SAFETY: through a shared reference only `origin` and `length` are read, which never change.
 unsafe impl Sync for Pages {}
 
 impl Pages {
-    /// As many as hold `bytes` bytes.
+    /// Allocates pages for `bytes` bytes.
     #[inline]
     fn holding(bytes: usize) -> Arc<Pages> {
         let length = bytes.next_multiple_of(LARGE);
-        // One more, for the first may begin anywhere.
+        // One page more, because the first may begin anywhere.
         let mut bytes = Bytes::holding(length + LARGE);
         let skipped = bytes.all().as_ptr().align_offset(LARGE);
         let origin = NonNull::from(&mut bytes.all()[skipped..]).cast();
@@ -76,18 +76,18 @@ impl Pages {
 }
 
 thread_local! {
-    /// Pages that short rows share, and how many bytes of them are taken.
+    /// Pages that short columns share, and the number of their bytes in use.
     static SHARED: RefCell<Option<(Arc<Pages>, usize)>> = const { RefCell::new(None) };
 }
 
-/// Room for `bytes` bytes that begins at the line of a row with this number.
+/// Allocates `bytes` bytes that begin at the cache line of the column with this number.
 fn room(number: usize, bytes: usize) -> (Arc<Pages>, NonNull<u8>) {
     let line = number * APART * LINE % ALIKE;
-    // The first place from `taken` on that looks like that line.
+    // The first address from `taken` on that maps to that line.
     let behind = |taken: usize| taken.next_multiple_of(ALIKE) + line;
     if bytes > LARGE / 4 {
         let pages = Pages::holding(behind(0) + bytes);
-        // SAFETY: they hold that and more.
+        // SAFETY: the pages hold that and more.
         let start = unsafe { pages.origin.add(behind(0)) };
         return (pages, start);
     }
@@ -96,35 +96,35 @@ fn room(number: usize, bytes: usize) -> (Arc<Pages>, NonNull<u8>) {
             Some((pages, taken)) if behind(taken) + bytes <= pages.length => (pages, taken),
             _ => (Pages::holding(LARGE), 0),
         };
-        // SAFETY: `behind(taken) + bytes` lies within: as asked above, and new ones are four times as long and more.
+        // SAFETY: `behind(taken) + bytes` is within the pages: checked above, and new ones are at least four times as long.
         let start = unsafe { pages.origin.add(behind(taken)) };
         *shared = Some((Arc::clone(&pages), behind(taken) + bytes));
         (pages, start)
     })
 }
 
-/// Elements in a row that begin at a line of their own.
+/// Elements stored contiguously from a cache line of their own.
 pub struct AlignedColumn<X> {
     number: usize,
     start: NonNull<X>,
     length: usize,
-    /// Where they lie; none without elements.
+    /// Pages of the elements; `None` without elements.
     _pages: Option<Arc<Pages>>,
 }
 
-// SAFETY: a row owns its elements, as a vector does.
+// SAFETY: a column owns its elements, as a vector does.
 unsafe impl<X: Send> Send for AlignedColumn<X> {}
-// SAFETY: a shared row gives out shared references to its elements, and nothing else.
+// SAFETY: a shared column gives out shared references to its elements, and nothing else.
 unsafe impl<X: Sync> Sync for AlignedColumn<X> {}
 
 impl<X: Clone> AlignedColumn<X> {
-    /// `values` behind each other; rows of another `number` begin at other lines.
+    /// Stores `values`; columns with another `number` begin at other cache lines.
     #[inline]
     pub fn new(number: usize, values: impl IntoIterator<Item = X>) -> AlignedColumn<X> {
         AlignedColumn::from_vec(number, &values.into_iter().collect::<Vec<X>>())
     }
 
-    /// The same value `length` times.
+    /// Column with the same value `length` times.
     #[inline]
     pub fn filled(number: usize, value: X, length: usize) -> AlignedColumn<X> {
         AlignedColumn::written(number, length, |_| value.clone())
@@ -144,14 +144,14 @@ impl<X: Clone> AlignedColumn<X> {
         let (pages, start) = room(number, length * size_of::<X>());
         let start = start.cast::<X>();
         for at in 0..length {
-            // SAFETY: `room` has given `length` elements' bytes, at the beginning of a line, to this row alone.
+            // SAFETY: `room` has allocated the bytes of `length` elements, from the beginning of a line, for this column alone.
             unsafe { start.add(at).write(value(at)) };
         }
         AlignedColumn { number, start, length, _pages: Some(pages) }
     }
 }
 
-/// Bytes of memory that a row of some bytes takes: a long one has large pages to itself.
+/// Memory in bytes that a column of some bytes uses: a long one has huge pages to itself.
 #[inline]
 pub fn taken(bytes: f64) -> f64 {
     let large = LARGE as f64;
@@ -159,26 +159,27 @@ pub fn taken(bytes: f64) -> f64 {
 }
 
 impl<X: Element> AlignedColumn<X> {
-    /// Zeros, of which no memory is touched yet: a page becomes that of the thread that writes there first.
+    /// Column of zeros. No memory is touched yet: a page is placed near the thread that writes it first.
     #[inline]
     pub fn zeros(number: usize, length: usize) -> AlignedColumn<X> {
         if length == 0 {
             return AlignedColumn::default();
         }
-        // Pages are zero until something is written, every part of them is given away once, and zero bits are the number 0.
+        // Pages are zero until written, every part of them is allocated once, and zero bits are the number 0.
         let (pages, start) = room(number, length * size_of::<X>());
         AlignedColumn { number, start: start.cast(), length, _pages: Some(pages) }
     }
 }
 
 impl<X> AlignedColumn<X> {
-    /// By this its line is chosen.
+    /// Number that selects the cache line.
     #[inline]
     pub fn number(&self) -> usize {
         self.number
     }
 
-    /// Asks for the first two lines of an element, or its one, ahead of its use. Nothing happens where there is no such element, or no such instruction.
+    /// Prefetches the first two cache lines of an element, or its only one. Does nothing if the element or the instruction does
+    /// not exist.
     #[inline(always)]
     pub fn prefetch(&self, at: usize) {
         #[cfg(target_arch = "x86_64")]
@@ -199,7 +200,7 @@ impl<X> AlignedColumn<X> {
 }
 
 impl<X> Default for AlignedColumn<X> {
-    /// None.
+    /// Empty column.
     #[inline]
     fn default() -> Self {
         AlignedColumn { number: 0, start: NonNull::dangling(), length: 0, _pages: None }
@@ -225,7 +226,7 @@ impl<X> Deref for AlignedColumn<X> {
 
     #[inline]
     fn deref(&self) -> &[X] {
-        // SAFETY: all of them were written, and they are this row's alone.
+        // SAFETY: all elements were written, and they belong to this column alone.
         unsafe { std::slice::from_raw_parts(self.start.as_ptr(), self.length) }
     }
 }
@@ -233,8 +234,8 @@ impl<X> Deref for AlignedColumn<X> {
 impl<X> DerefMut for AlignedColumn<X> {
     #[inline]
     fn deref_mut(&mut self) -> &mut [X] {
-        // SAFETY: all `length` elements were written when the row was made, no other row has them, and this one is borrowed
-        // exclusively.
+        // SAFETY: all `length` elements were written when the column was created, no other column has them, and this one is
+        // borrowed exclusively.
         unsafe { std::slice::from_raw_parts_mut(self.start.as_ptr(), self.length) }
     }
 }
@@ -253,7 +254,7 @@ mod tests {
         lines.sort_unstable();
         lines.dedup();
         assert_eq!(lines.len(), rows.len());
-        // None lies in another.
+        // Columns do not overlap.
         for (number, row) in rows.iter().enumerate() {
             assert!(
                 row.len() == 100 + 20_000 * number && row.iter().all(|&x| x == number as f32),

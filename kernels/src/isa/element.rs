@@ -1,4 +1,4 @@
-//! What a lane may hold and what memory may hold.
+//! Types of the elements in registers and in memory.
 
 use super::vector::Vector;
 
@@ -9,27 +9,27 @@ mod sealed {
     impl Sealed for u32 {}
 }
 
-/// A type that arrays of the machine store: `f64`, `f32`, or `u32` for index vectors.
+/// Element type of the machine's arrays: `f64`, `f32`, or `u32` for index vectors.
 pub trait Storage: sealed::Sealed + Copy + Default + Send + Sync + std::fmt::Debug + 'static {
-    /// The name in listings and errors.
+    /// Name in listings and errors.
     const NAME: &'static str;
-    /// Bytes an element takes.
+    /// Size of an element in bytes.
     const BYTES: usize;
-    /// Number of the table of a memory that holds columns of this type, below [`TABLES`].
+    /// Number of the memory table with columns of this type, below [`TABLES`].
     #[doc(hidden)]
     const TABLE: usize;
 }
 
-/// How many tables a memory has: one for each type that it may hold.
+/// Number of tables of a memory: one per type.
 pub(super) const TABLES: usize = 3;
 
-/// A floating-point number of one of the two precisions; also the scalar oracle's vector of one lane.
+/// Floating-point number of one of the two precisions; also the scalar oracle's vector of one lane.
 pub trait Element: Storage + Vector<Predicate = bool> + PartialOrd {
-    /// The nearest representable number.
+    /// Rounds to the nearest representable number.
     fn from_f64(value: f64) -> Self;
-    /// The same number in double precision, exactly.
+    /// Converts to double precision, exactly.
     fn to_f64(self) -> f64;
-    /// The bit pattern, for comparisons that must be exact.
+    /// Bit pattern, for exact comparisons.
     fn bits(self) -> u64;
 }
 

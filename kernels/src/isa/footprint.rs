@@ -1,38 +1,38 @@
-//! Which arrays a program touches, and how far from the own place.
+//! Arrays that a kernel accesses, with the range of shifts.
 
 use super::slot::Array;
 
-/// How a program uses one array.
+/// Use of one array by a kernel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Access {
     /// The array.
     pub array: Array,
     /// Name of its element type.
     pub element: &'static str,
-    /// Lowest shift at which a strided access meets it.
+    /// Lowest shift of a strided access.
     pub lowest: isize,
-    /// Highest shift at which a strided access meets it.
+    /// Highest shift of a strided access.
     pub highest: isize,
-    /// Whether it is met at unit stride.
+    /// True if it is accessed at unit stride.
     pub(crate) strided: bool,
-    /// Whether it is met through an index vector, which is checked element by element.
+    /// True if it is accessed through an index vector, which is checked element by element.
     pub indexed: bool,
-    /// Whether it is written.
+    /// True if it is written.
     pub writes: bool,
 }
 
-/// Everything a program touches: found by tracing its text once, checked before it runs.
+/// Everything that a kernel accesses: recorded by tracing it once, checked before it runs.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Footprint(Vec<Access>);
 
 impl Footprint {
-    /// One entry an array and element type, in order of first use.
+    /// Accesses, one per array and element type, in order of first use.
     pub(crate) fn accesses(&self) -> &[Access] {
         &self.0
     }
 
-    /// Whether elements are independent: what is written is met only at the own place, so that parts of the elements may
-    /// run at once.
+    /// True if elements are independent: arrays that are written are accessed only at the own element, so that parts of the
+    /// elements may run concurrently.
     pub(crate) fn is_elementwise(&self) -> bool {
         self.0
             .iter()

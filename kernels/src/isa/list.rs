@@ -1,25 +1,25 @@
-//! The table of operations. From it come names, classes and counts, the methods of `Vector`, `Predicate` and `Machine` with
-//! what registers and recorders make of them, the instructions of a tape with their operands, and the passes that execute them.
+//! Table of operations. It generates names, classes and counts, the methods of `Vector`, `Predicate` and `Machine` for registers
+//! and recorders, the instructions of a tape with their operands, and the passes that execute them.
 //!
-//! An operation is a row: its name, its symbol in listings, its class, and its meaning in words. The row of a computing
-//! operation ends with its method, the kinds of its operands and its result, and the result for one lane, which is the oracle.
-//! The row of an operation that needs the machine ends with the instructions that count as it, each with its method of
-//! `Machine` and its operands. A row without a body in some register file does not compile.
+//! An operation is a row: its name, its symbol in listings, its class, and its meaning in words. The row of a computing operation
+//! ends with its method, the kinds of its operands and its result, and the result for one lane, which is the oracle. The row of
+//! an operation that accesses the machine ends with the instructions that count as it, each with its method of `Machine` and its
+//! operands. A row without an implementation in some register file does not compile.
 
-/// Calls the macro `$apply` with the operations of the machine: `for_each_op!(each $apply $args)` once for each row, with
-/// `$args`, the group, the operation, its meaning, and what its row ends with; `for_each_op!(each_instruction $apply self)`
-/// once for each instruction of the group `machine`, with `self`, the comment and the signature of its method, and its form
-/// on a tape with its operands; `for_each_op!($apply $args)` with the whole table, for enumerations and matches.
+/// Calls the macro `$apply` with the operations of the machine. `for_each_op!(each $apply $args)` calls it once per row, with
+/// `$args`, the group, the operation, its meaning, and the rest of its row. `for_each_op!(each_instruction $apply self)` calls it
+/// once per instruction of the group `machine`, with `self`, the comment and the signature of its method, and its form on a tape
+/// with its operands. `for_each_op!($apply $args)` calls it with the whole table, for enumerations and matches.
 ///
 /// The groups: `operator` and `binary` (a number from two, by a trait of `std::ops` or a method of `Vector`), `unary` (from
 /// one), `compare` (a predicate from two numbers), `merge` (a number from a predicate and two numbers), `connective` and
 /// `negation` (a predicate from two, from one), and `machine`.
 ///
-/// An instruction of the group `machine` is an action of the tape (its enumeration and variant), then the method. Operands
-/// are in the order of both and of the listing: first the array or the counter. The kind of an operand is one of `V`
-/// (numbers), `P` (a predicate), `I` (an index vector), `At` (an index vector: which elements of the array before it),
-/// `Numbers` and `Entries` (an array of numbers or of index vectors, at the own place or at a shift), and `Counter`. With
-/// each kind goes its type, by default that of a method of `Machine`.
+/// An instruction of the group `machine` is an action of the tape (its enumeration and variant), followed by the method. Operands
+/// are in the order of both and of the listing: first the array or the counter. The kind of an operand is one of `V` (numbers),
+/// `P` (a predicate), `I` (an index vector), `At` (an index vector that selects elements of the array before it), `Numbers` and
+/// `Entries` (an array of numbers or of index vectors, at the own element or at a shift), and `Counter`. Each kind has a type, by
+/// default that of a method of `Machine`.
 macro_rules! for_each_op {
     (@rows $apply:ident $args:tt
      $($group:ident { $(($op:ident, $symbol:literal, $class:ident, $doc:literal, $($rest:tt)*)),* $(,)? })*) => {
@@ -54,9 +54,9 @@ macro_rules! for_each_op {
                 (Divide, "div", Divide, "quotient of two vectors", Div::div(a: V, b: V) -> V { a / b }),
             }
             binary {
-                (Minimum, "min", Compare, "the smaller of two; the second where they do not compare",
+                (Minimum, "min", Compare, "the smaller of two; the second if they are unordered",
                     min(a: V, b: V) -> V { if a < b { a } else { b } }),
-                (Maximum, "max", Compare, "the larger of two; the second where they do not compare",
+                (Maximum, "max", Compare, "the larger of two; the second if they are unordered",
                     max(a: V, b: V) -> V { if a > b { a } else { b } }),
             }
             unary {
@@ -76,12 +76,12 @@ macro_rules! for_each_op {
                 (Not, "not", Logical, "negation of a predicate", not(a: P) -> P { !a }),
             }
             merge {
-                (Select, "sel", Logical, "merge: a where the predicate holds, else b",
+                (Select, "sel", Logical, "merge: a where the predicate is true, else b",
                     select(predicate: P, holds: V, fails: V) -> V { if predicate { holds } else { fails } }),
             }
             machine {
                 (Count, "cnt", Reduce, "population count of a predicate, added to a counter", [
-                    /// Adds how many lanes hold to `counter`.
+                    /// Adds the number of true lanes to `counter`.
                     Effect Count count(counter: $Counter, predicate: $P);
                 ]),
                 (Numbers, "iota", Convert, "the element numbers 1, 2, 3, ...", [
@@ -89,52 +89,54 @@ macro_rules! for_each_op {
                     Number Numbers numbers -> $V;
                 ]),
                 (ToIndex, "toidx", Convert, "numbers to an index vector", [
-                    /// Numbers to an index vector; what is no element number (negative, not a number) becomes 0, none.
+                    /// Converts numbers to an index vector; numbers that are no element number (negative, NaN) become 0, which is
+                    /// none.
                     Indices ToIndex to_index(numbers: $V) -> $I;
                 ]),
                 (FromIndex, "fromidx", Convert, "an index vector to numbers", [
-                    /// An index vector to numbers.
+                    /// Converts an index vector to numbers.
                     Number FromIndex index_numbers(index: $I) -> $V;
                 ]),
                 (Widen, "cvt", Convert, "change of precision at a load, gather or store", []),
-                (Load, "ld", Load, "load at the own place, unit stride", [
-                    /// Loads at the own place.
+                (Load, "ld", Load, "load of the own element, unit stride", [
+                    /// Loads the own element.
                     Number Load load[T: Element](slot: $Numbers) -> $V;
-                    /// Loads an index vector at the own place.
+                    /// Loads the own element of an index vector.
                     Indices Load load_index(slot: $Entries) -> $I;
                 ]),
                 (LoadShifted, "lds", Shift, "load at a shift: the shifted copy of a lattice vector", [
-                    /// Loads `shift` elements from the own place.
+                    /// Loads the element at a distance of `shift` from the own one.
                     Number LoadShifted load_shifted[T: Element](slot @ shift: $Numbers) -> $V;
                 ]),
-                (Store, "st", Store, "store at the own place", [
-                    /// Stores at the own place.
+                (Store, "st", Store, "store to the own element", [
+                    /// Stores to the own element.
                     Effect Store store[T: Element](slot: $Numbers, value: $V);
-                    /// Stores an index vector at the own place.
+                    /// Stores to the own element of an index vector.
                     Effect StoreIndex store_index(slot: $Entries, value: $I);
                 ]),
                 (Gather, "gth", Gather, "load through an index vector", [
-                    /// Loads the elements that `index` numbers; `elsewhere` where it numbers none.
+                    /// Loads the elements that `index` numbers; `elsewhere` where the index is 0.
                     ///
                     /// # Panics
-                    /// If a number lies beyond the array.
+                    /// If a number is beyond the array.
                     Number Gather gather[T: Element](slot: $Numbers, index: $At, elsewhere: $V) -> $V;
-                    /// Loads the entries of an index vector that `index` numbers; none where it numbers none.
+                    /// Loads the entries of an index vector that `index` numbers; 0 where the index is 0.
                     ///
                     /// # Panics
-                    /// If a number lies beyond the array.
+                    /// If a number is beyond the array.
                     Indices Gather gather_index(slot: $Entries, index: $At) -> $I;
                 ]),
                 (Scatter, "sct", Scatter, "store through an index vector", [
-                    /// Stores `value` at the elements that `index` numbers, in element order: of two at one place the later stays.
+                    /// Stores `value` to the elements that `index` numbers, in element order: of two values for one element the
+                    /// later stays.
                     ///
                     /// # Panics
-                    /// If a number lies beyond the array.
+                    /// If a number is beyond the array.
                     Effect Scatter scatter[T: Element](slot: $Numbers, index: $At, value: $V);
-                    /// The same for an index vector.
+                    /// Stores the index vector `value` to the elements that `index` numbers, in element order.
                     ///
                     /// # Panics
-                    /// If a number lies beyond the array.
+                    /// If a number is beyond the array.
                     Effect ScatterIndex scatter_index(slot: $Entries, index: $At, value: $I);
                 ]),
             }

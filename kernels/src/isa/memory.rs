@@ -1,4 +1,4 @@
-//! The arrays behind a program's slots, and the check that makes their use sound.
+//! Arrays bound to a kernel's slots, and the check that makes their use sound.
 
 use super::element::{Storage, TABLES};
 use super::footprint::Footprint;
@@ -7,33 +7,33 @@ use std::cell::Cell;
 use std::marker::PhantomData;
 use std::ops::Range;
 
-/// How many counters a memory has.
+/// Number of counters of a memory.
 pub const COUNTERS: usize = 4;
 
-/// A counter that predicates are counted into.
+/// Counter of true lanes of a predicate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Counter(pub u8);
 
-/// Why a program cannot run on a memory. Nothing was executed.
+/// Reasons why a kernel cannot run on a memory. Nothing was executed, unless it was interrupted.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ProgramError {
-    /// The program names an array that is not bound.
-    #[error("the program uses {array} ({element}), which is bound to no slice")]
+    /// The kernel names an array that is not bound.
+    #[error("array {array} ({element}) is not bound to a slice; bind it before the run")]
     Unbound {
         /// Label of the array.
         array: &'static str,
-        /// Element type asked for.
+        /// Element type requested.
         element: &'static str,
     },
-    /// The program writes an array that was bound for reading.
-    #[error("the program writes {array}, which is bound for reading only")]
+    /// The kernel writes an array that is bound read-only.
+    #[error("array {array} is bound read-only, but the kernel writes it; bind it for writing")]
     ReadOnly {
         /// Label of the array.
         array: &'static str,
     },
-    /// A slice does not cover what the program touches.
-    #[error("the program touches elements {first} to {last} of {array}, which has {length}")]
+    /// A slice does not cover the elements that the kernel touches.
+    #[error("{array} has {length} elements, but the kernel touches elements {first} to {last}")]
     TooShort {
         /// Label of the array.
         array: &'static str,
@@ -41,24 +41,24 @@ pub enum ProgramError {
         first: isize,
         /// Last element touched.
         last: isize,
-        /// Elements there are.
+        /// Length of the slice.
         length: usize,
     },
-    /// A vector length of zero was asked for.
-    #[error("a strip must hold at least one element; 0 was asked for")]
+    /// A strip length of zero.
+    #[error("strip length 0 is too short: a strip has at least one element")]
     EmptyStrip,
-    /// A law asks for a field, or adds to a sum, that it does not state.
-    #[error("the law asks for {0}, which it does not state")]
+    /// A law reads a field, or adds to a sum, that it does not state.
+    #[error("the law uses {0} without stating it; add it to its FIELDS or SUMS")]
     Unstated(&'static str),
-    /// The processor lacks the instruction set asked for.
+    /// The processor lacks the requested instruction set.
     #[error("this processor has no {0}")]
     NoSuchInstructionSet(&'static str),
-    /// It was asked to stop on the way: what it writes is incomplete.
+    /// Interrupted on request: the output is incomplete.
     #[error("interrupted")]
     Interrupted,
 }
 
-/// One slice as the machine sees it.
+/// A bound slice.
 #[derive(Clone, Copy)]
 pub(crate) struct Column<T> {
     origin: *mut T,
@@ -71,7 +71,7 @@ impl Column<()> {
 }
 
 impl<T: Copy> Column<T> {
-    /// The same elements as ones of another type.
+    /// Reinterprets the element type.
     #[inline(always)]
     fn cast<U>(self) -> Column<U> {
         Column { origin: self.origin.cast(), length: self.length, writable: self.writable }
@@ -82,7 +82,7 @@ impl<T: Storage> Column<T> {
     /// Pointer to an element.
     ///
     /// # Safety
-    /// The slice has it, or ends before it.
+    /// The slice has this element, or ends before it.
     #[inline(always)]
     pub(crate) unsafe fn at(&self, position: usize) -> *mut T {
         debug_assert!(position <= self.length, "element {position} of {}", self.length);
@@ -90,48 +90,60 @@ impl<T: Storage> Column<T> {
         unsafe { self.origin.add(position) }
     }
 
-    /// The element at `position`.
+    /// Element at `position`.
     ///
     /// # Panics
-    /// If there is none; an index vector with a wrong entry must not become a wrong number.
+    /// If it does not exist; a wrong index must not become a wrong number.
     #[inline(always)]
     pub(crate) fn read(&self, position: usize) -> T {
-        assert!(position < self.length, "gather from element {position} of {}", self.length);
+        assert!(
+            position < self.length,
+            "gather from element {position}, but the array has {} elements",
+            self.length
+        );
         // SAFETY: the position is below the length (asserted above), and a column points to a slice of that length which the
-        // memory borrows for as long as it lives.
+        // memory borrows for its whole life.
         unsafe { *self.origin.add(position) }
     }
 
-    /// Pointer to what an entry of an index vector stands for: the element of that number, counted from one. Zero stands for
-    /// none, and points nowhere.
+    /// Pointer to the element that an entry of an index vector numbers, counted from one. For zero the pointer must not be used.
     ///
     /// # Panics
     /// As [`Column::read`].
     #[inline(always)]
     pub(crate) fn entry(&self, number: u32) -> *const T {
         let number = number as usize;
-        assert!(number <= self.length, "gather from element {} of {}", number - 1, self.length);
+        assert!(
+            number <= self.length,
+            "gather from element {}, but the array has {} elements",
+            number - 1,
+            self.length
+        );
         self.origin.wrapping_add(number).wrapping_sub(1)
     }
 
     /// Writes the element at `position`.
     ///
     /// # Panics
-    /// If there is none, or the column is read-only.
+    /// If it does not exist, or the column is read-only.
     #[inline(always)]
     pub(crate) fn write(&self, position: usize, value: T) {
-        assert!(self.writable && position < self.length, "scatter to element {position} of {}", self.length);
+        assert!(
+            self.writable && position < self.length,
+            "scatter to element {position}, but the array must be writable and has {} elements",
+            self.length
+        );
         // SAFETY: the position is below the length (asserted above), and a column is writable only if it was made from an
         // exclusive borrow of that slice.
         unsafe { *self.origin.add(position) = value }
     }
 }
 
-/// The arrays a program runs on, bound to its slots.
+/// Arrays of a kernel, bound to its slots.
 ///
-/// Slices are borrowed for as long as the memory lives; a mutable one exclusively.
+/// Slices are borrowed for the life of the memory; mutable ones exclusively.
 pub struct Memory<'a> {
-    /// For each type its columns: what stands in the table of a type was bound as that type.
+    /// Columns by element type: the entries of a type's table were bound as that type.
     tables: [[Column<()>; Array::ALL.len()]; TABLES],
     counters: [Cell<u64>; COUNTERS],
     borrow: PhantomData<&'a mut ()>,
@@ -160,7 +172,7 @@ impl<'a> Memory<'a> {
         self
     }
 
-    /// As [`Memory::read`], in place: a memory is kilobytes of columns, and many bindings would move it many times.
+    /// Binds a slice for reading, in place. A memory is kilobytes of columns, and [`Memory::read`] moves it at every call.
     #[inline]
     pub fn bind_read<T: Storage>(&mut self, slot: Slot<T>, slice: &'a [T]) {
         // The pointer is never written through: the column is not writable.
@@ -176,7 +188,7 @@ impl<'a> Memory<'a> {
         self
     }
 
-    /// As [`Memory::write`], in place.
+    /// Binds a slice for reading and writing, in place.
     #[inline]
     pub fn bind_write<T: Storage>(&mut self, slot: Slot<T>, slice: &'a mut [T]) {
         let length = slice.len();
@@ -193,13 +205,13 @@ impl<'a> Memory<'a> {
         self.tables[T::TABLE][slot.array() as usize].cast()
     }
 
-    /// What was counted into `counter` so far.
+    /// Current value of `counter`.
     #[inline]
     pub fn counted(&self, counter: Counter) -> u64 {
         self.counters[counter.0 as usize].get()
     }
 
-    /// The same arrays with counters of their own, for a part of the elements.
+    /// Copy of the bindings with separate counters, for a part of the elements.
     ///
     /// # Safety
     /// While both are used, no element is written through one and touched through the other.
@@ -225,10 +237,10 @@ impl<'a> Memory<'a> {
         cell.set(cell.get() + more);
     }
 
-    /// Whether every element that a program of `footprint` touches over the elements of `range` exists.
+    /// Checks that every element that a kernel of `footprint` touches over the elements of `range` exists.
     ///
     /// # Errors
-    /// Names the first array that is unbound, too short, or not writable though written.
+    /// Names the first array that is unbound, too short, or written but bound read-only.
     pub fn admit(&self, footprint: &Footprint, range: &Range<usize>) -> Result<(), ProgramError> {
         for access in footprint.accesses() {
             let array = access.array.label();

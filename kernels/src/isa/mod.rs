@@ -1,4 +1,4 @@
-//! The instruction set: what a kernel text may ask of the machine, and the one list of operations.
+//! Instruction set: the interface of kernels to the machine, and the table of operations.
 
 pub mod aligned_column;
 mod element;

@@ -1,11 +1,11 @@
-//! Operations with their names and classes, and how often each was executed: made from the list in `list.rs`.
+//! Operations with their names, classes and counts, generated from the table in `list.rs`.
 
 use super::list::for_each_op;
 use super::vector::{Predicate, Vector};
 
 macro_rules! define_ops {
     ($($group:ident { $(($variant:ident, $mnemonic:literal, $class:ident, $doc:literal, $($rest:tt)*)),* $(,)? })*) => {
-        /// One vector operation of the machine.
+        /// A vector operation of the machine.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum Op {
             $($(#[doc = $doc] $variant,)*)*
@@ -15,19 +15,19 @@ macro_rules! define_ops {
             /// Every operation, in the order of the list.
             pub const ALL: &'static [Op] = &[$($(Op::$variant),*),*];
 
-            /// The name in a listing.
+            /// Name in a listing.
             #[inline]
             pub const fn mnemonic(self) -> &'static str {
                 match self { $($(Op::$variant => $mnemonic,)*)* }
             }
 
-            /// The class whose cost a machine states.
+            /// Class that determines the cost on a machine.
             #[inline]
             pub const fn class(self) -> OpClass {
                 match self { $($(Op::$variant => OpClass::$class,)*)* }
             }
 
-            /// What the operation does, in one line.
+            /// Meaning of the operation, in one line.
             #[inline]
             pub const fn meaning(self) -> &'static str {
                 match self { $($(Op::$variant => $doc,)*)* }
@@ -37,7 +37,7 @@ macro_rules! define_ops {
 }
 for_each_op!(define_ops);
 
-/// The operations of one group, each as a function of its operands.
+/// Defines the operations of one group, each as a function of its operands.
 macro_rules! define_group {
     ($(#[doc = $what:literal])+ $name:ident, $taking:ident ($($parameters:tt)*) $operands:tt -> $result:ty {
         $(($variant:ident, $doc:literal, $method:path)),*
@@ -55,7 +55,7 @@ macro_rules! define_group {
                 match self { $($name::$variant => Op::$variant,)* }
             }
 
-            /// Does it.
+            /// Executes the operation.
             #[inline(always)]
             pub fn apply<V: $taking>(self, $($parameters)*) -> $result {
                 match self { $($name::$variant => $method $operands,)* }
@@ -73,23 +73,23 @@ macro_rules! define_groups {
      negation { $(($nv:ident, $ns:literal, $nc:ident, $nd:literal, $nf:ident $($nr:tt)*)),* $(,)? }
      $($others:tt)*) => {
         define_group! {
-            /// A number from two.
+            /// Operations from two numbers to a number.
             BinaryOp, Vector (a: V, b: V) (a, b) -> V { $(($ov, $od, std::ops::$trait::$of),)* $(($bv, $bd, Vector::$bf)),* }
         }
         define_group! {
-            /// A number from one.
+            /// Operations from one number to a number.
             UnaryOp, Vector (a: V) (a) -> V { $(($uv, $ud, Vector::$uf)),* }
         }
         define_group! {
-            /// A predicate from two numbers.
+            /// Operations from two numbers to a predicate.
             CompareOp, Vector (a: V, b: V) (a, b) -> V::Predicate { $(($cv, $cd, Vector::$cf)),* }
         }
         define_group! {
-            /// A predicate from two.
+            /// Operations from two predicates to a predicate.
             ConnectiveOp, Predicate (a: V, b: V) (a, b) -> V { $(($av, $ad, Predicate::$af)),* }
         }
         define_group! {
-            /// A predicate from one.
+            /// Operations from one predicate to a predicate.
             NegationOp, Predicate (a: V) (a) -> V { $(($nv, $nd, Predicate::$nf)),* }
         }
     };
@@ -108,13 +108,13 @@ macro_rules! define_classes {
             /// Every class, in the order of the list.
             pub const ALL: &'static [OpClass] = &[$(OpClass::$variant),*];
 
-            /// The name in tables and machine files.
+            /// Name in tables and machine files.
             #[inline]
             pub const fn name(self) -> &'static str {
                 match self { $(OpClass::$variant => $name),* }
             }
 
-            /// What belongs to the class.
+            /// Description of the operations in this class.
             #[inline]
             pub const fn meaning(self) -> &'static str {
                 match self { $(OpClass::$variant => $doc),* }
@@ -132,7 +132,7 @@ define_classes! {
     (Logical, "logical", "bit operations and merges under a predicate"),
     (Convert, "convert", "conversions between numbers, indices and precisions"),
     (Reduce, "reduce", "reductions of a predicate to a scalar"),
-    (Load, "load", "loads of unit stride at the own place"),
+    (Load, "load", "loads of unit stride of the own element"),
     (Shift, "shift", "loads of unit stride at a shift of the lattice"),
     (Store, "store", "stores of unit stride"),
     (Gather, "gather", "loads through an index vector"),
@@ -140,14 +140,14 @@ define_classes! {
 }
 
 impl OpClass {
-    /// Whether the class moves data between memory and registers rather than computing.
+    /// True if the class moves data between memory and registers rather than computing.
     #[inline]
     pub const fn moves_data(self) -> bool {
         matches!(self, OpClass::Load | OpClass::Shift | OpClass::Store | OpClass::Gather | OpClass::Scatter)
     }
 }
 
-/// How often each operation of the list was executed.
+/// Number of executions of each operation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OpCounts([u64; Op::ALL.len()]);
 
@@ -173,7 +173,7 @@ impl OpCounts {
         }
     }
 
-    /// The executions of operations that `keep` holds.
+    /// Counts of the operations for which `keep` is true.
     #[must_use]
     #[inline]
     pub fn filtered(&self, keep: impl Fn(Op) -> bool) -> OpCounts {
@@ -194,7 +194,7 @@ impl OpCounts {
         Op::ALL.iter().filter(|op| op.class() == class).map(|&op| self.of(op)).sum()
     }
 
-    /// All executions: the source's NOP.
+    /// Number of all executions: NOP of BP93.
     #[inline]
     pub fn total(&self) -> u64 {
         self.0.iter().sum()

@@ -1,11 +1,11 @@
-//! Names of the arrays a program works on.
+//! Names of the arrays of a kernel.
 
 use super::element::Storage;
 use std::marker::PhantomData;
 
-/// The name of an array of `T` in a program's memory.
+/// Name of an array of `T` in a kernel's memory.
 ///
-/// A slot is a number and a label; which slice stands behind it is said when a program runs.
+/// A slot is a number and a label; the memory of a run binds it to a slice.
 pub struct Slot<T> {
     array: Array,
     element: PhantomData<fn() -> T>,
@@ -26,7 +26,7 @@ impl<T: Storage> Slot<T> {
         Slot { array, element: PhantomData }
     }
 
-    /// Which array the slot names.
+    /// Array that the slot names.
     #[inline(always)]
     pub const fn array(self) -> Array {
         self.array
@@ -35,7 +35,7 @@ impl<T: Storage> Slot<T> {
 
 macro_rules! define_arrays {
     ($(($variant:ident, $label:literal, $doc:literal)),* $(,)?) => {
-        /// Every array a program of the machine may name.
+        /// Every array that a kernel may name.
         ///
         /// Lengths: *discs* (NP) or *cells* (the swept lattice with its halo before and behind).
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -47,7 +47,7 @@ macro_rules! define_arrays {
             /// Every array, in the order of the list.
             pub const ALL: &'static [Array] = &[$(Array::$variant),*];
 
-            /// The label in listings and errors.
+            /// Label in listings and errors.
             #[inline]
             pub const fn label(self) -> &'static str {
                 match self { $(Array::$variant => $label),* }
@@ -75,13 +75,13 @@ define_arrays! {
     (Phi3, "phi3", "discs: third derivative of the angle, as the scheme scales it"),
     (Phi4, "phi4", "discs: fourth derivative of the angle, as the scheme scales it"),
     (Phi5, "phi5", "discs: fifth derivative of the angle, as the scheme scales it"),
-    (DiscX, "disc.x", "discs: x as the lattice wants it, absolute or relative to the cell"),
-    (DiscY, "disc.y", "discs: y as the lattice wants it, absolute or relative to the cell"),
+    (DiscX, "disc.x", "discs: x in the lattice's coordinates, absolute or relative to the cell"),
+    (DiscY, "disc.y", "discs: y in the lattice's coordinates, absolute or relative to the cell"),
     (DiscVx, "disc.vx", "discs: velocity along x"),
     (DiscVy, "disc.vy", "discs: velocity along y"),
     (DiscOmega, "disc.omega", "discs: angular velocity"),
     (DiscRadius, "disc.radius", "discs: radius"),
-    (DiscMass, "disc.M", "discs: mass; so large for a fixed disc that with it the effective mass is the other's"),
+    (DiscMass, "disc.M", "discs: mass; for a fixed disc so large that the effective mass of a pair is the other disc's"),
     (DiscInverseMass, "disc.1/m", "discs: inverse mass, 0 for a fixed disc"),
     (DiscInverseInertia, "disc.1/I", "discs: inverse moment of inertia, 0 for a fixed disc"),
     (DiscCell, "disc.cell", "discs: number of the cell, from 1; 0 is none"),
@@ -90,9 +90,9 @@ define_arrays! {
     (HaloCell, "halo.cell", "halo: number of a halo cell"),
     (HaloSource, "halo.source", "halo: number of the cell whose image it is"),
     (FarX, "far.x", "cells: the x of an empty cell, far from everything"),
-    (ImageX, "image.x", "cells: how far an image lies to the right"),
-    (ImageY, "image.y", "cells: how far an image lies up"),
-    (Interior, "interior", "cells: 1 where discs live, 0 in the halo"),
+    (ImageX, "image.x", "cells: displacement of an image along x"),
+    (ImageY, "image.y", "cells: displacement of an image along y"),
+    (Interior, "interior", "cells: 1 where discs may be, 0 in the halo"),
     (X, "x", "cells: position along x"),
     (Y, "y", "cells: position along y"),
     (Vx, "vx", "cells: velocity along x"),
@@ -105,15 +105,15 @@ define_arrays! {
     (Fy, "Fy", "cells: force along y"),
     (Torque, "torque", "cells: torque"),
     (Deepest, "deepest", "cells: penetration (length) of the deepest contact"),
-    (Power, "power", "cells: what the contacts of the disc dissipate (energy/time), its share"),
-    (Energy, "energy", "cells: what the contacts of the disc store (energy), its share"),
-    (Virial, "virial", "cells: virial of the disc's contacts (energy), its share"),
+    (Power, "power", "cells: the disc's share of the power its contacts dissipate (energy/time)"),
+    (Energy, "energy", "cells: the disc's share of the energy its contacts store (energy)"),
+    (Virial, "virial", "cells: the disc's share of its contacts' virial (energy)"),
     (BodyX, "body.x", "bodies, twice over: position along x"),
     (BodyY, "body.y", "bodies, twice over: position along y"),
     (BodyZ, "body.z", "bodies, twice over: position along z"),
-    (BodyRestX, "body.x rest", "bodies, twice over: what rounding to single precision leaves of the position along x"),
-    (BodyRestY, "body.y rest", "bodies, twice over: what rounding to single precision leaves of the position along y"),
-    (BodyRestZ, "body.z rest", "bodies, twice over: what rounding to single precision leaves of the position along z"),
+    (BodyRestX, "body.x rest", "bodies, twice over: rounding residue of the position along x in single precision"),
+    (BodyRestY, "body.y rest", "bodies, twice over: rounding residue of the position along y in single precision"),
+    (BodyRestZ, "body.z rest", "bodies, twice over: rounding residue of the position along z in single precision"),
     (BodyVx, "body.vx", "bodies, twice over: velocity along x"),
     (BodyVy, "body.vy", "bodies, twice over: velocity along y"),
     (BodyVz, "body.vz", "bodies, twice over: velocity along z"),

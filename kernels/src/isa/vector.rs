@@ -1,12 +1,12 @@
-//! Values of the machine: vectors of numbers and vectors of truth values.
+//! Values in registers: vectors of numbers and vectors of truth values.
 
 use super::list::for_each_op;
 use std::ops::{Add, Div, Mul, Sub};
 
-/// The methods of vectors and of predicates, with the vector or predicate itself as first operand.
+/// Declares the methods of vectors and of predicates, with the vector or predicate itself as first operand.
 macro_rules! declare {
     (Vector merge $op:ident $doc:literal $f:ident($p:ident: P, $a:ident: V, $b:ident: V) -> V $result:tt) => {
-        #[doc = concat!("Lane by lane ", $doc, ". Neither is disturbed by a NaN in the other.")]
+        #[doc = concat!("Lane by lane ", $doc, ". A NaN in one does not affect the other.")]
         fn $f($p: Self::Predicate, $a: Self, $b: Self) -> Self;
     };
     (Vector $group:ident $op:ident $doc:literal $f:ident($a:ident: V $(, $b:ident: V)?) -> V $result:tt) => {
@@ -14,7 +14,7 @@ macro_rules! declare {
         fn $f(self $(, $b: Self)?) -> Self;
     };
     (Vector $group:ident $op:ident $doc:literal $f:ident($a:ident: V, $b:ident: V) -> P $result:tt) => {
-        #[doc = concat!("Lane by lane ", $doc, "; false where they do not compare.")]
+        #[doc = concat!("Lane by lane ", $doc, "; false if they are unordered.")]
         fn $f(self, $b: Self) -> Self::Predicate;
     };
     (Predicate $group:ident $op:ident $doc:literal $f:ident($a:ident: P $(, $b:ident: P)?) -> P $result:tt) => {
@@ -24,7 +24,7 @@ macro_rules! declare {
     ($($other:tt)*) => {};
 }
 
-/// A vector of truth values, one a lane. (A *mask* is always a neighbourhood.)
+/// Vector of truth values, one per lane. (A *mask* is always a neighbourhood.)
 pub trait Predicate: Copy {
     for_each_op!(each declare Predicate);
 }
@@ -35,24 +35,24 @@ pub trait Predicate: Copy {
 pub trait Vector:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {
-    /// The vector of truth values that comparisons give.
+    /// Vector of truth values that comparisons return.
     type Predicate: Predicate;
 
     for_each_op!(each declare Vector);
 
-    /// `self · factor + addend`: two operations, each rounded. Only registers that estimate make one of them.
+    /// `self · factor + addend`: two operations, each rounded. Only registers that estimate fuse them.
     #[inline(always)]
     fn times_plus(self, factor: Self, addend: Self) -> Self {
         self * factor + addend
     }
 
-    /// `addend − self · factor`, likewise.
+    /// `addend − self · factor`: two operations, each rounded. Only registers that estimate fuse them.
     #[inline(always)]
     fn times_from(self, factor: Self, addend: Self) -> Self {
         addend - self * factor
     }
 
-    /// `one/(a √a)`, a the vector itself: three operations. Only registers that estimate take another way.
+    /// `one/(a √a)` for `a = self`: three operations. Only registers that estimate compute it differently.
     #[inline(always)]
     fn inverse_three_halves(self, one: Self) -> Self {
         one / (self * self.sqrt())

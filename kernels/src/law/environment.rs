@@ -1,32 +1,32 @@
-//! What a law is, and how it sees the particles that meet.
+//! Interfaces of a law and of the environment that evaluates it.
 
 use super::quantity::{Field, Sum};
 use crate::isa::Vector;
 
-/// What is looked at beside the sums, while contacts are at hand.
+/// Observations made beside the sums, while the contacts are in registers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Asked {
-    /// Contacts deeper than this (length) are listed.
+    /// List contacts deeper than this (length).
     pub watched: Option<f64>,
-    /// Whether the power that contacts dissipate is summed up.
+    /// Sum up the power that contacts dissipate.
     pub dissipation: bool,
-    /// Whether pairs are observed: their energy and virial are summed up, their contacts counted.
+    /// Observe pairs: sum up their energy and virial, count their contacts.
     pub energy: bool,
 }
 
-/// What a law may ask of the way particles meet.
+/// Environment of a law: everything it may read and write.
 ///
-/// *Own* is the particle the law is evaluated for, *partner* the one that stands at a place. A law never subtracts
-/// positions itself: images and cell-relative coordinates are the sweep's business.
+/// *Own* is the particle the law is evaluated for, *partner* the other one. A law never subtracts positions itself: the
+/// sweep handles images and cell-relative coordinates.
 pub trait Env<const DIM: usize>: Copy {
-    /// A vector of numbers.
+    /// Vector of numbers.
     type V: Vector;
-    /// Where a partner stands: a lattice offset, a gather index, a cyclic shift.
+    /// Location of a partner: a lattice offset, a gather index or a cyclic shift.
     type Place: Copy;
-    /// Whether a pair is met once, so that the partner's share must be given with [`Env::partner_sub`].
+    /// True if a pair is visited once, so that the law gives the partner's share with [`Env::partner_sub`].
     const BOTH_PARTNERS: bool;
 
-    /// The own position, to be handed to [`Env::displacement`].
+    /// Own position, the argument of [`Env::displacement`].
     fn own_position(self) -> [Self::V; DIM];
     /// A quantity of the own particle.
     fn own(self, field: Field) -> Self::V;
@@ -34,15 +34,15 @@ pub trait Env<const DIM: usize>: Copy {
     fn displacement(self, own: [Self::V; DIM], place: Self::Place) -> [Self::V; DIM];
     /// A quantity of the partner.
     fn partner(self, field: Field, place: Self::Place) -> Self::V;
-    /// The same number for every pair.
+    /// Broadcasts a number to all pairs.
     fn uniform(self, value: f64) -> Self::V;
-    /// Whether no pair holds, where this execution takes early ways out.
+    /// True if the predicate is false for all pairs and this execution takes early exits.
     fn none(self, predicate: <Self::V as Vector>::Predicate) -> bool;
     /// Adds to a sum of the own particle.
     fn own_add(self, sum: Sum, value: Self::V);
     /// Subtracts from a sum of the partner. Called only where [`Env::BOTH_PARTNERS`].
     fn partner_sub(self, sum: Sum, place: Self::Place, value: Self::V);
-    /// Adds `a · b` to a sum of the own particle and, where the pair is met once, subtracts it from the partner's.
+    /// Adds `a · b` to a sum of the own particle. If the pair is visited once, subtracts it from the partner's sum.
     #[inline(always)]
     fn add_product(self, sum: Sum, place: Self::Place, a: Self::V, b: Self::V) {
         let product = a * b;
@@ -51,36 +51,36 @@ pub trait Env<const DIM: usize>: Copy {
             self.partner_sub(sum, place, product);
         }
     }
-    /// Whether penetrations are watched.
+    /// True if penetrations are watched.
     fn watches(self) -> bool;
     /// Reports the penetration (length) of every pair, negative without contact. Called only where [`Env::watches`].
     fn watch(self, penetration: Self::V);
-    /// Whether dissipation is counted.
+    /// True if dissipation is counted.
     fn counts_dissipation(self) -> bool;
-    /// Reports the power (energy/time) that every pair turns into heat, 0 without contact; where a pair is met from both
-    /// sides, the own particle's share. Called only where [`Env::counts_dissipation`].
+    /// Reports the power (energy/time) that every pair turns into heat, 0 without contact. If a pair is visited from both sides,
+    /// this is the own particle's share. Called only where [`Env::counts_dissipation`].
     fn dissipate(self, power: Self::V);
-    /// Whether energy and virial are observed.
+    /// True if energy and virial are observed.
     fn observes_energy(self) -> bool;
-    /// Reports the energy that every pair stores, 0 without contact; where a pair is met from both sides, the own particle's
-    /// share, of which a fixed one has none. Called only where [`Env::observes_energy`].
+    /// Reports the energy that every pair stores, 0 without contact. If a pair is visited from both sides, this is the own
+    /// particle's share; a fixed particle has none. Called only where [`Env::observes_energy`].
     fn energy(self, energy: Self::V);
-    /// Reports the virial of every pair of which neither is fixed, (r_own − r_partner)·F_own (energy), or the own particle's
-    /// share of it, as [`Env::energy`]. Called only where [`Env::observes_energy`].
+    /// Reports the virial of every pair without a fixed particle, (r_own − r_partner)·F_own (energy), or the own particle's share
+    /// as in [`Env::energy`]. Called only where [`Env::observes_energy`].
     fn virial(self, virial: Self::V);
-    /// Reports how deep every pair is in contact, as a fraction of the sum of the radii: 0 without contact, and of two fixed
-    /// particles. Called only where [`Env::observes_energy`], by laws that know contacts.
+    /// Reports the depth of every contact as a fraction of the sum of the radii: 0 without contact and for two fixed particles.
+    /// Called only where [`Env::observes_energy`], by laws that have contacts.
     #[inline(always)]
     fn contact(self, _penetration: Self::V) {}
-    /// Names what follows, for the ledger and the listing.
+    /// Names the following operations, for the ledger and the listing.
     fn section(self, name: &'static str);
 }
 
 /// A pair law in `DIM` dimensions.
 ///
-/// It states what it asks for and what it gives. A sweep provides that and no more: a law that forgets a field or a sum is
-/// refused ([`check`](super::check)), and could not reach what it did not state ([`Stated`](super::Stated)). One that states what its dimensions lack does
-/// not compile where it is used:
+/// It states the quantities it reads and the sums it adds to. A sweep provides these and no more. A law that omits a field or a
+/// sum is rejected ([`check`](super::check)) and cannot reach what it does not state ([`Stated`](super::Stated)). A law that
+/// states a quantity its dimensions lack does not compile where it is used:
 ///
 /// ```compile_fail
 /// use stripmine_kernels::law::{Axis, Env, Field, Law, Sum, check};
@@ -100,16 +100,16 @@ pub trait Env<const DIM: usize>: Copy {
 /// # Ok::<(), stripmine_kernels::isa::ProgramError>(())
 /// ```
 pub trait Law<const DIM: usize>: Clone {
-    /// The own particle's quantities, loaded once for all its partners.
+    /// Quantities of the own particle, loaded once for all its partners.
     type Own<V: Copy>: Copy;
 
-    /// The quantities, beside positions, that the law asks for.
+    /// Quantities that the law reads, besides positions.
     const FIELDS: &'static [Field];
-    /// The sums the law contributes to.
+    /// Sums that the law adds to.
     const SUMS: &'static [Sum];
 
     /// Loads the own particle.
     fn own<E: Env<DIM>>(&self, env: E) -> Self::Own<E::V>;
-    /// What the own particle and its partner at `place` do to each other.
+    /// Evaluates the interaction of the own particle and its partner at `place`.
     fn pair<E: Env<DIM>>(&self, env: E, place: E::Place, own: &Self::Own<E::V>);
 }

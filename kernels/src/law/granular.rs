@@ -4,22 +4,22 @@ use super::spring::Spring;
 use super::{Axis::X, Axis::Y, Env, Field, Law, Sum};
 use crate::isa::{Predicate, Vector};
 
-/// Where the tangential force acts, as seen from a centre.
+/// Lever arm of the tangential force, measured from a disc's centre.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum ContactArm {
-    /// At the undeformed radius R, as the source has it.
+    /// At the undeformed radius R, as in BP93.
     #[default]
     Radius,
-    /// At R − ξ/2, in the middle of the overlap: both the torque and the velocity of the surface there.
+    /// At R − ξ/2, in the middle of the overlap, for both the torque and the surface velocity.
     Overlap,
-    /// The torque at R − ξ/2, the velocity of the surface at R, as in LAMMPS.
+    /// Torque at R − ξ/2, surface velocity at R, as in LAMMPS.
     Lammps,
 }
 
-/// The parameters of the contact law.
+/// Parameters of the contact law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
-    /// How the elastic force grows with the overlap.
+    /// Dependence of the elastic force on the overlap.
     pub spring: Spring,
     /// Stiffness k_N of the spring (force/length^p; Hertz: force/length^1.5).
     pub stiffness: f64,
@@ -29,13 +29,13 @@ pub struct Contact {
     pub shear_damping: f64,
     /// Coulomb friction coefficient μ.
     pub friction: f64,
-    /// Whether the normal force is clamped at zero, so that separating discs never pull.
+    /// True to clamp the normal force at zero, so that separating discs never pull.
     pub cohesionless: bool,
-    /// Where the tangential force acts.
+    /// Lever arm of the tangential force.
     pub arm: ContactArm,
 }
 
-/// Discs that are all alike.
+/// Radius and inverse mass of equal discs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disc {
     /// Radius.
@@ -44,20 +44,20 @@ pub struct Disc {
     pub inverse_mass: f64,
 }
 
-/// The law. Compiled four times a precision: with and without `FRICTION` (and with it rotation), for `EQUAL` and for
-/// varying discs; every other choice is a number or a branch that is the same for all pairs.
+/// Contact law of granular discs. It is compiled four times per precision: with and without `FRICTION` (which includes rotation),
+/// for `EQUAL` and for varying discs. Every other choice is a number or a branch that is the same for all pairs.
 ///
-/// Two fixed discs (inverse mass 0) that touch have no effective mass: their own sums may be no numbers, and mean
-/// nothing anyway. No other disc's sums are touched by that.
+/// Two touching fixed discs (inverse mass 0) have no effective mass. Their own sums may be NaN, and have no meaning anyway. The
+/// sums of other discs are not affected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Granular<const FRICTION: bool, const EQUAL: bool> {
-    /// The parameters.
+    /// Parameters of the contacts.
     pub contact: Contact,
-    /// The discs, where all are alike; not read otherwise.
+    /// The discs if all are equal; not read otherwise.
     pub disc: Disc,
 }
 
-/// A disc as the law sees it.
+/// Quantities of the own disc.
 #[derive(Clone, Copy)]
 pub struct Own<V> {
     position: [V; 2],
@@ -106,10 +106,10 @@ impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUA
     /// BP93 (4)–(17).
     ///
     /// # As printed
-    /// (14) adds `γ_N M_eff (v_i − v_j)`, a vector, with a sign that feeds energy in: here the normal component is
-    /// subtracted. (15) takes the smaller of a signed number and μ|F_N|: here the magnitude is bounded and the sign
-    /// kept. (16) gives the spins opposite signs: here both surfaces count, `R_i Ω_i + R_j Ω_j`. (10)–(12) use the
-    /// other tangent than (13): here (13) throughout.
+    /// (14) adds `γ_N M_eff (v_i − v_j)`, a vector, with a sign that feeds energy in: here the normal component is subtracted.
+    /// (15) takes the smaller of a signed number and μ|F_N|: here the magnitude is bounded and the sign kept. (16) gives the
+    /// spins opposite signs: here both surfaces count, `R_i Ω_i + R_j Ω_j`. (10)–(12) use another tangent than (13): here (13) is
+    /// used throughout.
     #[inline(always)]
     fn pair<E: Env<2>>(&self, env: E, place: E::Place, own: &Own<E::V>) {
         let Contact { normal_damping, shear_damping, friction, cohesionless, arm, .. } = self.contact;
@@ -147,7 +147,7 @@ impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUA
         let floor = uniform(if cohesionless { 0.0 } else { f64::NEG_INFINITY });
         let normal = (elastic - damping).max(floor);
         let fn_ = E::V::select(contact, normal, zero); // (8)
-        // Of what a pair has each disc's share is as its recoil: a fixed disc has no part in it.
+        // Each disc's share of a pair is proportional to its recoil: a fixed disc has none.
         let shared = |whole: E::V| {
             if E::BOTH_PARTNERS {
                 E::V::select(effective_mass.less_than(uniform(f64::INFINITY)), whole, zero)
@@ -155,12 +155,12 @@ impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUA
                 whole * (own.inverse_mass * effective_mass)
             }
         };
-        // The springs' power less the pair's: what damping and the clamp take.
+        // Power of the springs minus that of the pair: the loss in damping and clamping.
         let dissipate = |power: E::V| env.dissipate(E::V::select(contact, shared(power), zero));
         if env.observes_energy() {
             env.section("energy");
             env.energy(E::V::select(contact, shared(self.contact.energy(uniform, overlap)), zero));
-            // Friction acts across the way between the centres and has no virial; what walls bear is none of the discs' own.
+            // Friction acts perpendicular to the line of centres and has no virial; forces on walls do not count for the discs.
             let both_move = zero.less_than(own.inverse_mass.min(inverse_mass));
             env.virial(E::V::select(contact.and(both_move), shared(normal * distance), zero));
             let one_moves = zero.less_than(own.inverse_mass.max(inverse_mass));
@@ -204,14 +204,14 @@ impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUA
         }
         if env.counts_dissipation() {
             env.section("dissipation");
-            // The friction's power is that of its force on the centres and of its torques.
+            // Power of the friction: its force on the centres and its torques.
             let rubbed = shear * (sliding - (arms[0] * own.omega + arms[1] * omega));
             dissipate((elastic - normal) * separation - rubbed);
         }
     }
 }
 
-/// Action and reaction.
+/// Adds a force to the own disc and its reaction to the partner.
 #[inline(always)]
 fn share<E: Env<2>>(env: E, place: E::Place, sum: Sum, force: E::V) {
     env.own_add(sum, force);

@@ -3,18 +3,18 @@
 use super::{Axis, Env, Field, Law, Sum};
 use crate::isa::Vector;
 
-/// The attraction of two masses, `F = −m_i m_j d/(|d|² + ε²)^{3/2}` with d from the partner to the own body; the constant of
-/// gravity is 1. Where `RATE` is asked for, also dF/dt, which Hermite's scheme needs.
+/// Attraction of two masses, `F = −m_i m_j d/(|d|² + ε²)^{3/2}` with d from the partner to the own body; the constant of gravity
+/// is 1. With `RATE` also dF/dt, for Hermite's scheme.
 ///
 /// # As printed
-/// The force lacks the vector and the power of the softened distance.
+/// The printed force lacks the vector and the power of the softened distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gravity<const RATE: bool = false> {
-    /// ε (length): how near the attraction of two points is softened; 0 for points.
+    /// Softening length ε (length); 0 for points.
     pub softening: f64,
 }
 
-/// The own body.
+/// Quantities of the own body.
 #[derive(Clone, Copy, Debug)]
 pub struct OwnBody<V> {
     position: [V; 3],

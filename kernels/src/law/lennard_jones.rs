@@ -11,10 +11,10 @@ use crate::isa::Vector;
 /// U″(r) = 4 ε (156 (σ/r)¹² − 42 (σ/r)⁶)/r²
 /// ```
 ///
-/// with ε, the depth (energy), and σ, the diameter (length). Cut off at their minimum, 2^(1/6) σ, they only repel (WCA).
+/// with the depth ε (energy) and the diameter σ (length). Cut off at the minimum, 2^(1/6) σ, particles only repel (WCA).
 ///
 /// # As printed
-/// The sum of LAN17 multiplies the acceleration by F/m; forces are added here. A particle does not meet itself.
+/// The sum of LAN17 multiplies the acceleration by F/m; forces are added here. A particle does not interact with itself.
 ///
 /// # Examples
 /// At σ the energy is 0 and the force 24 ε/σ; at the minimum the energy is −ε and the curvature 72 ε/r².
@@ -39,7 +39,7 @@ use crate::isa::Vector;
 /// assert_eq!((law.energy(2.5), law.force(2.5)), (0.0, 0.0));
 /// ```
 ///
-/// The force that two particles feel is the one that sweeps evaluate; two that collide with 48 ε come as near as 2^(−1/3) σ:
+/// The force between two particles is the one that sweeps evaluate; two that collide with 48 ε approach to 2^(−1/3) σ:
 /// ```
 /// # use stripmine_kernels::law::lennard_jones::LennardJones;
 /// # use stripmine_kernels::law::potential::{CutOff, PairPotential};
@@ -61,7 +61,7 @@ pub struct LennardJones {
 }
 
 impl LennardJones {
-    /// With ε (energy) and σ (length).
+    /// Potential of depth ε (energy) and diameter σ (length).
     #[inline]
     pub fn new(strength: f64, diameter: f64) -> Self {
         LennardJones { strength, diameter, square: diameter * diameter }

@@ -1,4 +1,4 @@
-//! Pair laws: what two particles do to each other, written once for every machine and every way of meeting.
+//! Pair laws: forces between two particles, written once for every machine and every sweep.
 
 mod environment;
 pub mod granular;

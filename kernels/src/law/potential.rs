@@ -1,31 +1,32 @@
-//! Pair potentials: each is stated once, as formulas; cutting off, shifting and sweeping are here, for all of them.
+//! Pair potentials. Each states its formulas once; cutting off, shifting and sweeping are shared by all.
 
 use super::{Axis::X, Axis::Y, Env, Field, Law, Sum};
 use crate::isa::Vector;
 
-/// A potential U(r) of two particles: it goes to 0 far away, and grows without bound and ever more steeply as they come together.
+/// A potential U(r) of two particles: it vanishes at large distance, and grows without bound and ever more steeply at small
+/// distance.
 ///
-/// [`energy`](Self::energy), [`force`](Self::force) and [`curvature`](Self::curvature) are the formulas of a textbook: theory, checks and
-/// tests ask for these. [`swept_force`](Self::swept_force) and [`swept_energy`](Self::swept_energy) say the same by the operations that
-/// vectors have. [`CutOff`] makes a [`Law`] of both.
+/// [`energy`](Self::energy), [`force`](Self::force) and [`curvature`](Self::curvature) are the textbook formulas, for theory,
+/// checks and tests. [`swept_force`](Self::swept_force) and [`swept_energy`](Self::swept_energy) give the same with the
+/// operations of vectors. [`CutOff`] makes a [`Law`] of both.
 pub trait PairPotential: Send + Sync + 'static {
     /// U (energy) at a distance (length).
     fn energy(&self, distance: f64) -> f64;
-    /// F = −dU/dr (energy/length) at a distance (length); above 0 where the particles repel each other.
+    /// F = −dU/dr (energy/length) at a distance (length); positive for repulsion.
     fn force(&self, distance: f64) -> f64;
     /// U″ (energy/length²) at a distance (length).
     fn curvature(&self, distance: f64) -> f64;
 
-    /// F/r (energy/length²) by the square of the distance (length²), and a term that [`swept_energy`](Self::swept_energy) takes again.
+    /// F/r (energy/length²) from the square of the distance (length²), and a term for [`swept_energy`](Self::swept_energy).
     fn swept_force<V: Vector>(&self, uniform: impl Fn(f64) -> V, square: V) -> [V; 2]
     where
         Self: Sized;
-    /// U (energy) by the term.
+    /// U (energy) from the term.
     fn swept_energy<V: Vector>(&self, uniform: impl Fn(f64) -> V, term: V) -> V
     where
         Self: Sized;
 
-    /// The distance (length) at which a head-on collision of an energy above 0 ends; 0 where the potential is nowhere so high.
+    /// Closest distance (length) in a head-on collision of positive energy; 0 if the potential never reaches that energy.
     fn closest(&self, energy: f64) -> f64 {
         let (mut near, mut far): (f64, f64) = (1.0, 1.0);
         while self.energy(far) > energy {
@@ -44,7 +45,7 @@ pub trait PairPotential: Send + Sync + 'static {
     }
 }
 
-/// The law of a potential that is cut off and shifted: U(r) − U(r_c) up to the cut-off r_c, and nothing beyond.
+/// Law of a potential that is cut off and shifted: U(r) − U(r_c) up to the cut-off r_c, and 0 beyond.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CutOff<P> {
     potential: P,
@@ -57,13 +58,13 @@ pub struct CutOff<P> {
 }
 
 impl<P: PairPotential> CutOff<P> {
-    /// A potential up to a cut-off (length).
+    /// Cuts off a potential at a distance (length).
     #[inline]
     pub fn new(potential: P, cutoff: f64) -> Self {
         CutOff { square: cutoff * cutoff, shift: potential.energy(cutoff), potential, cutoff }
     }
 
-    /// The potential as it is stated.
+    /// The original potential.
     pub fn potential(&self) -> &P {
         &self.potential
     }
@@ -95,7 +96,7 @@ impl<P: PairPotential + Clone> Law<2> for CutOff<P> {
         env.own_position()
     }
 
-    /// F/r, times the vector between the particles.
+    /// Evaluates F/r times the vector between the particles.
     #[inline(always)]
     fn pair<E: Env<2>>(&self, env: E, place: E::Place, own: &[E::V; 2]) {
         let uniform = |value: f64| env.uniform(value);
@@ -103,7 +104,7 @@ impl<P: PairPotential + Clone> Law<2> for CutOff<P> {
         let [dx, dy] = env.displacement(*own, place);
         let square = dx * dx + dy * dy;
         let within = square.less_than(uniform(self.square));
-        // A program of the lattice meets each particle's own place and empty ones, all at infinity.
+        // A kernel on the lattice also visits each particle itself and empty cells, all at infinity.
         if env.none(within) {
             return;
         }

@@ -1,17 +1,17 @@
-//! What a law may ask of a particle and add to it.
+//! Quantities of a particle that a law may read, and sums that it may add to.
 
 /// An axis of space. A law in two dimensions has x and y.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axis {
-    /// The first.
+    /// First axis.
     X,
-    /// The second.
+    /// Second axis.
     Y,
-    /// The third.
+    /// Third axis.
     Z,
 }
 
-/// A quantity of a particle that a law may ask for.
+/// A quantity of a particle that a law may read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Field {
     /// Velocity along an axis.
@@ -28,14 +28,14 @@ pub enum Field {
     Occupied,
 }
 
-/// A sum over partners that a law contributes to.
+/// A sum over partners that a law adds to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sum {
     /// Force along an axis.
     Force(Axis),
     /// Torque in the plane, counter-clockwise.
     Torque,
-    /// Rate at which the force along an axis changes as the particles move, in space.
+    /// Rate of change of the force along an axis, in space.
     ForceRate(Axis),
 }
 
@@ -56,7 +56,7 @@ impl Field {
         Field::Mass,
         Field::Occupied,
     ];
-    /// The fields that there are in two dimensions.
+    /// Every field in two dimensions.
     pub const PLANAR: [Field; 7] = [
         Field::Velocity(Axis::X),
         Field::Velocity(Axis::Y),
@@ -67,7 +67,7 @@ impl Field {
         Field::Occupied,
     ];
 
-    /// Whether a particle has it in a number of dimensions.
+    /// True if particles have this field in a number of dimensions.
     #[inline(always)]
     pub const fn is_in(self, dimensions: usize) -> bool {
         match self {
@@ -77,7 +77,7 @@ impl Field {
         }
     }
 
-    /// The name in errors.
+    /// Name in error messages.
     #[inline]
     pub const fn name(self) -> &'static str {
         match self {
@@ -88,7 +88,7 @@ impl Field {
             Field::Radius => "the radius",
             Field::InverseMass => "the inverse mass",
             Field::Mass => "the mass",
-            Field::Occupied => "whether there is a particle",
+            Field::Occupied => "the occupation of its cell",
         }
     }
 }
@@ -104,10 +104,10 @@ impl Sum {
         Sum::ForceRate(Axis::Y),
         Sum::ForceRate(Axis::Z),
     ];
-    /// The sums that there are in two dimensions, in the order of their [columns](Self::column).
+    /// Every sum in two dimensions, in the order of their [columns](Self::column).
     pub const PLANAR: [Sum; 3] = [Sum::Force(Axis::X), Sum::Force(Axis::Y), Sum::Torque];
 
-    /// Whether a particle has it in a number of dimensions.
+    /// True if particles have this sum in a number of dimensions.
     #[inline(always)]
     pub const fn is_in(self, dimensions: usize) -> bool {
         match self {
@@ -117,8 +117,7 @@ impl Sum {
         }
     }
 
-    /// Number of its column among those of `DIM` dimensions: the forces axis by axis, then the torque or, in space, the
-    /// rates of the forces.
+    /// Number of the column in `DIM` dimensions: the forces axis by axis, then the torque or, in space, the rates of the forces.
     #[inline(always)]
     pub const fn column<const DIM: usize>(self) -> usize {
         match self {
@@ -128,7 +127,7 @@ impl Sum {
         }
     }
 
-    /// The name in errors.
+    /// Name in error messages.
     #[inline]
     pub const fn name(self) -> &'static str {
         match self {

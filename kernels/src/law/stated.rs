@@ -1,8 +1,8 @@
-//! What a law states holds: it is given no other field and adds to no other sum.
+//! Enforcement of a law's statements: it can read no other field and add to no other sum.
 //!
-//! A sweep makes sure of the columns that the law's [`Law::FIELDS`] name and of the sums that [`Law::SUMS`] name, and then
-//! reads and adds without asking again. So a law reaches a sweep only through [`Stated`], which stops at anything else. Both
-//! lists are constants and so is every field a law names: what is left of the question, compiled, is nothing.
+//! A sweep checks the columns that [`Law::FIELDS`] and [`Law::SUMS`] name, and then reads and adds unchecked. So a law reaches a
+//! sweep only through [`Stated`], which panics at anything else. Both lists are constants and so is every field a law names: the
+//! compiled check is empty.
 
 use super::environment::{Env, Law};
 use super::quantity::{Field, Sum};
@@ -10,7 +10,7 @@ use crate::isa::{ProgramError, Vector};
 use std::cell::Cell;
 use std::marker::PhantomData;
 
-/// An environment in which the law `L` has what it states, and nothing else.
+/// An environment in which the law `L` can use only the quantities it states.
 pub struct Stated<E, L> {
     env: E,
     law: PhantomData<fn() -> L>,
@@ -58,16 +58,22 @@ impl<E, L> Stated<E, L> {
     }
 }
 
-/// A law that states what its dimensions lack does not compile.
+/// Fails to compile for a law that states a quantity its dimensions lack.
 const fn assert_in_dimensions<const DIM: usize, L: Law<DIM>>() {
     let mut i = 0;
     while i < L::FIELDS.len() {
-        assert!(L::FIELDS[i].is_in(DIM), "the law states a field that its dimensions lack");
+        assert!(
+            L::FIELDS[i].is_in(DIM),
+            "the law states a field that does not exist in its number of dimensions"
+        );
         i += 1;
     }
     i = 0;
     while i < L::SUMS.len() {
-        assert!(L::SUMS[i].is_in(DIM), "the law states a sum that its dimensions lack");
+        assert!(
+            L::SUMS[i].is_in(DIM),
+            "the law states a sum that does not exist in its number of dimensions"
+        );
         i += 1;
     }
 }
@@ -113,10 +119,7 @@ const fn bits_of_sums(sums: &[Sum]) -> u32 {
 
 #[cold]
 #[inline(never)]
-#[expect(
-    clippy::panic,
-    reason = "a law that asks for what it does not state is refused by `check` before it runs"
-)]
+#[expect(clippy::panic, reason = "`check` rejects a law that uses unstated quantities before it runs")]
 fn unstated(what: &'static str) -> ! {
     panic!("{}", ProgramError::Unstated(what))
 }
@@ -205,7 +208,7 @@ impl<const DIM: usize, E: Env<DIM>, L: Law<DIM>> Env<DIM> for Stated<E, L> {
     }
 }
 
-/// Whether a law asks for what it states and for nothing else: it is tried on one pair.
+/// Checks on one pair that a law uses only the quantities it states.
 ///
 /// # Errors
 /// [`ProgramError::Unstated`] names the first field or sum that it does not state.
@@ -224,7 +227,7 @@ pub fn check<const DIM: usize, L: Law<DIM>>(law: &L) -> Result<(), ProgramError>
     }
 }
 
-/// A pair of particles that all is one of, which notes what it is asked for.
+/// A pair of particles, all of whose quantities are 1, that records the law's requests.
 #[derive(Default)]
 struct Probe {
     fields: Cell<u32>,
@@ -262,7 +265,7 @@ impl<const DIM: usize> Env<DIM> for &Probe {
         value
     }
     fn none(self, _: bool) -> bool {
-        false // All of the law is to be seen.
+        false // No early exit: the whole law is checked.
     }
     fn own_add(self, sum: Sum, _: f64) {
         self.add(sum);

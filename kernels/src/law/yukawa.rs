@@ -1,10 +1,10 @@
-//! The pair potential of Yukawa: charges that a medium screens.
+//! The pair potential of Yukawa: screened charges.
 
 use super::potential::PairPotential;
 use crate::isa::Vector;
 
-/// Particles that repel each other like charges in a medium that screens them, such as colloids in an electrolyte or dust in a plasma (Yukawa,
-/// Debye and Hückel):
+/// Particles that repel each other like charges in a screening medium, such as colloids in an electrolyte or dust in a plasma
+/// (Yukawa, Debye and Hückel):
 ///
 /// ```text
 /// U(r) = ε (σ/r) exp(−κ (r − σ))
@@ -12,8 +12,8 @@ use crate::isa::Vector;
 /// U″(r) = U (κ² + 2 κ/r + 2/r²)
 /// ```
 ///
-/// with ε, the energy at the distance σ (energy), the diameter σ (length) and 1/κ, the screening length (length). LAMMPS and HOOMD-blue have
-/// the factor ε σ exp(κσ) as one number.
+/// with ε, the energy at the distance σ (energy), the diameter σ (length) and 1/κ, the screening length (length). LAMMPS and
+/// HOOMD-blue use the factor ε σ exp(κσ) as a single parameter.
 ///
 /// # Examples
 /// At σ the energy is ε and the force ε (κ + 1/σ):
@@ -26,7 +26,7 @@ use crate::isa::Vector;
 /// assert_eq!(potential.curvature(0.5), 120.0);
 /// ```
 ///
-/// Twice as far it is exp(−κσ)/2 of that, less what it is at the cut-off:
+/// At twice that distance the energy is exp(−κσ)/2 times as large, minus its value at the cut-off:
 /// ```
 /// # use stripmine_kernels::law::yukawa::Yukawa;
 /// use stripmine_kernels::law::potential::CutOff;
@@ -36,7 +36,8 @@ use crate::isa::Vector;
 /// assert_eq!((law.energy(2.5), law.force(2.5)), (0.0, 0.0));
 /// ```
 ///
-/// Sweeps have no exponential but a series, which is as exact as their numbers up to 16 screening lengths beyond σ:
+/// Sweeps replace the exponential by a series, which is exact to the precision of their numbers up to 16 screening lengths beyond
+/// σ:
 /// ```
 /// # use stripmine_kernels::law::potential::{CutOff, PairPotential};
 /// # use stripmine_kernels::law::yukawa::Yukawa;
@@ -57,13 +58,13 @@ pub struct Yukawa {
     diameter: f64,
     /// κ (1/length).
     screening: f64,
-    /// How often the exponent is halved before the series, and the result squared behind it.
+    /// Number of times the exponent is halved before the series and the result squared after it.
     halvings: u32,
-    /// κ, halved as often (1/length).
+    /// κ after these halvings (1/length).
     part: f64,
 }
 
-/// Order of the series of the exponential, and its coefficients 1/k!: of an exponent of 1/4 they leave 1.3 · 10⁻¹⁶.
+/// Order of the exponential series, with coefficients 1/k!: at an exponent of 1/4 the remainder is 1.3 · 10⁻¹⁶.
 const ORDER: usize = 11;
 const SERIES: [f64; ORDER + 1] = {
     let mut series = [1.0; ORDER + 1];
@@ -76,10 +77,10 @@ const SERIES: [f64; ORDER + 1] = {
 };
 
 impl Yukawa {
-    /// With ε (energy), σ (length) and κ (1/length).
+    /// Potential with ε (energy), σ (length) and κ (1/length).
     pub fn new(strength: f64, diameter: f64, screening: f64) -> Self {
         let (mut halvings, mut part) = (6, screening / 64.0);
-        // The exponent is κσ where particles meet at one place.
+        // The exponent is κσ for particles at the same position.
         while part * diameter > 0.25 && halvings < 32 {
             (halvings, part) = (halvings + 1, 0.5 * part);
         }

@@ -1,4 +1,4 @@
-//! Normal numbers for many particles at once: what a thermostat draws in every step.
+//! Normal random numbers for many particles at once, as a thermostat draws them in every step.
 //!
 //! ```text
 //! words       Philox of (seed, purpose, id, step)       four of 32 bits
@@ -6,9 +6,9 @@
 //! normal      √(−2 ln u) times cosine and sine of the turn (Box and Muller)
 //! ```
 //!
-//! Each is a loop over the particles without a branch, of additions, products, quotients, roots and operations on bits. So it
-//! becomes SIMD where it is compiled for that, and every instruction set gives the same bits. Logarithm, sine and cosine are
-//! their series, to the last place or two; radii go up to √(2 · 53 ln 2) = 8.6.
+//! Each is a loop over the particles without branches, of additions, products, quotients, roots and bit operations. So the
+//! compiler vectorises it for any instruction set, with the same bits. Logarithm, sine and cosine are series, accurate to one or
+//! two units in the last place; radii go up to √(2 · 53 ln 2) = 8.6.
 
 use super::{Purpose, philox4x32, top_word};
 use crate::isa::Element;
@@ -41,7 +41,7 @@ fn polynomial<const N: usize>(terms: [f64; N], z: f64) -> f64 {
     sum
 }
 
-/// The natural logarithm of a positive normal number.
+/// Natural logarithm of a positive normal number.
 #[inline(always)]
 fn logarithm(x: f64) -> f64 {
     // x = 2^k m with m between √½ and √2.
@@ -63,37 +63,35 @@ fn logarithm(x: f64) -> f64 {
     f64::from(exponent) * std::f64::consts::LN_2 + s * polynomial(TERMS, s * s)
 }
 
-/// A number in (0, 1) of the upper 52 bits.
+/// A number in (0, 1) from the upper 52 bits.
 #[inline(always)]
 fn open_unit(bits: u64) -> f64 {
     const HALF_STEP: f64 = 1.0 / (1u64 << 53) as f64;
     f64::from_bits(bits >> 12 | 1f64.to_bits()) - (1.0 - HALF_STEP)
 }
 
-/// Two independent standard normal numbers of the words of a generator.
+/// Two independent standard normal numbers from the words of a generator.
 #[inline(always)]
 fn box_muller(words: [u32; 4]) -> [f64; 2] {
     let [a, b, c, d] = words.map(u64::from);
     let radius = (-2.0 * logarithm(open_unit(a << 32 | b))).sqrt();
-    // The two highest bits say which quarter; the others a turn of −1/8 to 1/8.
+    // The two highest bits select the quarter; the others are a turn of −1/8 to 1/8.
     let angle = (open_unit(c << 34 | d << 2) - 0.5) * std::f64::consts::FRAC_PI_2;
     let z = angle * angle;
     let (cosine, sine) = (polynomial(COSINE, z), angle * polynomial(SINE, z));
     let quarter = c >> 30;
     let is_odd = quarter & 1 == 1;
     let (x, y) = (if is_odd { sine } else { cosine }, if is_odd { cosine } else { sine });
-    // Turned by 0, 1, 2, 3 quarters: (c, s), (−s, c), (−c, −s), (s, −c).
+    // Rotates by 0, 1, 2, 3 quarters: (c, s), (−s, c), (−c, −s), (s, −c).
     let turned = |value: f64, sign: u64| f64::from_bits(value.to_bits() ^ (sign << 63));
     [radius * turned(x, (quarter ^ quarter >> 1) & 1), radius * turned(y, quarter >> 1)]
 }
 
-/// Two independent standard normal numbers of (seed, purpose, id, step) for each id. They are not those of
+/// Draws two independent standard normal numbers of (seed, purpose, id, step) for each id. They differ from those of
 /// [`normals`](super::normals).
 ///
-/// To be inlined into what is compiled for an instruction set.
-///
-/// # Panics
-/// If there is not room for all.
+/// It must be inlined into code that is compiled for an instruction set. Outputs shorter than `ids` receive the first numbers
+/// only.
 #[inline(always)]
 pub fn draw<S: Element>(seed: u64, purpose: Purpose, step: u64, ids: &[u32], to: [&mut [S]; 2]) {
     let key = [seed as u32, (seed >> 32) as u32];
@@ -132,7 +130,7 @@ mod tests {
         numbers
     }
 
-    /// Against the portable library, at both ends and in the middle of what may be asked.
+    /// Compares with the portable library, at both ends and in the middle of the range.
     #[test]
     fn logarithm_sine_and_cosine_are_those_of_the_library() {
         let mut u = 1.0 / (1u64 << 53) as f64;
@@ -151,7 +149,7 @@ mod tests {
         }
     }
 
-    /// The four quarters, from words by hand: cosine and sine of the angle that they stand for.
+    /// Checks the four quarters from given words: cosine and sine of the angle they encode.
     #[test]
     fn every_quarter_of_a_turn_comes_out() {
         for quarter in 0..4u32 {
@@ -167,7 +165,7 @@ mod tests {
         }
     }
 
-    /// Every set, alignment and order gives the same numbers.
+    /// Every instruction set, alignment and order gives the same numbers.
     #[test]
     fn numbers_depend_on_id_and_step_alone() {
         let ids: Vec<u32> = (0..1003).map(|i| i * 7 + 1).collect();
@@ -185,7 +183,7 @@ mod tests {
         }
     }
 
-    /// Four million numbers: moments up to the sixth, correlation, the distribution by Kolmogorov and Smirnov, and how many lie
+    /// Four million numbers: moments up to the sixth, correlation, the distribution by Kolmogorov and Smirnov, and the counts
     /// beyond 3, 4 and 5, each within five standard errors.
     #[test]
     fn numbers_are_normal_up_to_their_tails() {
@@ -216,7 +214,7 @@ mod tests {
             .iter()
             .enumerate()
             .map(|(before, &x)| (0.5 * libm::erfc(-x / 2f64.sqrt()) - (before as f64 + 0.5) / count).abs());
-        // One of a thousand is beyond 1.95/√n.
+        // One sample in a thousand is beyond 1.95/√n.
         assert!(distance.fold(0.0, f64::max) < 1.95 / count.sqrt());
     }
 }

@@ -1,5 +1,5 @@
-//! Random numbers that are a function of where they are used: counter-based, so that they depend on no order of
-//! computation, no thread and no vector width.
+//! Counter-based random numbers: functions of where they are used, independent of the order of computation, threads and vector
+//! width.
 
 mod drawing;
 
@@ -9,26 +9,26 @@ use std::convert::Infallible;
 
 /// Purpose of a random number: equal counters of different purposes are unrelated.
 ///
-/// Every number that a run draws is one of this table; no other place draws. Numbers of a stream are counted within it, apart from
-/// those of single draws.
+/// This table lists every random number that a run draws. Numbers of a stream are counted within it, separately from single
+/// draws.
 ///
 /// | purpose | id | step | draws |
 /// |---|---|---|---|
-/// | `Placement` | 0 | stream | places of a mesh, shifts on a hexagonal lattice |
-/// | `Placement` | disc's id | stream | radius and place of a disc |
+/// | `Placement` | 0 | stream | positions on a mesh, shifts on a hexagonal lattice |
+/// | `Placement` | disc's id | stream | radius and position of a disc |
 /// | `Placement` | disc's id | 1 | velocity of a disc |
 /// | `Placement` | disc's id | 2 | velocity while a dense start is compressed |
-/// | `Placement` | body's number + 1 | stream | place and velocity of a body, counted through all clusters |
+/// | `Placement` | body's number + 1 | stream | position and velocity of a body, counted through all clusters |
 /// | `Placement` | body's number + 1 | 2³² + 1, 2³² + 2 | random velocity of a body in a sphere or shell |
 /// | `Thermostat` | particle's id | step of the run | noise of the bath |
 /// | `Wall` | disc's number | twice the disc's events, and one more | velocity off a thermal wall |
 /// | `Test` | any | any | tests |
 ///
-/// A start that is listed or read from a file has no seed of its own: its bath and its walls draw with [`seed_of_state`].
+/// A start that is listed or read from a file has no seed of its own: its bath and its walls use [`seed_of_state`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Purpose {
-    /// Places and velocities of a start.
+    /// Positions and velocities of a start.
     Placement = 1,
     /// Noise of a thermostat.
     Thermostat = 2,
@@ -38,26 +38,26 @@ pub enum Purpose {
     Wall = 4,
 }
 
-/// Random numbers of a run, and which of them make those of a step.
+/// Random numbers of a run, and their combination into those of a step.
 ///
-/// A run with steps of h and `parts` p > 1 sees the Brownian path of a run with steps of h/p and one part: each of its normal numbers is a
-/// sum of the p that the other run draws in the same time, with the weights of the scheme.
+/// A run with steps of h and `parts` p > 1 follows the Brownian path of a run with steps of h/p and one part: each of its normal
+/// numbers is a sum of the p that the other run draws in the same time, with the weights of the scheme.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NoiseSource {
     /// The seed.
     pub seed: u64,
-    /// How many normal numbers make one, at least 1.
+    /// Number of normal numbers combined into one, at least 1.
     pub parts: u32,
 }
 
 impl NoiseSource {
-    /// One number a step.
+    /// Source with one number per step.
     pub fn new(seed: u64) -> NoiseSource {
         NoiseSource { seed, parts: 1 }
     }
 }
 
-/// The seed that a state makes of another seed, so that what continues a run does not repeat its noise: each 128 bits of the state are
+/// Seed derived from another seed and a state, so that a continued run does not repeat its noise. Each 128 bits of the state are
 /// a counter of Philox whose key is the seed so far.
 pub fn seed_of_state(seed: u64, state: impl IntoIterator<Item = [u64; 2]>) -> u64 {
     let halves = |word: u64| [word as u32, (word >> 32) as u32];
@@ -85,14 +85,17 @@ pub(crate) fn philox4x32(mut counter: [u32; 4], mut key: [u32; 2]) -> [u32; 4] {
     counter
 }
 
-/// The fourth word of a counter: its top byte keeps purposes apart, the two below it blocks; 40 bits count steps.
+/// Fourth word of a counter: the top byte separates purposes, the two bytes below blocks; 40 bits count steps.
 #[inline(always)]
 fn top_word(purpose: Purpose, step: u64, block: u16) -> u32 {
-    debug_assert!(step < 1 << 40, "a run of 2^40 steps is out of reach");
+    debug_assert!(
+        step < 1 << 40,
+        "step {step} cannot be counted: random numbers exist for fewer than 2^40 steps"
+    );
     (purpose as u32) << 24 | u32::from(block) << 8 | (step >> 32) as u32 & 0xFF
 }
 
-/// The random words of (seed, purpose, id, step) and of the `block`-th four of them.
+/// Random words of (seed, purpose, id, step) in block number `block`.
 #[inline]
 fn words(seed: u64, purpose: Purpose, id: u32, step: u64, block: u16) -> [u32; 4] {
     philox4x32([id, step as u32, 0, top_word(purpose, step, block)], [seed as u32, (seed >> 32) as u32])
@@ -105,7 +108,7 @@ fn uniform(high: u32, low: u32) -> f64 {
     (bits as f64 + 0.5) * (1.0 / (1u64 << 53) as f64)
 }
 
-/// Two independent standard normal numbers of (seed, purpose, id, step) (Box and Muller).
+/// Returns two independent standard normal numbers of (seed, purpose, id, step) (Box and Muller).
 ///
 /// Logarithm, cosine and sine come from the portable `libm`, so that the bits are the same on every platform.
 #[inline]
@@ -126,7 +129,7 @@ pub struct Stream {
 }
 
 impl Stream {
-    /// The stream from its beginning.
+    /// Stream from its beginning.
     #[inline]
     pub fn new(seed: u64, purpose: Purpose, id: u32) -> Self {
         Stream { seed, purpose, id, drawn: 0 }
@@ -164,7 +167,7 @@ mod tests {
     use super::*;
     use rand::Rng;
 
-    /// The known answers that the authors of Random123 publish for philox4x32-10.
+    /// Known answers for philox4x32-10, published by the authors of Random123.
     #[test]
     fn philox_gives_the_published_answers() {
         assert_eq!(philox4x32([0; 4], [0; 2]), [0x6627_e8d5, 0xe169_c58d, 0xbc57_ac4c, 0x9b00_dbd8]);
@@ -175,7 +178,7 @@ mod tests {
         );
     }
 
-    /// Moments of 10⁵ pairs within five standard errors, and no correlation between the two of a pair.
+    /// Moments of 10⁵ pairs are within five standard errors, and the two of a pair are uncorrelated.
     #[test]
     fn normals_are_normal() {
         let n = 100_000u32;
@@ -209,8 +212,8 @@ mod tests {
         }
     }
 
-    /// All uses of the table in [`Purpose`], for seeds one apart: no two draws have a word pair in common (64 bits of some 10⁵ draws
-    /// coincide by chance once in 10⁹ cases).
+    /// For seeds one apart and all uses of the table in [`Purpose`], no two draws have a word pair in common. (64 bits of some
+    /// 10⁵ draws coincide by chance once in 10⁹ cases.)
     #[test]
     fn no_two_purposes_and_no_two_seeds_share_numbers() {
         let (ids, steps, most) = (0..40_u32, 0..40_u64, 1 << 32);
@@ -237,7 +240,7 @@ mod tests {
         assert_eq!(drawn.len(), all);
     }
 
-    /// Philox of the counter 0 and the key 0 is published (see above); a second state is drawn with that as the key.
+    /// Philox of counter 0 and key 0 is published (see above); a second state is drawn with that as the key.
     #[test]
     fn a_state_makes_a_seed_of_its_own() {
         assert_eq!(seed_of_state(7, []), 7);

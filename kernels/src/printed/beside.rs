@@ -1,5 +1,5 @@
-//! What the print has no equation for, run beside its programs: positions brought back into a periodic box, discs outside
-//! found, images in the halo. That no disc was lost is found by the [`Check`](crate::sweep::lattice::cells::Check) of every lattice.
+//! Kernels that BP93 has no equation for: wrapping of positions in a periodic box, discs outside, images in the halo. The
+//! [`Check`](crate::sweep::lattice::cells::Check) of every lattice finds lost discs.
 
 use super::index::INDEX;
 use crate::isa::{Array, Element, Machine, Predicate, Slot, Text, Vector};
@@ -7,27 +7,27 @@ use crate::sweep::lattice::cells::{STRAYS, wrapped};
 use crate::sweep::lattice::{Frame, LatticeShape};
 use std::marker::PhantomData;
 
-/// Brings positions back into the periodic box and counts discs outside the lattice in [`STRAYS`]: the programs behind it are
-/// for positions that have a cell. Vector length: the discs.
+/// Wraps positions into the periodic box and counts discs outside the lattice in [`STRAYS`]: the kernels that follow need
+/// positions that have a cell. Vector length: the discs.
 #[derive(Clone, Copy, Debug)]
 pub struct IntoBox<S> {
     periodic: [bool; 2],
     low: [f64; 2],
-    /// Everything below has a cell of the lattice.
+    /// Positions below have a cell of the lattice.
     high: [f64; 2],
     period: [f64; 2],
     precision: PhantomData<S>,
 }
 
 impl<S: Element> IntoBox<S> {
-    /// For a lattice at `frame`.
+    /// Kernel for a lattice at `frame`.
     #[inline]
     pub fn new(shape: LatticeShape, frame: Frame) -> Self {
         let cells = [shape.columns(), shape.rows()];
         let period = [0, 1].map(|axis| cells[axis] as f64 * frame.edge[axis]);
         let high = [0, 1].map(|axis| {
             let mut high = frame.origin[axis] + period[axis];
-            // The position below may be rounded up into a cell that is not there.
+            // The position just below may be rounded up into a cell that does not exist.
             let column = |r: f64| ((r - frame.origin[axis]) / frame.edge[axis]) as usize;
             while column(high.next_down()) >= cells[axis] {
                 high = high.next_down();
@@ -38,7 +38,7 @@ impl<S: Element> IntoBox<S> {
     }
 }
 
-// SAFETY: the slots depend on which sides are periodic only.
+// SAFETY: the slots depend on the periodic sides only.
 unsafe impl<S: Element> Text for IntoBox<S> {
     type Lane = f64;
 
@@ -65,7 +65,7 @@ unsafe impl<S: Element> Text for IntoBox<S> {
     }
 }
 
-/// Repeats Index and Test in the halo of periodic sides. Vector length: the halo cells.
+/// Copies Index and Test to the halo of periodic sides. Vector length: the halo cells.
 #[derive(Clone, Copy, Debug)]
 pub struct Images<P>(PhantomData<P>);
 

@@ -1,4 +1,4 @@
-//! Section 2, step 5 and appendix A, steps 2 and 3: the forces back to the discs, and the correction.
+//! Section 2, step 5 and appendix A, steps 2 and 3: gathers the forces for the discs and corrects the state.
 
 use super::index::CELL;
 use super::predictor::factor;
@@ -7,11 +7,11 @@ use crate::integrator::{FORCE, NOT_FINITE};
 use crate::isa::{Array, Element, Machine, Predicate, Slot, Text, Vector};
 use std::marker::PhantomData;
 
-/// r_k ← r_k + C_k (r''corr − r''pr) for `VALUES` derivatives, as they are, of each of `FREEDOMS` degrees of freedom, with C_k =
-/// c_k k!/2 δt^(2−k), so that C_2 = 1 as printed. Vector length: the discs that move.
+/// r_k ← r_k + C_k (r''corr − r''pr) for `VALUES` unscaled derivatives of each of `FREEDOMS` degrees of freedom. C_k = c_k k!/2
+/// δt^(2−k), so that C_2 = 1 as printed. Vector length: the discs that move.
 ///
 /// # As printed
-/// Appendix A multiplies the coefficients by r''corr; it must be its difference from the predicted one.
+/// Appendix A multiplies the coefficients by r''corr; it must be the difference from the predicted one.
 #[derive(Clone, Copy, Debug)]
 pub struct Corrector<S, P, const VALUES: usize, const FREEDOMS: usize> {
     coefficients: [f64; 6],
@@ -21,19 +21,19 @@ pub struct Corrector<S, P, const VALUES: usize, const FREEDOMS: usize> {
 }
 
 impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> Corrector<S, P, VALUES, FREEDOMS> {
-    /// For steps of `dt` (time) under `gravity` (length/time²); a component of 0 costs nothing.
+    /// Kernel for steps of `dt` (time) under `gravity` (length/time²); a component of 0 costs nothing.
     #[inline]
     pub fn new(dt: f64, acceleration: Acceleration, gravity: [f64; 2]) -> Self {
         let mut coefficients = coefficients(VALUES, acceleration);
         for (k, c) in coefficients.iter_mut().enumerate() {
             *c *= factor(dt, 2) / factor(dt, k);
         }
-        // Exactly, whatever dt.
+        // Exactly 1 for any dt.
         coefficients[2] = 1.0;
         Corrector { coefficients, gravity, checked: false, precisions: PhantomData }
     }
 
-    /// The same program, which also counts the discs whose correction is no finite number in [`NOT_FINITE`].
+    /// Makes the kernel also count in [`NOT_FINITE`] the discs whose correction is not finite.
     #[must_use]
     #[inline]
     pub fn checked(self) -> Self {
@@ -47,7 +47,7 @@ unsafe impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> 
 {
     type Lane = S;
 
-    #[allow(clippy::needless_range_loop, reason = "several lists side by side, under one number")]
+    #[allow(clippy::needless_range_loop, reason = "several lists share one index")]
     #[inline(always)]
     fn body<M: Machine<Lane = S>>(&self, m: M) {
         m.section("step 5");

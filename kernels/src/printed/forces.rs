@@ -1,28 +1,28 @@
-//! Section 2, step 4: what a cell and the one at place i of the mask do to each other.
+//! Section 2, step 4: interaction of a cell and the one at place i of the mask.
 //!
-//! The sweep over the places is that of every law ([`Forces`](crate::sweep::lattice::forces::Forces)).
+//! The sweep over the mask offsets is shared by all laws ([`Forces`](crate::sweep::lattice::forces::Forces)).
 
 use crate::isa::Vector;
 use crate::law::granular::Contact;
 use crate::law::{Axis, Env, Field, Law, Sum};
 
-/// BP93 (4)–(17) as products of whole vectors: no branch, and no merge but the 1 and 0 of (7).
+/// BP93 (4)–(17) as products of whole vectors: no branch, and no merge except the 1 and 0 of (7).
 ///
-/// Every cell has its own share of a pair: a law for sweeps that meet pairs from both sides.
+/// Every cell computes its own share of a pair: a law for sweeps that visit pairs from both sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Printed {
-    /// k_N, γ_N, γ_S and μ; the source has no clamp and one arm, so the other parameters are not read.
+    /// k_N, γ_N, γ_S and μ. BP93 has no clamp and one arm, so the other parameters are not read.
     pub contact: Contact,
 }
 
-/// The own cell.
+/// Quantities of the own cell.
 #[derive(Clone, Copy)]
 pub struct Own<V> {
     position: [V; 2],
     velocity: [V; 2],
     omega: V,
     radius: V,
-    /// −R: the sign in front of the sum of (12).
+    /// −R, with the sign in front of the sum of (12).
     minus_radius: V,
     mass: V,
     test: V,
@@ -54,9 +54,10 @@ impl Law<2> for Printed {
     }
 
     /// # As printed
-    /// (10), (11): (n_y, −n_x) there and (−n_y, n_x) in (13), which (12) goes with: so here. (14): γ_N M_eff times the normal
-    /// component, with the sign that takes energy out; the power 3/2 of contact_i times the overlap, for where there is no
-    /// contact it has no value. (15): bounded on both sides. (16): the component along the tangent, both spins with one sign.
+    /// (10), (11): the tangent is printed as (n_y, −n_x), but as (−n_y, n_x) in (13), which agrees with (12) and is used here.
+    /// (14): γ_N M_eff times the normal component, with the sign that removes energy; the power 3/2 is taken of contact_i times
+    /// the overlap, because without contact it has no value. (15): bounded on both sides. (16): the component along the tangent,
+    /// both spins with one sign.
     #[inline(always)]
     fn pair<E: Env<2>>(&self, env: E, place: E::Place, own: &Own<E::V>) {
         let Contact { normal_damping, shear_damping, friction, .. } = self.contact;
@@ -105,7 +106,7 @@ impl Law<2> for Printed {
         env.section("(12)");
         env.own_add(Sum::Torque, own.minus_radius * fs);
 
-        // What a run asks for beside the print: of what a pair has the own disc's share is as its recoil.
+        // Observations beyond the paper: the own disc's share of a pair is proportional to its recoil.
         if env.counts_dissipation() || env.observes_energy() {
             env.section("share");
             let share = touching * (m_eff / own.mass);

@@ -7,7 +7,7 @@ use std::marker::PhantomData;
 pub(super) const INDEX: Slot<u32> = Slot::new(Array::Index);
 pub(super) const CELL: Slot<u32> = Slot::new(Array::DiscCell);
 
-/// The "0 otherwise" of (2) and (3). Vector length: the lattice with its halo.
+/// Zeros of (2) and (3), their "0 otherwise". Vector length: the lattice with its halo.
 #[derive(Clone, Copy, Debug)]
 pub struct Clear<P>(PhantomData<P>);
 
@@ -31,10 +31,10 @@ unsafe impl<P: Element> Text for Clear<P> {
     }
 }
 
-/// (2) and (3) where there is a particle. Vector length: the discs.
+/// Sets (2) and (3) where there is a particle. Vector length: the discs.
 ///
-/// The cell of each disc is kept: it is the way back from the lattice to the discs, which step 5 takes. Positions lie in the
-/// box ([`IntoBox`](super::beside::IntoBox)), or a cell beyond the lattice would be meant.
+/// The cell of each disc is stored: step 5 needs it to return from the lattice to the discs. Positions must be in the box
+/// ([`IntoBox`](super::beside::IntoBox)), otherwise the cell would be beyond the lattice.
 #[derive(Clone, Copy, Debug)]
 pub struct Enter<S, P> {
     shape: LatticeShape,
@@ -43,7 +43,7 @@ pub struct Enter<S, P> {
 }
 
 impl<S: Element, P: Element> Enter<S, P> {
-    /// For a lattice at `frame`.
+    /// Kernel for a lattice at `frame`.
     #[inline]
     pub fn new(shape: LatticeShape, frame: Frame) -> Self {
         Enter { shape, frame, precisions: PhantomData }

@@ -5,14 +5,14 @@ use crate::isa::{Array, Element, Machine, Slot, Text};
 use crate::sweep::lattice::LatticeShape;
 use std::marker::PhantomData;
 
-/// x, y, their derivatives, Ω', R and M of every cell: those of the disc that Index numbers, or of particle 0. Vector length:
-/// the lattice with its halo.
+/// Gathers x, y, their derivatives, Ω', R and M of every cell: those of the disc that Index numbers, or of particle 0. Vector
+/// length: the lattice with its halo.
 ///
-/// Particle 0 rests at the origin, with a radius of 0 and a mass of 1.
+/// Particle 0 is at rest at the origin, with a radius of 0 and a mass of 1.
 ///
 /// # As printed
-/// The print leaves open what particle 0 is. That alone puts all empty cells at one place, and (10) to (12) divide by their
-/// distance: here each adds a place of its own, far from everything, by (1 − Test)·far, which is exact.
+/// BP93 does not define particle 0. Read literally, all empty cells have one position, and (10) to (12) divide by their distance.
+/// Here each empty cell adds a position of its own, far from everything, by (1 − Test)·far, which is exact.
 #[derive(Clone, Copy, Debug)]
 pub struct Map<S, P> {
     periodic: [bool; 2],
@@ -20,14 +20,14 @@ pub struct Map<S, P> {
 }
 
 impl<S: Element, P: Element> Map<S, P> {
-    /// For a lattice.
+    /// Kernel for a lattice.
     #[inline]
     pub fn new(shape: LatticeShape) -> Self {
         Map { periodic: shape.periodic(), precisions: PhantomData }
     }
 }
 
-// SAFETY: the slots depend on which sides are periodic only.
+// SAFETY: the slots depend on the periodic sides only.
 unsafe impl<S: Element, P: Element> Text for Map<S, P> {
     type Lane = P;
 

@@ -1,8 +1,8 @@
-//! BP93's own program: Index, Test and contact_i as lattice vectors, products by 0 and 1 in place of branches, Gear's
-//! scheme with derivatives as they are. One file a part of the step, each line beside its equation; a section of a
-//! listing is named by the equation that it is ([`EQUATIONS`]), and so is every array ([`ARRAYS`]).
+//! BP93's own program: Index, Test and contact_i as lattice vectors, products by 0 and 1 instead of branches, Gear's scheme with
+//! unscaled derivatives. There is one file per part of the step, and each line is next to its equation. Sections of a listing
+//! ([`EQUATIONS`]) and arrays ([`ARRAYS`]) are named by equations of the paper.
 //!
-//! Four lines of it, equations (4) to (6):
+//! Two of its lines, equations (4) to (6):
 //!
 //! ```text
 //! let [dx, dy] = env.displacement(own.position, place); // (5), (6)
@@ -10,31 +10,31 @@
 //! ```
 //!
 //! # As printed
-//! What cannot work as it stands in the print is mended, and nothing else; every place says so where it is:
+//! Only the parts of the paper that cannot work as printed are corrected; each correction is documented where it is made:
 //!
-//! - (10), (11) take the other tangent than (13), (14) adds a vector to a number and feeds energy in, (15) bounds one side of
-//!   a signed number, (16) gives the spins opposite signs, appendix A multiplies the coefficients by the acceleration and not
-//!   by its difference from the predicted one: the misprints of [`granular`](crate::law::granular), mended as there.
-//! - (14) raises R_i + R_j − |r_i − r_j| to the power 3/2, which has no value where discs do not touch: it is taken of
+//! - (10), (11) use another tangent than (13), (14) adds a vector to a number and feeds energy in, (15) bounds one side of a
+//!   signed number, (16) gives the spins opposite signs, appendix A multiplies the coefficients by the acceleration and not by
+//!   its difference from the predicted one. These are the misprints of [`granular`](crate::law::granular), corrected as there.
+//! - (14) raises R_i + R_j − |r_i − r_j| to the power 3/2, which has no value where discs do not touch: the power is taken of
 //!   contact_i times that ([`Printed`]).
-//! - (2) gives an empty cell the particle number 0. The print does not say what stands at x(0): see below.
+//! - (2) gives an empty cell the particle number 0. The paper does not define x(0): see below.
 //!
-//! What the print has no equation for runs beside it ([`beside`]): positions brought back into a periodic box, images in
-//! a halo, the check that no disc was lost. It is counted apart.
+//! Steps without an equation in the paper are in [`beside`]: wrapping of positions in a periodic box, images in a halo, the check
+//! that no disc was lost. They are counted separately.
 //!
-//! # What an empty cell holds
-//! Index is 0 there, so x, y, R, M, … of an empty cell are those of a "particle 0". Read like that, all empty cells stand at
-//! one place: two of them have dist = 0, (10) to (12) divide by it, and 1/0 · 0 is no number. These readings exist:
+//! # Contents of an empty cell
+//! Index is 0 there, so x, y, R, M, … of an empty cell are those of a "particle 0". Read literally, all empty cells have one
+//! position: two of them have dist = 0, (10) to (12) divide by it, and 1/0 · 0 is NaN. Possible readings:
 //!
-//! | an empty cell stands | two empty cells | here (IEEE) | on a CRAY |
+//! | position of an empty cell | two empty cells | here (IEEE) | on a CRAY |
 //! |---|---|---|---|
-//! | at one place, that of particle 0 | 0/0 in their own sums, which no disc reads | the discs' forces are right | has no infinity and no NaN: the quotient is out of range, which interrupts the program unless it has turned that off |
-//! | at one place, and a disc comes there | 1/0 · 0 in the disc's own sums | that disc's forces are NaN | as above, and the disc's forces are wrong |
-//! | where its last disc was (nothing clears x) | as particle 0 until discs have come and gone | right by chance | as above at the start |
-//! | at a place of its own, x(0) + (1 − Test)·far | finite | right | right: nothing out of range is met |
+//! | that of particle 0, for all | 0/0 in their own sums, which no disc reads | the discs' forces are right | has no infinity and no NaN: the quotient is out of range, which interrupts the program unless it has disabled that |
+//! | that of particle 0, and a disc is there too | 1/0 · 0 in the disc's own sums | that disc's forces are NaN | as above, and the disc's forces are wrong |
+//! | that of its last disc (nothing clears x) | as particle 0 until discs have come and gone | right by luck | as above at the start |
+//! | its own, x(0) + (1 − Test)·far | finite | right | right: nothing is out of range |
 //!
-//! The last is what [`Map`] does: three more operations on the lattice, exact, and the only reading that a CRAY runs as it is.
-//! `kernels/tests/printed.rs` shows what the others do.
+//! [`Map`] implements the last: three more operations on the lattice, exact, and the only reading that runs unchanged on a CRAY.
+//! `kernels/tests/printed.rs` demonstrates the others.
 
 pub mod beside;
 mod corrector;
@@ -51,10 +51,10 @@ pub use predictor::Predictor;
 
 use crate::isa::Array;
 
-/// Every section of the programs, and the equation that it is.
+/// Sections of the kernels, each with its equation.
 pub const EQUATIONS: &[(&str, &str)] = &[
     ("(1)", "r'' = F/m"),
-    ("gravity", "the rest of the F of (1)"),
+    ("gravity", "gravity's part of F in (1)"),
     ("(2)", "Index: the number of the disc in each cell"),
     ("i of (2)", "cells are numbered from 1, behind a halo: i ∈ [1, LMAX]"),
     ("way back", "the cell of each disc, kept for step 5"),
@@ -78,7 +78,7 @@ pub const EQUATIONS: &[(&str, &str)] = &[
     ("A 3", "correction of every derivative"),
 ];
 
-/// Every array of the programs, as the print calls it.
+/// Arrays of the kernels, each with its name in the paper.
 pub const ARRAYS: &[(Array, &str)] = &[
     (Array::X0, "x of the discs (A 1)"),
     (Array::X1, "x' (A 1)"),
@@ -105,7 +105,7 @@ pub const ARRAYS: &[(Array, &str)] = &[
     (Array::DiscCell, "the inverse of Index: the cell of each disc (2)"),
     (Array::Index, "Index (2)"),
     (Array::Test, "Test (3)"),
-    (Array::FarX, "the place of an empty cell: mended, see What an empty cell holds"),
+    (Array::FarX, "x of an empty cell: corrected, see Contents of an empty cell"),
     (Array::ImageX, "the periodically continued region (section 2)"),
     (Array::ImageY, "the periodically continued region (section 2)"),
     (Array::X, "x (5)"),
@@ -120,8 +120,8 @@ pub const ARRAYS: &[(Array, &str)] = &[
     (Array::Torque, "M, the torque (12)"),
 ];
 
-/// Mass of a fixed disc (mass), beside grains of at most `largest`: a power of two so large that M_i M/(M_i + M) of (17) is M_i
-/// to the last bit.
+/// Mass of a fixed disc (mass) among grains of at most `largest`: a power of two so large that M_i M/(M_i + M) of (17) is M_i to
+/// the last bit.
 pub fn mass_of_fixed_disc(largest: f64) -> f64 {
     (largest.log2().ceil() + 60.0).exp2()
 }

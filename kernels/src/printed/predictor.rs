@@ -1,11 +1,11 @@
-//! Appendix A, step 1: positions and derivatives a step ahead.
+//! Appendix A, step 1: positions and derivatives one step ahead.
 
 use crate::integrator::gear::STATE;
 use crate::isa::{Element, Machine, Slot, Text};
 use std::marker::PhantomData;
 
-/// Taylor expansion of `VALUES` derivatives of each of `FREEDOMS` degrees of freedom, as they are, not scaled:
-/// r_k ← r_k + δt r_{k+1} + ½ δt² r_{k+2} + …, term by term from the left. Vector length: the discs that move.
+/// Taylor expansion of `VALUES` unscaled derivatives of each of `FREEDOMS` degrees of freedom: r_k ← r_k + δt r_{k+1} + ½ δt²
+/// r_{k+2} + …, term by term from the left. Vector length: the discs that move.
 #[derive(Clone, Copy, Debug)]
 pub struct Predictor<S, const VALUES: usize, const FREEDOMS: usize> {
     dt: f64,
@@ -13,7 +13,7 @@ pub struct Predictor<S, const VALUES: usize, const FREEDOMS: usize> {
 }
 
 impl<S: Element, const VALUES: usize, const FREEDOMS: usize> Predictor<S, VALUES, FREEDOMS> {
-    /// For steps of `dt` (time).
+    /// Kernel for steps of `dt` (time).
     #[inline]
     pub fn new(dt: f64) -> Self {
         Predictor { dt, precision: PhantomData }
@@ -30,7 +30,7 @@ pub(super) fn factor(dt: f64, k: usize) -> f64 {
 unsafe impl<S: Element, const VALUES: usize, const FREEDOMS: usize> Text for Predictor<S, VALUES, FREEDOMS> {
     type Lane = S;
 
-    #[allow(clippy::needless_range_loop, reason = "several lists side by side, under one number")]
+    #[allow(clippy::needless_range_loop, reason = "several lists share one index")]
     #[inline(always)]
     fn body<M: Machine<Lane = S>>(&self, m: M) {
         m.section("A 1");

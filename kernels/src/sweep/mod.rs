@@ -1,4 +1,4 @@
-//! How a law meets its pairs.
+//! Sweeps: they find the pairs of particles and evaluate a law for each.
 
 pub mod all_pairs;
 pub mod fast;

@@ -1,8 +1,8 @@
-//! The scalar rival of the lattice: lists of near partners, walked one by one.
+//! Scalar neighbour lists, the alternative to the lattice: partners are visited one by one.
 //!
-//! Places are cells of the same lattice, so that a pair has the same image and the same displacement to the bit; and
-//! contacts are summed in the mask's order, so that the sums are those of the full lattice sweep. Two discs may share a
-//! cell, which the lattice forbids: such partners come last, in the order of their numbers.
+//! Offsets are those of the same lattice, so a pair has the same image and the same displacement to the bit. Contacts are summed
+//! in the mask's order, so the sums are those of the full lattice sweep. Two discs may share a cell, which the lattice forbids:
+//! such partners come last, in the order of their numbers.
 
 use crate::backend::Precision;
 use crate::law::{Asked, Env, Field, Law, Stated, Sum};
@@ -10,7 +10,7 @@ use crate::mask::Mask;
 use crate::sweep::lattice::{Frame, LatticeShape};
 use std::cell::Cell;
 
-/// For each disc the discs near it, each pair in both lists.
+/// Neighbour list of each disc; each pair is in both lists.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Lists {
     first: Vec<u32>,
@@ -18,7 +18,7 @@ pub struct Lists {
 }
 
 impl Lists {
-    /// Lists of all pairs for which `near` holds, by trying every pair: O(N²), as in BP93.
+    /// Lists all pairs for which `near` is true, by trying every pair: O(N²), as in BP93.
     #[inline]
     pub fn by_all_pairs(discs: usize, near: impl Fn(usize, usize) -> bool) -> Lists {
         Lists::collect(discs, |i, list| {
@@ -26,7 +26,7 @@ impl Lists {
         })
     }
 
-    /// Lists of the pairs for which `near` holds among the candidates of each disc.
+    /// Lists the pairs for which `near` is true among the candidates of each disc.
     #[inline]
     pub fn by_candidates(
         discs: usize,
@@ -52,20 +52,20 @@ impl Lists {
         lists
     }
 
-    /// The discs near disc `i`.
+    /// Discs near disc `i`.
     #[inline]
     pub fn of(&self, i: usize) -> &[u32] {
         &self.partners[self.first[i] as usize..self.first[i + 1] as usize]
     }
 
-    /// Entries of all lists: the candidates a step looks at.
+    /// Entries of all lists: the candidates tried in a step.
     #[inline]
     pub fn entries(&self) -> usize {
         self.partners.len()
     }
 }
 
-/// The discs' quantities as the law wants them, one entry a disc; what a law does not ask for may be empty.
+/// Quantities of the discs, one entry per disc; quantities that the law does not read may be empty.
 #[derive(Clone, Copy)]
 pub struct Discs<'a, P> {
     /// Positions, absolute or relative to the cell.
@@ -84,32 +84,32 @@ pub struct Discs<'a, P> {
     pub cell: &'a [u32],
 }
 
-/// What a walk through the lists met.
+/// Result of a walk through the lists.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Met {
-    /// Pairs the law was asked about, each from both sides.
+    /// Pairs the law was evaluated for, each from both sides.
     pub pairs: u64,
-    /// Contacts deeper than watched: disc and partner, each from both sides.
+    /// Contacts deeper than the watched depth: disc and partner, each from both sides.
     pub deep: Vec<(usize, usize)>,
-    /// What the contacts dissipate (energy/time), where that is counted.
+    /// Power dissipated by the contacts (energy/time), if requested.
     pub dissipated: f64,
-    /// Energy and virial of the contacts (energy), where they are observed.
+    /// Energy and virial of the contacts (energy), if requested.
     pub energy: [f64; 2],
 }
 
-/// How cells of the lattice are seen from each other.
+/// Offsets between the cells of a lattice.
 #[derive(Clone, Debug)]
 pub struct CellOffsets {
     shape: LatticeShape,
     half_width: isize,
-    /// Number of a place of the mask, by row and column from the lower left corner; the own cell comes last.
+    /// Number of each mask offset, by row and column from the lower left corner; the own cell has the last number.
     place: Vec<Option<u16>>,
     edge: [f64; 2],
     relative: bool,
 }
 
 impl CellOffsets {
-    /// For a full mask on a lattice, with positions relative to the cell or not.
+    /// Table for a full mask on a lattice; `relative` is true for positions relative to the cell.
     #[inline]
     pub fn new(shape: LatticeShape, frame: Frame, mask: &Mask, relative: bool) -> CellOffsets {
         let half_width = mask.half_width() as isize;
@@ -129,7 +129,7 @@ impl CellOffsets {
         self.shape.column_and_row(cell as usize - 1)
     }
 
-    /// The place at which `there` is seen from `own`, with the offset of their centres and the periods crossed.
+    /// Number of the mask offset from `own` to `there`, with the vector between their centres and the periods crossed.
     fn place(&self, own: [isize; 2], there: [isize; 2]) -> Option<(u16, [f64; 2], [f64; 2])> {
         let mut offset = [0; 2];
         let mut periods = [0.0; 2];
@@ -152,7 +152,7 @@ impl CellOffsets {
     }
 }
 
-/// A partner at its place.
+/// A partner at its offset.
 #[derive(Clone, Copy)]
 struct Partner<P> {
     disc: usize,
@@ -160,7 +160,7 @@ struct Partner<P> {
     displacement: [P; 2],
 }
 
-/// What the law sees: one disc and one partner at a time.
+/// Environment of a law that evaluates one disc and one partner at a time.
 struct OneByOne<'a, P> {
     discs: Discs<'a, P>,
     own: usize,
@@ -222,10 +222,10 @@ impl<P: Precision> Env<2> for &OneByOne<'_, P> {
         let cell = &self.sums[sum.column::<2>()];
         cell.set(cell.get() + value);
     }
-    #[expect(clippy::unreachable, reason = "called only where `Env::BOTH_PARTNERS` says so")]
+    #[expect(clippy::unreachable, reason = "called only if `Env::BOTH_PARTNERS`")]
     #[inline]
     fn partner_sub(self, _: Sum, _: Partner<P>, _: P) {
-        unreachable!("every pair is met from both sides")
+        unreachable!("every pair is visited from both sides")
     }
     #[inline]
     fn watches(self) -> bool {
@@ -259,9 +259,8 @@ impl<P: Precision> Env<2> for &OneByOne<'_, P> {
     fn section(self, _: &'static str) {}
 }
 
-/// Walks the lists with a law; `write(disc, sums)` takes the sums (force along x, y, torque) of each of the first
-/// `grains` discs. Pairs farther apart than `reach` (length) are passed over without asking the law. What `asked` for is
-/// looked at beside the sums.
+/// Evaluates a law along the lists. `write(disc, sums)` receives the sums (force along x, y, torque) of each of the first
+/// `grains` discs. Pairs farther apart than `reach` (length) are skipped. `asked` selects the observations beside the sums.
 pub fn walk<P: Precision, L: Law<2>>(
     law: &L,
     lists: &Lists,

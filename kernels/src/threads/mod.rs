@@ -1,8 +1,8 @@
-//! Work cut into parts, on the threads of the current `rayon` pool.
+//! Parallel work: parts on the threads of the current `rayon` pool.
 //!
-//! How threads wait for each other is in [`waiting`].
+//! [`waiting`] implements how threads wait for each other.
 //!
-//! Parts are called through a pointer, so that the pool's machinery is compiled once and not for every kind of work.
+//! Parts are called through a pointer, so that the machinery of the pool is compiled once and not for every kind of work.
 
 mod pool;
 mod waiting;
@@ -14,21 +14,21 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use waiting::each;
 
 thread_local! {
-    /// Whether this thread does all parts itself.
+    /// True if this thread does all parts itself.
     static ALONE: Cell<bool> = const { Cell::new(false) };
 }
 
-/// How many threads share parts.
+/// Number of threads that share parts.
 #[inline]
 pub(crate) fn threads() -> usize {
     if ALONE.get() { 1 } else { rayon::current_num_threads() }
 }
 
-/// What `work` gives; where it is `little`, this thread does all of its parts, for others would begin when it is done. What comes
-/// out depends on the threads nowhere.
+/// Runs `work`. If it is `little`, this thread does all of its parts, because others would only begin when it is done. No result
+/// depends on the threads.
 #[inline]
 pub fn alone_if<R>(little: bool, work: impl FnOnce() -> R) -> R {
-    /// Puts back what was, even if that is because of a panic.
+    /// Restores the previous value, also after a panic.
     struct Before(bool);
 
     impl Drop for Before {
@@ -45,7 +45,7 @@ pub fn alone_if<R>(little: bool, work: impl FnOnce() -> R) -> R {
     work()
 }
 
-/// What `work` makes of each of the parts, in their order; one part after the other if there is but one thread.
+/// Applies `work` to each of the parts and returns the results in their order; a single thread does them one after the other.
 #[inline]
 pub(crate) fn on_threads<T: Send, R: Send>(
     parts: impl IntoIterator<Item = T>,
@@ -65,11 +65,11 @@ pub(crate) fn on_threads<T: Send, R: Send>(
     slots.into_iter().filter_map(made).collect()
 }
 
-/// Does `work` on every part once in each of the stages: a stage begins when the one before is done with all parts.
+/// Applies `work` to every part once in each of the stages: a stage begins when all parts of the previous one are done.
 ///
 /// # Errors
-/// Of those of `work`, one. The other parts of that stage are worked on all the same, and what comes after it as well if
-/// there are more threads than one.
+/// One of the errors of `work`. The other parts of that stage are still processed, and the later stages too if there is more than
+/// one thread.
 #[inline]
 pub(crate) fn in_stages<T: Send, E: Send>(
     parts: &mut [T],
@@ -94,54 +94,54 @@ fn locked<T>(slot: &Mutex<T>) -> MutexGuard<'_, T> {
     slot.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// What `work` gives, done by one thread while the others wait for the next parts, awake: to be woken would take them
-/// longer than `work` takes. Once `work` has parts for them itself, they wait no longer.
+/// Runs `work` on one thread while the others wait awake for the next parts, because waking them would take longer than `work`.
+/// When `work` itself has parts for them, they stop waiting.
 pub fn keep_awake<R>(work: impl FnOnce() -> R) -> R {
     waiting::keep_awake(threads() - 1, work)
 }
 
-/// Entries of a column that one thread works on at a time, where an entry takes some nanoseconds: short columns are left to
-/// one thread, which is done before another would begin.
+/// Entries of a column per piece, where an entry takes some nanoseconds. Short columns stay on one thread, which finishes before
+/// another would begin.
 pub(crate) const PIECE: usize = 16_384;
 
-/// What `work` makes of each piece of a range, in their order. The pieces depend on the range alone.
+/// Applies `work` to each piece of a range and returns the results in their order. The pieces depend on the range alone.
 #[inline]
 pub fn over_pieces<R: Send>(range: Range<usize>, work: impl Fn(Range<usize>) -> R + Sync) -> Vec<R> {
     on_threads(pieces(range, PIECE), work)
 }
 
-/// Does `work` on every piece of a column, with the number of its first entry.
+/// Applies `work` to every piece of a column, with the index of its first entry.
 #[inline]
 pub fn in_pieces<T: Send>(column: &mut [T], work: impl Fn(usize, &mut [T]) + Sync) {
     let parts = column.chunks_mut(PIECE).enumerate();
     on_threads(parts, |(number, piece)| work(number * PIECE, piece));
 }
 
-/// Entries that one thread works on at a time, where an entry takes some ten nanoseconds or more.
+/// Entries per part, where an entry takes some ten nanoseconds or more.
 const PART: usize = 2048;
 
-/// What `work` makes of each part of a range, in their order, where an entry takes longer than for [`over_pieces`]. The parts
-/// depend on the range alone.
+/// Applies `work` to each part of a range and returns the results in their order, for entries that take longer than in
+/// [`over_pieces`]. The parts depend on the range alone.
 #[inline]
 pub fn over_parts<R: Send>(range: Range<usize>, work: impl Fn(Range<usize>) -> R + Sync) -> Vec<R> {
     on_threads(pieces(range, PART), work)
 }
 
-/// Does `work` on every part of two columns of one length, with the number of its first entry.
+/// Applies `work` to every part of two columns of equal length, with the index of its first entry.
 ///
 /// # Panics
-/// If one is longer than the other.
+/// If the lengths differ.
 #[inline]
 pub fn in_parts<T: Send>([a, b]: [&mut [T]; 2], work: impl Fn(usize, [&mut [T]; 2]) + Sync) {
-    assert_eq!(a.len(), b.len(), "columns of one length");
+    assert_eq!(a.len(), b.len(), "the columns must have equal lengths");
     let parts = a.chunks_mut(PART).zip(b.chunks_mut(PART)).enumerate();
     on_threads(parts, |(number, (a, b))| work(number * PART, [a, b]));
 }
 
-/// A column in another order: entry `n` is what entry `order[n]` was.
+/// A column in another order: the new entry `n` is the old entry `order[n]`.
 ///
 /// # Panics
-/// If `order` names an entry that there is not.
+/// If `order` names an entry that does not exist.
 #[inline]
 pub fn reordered<T: Copy + Default + Send + Sync>(column: &[T], order: &[u32]) -> Vec<T> {
     let mut now = vec![T::default(); order.len()];
@@ -149,10 +149,10 @@ pub fn reordered<T: Copy + Default + Send + Sync>(column: &[T], order: &[u32]) -
     now
 }
 
-/// Makes entry `n` of `now` what entry `order[n]` of `column` is.
+/// Sets entry `n` of `now` to entry `order[n]` of `column`.
 ///
 /// # Panics
-/// If `order` names an entry that there is not, or is shorter.
+/// If `order` names an entry that does not exist, or is too short.
 #[inline]
 pub fn put_in_order<T: Copy + Send + Sync>(now: &mut [T], column: &[T], order: &[u32]) {
     in_pieces(now, |first, piece| {
@@ -161,22 +161,22 @@ pub fn put_in_order<T: Copy + Send + Sync>(now: &mut [T], column: &[T], order: &
     });
 }
 
-/// Whether one thread does all pieces of a column.
+/// True if one thread does all pieces of a column.
 #[inline]
 pub(crate) fn is_alone(length: usize) -> bool {
     length <= PIECE || threads() == 1
 }
 
-/// A column that several threads may write.
+/// View of a column that several threads may write.
 #[inline]
 pub(crate) fn shared(column: &mut [u32]) -> &[AtomicU32] {
     let column: *mut [u32] = column;
-    // SAFETY: an AtomicU32 has the size and alignment of a u32, the address is that of a slice that is borrowed exclusively
-    // for as long as the result lives, and nothing but the result reaches it meanwhile.
+    // SAFETY: an AtomicU32 has the size and alignment of a u32; the address is that of a slice that is borrowed exclusively for
+    // the life of the result, and only the result accesses it.
     unsafe { &*(column as *const [AtomicU32]) }
 }
 
-/// A range in pieces of `length`, the last one perhaps shorter.
+/// Cuts a range into pieces of `length`; the last one may be shorter.
 #[inline]
 pub(crate) fn pieces(range: Range<usize>, length: usize) -> impl Iterator<Item = Range<usize>> {
     let end = range.end;
@@ -228,7 +228,7 @@ mod tests {
         let found = on(3, || alone_if(true, || (std::thread::current().id(), who())));
         assert!(found.1.iter().all(|id| *id == found.0));
         assert_eq!(on(3, || alone_if(false, threads)), 3);
-        // It ends where it ends, also by a panic.
+        // The setting is restored at the end, also after a panic.
         let broken = || on(1, || alone_if(true, || panic!("on purpose")));
         assert!(std::panic::catch_unwind(broken).is_err());
         assert_eq!(
@@ -260,8 +260,8 @@ mod tests {
         let (sender, finished) = std::sync::mpsc::channel();
         for _ in 0..others {
             let (both, sender) = (Arc::clone(&both), sender.clone());
-            // None of the pool's own threads, which all are kept awake once all have come here and some time has
-            // passed; then all have parts for them, as when lists are made again.
+            // These are not the pool's own threads. All of those are awake once every caller is here and some time has passed;
+            // then every caller has parts for them, as when lists are rebuilt.
             std::thread::spawn(move || {
                 let parts = || {
                     both.wait();
@@ -273,7 +273,11 @@ mod tests {
         }
         let patience = std::time::Duration::from_secs(60);
         for _ in 0..others {
-            assert_eq!(finished.recv_timeout(patience), Ok(vec![0, 1, 2, 3]), "they wait for each other");
+            assert_eq!(
+                finished.recv_timeout(patience),
+                Ok(vec![0, 1, 2, 3]),
+                "deadlock: the callers wait for each other"
+            );
         }
     }
 

@@ -1,20 +1,19 @@
-//! Threads that wait for each other without falling asleep.
+//! Threads that wait for each other without sleeping.
 //!
-//! `kernels/tests/waiting.rs` has this very file explored by `loom`, in every order in which a few threads can take their turns: what it
-//! takes from `pool` is all that it shares with other threads.
+//! `kernels/tests/waiting.rs` explores this file with `loom`, in every interleaving of a few threads: everything it shares with
+//! other threads comes from `pool`.
 
 use super::pool::{Arc, AtomicBool, AtomicUsize, Ordering, index, on_each, spawn, thread_local, yield_now};
 use std::cell::RefCell;
 
-/// Every part once in every stage. A thread begins with a share that is always its own, so that what it worked on before
-/// is still in its cache, and then takes what others have left.
+/// Runs every part once in every stage. A thread begins with its own share, the same in every call, so that its data are still in
+/// its cache. Then it takes parts that others have left.
 ///
-/// A thread that finds nothing left spins until the others are done with their last parts: one that sleeps has to be woken for the
-/// next stage, or for the next call, and that takes longer. All that is waited for is being worked on, so that no thread waits for one
-/// that waits.
+/// A thread without parts spins until the others finish: a sleeping one would have to be woken for the next stage or call, which
+/// takes longer. Only running parts are waited for, so no thread waits for one that waits.
 pub(crate) fn each(threads: usize, [stages, parts]: [usize; 2], work: &(dyn Fn(usize, usize) + Sync)) {
     if parts <= 1 {
-        // Nothing to share: the others are left as they are.
+        // Nothing to share: the other threads are left alone.
         (0..stages).for_each(|stage| (0..parts).for_each(|part| work(stage, part)));
         return;
     }
@@ -36,7 +35,7 @@ pub(crate) fn each(threads: usize, [stages, parts]: [usize; 2], work: &(dyn Fn(u
     });
 }
 
-/// Counts when it goes, even if that is because of a panic.
+/// Counts on drop, also after a panic.
 struct Done<'a>(&'a AtomicUsize);
 
 impl Drop for Done<'_> {
@@ -46,7 +45,7 @@ impl Drop for Done<'_> {
     }
 }
 
-/// Stays awake until something holds.
+/// Spins until `holds` returns true.
 #[inline]
 fn wait_for(holds: impl Fn() -> bool) {
     while !holds() {
@@ -55,12 +54,12 @@ fn wait_for(holds: impl Fn() -> bool) {
 }
 
 thread_local! {
-    /// Set when those that this thread keeps awake may go.
+    /// Flag that ends the waiting of the threads that this thread keeps awake.
     #[allow(clippy::missing_const_for_thread_local, reason = "loom's has no such form")]
     static KEPT: RefCell<Option<Arc<AtomicBool>>> = RefCell::new(None);
 }
 
-/// Lets those go that this thread keeps awake: it needs them, or is done.
+/// Ends the waiting of the threads that this thread keeps awake: it needs them, or is done.
 #[inline]
 fn release() {
     if let Some(kept) = KEPT.with(RefCell::take) {
@@ -68,7 +67,7 @@ fn release() {
     }
 }
 
-/// Releases when it goes, even if that is because of a panic.
+/// Releases on drop, also after a panic.
 struct Release;
 
 impl Drop for Release {
@@ -78,8 +77,8 @@ impl Drop for Release {
     }
 }
 
-/// What `work` gives, done by one thread while others spin. Once `work` has parts for them itself they are let go: else a thread
-/// that waited for its parts to be taken, and kept others awake meanwhile, could wait for one that does the same.
+/// Runs `work` on one thread while the others spin. When `work` itself has parts for them, they are released. Otherwise a thread
+/// that waits for its parts to be taken, and keeps others awake meanwhile, could wait for one that does the same.
 pub(crate) fn keep_awake<R>(others: usize, work: impl FnOnce() -> R) -> R {
     if others == 0 {
         return work();
@@ -87,10 +86,10 @@ pub(crate) fn keep_awake<R>(others: usize, work: impl FnOnce() -> R) -> R {
     let kept = Arc::new(AtomicBool::new(false));
     for _ in 0..others {
         let kept = Arc::clone(&kept);
-        // Nothing waits for these: on a busy machine one may begin only when all is over, and finds that it may go.
+        // Nothing waits for these: on a busy machine one may begin only when all is over, and then ends at once.
         spawn(move || wait_for(|| kept.load(Ordering::Acquire)));
     }
-    // The threads that were kept awake already wait for this one now.
+    // Threads kept awake so far now wait for this call.
     release();
     KEPT.with(|own| own.replace(Some(kept)));
     let _release = Release;

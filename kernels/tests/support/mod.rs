@@ -1,4 +1,4 @@
-//! A small granular lattice, stepped by the machine's programs: what the tests compare between executions.
+//! A small granular lattice, stepped by the kernels: the system that tests compare between executions.
 #![allow(dead_code, reason = "each test file uses its part")]
 
 use rand::RngExt;
@@ -30,7 +30,7 @@ pub const CONTACT: Contact = Contact {
     arm: ContactArm::Radius,
 };
 
-/// What kind of lattice to try.
+/// Kind of lattice in a test.
 #[derive(Clone, Copy, Debug)]
 pub struct Case {
     pub columns: usize,
@@ -39,7 +39,7 @@ pub struct Case {
     pub periodic: [bool; 2],
     pub coordinates: Coordinates,
     pub contact: Contact,
-    /// Probability that a cell holds a disc.
+    /// Probability that a cell contains a disc.
     pub fill: f64,
     pub seed: u64,
 }
@@ -77,7 +77,7 @@ pub struct System<S, P> {
     pub index: Vec<u32>,
     pub lattice: [Vec<P>; 9],
     pub sums: [Vec<P>; 3],
-    /// What the sweep of the lattice gives beside the sums: power, energy, virial.
+    /// Observations of the lattice's sweep beside the sums: power, energy, virial.
     pub observed: [Vec<P>; 3],
     pub strays: u64,
     pub conflicts: u64,
@@ -85,7 +85,7 @@ pub struct System<S, P> {
 
 pub const DT: f64 = 1e-3;
 
-/// The lattice vectors of a system, in their order.
+/// Lattice vectors of a system, in their order.
 pub const LATTICE: [Array; 9] = [
     Array::X,
     Array::Y,
@@ -99,7 +99,7 @@ pub const LATTICE: [Array; 9] = [
 ];
 
 impl<S: Precision, P: Precision> System<S, P> {
-    /// Discs of mean radius 1 at random places, with random velocities and spins.
+    /// Discs of mean radius 1 at random positions, with random velocities and spins.
     pub fn random(case: &Case) -> Self {
         let mask = Mask::square(case.half_width);
         let shape = LatticeShape::new(case.columns, case.rows, &mask, case.periodic).unwrap();
@@ -159,7 +159,7 @@ impl<S: Precision, P: Precision> System<S, P> {
         }
     }
 
-    /// Discs as said, on a lattice at `frame`; derivatives beyond the velocity are zero.
+    /// Given discs on a lattice at `frame`; derivatives beyond the velocity are zero.
     pub fn placed(case: &Case, frame: Frame, discs: &[Body]) -> Self {
         let mut system = Self::random(&Case { fill: 0.0, ..*case });
         let column = |of: &dyn Fn(&Body) -> f64| discs.iter().map(|disc| P::from_f64(of(disc))).collect();
@@ -233,7 +233,7 @@ impl<S: Precision, P: Precision> System<S, P> {
         result
     }
 
-    /// Halo cells and what they repeat; and the lattice vectors that stay: far, interior, how far images lie.
+    /// Halo cells with the cells they repeat, and the constant lattice vectors: far, interior, displacements of images.
     pub fn constants(&self) -> ([Vec<u32>; 2], [Vec<P>; 4]) {
         let shape = self.shape;
         let images = shape.images();
@@ -252,7 +252,7 @@ impl<S: Precision, P: Precision> System<S, P> {
         (halo, [shape.far(self.frame), shape.interior(), x, y])
     }
 
-    /// Index and lattice vectors of the positions as they stand.
+    /// Updates Index and lattice vectors from the current positions.
     pub fn index<L: Law<2>>(&mut self, case: &Case, _: &L, how: (Execution, InstructionSet)) {
         let (halo, constant) = self.constants();
         let (shape, frame, discs, images) = (self.shape, self.frame, self.discs, halo[0].len());
@@ -268,7 +268,7 @@ impl<S: Precision, P: Precision> System<S, P> {
         });
     }
 
-    /// Forces of the lattice vectors as they stand.
+    /// Computes forces from the current lattice vectors.
     pub fn forces<L: Law<2>>(
         &mut self,
         case: &Case,
@@ -278,7 +278,7 @@ impl<S: Precision, P: Precision> System<S, P> {
         self.forces_and(case, law, how, Asked::default())
     }
 
-    /// The same, with what is asked for beside them in [`observed`](Self::observed).
+    /// Computes forces and the requested observations, which are stored in [`observed`](Self::observed).
     pub fn forces_and<L: Law<2>>(
         &mut self,
         case: &Case,
@@ -295,7 +295,7 @@ impl<S: Precision, P: Precision> System<S, P> {
         })
     }
 
-    /// Forces and torques on the discs as the fast sweep finds them, each disc numbered `order[n]`; nothing else changes.
+    /// Forces and torques on the discs from the fast sweep, which numbers disc `order[n]` as n; the system is not changed.
     pub fn fast_forces<L: Law<2> + Sync>(
         &self,
         law: &L,
@@ -352,7 +352,7 @@ impl<S: Precision, P: Precision> System<S, P> {
         Ok((forces, met))
     }
 
-    /// One whole step of the faithful method.
+    /// Runs one whole step of the method of BP93.
     pub fn step<L: Law<2>, const VALUES: usize, const FREEDOMS: usize>(
         &mut self,
         case: &Case,
@@ -379,7 +379,7 @@ impl<S: Precision, P: Precision> System<S, P> {
         });
     }
 
-    /// The bits of everything a step leaves behind.
+    /// Bits of all results of a step.
     pub fn bits(&self) -> Vec<u64> {
         let state = self.state.iter().flatten().flatten().map(|x| x.bits());
         let disc = self.on_lattice.iter().chain(&self.velocity).flatten().map(|x| x.bits());
@@ -409,7 +409,7 @@ pub fn equal<const FRICTION: bool>(contact: Contact) -> Granular<FRICTION, true>
     Granular { contact, disc: Disc { radius: 1.0, inverse_mass: 1.0 } }
 }
 
-/// The law's options that change forces: clamped or not, and the arms.
+/// Options of the law that change forces: clamped or not, and the arms.
 pub fn contacts() -> impl Iterator<Item = Contact> {
     [true, false].into_iter().flat_map(|cohesionless| {
         [ContactArm::Radius, ContactArm::Overlap, ContactArm::Lammps].map(|arm| Contact {
@@ -420,13 +420,13 @@ pub fn contacts() -> impl Iterator<Item = Contact> {
     })
 }
 
-/// Pairs in contact, drawn at random.
+/// Random pairs in contact.
 pub fn random_pairs(seed: u64, count: usize) -> impl Iterator<Item = Pair> {
     let mut random = Stream::new(seed, Purpose::Test, 0);
     (0..count).map(move |_| Pair::random(&mut random))
 }
 
-/// Every execution of programs, on every instruction set of this processor.
+/// Every execution of kernels, on every instruction set of this processor.
 pub fn all_ways() -> Vec<(Execution, InstructionSet)> {
     let executions =
         [Execution::Chained, Execution::Eager].into_iter().chain([1, 7, 16, 64, 1000].map(Execution::Strip));

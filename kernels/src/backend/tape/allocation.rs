@@ -1,16 +1,16 @@
-//! Register allocation: few registers, each written again once its last reader is past.
+//! Register allocation: few registers, each reused after its last reader.
 
 use super::instruction::{File, Instruction};
 use crate::isa::Element;
 use std::collections::HashMap;
 
-/// How many registers of each file a program needs, in the order of [`File::ALL`].
+/// Number of registers per file, in the order of [`File::ALL`].
 pub(super) type FileSizes = [usize; File::ALL.len()];
 
 /// Renames the registers of straight-line code (each written once) to as few as possible.
 ///
-/// A result takes the register of an operand that is read for the last time: instructions work lane by lane, and a lane
-/// is read before it is written. That keeps the registers in use few and warm.
+/// A result may take the register of an operand that is read for the last time: instructions work lane by lane, and a lane is
+/// read before it is written. So few registers are in use, and they stay in the cache.
 pub(super) fn allocate<L: Element>(instructions: &mut [Instruction<L>]) -> FileSizes {
     let mut last_use = HashMap::new();
     for (at, instruction) in instructions.iter_mut().enumerate() {

@@ -1,13 +1,13 @@
-//! Loads as operands: what is executed needs no copy of an array that lies in memory as it was loaded.
+//! Folding of loads into operands: executed code needs no copy of an array that is stored in memory as loaded.
 
 use super::instruction::{Action, Instruction, Number, Operand, Reference, RegisterName};
 use crate::isa::Element;
 use std::collections::HashMap;
 
-/// The passes that execute straight-line code (each register written once): every load whose array keeps its contents
-/// until the last reader is past becomes an operand of its readers.
+/// Converts straight-line code, in which each register is written once, into the passes that execute it. A load becomes an
+/// operand of its readers if its array keeps its contents until the last reader.
 ///
-/// The CRAY had to bring a vector into a register first, so the load stays in what is counted and listed.
+/// The CRAY had to bring a vector into a register first, so the load stays in the counts and the listing.
 pub(super) fn fold_loads<L: Element>(instructions: &[Instruction<L>]) -> Vec<Instruction<L>> {
     let mut passes = instructions.to_vec();
     let mut last_use = HashMap::new();

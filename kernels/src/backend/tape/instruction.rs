@@ -1,10 +1,10 @@
-//! What a tape records: one instruction a vector operation.
+//! Instructions of a tape: one per vector operation.
 
 use crate::isa::list::for_each_op;
 use crate::isa::op::{BinaryOp, CompareOp, ConnectiveOp, NegationOp, UnaryOp};
 use crate::isa::{Array, Element, Op};
 
-/// The three register files of the machine.
+/// Register files of the machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum File {
     /// Vectors of numbers, `V`.
@@ -16,10 +16,10 @@ pub enum File {
 }
 
 impl File {
-    /// All register files.
+    /// Every register file.
     pub const ALL: [File; 3] = [File::Number, File::Predicate, File::Index];
 
-    /// The letter in a listing.
+    /// Letter in a listing.
     pub(crate) const fn letter(self) -> char {
         match self {
             File::Number => 'V',
@@ -32,31 +32,31 @@ impl File {
 /// A vector register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct RegisterName {
-    /// Its register file.
+    /// Register file.
     pub file: File,
-    /// Its number in the file.
+    /// Number in the file.
     pub number: u32,
 }
 
-/// What an instruction reads: a register of numbers, or the same number in every lane.
+/// Operand of numbers: a register, a broadcast number or an array.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Operand<L> {
     /// A register of numbers.
     Register(RegisterName),
     /// A scalar operand.
     Uniform(L),
-    /// An array as it lies in memory: what a load becomes where it is executed, never on the recorded tape.
+    /// An array as stored in memory: a folded load in a pass, never on the recorded tape.
     Memory(Reference),
 }
 
-/// An array in memory as an instruction meets it.
+/// Access of an instruction to an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reference {
     /// The array.
     pub array: Array,
     /// Name of its element type.
     pub element: &'static str,
-    /// Elements from the own place.
+    /// Distance in elements from the own one.
     pub shift: isize,
 }
 
@@ -71,8 +71,8 @@ pub(super) enum Part<'a, L> {
     Counter(&'a mut u8),
 }
 
-/// Defines actions and what follows from their operands. Instructions of the group `machine` go one by one into the enumeration that
-/// the table names.
+/// Defines actions and the functions that follow from their operands. Instructions of the group `machine` go one by one into the
+/// enumeration that the table names.
 macro_rules! define_actions {
     (operator $o:tt binary $b:tt unary $u:tt compare $c:tt connective $a:tt negation $n:tt merge $m:tt
      machine { $(($v:ident, $s:literal, $class:ident, $d:literal, [$(
@@ -82,7 +82,7 @@ macro_rules! define_actions {
         define_actions! { {} {} {} $($($file { #[doc = $d] $form $(($($type),+))?, })*)* }
 
         impl<L> Action<L> {
-            /// The operation it is, which says its name and class.
+            /// The operation, which determines name and class.
             pub fn op(&self) -> Op {
                 match self {
                     Action::Number(_, Number::Binary(op, ..)) => op.op(),
@@ -119,9 +119,9 @@ macro_rules! define_actions {
         /// Instructions that write a register of numbers.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub enum Number<L> {
-            /// One number.
+            /// One operand.
             Unary(UnaryOp, Operand<L>),
-            /// Two numbers.
+            /// Two operands.
             Binary(BinaryOp, Operand<L>, Operand<L>),
             /// A merge under a predicate.
             Select(RegisterName, Operand<L>, Operand<L>),
@@ -166,7 +166,7 @@ pub enum Truth<L> {
     Negation(NegationOp, RegisterName),
 }
 
-/// What an instruction does to which operands, and the register that it writes: the type says of which file.
+/// Effect of an instruction on its operands, and the register that it writes, in the file given by the variant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Action<L> {
     /// Writes a register of numbers.
@@ -182,19 +182,19 @@ pub enum Action<L> {
 /// One recorded vector instruction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Instruction<L> {
-    /// Index of the section it stands in.
+    /// Index of its section.
     pub section: usize,
-    /// What it does.
+    /// Operation with operands.
     pub action: Action<L>,
 }
 
 impl<L: Element> Instruction<L> {
-    /// The operation, which says its name and class.
+    /// The operation, which determines name and class.
     pub fn op(&self) -> Op {
         self.action.op()
     }
 
-    /// The register it writes, if any.
+    /// Register that it writes, if any.
     pub fn to(&self) -> Option<RegisterName> {
         match self.action {
             Action::Number(to, _) | Action::Truth(to, _) | Action::Indices(to, _) => Some(to),
@@ -202,7 +202,7 @@ impl<L: Element> Instruction<L> {
         }
     }
 
-    /// The memory it touches.
+    /// Memory that it touches.
     pub fn reference(&self) -> Option<Reference> {
         let (mut found, mut action) = (None, self.action);
         action.parts(|part| {
@@ -213,14 +213,14 @@ impl<L: Element> Instruction<L> {
         found
     }
 
-    /// True where it finds memory through an index vector.
+    /// True if it accesses memory through an index vector.
     pub(super) fn is_indexed(&self) -> bool {
         let (mut found, mut action) = (false, self.action);
         action.parts(|part| found |= matches!(part, Part::At(_)));
         found
     }
 
-    /// The operations it counts as: its own, and a conversion where memory holds another precision than the lanes.
+    /// Operations it counts as: its own, and a conversion if the array has another precision than the lanes.
     pub fn operations(&self) -> impl Iterator<Item = Op> {
         let (mut converts, mut action) = (false, self.action);
         action.parts(|part| {
@@ -231,7 +231,7 @@ impl<L: Element> Instruction<L> {
         std::iter::once(self.op()).chain(converts.then_some(Op::Widen))
     }
 
-    /// Whether it writes to the array that `reference` names.
+    /// True if it writes to the array that `reference` names.
     pub(crate) fn overwrites(&self, reference: Reference) -> bool {
         let is = |to: Reference| (to.array, to.element) == (reference.array, reference.element);
         matches!(self.action, Action::Effect(_)) && self.reference().is_some_and(is)
@@ -246,7 +246,7 @@ impl<L: Element> Instruction<L> {
         });
     }
 
-    /// Calls `visit` with every register it reads, those of numbers first.
+    /// Calls `visit` with every register it reads, number registers first.
     pub fn reads(&mut self, mut visit: impl FnMut(&mut RegisterName)) {
         self.operands(|operand| {
             if let Operand::Register(name) = operand {
@@ -260,7 +260,7 @@ impl<L: Element> Instruction<L> {
         });
     }
 
-    /// Calls `visit` with every register it reads, then, where it writes one, with that.
+    /// Calls `visit` with every register it reads, then with the one it writes, if any.
     pub fn registers(&mut self, mut visit: impl FnMut(&mut RegisterName)) {
         self.reads(&mut visit);
         if let Action::Number(to, _) | Action::Truth(to, _) | Action::Indices(to, _) = &mut self.action {

@@ -1,5 +1,5 @@
-//! Executes a tape strip by strip: each instruction a pass over the strip. One strip over everything is the unchained
-//! CRAY; short strips keep the registers in the cache.
+//! Interpreter of tapes, strip by strip: each instruction is a pass over the strip. A single strip is the unchained CRAY; short
+//! strips keep the registers in the cache.
 
 use super::instruction::{Action, Effect, Indices, Instruction, Number, Operand, RegisterName, Truth};
 use super::pool;
@@ -14,7 +14,7 @@ use std::cell::Cell;
 use std::ops::Range;
 
 impl<L: Precision> Tape<L> {
-    /// Executes the program with passes compiled for an instruction set. The memory was admitted.
+    /// Executes the kernel with passes compiled for an instruction set. The memory must have been admitted.
     pub(crate) fn interpret(
         &self,
         memory: &Memory<'_>,
@@ -25,8 +25,8 @@ impl<L: Precision> Tape<L> {
         dispatch(set, Passes { tape: self, memory, range, strip })
     }
 
-    /// Bytes of the register files that [`interpret`](Self::interpret) keeps for strips of a number of elements: of numbers, of
-    /// predicates, of indices.
+    /// Sizes in bytes of the register files that [`interpret`](Self::interpret) allocates for strips of a number of elements:
+    /// numbers, predicates, indices.
     pub(crate) fn register_bytes(
         &self,
         strip: usize,
@@ -38,7 +38,7 @@ impl<L: Precision> Tape<L> {
     }
 }
 
-/// How large the register files are for an instruction set.
+/// Task that computes the sizes of the register files.
 struct Sizes<'r> {
     counts: [usize; 3],
     strip: usize,
@@ -64,7 +64,7 @@ struct Passes<'r, L> {
 }
 
 impl<L: Precision> Task<L> for Passes<'_, L> {
-    /// Strips of whole hardware registers, and what is left of each element by element: the same bits.
+    /// Executes strips of whole hardware registers, and the rest of each element by element: the bits are the same.
     #[inline(always)]
     fn on<R: Registers<Lane = L>>(self, hardware: R) {
         let strip = self.strip.min(self.range.len());
@@ -84,9 +84,9 @@ impl<L: Precision> Task<L> for Passes<'_, L> {
     }
 }
 
-/// The register files of the machine. A vector register is a run of hardware registers.
+/// Register files of the machine. A vector register is a run of hardware registers.
 ///
-/// Cells, because a result may take the place of an operand: every hardware register is read before it is written.
+/// They are cells because a result may overwrite an operand: every hardware register is read before it is written.
 struct RegisterFiles<R: Registers> {
     numbers: RegisterFile<R::V>,
     predicates: RegisterFile<TruthOf<R>>,
@@ -105,7 +105,7 @@ impl<R: Registers> Default for RegisterFiles<R> {
 
 type TruthOf<R> = <<R as Registers>::V as Vector>::Predicate;
 
-/// The pass of every instruction. Which operation it is, and which elements an array has, is asked outside the loop.
+/// Executes the pass of an instruction. Operation and element type are selected outside the loop.
 macro_rules! passes {
     ($files:ident $span:ident $action:expr;
      operator { $(($ov:ident, $os:literal, $oc:ident, $od:literal, $trait:ident::$of:ident $($or:tt)*)),* $(,)? }
@@ -160,22 +160,22 @@ macro_rules! passes {
     };
 }
 
-/// The first of two names.
+/// Expands to the first of two names.
 macro_rules! first {
     ($first:ident $second:ident) => {
         $first
     };
 }
 
-/// The register that a pass writes.
+/// Register that a pass writes.
 #[rustfmt::skip]
 macro_rules! result {
     ($files:ident $to:ident V) => { $files.numbers.register($to.number) };
     ($files:ident $to:ident I) => { $files.index(*$to) };
 }
 
-/// A pass of an instruction's body over the places of a strip. Its operands are looked up before the loop; the body is called
-/// for in one place, or the compiler would call it for every hardware register.
+/// Executes an instruction over the registers of a strip. Operands are looked up before the loop. The implementation is named
+/// only once, or the compiler would not inline it.
 macro_rules! pass {
     ($files:ident $span:ident $($to:ident $result:ident)? = $f:ident $x:ident $($shift:ident)?: Numbers $($others:tt)*) => {
         match $x.element {
@@ -195,7 +195,7 @@ macro_rules! pass {
     }};
 }
 
-/// An operand before the loop, by its kind.
+/// Looks up an operand before the loop, by its kind.
 #[rustfmt::skip]
 macro_rules! operand {
     ($files:ident $span:ident $x:ident V) => { $files.source($x, $span) };
@@ -207,7 +207,7 @@ macro_rules! operand {
     ($files:ident $span:ident $x:ident $element:ident) => { $span.column::<$element>($x.array) };
 }
 
-/// An operand at a place, by its kind.
+/// Reads an operand at one register, by its kind.
 #[rustfmt::skip]
 macro_rules! at {
     ($span:ident $i:ident $x:ident V) => {
@@ -220,14 +220,14 @@ macro_rules! at {
     ($span:ident $i:ident $x:ident $other:ident) => { $x };
 }
 
-/// What an instruction reads: consecutive lanes of a register or of memory, or the same number in every lane.
+/// Source of an operand: consecutive lanes of a register or of memory, or a broadcast number.
 #[derive(Clone, Copy)]
 enum Source<L> {
     Lanes(*const L),
     Uniform(L),
 }
 
-/// The strip that instructions pass over: `length` hardware registers from element `base` on.
+/// Strip of a pass: `length` hardware registers from element `base` on.
 #[derive(Clone, Copy)]
 struct Span<'m, R> {
     hardware: R,
@@ -237,42 +237,42 @@ struct Span<'m, R> {
 }
 
 impl<'m, R: Registers> Span<'m, R> {
-    /// The machine at the place of one hardware register.
+    /// The machine at one hardware register.
     #[inline(always)]
     fn at(self, register: usize) -> Strip<'m, R> {
         Strip::new(self.hardware, self.memory, self.base + register * R::LANES)
     }
 
-    /// Where an array is.
+    /// Column of an array.
     #[inline(always)]
     fn column<T: Storage>(self, array: Array) -> Column<T> {
         self.memory.column(Slot::new(array))
     }
 
-    /// The lanes at the place of one hardware register.
+    /// Reads the lanes of one hardware register.
     ///
     /// # Safety
-    /// `from` begins as many lanes as the span holds.
+    /// `from` points to as many lanes as the span has.
     #[inline(always)]
     unsafe fn read(self, from: *const R::Lane, register: usize) -> R::V {
-        // SAFETY: the caller promises `length` registers' worth of lanes from `from` on, and the register is one of these.
+        // SAFETY: the caller promises `length` registers of lanes from `from` on, and the register is one of these.
         unsafe { self.hardware.load(from.add(register * R::LANES)) }
     }
 
-    /// The lanes of a source at the place of one hardware register.
+    /// Reads the lanes of a source at one hardware register.
     ///
     /// # Safety
     /// The source has the span's lanes.
     #[inline(always)]
     unsafe fn lanes(self, source: Source<R::Lane>, register: usize) -> R::V {
         match source {
-            // SAFETY: the caller promises that the source begins as many lanes as the span holds.
+            // SAFETY: the caller promises that the source has as many lanes as the span.
             Source::Lanes(from) => unsafe { self.read(from, register) },
             Source::Uniform(value) => self.hardware.splat(value),
         }
     }
 
-    /// A pass of something made at each place.
+    /// Writes `make(register)` to every register.
     #[inline(always)]
     fn each<X>(self, to: &[Cell<X>], make: impl Fn(usize) -> X) {
         for (i, to) in to[..self.length].iter().enumerate() {
@@ -280,7 +280,7 @@ impl<'m, R: Registers> Span<'m, R> {
         }
     }
 
-    /// A pass of `f(place, a)`.
+    /// Writes `f(register, a)` to every register.
     #[inline(always)]
     fn unary<X: Copy>(self, to: &[Cell<X>], a: Source<R::Lane>, f: impl Fn(usize, R::V) -> X) {
         match a {
@@ -293,7 +293,7 @@ impl<'m, R: Registers> Span<'m, R> {
         }
     }
 
-    /// A pass of `f(place, a, b)`.
+    /// Writes `f(register, a, b)` to every register.
     #[inline(always)]
     fn binary<X: Copy>(
         self,
@@ -320,7 +320,7 @@ impl<'m, R: Registers> Span<'m, R> {
 }
 
 impl<L: Precision> RegisterFiles<Scalar<L>> {
-    /// The program on `length` elements from `base` on: the same for every instruction set.
+    /// Executes the kernel on `length` elements from `base` on; shared by all instruction sets.
     #[inline(never)]
     fn execute_elements(&self, tape: &Tape<L>, memory: &Memory<'_>, base: usize, length: usize) {
         self.execute(tape, Span { hardware: Scalar::default(), memory, base, length });
@@ -328,8 +328,8 @@ impl<L: Precision> RegisterFiles<Scalar<L>> {
 }
 
 impl<R: Registers> RegisterFiles<R> {
-    /// Sees to it that there are the registers that a tape needs for strips of `length` hardware registers. What an
-    /// earlier run left in them is never read: code writes a register before it reads it.
+    /// Allocates the registers that a tape needs for strips of `length` hardware registers. Values left by an earlier run are
+    /// never read: code writes a register before it reads it.
     #[inline(always)]
     fn provide(&mut self, hardware: R, tape: &Tape<R::Lane>, length: usize) {
         const { assert!(size_of::<R::V>() == R::LANES * size_of::<R::Lane>()) }
@@ -340,7 +340,7 @@ impl<R: Registers> RegisterFiles<R> {
         self.indices.provide(indices, length, R::Index::none());
     }
 
-    /// The program on one strip, instruction by instruction.
+    /// Executes the kernel on one strip, instruction by instruction.
     #[inline(always)]
     fn execute(&self, tape: &Tape<R::Lane>, span: Span<'_, R>) {
         if span.length == 0 {
@@ -376,7 +376,7 @@ impl<R: Registers> RegisterFiles<R> {
         self.indices.register(name.number)
     }
 
-    /// One instruction over one strip.
+    /// Executes one instruction on one strip.
     #[inline(always)]
     fn step(&self, pass: &Instruction<R::Lane>, span: Span<'_, R>) {
         for_each_op!(passes self span &pass.action;)

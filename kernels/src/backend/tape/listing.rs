@@ -1,4 +1,4 @@
-//! A program as an assembly listing.
+//! Assembly listing of a kernel.
 
 use super::instruction::{Instruction, Operand, Part, Reference, RegisterName};
 use super::recorded::Tape;
@@ -7,12 +7,12 @@ use serde::Serialize;
 use std::fmt;
 
 impl<L: Element> Tape<L> {
-    /// The program as an assembly listing.
+    /// Assembly listing of the kernel.
     pub fn listing(&self) -> Listing<'_, L> {
         Listing(self)
     }
 
-    /// The instructions as words.
+    /// Instructions in words.
     pub fn lines(&self) -> Vec<Line> {
         self.instructions
             .iter()
@@ -21,14 +21,14 @@ impl<L: Element> Tape<L> {
     }
 }
 
-/// An instruction as words.
+/// An instruction in words.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Line {
-    /// What the section of the program does.
+    /// Purpose of its section of the kernel.
     pub section: &'static str,
-    /// The operation's mnemonic.
+    /// Mnemonic of the operation.
     pub operation: &'static str,
-    /// Where the result goes: a register, an array, or a counter.
+    /// Destination of the result: a register, an array, or a counter.
     pub destination: String,
     /// Operands in their order: registers, arrays, `#` before a scalar.
     pub sources: Vec<String>,
@@ -47,12 +47,12 @@ fn line<L: Element>(section: &'static str, instruction: &Instruction<L>) -> Line
         }
         Part::Counter(number) => words.push(format!("C{number}")),
     });
-    // An instruction that writes no register has first where its result goes.
+    // The first word is the destination, also of an instruction that writes no register.
     let destination = words.remove(0);
     Line { section, operation: instruction.op().mnemonic(), destination, sources: words }
 }
 
-/// Prints a tape, one vector instruction a line.
+/// Prints a tape, one vector instruction per line.
 pub struct Listing<'t, L>(&'t Tape<L>);
 
 impl fmt::Display for RegisterName {

@@ -1,4 +1,4 @@
-//! The tape: a text recorded as vector instructions. It is counted, listed, and executed the CRAY's way.
+//! Tapes: kernels recorded as vector instructions, which are counted, listed, and executed as on the CRAY.
 
 mod allocation;
 mod folding;

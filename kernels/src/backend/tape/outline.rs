@@ -1,4 +1,4 @@
-//! Instructions as a timing model sees them: which unit, from where, to where, whatever the lanes hold.
+//! Outlines of instructions for timing models: the unit, sources and destination, without values.
 
 use super::instruction::{File, Instruction, Operand, Reference, RegisterName};
 use super::recorded::Tape;
@@ -8,38 +8,38 @@ use crate::backend::registers::Registers;
 use crate::isa::{Element, Op, ProgramError, Storage, Vector};
 use std::cell::Cell;
 
-/// Where a vector lies.
+/// Location of a vector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// In a vector register.
     Register(RegisterName),
-    /// In an array, element after element.
+    /// In an array, consecutive elements.
     Memory(Reference),
     /// In an array, at the elements that an index vector numbers.
     Indexed(Reference),
 }
 
-/// One vector instruction without its numbers.
+/// A vector instruction without its values.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Outline {
     /// The operation.
     pub op: Op,
-    /// Whether numbers change their precision on the way ([`Op::Widen`] is counted too).
+    /// True if numbers change their precision on the way (counted also as [`Op::Widen`]).
     pub converts: bool,
-    /// The vectors it reads; scalar operands are none.
+    /// Vectors that it reads, without scalar operands.
     pub reads: Vec<Place>,
-    /// The vector it writes; a population count writes none.
+    /// Vector that it writes; a population count writes none.
     pub writes: Option<Place>,
 }
 
 impl Outline {
-    /// The operations it counts as, [`Instruction::operations`].
+    /// Operations it counts as, [`Instruction::operations`].
     pub fn operations(&self) -> impl Iterator<Item = Op> {
         std::iter::once(self.op).chain(self.converts.then_some(Op::Widen))
     }
 
-    /// The name under which a pass is timed: the mnemonic, `.index` where entries of an index vector are moved, `.convert`
-    /// where numbers change their precision on the way.
+    /// Name under which a pass is timed: the mnemonic, with `.index` if it moves entries of an index vector, and `.convert` if
+    /// numbers change their precision.
     pub fn kind(&self) -> String {
         let moves = |place: &Place| match place {
             Place::Memory(reference) | Place::Indexed(reference) => reference.element == u32::NAME,
@@ -74,21 +74,21 @@ impl Outline {
     }
 }
 
-/// A recorded program as a timing model sees it.
+/// Outlines of a recorded kernel.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Outlines {
-    /// The number its lanes hold.
+    /// Number type of its lanes.
     pub lane: &'static str,
-    /// The instructions of a machine that computes on registers, in order: what is counted and listed.
+    /// Instructions of a machine that computes in registers, in order: these are counted and listed.
     pub instructions: Vec<Outline>,
-    /// The passes that execute them here: loads are operands of their readers wherever the array keeps its contents.
+    /// Passes that execute them here: loads become operands of their readers if the array keeps its contents.
     pub passes: Vec<Outline>,
     /// Registers of each file that the passes need at once, in the order of [`File::ALL`].
     pub registers: [usize; File::ALL.len()],
 }
 
 impl<L: Element> Tape<L> {
-    /// The program as a timing model sees it.
+    /// Outlines of the kernel for a timing model.
     pub fn outlines(&self) -> Outlines {
         Outlines {
             lane: L::NAME,
@@ -99,11 +99,10 @@ impl<L: Element> Tape<L> {
     }
 }
 
-/// Bytes that an element takes in a register of each file, in the order of [`File::ALL`], and the lanes of a hardware
-/// register.
+/// Bytes per element in a register of each file, in the order of [`File::ALL`], and the lanes of a hardware register.
 ///
 /// # Errors
-/// [`ProgramError::NoSuchInstructionSet`].
+/// [`ProgramError::NoSuchInstructionSet`] if this processor lacks it.
 pub fn register_shape<L: Precision>(
     set: InstructionSet,
 ) -> Result<([f64; File::ALL.len()], usize), ProgramError> {
@@ -112,7 +111,7 @@ pub fn register_shape<L: Precision>(
     Ok(shape.get())
 }
 
-/// Looks up the sizes of a register file.
+/// Task that looks up the sizes of a register file.
 struct Shape<'c>(&'c Cell<([f64; File::ALL.len()], usize)>);
 
 impl<L: Precision> Task<L> for Shape<'_> {

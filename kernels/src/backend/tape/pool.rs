@@ -1,7 +1,7 @@
-//! Register files kept from run to run: fresh pages for every run would cost more than the passes over them.
+//! Pool of register files, reused between runs: fresh pages for every run would cost more than the passes over them.
 //!
-//! Taken and given back by two calls, not lent to a closure: a closure would leave the function that is compiled for the
-//! instruction set.
+//! The interface is two calls, not a closure, because a closure would leave the function that is compiled for the instruction
+//! set.
 
 use std::any::Any;
 use std::cell::RefCell;
@@ -10,7 +10,7 @@ thread_local! {
     static KEPT: RefCell<Vec<Box<dyn Any>>> = const { RefCell::new(Vec::new()) };
 }
 
-/// This thread's `T`, its default where there is none or another run has it.
+/// Takes this thread's `T` out of the pool; creates a default if there is none or another run uses it.
 #[inline(never)]
 pub(super) fn take<T: Default + 'static>() -> Box<T> {
     let kept = KEPT.with_borrow_mut(|kept| {
@@ -20,7 +20,7 @@ pub(super) fn take<T: Default + 'static>() -> Box<T> {
     kept.unwrap_or_default()
 }
 
-/// Keeps it for the next run.
+/// Returns it to the pool for the next run.
 #[inline(never)]
 pub(super) fn give_back<T: 'static>(kept: Box<T>) {
     KEPT.with_borrow_mut(|all| all.push(kept));

@@ -1,4 +1,4 @@
-//! A text as recorded: its instructions, and what follows from them alone.
+//! Recorded kernels: their instructions, and everything derived from these alone.
 
 use super::allocation::{FileSizes, allocate};
 use super::folding::fold_loads;
@@ -6,7 +6,7 @@ use super::instruction::{File, Instruction};
 use super::recorder::{Recorder, Recording};
 use crate::isa::{Element, Footprint, OpCounts, Text};
 
-/// A recorded program: straight-line vector instructions with registers, and the passes that execute them.
+/// A recorded kernel: straight-line vector instructions with registers, and the passes that execute them.
 #[derive(Clone, Debug)]
 pub struct Tape<L> {
     pub(super) instructions: Vec<Instruction<L>>,
@@ -25,27 +25,27 @@ impl<L: Element> Tape<L> {
         let mut passes = fold_loads(&instructions);
         let sizes = allocate(&mut instructions);
         let pass_sizes = allocate(&mut passes);
-        // Copies without room to grow: what was recorded into is free for the next program, and no holes are left.
+        // Copies without spare capacity: the buffers of the recording are free for the next kernel, and no gaps are left.
         let (instructions, passes) = (instructions.as_slice().to_vec(), passes.as_slice().to_vec());
         Tape { instructions, sections: recorder.sections.into_inner(), sizes, passes, pass_sizes }
     }
 
-    /// Bytes that its instructions take.
+    /// Memory of the instructions in bytes.
     pub fn bytes(&self) -> usize {
         (self.instructions.len() + self.passes.len()) * size_of::<Instruction<L>>()
     }
 
-    /// The instructions, in order.
+    /// Instructions in order.
     pub fn instructions(&self) -> &[Instruction<L>] {
         &self.instructions
     }
 
-    /// Registers of a file that the program needs at once.
+    /// Registers of a file that the kernel needs at once.
     pub fn registers(&self, file: File) -> usize {
         self.sizes[file as usize]
     }
 
-    /// What is executed, section by section, in the order of the text.
+    /// Operations executed, section by section, in the order of the kernel.
     pub fn tally(&self) -> Vec<(&'static str, OpCounts)> {
         let mut tally: Vec<_> = self.sections.iter().map(|&name| (name, OpCounts::default())).collect();
         for instruction in &self.instructions {
@@ -55,7 +55,7 @@ impl<L: Element> Tape<L> {
         tally
     }
 
-    /// Which arrays the program touches, and how far from the own place.
+    /// Arrays that the kernel accesses, with the range of shifts.
     pub fn footprint(&self) -> Footprint {
         let mut footprint = Footprint::default();
         for instruction in &self.instructions {

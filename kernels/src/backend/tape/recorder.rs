@@ -1,4 +1,4 @@
-//! The machine that records: every operation of a text becomes an instruction on a tape.
+//! Recording machine: every operation of a kernel becomes an instruction on a tape.
 
 use super::instruction::{
     Action, Effect, File, Indices, Instruction, Number, Operand, Reference, RegisterName, Truth,
@@ -9,7 +9,7 @@ use crate::isa::op::{BinaryOp, CompareOp, ConnectiveOp, NegationOp, UnaryOp};
 use crate::isa::{Counter, Element, Machine, Predicate, Slot, Storage, Vector};
 use std::cell::{Cell, RefCell};
 
-/// Collects instructions while a text runs on it; every result gets a register of its own.
+/// Collects instructions while a kernel runs on it; every result gets a register of its own.
 pub(super) struct Recorder<L> {
     pub(super) instructions: RefCell<Vec<Instruction<L>>>,
     pub(super) sections: RefCell<Vec<&'static str>>,
@@ -32,7 +32,7 @@ impl<L: Element> Recorder<L> {
         self.instructions.borrow_mut().push(Instruction { section, action });
     }
 
-    /// A register that nothing was written to yet.
+    /// Returns a register that has not been written yet.
     fn register(&self, file: File) -> RegisterName {
         let number = self.registers.get();
         self.registers.set(number + 1);
@@ -58,14 +58,14 @@ impl<L: Element> Recorder<L> {
     }
 }
 
-/// A vector of numbers that is being recorded: a register, or a number known already.
+/// A vector of numbers during recording: a register, or a known number.
 #[derive(Clone, Copy)]
 pub(super) struct Value<'t, L> {
     recorder: &'t Recorder<L>,
     operand: Operand<L>,
 }
 
-/// A predicate that is being recorded.
+/// A predicate during recording.
 #[derive(Clone, Copy)]
 pub(super) struct TruthValue<'t, L> {
     recorder: &'t Recorder<L>,
@@ -73,7 +73,7 @@ pub(super) struct TruthValue<'t, L> {
 }
 
 impl<L: Element> Value<'_, L> {
-    /// Arithmetic between scalar operands is done at once: no vector machine would spend an instruction on it.
+    /// Evaluates arithmetic between scalar operands at once: no vector machine would spend an instruction on it.
     fn binary(self, op: BinaryOp, other: Self) -> Self {
         match (self.operand, other.operand) {
             (Operand::Uniform(a), Operand::Uniform(b)) => {
@@ -91,7 +91,7 @@ impl<L: Element> Value<'_, L> {
     }
 }
 
-/// An operation of recorded values is an instruction on the tape.
+/// Records an operation of values as an instruction on the tape.
 macro_rules! recorded {
     (() V unary $op:ident $f:ident ($a:ident) $result:tt) => {
         $a.unary(UnaryOp::$op)
@@ -123,7 +123,7 @@ impl<L: Element> Predicate for TruthValue<'_, L> {
     for_each_op!(each implement_predicate (recorded ()));
 }
 
-/// The recording machine itself.
+/// Handle of the recording machine.
 #[derive(Clone, Copy)]
 pub(super) struct Recording<'t, L>(pub(super) &'t Recorder<L>);
 
@@ -131,7 +131,7 @@ fn reference<T: Storage>(slot: Slot<T>, shift: isize) -> Reference {
     Reference { array: slot.array(), element: T::NAME, shift }
 }
 
-/// An operand as a tape has it, by its kind.
+/// Converts an operand to its form on a tape, by its kind.
 #[rustfmt::skip]
 macro_rules! operand {
     (V $value:ident) => { $value.operand };
@@ -143,7 +143,7 @@ macro_rules! operand {
     ($kind:ident $index:ident) => { $index };
 }
 
-/// The method of an instruction, by its enumeration.
+/// Implements the method of an instruction, by its enumeration.
 macro_rules! record {
     ($this:ident $about:tt [$($signature:tt)*]
      $file:ident $form:ident $f:ident $(($($x:ident $($shift:ident)?: $kind:ident),+))?) => {
@@ -170,7 +170,7 @@ impl<'t, L: Element> Machine for Recording<'t, L> {
     }
     for_each_op!(each_instruction record self);
     fn none(self, _: TruthValue<'t, L>) -> bool {
-        // A tape is straight-line: it holds every operation, as the CRAY executed them.
+        // A tape is straight-line: it contains every operation, as the CRAY executed them.
         false
     }
     fn section(self, name: &'static str) {

@@ -1,14 +1,14 @@
-//! Vector registers one behind the other in memory, close together for short strips and long ones alike.
+//! Vector registers stored one behind the other in memory, close together for short and long strips alike.
 
 use crate::isa::aligned_column::{self, AlignedColumn, LINE};
 use std::cell::Cell;
 
-/// Lines after which addresses look alike to a first-level cache.
+/// Cache lines after which addresses map to the same line of a first-level cache.
 const ALIKE: usize = aligned_column::ALIKE / LINE;
-/// Lines that long registers must be apart at least, addresses taken as such a cache sees them.
+/// Least distance of long registers in cache lines, modulo that period.
 const APART: usize = 9;
 
-/// Registers of entries `X`.
+/// Register file with entries `X`.
 pub(super) struct RegisterFile<X> {
     entries: AlignedColumn<Cell<X>>,
     /// Entries from one register to the next.
@@ -22,23 +22,23 @@ impl<X> Default for RegisterFile<X> {
 }
 
 impl<X: Copy> RegisterFile<X> {
-    /// Makes it `count` registers of at least `length` entries. Entries may be left over from any earlier use.
+    /// Allocates `count` registers of at least `length` entries. Entries may have values of an earlier use.
     #[inline(always)]
     pub(super) fn provide(&mut self, count: usize, length: usize, entry: X) {
         let in_line = (LINE / size_of::<X>().max(1)).max(1);
         self.stride = in_line * lines_apart(length.div_ceil(in_line));
         let needed = count * self.stride;
         if self.entries.len() < needed {
-            // Nothing of the old entries is worth a copy, or to be kept beside the new ones.
+            // The old entries need no copy; they are freed before the new ones are allocated.
             self.entries = AlignedColumn::default();
             self.entries = AlignedColumn::filled(0, Cell::new(entry), needed);
         }
     }
 
-    /// A register.
+    /// Entries of a register.
     ///
     /// # Panics
-    /// If there is none of that number.
+    /// If there is no register of that number.
     #[inline(always)]
     pub(super) fn register(&self, number: u32) -> &[Cell<X>] {
         let start = self.stride * number as usize;
@@ -46,8 +46,8 @@ impl<X: Copy> RegisterFile<X> {
     }
 }
 
-/// Lines from one register of `lines` lines to the next: an odd number, so that registers spread over all of a cache, and
-/// those of long ones so that a pass does not write near what it reads as far as the processor sees.
+/// Cache lines from one register of `lines` lines to the next. The number is odd, so that registers spread over the whole cache.
+/// For long registers it also ensures that a pass does not write to addresses that the processor confuses with those it reads.
 fn lines_apart(lines: usize) -> usize {
     let mut apart = lines | 1;
     while lines >= ALIKE / 2 && !(APART..=ALIKE - APART).contains(&(apart % ALIKE)) {

@@ -1,22 +1,22 @@
-//! Every pair of bodies, each met once.
+//! All pairs of bodies, each visited once.
 //!
-//! Bodies are taken in groups of 16. A few bodies of one group (the *own* ones, spread over all lanes of a register each) meet
-//! the bodies behind them, a register of partners at a time:
+//! Bodies form groups of 16. A few bodies of one group (the *own* ones, each broadcast to all lanes of a register) are paired
+//! with the bodies behind them, one register of partners at a time:
 //!
 //! ```text
-//! own group I     1 2 3 4        their sums stay in registers, a sum a lane, until the row is done
-//! partners        [J J J J J J J J J J J J J J J J] [...] [...]       their sums are loaded and stored once a block
+//! own group I     1 2 3 4        their sums stay in registers, one per lane, until the row is done
+//! partners        [J J J J J J J J J J J J J J J J] [...] [...]       their sums are loaded and stored once per block
 //! own group I with itself: every body with all others of the group, without the partner's share
 //! ```
 //!
-//! Rows of groups are cut into [`BANDS`] bands of about equal work. Each has sums of its own, and they are added up in the order
-//! of the bands: what comes out is the same on any number of threads.
+//! Rows of groups are cut into [`BANDS`] bands of about equal work. Each has sums of its own, which are added up in the order of
+//! the bands: the result is the same on any number of threads.
 //!
-//! By [`Arithmetic::Exact`] it is the same on every instruction set too, energy and virial included, for own sums are kept by 16
-//! lanes, however many a register has.
+//! With [`Arithmetic::Exact`] it is also the same on every instruction set, energy and virial included: own sums are always kept
+//! in 16 lanes, for any register width.
 //!
-//! In single precision a position is a number and what rounding has left of it: two bodies that are near each other and far from
-//! the origin are as exactly apart as two near the origin. A pair takes 6 more additions for it, 29 operations instead of 23.
+//! In single precision a position has two parts, a number and its rounding residue. So the distance of two close bodies is as
+//! exact far from the origin as near it. It costs 6 more additions per pair, 29 operations instead of 23.
 
 pub mod shifts;
 mod tile;
@@ -30,71 +30,71 @@ use std::array::from_fn;
 use std::ops::Range;
 use tile::{Rows, Tile, asks_for_velocity};
 
-/// Parts that rows are cut into where there are enough of them: a constant, for the order of summation depends on it.
+/// Largest number of bands: a constant, because the order of summation depends on it.
 pub const BANDS: usize = 32;
 
-/// Groups of a band are at least as many.
+/// Least number of groups in a band.
 const SMALLEST_BAND: usize = 4;
 
-/// Bodies up to which one thread meets all pairs: to wake others takes some ten microseconds, and so do these pairs.
+/// Largest number of bodies for one thread: waking others takes some ten microseconds, and so do these pairs.
 const ALONE: usize = 512;
 
-/// Whether positions of a precision come in two parts.
+/// True if positions of this precision have two parts.
 #[inline]
 pub const fn is_split<P: Storage>() -> bool {
     P::BYTES < size_of::<f64>()
 }
 
-/// How products, sums and roots are formed.
+/// Evaluation of products, sums and roots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Arithmetic {
     /// Every operation is rounded: the same bits on every instruction set.
     Exact,
-    /// Products and sums are fused, inverse roots come from the processor's estimate and a correction: to within a few units of
-    /// the last place, and not the same bits on two instruction sets.
+    /// Products and sums are fused; inverse roots are the processor's estimate with a correction. Accurate to a few units in the
+    /// last place, and not bit-equal across instruction sets.
     Estimated,
-    /// As [`Arithmetic::Estimated`] without the correction: forces to 4 or 5 digits, to show what that spoils. Their rates are
-    /// corrected.
+    /// As [`Arithmetic::Estimated`] without the correction: forces are accurate to 4 or 5 digits, to demonstrate the effect.
+    /// Their rates are corrected.
     Raw,
 }
 
-/// Bodies, an entry each; as many as [`padded`] says. Entries behind the last body have no mass; the one numbered n is at [`padding`] of n
-/// along x.
+/// Columns of the bodies, each of [`padded`] length. Entries behind the last body have no mass; padding entry n has the x
+/// coordinate [`padding`] of n.
 #[derive(Clone, Copy, Debug)]
 pub struct Bodies<'a, P> {
     /// Positions (length).
     pub position: [&'a [P]; 3],
-    /// What rounding to single precision has left of them (length); in double precision empty and not read.
+    /// Rounding residue of the positions in single precision (length); empty and unread in double precision.
     pub rest: [&'a [P]; 3],
-    /// Velocities (length/time); empty where the law does not ask for them.
+    /// Velocities (length/time); empty if the law does not read them.
     pub velocity: [&'a [P]; 3],
     /// Masses.
     pub mass: &'a [P],
 }
 
-/// How pairs are met.
+/// Options of a sweep.
 #[derive(Clone, Copy)]
 pub struct Manner<'a> {
-    /// Whether energy and virial are summed up.
+    /// True to sum up energy and virial.
     pub observed: bool,
-    /// How products, sums and roots are formed.
+    /// Evaluation of products, sums and roots.
     pub arithmetic: Arithmetic,
-    /// The instructions.
+    /// Instruction set.
     pub set: InstructionSet,
-    /// Asked before every group of own bodies: whether to stop there, the sums unfinished.
+    /// Called before every group of own bodies; true stops the sweep there with unfinished sums.
     pub interrupted: &'a (dyn Fn() -> bool + Sync),
 }
 
-/// How many entries columns have for `bodies` bodies: whole groups.
+/// Length of a column for `bodies` bodies: whole groups.
 #[inline]
 pub const fn padded(bodies: usize) -> usize {
     bodies.next_multiple_of(GROUP)
 }
 
-/// The place along x of the padding entry `n` behind the last body (length).
+/// The x coordinate of padding entry `n` behind the last body (length).
 ///
-/// Bodies do not come near it, and no square or cube of a distance to it overflows: what has no mass then adds zeros, never
-/// 0 · ∞. In single precision the unit of length must be about the size of the system.
+/// Bodies do not come near it, and no square or cube of a distance to it overflows: entries without mass then add zeros, never 0
+/// · ∞. In single precision the unit of length must be about the size of the system.
 #[inline]
 pub fn padding<P: Precision>(n: usize) -> P {
     let far = if is_split::<P>() { 1e12 } else { 1e100 };
@@ -105,15 +105,15 @@ pub fn padding<P: Precision>(n: usize) -> P {
 #[derive(Clone, Debug)]
 struct Band<P, const SUMS: usize> {
     groups: Range<usize>,
-    /// For each sum, an entry for every body from the band's first on.
+    /// For each sum, one entry per body from the band's first on.
     sums: [Vec<P>; SUMS],
     /// Energy and virial.
     energy: [f64; 2],
-    /// Whether it was stopped on the way.
+    /// True if it was interrupted.
     is_stopped: bool,
 }
 
-/// All pairs of a number of bodies, with room for the sums of a law: 3, or 6 with the rates of the forces.
+/// All pairs of a number of bodies, with buffers for the sums of a law: 3, or 6 with the rates of the forces.
 #[derive(Clone, Debug)]
 pub struct AllPairs<P, const SUMS: usize = 3> {
     groups: usize,
@@ -121,7 +121,7 @@ pub struct AllPairs<P, const SUMS: usize = 3> {
 }
 
 impl<P: Precision, const SUMS: usize> AllPairs<P, SUMS> {
-    /// For a number of bodies.
+    /// Bands and buffers for a number of bodies.
     pub fn new(bodies: usize) -> Self {
         let groups = padded(bodies) / GROUP;
         let bands = rows_of_equal_work(groups, (groups / SMALLEST_BAND).clamp(1, BANDS));
@@ -137,18 +137,19 @@ impl<P: Precision, const SUMS: usize> AllPairs<P, SUMS> {
         AllPairs { groups, bands: bands.into_iter().map(band).collect() }
     }
 
-    /// Bytes that the sums take for a number of bodies.
+    /// Memory in bytes of the sums for a number of bodies.
     pub fn bytes(bodies: usize) -> usize {
         let groups = padded(bodies) / GROUP;
         let bands = rows_of_equal_work(groups, (groups / SMALLEST_BAND).clamp(1, BANDS));
         bands.iter().map(|rows| (groups - rows.start) * GROUP * SUMS * P::BYTES).sum()
     }
 
-    /// The sums of all pairs (forces; and their rates), and, if they are observed, their energy and virial (energy), else zeros.
+    /// Writes the sums of all pairs (forces, and their rates). Returns energy and virial (energy) if they are observed, else
+    /// zeros.
     ///
     /// # Errors
-    /// [`ProgramError`] if a column has not as many entries as [`padded`] says, the law asks for what it does not state, the
-    /// processor lacks the instruction set, or it is interrupted.
+    /// [`ProgramError`] if the length of a column is not [`padded`], the law reads a quantity it does not state, the processor
+    /// lacks the instruction set, or the sweep is interrupted.
     pub fn sweep<L: Law<3> + Sync>(
         &mut self,
         law: &L,
@@ -160,27 +161,27 @@ impl<P: Precision, const SUMS: usize> AllPairs<P, SUMS> {
         self.finish(sums)
     }
 
-    /// How many bands there are.
+    /// Number of bands.
     #[inline]
     pub fn bands(&self) -> usize {
         self.bands.len()
     }
 
-    /// The sums of a band, each with an entry for every body from the band's first on, and its energy and virial.
+    /// Sums of a band, each with one entry per body from the band's first on, and its energy and virial.
     #[inline]
     pub fn band(&self, number: usize) -> (&[Vec<P>; SUMS], [f64; 2]) {
         let Band { sums, energy, .. } = &self.bands[number];
         (sums, *energy)
     }
 
-    /// The same, to be put there by who has met its pairs elsewhere.
+    /// Mutable sums of a band, for results computed elsewhere.
     #[inline]
     pub fn band_mut(&mut self, number: usize) -> (&mut [Vec<P>; SUMS], &mut [f64; 2]) {
         let Band { sums, energy, .. } = &mut self.bands[number];
         (sums, energy)
     }
 
-    /// Meets the pairs of some of the bands.
+    /// Evaluates the pairs of some of the bands.
     ///
     /// # Errors
     /// As [`sweep`](Self::sweep).
@@ -233,7 +234,7 @@ impl<P: Precision, const SUMS: usize> AllPairs<P, SUMS> {
             };
             match arithmetic {
                 Arithmetic::Exact => dispatch_native(set, Tile::<P, L, SUMS, true>(work)),
-                // Nothing asks for rates of raw forces.
+                // No law requests rates of raw forces.
                 Arithmetic::Raw if SUMS == 3 => {
                     dispatch_estimating::<_, _, true>(set, Tile::<P, L, SUMS, false>(work))
                 }
@@ -246,10 +247,10 @@ impl<P: Precision, const SUMS: usize> AllPairs<P, SUMS> {
         if bands.iter().any(|band| band.is_stopped) { Err(ProgramError::Interrupted) } else { Ok(()) }
     }
 
-    /// Adds up what all bands have met.
+    /// Adds up the sums of all bands.
     ///
     /// # Errors
-    /// [`ProgramError`] if there is a sum that has not as many entries as [`padded`] says.
+    /// [`ProgramError`] if the length of a sum is not [`padded`].
     pub fn finish(&self, sums: [&mut [P]; SUMS]) -> Result<[f64; 2], ProgramError> {
         let entries = self.groups * GROUP;
         sums.iter().try_for_each(|sums| suffices(sums.len(), entries))?;
@@ -264,7 +265,7 @@ impl<P: Precision, const SUMS: usize> AllPairs<P, SUMS> {
         Ok([sum(0), sum(1)])
     }
 
-    /// Adds up a sum of all bands in double precision, in the order of the bands.
+    /// Adds up one sum of all bands in double precision, in the order of the bands.
     fn add_up(&self, number: usize, to: &mut [P]) {
         let share = |(range, to): (Range<usize>, &mut [P])| {
             let mut sum = vec![0.0; to.len()];
@@ -285,16 +286,16 @@ impl<P: Precision, const SUMS: usize> AllPairs<P, SUMS> {
     }
 }
 
-/// Refuses a column that has not as many entries as there are.
+/// Returns an error unless a column has `entries` entries.
 fn suffices(length: usize, entries: usize) -> Result<(), ProgramError> {
     let last = entries as isize - 1;
     if length == entries {
         return Ok(());
     }
-    Err(ProgramError::TooShort { array: "the bodies", first: 0, last, length })
+    Err(ProgramError::TooShort { array: "a column of the bodies", first: 0, last, length })
 }
 
-/// Rows of a triangle of groups, cut into bands of about equal area; row I has `groups` − I.
+/// Cuts the rows of a triangle of groups into bands of about equal area; row I has `groups` − I.
 fn rows_of_equal_work(groups: usize, bands: usize) -> Vec<Range<usize>> {
     let work = |row: usize| groups - row;
     let all: usize = (0..groups).map(work).sum();

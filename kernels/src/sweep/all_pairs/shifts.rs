@@ -1,4 +1,4 @@
-//! All pairs as whole-array operations: every body meets the one that is a number of places behind it, for every number. PWP.
+//! All pairs as whole-array operations: for every shift, each body is paired with the one that many positions behind it. PWP.
 
 use super::is_split;
 use crate::isa::{Array, Element, Machine, Slot, Text};
@@ -7,10 +7,10 @@ use std::cell::Cell;
 use std::marker::PhantomData;
 use std::ops::Range;
 
-/// Runs `law` between every body and those that are `shifts` places behind it, the first ones following the last. Vector length:
-/// the bodies; what is read at a shift has an entry for each of them twice over, so that no shift has to begin again in front.
+/// Evaluates `law` between every body and those `shifts` positions behind it, cyclically. Vector length: the bodies. Arrays that
+/// are read at a shift store every body twice, so that no shift wraps around.
 ///
-/// The shifts 1 … N − 1 are all pairs, each met from both sides; forces are added to those that are there.
+/// The shifts 1 … N − 1 are all pairs, each visited from both sides; forces are added to the sums present.
 #[derive(Clone, Debug)]
 pub struct Shifts<P, L> {
     law: L,
@@ -19,15 +19,15 @@ pub struct Shifts<P, L> {
 }
 
 impl<P: Element, L: Law<3>> Shifts<P, L> {
-    /// The program for a law and some shifts.
+    /// Kernel for a law and some shifts.
     ///
-    /// Recording it panics if the law asks for what bodies have not.
+    /// Recording it panics if the law reads a quantity that bodies do not have.
     pub fn new(law: L, shifts: Range<usize>) -> Self {
         Shifts { law, shifts, precision: PhantomData }
     }
 }
 
-/// The array of a quantity of the bodies.
+/// Array of a quantity of the bodies.
 ///
 /// # Panics
 /// If bodies have no such quantity.
@@ -36,14 +36,14 @@ pub const fn body_array(field: Field) -> Array {
     match field {
         Field::Mass => Array::BodyMass,
         Field::Velocity(axis) => [Array::BodyVx, Array::BodyVy, Array::BodyVz][axis as usize],
-        #[expect(clippy::panic, reason = "found when the program is built, by whoever writes such a law")]
+        #[expect(clippy::panic, reason = "found by the author of such a law, when the kernel is built")]
         Field::Omega | Field::Radius | Field::InverseMass | Field::Occupied => {
             panic!("bodies have no such quantity")
         }
     }
 }
 
-/// The array of a sum of the bodies.
+/// Array of a sum of the bodies.
 ///
 /// # Panics
 /// If bodies have no such sum.
@@ -52,21 +52,21 @@ pub const fn body_sum_array(sum: Sum) -> Array {
     match sum {
         Sum::Force(axis) => [Array::BodyFx, Array::BodyFy, Array::BodyFz][axis as usize],
         Sum::ForceRate(axis) => [Array::BodyRateX, Array::BodyRateY, Array::BodyRateZ][axis as usize],
-        #[expect(clippy::panic, reason = "found when the program is built, by whoever writes such a law")]
+        #[expect(clippy::panic, reason = "found by the author of such a law, when the kernel is built")]
         Sum::Torque => panic!("bodies have no torque"),
     }
 }
 
-/// The arrays of positions.
+/// Arrays of the positions.
 pub const BODY_POSITION: [Array; 3] = [Array::BodyX, Array::BodyY, Array::BodyZ];
 
-/// The arrays of what rounding has left of the positions; read in single precision only.
+/// Arrays of the rounding residues of the positions; read in single precision only.
 pub const BODY_REST: [Array; 3] = [Array::BodyRestX, Array::BodyRestY, Array::BodyRestZ];
 
-/// What the law sees: one strip of bodies.
+/// Environment of a law that evaluates one strip of bodies.
 struct Behind<M: Machine> {
     machine: M,
-    /// What rounding has left of the own positions; zero in double precision.
+    /// Rounding residue of the own positions; zero in double precision.
     own_rest: [M::V; 3],
     sums: [Cell<M::V>; 6],
 }
@@ -119,10 +119,10 @@ impl<M: Machine> Env<3> for &Behind<M> {
         cell.set(cell.get() + value);
     }
 
-    #[expect(clippy::unreachable, reason = "called only where `Env::BOTH_PARTNERS` says so")]
+    #[expect(clippy::unreachable, reason = "called only if `Env::BOTH_PARTNERS`")]
     #[inline]
     fn partner_sub(self, _: Sum, _: isize, _: M::V) {
-        unreachable!("every pair is met from both sides")
+        unreachable!("every pair is visited from both sides")
     }
 
     #[inline(always)]
@@ -178,7 +178,7 @@ unsafe impl<P: Element, L: Law<3>> Text for Shifts<P, L> {
         }
         m.section("sums");
         for &sum in L::SUMS {
-            // Those of these shifts are summed up apart: fewer digits are lost.
+            // The sums of these shifts are added up separately, which loses fewer digits.
             let slot = Slot::<P>::new(body_sum_array(sum));
             m.store(slot, m.load(slot) + behind.sums[sum.column::<3>()].get());
         }

@@ -1,4 +1,4 @@
-//! A band of rows on registers.
+//! Evaluation of a band of rows in registers.
 
 use super::{Bodies, is_split};
 use crate::backend::{GROUP, Precision, Registers, Task};
@@ -8,10 +8,10 @@ use std::array::from_fn;
 use std::cell::Cell;
 use std::ops::Range;
 
-/// Own bodies that meet the same partners at a time: as many as leave room in the registers for everything else.
+/// Own bodies that share the same partners: as many as leave registers for everything else.
 const OWN: usize = 4;
 
-/// Groups of partners after which own sums leave the registers: what is added to a sum is not much smaller than it, so that few
+/// Groups of partners after which own sums leave the registers: the terms are then not much smaller than the sum, so that few
 /// digits are lost.
 const SPELL: usize = 64;
 
@@ -26,30 +26,30 @@ pub(super) struct Rows<'a, P, L, const SUMS: usize> {
     pub(super) observed: bool,
     /// Energy and virial.
     pub(super) energy: &'a mut [f64; 2],
-    /// Whether to stop before the next group.
+    /// Called before each group; true stops the sweep.
     pub(super) interrupted: &'a (dyn Fn() -> bool + Sync),
-    /// Whether it was stopped on the way.
+    /// True if it was interrupted.
     pub(super) is_stopped: &'a mut bool,
 }
 
-/// A band of rows on registers. Where it is `EXACT`, own sums are kept by 16 lanes.
+/// Task that evaluates a band of rows. If `EXACT`, own sums are kept in 16 lanes.
 pub(super) struct Tile<'a, P, L, const SUMS: usize, const EXACT: bool>(pub(super) Rows<'a, P, L, SUMS>);
 
-/// The sums of a body.
+/// Sums of a body.
 type Sums<V, const SUMS: usize> = [Cell<V>; SUMS];
 
 /// A register of partners.
 #[derive(Clone, Copy)]
 struct Partner<V> {
     position: [V; 3],
-    /// What rounding has left of it; zero in double precision.
+    /// Rounding residue of the position; zero in double precision.
     rest: [V; 3],
-    /// Where the law asks for it, else zero.
+    /// Velocity if the law reads it, else zero.
     velocity: [V; 3],
     mass: V,
 }
 
-/// What the law sees. `BOTH`: whether the pair is met once.
+/// Environment of a law that evaluates one register of pairs. `BOTH` is true if the pair is visited once.
 struct Meeting<'a, R: Registers, const SUMS: usize, const BOTH: bool> {
     registers: R,
     own: Partner<R::V>,
@@ -60,7 +60,7 @@ struct Meeting<'a, R: Registers, const SUMS: usize, const BOTH: bool> {
 }
 
 impl<R: Registers, const SUMS: usize, const BOTH: bool> Meeting<'_, R, SUMS, BOTH> {
-    /// A quantity. What bodies have not is zero; a law that states such is refused by the sweep.
+    /// A quantity of a body. Quantities that bodies do not have are zero; the sweep rejects a law that states one.
     #[inline(always)]
     fn field(&self, of: &Partner<R::V>, field: Field) -> R::V {
         match field {
@@ -172,13 +172,13 @@ impl<P: Precision, L: Law<3>, const SUMS: usize, const EXACT: bool> Task<P> for 
 }
 
 impl<P: Precision, L: Law<3>, const SUMS: usize, const EXACT: bool> Tile<'_, P, L, SUMS, EXACT> {
-    /// `OWN` bodies of a group, from its `first` on, with those of the group and all behind it.
+    /// Pairs `OWN` bodies of a group, from its `first` on, with those of the group and all behind it.
     #[inline(always)]
     fn row<R: Registers<Lane = P>>(&mut self, registers: R, group: usize, first: usize) {
         let Rows { law, bodies, groups, sums, observed, energy: total, .. } = &mut self.0;
         let (law, bodies, observed) = (*law, *bodies, *observed);
         let (start, behind) = (group * GROUP, bodies.mass.len());
-        // Sums of lane l of part p are those of logical lane p · LANES + l; parts share theirs where bits may depend on the
+        // Sums of lane l of part p are those of logical lane p · LANES + l. Parts share their sums where bits may depend on the
         // registers.
         let kept = const { if EXACT { GROUP / R::LANES } else { 1 } };
         let zero = registers.splat(P::default());
@@ -258,28 +258,28 @@ impl<P: Precision, L: Law<3>, const SUMS: usize, const EXACT: bool> Tile<'_, P, 
         }
     }
 
-    /// A body in every lane.
+    /// Broadcasts a body to every lane.
     #[inline(always)]
     fn own<R: Registers<Lane = P>>(registers: R, bodies: &Bodies<'_, P>, body: usize) -> Partner<R::V> {
         Self::body(registers, bodies, |column| registers.splat(column[body]))
     }
 
-    /// A register of bodies from `at` on.
+    /// Loads a register of bodies from `at` on.
     ///
     /// # Safety
-    /// They exist.
+    /// The bodies exist.
     #[inline(always)]
     unsafe fn partner<R: Registers<Lane = P>>(
         registers: R,
         bodies: &Bodies<'_, P>,
         at: usize,
     ) -> Partner<R::V> {
-        // SAFETY: the caller promises the bodies, and all columns that the law asks for have as many entries (checked by
+        // SAFETY: the caller promises the bodies, and all columns that the law reads have as many entries (checked by
         // AllPairs::sweep).
         Self::body(registers, bodies, |column| unsafe { registers.load(column.as_ptr().add(at)) })
     }
 
-    /// What the law asks for, `of` a column each.
+    /// Reads the quantities that the law uses, with `of` applied to each column.
     #[inline(always)]
     fn body<R: Registers<Lane = P>>(
         registers: R,
@@ -298,7 +298,7 @@ impl<P: Precision, L: Law<3>, const SUMS: usize, const EXACT: bool> Tile<'_, P, 
     }
 }
 
-/// Whether a law that states these fields reads velocities.
+/// True if a law that states these fields reads velocities.
 pub(super) const fn asks_for_velocity(fields: &[Field]) -> bool {
     let mut i = 0;
     while i < fields.len() {
@@ -310,7 +310,7 @@ pub(super) const fn asks_for_velocity(fields: &[Field]) -> bool {
     false
 }
 
-/// Asks the law about a pair.
+/// Evaluates the law for a register of pairs.
 #[inline(always)]
 fn meet<R: Registers, L: Law<3>, const SUMS: usize, const BOTH: bool>(
     law: &L,
@@ -322,8 +322,8 @@ fn meet<R: Registers, L: Law<3>, const SUMS: usize, const BOTH: bool>(
     law.pair(env, partner, &own);
 }
 
-/// Own bodies and partners, but that in a body's own lane its partner has no mass and is 1 away: a body does nothing to itself, with or
-/// without softening, wherever it is.
+/// Removes a body's interaction with itself. In the body's own lane the partner gets no mass and distance 1, so the force is
+/// zero, with or without softening, at any position.
 #[inline(always)]
 fn apart<R: Registers>(
     registers: R,
@@ -340,7 +340,7 @@ fn apart<R: Registers>(
     let one_at_own = unsafe { registers.load(numbers.as_ptr()) };
     let zero = registers.splat(R::Lane::default());
     let is_own = zero.less_than(one_at_own);
-    // Both places along x are replaced: a step of 1 from the body's own place is lost where numbers are coarser than 1.
+    // Both x coordinates are replaced: adding 1 to the body's own would be lost where floating-point numbers are coarser than 1.
     let along_x = |instead: R::V, of: Partner<R::V>| {
         let [x, y, z] = of.position;
         Partner { position: [R::V::select(is_own, instead, x), y, z], ..of }
@@ -349,7 +349,7 @@ fn apart<R: Registers>(
     (along_x(zero, own), Partner { mass, ..along_x(one_at_own, partner) })
 }
 
-/// Takes sums out of the registers, and leaves zeros there.
+/// Adds the sums in the registers to `into` and sets them to zero.
 #[inline(always)]
 fn take<R: Registers, const SUMS: usize, const BODIES: usize>(
     registers: R,
@@ -370,7 +370,7 @@ fn take<R: Registers, const SUMS: usize, const BODIES: usize>(
     }
 }
 
-/// The sum of all lanes, halves by halves.
+/// Sum of all lanes, by repeated halving.
 #[inline(always)]
 fn of_lanes<P: Element>(mut lanes: [P; GROUP]) -> P {
     let mut half = GROUP / 2;

@@ -1,20 +1,21 @@
-//! Corrector and next predictor in one pass over the discs.
+//! Fused corrector and next predictor: one pass over the discs per step.
 //!
 //! ```text
 //! a step as written:   predict | find forces | correct
 //! as executed:                   find forces | correct, predict | find forces | correct, predict | ...
 //! ```
 //!
-//! The state that a pass leaves is that of the predictor; an observer, which wants the state at the end of the step, corrects a
-//! copy ([`Motion::corrected`]). So every column is read once and written once a step. On this pass, while all is in registers:
+//! A pass leaves the predicted state. An observer needs the state at the end of the step and corrects a copy
+//! ([`Motion::corrected`]). So every column is read once and written once a step. The same pass, while everything is in
+//! registers:
 //!
-//! - the sums of forces are set to zero for the next sweep;
-//! - each disc's place is compared with how far it may go before the search must know: the rim of its cell, or half the skin
-//!   of a list. Few have gone so far; their numbers are collected from the bits of one comparison a register;
-//! - so is the length of its next step, which must not carry it past another disc unseen;
-//! - for a search on the lattice the place is copied to the disc's cell in single precision. That is a store to a cell of its
-//!   own for every disc, so it needs no order between threads. (Discs in a cell that is another's write to one spare place
-//!   behind the lattice, atomically, which is never read.)
+//! - sets the sums of forces to zero for the next sweep;
+//! - compares each disc's position with its limit, at which the search must be updated: the edge of its cell, or half the skin of
+//!   a list. Few discs exceed it; their numbers are collected from the bits of one comparison per register;
+//! - compares the length of the disc's next step with its limit, so that no disc jumps past another undetected;
+//! - copies the position in single precision to the disc's cell, for a search on the lattice. Each disc writes to a cell of its
+//!   own, so threads need no order. (Discs in a shared cell write to one spare element behind the lattice, atomically; it is
+//!   never read.)
 //!
 //! Derivatives that a scheme does not carry from step to step are not stored ([`Scheme::CARRIED`]).
 
@@ -28,52 +29,52 @@ use crate::threads::{on_threads, pieces};
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// Discs whose random numbers are drawn at once: they stay in the first-level cache. A multiple of every register's lanes.
+/// Discs whose random numbers are drawn in one batch, which fits in the first-level cache. A multiple of every register's lanes.
 const AT_ONCE: usize = 256;
 
-/// Discs that one thread moves at a time.
+/// Discs that one thread moves in one piece.
 const BAND: usize = 1024;
 
-/// How discs move under forces.
+/// Equation of motion and its integration: scheme, time step, inertia, gravity, noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion<C> {
     /// The scheme.
     pub scheme: C,
     /// Time step (time).
     pub dt: f64,
-    /// What forces are divided by.
+    /// Divisor of the forces.
     pub inertia: Inertia,
     /// Acceleration of gravity (length/time²).
     pub gravity: [f64; 2],
-    /// The random numbers, for a scheme that draws some.
+    /// Source of random numbers, for a scheme that draws some.
     pub noise: NoiseSource,
 }
 
-/// How far a disc may go before the search must know.
+/// Limit of a disc's displacement beyond which the search must be updated.
 #[derive(Clone, Copy, Debug)]
 pub enum DisplacementLimit<'a, S> {
-    /// As far as the rim of its cell, of these sides (length).
+    /// The edge of its cell, of these sides (length).
     Cell([f64; 2]),
-    /// So far from a place.
+    /// A distance from a reference position.
     From {
-        /// The places, an entry a disc or more.
+        /// Reference positions, at least one entry per disc.
         places: [&'a [S]; 2],
-        /// How far (length).
+        /// Largest distance (length).
         distance: f64,
     },
 }
 
-/// Discs that a pass has found.
+/// Discs reported by a pass.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Passed {
-    /// Those that are beyond the limit, or have no finite place, in order.
+    /// Discs beyond the limit or without a finite position, in order.
     pub left: Vec<u32>,
-    /// Those that are so fast that they move farther in a step than they may, or whose speed is no number, in order.
+    /// Discs whose next step is longer than allowed or whose speed is not a number, in order.
     pub far: Vec<u32>,
 }
 
 impl Passed {
-    /// These, and those of a pass over discs behind.
+    /// Joins these discs with those of a pass over later discs.
     #[must_use]
     #[inline]
     pub fn and(mut self, behind: Passed) -> Passed {
@@ -83,27 +84,27 @@ impl Passed {
     }
 }
 
-/// Copies of the places for a search in single precision: written beside the state, while it is at hand.
+/// Single-precision copies of the positions for a search, written together with the state while it is in registers.
 ///
-/// Only the lattice makes them, and every cell is one of `places`, of one disc or of none.
+/// Only the lattice creates them. Every cell is an index into `places` and belongs to one disc or to none.
 #[derive(Debug)]
 pub struct Copies<'a> {
-    /// Where in the copies the discs are.
+    /// Index of each disc's copy.
     pub(super) cells: &'a [u32],
     /// The copies.
     pub(super) places: [&'a mut [f32]; 2],
-    /// What lengths are multiplied by.
+    /// Factor from lengths to the unit of the copies.
     pub(super) unit: f64,
 }
 
 impl<C: Scheme> Motion<C> {
-    /// What the scheme may know of one degree of freedom.
+    /// Context of the scheme for one degree of freedom.
     #[inline(always)]
     fn context<R: Registers>(&self, registers: R, inverse: R::V, normal: R::V) -> Context<R> {
         Context { registers, dt: self.dt, inverse, normal }
     }
 
-    /// The random numbers of some discs along x and y in the pass that corrects the step numbered `step`.
+    /// Draws the random numbers of some discs along x and y, in the pass that corrects the step numbered `step`.
     #[inline(always)]
     fn draw<S: Element>(&self, step: u64, ids: &[u32], to: [&mut [S]; 2]) {
         let NoiseSource { seed, parts } = self.noise;
@@ -118,7 +119,7 @@ impl<C: Scheme> Motion<C> {
         }
     }
 
-    /// The numbers of a step made of those of its parts, which are counted from `first` on.
+    /// Combines the numbers of a step from those of its parts, which are numbered from `first`.
     #[inline(never)]
     fn combine<S: Element>(&self, first: u64, ids: &[u32], [across, along]: [&mut [S]; 2]) {
         let weights = self.scheme.noise_weights(self.noise.parts);
@@ -133,7 +134,7 @@ impl<C: Scheme> Motion<C> {
         }
     }
 
-    /// The row of one degree of freedom of the disc `id`, corrected in the step numbered `step`: from the predicted one (its
+    /// Returns one degree of freedom of the disc `id`, corrected in the step numbered `step`. Inputs are the predicted row (its
     /// first [`Scheme::CARRIED`] entries), the force and the inverse mass or moment of inertia.
     #[inline]
     pub fn corrected<S: Element>(
@@ -157,38 +158,38 @@ impl<C: Scheme> Motion<C> {
     }
 }
 
-/// Corrects the state with the forces found and predicts it one step ahead.
+/// Corrects the state with the forces of a sweep and predicts it one step ahead.
 ///
-/// What of the discs is moved first changes no bit. Places are those inside the cells. The sums are set to zero behind the pass.
+/// The order in which discs are moved changes no bit. Positions are relative to the cells. The pass sets the sums to zero.
 pub struct Advance<'a, S, P, C> {
-    /// How discs move.
+    /// Equation of motion and its integration.
     pub motion: &'a Motion<C>,
-    /// For each degree of freedom a column for each derivative that is carried; an entry a disc that moves, or more.
+    /// For each degree of freedom one column per carried derivative, with at least one entry per moving disc.
     pub state: Vec<Vec<&'a mut [S]>>,
-    /// Force along x, along y, torque: as many as degrees of freedom.
+    /// Force along x, force along y, torque: one column per degree of freedom.
     pub sums: Vec<&'a mut [P]>,
     /// Inverse masses and moments of inertia, where discs vary.
     pub inverse: [&'a [S]; 2],
-    /// The discs that are moved.
+    /// Discs to move.
     pub discs: Range<usize>,
-    /// Number of the step that is corrected; the next one is predicted.
+    /// Number of the step to correct; the next one is predicted.
     pub step: u64,
-    /// The discs' ids, for a scheme that draws random numbers; an entry a disc that moves, or more.
+    /// Ids of the discs, for a scheme that draws random numbers; at least one entry per moving disc.
     pub ids: &'a [u32],
-    /// Whether the state is that of the start, so that forces give no more than the acceleration: the first step.
+    /// True in the first step: the state is the initial one, and forces only give its accelerations.
     pub corrected: bool,
-    /// Discs that move farther than this (length) in a step, at the velocity predicted, are listed.
+    /// Longest step (length) at the predicted velocity; faster discs are listed.
     pub longest_step: f64,
 }
 
 impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
-    /// Does it, and lists the discs that must be seen to.
+    /// Advances the discs and returns those that need attention.
     ///
     /// # Errors
     /// [`ProgramError::NoSuchInstructionSet`]; nothing was executed then.
     ///
     /// # Panics
-    /// If a column is shorter than said.
+    /// If a column is shorter than documented.
     pub fn run(
         mut self,
         limit: DisplacementLimit<'_, S>,
@@ -197,13 +198,16 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
     ) -> Result<Passed, ProgramError> {
         let Advance { motion, discs, corrected, longest_step, inverse, step, ids, .. } = self;
         let end = discs.end;
-        assert!(C::DRAWS == Draws::Never || ids.len() >= end, "an id for every disc that moves");
+        assert!(C::DRAWS == Draws::Never || ids.len() >= end, "ids has no entry for some moving disc");
         let freedoms = self.state.len();
         assert!((2..=3).contains(&freedoms) && self.sums.len() == freedoms, "2 or 3 degrees of freedom");
         let vary = motion.inertia == Inertia::Varying;
         assert!(!vary || inverse[..freedoms - 1].iter().all(|column| column.len() >= end));
         if let DisplacementLimit::From { places, .. } = limit {
-            assert!(places.iter().all(|place| place.len() >= end), "a place for every disc that moves");
+            assert!(
+                places.iter().all(|place| place.len() >= end),
+                "a column of reference positions has no entry for some moving disc"
+            );
         }
         let mut columns = [[std::ptr::null_mut(); DERIVATIVES]; 3];
         for (to, from) in columns.iter_mut().zip(&mut self.state) {
@@ -221,7 +225,7 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
             let [x, y] = &mut none;
             Copies { cells: &[], places: [x, y], unit: 1.0 }
         });
-        assert!(!copies_places || cells.len() >= end, "a cell for every disc that moves");
+        assert!(!copies_places || cells.len() >= end, "cells has no entry for some moving disc");
         let arrays = Arrays {
             columns,
             sums,
@@ -233,7 +237,7 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
             copies_places,
             places: places.map(<[f32]>::as_mut_ptr),
         };
-        // The velocity as the state has it, at which a step is so long.
+        // Velocity in the units of the state at which a step has the greatest length allowed.
         let fastest = longest_step * (C::scales(motion.dt)[1] / motion.dt);
         let square = fastest * fastest;
         let pass = |range: Range<usize>| -> Result<Passed, ProgramError> {
@@ -259,7 +263,7 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
     }
 }
 
-/// Pointers to what a pass works on.
+/// Pointers to the arrays of a pass.
 struct Arrays<'a, S, P> {
     columns: [[*mut S; DERIVATIVES]; 3],
     sums: [*mut P; 3],
@@ -268,22 +272,22 @@ struct Arrays<'a, S, P> {
     inverse: [*const S; 2],
     limit: DisplacementLimit<'a, S>,
     cells: *const u32,
-    /// Whether places on the lattice are kept.
+    /// True if positions are copied to the lattice.
     copies_places: bool,
     places: [*mut f32; 2],
 }
 
-// SAFETY: passes over ranges that do not overlap touch different discs, and these have different cells, but for those in
-// shared cells, whose common spare cell is stored to atomically and read by none.
+// SAFETY: passes over disjoint ranges touch different discs, and these have different cells. Discs in shared cells have a common
+// spare cell, which is stored to atomically and never read.
 unsafe impl<S: Send + Sync, P: Send> Sync for Arrays<'_, S, P> {}
 
-/// The pass over some discs.
+/// The pass over one range of discs.
 struct Pass<'a, S, P, C, const FREEDOMS: usize> {
     motion: &'a Motion<C>,
     arrays: &'a Arrays<'a, S, P>,
     range: Range<usize>,
     corrected: bool,
-    /// Square of the velocity, as the state has it, at which a step is as long as it may be.
+    /// Square of the greatest velocity allowed, in the units of the state.
     square: f64,
     unit: f64,
     passed: &'a mut Passed,
@@ -313,7 +317,7 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Task<S> for Pas
 }
 
 impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, C, FREEDOMS> {
-    /// What fills no register, disc by disc: the same bits, so not worth a copy for every register file.
+    /// Advances the discs that do not fill a register one by one. The bits are the same, so one copy serves all register files.
     #[inline(never)]
     fn elements(&mut self, discs: Range<usize>, [x, y]: [&[S]; 2]) {
         for (number, disc) in discs.enumerate() {
@@ -321,8 +325,8 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
         }
     }
 
-    /// The discs of a register from `first` on, with their random numbers along x and y.
-    #[allow(clippy::needless_range_loop, reason = "columns side by side, under one number")]
+    /// Advances one register of discs from `first` on, with their random numbers along x and y.
+    #[allow(clippy::needless_range_loop, reason = "several columns share one index")]
     #[inline(always)]
     fn register<R: Registers<Lane = S>>(&mut self, registers: R, first: usize, noise: [&[S]; 2]) {
         let Pass { motion, arrays, corrected, .. } = *self;
@@ -333,16 +337,16 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
             Draws::Never => [nothing; 2],
             _ => {
                 assert!(noise[0].len() >= R::LANES && noise[1].len() >= R::LANES);
-                // SAFETY: there are as many as lanes.
+                // SAFETY: both slices have at least LANES entries, as asserted.
                 unsafe { [registers.load(noise[0].as_ptr()), registers.load(noise[1].as_ptr())] }
             }
         };
         for freedom in 0..FREEDOMS {
-            // SAFETY: Advance has checked that every sum has an entry for every disc that moves; the discs of a register are
-            // such ones, and this thread alone works on them.
+            // SAFETY: Advance has checked that every sum has an entry for every moving disc, which includes those of a register;
+            // this thread alone works on them.
             let force = unsafe { take(registers, arrays.sums[freedom].add(first)) };
             let inverse = motion.inertia.inverse(freedom, uniform, || {
-                // SAFETY: where discs vary, Advance has checked that these columns have an entry for every disc that moves.
+                // SAFETY: where discs vary, Advance has checked that these columns have an entry for every moving disc.
                 unsafe { registers.load(arrays.inverse[freedom / 2].add(first)) }
             });
             let context = |place: Draws| {
@@ -352,7 +356,7 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
             let acceleration = acceleration(uniform, motion.gravity, freedom, force, inverse);
             let mut row = [uniform(0.0); DERIVATIVES];
             for k in 0..C::CARRIED {
-                // SAFETY: Advance has checked that every derivative that is carried has an entry for every disc that moves.
+                // SAFETY: Advance has checked that every carried derivative has an entry for every moving disc.
                 row[k] = unsafe { registers.load(arrays.columns[freedom][k].add(first)) };
             }
             if corrected {
@@ -362,7 +366,7 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
             }
             motion.scheme.predict(&context(Draws::InPredictor), &mut row);
             for k in 0..C::CARRIED {
-                // SAFETY: it was loaded from there, and this thread alone works on these discs.
+                // SAFETY: the row was loaded from there, and this thread alone works on these discs.
                 unsafe { registers.store(arrays.columns[freedom][k].add(first), row[k]) };
             }
             if freedom < 2 {
@@ -376,7 +380,7 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
                 place[0].abs().less_equal(x).and(place[1].abs().less_equal(y))
             }
             DisplacementLimit::From { places: [x, y], distance } => {
-                // SAFETY: Advance has checked that there is a place for every disc that moves.
+                // SAFETY: Advance has checked that every moving disc has a reference position.
                 let (x, y) =
                     unsafe { (registers.load(x.as_ptr().add(first)), registers.load(y.as_ptr().add(first))) };
                 let (dx, dy) = (place[0] - x, place[1] - y);
@@ -397,14 +401,15 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
             let mut along = [S::default(); 16];
             // SAFETY: `along` has 16 entries, and no register has more lanes.
             unsafe { registers.store(along.as_mut_ptr(), place[axis] * unit) };
-            // First all, then one by one: so they are converted at once.
+            // Converts all lanes first, so that the compiler vectorises the conversion.
             let mut narrow = [0.0_f32; 16];
             for lane in 0..16 {
                 narrow[lane] = along[lane].to_f64() as f32;
             }
             for lane in 0..R::LANES {
-                // SAFETY: the cells are ones of the lattice, each of one disc only but for the spare cell behind it, which
-                // discs in shared cells have in common and only these stores touch: they are atomic, and compile to plain ones.
+                // SAFETY: the cells are cells of the lattice, each of one disc only. The exception is the spare cell behind it,
+                // which discs in shared cells have in common: only these stores touch it. They are atomic and compile to plain
+                // ones.
                 unsafe {
                     let place = arrays.places[axis].add(*arrays.cells.add(first + lane) as usize);
                     AtomicU32::from_ptr(place.cast()).store(narrow[lane].to_bits(), Ordering::Relaxed);
@@ -423,11 +428,11 @@ fn list(bits: u64, first: usize, lanes: usize, to: &mut Vec<u32>) {
 /// Loads sums and sets them to zero.
 ///
 /// # Safety
-/// There are as many as a register has lanes, at most 16, and no other thread touches them.
+/// There are at least as many sums as a register has lanes, at most 16, and no other thread touches them.
 #[inline(always)]
 unsafe fn take<R: Registers, P: Element>(registers: R, sums: *mut P) -> R::V {
     if same::<P, R::Lane>() {
-        // SAFETY: P is Lane, and the caller promises LANES sums that are this thread's alone.
+        // SAFETY: P is Lane, and the caller promises LANES sums that belong to this thread.
         return unsafe {
             let value = registers.load(sums.cast());
             registers.store(sums.cast(), registers.splat(R::Lane::default()));
@@ -435,7 +440,7 @@ unsafe fn take<R: Registers, P: Element>(registers: R, sums: *mut P) -> R::V {
         };
     }
     let mut lanes = [R::Lane::default(); 16];
-    // SAFETY: the caller promises LANES sums that are this thread's alone.
+    // SAFETY: the caller promises LANES sums that belong to this thread.
     let sums = unsafe { std::slice::from_raw_parts_mut(sums, R::LANES) };
     for (lane, sum) in lanes.iter_mut().zip(sums) {
         *lane = R::Lane::from_f64(sum.to_f64());

@@ -1,7 +1,7 @@
 //! A sweep in bands of rows, on any number of threads.
 //!
-//! Pairs are found from the disc in the lower row (or to the left in the same one), so that a pair of a row adds to discs of
-//! that row and of at most `ahead` rows further up. Rows are cut into bands at least twice as high as that. With `ahead` = 2:
+//! Pairs are found from the disc in the lower row, or from the left one in the same row. So a pair of a row adds to discs of that
+//! row and of at most `ahead` rows further up. Rows are cut into bands at least twice as high as that. With `ahead` = 2:
 //!
 //! ```text
 //!   row 11 ┐               stage 1   ─┐ adds to rows 10 to 13
@@ -16,12 +16,12 @@
 //!   row  0 ┘               stage 0   ─┘
 //! ```
 //!
-//! Where there are fewer bands than threads and most of the work is finding pairs (coarse [`Sectors`](super::Sectors)), all threads
-//! find the pairs of a band together, and one adds them up, in the same order.
+//! With fewer bands than threads, and most of the work in the search (coarse [`Sectors`](super::Sectors)), all threads find the
+//! pairs of one band together. One thread then adds them up, in the same order.
 //!
-//! Within a stage no two bands add to the same row. So threads need no copies of the sums and no atomic additions, and as the
-//! bands are a function of the scene, the order of every sum is the same on any number of threads. The last band's partners
-//! beyond the last row are, on a periodic side, those of the first rows, which band A leaves alone in stage 1.
+//! Within a stage no two bands add to the same row, so threads need no copies of the sums and no atomic additions. The bands
+//! depend on the scene alone, so the order of every sum is the same on any number of threads. Partners of the last band beyond
+//! the last row are, on a periodic side, those of the first rows, which band A does not touch in stage 1.
 
 use super::contacts::{Discs, Evaluate, Notes, SumColumns};
 use super::finder::{Cursor, Finder, Rows, Share};
@@ -34,57 +34,56 @@ use crate::law::{self, Asked, Law};
 use crate::threads::{in_stages, on_threads, pieces, threads};
 use std::ops::Range;
 
-/// Rows that one thread sweeps, and what it keeps for that.
+/// Rows that one thread sweeps, with its buffers.
 #[derive(Clone, Debug)]
 struct Band<F> {
-    /// The rows to be swept in each of the two stages, and those beside whose search pairs are found.
+    /// Rows of the first stage, rows of the second, and rows whose extra pairs ([`Finder::find_beside`]) are found.
     rows: [Vec<Range<usize>>; 3],
-    /// Whether its notes are this rank's.
+    /// True if its notes belong to this rank.
     is_own: bool,
     found: F,
     notes: Notes,
     pairs: u64,
 }
 
-/// What a sweep met.
+/// Result of a sweep: numbers of pairs and contacts, energies, and pairs that need attention.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Met {
-    /// Pairs the law was asked about, each once.
+    /// Pairs the law was evaluated for, each once.
     pub pairs: u64,
-    /// Pairs deeper than watched.
+    /// Pairs deeper than the watched depth.
     pub deep: Vec<[u32; 2]>,
-    /// Pairs whose force is no finite number. Two fixed discs that touch are such a pair.
+    /// Pairs whose force is not finite. Two fixed discs that touch are such a pair.
     pub not_finite: Vec<[u32; 2]>,
-    /// What the contacts dissipate (energy/time), where that is asked for. Summed in an order that depends on the scene
-    /// alone.
+    /// Power dissipated by the contacts (energy/time), if requested. The order of summation depends on the scene alone.
     pub dissipated: f64,
-    /// Energy and virial of the pairs (energy), where they are asked for. Summed likewise.
+    /// Energy and virial of the pairs (energy), if requested. Summed in the same way.
     pub energy: [f64; 2],
-    /// Contacts of which at least one disc may move, where energy is asked for.
+    /// Contacts with at least one mobile disc, if energy is requested.
     pub contacts: u64,
-    /// The deepest of them (a fraction of the sum of the radii).
+    /// Deepest of these contacts (a fraction of the sum of the radii).
     pub deepest: f64,
-    /// What all of that but the pairs listed is the sum of, band by band.
+    /// Contributions of the bands, whose sums are the totals above; lists of pairs are not split.
     pub of_bands: Vec<OfBand>,
 }
 
-/// What a band has met.
+/// Totals of one band.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct OfBand {
-    /// As of all.
+    /// Pairs the law was evaluated for.
     pub pairs: u64,
-    /// As of all.
+    /// Power dissipated by the contacts (energy/time).
     pub dissipated: f64,
-    /// As of all.
+    /// Energy and virial of the pairs (energy).
     pub energy: [f64; 2],
-    /// As of all.
+    /// Contacts with at least one mobile disc.
     pub contacts: u64,
-    /// As of all.
+    /// Deepest of these contacts (a fraction of the sum of the radii).
     pub deepest: f64,
 }
 
 impl Met {
-    /// Of bands, added up in their order.
+    /// Adds up the bands in their order.
     #[inline]
     pub fn of(of_bands: Vec<OfBand>) -> Met {
         let mut met = Met::default();
@@ -99,42 +98,42 @@ impl Met {
     }
 }
 
-/// A law over all contacts, each met once.
+/// Evaluates a law for all contacts, each once.
 ///
-/// First every band sweeps its rows but the last ones, whose partners are all its own; then every band sweeps its last
-/// rows, whose partners may be the next band's first; last come the pairs that are in no row. So no two threads ever add to one disc, and the order of every
-/// sum depends on the scene alone.
+/// First every band sweeps all of its rows except the last ones; the partners are all in the band. Then every band sweeps its
+/// last rows, whose partners may be in the first rows of the next band. Pairs outside the rows come last. So no two threads ever
+/// add to one disc, and the order of every sum depends on the scene alone.
 #[derive(Clone, Debug)]
 pub struct Sweep<F> {
     rows: Rows,
     bands: Vec<Band<F>>,
-    /// What threads find of one band, in its order.
+    /// Pairs that threads find in one band, in its order.
     parts: Vec<F>,
 }
 
-/// What a pair that is found takes, over one that is tried; about one is found for each disc.
+/// Cost of evaluating a pair, in units of trying one; about one pair is found for each disc.
 const EVALUATION: f64 = 16.0;
-/// Parts of a band for each thread that searches them: some take longer than others.
+/// Parts of a band per searching thread; more than one because some take longer than others.
 const PARTS: usize = 8;
 
-/// Whether it is cheaper that all threads find the pairs of one band after the other and one evaluates them, than that each
-/// thread does all for a band; with `tried` pairs for each disc. No bit depends on it.
+/// True if it is cheaper that all threads find the pairs of one band after the other and one thread evaluates them, than that
+/// each thread does all the work of a band. `tried` is the number of pairs tried per disc. No bit depends on the choice.
 fn is_cheaper_apart(tried: f64, bands: usize, threads: usize) -> bool {
     tried / (threads as f64) + EVALUATION < (tried + EVALUATION) / bands.min(threads) as f64
 }
 
 impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
-    /// For rows of discs.
+    /// Sweep over these rows.
     #[inline]
     pub fn new(rows: Rows) -> Self {
         Sweep::of_share(rows, None)
     }
 
-    /// For those rows of discs that one of several ranks sees to: sums are right for all discs that are no farther from its rows than its margin, if
-    /// the discs are there on which they depend. All others' are not.
+    /// Sweep over one rank's share of the rows. Sums are right for all discs within the margin of the share's rows, if the discs
+    /// they depend on are present. Sums of other discs are not right.
     ///
-    /// Who has a disc beside a band of another rank does that band's pairs again, in the same order, rather than be told sums of them: those could
-    /// not be added in the order of one rank alone.
+    /// A rank repeats the pairs of a neighbouring band for discs it holds there, in the same order. Sums received from the other
+    /// rank could not be added in the order of a single rank.
     #[inline]
     pub fn of_share(rows: Rows, share: Option<&Share>) -> Self {
         let ahead = rows.ahead;
@@ -144,7 +143,7 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
             let own = share.is_none_or(|share| share.rows.contains(&band.start));
             let rows = match share {
                 None => stages.map(|stage| vec![stage]),
-                // Partners lie ahead, but those of pairs beside rows also behind.
+                // Partners are ahead; those of the extra pairs may also be behind.
                 Some(share) => {
                     let near = [share.margin + ahead, share.margin];
                     let [first, last, beside] = stages;
@@ -158,15 +157,15 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
         Sweep { rows, bands: bands.collect(), parts: vec![] }
     }
 
-    /// Adds what `law` gives to the sums (force along x, along y, torque), an entry a disc and sentinel.
+    /// Adds the forces of `law` to the sums (force along x, along y, torque). Each sum has at least one entry per disc.
     ///
     /// # Errors
-    /// [`ProgramError::NoSuchInstructionSet`], or [`ProgramError::Unstated`] for a law that asks for what it does not state;
+    /// [`ProgramError::NoSuchInstructionSet`], or [`ProgramError::Unstated`] for a law that reads a quantity it does not state;
     /// nothing was executed then.
     ///
     /// # Panics
-    /// If the rows are others, a column that the law asks for has not an entry for every disc and sentinel, or one of
-    /// the sums has none for a disc.
+    /// If the finder has other rows, a column that the law reads does not have an entry for every disc and sentinel, or a sum has
+    /// fewer entries than there are discs.
     pub fn run<S: Element, P: Precision, L: Law<2> + Sync>(
         &mut self,
         law: &L,
@@ -176,12 +175,18 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
         asked: Asked,
         set: InstructionSet,
     ) -> Result<Met, ProgramError> {
-        assert!(self.rows == finder.rows(), "a sweep is made for its rows");
+        assert!(self.rows == finder.rows(), "the finder's rows are not those the sweep was made for");
         law::check(law)?;
         let count = finder.discs();
-        assert!(discs.suffice(L::FIELDS, count), "columns of {count} discs and {SENTINELS} sentinels");
+        assert!(
+            discs.suffice(L::FIELDS, count),
+            "a column does not have an entry for each of {count} discs and {SENTINELS} sentinels"
+        );
         let mut columns = sums.map(|sum| (sum.len(), sum.as_mut_ptr()));
-        assert!(L::SUMS.iter().all(|sum| columns[sum.column::<2>()].0 >= count), "sums of {count} discs");
+        assert!(
+            L::SUMS.iter().all(|sum| columns[sum.column::<2>()].0 >= count),
+            "a column of sums has fewer entries than the {count} discs"
+        );
         let sums = SumColumns(columns.each_mut().map(|column| column.1));
         let sentinel = count as u32;
         let sweep = |band: &mut Band<F>, stage: usize| -> Result<(), ProgramError> {

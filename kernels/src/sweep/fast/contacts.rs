@@ -1,23 +1,23 @@
-//! The law for the pairs found, a register of them at a time.
+//! Evaluation of a law for the pairs found, one register of pairs at a time.
 //!
 //! ```text
 //! pairs      (3,7) (3,9) (5,8) (6,8)            as many as a register has lanes
-//! gather     own     x: x[3] x[3] x[5] x[6]     a load a lane; the law names the columns
+//! gather     own     x: x[3] x[3] x[5] x[6]     one load per lane; the law names the columns
 //!            partner x: x[7] x[9] x[8] x[8]
 //! law        one evaluation for all lanes       -> forces on own and on partner
 //! add        F[3] += lane 0, F[7] -= lane 0,    lane after lane, own before partner
 //!            F[3] += lane 1, F[9] -= lane 1, ...
 //! ```
 //!
-//! Why so:
+//! Reasons:
 //!
-//! - *Gathers are loads a lane*, for no portable SIMD has an instruction for them.
-//! - *Sums are added lane after lane*: two lanes may add to one disc, as above to 3 and to 8, and the order of summation must
-//!   not depend on how many lanes there are.
-//! - *The last register is filled up with a pair of sentinels*, two discs behind the others that never touch. So the law needs
-//!   no second version for a part of a register.
-//! - *Reads are not checked against the columns' ends.* Columns are checked once a sweep, pairs are of discs by the
-//!   [`Finder`](super::Finder)'s promise, and a law has no other columns than those it states ([`Stated`]).
+//! - *Gathers are one load per lane*, because no portable SIMD has an instruction for them.
+//! - *Sums are added lane after lane*: two lanes may add to one disc, such as 3 and 8 above, and the order of summation must not
+//!   depend on the number of lanes.
+//! - *The last register is padded with a pair of sentinels*, two discs behind the others that never touch. So the law needs no
+//!   second version for partial registers.
+//! - *Reads are not bounds-checked.* Columns are checked once a sweep, pairs are of discs by the [`Finder`](super::Finder)'s
+//!   contract, and a law can read only the columns it states ([`Stated`]).
 
 use super::pairs::{Pair, Pairs, SENTINELS};
 use crate::backend::{GROUP, Task};
@@ -27,13 +27,13 @@ use crate::law::{Asked, Env, Field, Law, Stated, Sum};
 use std::cell::Cell;
 use std::mem::MaybeUninit;
 
-/// The discs' quantities as a fast sweep reads them: an entry a disc and [`SENTINELS`] more. What a law does not ask
-/// for may be empty.
+/// Quantities of the discs as a fast sweep reads them: one entry per disc and [`SENTINELS`] more. Columns that the law does not
+/// read may be empty.
 #[derive(Clone, Copy, Debug)]
 pub struct Discs<'a, S> {
-    /// Places inside the cells, seen from their centres (length).
+    /// Positions relative to the centres of the cells (length).
     pub place: [&'a [S]; 2],
-    /// Velocities, in some unit of time.
+    /// Velocities, in any unit of time.
     pub velocity: [&'a [S]; 2],
     /// Angular velocities, in the same unit.
     pub omega: &'a [S],
@@ -57,7 +57,7 @@ impl<'a, S: Element> Discs<'a, S> {
         }
     }
 
-    /// Whether every column that a law asks for has an entry for every disc and sentinel.
+    /// True if every column that a law reads has an entry for every disc and sentinel.
     #[inline]
     pub(super) fn suffice(&self, fields: &[Field], discs: usize) -> bool {
         let columns = fields.iter().map(|&field| self.column(field)).chain(self.place);
@@ -65,24 +65,24 @@ impl<'a, S: Element> Discs<'a, S> {
     }
 }
 
-/// Where the sums go; of these pointers' elements no other thread touches any that this one does.
+/// Columns of the sums; no other thread touches the elements that this thread does.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SumColumns<P>(pub(super) [*mut P; 3]);
 
-// SAFETY: a sweep gives each thread bands of rows, and in each stage no disc is of the rows or partners of two bands: what one
-// thread adds to, no other touches.
+// SAFETY: a sweep gives each thread bands of rows, and in each stage no disc belongs to the rows or partners of two bands: what
+// one thread adds to, no other touches.
 unsafe impl<P: Send> Send for SumColumns<P> {}
-// SAFETY: a shared one gives out copies of the pointers only; for what is done with them the same holds.
+// SAFETY: a shared reference only copies the pointers; the argument above covers their use.
 unsafe impl<P: Send> Sync for SumColumns<P> {}
 
-/// What came up beside the sums.
+/// Observations of a band beside the sums.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Notes {
-    /// Pairs deeper than the depth watched.
+    /// Pairs deeper than the watched depth.
     pub(super) deep: Vec<Pair>,
-    /// Pairs whose force is no finite number.
+    /// Pairs whose force is not finite.
     pub(super) not_finite: Vec<Pair>,
-    /// What the contacts dissipate (energy/time).
+    /// Power dissipated by the contacts (energy/time).
     pub(super) dissipated: f64,
     /// Energy and virial of the pairs (energy).
     pub(super) energy: [f64; 2],
@@ -92,7 +92,7 @@ pub(super) struct Notes {
 }
 
 impl Notes {
-    /// Forgets all but the room for it.
+    /// Resets everything and keeps the allocated memory.
     pub(super) fn clear(&mut self) {
         let (mut deep, mut not_finite) =
             (std::mem::take(&mut self.deep), std::mem::take(&mut self.not_finite));
@@ -102,7 +102,7 @@ impl Notes {
     }
 }
 
-/// Evaluates the law for pairs.
+/// Task that evaluates the law for pairs.
 pub(super) struct Evaluate<'a, S, P, L, Q> {
     pub(super) law: &'a L,
     pub(super) pairs: &'a Q,
@@ -116,7 +116,7 @@ pub(super) struct Evaluate<'a, S, P, L, Q> {
 /// As many entries as the widest register has lanes.
 type Lanes<T> = [T; GROUP];
 
-/// What the law sees: a register of pairs.
+/// Environment of a law that evaluates one register of pairs.
 struct Gathered<'a, R: Registers, S> {
     registers: R,
     discs: &'a Discs<'a, S>,
@@ -137,8 +137,8 @@ impl<R: Registers, S: Element> Gathered<'_, R, S> {
     #[inline(always)]
     fn gather(&self, column: &[S], discs: &Lanes<u32>) -> R::V {
         assemble(self.registers, |lane| {
-            // SAFETY: the places and the columns of the fields that the law states have an entry for every disc and for the
-            // sentinels (checked by Sweep); of others `Stated` lets no law ask. Pairs are of discs (Finder's promise), and
+            // SAFETY: the positions and the columns of the fields that the law states have an entry for every disc and for the
+            // sentinels (checked by Sweep); `Stated` rejects reads of other columns. Pairs are of discs (Finder's contract), and
             // lanes without a pair have the sentinels.
             R::Lane::from_f64(unsafe { column.get_unchecked(discs[lane] as usize) }.to_f64())
         })
@@ -159,7 +159,7 @@ fn assemble<R: Registers>(registers: R, number: impl Fn(usize) -> R::Lane) -> R:
     let mut lanes = MaybeUninit::<Lanes<R::Lane>>::uninit();
     let first = lanes.as_mut_ptr().cast::<R::Lane>();
     for lane in 0..R::LANES {
-        // SAFETY: lane < LANES <= GROUP, the entries that `lanes` has room for.
+        // SAFETY: lane < LANES <= GROUP, the capacity of `lanes`.
         unsafe { first.add(lane).write(number(lane)) };
     }
     // SAFETY: the loop has written the first LANES entries.
@@ -203,7 +203,7 @@ impl<R: Registers, S: Element> Env<2> for &Gathered<'_, R, S> {
     }
     #[inline(always)]
     fn none(self, _: <R::V as Vector>::Predicate) -> bool {
-        false // Nearly all candidates are contacts.
+        false // A branch does not pay: nearly all candidates are contacts.
     }
     #[inline(always)]
     fn own_add(self, sum: Sum, value: R::V) {
@@ -264,14 +264,14 @@ impl<S: Element, P: Precision, L: Law<2>, Q: Pairs<P>> Task<P> for Evaluate<'_, 
 }
 
 impl<S: Element, P: Precision, L: Law<2>, Q: Pairs<P>> Evaluate<'_, S, P, L, Q> {
-    #[allow(clippy::needless_range_loop, reason = "columns side by side, under one number")]
+    #[allow(clippy::needless_range_loop, reason = "several columns share one index")]
     #[inline(always)]
     fn register<R: Registers<Lane = P>>(&self, registers: R, first: usize, notes: &mut Notes) {
         let count = (self.pairs.count() - first).min(R::LANES);
         let mut own = [self.sentinel; GROUP];
         let mut partner = [self.sentinel + 1; GROUP];
         let mut cell_offsets = [[P::default(); GROUP]; 2];
-        // Nearly all registers are full: a loop over all lanes is unrolled.
+        // Nearly all registers are full: the compiler unrolls a loop over all lanes.
         for lane in 0..R::LANES {
             if lane == count {
                 break;
@@ -297,7 +297,7 @@ impl<S: Element, P: Precision, L: Law<2>, Q: Pairs<P>> Evaluate<'_, S, P, L, Q> 
             own_sums: [zero(), zero(), zero()],
             partner_sums: [zero(), zero(), zero()],
         };
-        // Only through `Stated`: it is what makes the unchecked reads of columns sound, whatever law this is.
+        // Only through `Stated`, which makes the unchecked reads of columns sound for any law.
         let env = Stated::new(&gathered, self.law);
         let disc = self.law.own(env);
         self.law.pair(env, (), &disc);
@@ -311,7 +311,7 @@ impl<S: Element, P: Precision, L: Law<2>, Q: Pairs<P>> Evaluate<'_, S, P, L, Q> 
             own_sums[sum] = spill(registers, value);
             partner_sums[sum] = spill(registers, gathered.partner_sums[sum].get());
         }
-        // One contact after the other, own before partner: the order of summation knows no registers.
+        // One contact after the other, own before partner: the order of summation does not depend on the register width.
         for lane in 0..R::LANES {
             if lane == count {
                 break;
@@ -327,16 +327,15 @@ impl<S: Element, P: Precision, L: Law<2>, Q: Pairs<P>> Evaluate<'_, S, P, L, Q> 
             }
             for sum in L::SUMS {
                 let sum = sum.column::<2>();
-                // SAFETY: the partner is a disc too, in these rows or those ahead of them, to which no other thread adds
-                // at this stage; the reference to the own disc's sum has ended.
+                // SAFETY: the partner is a disc too, in these rows or those ahead of them, to which no other thread adds at this
+                // stage; the reference to the own disc's sum has ended.
                 unsafe {
                     let to = &mut *self.sums.0[sum].add(partner[lane] as usize);
                     *to = *to - partner_sums[sum][lane];
                 }
             }
         }
-        // One pair after the other. Two fixed discs that touch have no effective mass, and of any others whose force is no
-        // number the pair is listed below.
+        // Pair by pair. Two touching fixed discs have no effective mass; any other pair without a finite force is listed below.
         if self.asked.dissipation {
             add(&spill(registers, gathered.power.get()), count, &mut notes.dissipated);
         }
@@ -345,7 +344,7 @@ impl<S: Element, P: Precision, L: Law<2>, Q: Pairs<P>> Evaluate<'_, S, P, L, Q> 
             add(&spill(registers, gathered.energy[0].get()), count, energy);
             add(&spill(registers, gathered.energy[1].get()), count, virial);
             let contact = gathered.contact.get();
-            // Sentinels never touch: what fills up a register is no contact.
+            // Sentinels never touch, so padding adds no contact.
             let there = registers.bits(registers.splat(P::default()).less_than(contact));
             if there != 0 {
                 notes.contacts += u64::from(there.count_ones());
@@ -366,13 +365,13 @@ impl<S: Element, P: Precision, L: Law<2>, Q: Pairs<P>> Evaluate<'_, S, P, L, Q> 
     }
 }
 
-/// Adds numbers of pairs one after the other, but those that are none.
+/// Adds the finite values one after the other.
 fn add<P: Element>(values: &Lanes<P>, count: usize, to: &mut f64) {
     let values = values.iter().take(count).map(|value| value.to_f64());
     values.filter(|value| value.is_finite()).for_each(|value| *to += value);
 }
 
-/// The largest of the numbers of pairs and one before.
+/// Maximum of the values and of the one before.
 fn deepest<P: Element>(values: &Lanes<P>, count: usize, before: f64) -> f64 {
     values.iter().take(count).map(|depth| depth.to_f64()).fold(before, f64::max)
 }

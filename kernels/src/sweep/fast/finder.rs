@@ -1,4 +1,4 @@
-//! What a sweep asks of whatever finds its pairs.
+//! Interface between a sweep and the search that finds its pairs.
 
 use super::pairs::{Pairs, Touches};
 use crate::InstructionSet;
@@ -6,15 +6,15 @@ use crate::backend::Precision;
 use crate::isa::ProgramError;
 use std::ops::Range;
 
-/// How rows are cut into bands that threads may sweep beside each other. A function of nothing but the scene: it comes
-/// into the order of summation.
+/// Division of rows into bands that threads may sweep concurrently. It affects the order of summation, so it depends on the scene
+/// alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rows {
-    /// How many there are.
+    /// Number of rows.
     pub count: usize,
-    /// How many rows ahead the partners of a row may be.
+    /// Largest distance in rows from a disc to a partner ahead.
     pub ahead: usize,
-    /// Fewest rows of a band.
+    /// Least number of rows in a band.
     pub band: usize,
 }
 
@@ -28,18 +28,18 @@ impl Rows {
     }
 }
 
-/// What one of several ranks sees to: whole bands, whose sums and notes are its own. Its discs may be in rows beside them.
+/// Share of one of several ranks: whole bands, whose sums and notes it owns. Its discs may also be in rows beside them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Share {
     /// The rows of its bands.
     pub rows: Range<usize>,
-    /// How many rows beyond these its discs may be.
+    /// Number of rows beyond these in which its discs may be.
     pub margin: usize,
 }
 
 impl Share {
-    /// Those of some rows that lie at most `below` rows before the own ones or `above` behind them, all rows being `count`: the first follow on the
-    /// last.
+    /// The part of `rows` at most `below` rows before the share's rows or `above` rows behind them. Rows are periodic with
+    /// `count`.
     #[inline]
     pub fn near(&self, rows: &Range<usize>, [below, above]: [usize; 2], count: usize) -> Vec<Range<usize>> {
         let near = (self.rows.start + count).saturating_sub(below)..self.rows.end + count + above;
@@ -52,7 +52,7 @@ impl Share {
             }
         }
         found.sort_by_key(|rows| rows.start);
-        // Where a rank is near itself around the box, rows come twice.
+        // If a rank is near itself around the box, rows come twice.
         found.dedup_by(|next, last| {
             let joins = next.start <= last.end;
             if joins {
@@ -64,23 +64,22 @@ impl Share {
     }
 }
 
-/// Finds pairs of discs that may touch: every pair that does, once, and others as few as it likes.
+/// Finds pairs of discs that may touch: every touching pair once, and any number of others.
 ///
 /// # Safety
-/// Pairs are of discs below [`discs`](Self::discs), in the rows said: sweeps read and add unchecked.
+/// Pairs are of discs below [`discs`](Self::discs), in the rows documented: sweeps read and add unchecked.
 pub unsafe trait Finder<S, P: Precision>: Sync {
-    /// The pairs found, and room for finding them.
+    /// Buffer for the pairs found.
     type Found: Clone + std::fmt::Debug + Default + Send;
 
-    /// How many discs there are; pairs are of these.
+    /// Number of discs.
     fn discs(&self) -> usize;
 
-    /// The rows that discs are in.
+    /// Rows of the discs.
     fn rows(&self) -> Rows;
 
-    /// Replaces what was found by what is found from `cursor` on in `rows`: some hundred pairs, or all that are left.
-    /// The cursor moves on, to the end of the rows when nothing is left. Partners are in the rows and those
-    /// [`ahead`](Rows::ahead) of them.
+    /// Replaces the contents of `found` by the pairs from `cursor` on in `rows`: some hundred, or all that remain. Advances the
+    /// cursor, to the end of the rows when no pair is left. Partners are in these rows and those [`ahead`](Rows::ahead) of them.
     ///
     /// # Errors
     /// [`ProgramError::NoSuchInstructionSet`].
@@ -93,43 +92,42 @@ pub unsafe trait Finder<S, P: Precision>: Sync {
         set: InstructionSet,
     ) -> Result<(), ProgramError>;
 
-    /// Pairs tried for each disc, on the average, where the search of a row may be cut into [parts](Self::find_part); 0 where it
-    /// may not.
+    /// Average number of pairs tried per disc if the search of a row can be cut into [parts](Self::find_part), else 0.
     #[inline]
     fn tried(&self) -> f64 {
         0.0
     }
 
-    /// Numbers, in the order of the search, of what is searched in some rows: any cut of them is one into parts.
+    /// Numbers, in search order, of the items searched in some rows; any cut of this range is a valid division into parts.
     #[inline]
     fn searched(&self, _rows: Range<usize>) -> Range<usize> {
         0..0
     }
 
-    /// Replaces what was found by all pairs of a part. Those of all parts of some rows, one part after the other, are those of
+    /// Replaces the contents of `found` by all pairs of a part. The parts of some rows, one after the other, give the pairs of
     /// [`find`](Self::find) in the same order.
     #[inline]
     fn find_part(&self, _places: [&[S]; 2], _part: Range<usize>, _found: &mut Self::Found) {}
 
-    /// Appends the pairs that are found beside the search of some rows.
+    /// Appends pairs of some rows that the regular search does not find.
     #[inline]
     fn find_beside(&self, _rows: Range<usize>, _: &mut Touches<P>) {}
 
-    /// What was found.
+    /// The pairs found.
     fn pairs<'a>(&'a self, found: &'a Self::Found) -> impl Pairs<P> + 'a;
 }
 
-/// Pairs that are found before the law is asked about them: they and their discs stay in the nearest cache.
+/// Pairs that are found before the law is evaluated for them: they and their discs stay in the nearest cache.
 pub(super) const AT_ONCE: usize = 512;
 
-/// Squares of distances may be off by so much in single precision, and pairs beyond contact do no harm.
+/// Tolerance of squared distances in single precision; pairs slightly beyond contact do no harm.
 pub(super) const MARGIN: f64 = 1.0 + 2e-5;
 
-/// Where a search goes on.
+/// Position at which a search resumes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cursor {
     pub(super) row: usize,
-    /// How far in the row: in units of the finder's own.
+    /// Position in the row, in the finder's own unit.
     pub(super) along: usize,
 }
 
@@ -140,7 +138,7 @@ impl Cursor {
         Cursor { row, along: 0 }
     }
 
-    /// The row that is searched.
+    /// The row to search next.
     #[inline]
     pub fn row(&self) -> usize {
         self.row

@@ -1,25 +1,25 @@
-//! Which sectors there are, and which lie ahead of one.
+//! Grid of sectors, and the sectors ahead of each.
 
 use super::finder::Rows;
 use crate::sweep::lattice::Frame;
 
-/// Rows of a band, at least.
+/// Least number of rows in a band.
 const BAND: usize = 16;
 
-/// The sectors that lie ahead of a sector in the order of a sweep, itself first: columns and rows.
+/// Sectors ahead of a sector in the order of a sweep, itself first: columns and rows.
 pub(super) const AHEAD: [[isize; 2]; 5] = [[0, 0], [1, 0], [-1, 1], [0, 1], [1, 1]];
 
-/// Discs for which a sector is wide enough, on the average: fewer make many empty sectors, more make many pairs to try.
+/// Mean number of discs per sector: fewer make many empty sectors, more make many pairs to try.
 const OCCUPANTS: f64 = 0.7;
 
-/// Why there are no sectors for a box.
+/// Reasons why a box cannot be divided into sectors.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GridError {
-    /// A periodic side has no room for three: a pair would be met twice.
+    /// A periodic side has no room for three sectors; a pair would be visited twice.
     #[error(
-        "the periodic side along {}, {side} long, has no room for three sectors of at least {reach}: a pair would be met \
-         twice",
+        "the periodic side along {}, {side} long, has no room for three sectors of at least {reach}: a pair would be \
+         visited twice",
         ["x", "y"][*axis]
     )]
     PeriodicTooShort {
@@ -40,23 +40,23 @@ pub enum GridError {
     },
 }
 
-/// Which sectors there are.
+/// Grid of sectors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
-    /// Where they lie.
+    /// Origin and sector size.
     pub frame: Frame,
     /// Columns and rows.
     pub counts: [usize; 2],
-    /// Which sides are periodic.
+    /// True for a periodic side.
     pub periodic: [bool; 2],
 }
 
 impl Grid {
-    /// Sectors at least `reach` wide (length), and not much wider than `widest`, for `discs` discs in a box of some sides
-    /// (length).
+    /// Divides a box of given sides (length) into sectors for `discs` discs, at least `reach` wide (length) and not much wider
+    /// than `widest`.
     ///
     /// # Errors
-    /// [`GridError`] if a periodic side has no room for three, or there would be too many to number.
+    /// [`GridError`] if a periodic side has no room for three sectors, or there are too many to number.
     pub fn new(
         origin: [f64; 2],
         sides: [f64; 2],
@@ -84,7 +84,7 @@ impl Grid {
         Ok(Grid { frame: Frame { origin, edge }, counts: counts.map(|count| count as usize), periodic })
     }
 
-    /// The sector that lies at most one column and one row from one.
+    /// The sector at an offset of at most one column and one row.
     #[inline(always)]
     pub(super) fn beside(
         &self,
@@ -93,7 +93,7 @@ impl Grid {
     ) -> Option<[usize; 2]> {
         let along = |axis: usize, from: usize, by: isize| {
             let (count, there) = (self.counts[axis] as isize, from as isize + by);
-            // No division: that would cost more than what is done with the sector.
+            // Division would cost more than the work on the sector.
             let inside = if there < 0 {
                 there + count
             } else if there >= count {
@@ -106,13 +106,13 @@ impl Grid {
         Some([along(0, column, columns)?, along(1, row, rows)?])
     }
 
-    /// From the centre of a sector to the one that lies `ahead` columns and rows from it (length).
+    /// Vector from the centre of a sector to the one `ahead` columns and rows from it (length).
     #[inline]
     fn cell_offset(&self, ahead: [isize; 2]) -> [f64; 2] {
         [0, 1].map(|axis| ahead[axis] as f64 * self.frame.edge[axis])
     }
 
-    /// Offsets of the sectors ahead, in their order.
+    /// Offsets to the sectors ahead, in their order.
     #[inline]
     pub(super) fn cell_offsets(&self) -> [[f64; 2]; 5] {
         AHEAD.map(|ahead| self.cell_offset(ahead))

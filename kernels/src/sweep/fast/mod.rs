@@ -1,4 +1,4 @@
-//! The fast engine's sweep: each pair is met once, contacts are looked for first, and the law is asked about contacts only.
+//! Fast sweep: each pair is visited once, contacts are found first, and the law is evaluated for contacts only.
 //!
 //! ```text
 //! for every band of rows, in two stages:            Sweep      bands.rs
@@ -10,23 +10,22 @@
 //!     correct with its sums, predict the next step, list it if it left its cell
 //! ```
 //!
-//! Why it is fast:
+//! Reasons for its speed:
 //!
-//! - *Each pair once.* A pair is found from one of its discs only, the one that comes first, so half of the pairs are tried,
-//!   and the law is evaluated once for both discs.
-//! - *Found first, computed later.* Most pairs that are near are no contacts, and the law is costly (a root, two divisions,
-//!   velocities to load). The search compares distances only, on the lattice in single precision with a margin; the law
-//!   then sees registers nearly full of contacts, in full precision.
-//! - *Some 500 pairs at a time.* The pairs and the columns of their discs are still in the first-level cache when the law
-//!   reads them.
+//! - *Each pair once.* A pair is found from its first disc only. So half of the pairs are tried, and one evaluation of the law
+//!   serves both discs.
+//! - *Search first, evaluation later.* Most near pairs are not in contact, and the law is expensive (a root, two divisions,
+//!   velocities to load). The search compares distances only, on the lattice in single precision with a margin. The law then sees
+//!   registers nearly full of contacts, in full precision.
+//! - *Some 500 pairs at a time.* The pairs and the columns of their discs are still in the first-level cache when the law reads
+//!   them.
 //! - *One pass for corrector and predictor.* The state is read and written once a step.
 //!
-//! A [`Finder`] finds pairs that may touch: every pair that does, once, and some others; whether two discs touch is the law's
-//! to decide. On the [`lattice`] an [`Occupancy`](lattice::Occupancy) keeps which disc is in which cell, brought up to date
-//! by the discs that change cells. Its rivals are [`Sectors`], which hold any number of discs, and the [`VerletList`] with a
-//! skin.
+//! A [`Finder`] finds pairs that may touch: every touching pair once, and some others; the law decides whether two discs touch.
+//! On the [`lattice`] an [`Occupancy`](lattice::Occupancy) stores which disc is in which cell and is updated with the discs that
+//! change cells. The alternatives are [`Sectors`], which hold any number of discs, and the [`VerletList`] with a skin.
 //!
-//! Sums are in the finder's order, one contact after the other, inside bands of rows that depend on the scene alone:
+//! Sums are in the finder's order, one contact after the other, inside bands of rows that depend on the scene alone. So
 //! instruction set, threads and the order of the discs in memory change no bit.
 
 mod advance;

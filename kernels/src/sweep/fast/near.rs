@@ -1,4 +1,4 @@
-//! Pairs of discs listed if they are near.
+//! Distance filter of the searches: lists pairs that are near.
 
 use super::finder::{AT_ONCE, Cursor, MARGIN};
 use super::grid::Grid;
@@ -7,7 +7,7 @@ use crate::backend::Precision;
 use crate::isa::Element;
 use std::ops::Range;
 
-/// Lists those of the pairs it is given that are nearer than some distance.
+/// Lists those of the given pairs that are nearer than a limit.
 pub(super) struct Near<'a, S, P> {
     places: [&'a [S]; 2],
     cell_offsets: [[f64; 2]; 5],
@@ -16,10 +16,10 @@ pub(super) struct Near<'a, S, P> {
 }
 
 impl<'a, S: Element, P: Precision> Near<'a, S, P> {
-    /// For `discs` discs that touch at most at a distance `reach` (length).
+    /// Filter for `discs` discs that touch at most at a distance `reach` (length).
     ///
     /// # Panics
-    /// If there is not a place for every disc and sentinel.
+    /// If there is not a position for every disc and sentinel.
     #[inline]
     pub(super) fn new(
         places: [&'a [S]; 2],
@@ -28,13 +28,16 @@ impl<'a, S: Element, P: Precision> Near<'a, S, P> {
         reach: f64,
         touches: &'a mut Touches<P>,
     ) -> Self {
-        assert!(places.iter().all(|place| place.len() == discs + SENTINELS), "a place for every disc");
+        assert!(
+            places.iter().all(|place| place.len() == discs + SENTINELS),
+            "a column of positions does not have an entry for each of {discs} discs and {SENTINELS} sentinels"
+        );
         touches.0.clear();
         let limit = reach * reach * MARGIN;
         Near { places, cell_offsets: grid.cell_offsets(), limit, touches: &mut touches.0 }
     }
 
-    /// Goes on through rows, piece by piece (`pieces` of a row), until enough is listed.
+    /// Searches rows piece by piece (`pieces` of a row) until enough pairs are listed.
     #[inline(always)]
     pub(super) fn search(
         &mut self,
@@ -56,13 +59,13 @@ impl<'a, S: Element, P: Precision> Near<'a, S, P> {
         }
     }
 
-    /// Where a disc is.
+    /// Position of a disc.
     ///
     /// # Safety
-    /// It is one of the discs.
+    /// `disc` is one of the discs.
     #[inline(always)]
     pub(super) unsafe fn at(&self, disc: u32) -> [f64; 2] {
-        // SAFETY: there is a place for every disc, as `new` has made sure.
+        // SAFETY: every disc has a position, as `new` has checked.
         self.places.map(|place| unsafe { place.get_unchecked(disc as usize) }.to_f64())
     }
 
@@ -80,9 +83,9 @@ impl<'a, S: Element, P: Precision> Near<'a, S, P> {
         if length == self.touches.capacity() {
             self.touches.reserve(AT_ONCE);
         }
-        // Written whether it is near or not: that spares a branch that cannot be predicted.
+        // Written in either case, which avoids an unpredictable branch.
         let touch = Touch { discs: [first, second], cell_offset: cell_offset.map(P::from_f64) };
-        // SAFETY: `reserve` above has left room for one more, and it is written before the length covers it.
+        // SAFETY: `reserve` above has left capacity for one more, and it is written before the length covers it.
         unsafe {
             self.touches.as_mut_ptr().add(length).write(touch);
             self.touches.set_len(length + usize::from(dx * dx + dy * dy < self.limit));

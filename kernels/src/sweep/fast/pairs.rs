@@ -1,27 +1,26 @@
-//! Pairs of discs: what a finder hands to the law, and pairs written out.
+//! Pairs of discs that finders pass to the law.
 
 use crate::backend::Precision;
 
-/// Elements behind the discs' own in every column that a sweep reads: two discs that never touch, which fill up
-/// registers.
+/// Elements behind the discs' own in every column that a sweep reads: two discs that never touch, which pad registers.
 pub const SENTINELS: usize = 2;
 
 /// Two discs.
 pub(super) type Pair = [u32; 2];
 
-/// Pairs that are at most asked for their contacts as they stand.
+/// Sequence of pairs for which the law is evaluated.
 pub trait Pairs<P> {
-    /// How many.
+    /// Number of pairs.
     fn count(&self) -> usize;
 
-    /// Two discs, and the cell offset from where the first one's place is seen from to where the second one's is (length).
+    /// Two discs, and the cell offset from the reference point of the first disc's position to that of the second (length).
     ///
     /// # Panics
-    /// May, if there is no pair of that number.
+    /// May panic if there is no pair of that number.
     fn pair(&self, number: usize) -> (Pair, [P; 2]);
 }
 
-/// Two discs that may touch, and the cell offset between where their places are seen from (length).
+/// Two discs that may touch, and the cell offset between the reference points of their positions (length).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Touch<P> {
     pub(super) discs: Pair,

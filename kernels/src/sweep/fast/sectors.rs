@@ -1,28 +1,28 @@
-//! Pairs in sectors: cells as wide as a contact reaches, which hold any number of discs.
+//! Pair search in sectors: cells as wide as the reach of a contact, which hold any number of discs.
 //!
-//! A disc's partners are in its own sector and in the eight around it. Each pair of sectors is met from one side:
+//! The partners of a disc are in its own sector and in the eight around it. Each pair of sectors is visited from one side:
 //!
 //! ```text
 //! row + 1     2  3  4        cell offsets from a sector to those ahead of it; 0 is itself
 //! own row        0  1
 //! ```
 //!
-//! `members` holds the discs in order of their sectors, `starts` where each sector begins, so that the sectors 0 and 1 are one
-//! stretch of members, and 2, 3 and 4 another:
+//! `members` stores the discs in order of their sectors, `starts` the beginning of each sector. So sectors 0 and 1 are one
+//! contiguous range of members, and 2, 3 and 4 another:
 //!
 //! ```text
 //! starts    0  2  2  5 ...           sector 1 is empty
-//! members   8  3  1  4  9 ...        within a sector in an order that does not depend on what went before
+//! members   8  3  1  4  9 ...        within a sector in an order that does not depend on the past
 //! ```
 //!
-//! They are sorted by counting, on all threads: first how many discs each sector has, then where each begins, then the discs
-//! are put there as they come, and at last each sector's few are sorted. So the result does not depend on the threads.
+//! They are sorted by counting, on all threads: count the discs of each sector, compute where each begins, store the discs as
+//! they come, and finally sort the few members of each sector. So the result does not depend on the threads.
 //!
-//! Few sectors have many members, and nearly all of the work is comparing them: then all threads compare, each the partners of
-//! some members, and the pairs are added up as on one.
+//! If there are few sectors with many members, nearly all of the work is comparing them. Then all threads compare, each the
+//! partners of some members, and the pairs are added up in the order of a single thread.
 //!
-//! Inside the box a disc is compared with two stretches, each in one loop; at the rim, where a stretch ends or goes on at the
-//! other side of the box, sector by sector.
+//! Inside the box a disc is compared with two ranges, each in one loop. At the edge, where a range ends or continues at the other
+//! side of the box, it is compared sector by sector.
 
 use super::finder::{Cursor, Finder, Rows};
 use super::grid::{AHEAD, Grid};
@@ -35,23 +35,23 @@ use crate::threads::{PIECE, in_pieces, is_alone, on_threads, over_pieces, reorde
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// Who is in which sector. The discs of a sector are kept in an order that the caller gives, so that no sum's order depends on
-/// what went before.
+/// Assignment of discs to sectors. The caller gives the order of the discs within a sector, so that no order of summation depends
+/// on the past.
 #[derive(Clone, Debug)]
 pub struct Sectors {
     grid: Grid,
     reach: f64,
     /// The sector of each disc.
     sector: Vec<u32>,
-    /// Where in `members` the discs of each sector begin, and the end.
+    /// Index in `members` of the first disc of each sector, and the end.
     starts: Vec<u32>,
     members: Vec<u32>,
 }
 
-/// Members that one thread sorts at a time, about.
+/// Approximate number of members that one thread sorts in one piece.
 const MEMBERS: u32 = 4096;
 
-/// The sector of a disc that is in none.
+/// Sector number of a disc outside all sectors.
 const NOWHERE: u32 = u32::MAX;
 
 impl Sectors {
@@ -61,64 +61,66 @@ impl Sectors {
     /// If there are 2²⁹ discs or more.
     #[inline]
     pub fn new(grid: Grid, discs: usize, reach: f64) -> Self {
-        assert!(discs < 1 << 29, "{discs} discs are too many to number");
+        assert!(discs < 1 << 29, "{discs} discs are too many to number: sectors hold fewer than 2^29");
         let starts = vec![0; grid.counts[0] * grid.counts[1] + 1];
         Sectors { grid, reach, sector: vec![NOWHERE; discs], starts, members: vec![] }
     }
 
-    /// The same sectors, with room for `discs` discs and none in them.
+    /// Empty copy of the sectors for `discs` discs.
     #[inline]
     pub fn emptied(&self, discs: usize) -> Self {
         Sectors::new(self.grid, discs, self.reach)
     }
 
-    /// Which sectors there are.
+    /// Grid of the sectors.
     #[inline]
     pub fn grid(&self) -> &Grid {
         &self.grid
     }
 
-    /// How far contacts reach (length).
+    /// Reach of a contact (length).
     #[inline]
     pub(super) fn reach(&self) -> f64 {
         self.reach
     }
 
-    /// How many discs there are.
+    /// Number of discs.
     #[inline]
     pub(super) fn disc_count(&self) -> usize {
         self.sector.len()
     }
 
-    /// Column and row of a disc; none if it is in no sector.
+    /// Column and row of a disc; `None` if it is in no sector.
     #[inline]
     pub fn cell(&self, disc: usize) -> Option<[usize; 2]> {
         let (sector, columns) = (self.sector[disc] as usize, self.grid.counts[0]);
         (self.sector[disc] != NOWHERE).then(|| [sector % columns, sector / columns])
     }
 
-    /// Puts a disc into a sector, of which it is a member from the next [`arrange`](Self::arrange) on.
+    /// Moves a disc into a sector; the next [`arrange`](Self::arrange) makes it a member.
     ///
     /// # Panics
     /// If there is no such disc or sector.
     #[inline]
     pub fn enter(&mut self, disc: usize, [column, row]: [usize; 2]) {
         let [columns, rows] = self.grid.counts;
-        assert!(column < columns && row < rows, "no sector in column {column}, row {row}");
+        assert!(
+            column < columns && row < rows,
+            "no sector in column {column}, row {row}: there are {columns} columns and {rows} rows"
+        );
         self.sector[disc] = (row * columns + column) as u32;
     }
 
-    /// Takes a disc out of its sector, if it is in one.
+    /// Removes a disc from its sector, if it is in one.
     #[inline]
     pub fn leave(&mut self, disc: usize) {
         self.sector[disc] = NOWHERE;
     }
 
-    /// Makes every disc a member of the sector it is in, those of a sector in order of their `number`, which no two have in
-    /// common.
+    /// Makes every disc a member of its sector. Members of a sector are ordered by their `number`, which is unique.
     pub fn arrange(&mut self, number: impl Fn(usize) -> usize + Sync) {
         let Sectors { sector, starts, members, .. } = self;
-        // Additions that no other thread sees half done are slow: one thread alone goes without.
+        // Atomic additions are slow: a single thread avoids them.
         let alone = is_alone(sector.len());
         let add = |count: &AtomicU32, more: u32| match alone {
             true => {
@@ -143,11 +145,11 @@ impl Sectors {
             *start = end;
         }
         members.resize(end as usize, 0);
-        // From the ends down, so that the starts are left.
+        // From the ends down, so that the ends become the starts.
         let (ends, places) = (shared(starts), shared(members));
         over_pieces(0..sector.len(), |discs| {
             inside(discs).for_each(|(disc, sector)| {
-                // Adding 2³² − 1 takes one away.
+                // Adding 2³² − 1 subtracts one.
                 let place = add(&ends[sector], u32::MAX) - 1;
                 places[place as usize].store(disc as u32, Ordering::Relaxed);
             });
@@ -174,12 +176,12 @@ impl Sectors {
         self.members.clone()
     }
 
-    /// Renumbers the discs: disc `n` is from now on what disc `order[n]` was.
+    /// Renumbers the discs: the new disc `n` is the old disc `order[n]`.
     ///
     /// # Panics
     /// If `order` does not name every disc once.
     pub fn renumber(&mut self, order: &[u32]) {
-        assert_eq!(order.len(), self.sector.len(), "an order of all discs");
+        assert_eq!(order.len(), self.sector.len(), "the order must have one entry per disc");
         let mut now = vec![NOWHERE; order.len()];
         let entries = shared(&mut now);
         over_pieces(0..order.len(), |discs| {
@@ -188,7 +190,7 @@ impl Sectors {
             }
         });
         // As many names as discs: if none is left out, none is named twice.
-        assert!(!now.contains(&NOWHERE), "an order that names every disc");
+        assert!(!now.contains(&NOWHERE), "the order must name every disc once");
         self.sector = reordered(&self.sector, order);
         in_pieces(&mut self.members, |_, members| {
             members.iter_mut().for_each(|member| *member = now[*member as usize]);
@@ -201,13 +203,13 @@ impl Sectors {
         self.starts[rows.start * columns] as usize..self.starts[rows.end * columns] as usize
     }
 
-    /// The members of a sector and those that follow in the row, up to `more` sectors on.
+    /// Members of a sector and of the `more` sectors that follow it in the row.
     #[inline(always)]
     fn members(&self, sector: usize, more: usize) -> Range<usize> {
         self.starts[sector] as usize..self.starts[sector + more + 1] as usize
     }
 
-    /// Calls `meet(disc, partner, number of the cell offset)` for every disc of some sectors of a row and every partner in the
+    /// Calls `meet(disc, partner, number of the cell offset)` for every disc in some sectors of a row and every partner in the
     /// sectors ahead.
     #[inline(always)]
     pub(super) fn pairs_of_row(
@@ -221,10 +223,10 @@ impl Sectors {
         }
     }
 
-    /// The same for those discs that are some of the members, in the same order.
+    /// Calls `meet` as [`pairs_of_row`](Self::pairs_of_row) does, for a range of members and in the same order.
     fn pairs_of_members(&self, some: Range<usize>, mut meet: impl FnMut(u32, u32, usize)) {
         let columns = self.grid.counts[0];
-        // The last one that begins there: those before it are empty.
+        // The last sector that begins there: those before it are empty.
         let first = self.starts.partition_point(|&start| start as usize <= some.start).saturating_sub(1);
         let begin = self.starts[first..].iter().take_while(|&&start| (start as usize) < some.end);
         for (sector, _) in (first..).zip(begin) {
@@ -232,7 +234,7 @@ impl Sectors {
         }
     }
 
-    /// The same for those of the members of a sector that are among `some`.
+    /// Calls `meet` as [`pairs_of_row`](Self::pairs_of_row) does, for those members of one sector that are in `some`.
     #[inline(always)]
     fn pairs_of_sector(
         &self,
@@ -248,7 +250,7 @@ impl Sectors {
             return;
         }
         if column > 0 && column + 1 < all && row + 1 < rows {
-            // Sectors that follow each other in a row are one stretch of members.
+            // Consecutive sectors of a row are one range of members.
             let (beside, above) = (self.members(sector, 1).end, self.members(sector + all - 1, 2));
             for at in here {
                 let first = self.members[at];
@@ -275,7 +277,7 @@ impl Sectors {
     }
 }
 
-/// Sectors in pieces of [`PIECE`] of them, or of about as many members if that is fewer, by where in the members each begins.
+/// Cuts sectors into pieces of [`PIECE`] sectors, or of about [`MEMBERS`] members if that is fewer, from the starts.
 fn cut(starts: &[u32]) -> impl Iterator<Item = Range<usize>> {
     let mut begin = 0;
     std::iter::from_fn(move || {
@@ -290,7 +292,7 @@ fn cut(starts: &[u32]) -> impl Iterator<Item = Range<usize>> {
     })
 }
 
-// SAFETY: members are numbers of discs below the length of `sector`; a pair is of sectors in the row and in it or the next.
+// SAFETY: members are numbers of discs below the length of `sector`; the partners of a row's discs are in that row or the next.
 unsafe impl<S: Element, P: Precision> Finder<S, P> for Sectors {
     type Found = Touches<P>;
 
@@ -335,7 +337,7 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Sectors {
 
     #[inline]
     fn tried(&self) -> f64 {
-        // The rest of a sector of its own, and four others.
+        // The rest of the disc's own sector, and four others.
         4.5 * self.members.len() as f64 / (self.starts.len() - 1) as f64
     }
 

@@ -1,19 +1,19 @@
-//! Pairs from Verlet lists: of every disc the partners that were near when the lists were made.
+//! Pairs from Verlet lists: the pairs that were near when the lists were built.
 //!
-//! Lists hold every pair nearer than contact and skin. While no disc has moved by half the skin since, no other pair can
-//! touch. They are made from [`Sectors`] and lie one behind the other:
+//! Lists hold every pair nearer than contact distance plus skin. Until a disc has moved by half the skin, no other pair can
+//! touch. They are built from [`Sectors`] and stored one behind the other:
 //!
 //! ```text
-//! rows      0              3           4           where in `pairs` those of each row of sectors begin, and the end
+//! rows      0              3           4           index in `pairs` of the first pair of each row of sectors, and the end
 //! pairs     4-9 4-2 4-7    9-2         2-7         the second disc with the number of the cell offset in its upper three bits
 //! ```
 //!
-//! They are pairs and no list for each disc: in a thin gas most such lists would be empty or short, and how long is
-//! what no processor foresees.
+//! They are pairs, not a list for each disc: in a thin gas most such lists would be empty or short, and no processor predicts
+//! their lengths.
 //!
 //! A pair is listed once, with the disc that comes first in the order of the sectors. The *cell offset* is one of the five from a
-//! sector to those ahead of it (itself first), and stands for the difference of the places from which the two discs are seen;
-//! so a pair across a periodic side costs no more than any other, and no position is ever wrapped.
+//! sector to those ahead of it (itself first). It gives the vector between the reference points of the two positions. So a pair
+//! across a periodic side costs no more than any other, and no position is ever wrapped.
 
 use super::finder::{Cursor, Finder, Rows};
 use super::grid::Grid;
@@ -26,29 +26,29 @@ use crate::isa::{Element, ProgramError};
 use crate::threads::{on_threads, pieces};
 use std::ops::Range;
 
-/// Bits of a partner that number the disc; those above number the cell offset.
+/// Bits of a partner that number the disc; the bits above number the cell offset.
 const DISC: u32 = 29;
 
-/// Pairs that are looked at before it is asked whether enough are found.
+/// Pairs compared between two checks whether enough are found.
 const SOME: usize = 16;
 
-/// Rows of sectors whose lists one thread makes at a time.
+/// Rows of sectors whose lists one thread builds in one piece.
 const ROWS: usize = 8;
 
-/// Each pair nearer than contact and skin, once, with the disc that comes first in the order of the sectors.
+/// Every pair nearer than contact distance plus skin, once, with the disc that comes first in the order of the sectors.
 ///
-/// Places stay those seen from the sectors in which discs were when the lists were made.
+/// Positions stay relative to the sectors in which the discs were when the lists were built.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VerletList {
     grid: Grid,
     reach: f64,
     discs: usize,
-    /// Where in `pairs` those of each row of sectors begin, and the end.
+    /// Index in `pairs` of the first pair of each row of sectors, and the end.
     rows: Vec<u32>,
     pairs: Vec<Pair>,
 }
 
-/// The lists of some rows.
+/// Lists of some rows.
 #[derive(Default)]
 struct Part {
     rows: Vec<u32>,
@@ -56,10 +56,10 @@ struct Part {
 }
 
 impl VerletList {
-    /// Lists the pairs of the discs in sectors, at their places there, that are at most `skin` (length) from contact.
+    /// Lists the pairs of the discs in sectors that are at most `skin` (length) from contact.
     ///
     /// # Panics
-    /// If the sectors are not wide enough for that, or there are not as many places as discs and sentinels.
+    /// If the sectors are too narrow for that, or there are not as many positions as discs and sentinels.
     pub fn new<S: Element>(sectors: &Sectors, places: [&[S]; 2], skin: f64) -> Self {
         let (grid, reach) = (*sectors.grid(), sectors.reach());
         let limit = (reach + skin) * (reach + skin);
@@ -69,7 +69,7 @@ impl VerletList {
                 let alone = grid.counts[axis] == 1 && !grid.periodic[axis];
                 alone || grid.frame.edge[axis] * (1.0 + 1e-12) >= reach + skin
             }),
-            "sectors too narrow"
+            "sectors too narrow for the reach and the skin"
         );
         let discs = sectors.disc_count();
         let at = |disc: u32| places.map(|place| place[disc as usize].to_f64());
@@ -97,7 +97,7 @@ impl VerletList {
         list
     }
 
-    /// Copies the lists of all parts to where they belong, one behind the other.
+    /// Copies the lists of all parts to their final position, one behind the other.
     fn join(&mut self, parts: Vec<Part>) {
         let (mut rows, mut pairs) = (self.rows.as_mut_slice(), self.pairs.as_mut_slice());
         let mut before = 0;
@@ -116,21 +116,21 @@ impl VerletList {
         });
     }
 
-    /// Pairs listed.
+    /// Number of pairs listed.
     #[inline]
     pub fn entries(&self) -> usize {
         self.pairs.len()
     }
 
-    /// Pairs listed in some rows.
+    /// Number of pairs listed in some rows.
     #[inline]
     pub fn entries_of(&self, rows: Range<usize>) -> usize {
         (self.rows[rows.end] - self.rows[rows.start]) as usize
     }
 }
 
-// SAFETY: the lists hold members of sectors, which are numbers of discs below `discs`; a pair is of sectors in the row and in it
-// or the next.
+// SAFETY: the lists hold members of sectors, which are numbers of discs below `discs`; the partners of a row's discs are in that
+// row or the next.
 unsafe impl<S: Element, P: Precision> Finder<S, P> for VerletList {
     type Found = Touches<P>;
 

@@ -1,4 +1,4 @@
-//! The Index: which disc stands in which cell. BP93 (2), (3).
+//! The Index, which stores the disc of each cell. BP93 (2), (3).
 
 use super::shape::{Coordinates, Frame, LatticeShape};
 use crate::isa::{Array, Counter, Element, Machine, Predicate, Slot, Text, Vector};
@@ -9,9 +9,9 @@ const INDEX: Slot<u32> = Slot::new(Array::Index);
 const HALO_CELL: Slot<u32> = Slot::new(Array::HaloCell);
 const HALO_SOURCE: Slot<u32> = Slot::new(Array::HaloSource);
 
-/// Counts discs outside the lattice, or with positions that are no numbers. Written by [`Enter`].
+/// Counts discs outside the lattice or with a position that is not a number. Written by [`Enter`].
 pub const STRAYS: Counter = Counter(0);
-/// Counts discs whose cell another disc took, and strays once more. Written by [`Check`].
+/// Counts discs whose cell another disc took, and strays again. Written by [`Check`].
 pub const CONFLICTS: Counter = Counter(1);
 
 /// Empties the Index. Vector length: the padded lattice.
@@ -29,20 +29,20 @@ unsafe impl Text for Clear {
     }
 }
 
-/// A position at most a period (length) outside a periodic side, brought back between `low` and `high`.
+/// Wraps a position at most a period (length) outside a periodic side into the range from `low` to `high`.
 #[inline(always)]
 pub(crate) fn wrapped<V: Vector>(r: V, [low, high]: [V; 2], period: V) -> V {
     let r = V::select(r.less_than(low), r + period, r);
-    // Rounded, a period below the far side may lie below the near one.
+    // Because of rounding, a period below the far side may be below the near one.
     V::select(high.less_equal(r), (r - period).max(low), r)
 }
 
-/// Finds the cell of every disc and enters the disc there. Vector length: the discs.
+/// Finds the cell of every disc and enters the disc in the Index. Vector length: the discs.
 ///
-/// Positions (state precision `S`) wrap around periodic sides; the lattice's copy of them (force precision `P`) is
-/// written absolute or relative to the cell. A disc outside a closed side, more than a period outside a periodic one,
-/// or with a position that is no number, belongs to no cell and is counted as a stray. Arithmetic is in double
-/// precision whatever `S` and `P`: single precision counts cells exactly only to 2²⁴.
+/// Positions (state precision `S`) wrap around periodic sides. The lattice's copy (force precision `P`) is absolute or relative
+/// to the cell. A disc is in no cell and counts as a stray if it is outside a closed side, more than a period outside a periodic
+/// one, or at a position that is not a number. Arithmetic is in double precision for every `S` and `P`: single precision counts
+/// cells exactly only to 2²⁴.
 #[derive(Clone, Copy, Debug)]
 pub struct Enter<S, P> {
     shape: LatticeShape,
@@ -53,22 +53,22 @@ pub struct Enter<S, P> {
 }
 
 impl<S: Element, P: Element> Enter<S, P> {
-    /// For a lattice at `frame`, with state positions from the origin.
+    /// Kernel for a lattice at `frame`, with state positions from the origin.
     #[inline]
     pub fn new(shape: LatticeShape, frame: Frame, coordinates: Coordinates) -> Self {
         Enter { shape, frame, coordinates, anchored: false, precisions: PhantomData }
     }
 
-    /// For a lattice at `frame`, with state positions from the centre of the cell in which the disc was entered last: they
-    /// are as precise in single precision as the cell is small, wherever it lies.
+    /// Kernel for a lattice at `frame`, with state positions from the centre of the cell in which the disc was last entered. In
+    /// single precision these are as precise as the cell is small, anywhere in the box.
     #[inline]
     pub fn anchored(shape: LatticeShape, frame: Frame) -> Self {
         let coordinates = Coordinates::CellRelative;
         Enter { shape, frame, coordinates, anchored: true, precisions: PhantomData }
     }
 
-    /// As [`along`](Self::along), for a position from the centre of the cell `from`, a column or a row; with the position as it
-    /// was and from the centre of the new cell.
+    /// Column or row of a position relative to the centre of the cell `from`, as [`along`](Self::along) returns it for absolute
+    /// ones. Also returns the unchanged position and the position relative to the new cell.
     #[inline(always)]
     fn along_from<M: Machine<Lane = f64>>(&self, m: M, axis: usize, from: M::V) -> (M::V, M::P, [M::V; 2]) {
         let cells = [self.shape.columns(), self.shape.rows()][axis] as f64;
@@ -78,7 +78,7 @@ impl<S: Element, P: Element> Enter<S, P> {
         m.section("cell");
         let r = m.load(Slot::<S>::new([Array::X0, Array::Y0][axis]));
         let mut from = from;
-        // In cells from the low side.
+        // Position in cells from the low side.
         let mut along = (from + m.uniform(0.5)) + r * m.uniform(1.0 / edge);
         if self.shape.periodic()[axis] {
             m.section("wrap");
@@ -91,24 +91,24 @@ impl<S: Element, P: Element> Enter<S, P> {
         let inside = zero.less_equal(along).and(along.less_equal(count));
         let cell = along.truncate().min(m.uniform(cells - 1.0));
         m.section("coordinates");
-        // Exactly as it was where the disc has stayed in its cell.
+        // Unchanged to the bit if the disc has stayed in its cell.
         let moved = r + (from - cell) * m.uniform(edge);
         (cell, inside, [r, moved])
     }
 
-    /// The column and the row in which a disc was entered last.
+    /// Column and row in which a disc was last entered.
     #[inline(always)]
     fn anchor<M: Machine<Lane = f64>>(&self, m: M) -> [M::V; 2] {
         m.section("anchor");
         let first = m.uniform((self.shape.position(0, 0) + 1) as f64);
         let stride = self.shape.stride() as f64;
         let from_first = m.index_numbers(m.load_index(DISC_CELL)) - first;
-        // Half a cell more: rounding must not make a row of the one before.
+        // Adds half a cell, so that rounding does not give the row before.
         let row = ((from_first + m.uniform(0.5)) * m.uniform(1.0 / stride)).truncate();
         [from_first - row * m.uniform(stride), row]
     }
 
-    /// Writes positions seen from the new cells. A stray stays where it is seen from, so that it can be named.
+    /// Writes positions relative to the new cells. A stray keeps its reference cell, so that it can be reported.
     #[inline(always)]
     fn store_anchored<M: Machine<Lane = f64>>(&self, m: M, inside: M::P, positions: [[M::V; 2]; 2]) {
         m.section("coordinates");
@@ -119,7 +119,8 @@ impl<S: Element, P: Element> Enter<S, P> {
         }
     }
 
-    /// Column or row of a position, whether it is one of the lattice, and the position as the lattice wants it.
+    /// Column or row of a position, and a predicate that is true inside the lattice; stores the position in the lattice's
+    /// coordinates.
     #[inline(always)]
     fn along<M: Machine<Lane = f64>>(&self, m: M, axis: usize) -> (M::V, M::P) {
         let position = Slot::<S>::new([Array::X0, Array::Y0][axis]);
@@ -156,7 +157,7 @@ impl<S: Element, P: Element> Enter<S, P> {
     }
 }
 
-// SAFETY: the slots depend on the shape, the coordinates and whether positions are anchored only.
+// SAFETY: the slots depend on the shape, the coordinates and the anchoring only.
 unsafe impl<S: Element, P: Element> Text for Enter<S, P> {
     type Lane = f64;
 
@@ -194,7 +195,7 @@ unsafe impl<S: Element, P: Element> Text for Enter<S, P> {
     }
 }
 
-/// Gathers the Index back and compares: a scatter silently loses a disc when two share a cell. Vector length: discs.
+/// Gathers the Index and compares: a scatter silently loses a disc when two share a cell. Vector length: the discs.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Check;
 
@@ -210,7 +211,7 @@ unsafe impl Text for Check {
     }
 }
 
-/// Repeats the Index in the halo of periodic sides. Vector length: the halo cells.
+/// Copies the Index to the halo of periodic sides. Vector length: the halo cells.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Images;
 

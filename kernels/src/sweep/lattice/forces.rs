@@ -1,4 +1,4 @@
-//! A law at every place of the mask: the force computation of BP93, section 2, step 4.
+//! Evaluation of a law at every offset of the mask: the force computation of BP93, section 2, step 4.
 
 use super::shape::{Coordinates, Frame, LatticeShape};
 use super::vectors::lattice_vector;
@@ -8,18 +8,18 @@ use crate::mask::Mask;
 use std::cell::Cell;
 use std::marker::PhantomData;
 
-/// A place of the mask.
+/// An offset of the mask.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Neighbour {
-    /// Elements from the own cell.
+    /// Distance in elements from the own cell.
     shift: isize,
-    /// From the own cell's centre to this one's (length); 0 for absolute positions.
+    /// Vector from the own cell's centre to this one's (length); 0 for absolute positions.
     way: [f64; 2],
 }
 
-/// Runs `law` over the places of a mask for every cell of the lattice. Vector length: [`LatticeShape::swept`].
+/// Evaluates `law` at the offsets of a mask for every cell of the lattice. Vector length: [`LatticeShape::swept`].
 ///
-/// Every pair is met from both sides and each adds to its own sums, place by place in the mask's order, whatever the
+/// Every pair is visited from both sides, and each side adds to its own sums, offset by offset in the mask's order, for any
 /// vector length.
 #[derive(Clone, Debug)]
 pub struct Forces<P, L> {
@@ -30,13 +30,13 @@ pub struct Forces<P, L> {
     precision: PhantomData<P>,
 }
 
-/// Counts cells with a contact deeper than watched. Written by [`Forces`] that are [asked](Forces::asked) for it.
+/// Counts cells with a contact deeper than the watched depth. Written by [`Forces`] that are [asked](Forces::asked) for it.
 pub const DEEP: Counter = Counter(2);
 
 impl<P: Element, L: Law<2>> Forces<P, L> {
-    /// The program for a law, a mask and a lattice.
+    /// Kernel for a law, a mask and a lattice.
     ///
-    /// Recording it panics if the law asks for what it does not state.
+    /// Recording it panics if the law reads a quantity that it does not state.
     pub fn new(law: L, mask: &Mask, shape: LatticeShape, frame: Frame, coordinates: Coordinates) -> Self {
         let relative = coordinates == Coordinates::CellRelative;
         let places = mask.offsets().iter().map(|&offset| Neighbour {
@@ -46,14 +46,14 @@ impl<P: Element, L: Law<2>> Forces<P, L> {
         Forces { law, places: places.collect(), relative, asked: Asked::default(), precision: PhantomData }
     }
 
-    /// The same program, which also writes, where it is asked for:
+    /// Makes the kernel also write the requested observations:
     ///
-    /// - watched penetrations: that of each cell's deepest contact to the array `deepest`, and counts the cells with one
-    ///   deeper than watched in [`DEEP`];
-    /// - dissipation: what each disc's contacts dissipate (energy/time) to the array `power`;
-    /// - energy: what they store and their virial (energy) to the arrays `energy` and `virial`.
+    /// - watched penetrations: the deepest penetration of each cell to the array `deepest`; cells deeper than the watched depth
+    ///   are counted in [`DEEP`];
+    /// - dissipation: the power that each disc's contacts dissipate (energy/time) to the array `power`;
+    /// - energy: stored energy and virial (energy) to the arrays `energy` and `virial`.
     ///
-    /// Of a pair each disc has its share, as the law says: the sums over all discs that may move are those of the pairs.
+    /// Each disc has the share of a pair that the law defines: the sums over all mobile discs are those of the pairs.
     #[must_use]
     #[inline]
     pub fn asked(self, asked: Asked) -> Self {
@@ -61,18 +61,18 @@ impl<P: Element, L: Law<2>> Forces<P, L> {
     }
 }
 
-/// Where a sum goes.
+/// Destination array of a sum.
 #[inline]
 const fn sum_array(sum: Sum) -> Array {
     match sum {
         Sum::Force(axis) => [Array::Fx, Array::Fy][axis as usize],
         Sum::Torque => Array::Torque,
-        #[expect(clippy::panic, reason = "found when the program is built, by whoever writes such a law")]
+        #[expect(clippy::panic, reason = "found by the author of such a law, when the kernel is built")]
         Sum::ForceRate(_) => panic!("a law of the plane states no rates of forces"),
     }
 }
 
-/// What the law sees: one strip of cells and the vectors around it.
+/// Environment of a law that evaluates one strip of cells and the vectors around it.
 struct Around<M: Machine> {
     machine: M,
     relative: bool,
@@ -124,7 +124,7 @@ impl<M: Machine> Env<2> for &Around<M> {
 
     #[inline(always)]
     fn none(self, _: M::P) -> bool {
-        false // As in the source, the sweep has no branches.
+        false // As in BP93, the sweep has no branches.
     }
 
     #[inline(always)]
@@ -133,10 +133,10 @@ impl<M: Machine> Env<2> for &Around<M> {
         cell.set(cell.get() + value);
     }
 
-    #[expect(clippy::unreachable, reason = "called only where `Env::BOTH_PARTNERS` says so")]
+    #[expect(clippy::unreachable, reason = "called only if `Env::BOTH_PARTNERS`")]
     #[inline]
     fn partner_sub(self, _: Sum, _: Neighbour, _: M::V) {
-        unreachable!("every pair is met from both sides")
+        unreachable!("every pair is visited from both sides")
     }
 
     #[inline(always)]
@@ -180,7 +180,7 @@ impl<M: Machine> Env<2> for &Around<M> {
     }
 }
 
-// SAFETY: slots and shifts depend on the law, the places, the coordinates and what is asked only.
+// SAFETY: slots and shifts depend on the law, the offsets, the coordinates and the requested observations only.
 unsafe impl<P: Element, L: Law<2>> Text for Forces<P, L> {
     type Lane = P;
 

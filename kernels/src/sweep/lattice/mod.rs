@@ -1,8 +1,8 @@
-//! The exclusive lattice of BP93: at most one disc a cell, so that every neighbour is a fixed shift away.
+//! The exclusive lattice of BP93: at most one disc per cell, so that every neighbour is at a fixed shift.
 //!
-//! A step sweeps it in vector programs, each a text of its own: [`cells::Clear`], [`cells::Enter`], [`cells::Check`]
-//! and [`cells::Images`] keep the Index, [`vectors::Spread`] maps the discs' quantities to lattice vectors,
-//! [`forces::Forces`] runs a law over the places of a mask.
+//! A step runs these kernels: [`cells::Clear`], [`cells::Enter`], [`cells::Check`] and [`cells::Images`] update the Index,
+//! [`vectors::Spread`] gathers the discs' quantities into lattice vectors, and [`forces::Forces`] evaluates a law at the offsets
+//! of a mask.
 
 pub mod cells;
 pub mod forces;

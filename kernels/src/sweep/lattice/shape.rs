@@ -1,24 +1,24 @@
-//! Which cells there are and where they stand in memory.
+//! Shape of a lattice, and the positions of its cells in memory.
 
 use crate::GROUP;
 use crate::mask::{Mask, Offset};
 use std::ops::Range;
 
-/// Why a lattice cannot be.
+/// Reasons why a lattice is impossible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ShapeError {
     /// A side without cells.
     #[error("a lattice needs at least one column and one row, not {columns}×{rows}")]
     Empty {
-        /// Columns asked for.
+        /// Columns requested.
         columns: usize,
-        /// Rows asked for.
+        /// Rows requested.
         rows: usize,
     },
-    /// A periodic side so short that a pair would be met twice.
+    /// A periodic side so short that a pair would be visited twice.
     #[error(
-        "a periodic side needs at least {least} cells for a mask of half-width {half_width}, not {cells}"
+        "a periodic side of {cells} cells is too short for a mask of half-width {half_width}: it needs at least {least}"
     )]
     PeriodicTooShort {
         /// Cells of the side.
@@ -31,14 +31,14 @@ pub enum ShapeError {
     /// More cells than an index can number.
     #[error("{columns}×{rows} cells with their halo are more than the 2^32 − 1 that an index numbers")]
     TooMany {
-        /// Columns asked for.
+        /// Columns requested.
         columns: usize,
-        /// Rows asked for.
+        /// Rows requested.
         rows: usize,
     },
 }
 
-/// Where the lattice lies in space.
+/// Position of the lattice in space, and the size of its cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     /// Lower left corner (length).
@@ -47,33 +47,31 @@ pub struct Frame {
     pub edge: [f64; 2],
 }
 
-/// What positions on the lattice are measured from.
+/// Reference point of positions on the lattice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Coordinates {
-    /// From the origin, as the source has it.
+    /// From the origin, as in BP93.
     Absolute,
-    /// From the centre of the disc's cell: as precise in single precision as the cell is small, and an image is a
-    /// literal copy.
+    /// From the centre of the disc's cell: in single precision as precise as the cell is small, and an image is an exact copy.
     #[default]
     CellRelative,
 }
 
-/// A halo cell and the cell whose image it is, as positions in the padded lattice.
+/// A halo cell and the cell that it repeats, as positions in the padded lattice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Image {
     /// Position of the halo cell.
     pub cell: usize,
     /// Position of the cell it repeats.
     pub source: usize,
-    /// How many periods the image lies to the right and up.
+    /// Number of periods by which the image is to the right and up.
     pub periods: [i32; 2],
 }
 
 /// A lattice of `columns × rows` cells with a halo as wide as its mask on every side, stored row by row.
 ///
-/// Lattice vectors are *padded*: `lead` elements, the `swept` ones (all rows, each with
-/// the halo at its two ends), and `lead` elements more, so that a shift by any place of the mask stays inside.
-/// Lead and swept length are multiples of `GROUP`.
+/// Lattice vectors are *padded*: `lead` elements, the `swept` ones (all rows, each with the halo at its two ends), and `lead`
+/// elements more, so that a shift by any offset of the mask stays inside. Lead and swept length are multiples of `GROUP`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LatticeShape {
     columns: usize,
@@ -83,7 +81,7 @@ pub struct LatticeShape {
 }
 
 impl LatticeShape {
-    /// A lattice for a mask, periodic along x and y as said.
+    /// A lattice for a mask, with given periodic sides.
     ///
     /// # Errors
     /// [`ShapeError`]: no cells, a periodic side shorter than `2h + 1` cells, or too many cells to number.
@@ -118,19 +116,19 @@ impl LatticeShape {
         self.rows
     }
 
-    /// Cells that discs may live in: the source's LMAX.
+    /// Cells that discs may occupy: LMAX of BP93.
     #[inline]
     pub fn cells(&self) -> usize {
         self.columns * self.rows
     }
 
-    /// Which sides are periodic.
+    /// True for periodic sides.
     #[inline]
     pub fn periodic(&self) -> [bool; 2] {
         self.periodic
     }
 
-    /// Elements from a row to the next.
+    /// Elements from one row to the next.
     #[inline]
     pub fn stride(&self) -> usize {
         self.columns + 2 * self.half_width
@@ -142,7 +140,7 @@ impl LatticeShape {
         (self.half_width * (self.stride() + 1)).next_multiple_of(GROUP)
     }
 
-    /// The elements that a sweep runs over; their number is the vector length of the forces.
+    /// Elements that a sweep runs over; their number is the vector length of the forces.
     #[inline]
     pub fn swept(&self) -> Range<usize> {
         let lead = self.lead();
@@ -155,15 +153,15 @@ impl LatticeShape {
         self.swept().end + self.lead()
     }
 
-    /// Position of a cell in a padded lattice vector; halo cells have negative columns and rows or ones too large.
+    /// Position of a cell in a padded lattice vector. Halo cells have negative or too large columns and rows.
     #[inline]
     pub fn position(&self, column: isize, row: isize) -> usize {
         let from_first = row * self.stride() as isize + self.half_width as isize + column;
         (self.lead() as isize + from_first) as usize
     }
 
-    /// Column and row of the cell at a position in a padded lattice vector: what [`position`](Self::position) came from, if that
-    /// was no halo cell at the end of a row.
+    /// Column and row of the cell at a position in a padded lattice vector. Inverts [`position`](Self::position), except for halo
+    /// cells at the end of a row.
     #[inline]
     pub fn column_and_row(&self, position: usize) -> [isize; 2] {
         let from_first = position as isize - self.position(0, 0) as isize;
@@ -171,13 +169,13 @@ impl LatticeShape {
         [from_first.rem_euclid(stride), from_first.div_euclid(stride)]
     }
 
-    /// How far the cell of `offset` is from the own cell.
+    /// Distance in elements from the own cell to the cell at `offset`.
     #[inline]
     pub fn shift(&self, offset: Offset) -> isize {
         offset.rows as isize * self.stride() as isize + offset.columns as isize
     }
 
-    /// The halo cells that repeat a cell of the lattice, in order of their positions.
+    /// Halo cells that repeat a cell of the lattice, in order of their positions.
     pub fn images(&self) -> Vec<Image> {
         let halo = self.half_width as isize;
         let mut images = Vec::new();
@@ -198,7 +196,7 @@ impl LatticeShape {
         images
     }
 
-    /// 1 where discs live, 0 in the halo and the padding: a padded lattice vector.
+    /// Padded lattice vector that is 1 in the cells of discs and 0 in the halo and the padding.
     #[inline]
     pub fn interior<T: crate::isa::Element>(&self) -> Vec<T> {
         let mut interior = vec![T::from_f64(0.0); self.padded()];
@@ -209,8 +207,8 @@ impl LatticeShape {
         interior
     }
 
-    /// The x of an empty cell: finite, farther from every disc and from every other empty cell than any contact
-    /// reaches. The one place where this is chosen. A padded lattice vector.
+    /// Padded lattice vector with the x of empty cells: finite, and farther from every disc and every other empty cell than any
+    /// contact reaches.
     #[inline]
     pub fn far<T: crate::isa::Element>(&self, frame: Frame) -> Vec<T> {
         let extent = (0..2)
@@ -219,8 +217,8 @@ impl LatticeShape {
                 frame.origin[axis].abs() + 2.0 * cells as f64 * frame.edge[axis]
             })
             .fold(0.0, f64::max);
-        // A power of two times a whole number: exact in either precision (to 2^24 cells in single precision, beyond
-        // which neighbouring empty cells may coincide, which harms only their own, unused sums).
+        // A power of two times a whole number: exact in either precision. In single precision beyond 2^24 cells, neighbouring
+        // empty cells may coincide, which spoils only their own, unused sums.
         let unit = (4.0 * extent).log2().ceil().exp2();
         (0..self.padded()).map(|position| T::from_f64(unit * (position + 1) as f64)).collect()
     }
@@ -250,7 +248,7 @@ mod tests {
         assert!(LatticeShape::new(1, 1, &mask, [false; 2]).is_ok());
     }
 
-    /// Every cell sees at every place of the mask exactly the cell that the geometry says, images included.
+    /// Every cell finds at every offset of the mask exactly the cell that the geometry gives, images included.
     #[test]
     fn shifts_and_images_agree_with_the_geometry() {
         for periodic in [[false, false], [true, false], [false, true], [true, true]] {

@@ -1,11 +1,11 @@
-//! Lattice vectors: the discs' quantities, cell by cell.
+//! Lattice vectors: quantities of the discs, cell by cell.
 
 use super::shape::{Coordinates, LatticeShape};
 use crate::isa::{Array, Element, Machine, Slot, Text};
 use crate::law::Field;
 use std::marker::PhantomData;
 
-/// The lattice vector of a quantity.
+/// Lattice vector of a quantity.
 #[inline]
 pub(crate) const fn lattice_vector(field: Field) -> Array {
     match field {
@@ -18,26 +18,28 @@ pub(crate) const fn lattice_vector(field: Field) -> Array {
     }
 }
 
-/// Where a quantity stands disc by disc, and what an empty cell has.
+/// Array of a quantity disc by disc, and its value in an empty cell.
 #[inline]
 const fn of_discs(field: Field) -> (Array, f64) {
     match field {
         Field::Velocity(axis) => ([Array::DiscVx, Array::DiscVy][axis as usize], 0.0),
         Field::Omega => (Array::DiscOmega, 0.0),
         Field::Radius => (Array::DiscRadius, 0.0),
-        // An effective mass of two empty cells must be a number.
+        // The effective mass of two empty cells must be a number.
         Field::InverseMass => (Array::DiscInverseMass, 1.0),
         Field::Mass => (Array::DiscMass, 1.0),
-        #[expect(clippy::panic, reason = "found when the program is built, by whoever writes such a law")]
-        Field::Occupied => panic!("an empty cell stands far from everything: no law of ours asks"),
+        #[expect(clippy::panic, reason = "found by the author of such a law, when the kernel is built")]
+        Field::Occupied => {
+            panic!("no array of occupied cells: an empty cell has a position far from all discs")
+        }
     }
 }
 
-/// Maps the discs' quantities to lattice vectors through the Index (BP93 section 2, step 3). Vector length: the padded
+/// Gathers the discs' quantities into lattice vectors through the Index (BP93 section 2, step 3). Vector length: the padded
 /// lattice, so that the halo is filled in the same sweep.
 ///
-/// An empty cell gets a position far from everything, which makes every contact with it impossible, in place of the
-/// source's vector Test ([`printed`](crate::printed) has it).
+/// An empty cell gets a position far from everything, which excludes every contact with it. It replaces the vector Test of BP93,
+/// which [`printed`](crate::printed) uses.
 #[derive(Clone, Copy, Debug)]
 pub struct Spread<P> {
     fields: &'static [Field],
@@ -46,8 +48,8 @@ pub struct Spread<P> {
 }
 
 impl<P: Element> Spread<P> {
-    /// For the quantities a law asks for. Absolute positions are shifted in the halo of periodic sides, which takes
-    /// the arrays `image.x`, `image.y`; relative ones are repeated as they are.
+    /// Kernel for the quantities that a law reads. Absolute positions are shifted in the halo of periodic sides, by the arrays
+    /// `image.x` and `image.y`; relative ones are copied.
     #[inline]
     pub fn new(shape: LatticeShape, coordinates: Coordinates, fields: &'static [Field]) -> Self {
         let shifts = coordinates == Coordinates::Absolute;

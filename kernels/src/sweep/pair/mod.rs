@@ -1,8 +1,6 @@
-//! Two discs that meet, as plain numbers: no lattice, no list, nothing but the law. What a law conserves, bounds and
-//! mirrors is seen here first.
+//! Two discs in plain `f64`, without lattice or list: the simplest test bed of a law's conservation, bounds and symmetry.
 //!
-//! Nothing but + − × ÷ √ is used, and the portable `libm` where pairs are placed: every number is the same on every
-//! platform.
+//! Only + − × ÷ √ is used, and the portable `libm` where pairs are placed, so every number is the same on every platform.
 
 mod motion;
 mod samples;
@@ -10,7 +8,7 @@ mod samples;
 use crate::law::{Env, Field, Law, Stated, Sum};
 use std::cell::Cell;
 
-/// A disc with all that a law may ask of it.
+/// A disc with every quantity that a law may read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Body {
     /// Centre.
@@ -32,14 +30,14 @@ impl Body {
         Body { position: [x, y], velocity: [0.0; 2], omega: 0.0, radius: 1.0, inverse_mass: 1.0 }
     }
 
-    /// Its mirror image in the x axis.
+    /// Mirror image in the x axis.
     #[inline]
     pub(crate) fn mirrored(self) -> Body {
         let flip = |[x, y]: [f64; 2]| [x, -y];
         Body { position: flip(self.position), velocity: flip(self.velocity), omega: -self.omega, ..self }
     }
 
-    /// Velocity of its surface at `arm` from the centre: v + Ω × arm.
+    /// Velocity of the surface at `arm` from the centre: v + Ω × arm.
     #[inline]
     fn surface_velocity(&self, arm: [f64; 2]) -> [f64; 2] {
         [self.velocity[0] - self.omega * arm[1], self.velocity[1] + self.omega * arm[0]]
@@ -54,13 +52,13 @@ pub struct Pair {
 }
 
 impl Pair {
-    /// Force along x, along y, and torque, on each of the two.
+    /// Force along x, force along y and torque on each of the two discs.
     #[inline]
     pub fn sums<L: Law<2>>(&self, law: &L) -> [[f64; 3]; 2] {
         self.meet(law).sums.get()
     }
 
-    /// The energy that the pair stores, and its virial (r_i − r_j)·F_i.
+    /// Stored energy of the pair and its virial (r_i − r_j)·F_i.
     #[inline]
     pub fn energy_and_virial<L: Law<2>>(&self, law: &L) -> [f64; 2] {
         self.meet(law).energy.get()
@@ -103,8 +101,8 @@ impl Pair {
         [own[0] - partner[0], own[1] - partner[1]]
     }
 
-    /// Slip of the surfaces along the tangent, by the vectors: what BP93 (16) is about, in another way than the law has
-    /// it.
+    /// Slip of the surfaces along the tangent, from the velocity vectors: the quantity of BP93 (16), computed independently of
+    /// the law.
     #[inline]
     pub fn slip(&self) -> f64 {
         let n = self.normal();
@@ -131,7 +129,7 @@ impl Pair {
         p[0] * first[1] - p[1] * first[0] + q[0] * second[1] - q[1] * second[0] + first[2] + second[2]
     }
 
-    /// By how much, in its worst component, the mirrored pair's forces are not the mirrored forces.
+    /// Largest difference, over the components, between the forces of the mirrored pair and the mirrored forces.
     #[inline]
     pub fn asymmetry<L: Law<2>>(&self, law: &L) -> f64 {
         let (here, there) = (self.sums(law), self.mirrored().sums(law));
@@ -143,7 +141,7 @@ impl Pair {
             .unwrap_or(f64::NAN)
     }
 
-    /// Its mirror image in the x axis.
+    /// Mirror image in the x axis.
     #[inline]
     pub(crate) fn mirrored(self) -> Pair {
         Pair { bodies: self.bodies.map(Body::mirrored) }
@@ -160,7 +158,7 @@ fn length(vector: [f64; 2]) -> f64 {
     dot(vector, vector).sqrt()
 }
 
-/// What the law sees of a pair.
+/// Environment of a law that evaluates one pair.
 struct Meeting<'a> {
     bodies: &'a [Body; 2],
     sums: Cell<[[f64; 3]; 2]>,

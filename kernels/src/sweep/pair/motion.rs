@@ -1,13 +1,13 @@
-//! A pair in motion: its energies, and its way under a law.
+//! Motion of a pair under a law: kinetic energy and trajectory.
 
 use super::{Body, Pair, dot};
 use crate::law::Law;
 
-/// Rates of change of a body: of its position, its velocity, its angular velocity.
+/// Rates of change of a body's position, velocity and angular velocity.
 type Rates = [f64; 5];
 
 impl Body {
-    /// Kinetic energy, of motion and spin; a fixed disc has none.
+    /// Kinetic energy of motion and spin; 0 for a fixed disc.
     #[inline]
     fn kinetic_energy(&self) -> f64 {
         if self.inverse_mass == 0.0 {
@@ -30,14 +30,14 @@ impl Body {
 }
 
 impl Pair {
-    /// Kinetic energy of motion and spin; the inertia is a disc's, ½ M R². Fixed discs have none.
+    /// Kinetic energy of motion and spin, with a disc's inertia ½ M R². Fixed discs count 0.
     #[inline]
     pub fn kinetic_energy(&self) -> f64 {
         self.bodies.iter().map(Body::kinetic_energy).sum()
     }
 
-    /// The pair now and after every step of `dt`, without end, by the classical Runge–Kutta method of fourth order;
-    /// the inertia is a disc's, ½ M R².
+    /// Endless iterator over the pair's states, from the present one in steps of `dt`. Uses the classical fourth-order
+    /// Runge–Kutta method and a disc's inertia ½ M R².
     #[inline]
     pub fn trajectory<L: Law<2>>(self, law: &L, dt: f64) -> impl Iterator<Item = Pair> {
         std::iter::successors(Some(self), move |pair| Some(pair.stepped(law, dt)))

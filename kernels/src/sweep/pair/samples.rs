@@ -1,16 +1,16 @@
-//! Pairs to try a law on.
+//! Sample pairs for tests of laws.
 
 use super::{Body, Pair};
 use crate::noise::Stream;
 use rand::RngExt;
 
 impl Pair {
-    /// Like discs of radius and mass 1 that touch along x, 5 % deep, at rest.
+    /// Two equal discs of radius and mass 1 at rest, which touch along x and overlap by 5 %.
     pub fn touching() -> Pair {
         Pair { bodies: [Body::at(0.0, 0.0), Body::at(1.9, 0.0)] }
     }
 
-    /// Discs that touch and whose opposite spins roll on each other; the second has the radius given.
+    /// Touching discs whose opposite spins roll on each other; the second has the given radius.
     pub fn gears(radius: f64) -> Pair {
         let mut pair = Pair::touching();
         let [first, second] = &mut pair.bodies;
@@ -21,7 +21,7 @@ impl Pair {
         pair
     }
 
-    /// Like discs about to collide, of kinetic energy ½ together, on lines of flight `offset` apart: 0 is head-on.
+    /// Two equal discs about to collide, with total kinetic energy ½. Their lines of flight are `offset` apart; 0 is head-on.
     pub fn colliding(offset: f64) -> Pair {
         let speed = 0.5f64.sqrt();
         let mut bodies = [Body::at(-1.1, 0.5 * offset), Body::at(1.1, -0.5 * offset)];
@@ -30,7 +30,7 @@ impl Pair {
         Pair { bodies }
     }
 
-    /// A pair in contact at any angle, 0 to 10 % deep, with random velocities, spins, radii and masses.
+    /// A pair in contact at a random angle, 0 to 10 % deep, with random velocities, spins, radii and masses.
     pub fn random(random: &mut Stream) -> Pair {
         let mut spread = |width: f64| random.random_range(-0.5 * width..=0.5 * width);
         let radii = [1.0 + spread(0.2), 1.0 + spread(0.2)];

@@ -1,4 +1,4 @@
-//! A bit for every cell of a padded lattice.
+//! Bit set with one bit per cell of a padded lattice.
 
 use crate::sweep::lattice::LatticeShape;
 
@@ -10,7 +10,7 @@ impl Bits {
     /// No bit set.
     #[inline]
     pub(super) fn new(shape: &LatticeShape, half_width: usize) -> Self {
-        // A look from the last cell reaches so far.
+        // Reads from the last cell reach this far.
         let last = shape.padded() + half_width * (shape.stride() + 1) + 64;
         Bits(vec![0; last.div_ceil(64) + 2])
     }
@@ -21,13 +21,13 @@ impl Bits {
         if bit { *word |= mask } else { *word &= !mask }
     }
 
-    /// How many positions [`from`](Self::from) may be asked for.
+    /// Number of positions from which [`from`](Self::from) may read.
     #[inline]
     pub(super) fn positions(&self) -> usize {
         (self.0.len() - 1) * 64
     }
 
-    /// The bits from a position on, the position's own lowest.
+    /// 64 bits from a position on; the bit of the position itself is the lowest.
     ///
     /// # Safety
     /// `position` is below [`positions`](Self::positions).

@@ -1,11 +1,11 @@
-//! Candidates: pairs of cells, packed into a word each, and what they stand for.
+//! Candidates: pairs of cells packed into one word each, and their decoding.
 
 use super::occupancy::Occupancy;
 use crate::GROUP;
 use crate::backend::Precision;
 use crate::sweep::lattice::Frame;
 
-/// A pair of cells whose discs may touch: the first cell of the group in the high bits, place and lane in the low ones.
+/// A pair of cells whose discs may touch: the first cell of the group in the high bits, offset and lane in the low ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Candidate(pub(super) u64);
 
@@ -19,20 +19,20 @@ impl Candidate {
         (self.0 >> Self::CODE) as usize
     }
 
-    /// Place and lane: an index into [`codes`].
+    /// Offset and lane: an index into [`codes`].
     #[inline(always)]
     pub(super) fn code(self) -> usize {
         (self.0 & ((1 << Self::CODE) - 1)) as usize
     }
 }
 
-/// How many places a half mask has.
+/// Number of offsets of a half mask.
 #[inline]
 pub(super) const fn place_count(half_width: usize) -> usize {
     half_width + half_width * (2 * half_width + 1)
 }
 
-/// A place of a half mask in the order of the sweep: column and row. Those beyond the last are no places.
+/// An offset of a half mask in the order of the sweep: column and row. Numbers beyond the last are no offsets.
 #[inline]
 pub(super) const fn place(half_width: usize, number: usize) -> [isize; 2] {
     if number < half_width {
@@ -42,30 +42,30 @@ pub(super) const fn place(half_width: usize, number: usize) -> [isize; 2] {
     [(behind % width) as isize - half_width as isize, (behind / width) as isize + 1]
 }
 
-/// The places of a half mask in their order.
+/// Offsets of a half mask in their order.
 #[inline]
 fn places(half_width: usize) -> impl Iterator<Item = [isize; 2]> {
     (0..place_count(half_width)).map(move |number| place(half_width, number))
 }
 
-/// What a code stands for: lane and place.
+/// Lane and offset of every code, in order.
 #[inline]
 pub(super) fn codes(half_width: usize) -> impl Iterator<Item = (usize, [isize; 2])> {
     places(half_width).flat_map(|place| (0..GROUP).map(move |lane| (lane, place)))
 }
 
-/// What candidates' codes stand for.
+/// Tables that decode candidates.
 #[derive(Clone, Debug)]
 pub struct Codes<P> {
     stride: usize,
-    /// From the group's first cell to the own cell and to the partner's.
+    /// Distances from the group's first cell to the own cell and to the partner's.
     cells: Vec<[i32; 2]>,
-    /// From the centre of the own cell to that of the partner's (length).
+    /// Vectors from the centre of the own cell to that of the partner's (length).
     cell_offsets: [Vec<P>; 2],
 }
 
 impl<P: Precision> Codes<P> {
-    /// For the lattice of an occupancy.
+    /// Tables for the lattice of an occupancy.
     #[inline]
     pub fn new(occupancy: &Occupancy, frame: Frame) -> Self {
         let stride = occupancy.shape().stride() as isize;
@@ -81,19 +81,19 @@ impl<P: Precision> Codes<P> {
         }
     }
 
-    /// Whether they are of a lattice with rows as long and a mask as wide.
+    /// True if the tables fit this lattice: equal row length and mask width.
     #[inline]
     pub(super) fn are_of(&self, occupancy: &Occupancy) -> bool {
         let codes = place_count(occupancy.half_width()) * GROUP;
         self.stride == occupancy.shape().stride() && self.cells.len() == codes
     }
 
-    /// The two discs of a candidate and the cell offset between their cells.
+    /// The two discs of a candidate, and the vector between their cells.
     #[inline(always)]
     pub(super) fn pair(&self, candidate: Candidate, index: &[u32]) -> ([u32; 2], [P; 2]) {
         let (base, code) = (candidate.base(), candidate.code());
-        // SAFETY: a code is place·GROUP + lane, of which the tables have an entry each. The group and its places lie in the
-        // padded lattice or in the room of a register behind it, which the Index has too.
+        // SAFETY: a code is offset·GROUP + lane, and the tables have an entry for each. The group and the cells at its offsets
+        // are in the padded lattice or in the register of padding behind it, which the Index has too.
         unsafe {
             let cells = *self.cells.get_unchecked(code);
             let discs = cells.map(|cell| *index.get_unchecked(base.wrapping_add_signed(cell as isize)));

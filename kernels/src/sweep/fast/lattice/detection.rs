@@ -1,24 +1,27 @@
-//! Finding contacts where many cells are occupied: registers of cells against the same cells at every place of the half mask.
+//! Contact search where many cells are occupied: registers of cells are compared with the same cells at every offset of the half
+//! mask.
 //!
 //! ```text
 //! for every group of 16 cells of a row that has a disc:
-//!     for every place of the half mask:
-//!         dx = x[group] - x[group at the place] - cell offset,  dy likewise        a register of cells at a time
+//!     for every offset of the half mask:
+//!         dx = x[group] - x[group at the offset] - cell offset,  dy likewise       a register of cells at a time
 //!         16 bits: dx² + dy² < 1                                           in units of the largest contact distance;
-//!                                                                          (r_i + r_j)² in place of 1 where radii vary
-//!     and these bits with those of the occupied cells                      four places share a word of 64 bits
-//!     append a candidate for every bit that is left
+//!                                                                          (r_i + r_j)² instead of 1 where radii vary
+//!     and these bits with those of the occupied cells                      four offsets share a word of 64 bits
+//!     append a candidate for every remaining bit
 //! ```
 //!
-//! Why it is fast:
+//! Reasons for its speed:
 //!
-//! - *Shifts, not gathers.* Cells of a row lie side by side, so all partners at a place are one load.
-//! - *Single precision.* Places inside cells are copied in single precision ([`Advance`](crate::sweep::fast::Advance)): twice as
-//!   many lanes. A margin of 2·10⁻⁵ covers the rounding, so no contact is missed; the law decides in full precision.
-//! - *No question whether the partner's cell is occupied.* An empty cell's x is so far away that nothing is near it.
-//! - *The cell offset belongs to the own side.* The own place as seen from the columns and rows around is made once a register.
-//! - *Bits, not branches.* Results stay bits until the end, and candidates are appended four at a time, whether there are four
-//!   or not: how many there are cannot be predicted.
+//! - *Shifts, not gathers.* Cells of a row are stored side by side, so all partners at an offset are one load.
+//! - *Single precision.* Positions inside cells are copied in single precision ([`Advance`](crate::sweep::fast::Advance)), which
+//!   doubles the number of lanes. A margin of 2·10⁻⁵ covers the rounding, so no contact is missed; the law decides in full
+//!   precision.
+//! - *No test whether the partner's cell is occupied.* The x of an empty cell is so far away that nothing is near it.
+//! - *The cell offset is applied to the own side.* The own position relative to the surrounding columns and rows is computed once
+//!   a register.
+//! - *Bits, not branches.* Results stay bits until the end. Candidates are appended four at a time, even if there are fewer,
+//!   because their number cannot be predicted.
 
 use super::codes::{Candidate, place, place_count};
 use super::occupancy::Occupancy;
@@ -29,13 +32,13 @@ use crate::isa::Vector;
 use crate::sweep::fast::finder::{Cursor, MARGIN};
 use std::ops::Range;
 
-/// Places of the mask whose findings share a word: 16 cells each.
+/// Offsets of the mask whose results share a word: 16 cells each.
 const PLACES: usize = 64 / GROUP;
 
 /// Searches groups of cells from `cursor` to the end of the rows, until `full` candidates are found.
 pub(super) struct Search<'a> {
     pub(super) occupancy: &'a Occupancy,
-    /// By what the square of the contact distance is multiplied, beside the margin.
+    /// Factor on the square of the contact distance, in addition to the margin.
     pub(super) beyond: f64,
     pub(super) rows: Range<usize>,
     pub(super) cursor: &'a mut Cursor,
@@ -55,7 +58,7 @@ impl Task<f32> for Search<'_> {
     }
 }
 
-/// Words that the findings of a group take: 12 or 24 places.
+/// Words for the results of a group: 12 or 24 offsets.
 #[inline]
 const fn words(half_width: usize) -> usize {
     place_count(half_width).div_ceil(PLACES)
@@ -87,7 +90,7 @@ impl Search<'_> {
                     if found.len() >= full {
                         return;
                     }
-                    // SAFETY: the group's cells and those at its places, up to H columns and rows on, lie before `end`, and all
+                    // SAFETY: the group's cells and those at its offsets, up to H columns and rows on, are before `end`, and all
                     // columns have as many entries (asserted above).
                     let near = unsafe {
                         compare::<R, H, VARY>(
@@ -111,10 +114,10 @@ impl Search<'_> {
     }
 }
 
-/// Which of the discs of a group are near the one at each place: 16 bits a place.
+/// Finds the discs of a group that are near the disc at each offset: 16 bits per offset.
 ///
 /// # Safety
-/// The pointers are to the own cells of a group, and all cells of it at all places exist.
+/// The pointers are to the own cells of a group, and every cell of it exists at every offset.
 #[inline(always)]
 unsafe fn compare<R: Registers<Lane = f32>, const H: usize, const VARY: bool>(
     registers: R,
@@ -131,18 +134,18 @@ unsafe fn compare<R: Registers<Lane = f32>, const H: usize, const VARY: bool>(
         let (own_x, own_y) = unsafe { (registers.load(x.add(part)), registers.load(y.add(part))) };
         // SAFETY: part + LANES <= GROUP, and there is a radius for every cell.
         let own_radius = unsafe { registers.load(radii.add(part)) };
-        // The own position as seen from the centres of the columns and rows around.
+        // Own position relative to the centres of the surrounding columns and rows.
         let column = |column: isize| own_x - registers.splat(edge[0] * column as f32);
         let columns = [column(-3), column(-2), column(-1), own_x, column(1), column(2), column(3)];
         let row = |row: usize| own_y - registers.splat(edge[1] * row as f32);
         let rows = [own_y, row(1), row(2), row(3)];
-        // Written out: a loop that the compiler leaves one keeps the words in memory, at five times the cost.
+        // Unrolled by hand: if the compiler leaves a loop, the words stay in memory, at five times the cost.
         macro_rules! at_places {
             ($($number:literal)*) => {$(
                 if $number < const { place_count(H) } {
                     let [column, row] = const { place(H, $number) };
                     let shift = row * stride as isize + column + part as isize;
-                    // SAFETY: the caller promises that all cells of the group exist at all places of the mask.
+                    // SAFETY: the caller promises that every cell of the group exists at every offset of the mask.
                     let (dx, dy) = unsafe {
                         (
                             columns[(column + 3) as usize] - registers.load(x.offset(shift)),
@@ -151,7 +154,7 @@ unsafe fn compare<R: Registers<Lane = f32>, const H: usize, const VARY: bool>(
                     };
                     let square = dx * dx + dy * dy;
                     let touch = if VARY {
-                        // SAFETY: there is a radius for every cell, and these cells exist at all places of the mask.
+                        // SAFETY: there is a radius for every cell, and these cells exist at every offset of the mask.
                         let reach = own_radius + unsafe { registers.load(radii.offset(shift)) };
                         square.less_than(reach * reach * limit)
                     } else {
@@ -173,10 +176,10 @@ fn list(found: &mut Vec<Candidate>, prefix: u64, bits: u64) {
     append_bits(found, bits, |bit| Candidate(prefix | bit));
 }
 
-/// Appends what `of` makes of the number of every bit, lowest first.
+/// Appends `of(number)` for every set bit, lowest first.
 #[inline(always)]
 pub(super) fn append_bits<T: Copy>(list: &mut Vec<T>, mut bits: u64, of: impl Fn(u64) -> T) {
-    // More than a few are rare: writing a few whether they are there or not spares the branches.
+    // More than a few are rare: writing a few unconditionally avoids the branches.
     const AT_ONCE: usize = 4;
     let count = bits.count_ones() as usize;
     let length = list.len();
@@ -184,7 +187,7 @@ pub(super) fn append_bits<T: Copy>(list: &mut Vec<T>, mut bits: u64, of: impl Fn
     let mut listed = 0;
     while {
         for i in 0..AT_ONCE {
-            // SAFETY: listed < 64 here, and `reserve` has left room for 64 more and AT_ONCE.
+            // SAFETY: listed < 64 here, and `reserve` has left capacity for 64 more and AT_ONCE.
             unsafe { list.as_mut_ptr().add(length + listed + i).write(of(bits.trailing_zeros().into())) };
             bits &= bits.wrapping_sub(1);
         }

@@ -1,7 +1,7 @@
-//! Pairs on a lattice with at most one disc a cell: at the places of half the mask.
+//! Pair search on a lattice with at most one disc per cell, at the offsets of half the mask.
 //!
-//! A disc's partners lie at fixed shifts from its cell. Of every two opposite places one is looked at: those to the right in
-//! the own row and all of the rows above, numbered so (5×5 cells: 12 places):
+//! The partners of a disc are at fixed shifts from its cell. Of every two opposite offsets one is searched: those to the right in
+//! the own row and all in the rows above, numbered as follows (5×5 cells: 12 offsets):
 //!
 //! ```text
 //! row + 2     7  8  9 10 11
@@ -10,9 +10,9 @@
 //! ```
 //!
 //! Two searches find the same pairs. Where many cells are occupied, registers of neighbouring cells are compared with the same
-//! cells at a shift, empty or not (`detection.rs`). Where few are ([`SPARSE`]), a bit for every cell tells which, and each disc
-//! asks for the bits around it (`sparse.rs`). Either gives candidates, a word each: the first cell of a group of 16, the place
-//! and the lane (`codes.rs`). From that two loads from tables give the two cells, and two from the Index the discs.
+//! cells at a shift, empty or not (`detection.rs`). Where few are ([`SPARSE`]), one bit per cell marks occupied cells, and each
+//! disc reads the bits around it (`sparse.rs`). Both give candidates of one word each: the first cell of a group of 16, the
+//! offset and the lane (`codes.rs`). Two table loads turn it into the two cells, and two loads from the Index into the discs.
 
 mod bits;
 mod codes;
@@ -36,32 +36,32 @@ use detection::Search;
 use sparse::SparseSearch;
 use std::ops::Range;
 
-/// Rows of a band, at least.
+/// Least number of rows in a band.
 const BAND: usize = 16;
 
-/// An occupied lattice, searched cell by cell, or, if it is sparse, disc by disc.
+/// An occupied lattice, searched cell by cell or, if it is sparse, disc by disc.
 #[derive(Clone, Copy, Debug)]
 pub struct Lattice<'a, P> {
-    /// Who is where.
+    /// Assignment of discs to cells.
     pub occupancy: &'a Occupancy,
-    /// What pairs of cells are packed into.
+    /// Tables that decode candidates.
     pub codes: &'a Codes<P>,
-    /// By how much more than its contact distance a pair may be apart and is still found, as a fraction of that: 0 but where
-    /// places are others than those that the occupancy was last given.
+    /// Fraction of the contact distance by which a pair may be farther apart and is still found. It is 0 unless the positions
+    /// differ from those last stored in the occupancy.
     pub slack: f64,
 }
 
-/// The pairs found on a lattice.
+/// Pairs found on a lattice.
 #[derive(Clone, Debug, Default)]
 pub struct Candidates {
     candidates: Vec<Candidate>,
     cells: Vec<u64>,
-    /// The lattice that they were found on.
+    /// The lattice on which they were found.
     shape: Option<LatticeShape>,
 }
 
 // SAFETY: the Index numbers discs where the bit of a cell is set, and candidates are pairs of such cells: the own one in the rows
-// searched, the partner's at most as many rows ahead as the mask is wide to one side.
+// searched, the partner's at most a half-width of the mask ahead.
 unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
     type Found = Candidates;
 
@@ -85,9 +85,12 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
     ) -> Result<(), ProgramError> {
         let Lattice { occupancy, codes, slack } = *self;
         let Candidates { candidates: found, cells, shape } = found;
-        assert!(codes.are_of(occupancy), "codes of this lattice");
+        assert!(codes.are_of(occupancy), "the codes are those of another lattice");
         let entries = occupancy.discs() + SENTINELS;
-        assert!(places.iter().all(|place| place.len() == entries), "a place for every disc");
+        assert!(
+            places.iter().all(|place| place.len() == entries),
+            "a column of positions does not have {entries} entries"
+        );
         *shape = Some(*occupancy.shape());
         found.clear();
         if occupancy.is_sparse() {
@@ -102,7 +105,7 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
         }
     }
 
-    /// Discs in shared cells with all discs around them, and with each other.
+    /// Pairs each disc in a shared cell with all discs around it, and with the others in shared cells.
     fn find_beside(&self, rows: Range<usize>, found: &mut Touches<P>) {
         let occupancy = self.occupancy;
         let (shared, shape) = (occupancy.shared_cells(), occupancy.shape());
@@ -137,13 +140,13 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
 
     #[inline]
     fn pairs<'a>(&'a self, found: &'a Candidates) -> impl Pairs<P> + 'a {
-        assert!(self.codes.are_of(self.occupancy), "codes of this lattice");
+        assert!(self.codes.are_of(self.occupancy), "the codes are those of another lattice");
         assert!(found.candidates.is_empty() || found.shape.as_ref() == Some(self.occupancy.shape()));
         Packed { codes: self.codes, index: self.occupancy.index(), candidates: &found.candidates }
     }
 }
 
-/// Candidates and what unpacks them.
+/// Candidates with the tables that decode them.
 struct Packed<'a, P> {
     codes: &'a Codes<P>,
     index: &'a [u32],

@@ -1,4 +1,4 @@
-//! Who is where: the Index, kept up to date by the discs that change cells, and places inside cells.
+//! Assignment of discs to cells: the Index, updated with the discs that change cells, and positions inside cells.
 
 use super::bits::Bits;
 use crate::GROUP;
@@ -8,39 +8,39 @@ use crate::sweep::fast::grid::Grid;
 use crate::sweep::fast::pairs::SENTINELS;
 use crate::sweep::lattice::{Frame, LatticeShape};
 
-/// The cell is another disc's.
+/// Error: the cell belongs to another disc.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("disc {0} is in that cell")]
+#[error("disc {0} is already in that cell; a cell holds one disc")]
 pub struct Taken(pub usize);
 
-/// The x of an empty cell: its square is a number in single precision, and nothing is near it.
+/// The x of an empty cell: its square is finite in single precision, and nothing is near it.
 const FAR: f32 = 1e18;
 
-/// Numbers of the rows, by which they begin at lines of their own: those of the discs have smaller ones.
+/// Alignment numbers of the columns, which place them on cache lines of their own; the discs' columns have smaller numbers.
 const INDEX: usize = 32;
 const RADIUS: usize = 33;
 const PLACE: usize = 34;
 
-/// Places in cells that are empty.
+/// Positions of empty cells.
 fn far(cells: usize) -> [AlignedColumn<f32>; 2] {
     [AlignedColumn::filled(PLACE, FAR, cells), AlignedColumn::zeros(PLACE + 1, cells)]
 }
 
-/// Part of the cells that discs must occupy for registers of cells to pay; below it, one cell after the other is asked
-/// for its neighbours. A function of the scene, so that no sum's order depends on anything else.
+/// Fraction of occupied cells below which comparing registers of cells does not pay: then each disc looks for its neighbours
+/// alone. It is a constant, so that the order of every sum depends on the scene alone.
 pub const SPARSE: f64 = 0.15;
 
-/// Which disc is in which cell, and, where the lattice is not sparse, where in its cell it is and how large.
+/// Assignment of discs to cells. Where the lattice is not sparse, it also stores each disc's position in its cell and its radius.
 ///
-/// These lengths are in units of the largest contact distance and in single precision: good for finding contacts, not
-/// for forces. Every disc is in at most one cell, every cell has at most one disc.
+/// These lengths are in units of the largest contact distance and in single precision: good for finding contacts, not for forces.
+/// Every disc is in at most one cell, and every cell has at most one disc.
 #[derive(Clone, Debug)]
 pub struct Occupancy {
     shape: LatticeShape,
     frame: Frame,
     half_width: usize,
     unit: f64,
-    /// From a column and from a row to the next.
+    /// Distance between neighbouring columns and between neighbouring rows.
     edge: [f32; 2],
     discs: usize,
     cell: Vec<u32>,
@@ -49,28 +49,34 @@ pub struct Occupancy {
     place: [AlignedColumn<f32>; 2],
     radius: Option<AlignedColumn<f32>>,
     occupied: Bits,
-    /// Cells of the halo, each with the one it is an image of.
+    /// Halo cells, each with the cell that it repeats.
     images: Vec<[u32; 2]>,
-    /// Discs that are in no cell.
+    /// Number of discs in no cell.
     outside: usize,
-    /// Discs in cells that are another disc's, with these cells.
+    /// Discs in cells that belong to another disc, with these cells.
     shared: Vec<(u32, [usize; 2])>,
 }
 
-/// The cell of a disc that is in none.
+/// Cell number of a disc in no cell.
 const NOWHERE: u32 = u32::MAX;
 
 impl Occupancy {
-    /// An empty lattice for `discs` discs that touch when their centres are `reach` (length) apart, or, if they vary,
-    /// at most that.
+    /// An empty lattice for `discs` discs that touch when their centres are `reach` (length) apart; where radii vary, `reach` is
+    /// the largest such distance.
     ///
     /// # Panics
     /// If there are 2³² − 3 discs or more, or the mask is neither 5×5 nor 7×7.
     pub fn new(shape: LatticeShape, frame: Frame, discs: usize, reach: f64, vary: bool) -> Self {
-        assert!(discs < u32::MAX as usize - SENTINELS, "{discs} discs are too many to number");
+        assert!(
+            discs < u32::MAX as usize - SENTINELS,
+            "{discs} discs are too many to number: a lattice holds fewer than 2^32 − 3"
+        );
         let half_width = (shape.stride() - shape.columns()) / 2;
-        assert!((2..=3).contains(&half_width), "searches are compiled for masks of 5×5 and 7×7 cells");
-        // The last register of the last row may reach beyond the padded lattice.
+        assert!(
+            (2..=3).contains(&half_width),
+            "no search for a mask of half-width {half_width}: masks of 5×5 and 7×7 cells are supported"
+        );
+        // The last register of the last row may extend beyond the padded lattice.
         let length = shape.padded() + GROUP + 1;
         let sparse = (discs as f64) < SPARSE * shape.cells() as f64;
         let places = if sparse { 0 } else { length };
@@ -97,13 +103,16 @@ impl Occupancy {
         }
     }
 
-    /// The same lattice, of as many discs in the scene, with room for `discs` of them and none in it.
+    /// Empty copy of the lattice for `discs` discs, sparse if this one is.
     ///
     /// # Panics
     /// If there are 2³² − 3 discs or more.
     #[inline]
     pub fn emptied(&self, discs: usize) -> Self {
-        assert!(discs < u32::MAX as usize - SENTINELS, "{discs} discs are too many to number");
+        assert!(
+            discs < u32::MAX as usize - SENTINELS,
+            "{discs} discs are too many to number: a lattice holds fewer than 2^32 − 3"
+        );
         Occupancy {
             discs,
             cell: vec![NOWHERE; discs],
@@ -118,26 +127,26 @@ impl Occupancy {
         }
     }
 
-    /// The lattice.
+    /// Shape of the lattice.
     #[inline]
     pub fn shape(&self) -> &LatticeShape {
         &self.shape
     }
 
-    /// Its cells.
+    /// Grid of its cells.
     #[inline]
     pub fn grid(&self) -> Grid {
         let counts = [self.shape.columns(), self.shape.rows()];
         Grid { frame: self.frame, counts, periodic: self.shape.periodic() }
     }
 
-    /// How many discs there are.
+    /// Number of discs.
     #[inline]
     pub fn discs(&self) -> usize {
         self.discs
     }
 
-    /// Column and row of a disc; none if it is in no cell.
+    /// Column and row of a disc; `None` if it is in no cell.
     #[inline]
     pub fn cell(&self, disc: usize) -> Option<[usize; 2]> {
         let cell = self.cell[disc];
@@ -147,7 +156,7 @@ impl Occupancy {
         (cell != NOWHERE).then(|| self.column_and_row(cell as usize))
     }
 
-    /// Where the copies of the places of discs in shared cells are written and never read: behind the lattice.
+    /// Spare cell behind the lattice. Copies of the positions of discs in shared cells are written there and never read.
     #[inline]
     fn spare_cell(&self) -> u32 {
         self.index.len() as u32 - 1
@@ -166,13 +175,13 @@ impl Occupancy {
         [from_first % self.shape.stride(), from_first / self.shape.stride()]
     }
 
-    /// Puts a disc of some radius (length) into a cell, at a place seen from the cell's centre (length).
+    /// Places a disc of some radius (length) in a cell, at a position relative to the cell's centre (length).
     ///
     /// # Errors
     /// [`Taken`] if another disc is there; nothing has changed then.
     ///
     /// # Panics
-    /// If the disc is in a cell already, or there is no such disc or cell.
+    /// If the disc is already in a cell, or there is no such disc or cell.
     pub fn enter(
         &mut self,
         disc: usize,
@@ -180,8 +189,11 @@ impl Occupancy {
         place: [f64; 2],
         radius: f64,
     ) -> Result<(), Taken> {
-        assert!(self.cell[disc] == NOWHERE, "disc {disc} is in a cell already");
-        assert!(cell[0] < self.shape.columns() && cell[1] < self.shape.rows(), "no cell {cell:?}");
+        assert!(self.cell[disc] == NOWHERE, "disc {disc} is already in a cell");
+        assert!(
+            cell[0] < self.shape.columns() && cell[1] < self.shape.rows(),
+            "no cell {cell:?} in this lattice"
+        );
         let at = self.shape.position(cell[0] as isize, cell[1] as isize);
         if self.index[at] as usize != self.discs {
             return Err(Taken(self.index[at] as usize));
@@ -197,14 +209,17 @@ impl Occupancy {
         Ok(())
     }
 
-    /// Puts a disc into a cell that is another disc's, in the list of such discs behind those whose `number` is smaller.
+    /// Places a disc in a cell that belongs to another disc. The list of such discs stays in order of `number`.
     ///
     /// # Panics
-    /// If the disc is in a cell already, or there is no such disc or cell.
+    /// If the disc is already in a cell, or there is no such disc or cell.
     #[inline]
     pub fn share(&mut self, disc: usize, cell: [usize; 2], number: impl Fn(usize) -> usize) {
-        assert!(self.cell[disc] == NOWHERE, "disc {disc} is in a cell already");
-        assert!(cell[0] < self.shape.columns() && cell[1] < self.shape.rows(), "no cell {cell:?}");
+        assert!(self.cell[disc] == NOWHERE, "disc {disc} is already in a cell");
+        assert!(
+            cell[0] < self.shape.columns() && cell[1] < self.shape.rows(),
+            "no cell {cell:?} in this lattice"
+        );
         self.cell[disc] = self.spare_cell();
         self.outside -= 1;
         let own = number(disc);
@@ -212,13 +227,13 @@ impl Occupancy {
         self.shared.insert(before, (disc as u32, cell));
     }
 
-    /// The discs in cells that are another disc's, with these cells.
+    /// Discs in cells that belong to another disc, with these cells.
     #[inline]
     pub fn shared_cells(&self) -> &[(u32, [usize; 2])] {
         &self.shared
     }
 
-    /// Takes a disc out of its cell, if it is in one.
+    /// Removes a disc from its cell, if it is in one.
     pub fn leave(&mut self, disc: usize) {
         if self.cell[disc] == NOWHERE {
             return;
@@ -244,7 +259,7 @@ impl Occupancy {
     /// Moves a disc inside its cell.
     ///
     /// # Panics
-    /// If it is in none.
+    /// If the disc is in no cell.
     #[inline]
     pub fn settle(&mut self, disc: usize, place: [f64; 2]) {
         let at = self.cell[disc] as usize;
@@ -257,12 +272,12 @@ impl Occupancy {
         }
     }
 
-    /// Repeats the cells at periodic sides in the halo.
+    /// Copies the cells at periodic sides to the halo.
     pub fn repeat_images(&mut self) {
         for &[cell, source] in &self.images {
             let [cell, source] = [cell, source].map(|at| at as usize);
             let disc = self.index[source];
-            // Places change with every step, who is there hardly ever.
+            // Positions change with every step, occupants rarely.
             if self.index[cell] != disc {
                 self.index[cell] = disc;
                 self.occupied.set(cell, (disc as usize) < self.discs);
@@ -276,7 +291,7 @@ impl Occupancy {
         }
     }
 
-    /// The discs in order of their cells, row by row, those in shared cells behind all.
+    /// The discs in order of their cells, row by row; those in shared cells come last.
     pub fn order(&self) -> Vec<u32> {
         let rows = (0..self.shape.rows() as isize).map(|row| self.shape.position(0, row));
         rows.flat_map(|first| &self.index[first..first + self.shape.columns()])
@@ -286,13 +301,13 @@ impl Occupancy {
             .collect()
     }
 
-    /// Renumbers the discs: disc `n` is from now on what disc `order[n]` was.
+    /// Renumbers the discs: the new disc `n` is the old disc `order[n]`.
     ///
     /// # Panics
     /// If `order` does not name every disc once.
     pub fn renumber(&mut self, order: &[u32]) {
         let old = std::mem::replace(&mut self.cell, vec![NOWHERE; self.discs]);
-        assert_eq!(order.len(), self.discs, "an order of all discs");
+        assert_eq!(order.len(), self.discs, "the order must have one entry per disc");
         let mut now = vec![NOWHERE; self.discs];
         let spare_cell = self.spare_cell();
         for (disc, &before) in order.iter().enumerate() {
@@ -308,7 +323,7 @@ impl Occupancy {
         self.repeat_images();
     }
 
-    /// The largest contact distance (length).
+    /// Largest contact distance (length).
     #[inline]
     pub(super) fn reach(&self) -> f64 {
         1.0 / self.unit
@@ -339,19 +354,19 @@ impl Occupancy {
         self.radius.as_deref()
     }
 
-    /// Whether so few cells are occupied that places are not kept.
+    /// True if so few cells are occupied that positions are not stored.
     #[inline]
     pub(crate) fn is_sparse(&self) -> bool {
         self.sparse
     }
 
-    /// Which cells are occupied, images included.
+    /// Bits of the occupied cells, images included.
     #[inline]
     pub(super) fn occupied(&self) -> &Bits {
         &self.occupied
     }
 
-    /// What a pass over the discs is to keep up to date; nothing if the lattice is sparse.
+    /// Copies that a pass over the discs must update; `None` if the lattice is sparse.
     ///
     /// # Panics
     /// If a disc is in no cell.

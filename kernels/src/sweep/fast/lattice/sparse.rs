@@ -1,17 +1,17 @@
-//! Finding contacts where few cells are occupied: disc by disc, through a bit for every cell.
+//! Contact search where few cells are occupied: disc by disc, with one bit per cell.
 //!
 //! ```text
 //! for every row:
 //!     list the occupied cells                           64 bits at a time
 //!     for every one of them:
-//!         the bits at the places of the half mask       a word for each row of the mask, shifted together
+//!         the bits at the offsets of the half mask      a word for each row of the mask, shifted together
 //!         append a candidate for every bit
-//!         keep those whose distance is that of a contact, but for a margin
+//!         keep those within the contact distance plus a margin
 //! ```
 //!
-//! Comparing registers of cells would be for nothing at most cells here. The distance of every candidate is asked at once, for
-//! at this density most neighbours are no contacts. A candidate is written before it is known whether it stays: that spares a
-//! branch that cannot be predicted.
+//! Comparing registers of cells would be wasted on mostly empty cells. The distance of every candidate is checked at once,
+//! because at this density most neighbours are not in contact. A candidate is written before its check, which avoids an
+//! unpredictable branch.
 
 use super::codes::{Candidate, Codes};
 use super::detection::append_bits;
@@ -33,11 +33,11 @@ pub(super) struct SparseSearch<'a, S, P> {
     pub(super) cursor: &'a mut Cursor,
     pub(super) full: usize,
     pub(super) found: &'a mut Vec<Candidate>,
-    /// Scratch: the occupied cells of a row.
+    /// Scratch: occupied cells of a row.
     pub(super) cells: &'a mut Vec<u64>,
 }
 
-/// No vectors here, but the processor's instructions on bits.
+/// Uses no vectors, but the processor's bit instructions.
 impl<S: Element, P: Precision> Task<f32> for SparseSearch<'_, S, P> {
     #[inline(always)]
     fn on<R: Registers<Lane = f32>>(self, _: R) {
@@ -63,10 +63,10 @@ impl<S: Element, P: Precision> Task<f32> for SparseSearch<'_, S, P> {
             }
             for &cell in cells.iter() {
                 let position = cell as usize;
-                // SAFETY: the cell is in one of the rows, so that its places are before `end`.
+                // SAFETY: the cell is in one of the rows, so its offsets are before `end`.
                 let mut near = unsafe { occupied.from(position + 1) } & ahead;
                 for row in 1..=h {
-                    // SAFETY: the row is at most `h` on, so that the position is before `end` too.
+                    // SAFETY: the row is at most `h` ahead, so the position is before `end` too.
                     let there = unsafe { occupied.from(position + row * shape.stride() - h) } & around;
                     near |= there << (h + (row - 1) * (2 * h + 1));
                 }
