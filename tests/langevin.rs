@@ -370,7 +370,7 @@ fn what_cannot_be_is_refused_with_what_may_be() {
         (
             "langevin-dense",
             &["law.kind=wca", "law.screening=3"],
-            &["means nothing with law.kind = \"wca\"", "yukawa"],
+            &["has no effect with law.kind = \"wca\"", "yukawa"],
         ),
         ("langevin-dense", &["law.kind=yukawa", "law.screening=60"], &["above 0 and at most 50"]),
         (

@@ -25,7 +25,7 @@ WRONG = [
     ("hard-disks", {"particles.count": [1, 2]}, "`particles.count` is"),
     ("hard-disks", ["particles.cuont=5"], "did you mean `particles.count`"),
     ("hard-disks", ["particles.count"], "."),
-    ("hard-disks", {"particles": 3}, "without a section|is no table"),
+    ("hard-disks", {"particles": 3}, "without a section|is not a table"),
     ("hard-disks", {"particles": {"count": {"a": 1}}}, "`particles.count` is"),
     ("hard-disks", {"particles.packing_fraction": float("nan")}, "`particles.packing_fraction` cannot be"),
     ("hard-disks", {"particles.packing_fraction": np.float64("inf")}, "`particles.packing_fraction` cannot be"),
