@@ -116,9 +116,9 @@ pub(super) fn fill(
         Filling { domain: *domain, room, obstacles, count, radius, spread, cut, second, mass, seed };
     let mut discs = random(&filling).map_err(|jammed| {
         let error = stated.spot(&GENERATE).error(Reason::Placement, jammed.to_string());
-        error.advising("lower count or packing_fraction, or make more room")
+        error.advising("lower count or packing_fraction, or enlarge the box")
     })?;
-    // Where walls take up momentum there is none to balance.
+    // Walls absorb momentum, so it is balanced without walls only.
     let balanced = domain.periodic() == [true; 2] && obstacles.is_empty() && discs.len() > 1;
     stir(&mut discs, seed, balanced, |disc| grains.deviation(disc.mass));
     Ok(discs)

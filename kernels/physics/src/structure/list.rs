@@ -1,20 +1,20 @@
-//! The observables of the structure, one after the other.
+//! List of the observables of the structure.
 
 use super::waves;
 use super::{Asks, Headline, Observable, Over, Seen, Verdict, Whole};
 use super::{diffusion, motion, neighbours, pairs, single};
 use crate::number::significant;
 
-/// Every function can be relied on.
+/// Judgement that always accepts the function.
 const SOUND: fn(&Whole<'_>) -> Verdict = |_| Verdict::Sound;
-/// Nothing but statistical error.
+/// Bias of headlines with statistical error only.
 const NO_BIAS: fn(&Whole<'_>) -> f64 = |_| 0.0;
 
-/// A grid over the box.
+/// Coordinates of a grid over the box.
 const PLACES: &[[&str; 2]] = &[["x", "length"], ["y", "length"]];
-/// Where the definition of the stress comes from.
-const STRESS: &str = "Irving and Kirkwood 1950, half of a pair to either disc (Thompson, Plimpton and Mattson 2009); velocities as seen from the box";
-/// The number that stands for a component of the stress.
+/// Source of the definition of the stress.
+const STRESS: &str = "Irving and Kirkwood 1950, each disc takes half of a pair (Thompson, Plimpton and Mattson 2009); velocities relative to the box";
+/// Headline of a component of the stress.
 const OVER_BOX: [Headline; 1] = [Headline {
     name: "mean over the box",
     unit: "force/length",
@@ -22,14 +22,14 @@ const OVER_BOX: [Headline; 1] = [Headline {
     bias: NO_BIAS,
 }];
 
-/// All of them.
+/// All observables.
 pub static OBSERVABLES: [Observable; 16] = [
     Observable {
         name: "g(r)",
         file: "g.csv",
         over: &[["r", "length"]],
         value: ["g", ""],
-        doc: "Pairs at a distance over those of an ideal gas in the area that centres of discs can reach, between closed sides and wall discs; below an open top, of discs at the same heights, but anywhere along the floor.",
+        doc: "Pairs at a distance over those of an ideal gas in the area that centres of discs can reach between closed sides and wall discs. With an open top the ideal gas has discs at the same heights, anywhere along the floor.",
         source: "Hansen and McDonald, Theory of Simple Liquids, section 2.5; closed sides by the set covariance of a rectangle (Stoyan \
                  and Stoyan 1994)",
         seen: Seen::Once {
@@ -91,8 +91,8 @@ pub static OBSERVABLES: [Observable; 16] = [
         file: "coordination.csv",
         over: &[["neighbours", ""]],
         value: ["share of discs", ""],
-        doc: "Shares of discs by their number of neighbours: others nearer than 1.5 times the sum of the radii.",
-        source: "the first minimum of g(r) of dense discs lies there",
+        doc: "Fractions of discs by their number of neighbours: others nearer than 1.5 times the sum of the radii.",
+        source: "first minimum of g(r) of dense discs",
         seen: Seen::Once {
             over: Over::Axis(neighbours::neighbour_numbers),
             of: |it, values, _| neighbours::coordination(&it.discs, &it.neighbours, values),
@@ -112,8 +112,8 @@ pub static OBSERVABLES: [Observable; 16] = [
         file: "psi6.csv",
         over: &[["|psi6| of a disc", ""]],
         value: ["density", ""],
-        doc: "Distribution of the hexatic order of single discs, ψ6 = ⟨exp(6iθ)⟩ over the six nearest, or all others where there are fewer.",
-        source: "Nelson and Halperin 1979; six nearest neighbours in place of Voronoi's",
+        doc: "Distribution of the hexatic order of single discs, ψ6 = ⟨exp(6iθ)⟩ over the six nearest discs, or over all others if there are fewer.",
+        source: "Nelson and Halperin 1979; six nearest neighbours instead of Voronoi's",
         seen: Seen::Once {
             over: Over::Axis(neighbours::orders),
             of: |it, values, _| neighbours::hexatic(&it.neighbours, values),
