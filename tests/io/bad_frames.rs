@@ -17,22 +17,22 @@ const CASES: &[(&str, &str)] = &[
     ("-1\n", "bad.xyz:1: expected the number of discs, which begins a frame, found `-1`"),
     ("1.5\n", "bad.xyz:1: expected the number of discs, which begins a frame, found `1.5`"),
     // Wrong counts.
-    ("1\n", "bad.xyz:1: truncated: the file ends after 0 of the 1 discs that line 1 promises"),
+    ("1\n", "bad.xyz:1: truncated: the file ends after 0 of the 1 discs that line 1 announces"),
     (
         "3\nLATTICE PROPERTIES\nROW\n",
-        "bad.xyz:3: truncated: the file ends after 1 of the 3 discs that line 1 promises",
+        "bad.xyz:3: truncated: the file ends after 1 of the 3 discs that line 1 announces",
     ),
     (
         "1\nLATTICE PROPERTIES\nROW\n1\nLATTICE PROPERTIES\n",
-        "bad.xyz:5: truncated: the file ends after 0 of the 1 discs that line 4 promises; the frame before is whole",
+        "bad.xyz:5: truncated: the file ends after 0 of the 1 discs that line 4 announces; the frame before is complete",
     ),
     (
         "18446744073709551615\nLATTICE PROPERTIES\nROW\n",
-        "bad.xyz:3: truncated: the file ends after 1 of the 18446744073709551615 discs that line 1 promises",
+        "bad.xyz:3: truncated: the file ends after 1 of the 18446744073709551615 discs that line 1 announces",
     ),
     (
         "1\nLATTICE PROPERTIES\nROW\nROW\n",
-        "bad.xyz:4: expected the number of discs, which begins a frame, found `ROW`; does line 1 promise too few?",
+        "bad.xyz:4: expected the number of discs, which begins a frame, found `ROW`; does line 1 announce too few?",
     ),
     // Comment lines.
     (
@@ -171,7 +171,7 @@ const CASES: &[(&str, &str)] = &[
 
 /// `ADD` and `FMT` stand for the ends of two messages.
 const ADD: &str = "; add it to the file, for example in OVITO (Compute property, Export File, XYZ) or in ASE (atoms.set_array)";
-const FMT: &str = "extended XYZ is what is read, with columns for positions, velocities, radii and masses: convert it, for example \
+const FMT: &str = "expected extended XYZ, with columns for positions, velocities, radii and masses: convert it, for example \
                    with OVITO (Export File, XYZ)";
 
 fn write_out(text: &str) -> String {
