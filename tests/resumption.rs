@@ -168,7 +168,7 @@ fn fewer_steps_than_done_are_refused() {
     let path = folder.path().join("run");
     succeed(&run(&path, 60, &[]));
     let before = (bits(&path), summary(&path));
-    refused(&run(&path, 50, &["--resume"]), 2, &["run.steps=60", "run.steps=50 is asked for"]);
+    refused(&run(&path, 50, &["--resume"]), 2, &["run.steps=60", "beyond the run.steps=50 asked for"]);
     assert!((bits(&path), summary(&path)) == before);
 }
 
@@ -337,13 +337,13 @@ fn a_run_is_moved_with_its_start_file() {
     refused(
         &stripmine(&copy, &[&goes_on[..], &seeded].concat()),
         2,
-        &["other discs", "copy/start.xyz", "give the start back its contents"],
+        &["other discs", "copy/start.xyz", "restore the start"],
     );
     succeed(&stripmine(&copy, &["run", "scene.toml", "--set", "law.noise_seed=2", "--overwrite"]));
     refused(
         &stripmine(folder.path(), &["average", "home/scene.run", "copy/scene.run"]),
         2,
-        &["not of one scene", "# discs of this file"],
+        &["have different scenes", "# discs of this file"],
     );
     // Far from its run a start file keeps its place.
     let far = folder.path().join("far/away/from/it");

@@ -68,7 +68,7 @@ const CASES: &[(&str, &str)] = &[
     (
         "1\npbc=\"T\" LATTICE Origin=\"0 0\" PROPERTIES\nROW\n",
         "bad.xyz:2:37: Origin is `0 0`; expected \"x y z\"\n\
-         bad.xyz:2:1: pbc is `T`; expected \"T F F\" (or \"T F\"), T where the box repeats along x, y, z",
+         bad.xyz:2:1: pbc is `T`; expected \"T F F\" (or \"T F\"), T where the box is periodic along x, y, z",
     ),
     (
         "1\nLATTICE Properties=species:S:1:pos:R:3:id:I:1:velo:R:3:mass:R:1:omega:R:3\nROW\n",
