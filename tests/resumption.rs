@@ -147,7 +147,7 @@ fn another_version_is_said_or_refused() {
     forge(&path, |checkpoint| drop(checkpoint.origin.insert("commit".to_owned(), "0123456789ab".to_owned())));
     let output = run(&path, 80, &["--resume"]);
     succeed(&output);
-    assert!(said(&output).contains("warning: gone on at step 60") && said(&output).contains("0123456789ab"));
+    assert!(said(&output).contains("warning: resumed at step 60") && said(&output).contains("0123456789ab"));
     assert!(notes(&path).len() == 1 && notes(&path)[0].contains("0123456789ab"), "{:?}", notes(&path));
     forge(&path, |checkpoint| {
         checkpoint.counters.insert("bits".to_owned(), Counter::Count(99));
@@ -243,7 +243,7 @@ fn resuming_before_the_first_checkpoint_begins() {
     assert!(bits(&path) == whole);
     let output = run(&path, 100, &["--resume"]);
     succeed(&output);
-    assert!(said(&output).contains("begun again") && bits(&path) == whole);
+    assert!(said(&output).contains("started again") && bits(&path) == whole);
     fs::remove_dir_all(&path).unwrap();
     fs::create_dir(&path).unwrap();
     succeed(&run(&path, 100, &["--resume"]));

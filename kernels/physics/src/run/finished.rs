@@ -139,7 +139,7 @@ pub struct Finished {
 }
 
 impl Finished {
-    /// Reads what a run has written so far.
+    /// Reads the files of a run in their present state.
     ///
     /// # Errors
     /// If its scene or its table cannot be read, or no method observes its columns.
@@ -154,12 +154,12 @@ impl Finished {
         Ok(Finished { folder: folder.to_owned(), scene, rows })
     }
 
-    /// What decides the run.
+    /// Lines of the scene that determine the physics.
     fn physics(&self) -> Vec<&str> {
         physics(&self.scene)
     }
 
-    /// That another run is of the same scene with another seed.
+    /// Checks that another run has the same scene with another seed.
     fn is_joined_by(&self, other: &Finished) -> Result<(), FinishedError> {
         let (first, other_folder) = (self.folder.clone(), other.folder.clone());
         if self.physics() == other.physics() {
@@ -184,7 +184,7 @@ impl Finished {
         }
     }
 
-    /// The seed of the noise, and whether the scene states it: otherwise it is that of the start.
+    /// Seed of the noise, and true if the scene states it; otherwise it is that of the start.
     fn noise(&self) -> Option<(&str, bool)> {
         let physics = self.physics();
         let value = |key| physics.iter().find_map(|line| line.strip_prefix(key));
@@ -192,10 +192,10 @@ impl Finished {
     }
 }
 
-/// The averages of a run, or of several of one scene.
+/// Averages of a run, or joined ones of several runs of one scene.
 ///
 /// # Errors
-/// If two of them are not of one scene, or are the same run.
+/// If two of them have different scenes, or are the same run.
 pub fn averages_of(runs: &[Finished]) -> Result<Averages, FinishedError> {
     for (place, run) in runs.iter().enumerate() {
         runs[..place].iter().try_for_each(|before| before.is_joined_by(run))?;
@@ -203,10 +203,10 @@ pub fn averages_of(runs: &[Finished]) -> Result<Averages, FinishedError> {
     Ok(joined(&runs.iter().map(|run| Averages::of(&run.rows)).collect::<Vec<_>>()))
 }
 
-/// The rows of a table, whose first column is the step.
+/// Reads the rows of a table, whose first column is the step.
 ///
 /// # Errors
-/// If they cannot be read, or one is no row of numbers.
+/// If they cannot be read, or one is not a row of numbers.
 pub(super) fn rows_of(mut table: TableReader, quantities: &'static [Quantity]) -> Result<Rows, TableError> {
     let mut rows = Rows::new(quantities);
     while let Some(row) = table.next_row()? {
