@@ -70,7 +70,7 @@ impl Recorder {
         let mut notes = Vec::new();
         if !folder.is_locked() {
             notes.push(format!(
-                "{}: this file system has no locks; see that no second process writes there",
+                "{}: this file system has no locks; make sure that no other process writes there",
                 quoted::path(path)
             ));
         }
