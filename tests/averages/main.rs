@@ -227,11 +227,7 @@ fn runs_with_one_noise_are_not_joined() {
             ["run", "langevin-free", "--set", "particles.count=50", "--set", "run.time=20", "--out", out];
         ends_with(&stripmine(folder, &[&free[..], &["--set", &seed, "--set", noise]].concat()), 0, &[]);
     }
-    ends_with(
-        &stripmine(folder, &["average", "a", "b"]),
-        2,
-        &["a and b have the same noise, of seed 7"],
-    );
+    ends_with(&stripmine(folder, &["average", "a", "b"]), 2, &["a and b have the same noise, of seed 7"]);
     ends_with(&stripmine(folder, &["average", "a", "c"]), 2, &["have the same noise"]);
     ends_with(&stripmine(folder, &["average", "a", "d"]), 0, &[]);
 }

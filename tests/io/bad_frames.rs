@@ -78,7 +78,7 @@ const CASES: &[(&str, &str)] = &[
         "1\nLATTICE Properties=species:S:1:pos:R:4:id:R:1\nROW\n",
         "bad.xyz:2:29: Properties has `pos:R:4`; expected `pos:R:3`\n\
          bad.xyz:2:29: Properties has `id:R:1`; expected `id:I:1`\n\
-         bad.xyz:2:29: Properties has no column `velo:R:3` (or `velo:R:2`, or `momenta:R:3`, which are divided by the masses)ADD\n\
+         bad.xyz:2:29: Properties has no column `velo:R:3` (or `velo:R:2`, or `momenta:R:3`, which is divided by the masses)ADD\n\
          bad.xyz:2:29: Properties has no column `radius:R:1`ADD\n\
          bad.xyz:2:29: Properties has no column `mass:R:1` (or `masses:R:1`)ADD",
     ),

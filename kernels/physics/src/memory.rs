@@ -172,10 +172,7 @@ pub(crate) fn available() -> Option<Available> {
 const RESERVED: u64 = 1 << 26;
 
 /// Memory that the limits of this process leave.
-#[expect(
-    clippy::disallowed_methods,
-    reason = "a system that does not report its limits has no known ones"
-)]
+#[expect(clippy::disallowed_methods, reason = "a system that does not report its limits has no known ones")]
 fn left_of_process() -> impl Iterator<Item = Available> {
     let [limits, status] =
         ["/proc/self/limits", "/proc/self/status"].map(|file| fs::read_to_string(file).unwrap_or_default());

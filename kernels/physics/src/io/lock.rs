@@ -114,7 +114,10 @@ fn sign(mut file: &File) -> io::Result<()> {
 
 /// Holder of a lock, read from its file.
 fn holder(file: &File) -> String {
-    #[expect(clippy::disallowed_methods, reason = "the holder of a lock is named only if its file can be read")]
+    #[expect(
+        clippy::disallowed_methods,
+        reason = "the holder of a lock is named only if its file can be read"
+    )]
     let text = text(file).unwrap_or_default();
     let said = |what: &str| {
         let value = text.lines().find_map(|line| line.strip_prefix(what)?.strip_prefix(' '))?;

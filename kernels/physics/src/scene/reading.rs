@@ -36,9 +36,10 @@ impl Values {
             text::set(&mut values, key, value);
         }
         if values.given(&METHOD) != self.given(&METHOD) {
-            let error = values
-                .spot(&METHOD)
-                .error(Reason::Contradiction, "an override cannot change the method of a scene that is already read");
+            let error = values.spot(&METHOD).error(
+                Reason::Contradiction,
+                "an override cannot change the method of a scene that is already read",
+            );
             values.errors.push(error);
         }
         values.checked()

@@ -235,9 +235,7 @@ impl Source<'_> {
     fn fault(&self, key: &Key, fault: &Fault) -> SceneError {
         let format = key.id() == FORMAT.id() && fault.reason == Reason::Range;
         let (reason, message) = match fault.reason {
-            Reason::Range if format => {
-                (Reason::Format, format!("unknown scene format: {}", fault.found))
-            }
+            Reason::Range if format => (Reason::Format, format!("unknown scene format: {}", fault.found)),
             Reason::Range => (Reason::Range, format!("`{}` cannot be {}", key.path(), fault.found)),
             other => (other, format!("`{}` is {}", key.path(), fault.found)),
         };

@@ -84,11 +84,7 @@ pub(super) fn grain_count(
     let compresses = most == COMPRESSED;
     let bound = if compresses { most } else { most * (1.0 + 2.0 / count.sqrt()) };
     if fraction > bound {
-        let how = if compresses {
-            "growing discs jam at about"
-        } else {
-            "random placement jams at about"
-        };
+        let how = if compresses { "growing discs jam at about" } else { "random placement jams at about" };
         let error = refuse(format!(
             "{count} discs fill {} of the area open to grains; {how} {most}",
             significant(fraction, 4)

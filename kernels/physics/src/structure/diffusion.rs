@@ -99,7 +99,8 @@ impl Rising {
     /// Reason why there is no constant, with the run that would give one.
     fn judge(&self, whole: &Whole<'_>) -> Verdict {
         if whole.setting.domain.periodic() != [true; 2] {
-            let why = "no diffusion constant: closed sides bound the displacements; both sides must be periodic";
+            let why =
+                "no diffusion constant: closed sides bound the displacements; both sides must be periodic";
             return Verdict::None(why.to_owned());
         }
         let Some(&last) = whole.over.last().filter(|_| !octaves(whole.over).is_empty()) else {

@@ -124,7 +124,8 @@ fn index(file: &File) -> Result<(Vec<String>, Vec<Entry>), Wrong> {
 
     let mut list = vec![0; length_of_names as usize];
     file.seek(SeekFrom::Start(first)).and_then(|_| file.read_exact(&mut list)).map_err(system)?;
-    let names = names_of(&list).ok_or(wrong(first, "names that end with a 0 each, and the last one with two"))?;
+    let names =
+        names_of(&list).ok_or(wrong(first, "names that end with a 0 each, and the last one with two"))?;
 
     file.seek(SeekFrom::Start(index.at)).map_err(system)?;
     let mut entries: Vec<Entry> = vec![];
