@@ -22,7 +22,7 @@ const PATIENCE: Duration = Duration::from_millis(300);
 /// End of the process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
-    /// No file is half written.
+    /// Every file is complete.
     Whole,
     /// Forced by a second signal: a file may be incomplete.
     Forced,

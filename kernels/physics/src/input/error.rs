@@ -26,7 +26,7 @@ pub enum Reason {
     System,
     /// A format version that this program cannot read.
     Format,
-    /// No such section or key.
+    /// An unknown section or key.
     Unknown,
     /// A value of the wrong type, or a word that is not among the choices.
     Type,

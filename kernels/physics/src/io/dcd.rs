@@ -42,7 +42,7 @@ pub(crate) struct Positions {
 struct Spacing {
     /// Steps between frames.
     steps: u64,
-    /// The time step (time).
+    /// Time step (time).
     dt: f64,
 }
 

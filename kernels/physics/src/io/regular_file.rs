@@ -7,10 +7,10 @@ use std::path::Path;
 /// Reason why a readable file is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub(crate) enum Unfit {
-    /// It is a folder, a device, a pipe or a socket.
+    /// A folder, a device, a pipe or a socket.
     #[error("it is {0}; expected an ordinary file")]
     Kind(&'static str),
-    /// It is too long for its kind.
+    /// A file too long for its kind.
     #[error("it is longer than {most} bytes, the limit for such a file")]
     TooLong {
         /// Limit (bytes).

@@ -10,11 +10,11 @@ use std::path::PathBuf;
 /// Occasion for adding to a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Due {
-    /// Whenever a run pauses to process events.
+    /// Every pause of a run to process events.
     Events,
-    /// When a row of observables is due.
+    /// Rows of observables.
     Row,
-    /// When a frame is due, and at the end.
+    /// Frames, and the end of a run.
     Frame,
 }
 

@@ -45,7 +45,7 @@ mod tests {
         }
     }
 
-    /// No site is drawn twice, and all of them if all are asked for. Each is equally likely in each turn: χ² of 9999 draws of 3 of 6.
+    /// Sites are drawn at most once, and all of them if all are asked for. Each is equally likely in each turn: χ² of 9999 draws of 3 of 6.
     #[test]
     fn places_are_different_and_all_alike() {
         let mut all = mesh([7, 5], 35, 4);

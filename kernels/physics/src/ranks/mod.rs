@@ -147,7 +147,7 @@ pub fn over<R>(crew: Crew, work: impl FnOnce() -> R) -> R {
     work()
 }
 
-/// Tells processes that wait for a simulation that no other follows; called by the first rank. The message is an option that holds the next
+/// Dismisses processes that wait for a simulation, since no other follows; called by the first rank. The message is an option that holds the next
 /// simulation, if any.
 ///
 /// # Errors

@@ -226,7 +226,7 @@ mod tests {
         }
     }
 
-    /// No frame is written twice. Without steps, frames differ if the time or the events do. A moment that adds nothing to a file is not that of
+    /// Frames are written once. Without steps, frames differ if the time or the events do. A moment that adds nothing to a file is not that of
     /// its last frame.
     #[test]
     fn frames_are_there_once() {

@@ -108,7 +108,7 @@ pub enum RunError {
         folder: PathBuf,
         /// Program of the run.
         theirs: String,
-        /// This program.
+        /// Program that resumes it.
         ours: String,
     },
     /// The scene is not that of the run.

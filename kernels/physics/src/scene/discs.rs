@@ -22,7 +22,7 @@ define_words! {
         Pipe = "pipe",
         /// Above a floor.
         Box = "box",
-        /// As listed.
+        /// Listed one by one.
         List = "list",
         /// From a file.
         File = "file",
@@ -34,7 +34,7 @@ define_words! {
 pub enum Start {
     /// Read from an extended XYZ file.
     File(StartFile),
-    /// As listed.
+    /// Listed one by one.
     List(List),
     /// On a hexagonal lattice, each shifted at random by at most 0.45 of the gap; the lattice determines the box.
     Hexagonal {

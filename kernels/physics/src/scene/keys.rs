@@ -354,9 +354,9 @@ fn target(value: &Spanned<DeValue<'_>>) -> Read<Target> {
 /// Default of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fallback {
-    /// No default: the key must be given wherever it is used.
+    /// Required: the key must be given wherever it is used.
     Required,
-    /// This value, as TOML.
+    /// Value in TOML.
     Is(&'static str),
     /// Default described in words.
     Otherwise(&'static str),

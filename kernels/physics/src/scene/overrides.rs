@@ -24,7 +24,7 @@ use toml::de::DeValue;
 pub struct Overrides(Vec<(&'static Key, Value)>);
 
 impl Overrides {
-    /// No overrides.
+    /// Creates an empty list of overrides.
     pub fn new() -> Overrides {
         Overrides::default()
     }

@@ -59,7 +59,7 @@ impl Observable {
         matches!(self.seen, Seen::Twice { follows: true, .. })
     }
 
-    /// True if it counts discs by position: then 0 means that none was sampled, not that density is 0.
+    /// True if it counts discs by position: a value of 0 then means that none was sampled, not that the density is 0.
     pub(crate) fn is_density_of_places(&self) -> bool {
         self.name.starts_with("density(")
     }

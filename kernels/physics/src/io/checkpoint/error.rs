@@ -33,16 +33,16 @@ pub enum Fault {
     /// The system refuses to read it.
     #[error("cannot be read: {0}")]
     Io(#[from] io::Error),
-    /// It does not begin with the signature of a checkpoint.
+    /// The signature of a checkpoint is missing.
     #[error("is not a checkpoint: its first bytes are not the signature of one")]
     Magic,
-    /// Its format version is unknown to this program.
+    /// The format version is unknown to this program.
     #[error("has format version {found}, but this program reads version {VERSION}")]
     Version {
         /// Version that it states.
         found: u32,
     },
-    /// It is shorter than it states.
+    /// The file is shorter than it states.
     #[error("is truncated: {found} bytes of {}", length(*.promised))]
     Truncated {
         /// Bytes of the file.
@@ -50,7 +50,7 @@ pub enum Fault {
         /// Bytes it should have, if known.
         promised: Option<u64>,
     },
-    /// It is longer than it states.
+    /// The file is longer than it states.
     #[error("has {extra} bytes after its end")]
     Trailing {
         /// Number of excess bytes.
@@ -90,14 +90,14 @@ pub enum Fault {
 pub enum Kept {
     /// There is no older checkpoint.
     Nothing,
-    /// It is valid.
+    /// A valid file.
     Whole {
         /// Path of the file.
         file: PathBuf,
         /// Step at which it was written.
         step: u64,
     },
-    /// It cannot be used either.
+    /// A file that cannot be used either.
     Unusable {
         /// Path of the file.
         file: PathBuf,

@@ -49,7 +49,7 @@ pub enum Reason {
     /// Bytes that are not text.
     #[error("not UTF-8 text")]
     NotText,
-    /// No number at the start of a frame.
+    /// A missing number at the start of a frame.
     #[error("expected the number of discs, which begins a frame, found `{}`{}", quoted(found), after(*.previous))]
     Count {
         /// Text found.
