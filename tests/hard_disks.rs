@@ -299,7 +299,7 @@ fn dense_starts_are_grown() {
     let jammed =
         with("jammed", &["--set", "particles.packing_fraction=0.88", "--set", "particles.radius_spread=0.1"]);
     assert_eq!(jammed.status.code(), Some(3));
-    assert!(said(&jammed).contains("and jam"), "{}", said(&jammed));
+    assert!(said(&jammed).contains("jam at a packing fraction"), "{}", said(&jammed));
 }
 
 /// Three discs between two others in a line, very dissipative: they collide without end, and that is said with the pair.

@@ -359,7 +359,7 @@ fn what_cannot_be_is_refused_with_what_may_be() {
             &["search.by=sectors", "search.sectors=900"],
             &["narrower than the cut-off", "3 to 890"],
         ),
-        ("langevin-report", &["particles.count=800000"], &["890 × 890 = 792100 places", "particles.spacing"]),
+        ("langevin-report", &["particles.count=800000"], &["890 × 890 = 792100 sites", "particles.spacing"]),
         ("langevin-dense", &["search.by=lattice"], &["no lattice serves", "sectors"]),
         ("langevin-dense", &["domain.periodic=[true, false]"], &["no walls"]),
         ("langevin-dense", &["domain.gravity=[0.0, -1.0]"], &["gravity"]),
@@ -370,7 +370,7 @@ fn what_cannot_be_is_refused_with_what_may_be() {
         (
             "langevin-dense",
             &["law.kind=wca", "law.screening=3"],
-            &["means nothing with law.kind = \"wca\"", "yukawa"],
+            &["has no effect with law.kind = \"wca\"", "yukawa"],
         ),
         ("langevin-dense", &["law.kind=yukawa", "law.screening=60"], &["above 0 and at most 50"]),
         (

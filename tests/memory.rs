@@ -316,7 +316,7 @@ fn what_does_not_fit_is_refused_before_it_is_made() {
                radius = 0.5\nmass = 1.0\n[law]\nstiffness = 187.0\n[integrator]\ndt = 0.005\n[run]\nsteps = 1\n[machine]\nengine = \"programs\"\n";
     for (side, count, words) in [
         // Two billion discs; and two discs in two billion cells.
-        ("1e5", "2e9", "to place 2e9 discs takes"),
+        ("1e5", "2e9", "placing 2e9 discs takes"),
         ("3e4", "2", "a run of 2 discs in"),
     ] {
         let path = folder.path().join("scene.toml");

@@ -296,9 +296,9 @@ fn many_mistakes_are_counted() {
     let keys: String = (0..100_000).map(|i| format!("key{i} = 1\n")).collect();
     let positions = format!("[particles]\npositions = [{}]", "[1.0, 2.0, 3.0], ".repeat(40_000));
     for (text, more) in [
-        (format!("format = 2\n[law]\n{keys}"), Some("more mistakes, not named")),
-        (format!("format = 2\n{keys}"), Some("more mistakes, not named")),
-        (format!("format = 2\n{}", "x\n".repeat(100_000)), Some("more mistakes, not named")),
+        (format!("format = 2\n[law]\n{keys}"), Some("more mistakes, not listed")),
+        (format!("format = 2\n{keys}"), Some("more mistakes, not listed")),
+        (format!("format = 2\n{}", "x\n".repeat(100_000)), Some("more mistakes, not listed")),
         (format!("format = 2\n{positions}"), None),
         (format!("format = 2\n[law]\n{} = 1", "k".repeat(1_000_000)), None),
     ] {

@@ -147,7 +147,7 @@ fn another_version_is_said_or_refused() {
     forge(&path, |checkpoint| drop(checkpoint.origin.insert("commit".to_owned(), "0123456789ab".to_owned())));
     let output = run(&path, 80, &["--resume"]);
     succeed(&output);
-    assert!(said(&output).contains("warning: gone on at step 60") && said(&output).contains("0123456789ab"));
+    assert!(said(&output).contains("warning: resumed at step 60") && said(&output).contains("0123456789ab"));
     assert!(notes(&path).len() == 1 && notes(&path)[0].contains("0123456789ab"), "{:?}", notes(&path));
     forge(&path, |checkpoint| {
         checkpoint.counters.insert("bits".to_owned(), Counter::Count(99));
@@ -168,7 +168,7 @@ fn fewer_steps_than_done_are_refused() {
     let path = folder.path().join("run");
     succeed(&run(&path, 60, &[]));
     let before = (bits(&path), summary(&path));
-    refused(&run(&path, 50, &["--resume"]), 2, &["run.steps=60", "run.steps=50 is asked for"]);
+    refused(&run(&path, 50, &["--resume"]), 2, &["run.steps=60", "beyond the run.steps=50 asked for"]);
     assert!((bits(&path), summary(&path)) == before);
 }
 
@@ -243,7 +243,7 @@ fn resuming_before_the_first_checkpoint_begins() {
     assert!(bits(&path) == whole);
     let output = run(&path, 100, &["--resume"]);
     succeed(&output);
-    assert!(said(&output).contains("begun again") && bits(&path) == whole);
+    assert!(said(&output).contains("started again") && bits(&path) == whole);
     fs::remove_dir_all(&path).unwrap();
     fs::create_dir(&path).unwrap();
     succeed(&run(&path, 100, &["--resume"]));
@@ -337,13 +337,13 @@ fn a_run_is_moved_with_its_start_file() {
     refused(
         &stripmine(&copy, &[&goes_on[..], &seeded].concat()),
         2,
-        &["other discs", "copy/start.xyz", "give the start back its contents"],
+        &["other discs", "copy/start.xyz", "restore the start"],
     );
     succeed(&stripmine(&copy, &["run", "scene.toml", "--set", "law.noise_seed=2", "--overwrite"]));
     refused(
         &stripmine(folder.path(), &["average", "home/scene.run", "copy/scene.run"]),
         2,
-        &["not of one scene", "# discs of this file"],
+        &["have different scenes", "# discs of this file"],
     );
     // Far from its run a start file keeps its place.
     let far = folder.path().join("far/away/from/it");

@@ -25,7 +25,7 @@ WRONG = [
     ("hard-disks", {"particles.count": [1, 2]}, "`particles.count` is"),
     ("hard-disks", ["particles.cuont=5"], "did you mean `particles.count`"),
     ("hard-disks", ["particles.count"], "."),
-    ("hard-disks", {"particles": 3}, "without a section|is no table"),
+    ("hard-disks", {"particles": 3}, "without a section|is not a table"),
     ("hard-disks", {"particles": {"count": {"a": 1}}}, "`particles.count` is"),
     ("hard-disks", {"particles.packing_fraction": float("nan")}, "`particles.packing_fraction` cannot be"),
     ("hard-disks", {"particles.packing_fraction": np.float64("inf")}, "`particles.packing_fraction` cannot be"),
@@ -190,7 +190,7 @@ class Folders(unittest.TestCase):
         scene = stripmine.scene("two-discs", {"run.steps": 10})
         with tempfile.TemporaryDirectory() as folder:
             scene.run(folder)
-            with self.assertRaisesRegex(stripmine.RunError, "holds a run already") as caught:
+            with self.assertRaisesRegex(stripmine.RunError, "already contains a run") as caught:
                 scene.run(folder)
             self.assertEqual((caught.exception.kind, caught.exception.file), ("usage", folder))
             scene.run(folder, overwrite=True)
@@ -231,10 +231,10 @@ class Folders(unittest.TestCase):
     def test_runs_that_are_no_pair_are_not_joined(self):
         runs = [stripmine.scene("hard-disks", {**scenes.SHORT["hard-disks"], "particles.seed": seed}).run() for seed in (1, 2)]
         self.assertEqual(len(stripmine.average(*runs)), len(runs[0].averages()))
-        with self.assertRaisesRegex(stripmine.RunError, "one run made twice"):
+        with self.assertRaisesRegex(stripmine.RunError, "are the same run"):
             stripmine.average(runs[0], runs[0])
         other = stripmine.scene("two-discs", {"run.steps": 10}).run()
-        with self.assertRaisesRegex(stripmine.RunError, "not of one scene"):
+        with self.assertRaisesRegex(stripmine.RunError, "have different scenes"):
             stripmine.average(runs[0], other)
         self.assertEqual(len(stripmine.average()), 0)
 

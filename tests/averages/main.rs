@@ -92,7 +92,7 @@ fn runs_with_seeds_of_their_own_are_joined_and_others_refused() {
     assert!(joined["runs"] == 2 && rate("freedoms") == 1.0, "{joined:#}");
     assert!((rate("mean") - 0.5 * (a + b)).abs() < 1e-9, "{joined:#}");
     assert!((rate("bar") / (12.706 * 0.5 * (a - b).abs()) - 1.0).abs() < 1e-4, "{joined:#}");
-    ends_with(&stripmine(folder, &["average", "a", "c"]), 2, &["one run made twice", "a seed of its own"]);
+    ends_with(&stripmine(folder, &["average", "a", "c"]), 2, &["are the same run", "its own seed"]);
     ends_with(&run(folder, "d", &["--set", "run.events=2000", "--set", "law.restitution=0.99"]), 0, &[]);
     ends_with(&stripmine(folder, &["average", "a", "d"]), 2, &["restitution = 1.0", "restitution = 0.99"]);
     ends_with(&stripmine(folder, &["average", "none"]), 5, &["none/thermo.csv"]);
@@ -127,7 +127,7 @@ fn a_run_ends_when_a_mean_is_known_well_enough() {
     ends_with(
         &output,
         4,
-        &["run.events=20000 is over", "known to ± 0.", "not to ± 1e-4 (95 %)", "about time"],
+        &["latest end, run.events=20000,", "known to ± 0.", "not to ± 1e-4 (95 %)", "about time"],
     );
     assert_eq!(of(&averages(folder, "short"), "compressibility")["says"], "mean");
 }
@@ -151,7 +151,7 @@ fn seeds_make_an_ensemble() {
     let bytes = |out: &str| fs::read(folder.join(out).join("thermo.csv")).unwrap();
     assert_eq!(bytes("two"), bytes("all/seed-2"));
     assert!(folder.join("all/seeds.json").is_file());
-    ends_with(&run(folder, "all", &wanted), 2, &["all/seed-1 holds a run already"]);
+    ends_with(&run(folder, "all", &wanted), 2, &["all/seed-1 already contains a run"]);
     ends_with(&run(folder, "all", &[&wanted[..], &["--resume"]].concat()), 0, &[]);
     let output = stripmine(folder, &["run", "two-discs", "--seeds", "2"]);
     ends_with(&output, 2, &["nothing of this scene is drawn at random"]);
@@ -227,11 +227,7 @@ fn runs_with_one_noise_are_not_joined() {
             ["run", "langevin-free", "--set", "particles.count=50", "--set", "run.time=20", "--out", out];
         ends_with(&stripmine(folder, &[&free[..], &["--set", &seed, "--set", noise]].concat()), 0, &[]);
     }
-    ends_with(
-        &stripmine(folder, &["average", "a", "b"]),
-        2,
-        &["a and b have the same noise, that of seed 7"],
-    );
+    ends_with(&stripmine(folder, &["average", "a", "b"]), 2, &["a and b have the same noise, of seed 7"]);
     ends_with(&stripmine(folder, &["average", "a", "c"]), 2, &["have the same noise"]);
     ends_with(&stripmine(folder, &["average", "a", "d"]), 0, &[]);
 }

@@ -17,22 +17,22 @@ const CASES: &[(&str, &str)] = &[
     ("-1\n", "bad.xyz:1: expected the number of discs, which begins a frame, found `-1`"),
     ("1.5\n", "bad.xyz:1: expected the number of discs, which begins a frame, found `1.5`"),
     // Wrong counts.
-    ("1\n", "bad.xyz:1: truncated: the file ends after 0 of the 1 discs that line 1 promises"),
+    ("1\n", "bad.xyz:1: truncated: the file ends after 0 of the 1 discs that line 1 announces"),
     (
         "3\nLATTICE PROPERTIES\nROW\n",
-        "bad.xyz:3: truncated: the file ends after 1 of the 3 discs that line 1 promises",
+        "bad.xyz:3: truncated: the file ends after 1 of the 3 discs that line 1 announces",
     ),
     (
         "1\nLATTICE PROPERTIES\nROW\n1\nLATTICE PROPERTIES\n",
-        "bad.xyz:5: truncated: the file ends after 0 of the 1 discs that line 4 promises; the frame before is whole",
+        "bad.xyz:5: truncated: the file ends after 0 of the 1 discs that line 4 announces; the frame before is complete",
     ),
     (
         "18446744073709551615\nLATTICE PROPERTIES\nROW\n",
-        "bad.xyz:3: truncated: the file ends after 1 of the 18446744073709551615 discs that line 1 promises",
+        "bad.xyz:3: truncated: the file ends after 1 of the 18446744073709551615 discs that line 1 announces",
     ),
     (
         "1\nLATTICE PROPERTIES\nROW\nROW\n",
-        "bad.xyz:4: expected the number of discs, which begins a frame, found `ROW`; does line 1 promise too few?",
+        "bad.xyz:4: expected the number of discs, which begins a frame, found `ROW`; does line 1 announce too few?",
     ),
     // Comment lines.
     (
@@ -68,7 +68,7 @@ const CASES: &[(&str, &str)] = &[
     (
         "1\npbc=\"T\" LATTICE Origin=\"0 0\" PROPERTIES\nROW\n",
         "bad.xyz:2:37: Origin is `0 0`; expected \"x y z\"\n\
-         bad.xyz:2:1: pbc is `T`; expected \"T F F\" (or \"T F\"), T where the box repeats along x, y, z",
+         bad.xyz:2:1: pbc is `T`; expected \"T F F\" (or \"T F\"), T where the box is periodic along x, y, z",
     ),
     (
         "1\nLATTICE Properties=species:S:1:pos:R:3:id:I:1:velo:R:3:mass:R:1:omega:R:3\nROW\n",
@@ -78,7 +78,7 @@ const CASES: &[(&str, &str)] = &[
         "1\nLATTICE Properties=species:S:1:pos:R:4:id:R:1\nROW\n",
         "bad.xyz:2:29: Properties has `pos:R:4`; expected `pos:R:3`\n\
          bad.xyz:2:29: Properties has `id:R:1`; expected `id:I:1`\n\
-         bad.xyz:2:29: Properties has no column `velo:R:3` (or `velo:R:2`, or `momenta:R:3`, which are divided by the masses)ADD\n\
+         bad.xyz:2:29: Properties has no column `velo:R:3` (or `velo:R:2`, or `momenta:R:3`, which is divided by the masses)ADD\n\
          bad.xyz:2:29: Properties has no column `radius:R:1`ADD\n\
          bad.xyz:2:29: Properties has no column `mass:R:1` (or `masses:R:1`)ADD",
     ),
@@ -171,7 +171,7 @@ const CASES: &[(&str, &str)] = &[
 
 /// `ADD` and `FMT` stand for the ends of two messages.
 const ADD: &str = "; add it to the file, for example in OVITO (Compute property, Export File, XYZ) or in ASE (atoms.set_array)";
-const FMT: &str = "extended XYZ is what is read, with columns for positions, velocities, radii and masses: convert it, for example \
+const FMT: &str = "expected extended XYZ, with columns for positions, velocities, radii and masses: convert it, for example \
                    with OVITO (Export File, XYZ)";
 
 fn write_out(text: &str) -> String {

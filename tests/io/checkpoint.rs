@@ -181,8 +181,8 @@ fn a_corrupt_newest_is_named_and_the_kept_one_offered() {
     assert!(error.is_corrupt() && error.kept == Kept::Whole { file: older.clone(), step: 1 });
     let expected = format!(
         "checkpoint {newest}: is corrupt: the checksum of column 5 of 5 is wrong (at byte {})
-  kept: the older one, {}, of step 1, is whole
-  help: to go on from it, rename it to {newest}",
+  kept: the older checkpoint, {}, of step 1, is valid
+  help: to resume from it, rename it to {newest}",
         error.offset.unwrap(),
         older.display(),
     );

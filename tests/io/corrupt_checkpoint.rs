@@ -143,9 +143,9 @@ fn content_without_meaning_is_refused() {
     let starts = sections(&whole);
     let (state, column, second) = (starts[0], starts[1], starts[2]);
     let cases: [(usize, &[u8], &str); 6] = [
-        (state, b"COLM", "a section of another kind"),
-        (column, b"STAT", "a section of another kind"),
-        (column + 12 + 9, &[9], "a column is of no known type"),
+        (state, b"COLM", "another kind of section"),
+        (column, b"STAT", "another kind of section"),
+        (column + 12 + 9, &[9], "a column has an unknown type"),
         (state + 12 + 24, &[0xff], "a text is not UTF-8"),
         (12, &0u32.to_le_bytes(), "bytes after its end"),
         (12, &9u32.to_le_bytes(), "a section has a length of 16, but 0 bytes are left"),

@@ -261,7 +261,7 @@ fn other_files_are_refused_with_their_place() {
         (48, b"gsd.hoomd", "byte 48: expected `stripmine` as the application"),
         (112, b"other", "byte 112: expected `hoomd` as the schema"),
         (8, &[255; 8], "the index ends at byte"),
-        (index + 32 + 28, &[255, 255], &format!("byte {}: expected an entry of the index", index + 32)),
+        (index + 32 + 28, &[255, 255], &format!("byte {}: expected an entry of the index for", index + 32)),
         (
             index + 32 + 30,
             &[99],

@@ -274,7 +274,7 @@ fn two_sessions_write_the_same() {
         run(folder, scene, &third, &[closer, &[half, "output.structure=[]"]].concat(), &[]);
         run(folder, scene, &third, &[closer, &[whole]].concat(), &["--resume"]);
         let text = fs::read_to_string(folder.join(&third).join("summary.json")).unwrap();
-        assert!(text.contains("g(r) is summed up from here on"), "{text}");
+        assert!(text.contains("g(r) is averaged from here on"), "{text}");
     }
 }
 

@@ -165,10 +165,7 @@ fn motion_below_an_open_top_is_that_of_free_discs() {
     }
     // The second disc rises by 0.5 in a unit of time, above the height of 4 soon after the start.
     let summary = fs::read_to_string(folder.path().join("run/summary.json")).unwrap();
-    assert!(
-        summary.contains("50 % of the discs are above the highest slice, for the top is open"),
-        "{summary}"
-    );
+    assert!(summary.contains("50 % of the discs are above the highest slice of the open box"), "{summary}");
     for name in ["coordination", "psi6", "velocities", "density(x)", "density(y)", "flow(x)", "flow(y)"] {
         let file =
             fs::read_to_string(folder.path().join("run").join(observable(name).unwrap().file)).unwrap();

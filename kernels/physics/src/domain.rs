@@ -1,20 +1,20 @@
-//! The box that particles live in.
+//! Box of the particles.
 
-/// What bounds a box along an axis.
+/// Boundary of a box along an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Side {
-    /// What leaves at one end comes in at the other; its length.
+    /// Periodic, with its length.
     Periodic(f64),
-    /// Nothing may leave; its length.
+    /// Closed: nothing may leave; with its length.
     Closed(f64),
-    /// There is no end.
+    /// Unbounded.
     Open,
-    /// Nothing moves along it: a planar scene has no depth.
+    /// Without extent: a planar scene has no depth.
     Flat,
 }
 
 impl Side {
-    /// How long it is (length): without end where it is open, 0 where it is flat.
+    /// Length of the side: infinite if open, 0 if flat.
     pub const fn length(self) -> f64 {
         match self {
             Side::Periodic(length) | Side::Closed(length) => length,
@@ -24,17 +24,17 @@ impl Side {
     }
 }
 
-/// A box, as its scene states it. Planar methods read its first two axes.
+/// Box of a scene. Planar methods read its first two axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Domain {
-    /// The corner where every coordinate is least (length); the coordinates of an open side are counted from there too.
+    /// Corner with the smallest coordinates (length); coordinates of an open side are relative to it too.
     pub origin: [f64; 3],
-    /// What bounds it along each axis.
+    /// Boundary along each axis.
     pub sides: [Side; 3],
 }
 
 impl Domain {
-    /// A rectangle with its lower left corner and sides (length), each pair of sides periodic or closed.
+    /// Rectangle with its lower left corner and sides (length), each pair of sides periodic or closed.
     pub fn planar([x, y]: [f64; 2], sides: [f64; 2], periodic: [bool; 2]) -> Domain {
         let side = |axis: usize| match periodic[axis] {
             true => Side::Periodic(sides[axis]),
@@ -43,37 +43,37 @@ impl Domain {
         Domain { origin: [x, y, 0.0], sides: [side(0), side(1), Side::Flat] }
     }
 
-    /// The length of a side.
+    /// Length of a side.
     pub fn length(&self, axis: usize) -> f64 {
         self.sides[axis].length()
     }
 
-    /// Whether a side is periodic.
+    /// True if a side is periodic.
     pub fn is_periodic(&self, axis: usize) -> bool {
         matches!(self.sides[axis], Side::Periodic(_))
     }
 
-    /// The lower left corner of a planar box (length).
+    /// Lower left corner of a planar box (length).
     pub fn corner(&self) -> [f64; 2] {
         [self.origin[0], self.origin[1]]
     }
 
-    /// The sides of a planar box (length).
+    /// Sides of a planar box (length).
     pub fn lengths(&self) -> [f64; 2] {
         [self.length(0), self.length(1)]
     }
 
-    /// The area of a planar box (length²).
+    /// Area of a planar box (length²).
     pub fn area(&self) -> f64 {
         self.length(0) * self.length(1)
     }
 
-    /// Which sides of a planar box are periodic.
+    /// Periodicity of the sides of a planar box.
     pub fn periodic(&self) -> [bool; 2] {
         [self.is_periodic(0), self.is_periodic(1)]
     }
 
-    /// From `from` to `to`, across periodic sides where that is shorter (length).
+    /// Vector from `from` to `to`, the shortest across periodic sides (length).
     pub fn displacement<const D: usize>(&self, from: [f64; D], to: [f64; D]) -> [f64; D] {
         std::array::from_fn(|axis| {
             let way = to[axis] - from[axis];
@@ -84,13 +84,13 @@ impl Domain {
         })
     }
 
-    /// The distance of two positions, across periodic sides where that is shorter (length).
+    /// Distance of two positions, the shortest across periodic sides (length).
     pub fn distance(&self, a: [f64; 2], b: [f64; 2]) -> f64 {
         let [x, y] = self.displacement(a, b);
         x.hypot(y)
     }
 
-    /// The image of a position that lies inside along the periodic sides.
+    /// Image of a position inside the box along the periodic sides.
     pub fn wrapped<const D: usize>(&self, position: [f64; D]) -> [f64; D] {
         std::array::from_fn(|axis| {
             let origin = self.origin[axis];
@@ -99,14 +99,14 @@ impl Domain {
             if (0.0..side).contains(&along) {
                 return position[axis];
             }
-            // What rounds to a whole side is the origin.
+            // A remainder that rounds to a whole side becomes the origin.
             let rest = along.rem_euclid(side);
             let inside = origin + if rest < side { rest } else { 0.0 };
             if inside - origin < side { inside } else { origin }
         })
     }
 
-    /// How many periods of each periodic side a position is away from its image that lies inside.
+    /// Number of periods between a position and its image inside the box, along each periodic side.
     pub fn periods<const D: usize>(&self, position: [f64; D]) -> [f64; D] {
         let inside = self.wrapped(position);
         std::array::from_fn(|axis| match self.sides[axis] {
@@ -115,7 +115,7 @@ impl Domain {
         })
     }
 
-    /// Whether a position lies inside, or on the rim.
+    /// True if a position is inside the box or on its boundary.
     pub fn contains<const D: usize>(&self, position: [f64; D]) -> bool {
         (0..D).all(|axis| {
             let from_low = position[axis] - self.origin[axis];

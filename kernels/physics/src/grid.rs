@@ -1,22 +1,21 @@
-//! Cells that a box is cut into.
+//! Sectors of a box for neighbour searches.
 
 use crate::domain::Domain;
 use stripmine_kernels::sweep::fast::{Grid, GridError};
 
-/// Sectors for each disc, and more for few discs, beyond which they are made wider: each takes time in every step, also if it is
-/// empty.
+/// Largest number of sectors for each disc, and a number added for small systems. Beyond it sectors are widened, because an empty sector takes time
+/// in every step too.
 const SECTORS_A_DISC: f64 = 64.0;
 const SECTORS_OF_FEW: f64 = 1024.0;
-/// Sides of a sector over the reach in single precision, at most: places seen from its centre are then known to 3·10⁻⁶ of the
-/// reach, and the squares of distances to less than the margin with which pairs are looked for.
+/// Largest side of a sector over the reach in single precision. Positions relative to its centre then have an error of 3·10⁻⁶ of the reach, and
+/// squared distances have an error below the margin of the pair search.
 const WIDEST: f64 = 100.0;
 
-/// Sectors at least `reach` wide (length) for `discs` discs in a box. Where numbers of single precision are at work, places
-/// seen from a sector's centre must be short, so that sectors are narrow even if most are empty; but not so narrow that there
-/// are many times more sectors than discs.
+/// Grid of sectors at least `reach` wide (length) for `discs` discs in a box. Single precision needs short positions relative to a sector's centre.
+/// Its sectors are narrow even if most are empty, as long as there are not many times more sectors than discs.
 ///
 /// # Errors
-/// [`GridError`] if the box is none for sectors.
+/// [`GridError`] if the box cannot be divided into sectors.
 pub(crate) fn sectors_of(domain: &Domain, reach: f64, single: bool, discs: usize) -> Result<Grid, GridError> {
     let most = SECTORS_A_DISC * discs as f64 + SECTORS_OF_FEW;
     let widest = match single {
@@ -30,19 +29,19 @@ pub(crate) fn sectors_of(domain: &Domain, reach: f64, single: bool, discs: usize
 mod tests {
     use super::*;
 
-    /// However large the box, there are at most some sectors a disc, none narrower than the reach; in single precision not so
-    /// wide that places are inexact, and where discs are not very far apart as narrow as ever.
+    /// The number of sectors for each disc is bounded in a box of any size, and none is narrower than the reach. In single precision sectors stay
+    /// narrow enough for exact positions, and are as narrow as possible unless discs are very far apart.
     #[test]
     fn empty_boxes_have_few_sectors() {
         for single in [false, true] {
             for discs in [1, 400, 100_000] {
-                // From discs that touch to those that are 30 000 reaches apart.
+                // Spacings from touching discs to 30 000 reaches.
                 for spacing in [1.0, 3.0, 30.0, 300.0, 3000.0, 30_000.0] {
                     let side = (spacing * f64::from(discs).sqrt()).max(3.0);
                     for sides in [[side; 2], [side * side / 3.0, 3.0]] {
                         let domain = Domain::planar([0.0; 2], sides, [true; 2]);
                         let Ok(grid) = sectors_of(&domain, 1.0, single, discs as usize) else {
-                            // A box so large that sectors as wide as places bear are more than can be numbered.
+                            // In a box this large, even sectors of the greatest width are too many to number.
                             let least = (domain.area() / (WIDEST * WIDEST)).max(3.0 * sides[0] / WIDEST);
                             assert!(single && least >= f64::from(u32::MAX), "{sides:?}");
                             continue;

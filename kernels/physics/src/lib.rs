@@ -1,17 +1,16 @@
-//! The physics of Stripmine: everything that a run needs, and nothing else.
+//! Physics of Stripmine: everything that a run needs.
 //!
-//! A scene is read ([`scene`]), its particles are placed ([`start`]), a method of the [list](method::METHODS) steps them
-//! ([`method`]), and a run is recorded ([`run`]). All SIMD code of a step is compiled in this crate; it knows nothing of studies,
-//! reports or a command line.
+//! [`scene`] reads a scene, [`start`] places its particles, a [`method`] of the [list](method::METHODS) advances them, and [`run`] records the run.
+//! All SIMD code of a step is compiled in this crate. The crate depends on no study, no report and no command line.
 //!
 //! | task | entry point |
 //! |---|---|
 //! | read a scene, with changes of its keys | [`method::load`] |
-//! | start it, advance it, see what it is like | [`method::Prepared`], [`method::Simulation`] |
-//! | record it in a folder; go on with it | [`run::run`] |
+//! | start it, advance it, observe it | [`method::Prepared`], [`method::Simulation`] |
+//! | record it in a folder; resume it | [`run::run`] |
 //! | read what runs wrote: averages, structure, particles | [`run::Finished`], [`run::function_of`], [`io::extxyz`], [`io::checkpoint`] |
 //! | averages with their errors | [`averages`] |
-//! | the structure of particles that one has | [`structure`] |
+//! | structure of given particles | [`structure`] |
 //! | a run on several ranks | [`ranks`] |
 //!
 //! Two discs that collide keep their momentum:
@@ -56,7 +55,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The order of seven discs in a hexagon: the one in the middle has ψ₆ = 1:
+//! Hexatic order of seven discs in a hexagon: the central disc has ψ₆ = 1:
 //!
 //! ```
 //! use std::f64::consts::TAU;
@@ -83,7 +82,7 @@
 //! ```
 
 #![warn(unreachable_pub)]
-// Where a panic is possible, or an error is dropped, the reason stands beside it.
+// Code that may panic or drops an error gives its reason beside it.
 #![cfg_attr(
     not(test),
     warn(

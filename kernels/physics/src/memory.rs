@@ -1,4 +1,4 @@
-//! How much memory there is left for this program, who sets the limit, and whether a run fits into it.
+//! Memory available to this program, the limit that applies, and the memory that a run needs.
 
 use crate::input::{InputErrors, Reason, Spot};
 use crate::ranks::Crew;
@@ -6,52 +6,52 @@ use serde::{Serialize, Serializer};
 use std::fs;
 use stripmine_kernels::isa::aligned_column::taken;
 
-/// Bytes of the program itself: its text, its threads, its files.
+/// Memory of the program itself: its code, threads and files (bytes).
 pub(crate) const PROGRAM: f64 = 17.0e6;
 
-/// What a run needs and what there is (bytes).
+/// Memory that a run needs and memory that is available (bytes).
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Foreseen {
-    /// The most that the run takes at one time.
+    /// Peak memory of the run.
     pub needed: u64,
-    /// What there is left; none where the system does not say.
+    /// Memory available; none where the system does not report it.
     pub available: Option<Available>,
-    /// What the run is of, in words.
+    /// Subject of the run, in words.
     #[serde(skip)]
     pub what: String,
-    /// What takes less.
+    /// Advice on how to need less.
     #[serde(skip)]
     pub remedy: &'static str,
-    /// What several ranks take beside it.
+    /// Additional memory of several ranks.
     #[serde(skip)]
     pub ranks: OfRanks,
 }
 
-/// What ranks take beside what one of them would take alone (bytes).
+/// Additional memory of several ranks beside that of one (bytes).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct OfRanks {
-    /// Where discs are gathered, on the first rank.
+    /// Gathered discs, on the first rank.
     pub(crate) gathered: f64,
-    /// What every rank holds of the whole scene, whatever its own part.
+    /// Copies of the whole scene that every rank stores, whatever its part.
     pub each: f64,
-    /// How many rows of all discs there are, and how long one is: each rank has those of its own, rounded up.
+    /// Number of rows over all discs and the length of one. Each rank has the rows of its own discs, rounded up.
     pub rows: [f64; 2],
     /// Address space of their threads.
     pub threads: f64,
 }
 
-/// Address space that a thread takes: its stack, and pages that short arrays of it share.
+/// Address space of a thread: its stack, and pages that its short arrays share.
 const THREAD: f64 = (2 << 20) as f64 + (4 << 20) as f64;
 
 impl OfRanks {
-    /// Of `count` discs in bands, with cells of which every rank has all (bytes), and rows of the discs.
+    /// Memory of `count` discs in bands, with cells that every rank stores in full (bytes), and rows of the discs.
     pub(crate) fn in_bands(count: f64, cells: f64, rows: [f64; 2]) -> OfRanks {
-        // Seven words a disc on their way, and six where they have arrived. Its row, the periods that it has crossed; the rest is what allocators of
-        // several threads keep, as measured.
+        // Gathering: seven words for a disc in transit, six on arrival. Each rank: a row and the periods crossed; the rest is measured overhead of
+        // allocators with several threads.
         OfRanks { gathered: 8.0 * (7.0 + 6.0) * count, each: 50.0 * count + cells, rows, threads: 0.0 }
     }
 
-    /// By how much more the rows take in as many parts (bytes).
+    /// Excess of the rows when split into as many parts (bytes).
     fn rounding(&self, ranks: f64) -> f64 {
         let [rows, bytes] = self.rows;
         rows * (ranks * taken(bytes / ranks) - taken(bytes))
@@ -59,7 +59,7 @@ impl OfRanks {
 }
 
 impl Foreseen {
-    /// The same where a run is carried out by others than one rank. Of processes, each may be on a machine of its own: what one of them takes at most.
+    /// Returns the forecast for another crew than one rank. Processes may run on different machines, so theirs is the most that one process needs.
     #[must_use]
     pub fn on(self, crew: Crew) -> Foreseen {
         let (more, threads) = match crew {
@@ -74,7 +74,7 @@ impl Foreseen {
         Foreseen { needed: self.needed + more as u64, ranks: OfRanks { threads, ..self.ranks }, ..self }
     }
 
-    /// The same with another run under way in the same process.
+    /// Returns the forecast with another run in the same process.
     #[must_use]
     pub fn beside(self, other: &Foreseen) -> Foreseen {
         let needed = self.needed + other.needed.saturating_sub(PROGRAM as u64);
@@ -85,13 +85,13 @@ impl Foreseen {
         Foreseen { needed, what, ..self }
     }
 
-    /// Whether the run fits this machine; `scene` is the name that an error gives it.
+    /// Checks that the run fits into the available memory; `scene` is its name in an error.
     ///
     /// # Errors
-    /// [`InputErrors`] with both numbers, where it does not.
+    /// [`InputErrors`] with both numbers if the run does not fit.
     pub fn fits(&self, scene: &str) -> Result<(), InputErrors> {
         let Foreseen { needed, available, what, remedy, ranks } = self;
-        // Stacks are address space, of which little is ever taken.
+        // Stacks reserve address space and use little of it.
         let of_threads = |by| if by == Limit::AddressSpace { ranks.threads as u64 } else { 0 };
         match *available {
             Some(Available { bytes, by }) if *needed + of_threads(by) > bytes => {
@@ -110,7 +110,7 @@ impl Foreseen {
     }
 }
 
-/// Bytes as a person reads them.
+/// Formats bytes for people.
 pub fn in_words(bytes: u64) -> String {
     match bytes as f64 {
         few if few < 1e9 => format!("{:.0} MB", few / 1e6),
@@ -118,12 +118,12 @@ pub fn in_words(bytes: u64) -> String {
     }
 }
 
-/// Bytes that this program may still take.
+/// Memory that this program may still take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Available {
-    /// How many.
+    /// Number of bytes.
     pub bytes: u64,
-    /// What sets the limit.
+    /// Limit that applies.
     pub by: Limit,
 }
 
@@ -133,7 +133,7 @@ impl Serialize for Available {
     }
 }
 
-/// What limits the memory of a program.
+/// Limit on the memory of a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Limit {
     /// The machine's memory.
@@ -147,7 +147,7 @@ pub enum Limit {
 }
 
 impl Limit {
-    /// As the subject of a sentence.
+    /// Limit as the subject of a sentence.
     pub fn in_words(self) -> &'static str {
         match self {
             Limit::Machine => "this machine",
@@ -158,8 +158,8 @@ impl Limit {
     }
 }
 
-/// What a program may still take without pushing others out or being refused: what the system calls available, or what the
-/// shares of its control groups or its own limits leave, if that is less. None where the system does not say.
+/// Memory that a program may take without displacing others or being refused: the system's available memory, or less if control groups or process
+/// limits leave less. None where the system does not report it.
 pub(crate) fn available() -> Option<Available> {
     let meminfo = fs::read_to_string("/proc/meminfo").ok()?;
     let of_machine = Available { bytes: kibibytes(&meminfo, "MemAvailable:")?, by: Limit::Machine };
@@ -168,14 +168,11 @@ pub(crate) fn available() -> Option<Available> {
     all.min_by_key(|available| available.bytes)
 }
 
-/// Bytes of address space that the allocator reserves for a thread when it first asks for memory: one may do so at any time.
+/// Address space that the allocator reserves when a thread first allocates (bytes); any thread may do so at any time.
 const RESERVED: u64 = 1 << 26;
 
-/// What the limits of this process leave.
-#[expect(
-    clippy::disallowed_methods,
-    reason = "a system that does not say its limits has none that are known"
-)]
+/// Memory that the limits of this process leave.
+#[expect(clippy::disallowed_methods, reason = "a system that does not report its limits has no known ones")]
 fn left_of_process() -> impl Iterator<Item = Available> {
     let [limits, status] =
         ["/proc/self/limits", "/proc/self/status"].map(|file| fs::read_to_string(file).unwrap_or_default());
@@ -189,12 +186,12 @@ fn left_of_process() -> impl Iterator<Item = Available> {
     })
 }
 
-/// The soft limit of a name (bytes); none where there is no limit.
+/// Soft limit of a name (bytes); none where there is no limit.
 fn soft_limit(limits: &str, name: &str) -> Option<u64> {
     limits.lines().find_map(|line| line.strip_prefix(name))?.split_whitespace().next()?.parse().ok()
 }
 
-/// What the shares of the control groups of this process leave, from its own up to the root.
+/// Memory that the control groups of this process leave, from its own up to the root.
 #[expect(clippy::disallowed_methods, reason = "a system without control groups has no limits by them")]
 fn left_of_groups() -> Vec<u64> {
     let groups = fs::read_to_string("/proc/self/cgroup").unwrap_or_default();
@@ -232,7 +229,7 @@ fn kibibytes(text: &str, name: &str) -> Option<u64> {
     line.split_whitespace().next()?.parse::<u64>().ok()?.checked_mul(1024)
 }
 
-/// The most memory that this process has had (bytes), where the system gives it (Linux: `VmHWM`).
+/// Peak memory of this process (bytes), where the system reports it (Linux: `VmHWM`).
 pub fn peak() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;

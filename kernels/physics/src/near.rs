@@ -1,22 +1,22 @@
-//! Who is near whom: positions in a planar box sorted into squares, any number in each.
+//! Neighbour search in a planar box: positions sorted into squares, any number in each.
 
 use crate::domain::Domain;
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
 
-/// Positions in a box, sorted into squares at least as wide as a reach, so that what is within the reach is found without
-/// looking at all. Takes memory for what is added, not for the box.
+/// Positions in a box, sorted into squares at least as wide as a search radius. A query visits neighbouring squares only. Memory grows with the
+/// number of positions, not with the box.
 #[derive(Clone, Debug)]
 pub struct Near {
     domain: Domain,
     squares: [f64; 2],
-    /// The last member that came into a square.
+    /// Index of the last member added to a square.
     last: HashMap<[i64; 2], u32, BuildHasherDefault<SquareHasher>>,
     members: Vec<Member>,
 }
 
-/// Of the two numbers of a square: several times as fast as a hash that withstands an adversary, and nothing depends on the order
-/// of the table.
+/// Hash of the two indices of a square. It is several times as fast as a hash that resists an adversary, and nothing depends on the order of the
+/// table.
 #[derive(Default)]
 struct SquareHasher(u64);
 
@@ -38,27 +38,27 @@ impl Hasher for SquareHasher {
 struct Member {
     number: u32,
     position: [f64; 2],
-    /// The one that came into the same square before.
+    /// Member added to the same square before.
     before: Option<u32>,
 }
 
 impl Near {
-    /// Bytes that [`Near::among`] takes for a number of positions: the members, and the table of squares, a power of two of
-    /// entries of which an eighth stays empty.
+    /// Memory of [`Near::among`] for a number of positions (bytes): the members, and the table of squares. The table has a power of two of entries
+    /// and keeps an eighth of them empty.
     pub fn bytes(positions: usize) -> usize {
         let entries = (8 * positions / 7 + 1).next_power_of_two();
         size_of::<Member>() * positions + (size_of::<([i64; 2], u32)>() + 1) * entries
     }
 
-    /// Nothing yet; looks for what is closer than `reach` (length).
+    /// Empty search for positions closer than `reach` (length).
     pub fn new(domain: Domain, reach: f64) -> Self {
-        // Whole squares fill a side, so that a periodic one closes; 2^30 of them number far more than there are discs.
-        // What is no number becomes one square.
+        // An integer number of squares fills a side, so that a periodic side closes. 2^30 squares are far more than there are discs. NaN becomes
+        // one square.
         let squares = domain.lengths().map(|side| (side / reach).floor().max(1.0).min(2f64.powi(30)));
         Near { domain, squares, last: HashMap::default(), members: Vec::new() }
     }
 
-    /// All of these positions, numbered from 0 on.
+    /// Search over these positions, numbered from 0.
     pub fn among(domain: Domain, positions: impl ExactSizeIterator<Item = [f64; 2]>, reach: f64) -> Self {
         let mut near = Near::new(domain, reach);
         near.members.reserve_exact(positions.len());
@@ -70,18 +70,18 @@ impl Near {
     fn square(&self, position: [f64; 2]) -> [i64; 2] {
         [0, 1].map(|axis| {
             let fraction = (position[axis] - self.domain.origin[axis]) / self.domain.length(axis);
-            // Outside of a side that is not periodic the last square goes on.
+            // The last square extends beyond a side that is not periodic.
             (fraction * self.squares[axis]).floor().clamp(0.0, self.squares[axis] - 1.0) as i64
         })
     }
 
-    /// Adds a position, wrapped into the box, under a number.
+    /// Adds a wrapped position under a number.
     pub fn add(&mut self, number: u32, position: [f64; 2]) {
         let before = self.last.insert(self.square(position), self.members.len() as u32);
         self.members.push(Member { number, position, before });
     }
 
-    /// Along one axis, a square and its neighbours, each once.
+    /// Index of a square and of its neighbours along one axis, each once.
     fn around(&self, axis: usize, square: i64) -> impl Iterator<Item = i64> + use<> {
         let count = self.squares[axis] as i64;
         let (periodic, few) = (self.domain.is_periodic(axis), count < 3);
@@ -92,7 +92,7 @@ impl Near {
         })
     }
 
-    /// Everything that may be within reach of a position, wrapped into the box: number and position.
+    /// Number and position of everything that may be within reach of a wrapped position.
     pub fn of(&self, position: [f64; 2]) -> impl Iterator<Item = (u32, [f64; 2])> + '_ {
         let [column, row] = self.square(position);
         self.around(0, column)
@@ -111,7 +111,7 @@ mod tests {
     use rand::RngExt;
     use stripmine_kernels::noise::{Purpose, Stream};
 
-    /// Against looking at everything, in boxes of one square to many, closed and periodic.
+    /// Compares the search with a test of all pairs, in boxes of one square to many, closed and periodic.
     #[test]
     fn everything_within_reach_is_found_once() {
         let mut random = Stream::new(1, Purpose::Test, 0);

@@ -1,7 +1,7 @@
-//! Numbers as people read them.
+//! Numbers formatted for people.
 
-/// A number with a number of significant digits, without zeros at the end; with an exponent only where it is below a thousandth or
-/// has more than six digits before the point.
+/// Formats a number with a number of significant digits, without trailing zeros. It has an exponent only below a thousandth or with more than seven
+/// digits before the point.
 pub fn significant(value: f64, digits: usize) -> String {
     let last = digits.saturating_sub(1);
     let scientific = format!("{value:.last$e}");
@@ -14,7 +14,7 @@ pub fn significant(value: f64, digits: usize) -> String {
     trimmed(&format!("{value:.decimals$}")).to_owned()
 }
 
-/// A mean and the half width of its interval, with two digits of this: `0.675 ± 0.060`.
+/// Formats a mean with the half-width of its confidence interval, which has two digits: `0.675 ± 0.060`.
 pub fn with_bar(mean: f64, bar: f64) -> String {
     let scientific = format!("{bar:.1e}");
     let exponent = scientific.split_once('e').and_then(|(_, exponent)| exponent.parse::<i32>().ok());
@@ -26,14 +26,14 @@ pub fn with_bar(mean: f64, bar: f64) -> String {
         let decimals = (1 - exponent).max(0) as usize;
         return format!("{mean:.decimals$} ± {bar:.decimals$}");
     }
-    // Both in units of the power of ten of the larger one.
+    // Both are in units of the larger one's power of ten.
     let power = libm::floor(libm::log10(magnitude)) as i32;
     let unit = 10f64.powi(power);
     let decimals = (power + 1 - exponent).max(0) as usize;
     format!("({:.decimals$} ± {:.decimals$})e{power}", mean / unit, bar / unit)
 }
 
-/// A number with a number of significant digits, for sentences: `8.2·10⁻⁸` where it is small or large.
+/// Formats a number for sentences, with a number of significant digits: `8.2·10⁻⁸` where it is small or large.
 pub fn in_tens(value: f64, digits: usize) -> String {
     let text = significant(value, digits);
     let Some((mantissa, exponent)) = text.split_once('e') else { return text };
@@ -44,7 +44,7 @@ pub fn in_tens(value: f64, digits: usize) -> String {
     }
 }
 
-/// From the lowest to the highest of some numbers, for sentences; one number where they are the same in these digits.
+/// Formats the range of some numbers for sentences; one number if both ends agree in these digits.
 pub fn range(values: impl IntoIterator<Item = f64>, digits: usize) -> String {
     let mut values: Vec<f64> = values.into_iter().collect();
     values.sort_by(f64::total_cmp);
@@ -56,13 +56,13 @@ pub fn range(values: impl IntoIterator<Item = f64>, digits: usize) -> String {
     if low == high { low } else { format!("{low} to {high}") }
 }
 
-/// A count of something, for sentences: `1 scene`, `3 scenes`.
+/// Formats a count with its noun: `1 scene`, `3 scenes`.
 pub fn counted(count: impl std::fmt::Display, one: &str, many: &str) -> String {
     let count = count.to_string();
     format!("{count} {}", if count == "1" { one } else { many })
 }
 
-/// A power of ten in short.
+/// Formats a power of ten.
 pub fn ten_to(power: i32) -> String {
     match power {
         0 => "1".to_owned(),
@@ -77,7 +77,7 @@ pub fn ten_to(power: i32) -> String {
     }
 }
 
-/// Without zeros behind the last digit of a fraction.
+/// Number without trailing zeros of its fraction.
 fn trimmed(number: &str) -> &str {
     if number.contains('.') { number.trim_end_matches('0').trim_end_matches('.') } else { number }
 }

@@ -1,39 +1,39 @@
-//! The program that makes a result, the host, and the moment: what a run writes down of where it comes from.
+//! Provenance of a run: the program, the host and the time.
 
 use serde::{Deserialize, Serialize};
 use std::time::SystemTime;
 
-/// The program that made a result.
+/// Program that made a result.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Origin {
     /// Version of the package.
     pub version: String,
     /// Commit of the source it was built from.
     pub commit: String,
-    /// Whether the source had changes that are in no commit.
+    /// True if the source had uncommitted changes.
     pub dirty: bool,
-    /// The platform it was built for.
+    /// Platform it was built for.
     pub target: String,
 }
 
 impl Origin {
-    /// Whether the source can be had again by its commit alone.
+    /// True if a commit identifies the whole source.
     pub fn is_committed(&self) -> bool {
         !self.dirty && self.commit != "unknown"
     }
 }
 
-/// A moment to the second, in universal time, as RFC 3339 writes it.
+/// Formats a time in UTC to the second (RFC 3339).
 pub fn moment(time: SystemTime) -> String {
     humantime::format_rfc3339_seconds(time).to_string()
 }
 
-/// The day, in universal time.
+/// Date in UTC.
 pub fn today() -> String {
     moment(SystemTime::now()).split('T').next().unwrap_or_default().to_owned()
 }
 
-/// The processor (Linux says it in `/proc/cpuinfo`) and the platform.
+/// Processor (Linux: `/proc/cpuinfo`) and platform.
 pub fn host() -> String {
     let platform = format!("{} {}", std::env::consts::OS, std::env::consts::ARCH);
     #[expect(
@@ -45,7 +45,7 @@ pub fn host() -> String {
     name.map_or(platform.clone(), |(_, name)| format!("{name}, {platform}"))
 }
 
-/// Threads that ran or waited to run in the last minute, in the mean; none where the system does not say.
+/// Mean number of threads that ran or waited to run in the last minute; none where the system does not report it.
 pub fn load_average() -> Option<f64> {
     std::fs::read_to_string("/proc/loadavg").ok()?.split(' ').next()?.parse().ok()
 }

@@ -1,53 +1,53 @@
-//! Particles as a scene knows them, before a method lays them out for itself.
+//! Particles of a scene, independent of the storage of a method.
 
-/// What moves a particle.
+/// Motion of a particle: free or prescribed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Kind {
-    /// Forces and gravity.
+    /// Moves under forces and gravity.
     #[default]
     Grain,
-    /// Nothing, or the motion that the scene prescribes for its walls; of infinite mass in every contact.
+    /// Stands still or follows the motion that the scene prescribes for its walls; has infinite mass in every contact.
     Wall,
 }
 
-/// One particle: a disc in the plane, or a body in space.
+/// A particle: a disc in the plane, or a body in space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Particle {
-    /// A number of its own, which stays with it.
+    /// Unique number, constant during a run.
     pub id: u32,
-    /// What moves it.
+    /// Kind of motion.
     pub kind: Kind,
-    /// Centre (length); in the plane the third coordinate is 0.
+    /// Centre (length); the third coordinate is 0 in the plane.
     pub position: [f64; 3],
-    /// Velocity (length/time); likewise.
+    /// Velocity (length/time); the third component is 0 in the plane.
     pub velocity: [f64; 3],
     /// Angle, counter-clockwise (radian).
     pub angle: f64,
-    /// Angular velocity, counter-clockwise (1/time). What moves in space does not turn.
+    /// Angular velocity, counter-clockwise (1/time). Bodies in space do not rotate.
     pub omega: f64,
     /// Radius (length).
     pub radius: f64,
-    /// Mass (mass); finite also for a wall disc, where it only describes the material.
+    /// Mass (mass); finite for a wall disc too, where it only describes the material.
     pub mass: f64,
 }
 
-/// A vector of the plane as one of space.
+/// Vector of the plane as a vector of space.
 pub const fn in_space([x, y]: [f64; 2]) -> [f64; 3] {
     [x, y, 0.0]
 }
 
-/// The first two coordinates, all that there is in the plane.
+/// First two components of a vector.
 pub(crate) const fn in_plane([x, y, _]: [f64; 3]) -> [f64; 2] {
     [x, y]
 }
 
 impl Particle {
-    /// Where it is in the plane (length).
+    /// Position in the plane (length).
     pub const fn place(&self) -> [f64; 2] {
         in_plane(self.position)
     }
 
-    /// How fast it moves in the plane (length/time).
+    /// Velocity in the plane (length/time).
     pub const fn planar_velocity(&self) -> [f64; 2] {
         in_plane(self.velocity)
     }
@@ -58,38 +58,38 @@ impl Particle {
 pub struct Particles(Vec<Particle>);
 
 impl Particles {
-    /// Puts grains before wall discs, otherwise in the order given.
+    /// Sorts grains before wall discs and keeps the order otherwise.
     pub fn new(mut discs: Vec<Particle>) -> Self {
         discs.sort_by_key(|disc| disc.kind == Kind::Wall);
         Particles(discs)
     }
 
-    /// All discs.
+    /// All particles.
     pub fn all(&self) -> &[Particle] {
         &self.0
     }
 
-    /// All discs, to be changed in all but their kind.
+    /// All particles, mutable. The kind of a particle must not change.
     pub fn all_mut(&mut self) -> &mut [Particle] {
         &mut self.0
     }
 
-    /// The discs that forces move.
+    /// Particles that forces move.
     pub fn grains(&self) -> &[Particle] {
         &self.0[..self.grain_count()]
     }
 
-    /// How many discs forces move.
+    /// Number of particles that forces move.
     pub fn grain_count(&self) -> usize {
         self.0.partition_point(|disc| disc.kind == Kind::Grain)
     }
 
-    /// How many there are.
+    /// Number of particles.
     pub fn len(&self) -> usize {
         self.0.len()
     }
 
-    /// Whether there are none.
+    /// True if there are no particles.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
@@ -99,13 +99,13 @@ impl Particles {
         self.0.iter().map(|particle| particle.position.map(|x| x as f32)).collect()
     }
 
-    /// CRC-32 of the bits of positions, velocities and spins, by id: equal states have equal checksums.
+    /// CRC-32 of the bits of positions, velocities and spins, sorted by id: equal states have equal checksums.
     pub fn checksum(&self) -> String {
         let mut discs: Vec<_> = self.0.iter().collect();
         discs.sort_by_key(|disc| disc.id);
         let mut hasher = crc32fast::Hasher::new();
         for disc in discs {
-            // What has no depth has the checksum of its plane.
+            // Depth counts only where it is not 0, so a planar state keeps the checksum of its plane.
             let depth = [disc.position[2], disc.velocity[2]];
             let depth = depth.into_iter().filter(|_| depth != [0.0; 2]);
             let planar = disc.place().into_iter().chain(disc.planar_velocity()).chain([disc.omega]);
@@ -114,24 +114,24 @@ impl Particles {
         format!("{:08x}", hasher.finalize())
     }
 
-    /// The smallest and the largest radius, wall discs included; none without discs.
+    /// Smallest and largest radius, wall discs included; none without particles.
     pub fn radii(&self) -> Option<[f64; 2]> {
         let radii = || self.0.iter().map(|disc| disc.radius);
         Some([radii().reduce(f64::min)?, radii().reduce(f64::max)?])
     }
 }
 
-/// Places and velocities in the plane of the grains of a scene, in their order at the start: what is looked at often.
+/// Planar positions and velocities of a scene's grains, in their order at the start. Made for frequent sampling.
 #[derive(Clone, Debug)]
 pub struct States {
     ids: Vec<u32>,
-    /// The number of each id, where ids are not far more than grains.
+    /// Index of each id; empty if ids are far larger than the number of grains.
     numbers: Vec<u32>,
     rows: Vec<[f64; 4]>,
 }
 
 impl States {
-    /// Room for these grains, none of which is there yet.
+    /// Reserves memory for these grains; all are lost until stored.
     pub fn of(grains: &[Particle]) -> States {
         let ids: Vec<u32> = grains.iter().map(|grain| grain.id).collect();
         let largest = ids.iter().max().map_or(0, |&id| id as usize);
@@ -143,22 +143,22 @@ impl States {
         States { rows: vec![[f64::NAN; 4]; ids.len()], ids, numbers }
     }
 
-    /// Bytes for a number of grains.
+    /// Memory for a number of grains (bytes).
     pub const fn bytes(grains: usize) -> usize {
         grains * (size_of::<[f64; 4]>() + 2 * size_of::<u32>())
     }
 
-    /// For each grain its place (length) and velocity (length/time); not a number where it is lost.
+    /// Position (length) and velocity (length/time) of each grain; NaN where the grain is lost.
     pub fn rows(&self) -> &[[f64; 4]] {
         &self.rows
     }
 
-    /// None of them is there.
+    /// Marks all grains as lost.
     pub fn forget(&mut self) {
         self.rows.fill([f64::NAN; 4]);
     }
 
-    /// Where the grain of a number in the scene's order is, and how fast; others than grains do not count.
+    /// Stores position and velocity of a grain by its index in the scene's order; indices beyond the grains are ignored.
     #[inline]
     pub(crate) fn put(&mut self, number: usize, [x, y]: [f64; 2], [vx, vy]: [f64; 2]) {
         if let Some(row) = self.rows.get_mut(number) {
@@ -166,7 +166,7 @@ impl States {
         }
     }
 
-    /// The grains among some particles, by their ids; those that are not there are lost.
+    /// Stores the grains among some particles, by id; missing grains are lost.
     pub fn take_up(&mut self, particles: &Particles) {
         self.forget();
         for (at, grain) in particles.grains().iter().enumerate() {
@@ -181,8 +181,8 @@ impl States {
         }
     }
 
-    /// Moves each grain by whole sides (length) to where it would be without: by the periods that particles have crossed, which are in
-    /// the scene's order, or in that of `left` where some are lost.
+    /// Adds the periods that each particle has crossed to its position: whole sides (length). `images` is in the scene's order, or in the order of
+    /// `left` where particles are lost.
     pub(crate) fn unfold(&mut self, sides: [f64; 2], images: &[[i32; 2]], left: Option<&Particles>) {
         for (at, image) in images.iter().enumerate() {
             let number = match left {
@@ -204,39 +204,39 @@ impl States {
     }
 }
 
-/// Data of each particle as it stands. A new output of this kind is one function here, with what it is where nothing better is known,
-/// and one where it is known.
+/// Data of each particle in its present state. A new output of this kind is one function here, with a default for methods that provide nothing
+/// better.
 pub trait PerParticle {
-    /// The particles, positions inside the box.
+    /// Particles, with positions inside the box.
     fn particles(&self) -> Particles;
 
-    /// False once a part of them cannot be reached any more, for a rank is lost: nothing that was asked for since is to be used.
+    /// True as long as all particles can be reached. False after a rank is lost: results requested since then must not be used.
     fn is_whole(&self) -> bool {
         true
     }
 
-    /// Places and velocities of the grains in the plane, places inside the box.
+    /// Stores planar positions and velocities of the grains, with positions inside the box.
     fn states(&self, states: &mut States) {
         states.take_up(&self.particles());
     }
 
-    /// Positions alone, in single precision, one for each particle of the start in its order; no numbers where one is lost.
+    /// Positions in single precision, one for each particle of the start in its order; NaN where a particle is lost.
     fn positions(&self) -> Vec<[f32; 3]> {
         self.particles().positions()
     }
 
-    /// How many periods each particle has moved along x and y since the start, in the order of [`particles`](Self::particles); empty
-    /// where that is not followed along every periodic side.
+    /// Periods that each particle has crossed along x and y since the start, in the order of [`particles`](Self::particles). Empty if they are not
+    /// counted along every periodic side.
     fn images(&self) -> Vec<[i32; 2]> {
         vec![]
     }
 }
 
-/// How far discs may move in a step (length) for no contact deeper than a fraction `max_penetration` of the sum of the radii
-/// to pass unseen between two steps, if no radius is below `smallest_radius` (length).
+/// Longest displacement of a disc in a step (length) such that no contact deeper than a fraction `max_penetration` of the sum of the radii is
+/// missed between two steps. No radius is below `smallest_radius` (length).
 ///
-/// Two discs that pass each other on parallel lines at the distance (1 − p) s, s the sum of their radii, overlap along the
-/// way 2 s √(1 − (1 − p)²); together they may move as far, each half of it.
+/// Two discs that pass each other on parallel lines at the distance (1 − p) s, with s the sum of their radii, overlap along the path 2 s √(1 − (1 −
+/// p)²). Each of them may move half of it.
 pub(crate) fn longest_step(smallest_radius: f64, max_penetration: f64) -> f64 {
     let closest = 1.0 - max_penetration;
     2.0 * smallest_radius * (1.0 - closest * closest).sqrt()
@@ -246,13 +246,13 @@ pub(crate) fn longest_step(smallest_radius: f64, max_penetration: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Two discs that pass each other just deep enough, each by the longest step: apart before it and after it, no more.
+    /// Two discs that pass each other just deep enough, each by the longest step, touch before and after it.
     #[test]
     fn what_moves_the_longest_step_passes_by_just_unseen() {
         let (radius, depth) = (0.5, 0.1);
         let step = longest_step(radius, depth);
         let apart = (1.0 - depth) * 2.0 * radius;
-        // Together they move twice the step along lines that far apart, half of it before they are nearest.
+        // Their relative displacement is twice the step along lines that far apart, half of it before they are closest.
         assert!((step.hypot(apart) - 2.0 * radius).abs() < 1e-12, "{step}");
     }
 }

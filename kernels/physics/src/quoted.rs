@@ -1,10 +1,10 @@
-//! Text from outside, as it may stand in a message: what a terminal would obey, or would not show, is spelled out.
+//! Text from outside, made safe for messages: control and invisible characters are escaped.
 
-/// Longest text that a message repeats (characters).
+/// Longest text that a message quotes (characters).
 const LONGEST: usize = 80;
 
-/// A name or value from a file or a command line: control characters, line ends, marks of direction and everything else
-/// that is not seen become `\n`, `\u{202e}` and the like; after 80 characters it breaks off.
+/// Quotes a name or value from a file or a command line. Control characters, line ends, direction marks and invisible characters become `\n`,
+/// `\u{202e}` and the like. Text longer than 80 characters is cut.
 pub fn quoted(text: &str) -> String {
     shortened(text, LONGEST)
 }
@@ -17,28 +17,28 @@ fn shortened(text: &str, most: usize) -> String {
     shown
 }
 
-/// Longest line of a message (characters): a terminal shows few of them.
+/// Longest line of a message (characters), since a terminal shows few of them.
 const LONGEST_LINE: usize = 2000;
 
-/// The name of a file, whole.
+/// Quotes the name of a file without cutting it.
 pub fn path(path: &std::path::Path) -> String {
     spelled(path.to_string_lossy().chars())
 }
 
-/// A message of one line, which may repeat text from outside.
+/// Quotes a message of one line, which may repeat text from outside.
 pub fn one_line(text: &str) -> String {
     shortened(text, LONGEST_LINE)
 }
 
-/// A message of several lines, which may repeat text from outside: as [`quoted`], but for its line ends. Of a line that
-/// is longer than any that we write, the beginning.
+/// Quotes a message of several lines, which may repeat text from outside, as [`quoted`] does. Line ends are kept; a line longer than any of ours is
+/// cut.
 pub fn message(text: &str) -> String {
     text.split('\n').map(|line| shortened(line, LONGEST_LINE)).collect::<Vec<_>>().join("\n")
 }
 
-/// All of a text for a terminal, whatever names it repeats, with its line ends and tabs.
+/// Quotes a whole text for a terminal, with its line ends and tabs.
 pub fn shown(text: &str) -> String {
-    // Numbers have narrow blanks between their digits.
+    // Numbers have narrow no-break spaces between groups of digits.
     let is_plain = |c: char| matches!(c, ' '..='~' | '\n' | '\t' | '\u{202f}');
     let pieces = text.split_inclusive(['\n', '\t', '\u{202f}']);
     let one = |piece: &str| match piece.strip_suffix(['\n', '\t', '\u{202f}']) {
@@ -49,14 +49,14 @@ pub fn shown(text: &str) -> String {
     pieces.map(one).collect()
 }
 
-/// JSON in which strings hold what is not seen as escapes of JSON, so that they read back to the same.
+/// Escapes invisible characters in JSON, so that its strings read back unchanged.
 pub fn in_json(text: &str) -> String {
     if text.is_ascii() {
         return text.to_owned();
     }
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
-        // An accent alone is one too: after its letter it reads back as well.
+        // A combining mark is escaped too: after its letter it reads back the same.
         let is_seen = c == '\n' || c.is_ascii() || !is_blank(c) && !is_mark(c) && c.escape_debug().eq([c]);
         match is_seen {
             true => out.push(c),
@@ -72,7 +72,7 @@ fn spelled(text: impl Iterator<Item = char>) -> String {
     let mut shown = String::new();
     let mut marks = 0;
     for c in text {
-        // An accent belongs to the letter before it; a heap of them, or one on nothing, is no writing.
+        // A combining mark belongs to the letter before it. More than three of them, or one without a letter, are escaped.
         marks = if is_mark(c) { marks + 1 } else { 0 };
         let lone = marks > 3 || marks == 1 && shown.is_empty();
         match c {
@@ -85,13 +85,13 @@ fn spelled(text: impl Iterator<Item = char>) -> String {
     shown
 }
 
-/// What `escape_debug` spells out though it is printable: marks that join the letter before.
+/// True for combining marks: printable, though `escape_debug` escapes them on their own.
 fn is_mark(c: char) -> bool {
     let plain = |c: char| c.escape_debug().count() == 1;
     !plain(c) && !c.is_control() && format!("a{c}").escape_debug().eq(['a', c])
 }
 
-/// Letters, symbols and selectors that show nothing at all.
+/// True for letters, symbols and selectors that show nothing.
 fn is_blank(c: char) -> bool {
     matches!(c,
         '\u{34f}' | '\u{115f}' | '\u{1160}' | '\u{17b4}' | '\u{17b5}' | '\u{180b}'..='\u{180f}' | '\u{2800}'

@@ -1,35 +1,35 @@
-//! What a user hears of an error, whatever it is of: its class, its place, and what to do.
+//! Errors as shown to a user: class, location and remedy.
 
 use crate::input::{InputErrors, Reason};
 use crate::io::{FileError, FolderError};
 use std::path::Path;
 
-/// The classes of errors; each has an exit code of its own.
+/// Classes of errors; each has its own exit code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
-    /// The request cannot be understood, or is refused.
+    /// Invalid or refused request.
     Usage,
-    /// A scene or another input file is wrong.
+    /// Mistake in a scene or another input file.
     Input,
-    /// The physics broke a precondition, or a prediction lies outside what was calibrated.
+    /// Violated precondition of the physics, or a prediction outside the calibrated range.
     Precondition,
-    /// The system does not let something be read or written.
+    /// Failure to read or write.
     InputOutput,
-    /// What was written before has been damaged.
+    /// Damaged file of an earlier run.
     Checkpoint,
 }
 
 impl Class {
-    /// Every class.
+    /// All classes.
     const ALL: [Class; 5] =
         [Class::Usage, Class::Input, Class::Precondition, Class::InputOutput, Class::Checkpoint];
 
-    /// The class of an exit code; none where a signal ended the program.
+    /// Class of an exit code; none if a signal ended the program.
     pub fn of_exit_code(code: u8) -> Option<Class> {
         Class::ALL.into_iter().find(|class| class.exit_code() == code)
     }
 
-    /// The name in JSON.
+    /// Name in JSON.
     pub fn name(self) -> &'static str {
         match self {
             Class::Usage => "usage",
@@ -40,7 +40,7 @@ impl Class {
         }
     }
 
-    /// The exit code.
+    /// Exit code of the class.
     pub fn exit_code(self) -> u8 {
         match self {
             Class::Usage => 2,
@@ -52,10 +52,10 @@ impl Class {
     }
 }
 
-/// A place in a file, as far as it is known.
+/// Location in a file, as far as it is known.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct FilePlace {
-    /// The file.
+    /// Name of the file.
     pub file: String,
     /// Line, from 1.
     pub line: Option<usize>,
@@ -64,38 +64,38 @@ pub struct FilePlace {
 }
 
 impl FilePlace {
-    /// A file as a whole.
+    /// Location of a whole file.
     pub fn at(file: &Path) -> FilePlace {
         FilePlace { file: file.display().to_string(), line: None, column: None }
     }
 }
 
-/// An error that a user hears of.
+/// Error that is shown to a user.
 pub trait Reported: std::error::Error + Send + Sync {
-    /// Its class.
+    /// Class of the error.
     fn class(&self) -> Class;
 
-    /// The error that it passes on, if it does: what is not said here of mistakes, place, remedy and details, that one says.
+    /// Inner error that supplies the mistakes, location, remedy and details not given here.
     fn passed_on(&self) -> Option<&dyn Reported> {
         None
     }
 
-    /// The mistakes of an input file, where it is of one.
+    /// Mistakes of an input file, if it is about one.
     fn mistakes(&self) -> Option<&InputErrors> {
         self.passed_on()?.mistakes()
     }
 
-    /// Where, if it has a place.
+    /// Location, if known.
     fn place(&self) -> Option<FilePlace> {
         self.passed_on()?.place()
     }
 
-    /// What to do, where its words do not say so in a paragraph of their own.
+    /// Remedy, unless the message has a paragraph on it.
     fn remedy(&self) -> Option<String> {
         self.passed_on()?.remedy()
     }
 
-    /// What more is known of it, as data.
+    /// Further facts as data.
     fn details(&self) -> Option<serde_json::Value> {
         self.passed_on()?.details()
     }

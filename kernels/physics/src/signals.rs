@@ -1,31 +1,30 @@
-//! What signals do to the command.
+//! Handling of signals by the command.
 //!
-//! Interruption (Ctrl-C) and termination end the process with exit code 130, from the thread of their handler: at once, whatever
-//! is being computed. Nothing computed has to ask whether it should stop, so that no loop can forget to. What must not be cut in
-//! half says so instead: files that belong together are written in `whole`, after which the process ends; a run is in
-//! `hold` from its first file on, looks at `asked` after every step, and leaves a checkpoint. A second signal ends the
-//! process at once, whatever is held.
+//! Interruption (Ctrl-C) and termination end the process with exit code 130 at once, from the thread of their handler. Computations need not poll a
+//! flag, so no loop can forget to. Work that must not be interrupted is protected explicitly. Files that belong together are written in `whole`,
+//! after which the process ends. A run is in `hold` from its first file, checks `asked` after every step, and leaves a checkpoint. A second signal
+//! ends the process at once, whatever is held.
 //!
-//! A file that reaches the limit of its size is an error of writing, not a signal. A program that uses the library
-//! installs no handler here, and nothing in this module does anything then.
+//! Reaching the limit of file sizes is a write error, not a signal. A program that uses the library installs no handler, and then this module does
+//! nothing.
 
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError, mpsc};
 use std::time::Duration;
 
-/// The exit code of a process that was interrupted or terminated.
+/// Exit code of a process that was interrupted or terminated.
 pub const INTERRUPTED: u8 = 130;
 
-/// How long the last words may take: a terminal that is stopped does not take them at all.
+/// Longest time for the last words; a stopped terminal never takes them.
 const PATIENCE: Duration = Duration::from_millis(300);
 
-/// How the process ends.
+/// End of the process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
-    /// Nothing is half written.
+    /// Every file is complete.
     Whole,
-    /// At a second signal: what was being written may be incomplete.
+    /// Forced by a second signal: a file may be incomplete.
     Forced,
 }
 
@@ -33,24 +32,24 @@ type LastWords = Box<dyn Fn(End) + Send + Sync>;
 
 static LAST_WORDS: OnceLock<LastWords> = OnceLock::new();
 static ASKED: AtomicBool = AtomicBool::new(false);
-/// How many hold the process. What ends it keeps the lock, so that nothing begins to hold it then.
+/// Number of holders. The thread that ends the process keeps the lock, so that no new hold begins.
 static HOLDERS: Mutex<usize> = Mutex::new(0);
 
-/// Installs the handlers, once in a process. `last_words` are said before the process ends.
+/// Installs the handlers, once in a process. `last_words` is called before the process ends.
 ///
 /// # Errors
-/// What the system says.
+/// The system's error.
 pub fn install(last_words: impl Fn(End) + Send + Sync + 'static) -> io::Result<()> {
     LAST_WORDS.get_or_init(|| Box::new(last_words));
     ignoring(|| ctrlc::set_handler(arrived).map_err(io::Error::other))
 }
 
-/// Installs handlers, and ignores what is to be ignored: the limit of file sizes, and the end of the terminal where the
-/// process was started with it ignored (`nohup`), which the handlers would undo.
+/// Installs handlers and ignores two signals: the limit of file sizes, and the end of the terminal if the process was started with it ignored
+/// (`nohup`). The handlers would undo the latter.
 #[cfg(unix)]
 fn ignoring(handlers: impl FnOnce() -> io::Result<()>) -> io::Result<()> {
     use nix::sys::signal::{SigHandler, Signal, signal};
-    // SAFETY: a signal that is ignored runs no code.
+    // SAFETY: an ignored signal runs no code.
     let ignore = |which| unsafe { signal(which, SigHandler::SigIgn) };
     ignore(Signal::SIGXFSZ)?;
     let before = ignore(Signal::SIGHUP)?;
@@ -66,16 +65,16 @@ fn ignoring(handlers: impl FnOnce() -> io::Result<()>) -> io::Result<()> {
     handlers()
 }
 
-/// Set once a signal has come while something was held.
+/// Flag set by a signal that arrived during a hold.
 pub fn asked() -> &'static AtomicBool {
     &ASKED
 }
 
-/// While one of these lives, a first signal does not end the process; its holder answers it.
+/// Guard during which a first signal does not end the process; its holder reacts to the signal.
 #[derive(Debug)]
 pub struct Held(());
 
-/// Holds the process.
+/// Holds the process until the guard is dropped.
 pub fn hold() -> Held {
     *holders() += 1;
     Held(())
@@ -87,11 +86,11 @@ impl Drop for Held {
     }
 }
 
-/// Does work that must not be cut in half, and ends the process after it if a signal has come meanwhile. Work that failed is not
-/// ended so: its error is what the user has to know.
+/// Runs work that must not be interrupted, and ends the process afterwards if a signal has arrived. Failed work does not end it: its error is
+/// returned to the user.
 ///
 /// # Errors
-/// Those of the work.
+/// Errors of the work.
 pub fn whole<R, E>(work: impl FnOnce() -> Result<R, E>) -> Result<R, E> {
     let held = hold();
     let done = work()?;
@@ -103,7 +102,7 @@ pub fn whole<R, E>(work: impl FnOnce() -> Result<R, E>) -> Result<R, E> {
     Ok(done)
 }
 
-/// Waits for the end of the process, if a signal is ending it.
+/// Waits for the end of the process if a signal is ending it.
 pub fn await_end() {
     drop(holders());
 }
@@ -112,7 +111,7 @@ fn holders() -> MutexGuard<'static, usize> {
     HOLDERS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// What the handler's thread does at a signal.
+/// Handles a signal, on the handler's thread.
 fn arrived() {
     let holders = holders();
     let first = !ASKED.swap(true, Ordering::SeqCst);
@@ -123,7 +122,7 @@ fn arrived() {
     }
 }
 
-/// Ends the process; the caller keeps the lock of the holders.
+/// Ends the process; the caller holds the lock of the holders.
 fn end(how: End) -> ! {
     let (done, waiting) = mpsc::channel();
     let words = move || {
@@ -134,7 +133,7 @@ fn end(how: End) -> ! {
     if std::thread::Builder::new().spawn(words).is_ok() {
         #[expect(
             clippy::let_underscore_must_use,
-            reason = "the process ends now, whatever the thread has said"
+            reason = "the process ends now, with or without the last words"
         )]
         let _ = waiting.recv_timeout(PATIENCE);
     }
@@ -158,7 +157,7 @@ mod tests {
         }
     }
 
-    /// Ends the process, or hangs.
+    /// Ends the process or hangs.
     fn interrupted_for_good() -> ! {
         raise(Signal::SIGTERM).unwrap();
         loop {
@@ -192,7 +191,7 @@ mod tests {
         interrupted_for_good();
     }
 
-    /// In processes of their own, which this test is itself: a process has one set of handlers and ends once.
+    /// Each role runs in a process of its own, which is this test again: a process has one set of handlers and ends once.
     #[test]
     fn what_is_held_is_finished_unless_a_second_signal_comes() {
         const ROLE: &str = "STRIPMINE_TEST_OF_SIGNALS";

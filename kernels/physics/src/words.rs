@@ -1,26 +1,26 @@
-//! Enumerations whose variants are words of scene files and of the command line: variant, word and meaning stated once.
+//! Enumerations whose variants are words of scene files and of the command line. Variant, word and meaning are stated once.
 
-/// A closed set of words.
+/// Closed set of words.
 pub trait Words: Copy + PartialEq + 'static {
     /// Every variant with its word, in the order in which they are offered.
     const ALL: &'static [(Self, &'static str)];
-    /// The words alone.
+    /// Words alone.
     const WORDS: &'static [&'static str];
 
-    /// The word.
+    /// Word of this variant.
     fn word(self) -> &'static str {
         Self::ALL.iter().find(|(variant, _)| *variant == self).map_or("", |(_, word)| word)
     }
 
-    /// The variant of a word.
+    /// Variant of a word.
     fn parse(word: &str) -> Option<Self> {
         Self::ALL.iter().find(|(_, known)| *known == word).map(|(variant, _)| *variant)
     }
 }
 
-/// The nearest of some names, if any is near enough to be meant.
+/// Most similar of some names, if any is similar enough to be meant.
 pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    // Longer than any name: nothing is near, and the comparison takes as long as both together.
+    // No name is this long; the comparison takes time in proportion to both lengths.
     if name.len() > 64 {
         return None;
     }
@@ -30,12 +30,12 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     candidates.into_iter().filter(near).min_by_key(|candidate| distance(candidate))
 }
 
-/// The same as a line of a message; nothing where no name is near.
+/// Suggestion of the most similar name as a line of a message; empty if no name is similar.
 pub fn suggestion<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> String {
     nearest(name, candidates).map_or(String::new(), |near| format!("\n  help: did you mean {near}?"))
 }
 
-/// Words for an enumeration that is defined elsewhere.
+/// Defines words for an enumeration of another module.
 macro_rules! words_for {
     ($name:ty { $($variant:ident = $word:literal,)* }) => {
         impl $crate::words::Words for $name {

@@ -1,35 +1,35 @@
-//! Where the transient at the beginning of a series ends.
+//! End of the initial transient of a series.
 
 use super::waves::{WaveError, mean};
 
-/// Batches that the search sees.
+/// Number of batches in the search.
 const BATCHES: usize = 64;
-/// Part of the series that may be cut off.
+/// Largest fraction of the series that may be cut.
 const LATEST: f64 = 0.75;
-/// Part of the batches that is left by every cut that is tried: the scatter of a few is small by chance.
+/// Smallest fraction of the batches left by every cut that is tried: the scatter of a few batches may be small accidentally.
 const LEAST_LEFT: f64 = 0.375;
-/// A shorter series for a shorter transient has this part of the values.
+/// Factor by which the series is shortened in the search for a shorter transient.
 const FINER: usize = 8;
-/// A transient is seen where the beginning differs from the rest by more than this many standard errors of the difference: of
-/// a thousand series without one, two are cut.
+/// Smallest deviation of the beginning from the rest that indicates a transient (standard errors of the difference): of a thousand series without a
+/// transient, two are cut.
 const DIFFERENT: f64 = 4.0;
-/// Standard errors within which the rest of a transient that is seen agrees with the series.
+/// Deviation within which the rest of a detected transient agrees with the series (standard errors).
 const AGREEING: f64 = 2.0;
 
-/// The number of values at the beginning of a series that do not count; none where the transient lasts almost as long as the series.
+/// Number of values in the initial transient of a series; none if it lasts almost as long as the series.
 ///
-/// The cut is where the error that the rest would have as independent batches, s²/m of its m batch means, is the smallest
-/// (marginal standard error rule: White, Simulation 69, 323 (1997)). In contrast to the number of independent samples, it sees a transient of a single row. A
-/// part that agrees with the rest is kept. There the transient has sunk below the noise of a batch, but not below that of
-/// the mean: as much again is cut off, which squares what is left of an exponential.
+/// The cut minimises the error that the rest would have as independent batches, s²/m of its m batch means (marginal standard error rule: White,
+/// Simulation 69, 323 (1997)). In contrast to the number of independent samples, this rule detects a transient of a single row. A beginning that
+/// agrees with the rest is kept. At the cut, the transient has fallen below the noise of a batch, but not below that of the mean: an equal part is
+/// cut in addition, which squares the remainder of an exponential.
 pub(super) fn equilibrated(series: &[f64]) -> Option<usize> {
     let cut = least_error(series);
-    // A transient that is shorter than the cut differs more in a part of it.
+    // A transient shorter than the cut deviates more in a part of it.
     let mut beginnings = std::iter::successors(Some(cut), |it| Some(it / 2)).take_while(|&it| it > 0);
     if !beginnings.any(|it| differ(&series[..it], &series[cut..], DIFFERENT)) {
         return Some(0);
     }
-    // A transient of a few rows is within one batch: a shorter series has shorter ones.
+    // A transient of a few rows is within one batch; a shorter series has shorter batches.
     let mut start = 2 * cut;
     let mut beginning = series;
     while beginning.len() > BATCHES {
@@ -43,7 +43,7 @@ pub(super) fn equilibrated(series: &[f64]) -> Option<usize> {
     (start as f64 <= LATEST * series.len() as f64).then_some(start)
 }
 
-/// The number of values before the batches whose mean has the least error.
+/// Number of values before the batches whose mean has the smallest error.
 fn least_error(series: &[f64]) -> usize {
     let (length, means) = batches(series);
     let mut best = (f64::INFINITY, 0);
@@ -51,7 +51,7 @@ fn least_error(series: &[f64]) -> usize {
     for (at, value) in means.iter().enumerate().rev() {
         squares.add(*value);
         let error = squares.variance() / squares.count;
-        // Nothing is known of a rest that does not vary.
+        // A rest that does not vary has no known error.
         if squares.count >= LEAST_LEFT * means.len() as f64 && error > 0.0 && error <= best.0 {
             best = (error, at);
         }
@@ -59,7 +59,7 @@ fn least_error(series: &[f64]) -> usize {
     best.1 * length
 }
 
-/// Sums of squares about the mean, value by value (Welford, Technometrics 4, 419 (1962)).
+/// Sums of squares about the mean, updated for each value (Welford, Technometrics 4, 419 (1962)).
 #[derive(Default)]
 struct Squares {
     count: f64,
@@ -80,8 +80,8 @@ impl Squares {
     }
 }
 
-/// Tests for a first part whose mean differs from that of the rest by so many standard errors. A part shorter than the correlation time varies as a single value does.
-/// No stretch of the rest as long may have such a mean: rare events are no transient.
+/// Tests if the mean of a first part differs from that of the rest by a number of standard errors. A part shorter than the correlation time varies
+/// like a single value. No section of the rest of the same length may have such a mean: rare events are not a transient.
 fn differ(first: &[f64], rest: &[f64], errors: f64) -> bool {
     let WaveError { mean: expected, standard_error, samples, .. } = WaveError::of(rest);
     let square = standard_error * standard_error;
@@ -92,7 +92,7 @@ fn differ(first: &[f64], rest: &[f64], errors: f64) -> bool {
     off.abs() > farthest.max(errors * (of_first + square).sqrt())
 }
 
-/// The number of values of a batch, and the means of all whole batches.
+/// Number of values of a batch, and the means of all complete batches.
 pub(super) fn batches(series: &[f64]) -> (usize, Vec<f64>) {
     let length = series.len().div_ceil(BATCHES).max(1);
     (length, series.chunks_exact(length).map(mean).collect())
@@ -104,7 +104,7 @@ mod tests {
     use crate::averages::noise::Noise;
     use crate::averages::{Outcome, estimated};
 
-    /// A step of ten values, far above noise of known size: these are cut off, and as many again.
+    /// A step of ten values, far above noise of known size: ten values are cut, and ten more.
     #[test]
     fn a_step_is_cut_off_twice() {
         for (height, first) in [(50.0, 10), (-4.0, 10), (5e4, 1)] {
@@ -125,11 +125,11 @@ mod tests {
             cuts.iter().sum::<f64>() / cuts.len() as f64
         };
         let (with, without) = (cut(10.0), cut(0.0));
-        // By then e⁻³ of the transient is left, and no more than a quarter is lost.
+        // The remaining transient is then e⁻³, and at most a quarter is cut.
         assert!((60.0..250.0).contains(&with) && without < 30.0, "{with} {without}");
     }
 
-    /// A first row that is far off, of two thousand: some rows are lost, not a batch of them.
+    /// An outlier in the first of two thousand rows costs a few rows, not a batch of them.
     #[test]
     fn a_transient_of_a_row_costs_a_few() {
         let cut = |seed| equilibrated(&Noise::new(seed).relaxing(2000, 0.3, 5e4, 0.2)).unwrap();

@@ -1,98 +1,98 @@
-//! The mean of a series with its error, or why there is none.
+//! Estimate of the mean of a series with its error, or the reason why there is none.
 
 use super::equilibration::{batches, equilibrated};
 use super::student::student;
 use super::waves::{WaveError, is_smooth_drift, mean};
 use serde::Serialize;
 
-/// Independent samples below which no mean is given: neither the cut nor the error can be relied on.
+/// Smallest number of independent samples for a mean: with fewer, neither the cut nor the error is reliable.
 pub(crate) const FEWEST_SAMPLES: f64 = 20.0;
-/// Independent samples as they seem to be with which a run is likely to have as many: its own estimate is a rough one.
+/// Estimated number of independent samples with which a run is likely to have enough: the estimate itself is rough.
 pub const LIKELY_ENOUGH: f64 = 40.0;
-/// Bars hold the truth with this probability.
+/// Probability that a confidence interval contains the true value.
 pub(crate) const CONFIDENCE: f64 = 0.95;
-/// A series is still changing where chance makes such a drift in one of a thousand stationary ones.
+/// Level at which a series counts as drifting: one of a thousand stationary ones has such a drift.
 const DRIFT: f64 = 0.999;
-/// The same where a transient has been cut off, of which more may be left.
+/// Level after a transient has been cut, since a part of it may remain.
 const DRIFT_AFTER_TRANSIENT: f64 = 0.99;
-/// Independent samples that a series has for each batch that carries its variance: for a Gaussian one these are a third of all batches.
-/// It has fewer samples than [`FEWEST_SAMPLES`] where five batches carry all of it, as with rare events.
+/// Independent samples of a series for each batch that carries its variance: in a Gaussian series these are a third of all batches. The series has
+/// fewer samples than [`FEWEST_SAMPLES`] if five batches carry all of it, as with rare events.
 const PER_CARRIER: f64 = 4.0;
-/// A series that varies by less than this part of its largest value does not vary: it is rounding.
+/// Relative variation below which a series counts as constant: it is rounding error.
 const ROUNDING: f64 = 1e-9;
-/// Student's t hardly changes beyond this number of degrees of freedom.
+/// Number of degrees of freedom beyond which Student's t hardly changes.
 const MANY: f64 = 1000.0;
 
-/// A mean over time with its error.
+/// Mean over time with its error.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Estimate {
-    /// The mean.
+    /// Value of the mean.
     pub mean: f64,
-    /// Half the width of the interval that holds the true mean with a probability of 95 %: Student's t times the standard error.
+    /// Half-width of the 95 % confidence interval of the mean: Student's t times the standard error.
     pub bar: f64,
     /// Standard error of the mean of the correlated values.
     pub standard_error: f64,
     /// Degrees of freedom of the error.
     pub freedoms: f64,
-    /// Statistical inefficiency g, in values of the series; below 1 where successive values make up for each other.
+    /// Statistical inefficiency g, in values of the series; below 1 if successive values compensate each other.
     pub(crate) inefficiency: f64,
-    /// Integrated autocorrelation time (g − 1)/2 (time); 0 where values are independent, or make up for each other.
+    /// Integrated autocorrelation time (g − 1)/2 (time); 0 if values are independent or compensate each other.
     pub correlation_time: f64,
-    /// When the transient ends (time): what was before does not count.
+    /// End of the transient (time); earlier values are not used.
     pub equilibrated_at: f64,
-    /// Independent samples after that.
+    /// Number of independent samples after the transient.
     pub independent_samples: f64,
-    /// How long a time they span (time).
+    /// Time that the samples span (time).
     pub span: f64,
 }
 
-/// What there is to be said of a quantity over a run.
+/// Result of averaging a quantity over a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(tag = "says", rename_all = "kebab-case")]
 pub enum Outcome {
-    /// It has a mean.
+    /// The quantity has a mean.
     Mean(Estimate),
-    /// It is not a number in some rows.
+    /// The quantity is NaN in some rows.
     Undefined,
-    /// It does not vary beyond rounding.
+    /// The quantity does not vary beyond rounding.
     Constant {
-        /// Its value.
+        /// Constant value.
         mean: f64,
     },
     /// The run is too short for a mean.
     TooShort {
-        /// Independent samples that there are.
+        /// Number of independent samples found.
         independent_samples: f64,
-        /// About when there will be enough (time).
+        /// Estimated time at which there will be enough (time).
         enough_at: f64,
-        /// What joins with those of other runs.
+        /// Preliminary estimate, to be joined with those of other runs.
         #[serde(skip)]
         estimate: Option<Estimate>,
     },
-    /// It is still changing at the end: it has no mean, or has not come to it.
+    /// The quantity is still changing at the end: it has no mean, or is not yet stationary.
     Changing {
-        /// Its first value.
+        /// First value.
         first: f64,
-        /// Its last value.
+        /// Last value.
         last: f64,
     },
-    /// It should stay as it is; no mean is asked of it.
+    /// The quantity should be conserved; no mean is computed.
     Kept {
-        /// Its first value.
+        /// First value.
         first: f64,
-        /// Its last value.
+        /// Last value.
         last: f64,
-        /// The largest difference from the first.
+        /// Largest difference from the first value.
         farthest: f64,
     },
 }
 
-/// Half the width of the interval of 95 % for a standard error with degrees of freedom.
+/// Half-width of the 95 % confidence interval for a standard error with degrees of freedom.
 pub(super) fn bar(error: f64, freedoms: f64) -> f64 {
     student(CONFIDENCE, freedoms.clamp(1.0, MANY) as usize) * error
 }
 
-/// The mean of values that are independent, with the half width of its interval of 95 %; none of fewer than two.
+/// Mean of independent values with the half-width of its 95 % confidence interval; none for fewer than two.
 pub fn of_independent(values: &[f64]) -> Option<[f64; 2]> {
     if values.len() < 2 {
         return None;
@@ -102,22 +102,22 @@ pub fn of_independent(values: &[f64]) -> Option<[f64; 2]> {
     Some([mean, bar((squares / (n * (n - 1.0))).sqrt(), n - 1.0)])
 }
 
-/// The mean of values one after the other in time, with the half width of its interval of 95 %: they may be correlated, and are taken to have
-/// left their start behind; none of fewer than two.
+/// Mean of a time series with the half-width of its 95 % confidence interval; none for fewer than two values. The values may be correlated, and
+/// must be stationary.
 pub fn of_correlated(values: &[f64]) -> Option<[f64; 2]> {
     let error = (values.len() > 1).then(|| WaveError::of_any(values))?;
     Some([error.mean, bar(error.standard_error, error.waves as f64)])
 }
 
-/// Half the width of the interval of 95 % of the mean of a stationary series, and its degrees of freedom: more than those of an [`Estimate`], so that the
-/// errors of other runs can be foreseen; none of fewer than two values.
+/// Half-width of the 95 % confidence interval for the mean of a stationary series, and its degrees of freedom; none for fewer than two values.
+/// There are more degrees of freedom than in an [`Estimate`], so that errors of other runs can be predicted.
 pub fn foreseeing(values: &[f64]) -> Option<[f64; 2]> {
     let error = (values.len() > 1).then(|| WaveError::of_more(values))?;
     let freedoms = error.waves as f64;
     Some([bar(error.standard_error, freedoms), freedoms])
 }
 
-/// The outcome of a series of values `spacing` apart, the first at `from` + `spacing` (time).
+/// Estimates the mean of a series of values `spacing` apart, the first at `from` + `spacing` (time).
 pub fn estimated(series: &[f64], from: f64, spacing: f64) -> Outcome {
     let few = |independent_samples: f64, enough_at: f64, estimate: Option<Estimate>| Outcome::TooShort {
         independent_samples,
@@ -181,7 +181,7 @@ impl Estimate {
     }
 }
 
-/// The number of batches that carry the variance of a series, (Σx²)²/Σx⁴ about the mean: a few where it varies by rare events only.
+/// Number of batches that carry the variance of a series, (Σx²)²/Σx⁴ about the mean: small if the series varies by rare events only.
 fn carriers(series: &[f64]) -> f64 {
     let (_, means) = batches(series);
     let middle = mean(&means);
@@ -190,7 +190,7 @@ fn carriers(series: &[f64]) -> f64 {
     if fourths > 0.0 { sum * sum / fourths } else { 0.0 }
 }
 
-/// The smallest and the largest value.
+/// Smallest and largest value.
 fn ends(values: &[f64]) -> [f64; 2] {
     let none = [f64::INFINITY, f64::NEG_INFINITY];
     values.iter().fold(none, |[low, high], &value| [low.min(value), high.max(value)])
@@ -201,10 +201,10 @@ mod tests {
     use super::*;
     use crate::averages::noise::Noise;
 
-    /// A series by a seed.
+    /// Series for a seed.
     type Series = fn(u64) -> Vec<f64>;
 
-    /// Name, series, true mean, the least share of them that has a mean.
+    /// Name, series, true mean, and the smallest fraction of them with a mean.
     const SERIES: [(&str, Series, f64, f64); 11] = [
         ("independent", |seed| Noise::new(seed).series(300, 0.0), 0.0, 0.97),
         ("100 samples", |seed| Noise::new(seed).series(1900, 0.9), 0.0, 0.95),
@@ -223,7 +223,7 @@ mod tests {
         series.windows(2).map(|pair| pair[1] - part * pair[0]).collect()
     }
 
-    /// Independent values and a part that remembers for 25 of them.
+    /// Independent values plus a component with a correlation time of 25 of them.
     fn sum(seed: u64, length: usize, slow: f64) -> Vec<f64> {
         let slowly = Noise::new(seed + 1_000_000).series(length, 0.96);
         let fast = Noise::new(seed).series(length, 0.0);
@@ -239,7 +239,7 @@ mod tests {
         count as f64 / of as f64
     }
 
-    /// The bar holds the truth in 92 to 98 of 100 series, whatever their correlation and their beginning.
+    /// Error bars contain the true value in 92 to 98 of 100 series, for any correlation and any beginning.
     #[test]
     fn bars_hold_the_truth_as_often_as_they_say() {
         const SEEDS: u64 = 400;
@@ -257,7 +257,7 @@ mod tests {
         }
     }
 
-    /// Series of 1 to 10 independent samples: hardly one has a mean, and hardly one is called changing.
+    /// Series of 1 to 10 independent samples rarely have a mean, and rarely count as changing.
     #[test]
     fn short_series_have_no_mean() {
         for (samples, most) in [(1.0, 0.002), (2.5, 0.002), (5.0, 0.005), (10.0, 0.05)] {
@@ -277,7 +277,7 @@ mod tests {
         }
     }
 
-    /// A few events in 400 values, the probability of each number of them by Poisson: no mean rests on fewer than five.
+    /// A few events in 400 values, with Poisson statistics: no mean is based on fewer than five.
     #[test]
     fn rare_events_have_no_mean() {
         let series = |count: u64| -> Vec<f64> {
@@ -296,8 +296,8 @@ mod tests {
         }
     }
 
-    /// Of values that are known to be stationary, the bar holds the truth as often as it says, down to a few independent samples; that of
-    /// a few values holds it more often.
+    /// Error bars of stationary values contain the true value at the stated rate, down to a few independent samples; those of a few values do so
+    /// more often.
     #[test]
     fn bars_of_stationary_values_hold_the_truth() {
         for (length, memory, most) in [
@@ -318,7 +318,7 @@ mod tests {
         }
     }
 
-    /// Something slow beneath fast noise: a run of five of its samples seldom has a mean, however many samples of the noise there are.
+    /// A slow component beneath fast noise: a run of five of its samples rarely has a mean, for any number of samples of the noise.
     #[test]
     fn noise_hides_no_slow_change() {
         for (slow_samples, most) in [(1.0, 0.1), (5.0, 0.06), (10.0, 0.12)] {
@@ -335,7 +335,7 @@ mod tests {
         }
     }
 
-    /// Of stationary series, long past their start, at most one in two hundred has a transient cut off.
+    /// At most one in two hundred stationary series has a transient cut.
     #[test]
     fn chance_is_no_transient() {
         for memory in [0.0, 0.5, 0.9] {
@@ -349,7 +349,7 @@ mod tests {
         }
     }
 
-    /// By hand: the mean 2, the standard error 1/√3, Student's t of two degrees of freedom.
+    /// Hand calculation: the mean 2, the standard error 1/√3, Student's t with two degrees of freedom.
     #[test]
     fn a_mean_of_independent_values_has_students_bar() {
         let [mean, bar] = of_independent(&[1.0, 2.0, 3.0]).unwrap();
@@ -371,7 +371,7 @@ mod tests {
         assert_eq!(estimated(&undefined, 0.0, 1.0), Outcome::Undefined);
         let few = Outcome::TooShort { independent_samples: 3.0, enough_at: 12.0, estimate: None };
         assert_eq!(estimated(&[1.0, 2.0, 1.0], 2.0, 0.5), few);
-        // Slow beside the run: how much longer it takes is of the order of what it would take.
+        // For a correlation time comparable to the run, the predicted length has the right order of magnitude.
         let slow = (0..20).map(|seed| estimated(&Noise::new(seed).series(400, 0.97), 0.0, 1.0));
         let short: Vec<f64> = slow
             .filter_map(|outcome| match outcome {

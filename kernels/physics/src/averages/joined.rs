@@ -1,26 +1,25 @@
-//! Averages of several runs of one scene.
+//! Joined averages of several runs of one scene.
 
 use super::estimate::{Estimate, FEWEST_SAMPLES, LIKELY_ENOUGH, Outcome, bar};
 use super::{Average, Averages, BAR};
 
-/// Numbers that differ by no larger part are the same.
+/// Relative difference below which numbers count as equal.
 const SAME: f64 = 1e-9;
-/// A number is conserved where runs take it no farther from its first value than this part of what lies between the runs.
+/// Largest change of a conserved number within a run, as a fraction of its range between runs.
 const CONSERVED: f64 = 0.1;
 
-/// Runs of one ensemble from which on what lies between them tells the error: with fewer, Student's t of one or two degrees of freedom
-/// would make bars several times as long.
+/// Number of runs of one ensemble from which on their spread determines the error. With fewer, Student's t of one or two degrees of freedom would
+/// make error bars several times as long.
 const ENOUGH_RUNS: usize = 4;
-/// Standard deviations of χ²/(R − 1) above 1 that are chance: one of a hundred joins of runs of one ensemble is beyond.
+/// Largest accidental excess of χ²/(R − 1) above 1, in standard deviations: one of a hundred joins of one ensemble exceeds it.
 const CHANCE: f64 = 3.0;
 
 /// Joins the averages of runs that observe the same quantities.
 ///
-/// Runs of a closed system differ for good, as by the energy of their starts: each is one independent sample, and Student's t of R runs has
-/// R − 1 degrees of freedom. Runs that differ in no conserved number are of one ensemble and count by their time. The error of four or more is
-/// that of what lies between them. Two or three have the errors of each,
-/// and where they differ by more than chance explains, the error grows by √(χ²/(R − 1)) (Birge, Phys. Rev. 40, 207 (1932)).
-/// Where most runs are too short for a mean of their own, nothing tells whether they are past their transients: their join is too short.
+/// Runs of a closed system may differ permanently, for instance in energy. Each is then one independent sample, and Student's t of R runs has R − 1
+/// degrees of freedom. Runs that differ in no conserved number are of one ensemble and are weighted by their time. Four or more have the error of
+/// their spread. Two or three have the errors of each; if they differ by more than statistical error, the error is multiplied by √(χ²/(R − 1))
+/// (Birge, Phys. Rev. 40, 207 (1932)). If most runs are too short for a mean, their transients are unknown, and the join is too short as well.
 pub fn joined(runs: &[Averages]) -> Averages {
     let Some(first) = runs.first() else {
         return Averages { bar: BAR, rows: 0, span: 0.0, runs: 0, quantities: vec![] };
@@ -37,7 +36,7 @@ pub fn joined(runs: &[Averages]) -> Averages {
     Averages { bar: BAR, rows, span: spans.iter().sum(), runs: runs.len(), quantities: quantities.collect() }
 }
 
-/// Tests for a quantity that every run conserves and that differs between runs.
+/// Tests if every run conserves the quantity and runs differ in it.
 fn differ_for_good(outcomes: &[Outcome]) -> bool {
     let conserved = outcomes.iter().map(|outcome| match *outcome {
         Outcome::Constant { mean } => Some((mean, 0.0)),
@@ -59,7 +58,7 @@ fn joined_outcome(outcomes: &[Outcome], spans: &[f64], is_one_ensemble: bool) ->
     if let Some(outcome) = obstacle(outcomes) {
         return outcome;
     }
-    // The mean of each run with the time that it is over; one that is constant has no samples.
+    // Mean of each run with its time; a constant has no samples.
     let of_run = |(outcome, span): (&Outcome, &f64)| match *outcome {
         Outcome::Mean(it) | Outcome::TooShort { estimate: Some(it), .. } => (it.mean, it.span, Some(it)),
         Outcome::Constant { mean } => (mean, *span, None),
@@ -78,7 +77,7 @@ fn joined_outcome(outcomes: &[Outcome], spans: &[f64], is_one_ensemble: bool) ->
     });
     let short: Vec<f64> = short.collect();
     let have_errors = outcomes.iter().all(|outcome| matches!(outcome, Outcome::Mean(_)));
-    // Runs of one ensemble count by their time; a run that is one sample counts as much as any other.
+    // Runs of one ensemble are weighted by their time; runs that are single samples have equal weights.
     let by_time = is_one_ensemble && have_errors;
     let values: Vec<[f64; 2]> =
         values.into_iter().map(|[mean, span]| [mean, if by_time { span } else { 1.0 }]).collect();
@@ -102,7 +101,7 @@ fn joined_outcome(outcomes: &[Outcome], spans: &[f64], is_one_ensemble: bool) ->
     Outcome::Mean(estimate)
 }
 
-/// The outcome that keeps all from a joined mean, the gravest of them: the same in every order of the runs.
+/// Outcome that prevents a joined mean, the gravest of all, so that it is independent of the order of the runs.
 fn obstacle(outcomes: &[Outcome]) -> Option<Outcome> {
     let weight = |outcome: &Outcome| match *outcome {
         Outcome::Undefined => Some([4.0, 0.0]),
@@ -118,21 +117,21 @@ fn obstacle(outcomes: &[Outcome]) -> Option<Outcome> {
     gravest.filter(|outcome| weight(outcome).is_some())
 }
 
-/// The error of a joined mean.
+/// Error of a joined mean.
 struct Error {
     standard_error: f64,
     freedoms: f64,
     samples: f64,
 }
 
-/// The mean of means, each by its weight: [mean, weight]; 0 of none.
+/// Weighted mean of [mean, weight]; 0 for an empty list.
 fn weighted(values: &[[f64; 2]]) -> f64 {
     let all: f64 = values.iter().map(|[_, weight]| weight).sum();
     values.iter().fold(0.0, |sum, [mean, weight]| sum + weight / all * mean)
 }
 
 impl Error {
-    /// Of what lies between runs: as many count as would have the same error with equal weights, (Σw)²/Σw².
+    /// Error from the spread between runs. Their effective number is that with the same error for equal weights, (Σw)²/Σw².
     fn between(values: &[[f64; 2]]) -> Error {
         let (all, mean) = (values.iter().map(|[_, weight]| weight).sum::<f64>(), weighted(values));
         let weights = || values.iter().map(|[it, weight]| (it - mean, weight / all));
@@ -142,7 +141,7 @@ impl Error {
         Error { standard_error: (squares * runs / freedoms).sqrt(), freedoms, samples: runs }
     }
 
-    /// Of the errors of the runs.
+    /// Error from the errors of the runs.
     fn within(estimates: &[Estimate]) -> Error {
         let runs = estimates.len() as f64;
         let mean = weighted(&estimates.iter().map(|it| [it.mean, it.span]).collect::<Vec<_>>());
@@ -194,7 +193,7 @@ mod tests {
         joined_outcome(outcomes, &vec![1000.0; outcomes.len()], is_one_ensemble)
     }
 
-    /// Runs of one ensemble, and runs with an energy of their own, which moves their means by three of their bars.
+    /// Runs of one ensemble, and runs of different energies, which shift their means by three of their error bars.
     #[test]
     fn joined_bars_hold_the_truth_as_often_as_they_say() {
         for (runs, own) in [(2, 0.0), (3, 0.0), (4, 0.0), (8, 0.0), (2, 0.4), (4, 0.4), (8, 0.4)] {
@@ -216,7 +215,7 @@ mod tests {
         }
     }
 
-    /// By hand: 1 and 3 have the mean 2 and the standard error 1, of one degree of freedom.
+    /// Hand calculation: 1 and 3 have the mean 2 and the standard error 1, with one degree of freedom.
     #[test]
     fn what_is_constant_in_each_run_varies_between_them() {
         let of = |mean| Outcome::Constant { mean };
@@ -229,7 +228,7 @@ mod tests {
         assert_eq!(join(&[of(1.0), changing], true), changing);
     }
 
-    /// Two runs with a mean of their own and one in which nothing happened: every order has the same outcome, of all three.
+    /// Two runs with a mean and one without events: the outcome is the same in every order, and includes all three.
     #[test]
     fn no_run_is_forgotten_in_any_order() {
         let varying = [1, 2].map(|seed| estimated(&Noise::new(seed).series(1000, 0.5), 0.0, 1.0));
@@ -255,8 +254,8 @@ mod tests {
         }
     }
 
-    /// By hand: means 1, 2, 3, 6 over equal times have the mean 3 and the standard error √(14/12), of three degrees of freedom, whatever the
-    /// errors of each; over times of 1, 1, 1, 3 the mean 4, and three runs' worth of weight.
+    /// Hand calculation: means 1, 2, 3, 6 over equal times have the mean 3 and the standard error √(14/12), with three degrees of freedom, whatever
+    /// their errors. Over times of 1, 1, 1, 3 the mean is 4, with an effective number of three runs.
     #[test]
     fn four_runs_of_one_ensemble_have_the_error_of_their_spread() {
         let Outcome::Mean(some) = estimated(&Noise::new(1).series(1000, 0.5), 0.0, 1.0) else { panic!() };
@@ -280,7 +279,7 @@ mod tests {
         assert_eq!(found, enough_at);
     }
 
-    /// Energies that differ make runs of a closed system independent samples; momenta of rounding do not.
+    /// Different energies make runs of a closed system independent samples; momenta that differ by rounding do not.
     #[test]
     fn runs_that_differ_in_a_conserved_number_are_told() {
         let kept = |first, farthest| Outcome::Kept { first, last: first, farthest };

@@ -1,8 +1,8 @@
-//! Averages over a run: the mean of each quantity with its error, from the rows of `thermo.csv`.
+//! Averages over a run: the mean of each quantity and its error, from the rows of `thermo.csv`.
 //!
-//! The transient at the beginning is cut off (`equilibration`), the error of the mean is that of correlated values (`waves`), and a bar is
-//! the half width of the interval that holds the true mean with a probability of 95 %. What is counted since the start is averaged by its
-//! increments from row to row (`rows`). Nothing but the rows enters, so that averages are the same in however many sessions a run was made.
+//! The initial transient is removed (`equilibration`), and the standard error accounts for correlations (`waves`). An error bar is the half-width
+//! of the 95 % confidence interval of the mean. Counters since the start are averaged by their increments between rows (`rows`). Averages depend on
+//! the rows alone, so they are the same for any number of sessions of a run.
 
 mod equilibration;
 mod estimate;
@@ -23,40 +23,40 @@ pub use waves::MOST as MOST_WAVES;
 use crate::method::{Kind, Quantity};
 use serde::Serialize;
 
-/// What a bar is, once for all of them.
-pub(crate) const BAR: &str = "half width of the 95 % interval, by Student's t";
+/// Definition of the error bars.
+pub(crate) const BAR: &str = "half-width of the 95 % confidence interval, by Student's t";
 
-/// The averages of a run, or of several joined.
+/// Averages of a run, or of several joined ones.
 #[derive(Clone, Debug, Serialize)]
 pub struct Averages {
-    /// What a bar is.
+    /// Definition of the error bars.
     pub bar: &'static str,
-    /// Rows of `thermo.csv` that they are from, those of the transient among them.
+    /// Number of rows of `thermo.csv` used, the transient included.
     pub rows: u64,
-    /// The time that they are over, of all runs (time).
+    /// Total time of all runs (time).
     pub span: f64,
-    /// Runs that are joined.
+    /// Number of joined runs.
     pub runs: usize,
-    /// One for each quantity but the time.
+    /// Average of each quantity except the time.
     pub quantities: Vec<Average>,
 }
 
-/// What there is to be said of a quantity over a run.
+/// Average of a quantity over a run.
 #[derive(Clone, Debug, Serialize)]
 pub struct Average {
-    /// Its name.
+    /// Name of the quantity.
     pub quantity: &'static str,
-    /// What is averaged: values, rates of what is counted, or values of the intervals between rows.
+    /// Averaged data: values, rates of counters, or values of the intervals between rows.
     pub of: &'static str,
-    /// The unit of the average, empty for pure numbers.
+    /// Unit of the average; empty for pure numbers.
     pub unit: String,
-    /// The average.
+    /// Result.
     #[serde(flatten)]
     pub outcome: Outcome,
 }
 
 impl Averages {
-    /// Of the rows of a run.
+    /// Averages over the rows of a run.
     pub fn of(rows: &Rows) -> Averages {
         let places =
             (0..rows.quantities().len()).filter(|&place| rows.quantities()[place].kind != Kind::Time);
@@ -66,7 +66,7 @@ impl Averages {
 }
 
 impl Average {
-    /// Of the quantity at a place among those observed.
+    /// Average of the quantity with an index among those observed.
     pub fn of(rows: &Rows, place: usize) -> Average {
         let quantity = rows.quantities()[place];
         let outcome = match quantity.kind {
@@ -90,7 +90,7 @@ fn what(quantity: Quantity) -> &'static str {
     }
 }
 
-/// The unit of an average: of what is counted, that of its rate.
+/// Unit of an average; for counters that of the rate.
 fn unit(quantity: Quantity) -> String {
     match (quantity.kind, quantity.unit) {
         (Kind::Counter, "") => "1/time".to_owned(),

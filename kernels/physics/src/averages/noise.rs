@@ -1,6 +1,6 @@
-//! Series whose correlation is known, for tests.
+//! Series with known correlations, for tests.
 
-/// Normal numbers by a seed: a counter through a mixing function, and two of them by Box and Muller.
+/// Normal numbers from a seed: a counter through a mixing function, and the Box-Muller transform.
 pub(super) struct Noise(u64);
 
 impl Noise {
@@ -21,7 +21,7 @@ impl Noise {
         radius * libm::cos(std::f64::consts::TAU * self.uniform())
     }
 
-    /// x' = φ x + √(1 − φ²) times a normal number: of mean 0, variance 1 and g = (1 + φ)/(1 − φ).
+    /// Series x' = φ x + √(1 − φ²) times a normal number: mean 0, variance 1 and g = (1 + φ)/(1 − φ).
     pub(super) fn series(&mut self, length: usize, memory: f64) -> Vec<f64> {
         let mut x = self.normal();
         let mut next = || {
@@ -31,7 +31,7 @@ impl Noise {
         (0..length).map(|_| next()).collect()
     }
 
-    /// The same after a transient of some height and duration.
+    /// Series with a transient of some height and duration.
     pub(super) fn relaxing(&mut self, length: usize, memory: f64, height: f64, duration: f64) -> Vec<f64> {
         let series = self.series(length, memory).into_iter().zip(0u32..);
         series.map(|(x, at)| x + height * libm::exp(-f64::from(at) / duration)).collect()

@@ -1,17 +1,17 @@
-//! Rows of observables on the way to averages, in little memory however long a run is.
+//! Rows of observables accumulated for averages, in bounded memory.
 
 use crate::method::{Kind, Quantity};
 
-/// Blocks that are kept at most; then pairs of them become one.
+/// Largest number of blocks; beyond it, pairs of blocks are merged.
 const MOST_BLOCKS: usize = 2048;
-/// Rows belong to one series if the times between them differ by no larger part.
+/// Relative difference between times of rows up to which they are evenly spaced.
 const EVEN: f64 = 1e-3;
 
-/// The rows of a run since they have been evenly spaced.
+/// Rows of a run since they have been evenly spaced.
 ///
-/// The first row is the start of all increments and is no value itself. The others are kept as `MOST_BLOCKS` at most: of a
-/// longer run, twice as many rows are a block whenever these are full. Of a moment's or an interval's value a block has the mean over its
-/// rows, of what is counted since the start the value at its end. The same rows make the same blocks in however many sessions.
+/// The first row is the base of all increments and not a value. The others are stored in at most `MOST_BLOCKS` blocks; whenever these are full, the
+/// number of rows in a block is doubled. A block has the mean of instantaneous and interval values over its rows, and the last value of counters.
+/// The same rows give the same blocks for any number of sessions.
 #[derive(Clone, Debug)]
 pub struct Rows {
     quantities: &'static [Quantity],
@@ -20,17 +20,17 @@ pub struct Rows {
     base: Vec<f64>,
     last: Vec<f64>,
     farthest: Vec<f64>,
-    /// Time between rows; none before there are two.
+    /// Time between rows; none before the second.
     spacing: Option<f64>,
-    /// Rows of a block.
+    /// Number of rows in a block.
     length: u64,
     blocks: Vec<Vec<f64>>,
-    /// Rows of the block to come, and their sums, or the last of what is counted.
+    /// Number of rows of the open block, and their sums, or the last value of counters.
     open: (u64, Vec<f64>),
 }
 
 impl Rows {
-    /// Of quantities, one of which is the time.
+    /// Empty rows of quantities, one of which is the time.
     pub fn new(quantities: &'static [Quantity]) -> Rows {
         Rows {
             quantities,
@@ -46,12 +46,12 @@ impl Rows {
         }
     }
 
-    /// Rows so far.
+    /// Number of rows so far.
     pub fn count(&self) -> u64 {
         self.count
     }
 
-    /// What is observed.
+    /// Observed quantities.
     pub fn quantities(&self) -> &'static [Quantity] {
         self.quantities
     }
@@ -61,23 +61,23 @@ impl Rows {
         self.last.get(self.time).copied().unwrap_or(0.0)
     }
 
-    /// The newest row, if it is of that time.
+    /// Newest row, if it has this time.
     pub(crate) fn row_at(&self, time: f64) -> Option<&[f64]> {
         (self.count > 0 && self.now() == time).then_some(&self.last[..])
     }
 
-    /// When the rows that count begin (time).
+    /// Time of the base row (time).
     pub(super) fn from(&self) -> f64 {
         self.base.get(self.time).copied().unwrap_or(0.0)
     }
 
-    /// Time between the values of a series (time).
+    /// Time between values of a series (time).
     pub(super) fn block_spacing(&self) -> f64 {
         self.spacing.unwrap_or(0.0) * self.length as f64
     }
 
-    /// Adds a row, a value for each quantity. Where the time between rows changes, as by another `run.thermo_every` on resumption,
-    /// those before do not count any more.
+    /// Adds a row, with a value for each quantity. If the time between rows changes, for instance by another `run.thermo_every` on resumption,
+    /// earlier rows are discarded.
     pub fn add(&mut self, row: &[f64]) {
         self.count += 1;
         if self.base.is_empty() {
@@ -93,7 +93,7 @@ impl Rows {
             self.blocks.clear();
         }
         for ((farthest, first), value) in self.farthest.iter_mut().zip(&self.base).zip(row) {
-            // A difference that is not a number stays one.
+            // NaN stays NaN.
             let far = (value - first).abs();
             *farthest = if far <= *farthest { *farthest } else { far + 0.0 * *farthest };
         }
@@ -125,7 +125,7 @@ impl Rows {
         }
     }
 
-    /// Makes one block of each two.
+    /// Merges pairs of blocks.
     fn merge(&mut self) {
         let pairs = self.blocks.chunks_exact(2).map(|pair| {
             let values = pair[0].iter().zip(&pair[1]).zip(self.quantities);
@@ -136,8 +136,8 @@ impl Rows {
         self.length *= 2;
     }
 
-    /// The series of which the average of a quantity is one: values, or increments in a unit of time. The first is of the stretch that
-    /// ends [`block_spacing`](Self::block_spacing) after [`from`](Self::from).
+    /// Series that the average of a quantity is computed from: values, or rates of increments. The first value is of the interval that ends
+    /// [`block_spacing`](Self::block_spacing) after [`from`](Self::from).
     pub(super) fn series(&self, place: usize) -> Vec<f64> {
         if !self.quantities[place].kind.grows() {
             return self.blocks.iter().map(|block| block[place]).collect();
@@ -153,7 +153,7 @@ impl Rows {
         rates.collect()
     }
 
-    /// The series of a quantity with the times at which its stretches end: (time, value).
+    /// Time series of a quantity: (end of the interval, value).
     pub fn course(&self, place: usize) -> Vec<[f64; 2]> {
         let (from, spacing) = (self.from(), self.block_spacing());
         let values = self.series(place).into_iter().zip(1_u32..);
@@ -183,7 +183,7 @@ mod tests {
         quantity("energy", Kind::Kept),
     ];
 
-    /// A row of a run with a sum, and a mean over the interval before it of `sum` as well.
+    /// Row of a run with a sum, and with `sum` as a mean over the interval before it.
     fn row(time: f64, x: f64, sum: f64) -> [f64; 5] {
         [time, x, 3.0 * sum, sum, -time]
     }
@@ -191,7 +191,7 @@ mod tests {
     #[test]
     fn the_first_row_is_no_value_and_the_start_of_increments() {
         let mut rows = Rows::new(QUANTITIES);
-        // By hand: increments 1, 3 and 2 within half a unit of time each, at x = 2.
+        // Hand calculation: increments 1, 3 and 2 within half a unit of time each, at x = 2.
         for (time, sum) in [(0.0, 0.0), (0.5, 1.0), (1.0, 4.0), (1.5, 6.0)] {
             rows.add(&row(time, 2.0, sum));
         }
@@ -201,7 +201,7 @@ mod tests {
         assert_eq!((rows.kept(4), rows.from(), rows.now()), ([0.0, -1.5, 1.5], 0.0, 1.5));
     }
 
-    /// Blocks of a long run against all of its rows.
+    /// Blocks of a long run are compared with all of its rows.
     #[test]
     fn blocks_of_a_long_run_are_means_of_its_rows() {
         let mut rows = Rows::new(QUANTITIES);

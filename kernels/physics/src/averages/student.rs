@@ -1,8 +1,9 @@
-//! Student's distribution, and that of the ratio of two variances (F).
+//! Student's t distribution, and the F distribution of the ratio of two variances.
 
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 
-/// Student's t: the number of standard errors that to either side hold a mean with a probability, by the degrees of freedom, at least one.
+/// Quantile of Student's t: the number of standard errors to either side that contain the mean with a probability, for at least one degree of
+/// freedom.
 pub fn student(probability: f64, freedoms: usize) -> f64 {
     // With t = √ν tan θ the probability is a finite sum (Abramowitz and Stegun, 26.7.3 and 26.7.4).
     let within = |angle: f64| {
@@ -25,9 +26,10 @@ pub fn student(probability: f64, freedoms: usize) -> f64 {
     (freedoms as f64).sqrt() * libm::tan(high)
 }
 
-/// Quantile of the F distribution: the ratio of two variances, by `above` and `below` degrees of freedom, that is not passed with a probability.
+/// Quantile of the F distribution: the ratio of two variances, with `above` and `below` degrees of freedom, that is not exceeded with a
+/// probability.
 ///
-/// With one degree of freedom above it is the square of Student's t, for degrees of freedom that need not be whole.
+/// With one degree of freedom above, it is the square of Student's t, also for fractional degrees of freedom below.
 pub fn variance_ratio(probability: f64, above: f64, below: f64) -> f64 {
     // In x = ν₁ F/(ν₁ F + ν₂) the distribution is an incomplete beta function (Abramowitz and Stegun, 26.6.2).
     let (mut low, mut high) = (0.0, 1.0);
@@ -42,7 +44,7 @@ pub fn variance_ratio(probability: f64, above: f64, below: f64) -> f64 {
     below * low / (above * (1.0 - low))
 }
 
-/// Terms of the continued fraction at most: some times the root of the degrees of freedom are needed.
+/// Largest number of terms of the continued fraction; it needs a few times the root of the degrees of freedom.
 const TERMS: u32 = 2000;
 
 /// The regularised incomplete beta function, by its continued fraction (Abramowitz and Stegun, 26.5.8).
@@ -79,7 +81,7 @@ fn not_zero(value: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// The table of every textbook: F at 95 %, by the degrees of freedom above and below.
+    /// Textbook table: F at 95 %, by the degrees of freedom above and below.
     #[test]
     fn ratios_of_variances_are_those_of_the_tables() {
         for (above, below, f) in [
@@ -97,7 +99,7 @@ mod tests {
         }
     }
 
-    /// By two formulas: a finite sum, and an incomplete beta function.
+    /// Two formulas agree: a finite sum, and an incomplete beta function.
     #[test]
     fn students_t_squared_is_a_ratio_of_variances() {
         for probability in [0.5, 0.95, 0.99, 0.999] {
@@ -111,7 +113,7 @@ mod tests {
         }
     }
 
-    /// The table of every textbook: two-sided probability, degrees of freedom, t.
+    /// Textbook table: two-sided probability, degrees of freedom, t.
     #[test]
     fn students_t_is_that_of_the_tables() {
         for (probability, freedoms, t) in [

@@ -1,52 +1,51 @@
-//! The standard error of the mean of a correlated series, by the slowest waves in it.
+//! Standard error of the mean of a correlated series, from its slowest waves.
 
 use super::student::student;
 use std::f64::consts::PI;
 
-/// The number of waves for the shortest series that has a mean.
+/// Number of waves for the shortest series that has a mean.
 const FEWEST: usize = 6;
-/// Number of waves where every series has a mean: more would miss the correlations of a few samples.
+/// Number of waves if every series must have a mean: more would miss the correlations of a few samples.
 const FEWEST_OF_ANY: usize = 2;
-/// The number of waves for a long series. More would make bars 5 % shorter, and miss correlations that last for a hundredth of the series.
+/// Number of waves for a long series. More would make error bars 5 % shorter and miss correlations over a hundredth of the series.
 pub const MOST: usize = 16;
-/// So many times as many waves make an error that is used to foresee others.
+/// Factor on the number of waves for an error that predicts others.
 const MORE: usize = 4;
-/// The slowest waves, among which independent samples are counted: noise faster than these hides no slow change.
+/// Number of slowest waves in which independent samples are counted: faster noise does not hide a slow change.
 const BAND: usize = 64;
-/// Waves for each independent sample in the band: all of them are slower than the correlation time, also beneath faster noise.
+/// Waves for each independent sample in the band: all of them are then slower than the correlation time, also beneath faster noise.
 const PER_SAMPLE: f64 = 0.25;
-/// The error is no smaller than that of this many times as many waves. It has less noise, and rarely lies below by chance.
+/// Factor on the number of waves for a lower limit on the error, which is less noisy and rarely too small.
 const WIDER: usize = 2;
-/// Independent samples in the band at which the square of the error is taken twice: where there seem to be few samples, there often are
-/// fewer. Of series with ten samples, 1 % seem to have twenty then.
+/// Number of independent samples in the band at which the squared error is doubled, since a small number of samples is often overestimated. With
+/// it, 1 % of series with ten samples appear to have twenty.
 const DOUBTFUL: f64 = 20.0;
 
-/// The mean of a stationary series and its error.
+/// Mean of a stationary series and its error.
 ///
-/// The series is projected on the cosines that make 1/2, 2/2, 3/2, … turns in its length. Where all of them are slower than
-/// the series' correlations, their squares are independent samples of n times the variance of the mean, so that
-/// Student's t has as many degrees of freedom as there are waves (Müller, J. Econometrics 141, 1331 (2007); Lazarus, Lewis,
-/// Stock and Watson, J. Bus. Econ. Stat. 36, 541 (2018)). Waves also see what makes up for itself: values that alternate have a mean
-/// that is better than that of independent ones.
+/// The series is projected on cosines with 1/2, 2/2, 3/2, … periods in its length. If all of them are slower than the series' correlations, their
+/// squares are independent samples of n times the variance of the mean, so that Student's t has as many degrees of freedom as there are waves
+/// (Müller, J. Econometrics 141, 1331 (2007); Lazarus, Lewis, Stock and Watson, J. Bus. Econ. Stat. 36, 541 (2018)). Waves also account for
+/// anticorrelation: the mean of alternating values is better than that of independent ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct WaveError {
     pub(super) mean: f64,
     /// Standard error of the mean.
     pub(super) standard_error: f64,
-    /// Waves: degrees of freedom of the error.
+    /// Number of waves: degrees of freedom of the error.
     pub(super) waves: usize,
-    /// Independent values with the same variance whose mean would have the same error.
+    /// Number of independent values with the same variance whose mean has the same error.
     pub(super) samples: f64,
-    /// Independent values by the slowest waves alone: few where a slow change lies beneath fast noise.
+    /// Number of independent values from the slowest waves alone: small if a slow change is hidden beneath fast noise.
     pub(super) resolved: f64,
-    /// Independent values by the slowest waves, without the allowance for a small number.
+    /// Number of independent values from the slowest waves, without the allowance for a small number.
     pub(super) seeming: f64,
     /// Square of the slowest wave over the mean square of the others.
     slowest: f64,
 }
 
 impl WaveError {
-    /// Of at least two values.
+    /// Estimates the error of at least two values.
     pub(super) fn of(series: &[f64]) -> WaveError {
         WaveError::by(FEWEST, MOST, series)
     }
@@ -56,7 +55,7 @@ impl WaveError {
         WaveError::by(FEWEST, MORE * MOST, series)
     }
 
-    /// Of at least two values that have a mean however few samples they are: its error is without the doubt of a small number.
+    /// Estimates the error of at least two values with any number of samples, without the allowance for a small number.
     pub(super) fn of_any(series: &[f64]) -> WaveError {
         let error = WaveError::by(FEWEST_OF_ANY, MOST, series);
         WaveError { standard_error: error.standard_error * (error.resolved / error.seeming).sqrt(), ..error }
@@ -94,17 +93,17 @@ impl WaveError {
         }
     }
 
-    /// Tests for drift: the slowest wave is larger than the others by more than chance explains, at a given probability.
+    /// Tests for drift: the slowest wave is larger than the others beyond statistical error, at a given probability.
     pub(super) fn drifts(&self, probability: f64) -> bool {
         self.waves > 1 && self.slowest > student(probability, self.waves - 1).powi(2)
     }
 }
 
-/// Waves that a smooth drift is told by.
+/// Number of waves in the test for a smooth drift.
 const SMOOTH: usize = 24;
 
-/// Whether a series drifts more smoothly than by chance, however long it remembers: the slowest wave is held against those of a
-/// random walk, which fall as 1/j² in their squares. No stationary series at random falls off more steeply.
+/// Tests if a series drifts more smoothly than a random process, for any correlation time. The slowest wave is compared with those of a random
+/// walk, whose squares fall as 1/j². No stationary random series falls off more steeply.
 pub(super) fn is_smooth_drift(series: &[f64], probability: f64) -> bool {
     if series.len() < 4 {
         return false;
@@ -116,7 +115,7 @@ pub(super) fn is_smooth_drift(series: &[f64], probability: f64) -> bool {
     squares[0] > student(probability, freedoms).powi(2) * others
 }
 
-/// Squares of the projections on cosines of 1/2, 2/2, 3/2, … turns, each with the expectation of n times the variance of the mean.
+/// Squares of the projections on cosines of 1/2, 2/2, 3/2, … periods, each with the expectation of n times the variance of the mean.
 fn squares(series: &[f64], count: usize) -> Vec<f64> {
     let (n, mean) = (series.len() as f64, mean(series));
     let mut sums = vec![0.0; count];
@@ -131,7 +130,7 @@ fn squares(series: &[f64], count: usize) -> Vec<f64> {
     sums.into_iter().map(|sum| 2.0 / n * sum * sum).collect()
 }
 
-/// Mean of some values; not a number of none.
+/// Mean of some values; NaN for an empty slice.
 pub(super) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
@@ -141,7 +140,7 @@ mod tests {
     use super::*;
     use crate::averages::noise::Noise;
 
-    /// By hand: of 1, 2, 4 the projections on cos 30°, 90°, 150° and cos 60°, 180°, 300°.
+    /// Hand calculation: projections of 1, 2, 4 on cos 30°, 90°, 150° and cos 60°, 180°, 300°.
     #[test]
     fn waves_are_projections_on_cosines() {
         let root = 3f64.sqrt() / 2.0;
@@ -149,15 +148,15 @@ mod tests {
         for (found, expected) in squares(&[1.0, 2.0, 4.0], 2).iter().zip(expected) {
             assert!((found - expected).abs() < 1e-12, "{found} {expected}");
         }
-        // Together they hold all of the variance.
+        // All waves together contain the whole variance.
         let series = Noise::new(5).series(40, 0.7);
         let middle = mean(&series);
         let variance: f64 = series.iter().map(|value| (value - middle).powi(2)).sum();
         assert!((squares(&series, 39).iter().sum::<f64>() - variance).abs() < 1e-9);
     }
 
-    /// x' = φ x + noise has (1 − φ)/(1 + φ) independent samples a value; x − 0.5 x₋₁ of noise x has 1.25/0.5² of them. The error is
-    /// a little above that on average, and so are the samples below.
+    /// The series x' = φ x + noise has (1 − φ)/(1 + φ) independent samples for each value; x − 0.5 x₋₁ of noise x has 1.25/0.5² of them. The
+    /// estimated error is slightly larger on average, and the number of samples smaller.
     #[test]
     fn samples_of_known_series_are_found() {
         type Series = fn(u64) -> Vec<f64>;
@@ -178,7 +177,7 @@ mod tests {
         }
     }
 
-    /// One of a thousand stationary series is called drifting; a line is, and so is a decay that noise does not hide.
+    /// One of a thousand stationary series counts as drifting; a line does, and so does a decay that exceeds the noise.
     #[test]
     fn a_drift_is_told_from_chance() {
         let stationary = (0..2000).map(|seed| Noise::new(seed).series(400, 0.8));

@@ -1,11 +1,11 @@
-//! Averages in a few lines.
+//! Averages as text of a few lines.
 
 use super::{Average, Averages, Estimate, Outcome};
 use crate::number::{counted, significant, with_bar};
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// A line for each mean, then why the others have none. Rates that are 0, and quantities that should stay as they are, are left out.
+/// Formats a line for each mean, then the reasons why others have none. Zero rates and conserved quantities are omitted.
 impl fmt::Display for Averages {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let of_runs = if self.runs > 1 { format!(" over {} runs", self.runs) } else { String::new() };

@@ -1,10 +1,10 @@
-//! Mistakes of an input file, with their places.
+//! Mistakes of an input file, with their locations.
 
 use crate::number::counted;
 use crate::quoted;
 use serde::Serialize;
 
-/// A place in a text.
+/// Location in a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct Place {
     /// Line, from 1.
@@ -22,23 +22,23 @@ pub enum Reason {
     Unreadable,
     /// Not TOML.
     Syntax,
-    /// The system does not let the file be read.
+    /// The system refuses to read the file.
     System,
-    /// A format version that this program does not read.
+    /// A format version that this program cannot read.
     Format,
-    /// No such section or key.
+    /// An unknown section or key.
     Unknown,
     /// A value of the wrong type, or a word that is not among the choices.
     Type,
     /// A number out of its range.
     Range,
-    /// A key that must be given is not.
+    /// A required key is missing.
     Missing,
-    /// A key that means nothing beside the other choices of the scene.
+    /// A key that has no effect with the other choices of the scene.
     Unused,
-    /// Keys that cannot hold together.
+    /// Keys that contradict each other.
     Contradiction,
-    /// An override that is no `section.key=value`.
+    /// An override that is not `section.key=value`.
     Override,
     /// A file that the scene names cannot be read, or its content is wrong.
     StartFile,
@@ -48,31 +48,31 @@ pub enum Reason {
     Overlap,
     /// A disc outside the domain.
     Outside,
-    /// No lattice serves the discs.
+    /// Discs or a box that no lattice fits.
     Geometry,
     /// A time step at which the integrator is unstable.
     Stability,
     /// A run that needs more memory than this machine has.
     Memory,
-    /// Mistakes beyond those that are named.
+    /// Mistakes beyond those listed.
     More,
 }
 
-/// A mistake of an input file.
+/// Mistake of an input file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, thiserror::Error)]
 #[error("{}", paragraph(self))]
 pub struct InputError {
-    /// The file, the preset, or the option of the command line.
+    /// File, preset, or option of the command line.
     pub file: String,
-    /// Where in the file; nothing where no single place is wrong.
+    /// Location in the file, if there is one.
     pub place: Option<Place>,
     /// Kind.
     pub reason: Reason,
-    /// What is wrong, with the numbers.
+    /// Mistake in words, with the numbers.
     pub message: String,
-    /// What should stand there.
+    /// Expected value.
     pub expected: Option<String>,
-    /// What to do about it.
+    /// Advice.
     pub suggestion: Option<String>,
 }
 
@@ -91,20 +91,20 @@ fn paragraph(error: &InputError) -> String {
 }
 
 impl InputError {
-    /// The same, with what should stand there.
+    /// Adds the expected value.
     #[must_use]
     pub(crate) fn expecting(self, expected: impl Into<String>) -> Self {
         InputError { expected: Some(expected.into()), ..self }
     }
 
-    /// The same, with what to do about it.
+    /// Adds advice.
     #[must_use]
     pub fn advising(self, suggestion: impl Into<String>) -> Self {
         InputError { suggestion: Some(suggestion.into()), ..self }
     }
 }
 
-/// Mistakes as they are found; names the first ones and counts the rest.
+/// Collection of mistakes; lists the first ones and counts the rest.
 #[derive(Clone, Debug, Default)]
 pub struct Mistakes {
     named: Vec<InputError>,
@@ -112,10 +112,10 @@ pub struct Mistakes {
 }
 
 impl Mistakes {
-    /// At most as many mistakes are named: a file of another kind may hold millions.
+    /// Largest number of mistakes listed: a file of another kind may have millions.
     pub(crate) const NAMED: usize = 50;
 
-    /// Whether a mistake would be named; where not, there is no need to find words for it.
+    /// True if a further mistake would be listed; otherwise its message need not be formatted.
     pub fn has_room(&self) -> bool {
         self.named.len() < Mistakes::NAMED
     }
@@ -132,12 +132,12 @@ impl Mistakes {
         }
     }
 
-    /// One more, of which nothing is said.
+    /// Counts a mistake without listing it.
     pub(crate) fn count(&mut self) {
         self.more += 1;
     }
 
-    /// Nothing wrong, or the mistakes of the file.
+    /// Returns the mistakes of the file as an error, if there are any.
     ///
     /// # Errors
     /// If there is any mistake.
@@ -147,7 +147,7 @@ impl Mistakes {
             let spot = Spot { file: file.to_owned(), place: None };
             errors.push(spot.error(
                 Reason::More,
-                format!("{}, not named", counted(self.more, "more mistake", "more mistakes")),
+                format!("{}, not listed", counted(self.more, "more mistake", "more mistakes")),
             ));
         }
         Err(InputErrors(errors))
@@ -160,14 +160,14 @@ impl Extend<InputError> for Mistakes {
     }
 }
 
-/// Every mistake found in an input file, in the order of their places; at least one. Of very many only the first are named.
+/// All mistakes of an input file sorted by location, at least one. Only the first of very many are listed.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, thiserror::Error)]
 #[error("{}", paragraphs(.0))]
 #[serde(transparent)]
 pub struct InputErrors(pub Vec<InputError>);
 
 impl InputErrors {
-    /// Nothing wrong, or all mistakes in the order of their places.
+    /// Returns all mistakes sorted by location as an error, if there are any.
     ///
     /// # Errors
     /// If there is any mistake.
@@ -177,7 +177,7 @@ impl InputErrors {
         }
         errors.sort_by_key(|error| error.place.is_none());
         errors.sort_by_key(|error| error.place);
-        // Those without a place last.
+        // Mistakes without a location come last.
         let placeless = errors.partition_point(|error| error.place.is_none());
         errors.rotate_left(placeless);
         Err(InputErrors(errors))
@@ -205,17 +205,17 @@ fn paragraphs(errors: &[InputError]) -> String {
     }
 }
 
-/// Where a value comes from, to be said in an error.
+/// Source of a value, for errors.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Spot {
-    /// The file, the preset, or the option of the command line.
+    /// File, preset, or option of the command line.
     pub file: String,
-    /// Where in the file.
+    /// Location in the file.
     pub place: Option<Place>,
 }
 
 impl Spot {
-    /// A mistake at this place.
+    /// Mistake at this location.
     pub fn error(&self, reason: Reason, message: impl Into<String>) -> InputError {
         InputError {
             file: self.file.clone(),

@@ -1,4 +1,4 @@
-//! Input files in TOML: the place of every byte, and every mistake at once, each with its place, what was expected and what to do.
+//! Input files in TOML. All mistakes are reported at once, each with its location, the expected value and advice.
 
 mod error;
 mod text;

@@ -1,4 +1,4 @@
-//! The text of an input file, with the place of every byte.
+//! Text of an input file, with the location of every byte.
 
 use super::error::{InputError, InputErrors, Mistakes, Place, Reason, Spot};
 use crate::io::regular_file;
@@ -7,21 +7,21 @@ use std::io;
 use std::path::Path;
 use toml::de::DeTable;
 
-/// The text of an input file.
+/// Text of an input file.
 #[derive(Debug)]
 pub struct InputText<'t> {
-    /// Name that messages give it.
+    /// Name in messages.
     pub file: &'t str,
-    /// The whole text.
+    /// Whole text.
     pub text: &'t str,
-    /// Bytes at which lines begin.
+    /// First byte of each line.
     starts: Vec<usize>,
-    /// Characters before every [`InputText::BLOCK`]th byte.
+    /// Number of characters before every [`InputText::BLOCK`]th byte.
     before: Vec<usize>,
 }
 
 impl<'t> InputText<'t> {
-    /// A place is counted from this far at most, however long its line.
+    /// Largest number of bytes counted to locate a byte, however long its line.
     const BLOCK: usize = 1024;
 
     /// Indexes a text.
@@ -38,7 +38,7 @@ impl<'t> InputText<'t> {
         InputText { file, text, starts, before: before.collect() }
     }
 
-    /// Characters before a byte.
+    /// Number of characters before a byte.
     fn characters(&self, offset: usize) -> usize {
         let text = self.text.as_bytes();
         let block = (offset / Self::BLOCK).min(self.before.len().saturating_sub(1));
@@ -46,7 +46,7 @@ impl<'t> InputText<'t> {
         self.before.get(block).copied().unwrap_or(0) + count_characters(rest)
     }
 
-    /// The place of a byte.
+    /// Location of a byte.
     pub fn place(&self, offset: usize) -> Place {
         let line = self.starts.partition_point(|start| *start <= offset);
         let start = self.starts[line.saturating_sub(1)];
@@ -54,18 +54,18 @@ impl<'t> InputText<'t> {
         Place { line: line as u32, column: column as u32 }
     }
 
-    /// The same with the name of the file.
+    /// Location of a byte with the name of the file.
     pub fn spot(&self, offset: usize) -> Spot {
         Spot { file: self.file.to_owned(), place: Some(self.place(offset)) }
     }
 
-    /// Its tables and values as TOML.
+    /// Parses the text as TOML.
     ///
     /// # Errors
-    /// [`InputErrors`]: every line that is not TOML.
+    /// [`InputErrors`] with every line that is not TOML.
     pub fn table(&self) -> Result<DeTable<'t>, InputErrors> {
         let (table, syntax) = DeTable::parse_recoverable(self.text);
-        // One mistake often makes several messages; what else a broken text says is not to be trusted.
+        // One mistake often causes several messages in a line; the first is enough.
         let (mut known, mut errors) = (BTreeSet::new(), Mistakes::default());
         for error in syntax {
             let place = error.span().map(|span| self.place(span.start));
@@ -79,7 +79,7 @@ impl<'t> InputText<'t> {
     }
 }
 
-/// Characters, not bytes: continuation bytes of UTF-8 do not count.
+/// Number of characters: continuation bytes of UTF-8 do not count.
 fn count_characters(text: &[u8]) -> usize {
     text.iter().filter(|byte| **byte & 0xC0 != 0x80).count()
 }
@@ -87,7 +87,7 @@ fn count_characters(text: &[u8]) -> usize {
 /// Reads an input file of at most `longest` bytes as text.
 ///
 /// # Errors
-/// The error that `unreadable` makes of the system's, or the first line that is not UTF-8.
+/// The system's error converted by `unreadable`, or the first line that is not UTF-8.
 pub fn read_text(
     path: &Path,
     longest: u64,

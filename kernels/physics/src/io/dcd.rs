@@ -1,10 +1,10 @@
-//! Trajectories as DCD: positions in single precision, four bytes a coordinate, as CHARMM, NAMD and LAMMPS write and most tools read.
+//! Trajectories as DCD: positions in single precision, four bytes for each coordinate, as CHARMM, NAMD and LAMMPS write and most tools read.
 //!
-//! The heading says the first step, the steps between frames and the time step, from which readers have the time of every frame. So
-//! frames are evenly apart: one that is not a whole number of spacings after the first is left out.
+//! The heading states the first step, the steps between frames and the time step, from which readers compute the time of every frame. Frames are
+//! therefore evenly spaced: a frame that is not an integer number of spacings after the first is omitted.
 //!
-//! The number of frames in the heading is 0, for the file grows; readers take it from the length of the file. Records have
-//! their length before and behind them, as Fortran's have.
+//! The number of frames in the heading is 0, since the file grows; readers derive it from the file size. Records have their length before and after
+//! them, as in Fortran.
 
 use super::FileError;
 use super::growing_file::{GrowingFile, GrowingFileError, Mark};
@@ -18,7 +18,7 @@ use std::path::PathBuf;
 
 pub(crate) const FORMAT: OutputFormat = OutputFormat {
     key: "dcd",
-    doc: "Snapshots as trajectory.dcd: positions in single precision, small and fast to write. Its frames are evenly apart: the end of a run between two snapshots is left out.",
+    doc: "Snapshots as trajectory.dcd: positions in single precision, small and fast to write. Its frames are evenly spaced: a last frame between two snapshots is omitted.",
     is_default: false,
     needs_box: false,
     file: "trajectory.dcd",
@@ -26,48 +26,48 @@ pub(crate) const FORMAT: OutputFormat = OutputFormat {
     reading: FrameReading::Lacks("sizes"),
 };
 
-/// Where every particle is at a step, in the order of the start.
+/// Positions of all particles at a step, in the order of the start.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Positions {
-    /// The step, or, where a method takes none, the number of the frame.
+    /// Number of the step, or of the frame for methods without steps.
     pub step: u64,
-    /// Sides of the box (length); infinite where there is none.
+    /// Sides of the box (length); infinite without a box.
     pub cell: [f64; 2],
-    /// Positions (length); no numbers where a particle is lost.
+    /// Positions (length); NaN where a particle is lost.
     pub places: Vec<[f32; 3]>,
 }
 
-/// Distance of frames as the heading says it.
+/// Spacing of frames in the heading.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Spacing {
     /// Steps between frames.
     steps: u64,
-    /// The time step (time).
+    /// Time step (time).
     dt: f64,
 }
 
 impl Spacing {
     fn of(header: &RunHeader) -> Spacing {
-        /// Length of steps that have none, and distance of a frame at the start alone: any number serves.
+        /// Placeholder for a time step or spacing that is not used.
         const NO_MATTER: f64 = 1.0;
         match (header.frames, header.time_step) {
             (FramesEvery::Time(dt), None) => Spacing { steps: 1, dt },
             (FramesEvery::Steps(steps), dt) => Spacing { steps, dt: dt.unwrap_or(NO_MATTER) },
-            // Nothing is evenly apart from the start.
+            // No frame after the start is evenly spaced.
             (_, Some(dt)) => Spacing { steps: u64::MAX, dt },
             (FramesEvery::Never, None) => Spacing { steps: 1, dt: NO_MATTER },
         }
     }
 
-    /// Numbers of the heading.
+    /// Values in the heading.
     fn numbers(self) -> [i32; 2] {
         [whole(self.steps), (self.dt as f32).to_bits().cast_signed()]
     }
 }
 
-/// The step of a moment, or the number of its frame; none where it is not evenly apart from the start.
+/// Step of a moment, or number of its frame; none if it is not evenly spaced from the start.
 fn number(header: &RunHeader, steps: u64, now: f64) -> Option<u64> {
-    /// Rounding of multiples (parts of the distance, and of the multiple).
+    /// Rounding error of multiples (relative to the spacing, and to the multiple).
     const ROUNDING: [f64; 2] = [1e-9, 4.0 * f64::EPSILON];
     match (header.frames, header.time_step) {
         (FramesEvery::Time(time), None) => {
@@ -80,24 +80,24 @@ fn number(header: &RunHeader, steps: u64, now: f64) -> Option<u64> {
     }
 }
 
-/// A number of steps in four bytes.
+/// Number of steps in four bytes.
 fn whole(steps: u64) -> i32 {
     i32::try_from(steps).unwrap_or(i32::MAX)
 }
 
-/// A file of evenly spaced frames being written.
+/// Open file of evenly spaced frames.
 #[derive(Debug)]
 pub(crate) struct Writer {
     file: GrowingFile,
     spacing: Spacing,
-    /// The step of the next frame; none before the first one.
+    /// Step of the next frame; none before the first.
     next: Option<u64>,
-    /// True where the heading says this spacing: nothing is added to frames that are otherwise apart.
+    /// True if the heading has this spacing; otherwise no frames are added.
     is_even: bool,
 }
 
 impl Writer {
-    /// Reports whether a frame is the next one of an evenly spaced row.
+    /// Returns true if a frame is the next of the evenly spaced ones.
     fn takes(&self, step: u64) -> bool {
         self.is_even && step.is_multiple_of(self.spacing.steps) && self.next.is_none_or(|next| next == step)
     }
@@ -131,7 +131,7 @@ impl Sink for Writer {
         let is_even = !has_begun || [steps, dt] == spacing.numbers();
         if !is_even {
             notes.push(format!(
-                "{} gets no more frames: those it has are otherwise apart than run.snapshot_every now says",
+                "{} gets no more frames: its frames have another spacing than run.snapshot_every now sets",
                 FORMAT.file
             ));
         }
@@ -148,7 +148,7 @@ impl Sink for Writer {
         Some(Positions { step, cell: moment.header.cell, places: moment.per_particle.positions() })
     }
 
-    /// Adds a frame, and before the first one the heading; leaves out one that is not evenly apart from those before.
+    /// Adds a frame, and the heading before the first; omits a frame that is not evenly spaced.
     fn write(&mut self, frame: Positions) -> io::Result<()> {
         if !self.takes(frame.step) {
             return Ok(());
@@ -159,7 +159,7 @@ impl Sink for Writer {
         }
         self.next = Some(frame.step + self.spacing.steps);
         if has_box(&frame) {
-            // Sides and angles by turns, as CHARMM orders them: A, γ, B, β, α, C.
+            // Sides and angles alternate in CHARMM's order: A, γ, B, β, α, C.
             let [a, b] = frame.cell;
             record(&mut bytes, &[a, 90.0, b, 90.0, 90.0, 1.0].map(f64::to_le_bytes).concat());
         }
@@ -181,9 +181,9 @@ impl Sink for Writer {
     }
 }
 
-/// Bytes of the heading.
+/// Size of the heading (bytes).
 const HEADING: usize = (84 + 8) + (84 + 8) + (4 + 8);
-/// Places of its numbers: the first step, the steps between frames, the time step, whether frames have a box, and how many particles.
+/// Byte offsets in the heading: the first step, the steps between frames, the time step, the flag for a box, and the number of particles.
 const FIRST: usize = 12;
 const STEPS: usize = 16;
 const DT: usize = 44;
@@ -199,7 +199,7 @@ fn heading(bytes: &mut Vec<u8>, frame: &Positions, spacing: Spacing) {
     numbers[1] = whole(frame.step);
     [numbers[2], numbers[9]] = spacing.numbers();
     numbers[10] = i32::from(has_box(frame));
-    // Written as CHARMM 24 does.
+    // CHARMM 24 writes the same number.
     numbers[19] = 24;
     let of = |numbers: &[i32]| numbers.iter().flat_map(|number| number.to_le_bytes()).collect::<Vec<u8>>();
     record(bytes, &[b"CORD".to_vec(), of(&numbers)].concat());
@@ -240,7 +240,7 @@ mod tests {
         }
     }
 
-    /// A reader of its own: the records of a file.
+    /// Independent reader: the records of a file.
     fn records(mut bytes: &[u8]) -> Vec<&[u8]> {
         let mut all = vec![];
         while !bytes.is_empty() {
@@ -282,7 +282,7 @@ mod tests {
         }
     }
 
-    /// The heading as CHARMM, NAMD and LAMMPS have it (ISTART, NSAVC, DELTA), and frames evenly apart, in one session and in two.
+    /// The heading matches CHARMM, NAMD and LAMMPS (ISTART, NSAVC, DELTA), and frames are evenly spaced in one session and in two.
     #[test]
     fn frames_are_evenly_apart_as_the_heading_says() {
         let folder = tempfile::tempdir().unwrap();
@@ -304,7 +304,7 @@ mod tests {
         let number =
             |place: usize| i32::from_le_bytes(records(&bytes)[0][4 + 4 * place..][..4].try_into().unwrap());
         assert_eq!((number(1), number(2), f32::from_bits(number(9) as u32)), (0, 1000, 0.005));
-        // Later sessions: with the same spacing it goes on; with another nothing is added.
+        // Later sessions append with the same spacing and add nothing with another.
         for (spacing, next, expected) in [
             (even, [2050, 3000, 4000], &[0.0, 1000.0, 2000.0, 3000.0, 4000.0][..]),
             (Spacing { steps: 500, ..even }, [2500, 3000, 3500], &[0.0, 1000.0, 2000.0]),

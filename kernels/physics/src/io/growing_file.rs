@@ -1,4 +1,4 @@
-//! A file that grows with a run, so watched that a run can go on with it or say why not.
+//! File that grows during a run, with a checksum, so that a resumed run can append to it or report why it cannot.
 
 use super::FileError;
 use super::replace::is_name_of;
@@ -8,109 +8,108 @@ use std::fs::{File, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-/// Length and checksum of a file at a moment: enough to find that moment again, and to see changes of the content before it.
+/// Length and checksum of a file at a moment: they allow truncation to that moment and reveal changes before it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Mark {
-    /// Bytes.
+    /// Number of bytes.
     pub bytes: u64,
     /// CRC-32 of these bytes.
     pub checksum: u32,
 }
 
-/// A file being written at its end, by this process alone.
+/// File that only this process appends to.
 #[derive(Debug)]
 pub struct GrowingFile {
     path: PathBuf,
     out: BufWriter<Summed>,
 }
 
-/// Why a file cannot be gone on with.
+/// Reason why a file cannot be resumed.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum GrowingFileError {
-    /// The system would not let it be read or written.
+    /// The system refuses to read or write it.
     #[error(transparent)]
     File(#[from] FileError),
-    /// It is not there.
+    /// The file is missing.
     #[error(
-        "{} is missing: {expected} bytes of it were written up to the checkpoint; put it back, or begin again with \
+        "{} is missing: {expected} bytes of it were written up to the checkpoint; restore it, or start again with \
          --overwrite",
         quoted::path(file)
     )]
     Missing {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
         /// Bytes at the checkpoint.
         expected: u64,
     },
-    /// Shorter than it was.
+    /// The file is shorter than it was.
     #[error(
-        "{} has {found} bytes, but {expected} were written up to the checkpoint; put the missing ones back, or begin \
+        "{} has {found} bytes, but {expected} were written up to the checkpoint; restore it, or start \
          again with --overwrite",
         quoted::path(file)
     )]
     Short {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
-        /// Bytes there are.
+        /// Bytes of the file.
         found: u64,
         /// Bytes at the checkpoint.
         expected: u64,
     },
-    /// Other bytes than were written.
+    /// The file has other bytes than were written.
     #[error(
         "{} has changed: the {bytes} bytes written up to the checkpoint have the checksum {found:08x}, not \
-         {expected:08x}; put it back as it was, or begin again with --overwrite",
+         {expected:08x}; restore it, or start again with --overwrite",
         quoted::path(file)
     )]
     Changed {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
         /// Bytes at the checkpoint.
         bytes: u64,
-        /// Their checksum.
+        /// Present checksum.
         found: u32,
-        /// Their checksum at the checkpoint.
+        /// Checksum at the checkpoint.
         expected: u32,
     },
-    /// Other columns than this run writes.
+    /// The file has other columns than this run writes.
     #[error("{}:1: the columns are `{found}`; this run writes `{expected}`", quoted::path(file))]
     Columns {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
-        /// Its heading.
+        /// Heading of the file.
         found: String,
-        /// The heading of this run.
+        /// Heading of this run.
         expected: String,
     },
-    /// A link, or no file at all.
-    #[error("{} is a link or no file; the file itself is expected there", quoted::path(.0))]
+    /// The path is a link, or no file at all.
+    #[error("{} is a link, or not a file; expected the file itself", quoted::path(.0))]
     NoFile(PathBuf),
 }
 
 impl GrowingFileError {
-    /// True where the content is at fault, not the system that should have read it.
+    /// True if the content is at fault, not the system.
     pub fn is_damage(&self) -> bool {
         !matches!(self, GrowingFileError::File(_))
     }
 }
 
 impl GrowingFile {
-    /// Begins an empty file where nothing is.
+    /// Creates an empty file.
     ///
     /// # Errors
-    /// If something is there already, or the system does not let it be written.
+    /// If the path exists, or the system refuses to write it.
     pub fn create(path: impl Into<PathBuf>) -> Result<Self, FileError> {
         let path = path.into();
         let file = created(&path)?;
         Ok(GrowingFile { path, out: BufWriter::new(Summed::from(file)) })
     }
 
-    /// Goes on at a mark; what was written after it is cut off.
+    /// Resumes a file at a mark; [`cut`](Self::cut) removes everything after it.
     ///
     /// # Errors
-    /// If what was there at the mark is not there any more, the file is a link, or the system does not let it be read
-    /// and written.
+    /// If the bytes before the mark have changed, the file is a link, or the system refuses to read or write it.
     pub fn resume(path: impl Into<PathBuf>, mark: Mark) -> Result<Self, GrowingFileError> {
         let path = path.into();
         let mut summed = Summed::from(reopened(&path, mark)?);
@@ -123,10 +122,10 @@ impl GrowingFile {
         Ok(GrowingFile { path, out: BufWriter::new(summed) })
     }
 
-    /// Cuts off what a resumed file has after its mark; to be called once it is certain that the run goes on.
+    /// Truncates a resumed file at its mark; to be called once it is certain that the run resumes.
     ///
     /// # Errors
-    /// If the system does not let it be cut.
+    /// If the system refuses to truncate it.
     pub fn cut(&mut self) -> Result<(), FileError> {
         let end = self.out.get_ref().bytes;
         let file = &mut self.out.get_mut().file;
@@ -135,15 +134,15 @@ impl GrowingFile {
             .map_err(FileError::at(&self.path, "cutting"))
     }
 
-    /// The file.
+    /// Path of the file.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The first bytes, at most so many.
+    /// Reads the first bytes, at most `most`.
     ///
     /// # Errors
-    /// If the system does not let it be read.
+    /// If the system refuses to read it.
     pub(crate) fn first_bytes(&mut self, most: usize) -> Result<Vec<u8>, FileError> {
         let summed = self.out.get_mut();
         let (end, file) = (summed.bytes, &mut summed.file);
@@ -155,10 +154,10 @@ impl GrowingFile {
         Ok(bytes)
     }
 
-    /// The first line, without its end, as far as it is text.
+    /// Reads the first line without its end, with invalid UTF-8 replaced.
     ///
     /// # Errors
-    /// If the system does not let it be read.
+    /// If the system refuses to read it.
     pub fn first_line(&mut self) -> Result<String, FileError> {
         const LONGEST: usize = 10_000;
         let bytes = self.first_bytes(LONGEST)?;
@@ -166,10 +165,10 @@ impl GrowingFile {
         Ok(String::from_utf8_lossy(line).into_owned())
     }
 
-    /// Returns when all that was written is on the disk, and says how far that is; to be called before a checkpoint.
+    /// Syncs the file to the disk and returns its mark; to be called before a checkpoint.
     ///
     /// # Errors
-    /// If the system does not let it be written, or the file has been removed, replaced or changed meanwhile.
+    /// If the system refuses to write it, or the file has been removed, replaced or changed meanwhile.
     pub fn sync(&mut self) -> Result<Mark, FileError> {
         self.out.flush().map_err(FileError::at(&self.path, "writing"))?;
         let summed = self.out.get_ref();
@@ -178,13 +177,13 @@ impl GrowingFile {
     }
 }
 
-/// An empty file where nothing was.
+/// Creates an empty file where none exists.
 pub(super) fn created(path: &Path) -> Result<File, FileError> {
     let created = OpenOptions::new().read(true).write(true).create_new(true).open(path);
     created.map_err(FileError::at(path, "creating"))
 }
 
-/// Opens the file at `path`. It must be an ordinary file, no link, and at least as long as at a mark.
+/// Opens the file at `path`. It must be an ordinary file, not a link, and at least as long as at a mark.
 pub(super) fn reopened(path: &Path, mark: Mark) -> Result<File, GrowingFileError> {
     let expected = mark.bytes;
     let file = match OpenOptions::new().read(true).write(true).open(path) {
@@ -203,7 +202,7 @@ pub(super) fn reopened(path: &Path, mark: Mark) -> Result<File, GrowingFileError
     }
 }
 
-/// Syncs a file to the disk; then it must have so many bytes and still be the one at `path`.
+/// Syncs a file to the disk and checks that it has `written` bytes and is still the one at `path`.
 pub(super) fn synced(path: &Path, file: &File, written: u64) -> Result<(), FileError> {
     let at = || FileError::at(path, "writing");
     file.sync_data().map_err(at())?;
@@ -214,13 +213,13 @@ pub(super) fn synced(path: &Path, file: &File, written: u64) -> Result<(), FileE
     is_as_long_as_written(file, written).map_err(at())
 }
 
-/// That nothing else has cut or lengthened a file: writing on would leave a hole, or a part of another's.
+/// Checks that nothing else has changed the length of a file: further writing would leave a hole or part of another's bytes.
 pub(super) fn is_as_long_as_written(file: &File, written: u64) -> io::Result<()> {
     let found = file.metadata()?.len();
     if found == written {
         return Ok(());
     }
-    let cause = format!("it has {found} bytes, but {written} were written: something else changed it");
+    let cause = format!("it has {found} bytes, but {written} were written: another program changed it");
     Err(io::Error::other(cause))
 }
 
@@ -234,7 +233,7 @@ impl Write for GrowingFile {
     }
 }
 
-/// A file, and the checksum of what was written into it.
+/// File with the checksum of the bytes written to it.
 #[derive(Debug)]
 struct Summed {
     file: File,

@@ -1,7 +1,6 @@
-//! LAMMPS files, to be opened by its users and their tools: a data file (`atom_style sphere`) and a text
-//! dump.
+//! LAMMPS files for its users and their tools: a data file (`atom_style sphere`) and a text dump.
 //!
-//! Grains are of type 1, wall discs of type 2. The box reaches from −1/2 to 1/2 in z.
+//! Grains are of type 1, wall discs of type 2. The box extends from −1/2 to 1/2 in z.
 
 use super::extxyz::{DEPTH, Frame};
 use super::growing_file::GrowingFile;
@@ -15,7 +14,7 @@ use std::f64::consts::PI;
 use std::io::{self, Write};
 use std::sync::Arc;
 
-/// The format of a dump.
+/// Format of a dump.
 pub(crate) const DUMP: OutputFormat = OutputFormat {
     key: "lammps_dump",
     doc: "Snapshots as a LAMMPS dump.",
@@ -26,10 +25,10 @@ pub(crate) const DUMP: OutputFormat = OutputFormat {
     reading: FrameReading::Never,
 };
 
-/// The format of a data file.
+/// Format of a data file.
 pub(crate) const DATA: OutputFormat = OutputFormat {
     key: "lammps_data",
-    doc: "The final state as a LAMMPS data file.",
+    doc: "Final state as a LAMMPS data file.",
     is_default: false,
     needs_box: true,
     file: "final.data",
@@ -67,11 +66,10 @@ fn bounds(frame: &Frame) -> [[f64; 2]; 3] {
 /// Writes a data file for `read_data`: `Atoms # sphere` with id, type, diameter, density and position, then
 /// `Velocities` with velocity and angular velocity.
 ///
-/// The density is that of a ball, m / (4/3 π r³), because LAMMPS computes the mass of a sphere so in two
-/// dimensions too.
+/// The density is that of a ball, m / (4/3 π r³), because LAMMPS computes the mass of a sphere from it in two dimensions too.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn write_data(frame: &Frame, out: &mut impl Write) -> io::Result<()> {
     let discs = frame.particles.all();
     writeln!(out, "LAMMPS data file by stripmine, atom_style sphere, timestep = {}\n", frame.step)?;
@@ -96,11 +94,10 @@ pub fn write_data(frame: &Frame, out: &mut impl Write) -> io::Result<()> {
     Ok(())
 }
 
-/// Writes a frame of a text dump with id, type, position, velocity, angular velocity, radius and mass; frames
-/// written one after the other are a trajectory.
+/// Writes a frame of a text dump with id, type, position, velocity, angular velocity, radius and mass. Consecutive frames form a trajectory.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn write_dump(frame: &Frame, out: &mut impl Write) -> io::Result<()> {
     let flag = |periodic| if periodic { "pp" } else { "ff" };
     let [x, y] = frame.periodic.unwrap_or([true; 2]).map(flag);

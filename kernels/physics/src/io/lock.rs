@@ -1,4 +1,4 @@
-//! One writer a folder: a lock that the system gives back with the process that held it, however that ended.
+//! Lock of a folder for one writer. The system releases it when the process ends, in whatever way.
 
 use super::replace::{folder_of, is_name_of, remove_if_there};
 use super::{FileError, FolderError};
@@ -7,12 +7,12 @@ use std::io::{self, ErrorKind, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-/// The first line of a lock file.
+/// First line of a lock file.
 const HEADING: &str = "stripmine lock 1";
-/// More than a lock file holds (bytes).
+/// Largest part of a lock file that is read (bytes).
 const LONGEST: u64 = 1000;
 
-/// The right to write into a folder, until it is dropped.
+/// Exclusive right to write to a folder, until it is dropped.
 #[derive(Debug)]
 pub(crate) struct Lock {
     path: PathBuf,
@@ -20,7 +20,7 @@ pub(crate) struct Lock {
     held: bool,
 }
 
-/// Whether the file at `path` is a lock file, or became one no further than its creation.
+/// Returns true if the file at `path` is a lock file, possibly not yet complete.
 pub(crate) fn is_lock(path: &Path) -> bool {
     let is_file = path.symlink_metadata().is_ok_and(|there| there.is_file());
     is_file && File::open(path).and_then(|file| text(&file)).is_ok_and(|text| is_lock_text(&text))
@@ -37,17 +37,17 @@ fn text(file: &File) -> io::Result<String> {
 }
 
 impl Lock {
-    /// Takes the lock whose file is at `path`, in a folder that is there.
+    /// Takes the lock whose file is at `path`, in an existing folder.
     ///
     /// # Errors
-    /// [`FolderError`] if another process has it, something else is called so, or the system does not let it be written.
+    /// [`FolderError`] if another process holds it, something else has its name, or the system refuses to write it.
     pub(crate) fn take(path: &Path) -> Result<Lock, FolderError> {
         let at = || FileError::at(path, "locking");
         loop {
             let file = match OpenOptions::new().read(true).write(true).create_new(true).open(path) {
                 Err(cause) if cause.kind() == ErrorKind::AlreadyExists => {
                     match OpenOptions::new().read(true).write(true).open(path) {
-                        // Removed by its holder in between.
+                        // Its holder has removed it in between.
                         Err(cause)
                             if cause.kind() == ErrorKind::NotFound && path.symlink_metadata().is_err() =>
                         {
@@ -63,7 +63,7 @@ impl Lock {
                 Err(TryLockError::WouldBlock) => {
                     return Err(FolderError::Held(folder_of(path).to_owned(), holder(&file)));
                 }
-                // A file system without locks.
+                // Some file systems have no locks.
                 Err(TryLockError::Error(cause)) if cause.kind() == ErrorKind::Unsupported => false,
                 Err(TryLockError::Error(cause)) => return Err(at()(cause).into()),
             };
@@ -71,7 +71,7 @@ impl Lock {
                 if path.symlink_metadata().is_ok_and(|there| !there.is_file()) {
                     return Err(FolderError::in_the_way(path));
                 }
-                // Removed by the one who held it: the next one has another file.
+                // Its holder has removed it, so the next holder has another file.
                 continue;
             }
             if !is_lock_text(&text(&file).map_err(at())?) {
@@ -82,12 +82,12 @@ impl Lock {
         }
     }
 
-    /// Whether the file system keeps others out; some know no locks.
+    /// True if the file system excludes other writers; some have no locks.
     pub(crate) fn is_held(&self) -> bool {
         self.held
     }
 
-    /// Whether the lock file is still there.
+    /// True if the lock file still exists.
     pub(crate) fn is_there(&self) -> bool {
         is_name_of(&self.path, &self.file).unwrap_or(false)
     }
@@ -95,15 +95,15 @@ impl Lock {
 
 impl Drop for Lock {
     fn drop(&mut self) {
-        // Safe while it is held: a process that has opened it meanwhile finds that the name is gone and opens another.
+        // This is safe during the hold: a process that has opened the file meanwhile finds its name gone and opens another.
         if cfg!(unix) && self.held && self.is_there() {
-            #[expect(clippy::let_underscore_must_use, reason = "a file that cannot be removed does no harm")]
+            #[expect(clippy::let_underscore_must_use, reason = "a leftover lock file does no harm")]
             let _ = remove_if_there(&self.path);
         }
     }
 }
 
-/// Writes who holds the lock into its file.
+/// Writes the holder of the lock into its file.
 fn sign(mut file: &File) -> io::Result<()> {
     file.set_len(0)?;
     file.rewind()?;
@@ -112,9 +112,12 @@ fn sign(mut file: &File) -> io::Result<()> {
     write!(file, "{HEADING}\nprocess {process}\nhost {}\nsince {since}\n", host.to_string_lossy())
 }
 
-/// Who holds a lock, by its file.
+/// Holder of a lock, read from its file.
 fn holder(file: &File) -> String {
-    #[expect(clippy::disallowed_methods, reason = "who holds a lock is told where it can be read")]
+    #[expect(
+        clippy::disallowed_methods,
+        reason = "the holder of a lock is named only if its file can be read"
+    )]
     let text = text(file).unwrap_or_default();
     let said = |what: &str| {
         let value = text.lines().find_map(|line| line.strip_prefix(what)?.strip_prefix(' '))?;

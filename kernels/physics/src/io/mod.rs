@@ -1,5 +1,5 @@
-//! Files in and out: the formats that a run writes its particles in, checkpoints, tables that grow with a run; how they are put in
-//! their place, and folders that one process at a time writes into and that lose nothing of others.
+//! Reading and writing of files: formats for particles, checkpoints, tables that grow during a run. Files are replaced atomically. One process at a
+//! time writes to a folder, and files of others in it are never lost.
 
 pub mod checkpoint;
 pub(crate) mod dcd;
@@ -24,23 +24,23 @@ pub use folder_error::FolderError;
 use output_format::OutputFormat;
 use std::path::{Path, PathBuf};
 
-/// The formats that a run writes its particles in, in the order of their keys. Frames are read from the first that has any.
+/// Formats for particles, in the order of their keys. Frames are read from the first one that has any.
 pub static FORMATS: &[OutputFormat] = &[extxyz::FORMAT, dcd::FORMAT, gsd::FORMAT, lammps::DUMP, lammps::DATA];
 
-/// A file that the system would not let be read or written.
+/// Failure of the system to read or write a file.
 #[derive(Debug, thiserror::Error)]
 #[error("{}: {action}: {cause}", crate::quoted::path(file))]
 pub struct FileError {
-    /// The file.
+    /// Path of the file.
     pub file: PathBuf,
-    /// What was being done with it.
+    /// Action that failed.
     pub action: &'static str,
-    /// What the system said.
+    /// Error of the system.
     pub cause: std::io::Error,
 }
 
 impl FileError {
-    /// Names the file and the action that failed.
+    /// Adds the file and the failed action to an error of the system.
     pub fn at(file: &Path, action: &'static str) -> impl FnOnce(std::io::Error) -> FileError {
         move |cause| FileError { file: file.to_owned(), action, cause }
     }

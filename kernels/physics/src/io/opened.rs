@@ -1,4 +1,4 @@
-//! A sink that a run has open, whatever its format. Frames are written by a thread of their own: a run goes on while a frame is written.
+//! Open sinks of a run, independent of the format. A separate thread writes frames while the run continues.
 
 use super::FileError;
 use super::growing_file::{GrowingFileError, Mark};
@@ -9,17 +9,17 @@ use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::{self, JoinHandle};
 
-/// An open sink; its functions are as those of [`Sink`].
+/// Open sink; its functions match those of [`Sink`].
 pub(crate) trait OpenSink: Send {
     fn cut(&mut self) -> Result<(), FileError>;
 
-    /// Gives whether anything is added.
+    /// Adds a moment; returns true if there was something to add.
     fn add(&mut self, moment: &RunMoment<'_>) -> Result<bool, FileError>;
 
     fn mark(&mut self) -> Result<Mark, FileError>;
 }
 
-/// A kind of sink: when something is added, and how one is opened.
+/// Kind of a sink: its schedule and how it is opened.
 #[derive(Clone, Copy, Debug)]
 pub struct SinkKind {
     pub(crate) due: Due,
@@ -42,15 +42,15 @@ impl SinkKind {
     }
 }
 
-/// A sink, or, once there is a frame, the thread that has it.
+/// Sink, or the thread that owns it once there is a frame.
 struct Opened<S: Sink> {
     path: PathBuf,
     sink: Option<S>,
-    /// It writes one frame while the next is computed; a run that is faster waits for it.
+    /// Thread that writes one frame while the next is computed; a faster run waits for it.
     thread: Option<Writing<S>>,
 }
 
-/// Where entries go, and the thread that writes them and gives the sink back.
+/// Channel to the writing thread, which returns the sink when it ends.
 struct Writing<S: Sink> {
     entries: SyncSender<S::Entry>,
     thread: JoinHandle<(S, io::Result<()>)>,
@@ -59,7 +59,7 @@ struct Writing<S: Sink> {
 fn write<S: Sink>(mut sink: S, entries: Receiver<S::Entry>) -> (S, io::Result<()>) {
     let mut written = Ok(());
     for entry in entries {
-        // After what went wrong nothing is written.
+        // After an error nothing more is written.
         written = written.and_then(|()| sink.write(entry));
     }
     (sink, written)
@@ -70,10 +70,10 @@ impl<S: Sink> Opened<S> {
         Box::new(Opened { path, sink: Some(sink), thread: None })
     }
 
-    /// Hands an entry to the thread, which is begun with the first.
+    /// Sends an entry to the thread, which starts with the first one.
     fn send(&mut self, entry: S::Entry) -> io::Result<()> {
         if let Some(sink) = self.sink.take() {
-            // Without room: of frames there is one that is written and one that is made.
+            // The channel has no buffer: one frame is written while one is made.
             let (entries, received) = sync_channel(0);
             let thread = thread::Builder::new().name("frames".to_owned());
             let thread = thread.spawn(move || write(sink, received))?;
@@ -83,7 +83,7 @@ impl<S: Sink> Opened<S> {
         sent.and_then(Result::ok).ok_or_else(gone)
     }
 
-    /// The sink, with all that was added written.
+    /// Returns the sink after everything added is written.
     fn here(&mut self) -> io::Result<&mut S> {
         if let Some(Writing { entries, thread }) = self.thread.take() {
             drop(entries);
@@ -105,7 +105,7 @@ impl<S: Sink> Opened<S> {
 }
 
 fn gone() -> io::Error {
-    io::Error::other("the thread that writes has ended")
+    io::Error::other("the writing thread has ended")
 }
 
 impl<S: Sink> OpenSink for Opened<S> {
@@ -136,7 +136,7 @@ impl<S: Sink> OpenSink for Opened<S> {
 }
 
 impl<S: Sink> Drop for Opened<S> {
-    /// Everything added is written before anything else is done with the folder.
+    /// Completes all writes before the folder is used otherwise.
     fn drop(&mut self) {
         drop(self.here());
     }
@@ -175,7 +175,7 @@ mod tests {
         }
     }
 
-    /// Every frame in order, whatever the thread is doing; a failure comes out at the latest when all are to be on the disk.
+    /// Frames are written in order, whatever the thread is doing; an error is reported by the next sync at the latest.
     #[test]
     fn frames_are_written_in_order_and_failures_come_out() {
         let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! A format that a run writes its particles in, as the rest of the program knows it.
+//! Descriptions of the formats for particles.
 
 use super::extxyz::Frame;
 use super::opened::SinkKind;
@@ -6,26 +6,26 @@ use super::trajectory::FrameReading;
 use std::fs::File;
 use std::io::{self, BufWriter};
 
-/// A format that a run writes its particles in.
+/// Format for particles.
 pub struct OutputFormat {
-    /// The key of `[output]` that asks for it.
+    /// Key of `[output]` that requests it.
     pub key: &'static str,
-    /// Help of the key.
+    /// Help text of the key.
     pub doc: &'static str,
-    /// True where it is written by default. Its file is then begun in every run, for the state of a step that fails.
+    /// True if it is written by default. Every run then creates its file, for the state of a failing step.
     pub(crate) is_default: bool,
-    /// True where particles must be in a box.
+    /// True if particles must be in a box.
     pub needs_box: bool,
-    /// The name of the file.
+    /// Name of the file.
     pub file: &'static str,
-    /// Its writer.
+    /// Writer of the format.
     pub writing: FrameWriting,
-    /// Its reader.
+    /// Reader of the format.
     pub reading: FrameReading,
 }
 
 impl OutputFormat {
-    /// Reports whether its frames are read again.
+    /// Returns true if its frames can be read back.
     pub fn is_read(&self) -> bool {
         matches!(self.reading, FrameReading::Opens(_))
     }
@@ -33,8 +33,8 @@ impl OutputFormat {
 
 /// Writer of a format.
 pub enum FrameWriting {
-    /// Frame by frame.
+    /// Writes frame by frame.
     Growing(SinkKind),
-    /// The last frame, as a whole file.
+    /// Writes the last frame as a whole file.
     Last(fn(&Frame, &mut BufWriter<&File>) -> io::Result<()>),
 }

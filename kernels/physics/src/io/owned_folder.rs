@@ -1,8 +1,7 @@
-//! Folders that this program writes into: nothing of others is lost there, and one process at a time writes.
+//! Folders that this program writes to: no file of others is lost, and one process at a time writes.
 //!
-//! A file is own if the list beside it names it, or if it bears a mark of this program. A list is written before the files that it
-//! names, so that a process that is killed leaves nothing that is not known as its own. Temporary files (`.stripmine-….part`)
-//! are on no list: their names are random.
+//! A file is own if the list beside it names it, or if it contains a mark of this program. A list is written before the files that it names, so
+//! that a killed process leaves only files known as own. Temporary files (`.stripmine-….part`) have random names and are on no list.
 
 use super::lock::{Lock, is_lock};
 use super::replace::{is_temporary, remove_if_there, replace, temporary};
@@ -14,21 +13,21 @@ use std::io::{self, BufWriter, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
-/// The lock of folders that have no other.
+/// Lock file of folders that have no other.
 pub const LOCK: &str = ".stripmine.lock";
-/// Longer than any list (bytes).
+/// Longest list (bytes).
 const LONGEST: u64 = 1 << 24;
-/// Where in a file its mark is looked for (bytes from the beginning).
+/// Length of the part of a file searched for its mark (bytes).
 const START: u64 = 1000;
-/// A folder that is being replaced, in a temporary one.
+/// Name of a folder that is being replaced, in a temporary one.
 const ASIDE: &str = "item";
 
-/// Kind of a folder: its own files, and other files that it may hold.
+/// Kind of a folder: its own files, and other files that it may contain.
 #[derive(Clone, Copy, Debug)]
 pub struct FolderKind {
-    /// File that keeps other processes out.
+    /// Lock file.
     pub lock: &'static str,
-    /// File with the names of own files beside it.
+    /// File with the names of own files.
     pub list: &'static str,
     /// Content of the folder.
     pub holds: Holds,
@@ -37,28 +36,28 @@ pub struct FolderKind {
 /// Content of an owned folder.
 #[derive(Clone, Copy, Debug)]
 pub enum Holds {
-    /// Own files by a list, a name a line, and beside them those of others.
+    /// Own files named by a list, one on each line, beside files of others.
     Files {
-        /// The first line of the list.
+        /// First line of the list.
         heading: &'static str,
-        /// Reports whether an own file may be called so.
+        /// Returns true if an own file may have this name.
         is_own: fn(&str) -> bool,
-        /// True where others' files may be there before the list is.
+        /// True if files of others may exist before the list.
         is_shared: bool,
     },
-    /// Folders of own files alone, each with its list (`files` of a JSON object), and marked files; beside them others' files.
+    /// Folders of own files only, each with its list (`files` of a JSON object), and marked files; beside files of others.
     Folders {
-        /// Files, each with the mark that it bears among its first bytes.
+        /// Names of files, each with the mark near its start.
         marked: &'static [(&'static str, &'static str)],
-        /// Subfolders that have such folders, too.
+        /// Subfolders that also have such folders.
         below: &'static [&'static str],
     },
 }
 
-/// Names of all entries of a folder, sorted; none if it is not there.
+/// Sorted names of all entries of a folder; none if it does not exist.
 ///
 /// # Errors
-/// If the system does not let it be read.
+/// If the system refuses to read it.
 pub fn names_in(folder: &Path) -> Result<Option<Vec<String>>, FileError> {
     let at = || FileError::at(folder, "reading the folder");
     let entries = match fs::read_dir(folder) {
@@ -71,10 +70,10 @@ pub fn names_in(folder: &Path) -> Result<Option<Vec<String>>, FileError> {
     Ok(Some(names))
 }
 
-/// Reports whether a file is there; if so, it bears the mark.
+/// Returns true if a file exists and has the mark, false if it does not exist.
 ///
 /// # Errors
-/// [`FolderError::InTheWay`] if it bears none, or the system does not let it be read.
+/// [`FolderError::InTheWay`] if it has no mark, or the system's error if it cannot be read.
 pub fn is_marked(file: &Path, mark: &str) -> Result<bool, FolderError> {
     if file.symlink_metadata().is_err_and(|cause| cause.kind() == ErrorKind::NotFound) {
         return Ok(false);
@@ -96,7 +95,7 @@ fn is_folder(path: &Path) -> bool {
     path.symlink_metadata().is_ok_and(|there| there.is_dir())
 }
 
-/// Names on a list of JSON.
+/// Names on a JSON list.
 #[derive(Deserialize)]
 struct Names {
     #[serde(default)]
@@ -104,10 +103,10 @@ struct Names {
 }
 
 impl FolderKind {
-    /// Names on the list of a folder; none where it holds nothing of ours, or is not there.
+    /// Names on the list of a folder; none if it contains nothing of ours, or does not exist.
     ///
     /// # Errors
-    /// [`FolderError`] if it holds something, but nothing of ours, or its list is damaged.
+    /// [`FolderError`] if it contains files, but none of ours, or if its list is damaged.
     pub(crate) fn listed(&self, folder: &Path) -> Result<Option<BTreeSet<String>>, FolderError> {
         let Some(mut names) = names_in(folder)? else { return Ok(None) };
         let (listed, list, below) = match self.holds {
@@ -116,14 +115,14 @@ impl FolderKind {
             Holds::Folders { below, .. } => (None, None, below),
         };
         let is_empty = |path: &Path| is_folder(path) && names_in(path).is_ok_and(|it| it == Some(vec![]));
-        // A process that was killed may have left these.
+        // A killed process may have left these.
         names.retain(|name| {
             let (path, name) = (folder.join(name), name.as_str());
             !(is_temporary(name)
                 || name == self.lock && is_lock(&path)
                 || below.contains(&name) && is_empty(&path))
         });
-        // A place that cannot be listed shows nothing of ours: the folder is then refused.
+        // A folder that cannot be listed counts as having nothing of ours, and is refused.
         let has_own = |place: PathBuf| {
             let names = names_in(&place).ok().flatten().unwrap_or_default();
             names.iter().any(|name| self.owns(&place, name).is_ok_and(|is_there| is_there))
@@ -135,7 +134,7 @@ impl FolderKind {
         }
     }
 
-    /// Reports whether a marked file or a folder of own files is there; a file with its name is ours.
+    /// Returns true if a marked file or a folder of own files exists, and an error if its name belongs to a file of others.
     fn owns(&self, folder: &Path, name: &str) -> Result<bool, FolderError> {
         let Holds::Folders { marked, .. } = self.holds else { return Ok(false) };
         let path = folder.join(name);
@@ -145,7 +144,7 @@ impl FolderKind {
         }
     }
 
-    /// Names of all files of a folder that has nothing but own files; none if it is not there.
+    /// Names of all files in a folder of own files only; none if it does not exist.
     fn alone_in(&self, folder: &Path) -> Result<Option<Vec<String>>, FolderError> {
         if folder.symlink_metadata().is_ok_and(|there| !there.is_dir()) {
             return Err(FolderError::in_the_way(folder));
@@ -157,7 +156,7 @@ impl FolderKind {
         if foreign.is_empty() { Ok(Some(names)) } else { Err(FolderError::not_ours(folder, None, &foreign)) }
     }
 
-    /// Names on the list of a folder; none where there is no list. A name that leads out of the folder is none of a list.
+    /// Reads the names on the list of a folder; none without a list. A name that leads out of the folder is an error.
     fn read(&self, folder: &Path) -> Result<Option<BTreeSet<String>>, FolderError> {
         let file = folder.join(self.list);
         match file.symlink_metadata() {
@@ -189,7 +188,7 @@ impl FolderKind {
         text.lines().enumerate().skip(1).map(known).collect::<Result<_, _>>().map(Some)
     }
 
-    /// As [`read`](Self::read); none, too, where the list is damaged or another's.
+    /// Reads the list as [`read`](Self::read) does; none also if the list is damaged or another's.
     fn read_if_ours(&self, folder: &Path) -> Result<Option<BTreeSet<String>>, FolderError> {
         match self.read(folder) {
             Err(FolderError::List { .. } | FolderError::InTheWay { .. }) => Ok(None),
@@ -197,7 +196,7 @@ impl FolderKind {
         }
     }
 
-    /// Removes a folder of own files, the list last.
+    /// Removes a folder of own files; the list is removed last.
     fn remove(&self, folder: &Path, names: &[String]) -> Result<(), FileError> {
         let (list, rest): (Vec<&String>, Vec<&String>) = names.iter().partition(|&name| name == self.list);
         rest.into_iter().chain(list).try_for_each(|name| remove_if_there(&folder.join(name)))?;
@@ -205,22 +204,22 @@ impl FolderKind {
     }
 }
 
-/// A folder, while this process writes into it.
+/// Folder that this process writes to.
 #[derive(Debug)]
 pub struct OwnedFolder {
     path: PathBuf,
     kind: FolderKind,
     listed: Option<BTreeSet<String>>,
-    /// None where another process holds it for this one.
+    /// Lock; none if another process holds it for this one.
     lock: Option<Lock>,
 }
 
 impl OwnedFolder {
-    /// Makes the folder if it is not there, keeps other processes out, and removes what killed ones left of their temporary files.
-    /// In a folder of folders, those of the names `wanted` will be written, and marked files of these names.
+    /// Creates the folder if necessary, excludes other processes, and removes temporary files of killed ones. In a folder of folders, `wanted`
+    /// names the folders and marked files that will be written.
     ///
     /// # Errors
-    /// [`FolderError`] if what is there is not ours, or another process writes there.
+    /// [`FolderError`] if existing files are not ours, or another process writes there.
     pub fn open(path: &Path, kind: FolderKind, wanted: &[String]) -> Result<OwnedFolder, FolderError> {
         let listed = || {
             let listed = kind.listed(path)?;
@@ -230,33 +229,33 @@ impl OwnedFolder {
         listed()?;
         fs::create_dir_all(path).map_err(FileError::at(path, "creating the folder"))?;
         let lock = Some(Lock::take(&path.join(kind.lock))?);
-        // Again, now that it stays so.
+        // The list cannot change from here on.
         let folder = OwnedFolder { path: path.to_owned(), kind, listed: listed()?, lock };
         folder.remove_leftovers()?;
         Ok(folder)
     }
 
-    /// One that another process has opened, which lets this one write there.
+    /// Folder that another process has opened for this one.
     pub fn of_another(path: &Path, kind: FolderKind) -> OwnedFolder {
         OwnedFolder { path: path.to_owned(), kind, listed: None, lock: None }
     }
 
-    /// The folder.
+    /// Path of the folder.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Where a file of the folder is.
+    /// Path of a file in the folder.
     pub fn file(&self, name: &str) -> PathBuf {
         self.path.join(name)
     }
 
-    /// Reports whether there are names on its list.
+    /// Returns true if its list has names.
     pub(crate) fn has_own(&self) -> bool {
         self.listed.as_ref().is_some_and(|listed| !listed.is_empty())
     }
 
-    /// True where the file system keeps others out.
+    /// True if the file system excludes other writers.
     pub(crate) fn is_locked(&self) -> bool {
         self.lock.as_ref().is_some_and(Lock::is_held)
     }
@@ -265,10 +264,10 @@ impl OwnedFolder {
         self.listed.as_ref().is_some_and(|listed| listed.contains(name))
     }
 
-    /// Puts names on the list, which is on the disk when this returns. Others' files of these names are lost with `overwrite`.
+    /// Adds names to the list and syncs it to the disk. With `overwrite`, files of others with these names are lost.
     ///
     /// # Errors
-    /// [`FolderError::InTheWay`] if there are such files and they are to stay, or the system does not let the list be written.
+    /// [`FolderError::InTheWay`] if such files exist and `overwrite` is false; the system's error if the list cannot be written.
     pub fn claim<'n>(
         &mut self,
         names: impl IntoIterator<Item = &'n str>,
@@ -279,7 +278,7 @@ impl OwnedFolder {
         let is_new =
             |name: &&str| !self.is_listed(name) && (*name != self.kind.list || self.listed.is_none());
         let new: Vec<&str> = names.into_iter().filter(is_new).collect();
-        // Without a list, a file of its name is another's, too.
+        // Without a list of ours, a file of that name belongs to others.
         let list = self.listed.is_none().then_some(self.kind.list);
         let mut paths = new.iter().copied().chain(list).map(|name| self.file(name));
         match paths.find(|path| path.symlink_metadata().is_ok()) {
@@ -295,10 +294,10 @@ impl OwnedFolder {
         })?)
     }
 
-    /// Puts a whole file in its place: one that was claimed, or a marked one.
+    /// Writes a whole file atomically: a claimed or a marked one.
     ///
     /// # Errors
-    /// [`FolderError`] if a file without the mark is there, or the system does not let it be written.
+    /// [`FolderError`] if a file without the mark exists, or the system refuses to write it.
     pub fn write(
         &self,
         name: &str,
@@ -310,28 +309,28 @@ impl OwnedFolder {
         Ok(file)
     }
 
-    /// Removes own files but the list, those of the names `first` before the others; what others wrote stays.
+    /// Removes own files except the list, starting with the names `first`; files of others stay.
     ///
     /// # Errors
-    /// If the system does not let one be removed.
+    /// If the system refuses to remove one.
     pub fn clear(&self, first: &[&str]) -> Result<(), FolderError> {
         let listed = self.listed.iter().flatten().map(String::as_str);
         let rest = listed.filter(|name| *name != self.kind.list && !first.contains(name));
         first.iter().copied().chain(rest).try_for_each(|name| self.remove_own(name))
     }
 
-    /// Removes a file, if it is there and own.
+    /// Removes a file if it exists and is own.
     ///
     /// # Errors
-    /// If the system does not let it be removed.
+    /// If the system refuses to remove it.
     pub fn remove_own(&self, name: &str) -> Result<(), FolderError> {
         if self.is_listed(name) { Ok(remove_if_there(&self.file(name))?) } else { Ok(()) }
     }
 
-    /// That files are still there, and the lock.
+    /// Checks that files and the lock still exist.
     ///
     /// # Errors
-    /// If something else has removed one meanwhile.
+    /// If another program has removed one meanwhile.
     pub(crate) fn still_has(&self, names: &[&str]) -> Result<(), FolderError> {
         let lock = self.lock.iter().find(|lock| !lock.is_there()).map(|_| self.kind.lock);
         let gone = names.iter().copied().find(|name| !is_file(&self.file(name))).or(lock);
@@ -342,11 +341,11 @@ impl OwnedFolder {
         })
     }
 
-    /// Puts a folder of own files in the place of the one of this name: all of them or, where that fails, none. The list comes
-    /// first: whatever becomes of this process, what is there is known as own.
+    /// Replaces the folder of own files with this name: by all files or, on failure, none. The list is written first, so that the files are known
+    /// as own even if this process is killed.
     ///
     /// # Errors
-    /// [`FolderError`] if what is there is not ours, or the system does not let the files be written.
+    /// [`FolderError`] if existing files are not ours, or the system refuses to write.
     pub fn write_folder<'f>(
         &self,
         name: &str,
@@ -383,8 +382,7 @@ impl OwnedFolder {
         folder.map_err(FileError::at(&self.path, "creating a folder in it"))
     }
 
-    /// Removes what processes that were killed left of their temporary files and folders, as far as it is ours. Among files of
-    /// others, they may be those of a process that is under way.
+    /// Removes temporary files and folders of killed processes if they are ours. In shared folders they may belong to a running process and stay.
     fn remove_leftovers(&self) -> Result<(), FolderError> {
         if matches!(self.kind.holds, Holds::Files { is_shared: true, .. }) {
             return Ok(());
@@ -409,7 +407,7 @@ impl OwnedFolder {
 mod tests {
     use super::*;
 
-    /// A list is damaged where a name leads out of the folder, though its end is that of an own file; nothing is written by it.
+    /// A name that leads out of the folder makes a list invalid, even if it ends like an own file, and nothing is written according to it.
     #[test]
     fn names_that_lead_out_of_the_folder_are_on_no_list() {
         let holds = |is_shared| Holds::Files {

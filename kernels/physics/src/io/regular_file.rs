@@ -1,19 +1,19 @@
-//! Ordinary files, read whole up to a bound: what never ends, or waits for a writer, is refused before it is opened.
+//! Ordinary files, read whole up to a limit. Devices, pipes and the like are refused before they are opened.
 
 use std::fs::{self, File, FileType};
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
-/// Why a file is not read though the system would let it be.
+/// Reason why a readable file is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub(crate) enum Unfit {
     /// A folder, a device, a pipe or a socket.
     #[error("it is {0}; expected an ordinary file")]
     Kind(&'static str),
-    /// Longer than anything of its kind.
-    #[error("it is longer than {most} bytes, the most that is read of such a file")]
+    /// A file too long for its kind.
+    #[error("it is longer than {most} bytes, the limit for such a file")]
     TooLong {
-        /// The bound (bytes).
+        /// Limit (bytes).
         most: u64,
     },
 }
@@ -21,19 +21,19 @@ pub(crate) enum Unfit {
 /// Opens an ordinary file for reading.
 ///
 /// # Errors
-/// What the system says, or [`Unfit`] inside an error of kind `InvalidInput`.
+/// The system's error, or [`Unfit`] inside an error of kind `InvalidInput`.
 pub(crate) fn open(path: &Path) -> io::Result<File> {
-    // Opening a pipe would wait for its writer: what it is must be known before.
+    // Opening a pipe would wait for its writer, so the kind is checked before.
     match kind(fs::metadata(path)?.file_type()) {
         None => File::open(path),
         Some(kind) => Err(io::Error::new(ErrorKind::InvalidInput, Unfit::Kind(kind))),
     }
 }
 
-/// The bytes of an ordinary file of at most `most` bytes.
+/// Reads an ordinary file of at most `most` bytes.
 ///
 /// # Errors
-/// As `open`, and where the file is longer.
+/// As for `open`, and if the file is longer.
 pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     open(path)?.take(most + 1).read_to_end(&mut bytes)?;
@@ -43,13 +43,13 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The first line of some bytes that is not UTF-8, from 1; none if they are text.
+/// First line that is not UTF-8, from 1; none if all are.
 pub(crate) fn line_that_is_not_text(bytes: &[u8]) -> Option<usize> {
     let good = std::str::from_utf8(bytes).err()?.valid_up_to();
     Some(1 + bytes[..good].iter().filter(|byte| **byte == b'\n').count())
 }
 
-/// The kind of what is no ordinary file.
+/// Kind of a file that is not an ordinary one.
 fn kind(of: FileType) -> Option<&'static str> {
     if of.is_file() {
         return None;

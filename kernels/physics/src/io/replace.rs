@@ -1,4 +1,4 @@
-//! Whole files put in their place in one step, by way of temporary files whose names cannot be foreseen.
+//! Atomic replacement of whole files, through temporary files with random names.
 
 use super::{FileError, FolderError};
 use std::fs::{self, File};
@@ -6,15 +6,15 @@ use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::Path;
 use tempfile::{Builder, NamedTempFile};
 
-/// How the names of temporary files and folders begin and end; what is between is random.
+/// Prefix and suffix of the names of temporary files and folders.
 const TEMPORARY: [&str; 2] = [".stripmine-", ".part"];
 
-/// Whether a temporary file or folder of this program is called so.
+/// Returns true for a name of this program's temporary files or folders.
 pub(crate) fn is_temporary(name: &str) -> bool {
     name.starts_with(TEMPORARY[0]) && name.ends_with(TEMPORARY[1])
 }
 
-/// Names for temporary files or folders, with permissions as for any others: what the user's mask leaves of `mode`.
+/// Builder of temporary files or folders with the usual permissions: `mode` under the user's mask.
 pub(crate) fn temporary<'a>(mode: u32) -> Builder<'a, 'a> {
     let mut builder = Builder::new();
     builder.prefix(TEMPORARY[0]).suffix(TEMPORARY[1]).rand_bytes(16);
@@ -25,16 +25,16 @@ pub(crate) fn temporary<'a>(mode: u32) -> Builder<'a, 'a> {
     builder
 }
 
-/// The folder that a path lies in.
+/// Folder of a path.
 pub(crate) fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Puts what `write` writes in the place of the file at `path`: at every moment the old or the new one is there, whole,
-/// and when this returns the new one is on the disk. A link at `path` is replaced, not followed.
+/// Replaces the file at `path` by the output of `write`. At every moment the complete old or new file exists, and on return the new one is on the
+/// disk. A link at `path` is replaced, not followed.
 ///
 /// # Errors
-/// If the system does not let it be written; then what was at `path` stays.
+/// If the system refuses to write it; then the old file stays.
 pub fn replace(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>,
@@ -44,20 +44,20 @@ pub fn replace(
     sync_folder(folder_of(path)).map_err(FileError::at(path, "replacing"))
 }
 
-/// Puts a whole file at `path` where nothing is or, with `overwrite`, in the place of what is there.
+/// Writes a whole file at `path` atomically; with `overwrite` it may replace another.
 ///
 /// # Errors
-/// If something is there that is to stay, or the system does not let the file be written; then what was at `path` stays.
+/// If `path` exists and `overwrite` is false, or the system refuses to write the file; then the old file stays.
 pub fn put(path: &Path, text: &str, overwrite: bool) -> io::Result<()> {
     let file = written_beside(path, |out| out.write_all(text.as_bytes()))?;
     let placed = if overwrite { file.persist(path) } else { file.persist_noclobber(path) };
     placed.map(drop).map_err(|refused| refused.error)
 }
 
-/// Refuses to put a file where something is that is to stay: without `overwrite` anything, and always what is no file.
+/// Checks that a file may be written: `path` must not exist, or must be a file and `overwrite` true.
 ///
 /// # Errors
-/// [`FolderError::Exists`] with what to do, or [`FolderError::NoFile`].
+/// [`FolderError::Exists`] with advice, or [`FolderError::NoFile`].
 pub fn may_put(path: &Path, overwrite: bool, remedy: &'static str) -> Result<(), FolderError> {
     match path.symlink_metadata() {
         Ok(_) if !overwrite => Err(FolderError::Exists(path.to_owned(), remedy)),
@@ -69,18 +69,18 @@ pub fn may_put(path: &Path, overwrite: bool, remedy: &'static str) -> Result<(),
     }
 }
 
-/// Makes a file beside `path` and removes it: whether one can be put there is known before the work for it is done.
+/// Creates and removes a file beside `path`, to detect missing permissions before the work for it starts.
 ///
 /// # Errors
-/// What the system says.
+/// The system's error.
 pub fn try_beside(path: &Path) -> io::Result<()> {
     temporary(0o666).tempfile_in(folder_of(path)).map(drop)
 }
 
-/// A temporary file in the folder of `path` that holds what `write` writes, on the disk.
+/// Temporary file in the folder of `path` with the output of `write`, synced to the disk.
 ///
 /// # Errors
-/// If the system does not let it be written.
+/// If the system refuses to write it.
 pub(crate) fn written_beside(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>,
@@ -94,18 +94,18 @@ pub(crate) fn written_beside(
     Ok(file)
 }
 
-/// Makes the renamings in a folder last.
+/// Syncs the renames in a folder to the disk.
 ///
 /// # Errors
-/// If the folder cannot be opened or its entries not be written to the disk.
+/// If the folder cannot be opened or synced.
 pub(crate) fn sync_folder(folder: &Path) -> io::Result<()> {
     if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
 }
 
-/// Removes a file or a link, never what the link points to; one that is not there is no error.
+/// Removes a file or a link, never the target of a link; a missing file is not an error.
 ///
 /// # Errors
-/// If it is there and cannot be removed.
+/// If it exists and cannot be removed.
 pub fn remove_if_there(path: &Path) -> Result<(), FileError> {
     match fs::remove_file(path) {
         Err(cause) if cause.kind() != ErrorKind::NotFound => Err(FileError::at(path, "removing")(cause)),
@@ -113,11 +113,11 @@ pub fn remove_if_there(path: &Path) -> Result<(), FileError> {
     }
 }
 
-/// Whether `path` is still a name of the open file, and no link. Where the system has no numbers for its files, whether
-/// there is a file of that name.
+/// Returns true if `path` is still a name of the open file, and not a link. Without file numbers in the system, returns true if a file of that name
+/// exists.
 ///
 /// # Errors
-/// If the system does not say what is there.
+/// If the system cannot examine `path`.
 pub(crate) fn is_name_of(path: &Path, file: &File) -> io::Result<bool> {
     let there = match fs::symlink_metadata(path) {
         Ok(there) => there,

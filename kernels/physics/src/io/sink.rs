@@ -1,4 +1,4 @@
-//! A file that grows with a run: begun, added to at its moments, marked for a checkpoint, resumed at a mark.
+//! Files that grow during a run: created, appended to, marked for a checkpoint, and resumed at a mark.
 
 use super::FileError;
 use super::growing_file::{GrowingFile, GrowingFileError, Mark};
@@ -7,35 +7,35 @@ use std::io::{self, Write};
 use std::marker::PhantomData;
 use std::path::PathBuf;
 
-/// When something is added to a file.
+/// Occasion for adding to a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Due {
-    /// Whenever a run pauses to see what has happened.
+    /// Every pause of a run to process events.
     Events,
-    /// When a row of observables is due.
+    /// Rows of observables.
     Row,
-    /// When a frame is due, and at the end.
+    /// Frames, and the end of a run.
     Frame,
 }
 
-/// A file that grows with a run.
+/// File that grows during a run.
 pub trait Sink: Send + Sized + 'static {
-    /// When something is added.
+    /// Occasion for adding to it.
     const DUE: Due = Due::Frame;
 
-    /// Data of a moment, written when its turn comes.
+    /// Data of a moment.
     type Entry: Send + 'static;
 
-    /// Begins a file where nothing is.
+    /// Creates a file.
     ///
     /// # Errors
-    /// If something is there already, or the system does not let it be written.
+    /// If the path exists, or the system refuses to write it.
     fn begin(path: PathBuf, header: &RunHeader) -> Result<Self, FileError>;
 
-    /// Goes on at a mark; nothing is cut yet. `notes` take up what is out of the ordinary.
+    /// Resumes at a mark without truncating yet. Appends unusual findings to `notes`.
     ///
     /// # Errors
-    /// If what was there at the mark is not there any more, the file is a link, or the system does not let it be read and written.
+    /// If the bytes before the mark have changed, the file is a link, or the system refuses to read or write it.
     fn resume(
         path: PathBuf,
         header: &RunHeader,
@@ -43,52 +43,52 @@ pub trait Sink: Send + Sized + 'static {
         notes: &mut Vec<String>,
     ) -> Result<Self, GrowingFileError>;
 
-    /// Cuts off what a resumed file has after its mark; to be called once it is certain that the run goes on.
+    /// Truncates a resumed file at its mark; to be called once it is certain that the run resumes.
     ///
     /// # Errors
-    /// If the system does not let it be cut.
+    /// If the system refuses to truncate it.
     fn cut(&mut self) -> Result<(), FileError>;
 
-    /// Returns what is added of a moment; none where there is nothing to add.
+    /// Returns the data to add for a moment, if any.
     fn entry(moment: &RunMoment<'_>) -> Option<Self::Entry>;
 
-    /// Adds an entry. Those of frames are written by a thread of their own while the run goes on.
+    /// Adds an entry. A separate thread writes entries of frames while the run continues.
     ///
     /// # Errors
-    /// Those of the file; also if something else has cut or lengthened it.
+    /// Errors of the file; also if another program has changed its length.
     fn write(&mut self, entry: Self::Entry) -> io::Result<()>;
 
-    /// Returns when all that was added is on the disk, and says how far that is.
+    /// Syncs everything added to the disk and returns the mark.
     ///
     /// # Errors
-    /// If the system does not let it be written, or the file has been removed, replaced or changed meanwhile.
+    /// If the system refuses to write it, or the file has been removed, replaced or changed meanwhile.
     fn mark(&mut self) -> Result<Mark, FileError>;
 }
 
-/// Content of a text file that grows.
+/// Content of a growing text file.
 pub trait TextFormat: Send + 'static {
-    /// As of [`Sink`].
+    /// Occasion, see [`Sink`].
     const DUE: Due = Due::Frame;
 
-    /// As of [`Sink`].
+    /// Data of a moment, see [`Sink`].
     type Entry: Send + 'static;
 
-    /// Returns the first line, where one names the columns.
+    /// Returns the first line, if it names columns.
     fn heading(_header: &RunHeader) -> Option<String> {
         None
     }
 
-    /// As of [`Sink`].
+    /// Data of a moment, see [`Sink`].
     fn entry(moment: &RunMoment<'_>) -> Option<Self::Entry>;
 
-    /// As of [`Sink`].
+    /// Writes an entry, see [`Sink`].
     ///
     /// # Errors
-    /// Those of the file.
+    /// Errors of the file.
     fn write(entry: Self::Entry, out: &mut GrowingFile) -> io::Result<()>;
 }
 
-/// A file of text.
+/// Growing text file.
 #[derive(Debug)]
 pub struct TextSink<T>(GrowingFile, PhantomData<T>);
 

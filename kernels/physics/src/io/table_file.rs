@@ -1,4 +1,4 @@
-//! Tables in CSV that grow with a run: a row for a moment that is observed, and a row for an event.
+//! CSV tables that grow during a run: rows of observables and rows of events.
 
 use super::growing_file::GrowingFile;
 use super::run_moment::{RunHeader, RunMoment};
@@ -38,7 +38,7 @@ impl TextFormat for ObservedRows {
     }
 }
 
-/// Rows of events, as the method says them.
+/// Rows of events, as formatted by the method.
 #[derive(Debug)]
 pub(crate) struct EventRows;
 

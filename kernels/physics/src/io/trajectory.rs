@@ -1,4 +1,4 @@
-//! The frames of a run, whichever of its files has them.
+//! Frames of a run, from any of its files that has them.
 
 use super::FORMATS;
 use super::extxyz::Frame;
@@ -9,16 +9,16 @@ use std::path::{Path, PathBuf};
 pub enum FrameReading {
     /// Opens a file.
     Opens(fn(&Path) -> Result<FrameReader, TrajectoryError>),
-    /// Frames are not read: they lack something.
+    /// Frames cannot be read: they lack this property.
     Lacks(&'static str),
-    /// Frames are not read.
+    /// Frames cannot be read.
     Never,
 }
 
-/// Frames one after the other; ends after the first that is wrong.
+/// Iterator over frames; ends after the first wrong one.
 pub(crate) type FrameReader = Box<dyn Iterator<Item = Result<Frame, TrajectoryError>> + Send>;
 
-/// Returns frames of a format as those of a run.
+/// Converts an iterator over frames of a format.
 pub(crate) fn reader<E: Into<TrajectoryError>>(
     frames: impl Iterator<Item = Result<Frame, E>> + Send + 'static,
 ) -> FrameReader {
@@ -29,27 +29,27 @@ pub(crate) fn reader<E: Into<TrajectoryError>>(
 #[derive(Debug, thiserror::Error)]
 #[error("{words}")]
 pub struct TrajectoryError {
-    /// The file.
+    /// Path of the file.
     pub file: PathBuf,
-    /// The line of the first mistake, from 1, where the file has lines.
+    /// Line of the first mistake, from 1, if the file has lines.
     pub line: Option<usize>,
-    /// True where the system did not let the file be read.
+    /// True if the system refused to read the file.
     pub is_of_system: bool,
-    /// The message, with file and place.
+    /// Message with file and location.
     pub words: String,
 }
 
-/// The frames of a run, one after the other; ends after the first that is wrong.
+/// Iterator over the frames of a run; ends after the first wrong one.
 pub struct Trajectory {
     path: PathBuf,
     frames: FrameReader,
 }
 
 impl Trajectory {
-    /// Opens the frames of the run in a folder: the first file of a format that is read again and that has any.
+    /// Opens the frames of the run in a folder: the first file of a readable format that is not empty.
     ///
     /// # Errors
-    /// If the system does not let them be read, or the file is none of its kind.
+    /// If the system refuses to read them, or the file has another format.
     pub fn open(folder: &Path) -> Result<Trajectory, TrajectoryError> {
         let opener = |reading: &FrameReading| match reading {
             FrameReading::Opens(open) => Some(*open),
@@ -58,12 +58,12 @@ impl Trajectory {
         let files = FORMATS.iter().filter_map(|it| Some((folder.join(it.file), opener(&it.reading)?)));
         let files: Vec<_> = files.collect();
         let has_any = |path: &Path| fs::metadata(path).is_ok_and(|file| file.len() > 0);
-        // Every run has the first of them.
+        // Every run has the first file.
         let found = files.iter().find(|(path, _)| has_any(path)).unwrap_or(&files[0]);
         Ok(Trajectory { frames: found.1(&found.0)?, path: found.0.clone() })
     }
 
-    /// The file that has them.
+    /// Path of the file with the frames.
     pub fn path(&self) -> &Path {
         &self.path
     }

@@ -1,4 +1,4 @@
-//! Contacts and sums over them, one after the other in the order of the discs: what every faster way is held against.
+//! Contacts and sums over them in the order of the discs: the sequential reference for faster versions.
 
 use crate::domain::Domain;
 use crate::near::Near;
@@ -7,21 +7,21 @@ use std::ops::Range;
 use stripmine_kernels::law::granular::{Contact, Disc, Granular};
 use stripmine_kernels::sweep::pair::{Body, Pair};
 
-/// What is summed up over the contacts with at least one grain.
+/// Sums over the contacts with at least one grain.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactSums {
-    /// How many.
+    /// Number of contacts.
     pub count: u64,
-    /// The energy that they store.
+    /// Stored energy.
     pub elastic: f64,
-    /// (r_i − r_j)·F_i of those between grains (energy), damping included.
+    /// Sum of (r_i − r_j)·F_i over contacts between grains (energy), damping included.
     pub virial: f64,
-    /// The deepest (fraction of the sum of the radii).
+    /// Deepest contact (fraction of the sum of the radii).
     pub deepest: f64,
 }
 
 impl ContactSums {
-    /// Over the contacts of some grains with the discs behind each of them.
+    /// Sums over the contacts of some grains with the discs after each of them.
     pub(super) fn over(grains: Range<usize>, discs: &Placed<'_>, contact: &Contact) -> ContactSums {
         let mut sums = ContactSums::default();
         discs.each_contact(grains, |i, j, penetration, reach| {
@@ -35,7 +35,7 @@ impl ContactSums {
         sums
     }
 
-    /// Those of grains that follow.
+    /// Adds the sums of grains that follow.
     pub(super) fn join(&mut self, more: &ContactSums) {
         self.count += more.count;
         self.elastic += more.elastic;
@@ -44,17 +44,17 @@ impl ContactSums {
     }
 }
 
-/// Discs, grains first, by their places inside the box.
+/// Discs, grains first, with their positions inside the box.
 pub(super) struct Placed<'a> {
     domain: Domain,
     all: &'a [Particle],
-    /// Inside the box (length).
+    /// Positions inside the box (length).
     places: Vec<[f64; 2]>,
     near: Near,
 }
 
 impl<'a> Placed<'a> {
-    /// Particles, also where they stand beyond a periodic side.
+    /// Wraps the particles and sorts them for neighbour searches.
     pub(super) fn new(particles: &'a Particles, domain: &Domain) -> Self {
         let all = particles.all();
         let places: Vec<[f64; 2]> = all.iter().map(|disc| domain.wrapped(disc.place())).collect();
@@ -63,12 +63,12 @@ impl<'a> Placed<'a> {
         Placed { domain: *domain, all, places, near }
     }
 
-    /// Where a disc is (length).
+    /// Position of a disc inside the box (length).
     pub(super) fn place(&self, disc: usize) -> [f64; 2] {
         self.places[disc]
     }
 
-    /// Calls `take(i, j, penetration, sum of the radii)` for each contact of some grains `i` with discs `j` behind them.
+    /// Calls `take(i, j, penetration, sum of the radii)` for each contact of some grains `i` with discs `j` after them.
     fn each_contact(&self, grains: Range<usize>, mut take: impl FnMut(usize, usize, f64, f64)) {
         let mut near: Vec<usize> = Vec::new();
         for i in grains {
@@ -86,8 +86,7 @@ impl<'a> Placed<'a> {
         }
     }
 
-    /// (r_i − r_j)·F_i of two grains in contact (energy). Friction acts across the way between the centres and has no part in
-    /// it.
+    /// Virial (r_i − r_j)·F_i of two grains in contact (energy). Friction is perpendicular to the line of centres and does not contribute.
     fn virial(&self, contact: &Contact, i: usize, j: usize) -> f64 {
         let [own, partner] = [&self.all[i], &self.all[j]];
         let body = |particle: &Particle, [x, y]: [f64; 2]| Body {
@@ -96,17 +95,17 @@ impl<'a> Placed<'a> {
             inverse_mass: 1.0 / particle.mass,
             ..Body::at(x, y)
         };
-        // The law reads each disc's own radius and mass.
+        // The law reads radius and mass of each disc from the pair.
         let alike = Disc { radius: own.radius, inverse_mass: 1.0 / own.mass };
         let law = Granular::<false, false> { contact: *contact, disc: alike };
-        // From the partner to the own disc: each has the velocity of its own place.
+        // Each disc has the velocity of its own position.
         let apart = self.domain.displacement(self.places[j], self.places[i]);
         Pair { bodies: [body(own, apart), body(partner, [0.0; 2])] }.energy_and_virial(&law)[1]
     }
 }
 
-/// Pairs in contact with at least one grain: the two, the penetration (fraction of the sum of the radii) and that sum
-/// (length). In order of the first disc, then of the second.
+/// Lists pairs in contact with at least one grain: the two indices, the penetration (fraction of the sum of the radii) and that sum (length), in
+/// order of the first disc, then of the second.
 pub fn contacts(particles: &Particles, domain: &Domain) -> Vec<(usize, usize, f64, f64)> {
     let mut found = Vec::new();
     let discs = Placed::new(particles, domain);

@@ -3,34 +3,34 @@
 use super::{AxisMotion, Scenery};
 use crate::particles::Particle;
 
-/// What is summed up over the grains as they stand.
+/// Sums over the grains at one moment.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GrainSums {
-    /// How many.
+    /// Number of grains.
     pub count: u64,
-    /// Mass.
+    /// Total mass.
     pub mass: f64,
-    /// Kinetic energy of their translation.
+    /// Kinetic energy of translation.
     pub kinetic: f64,
     /// Σ m v² along x and y (energy).
     pub(crate) twice_kinetic: [f64; 2],
-    /// Kinetic energy of their rotation.
+    /// Kinetic energy of rotation.
     pub rotational: f64,
-    /// Potential energy in gravity, from the box's corner.
+    /// Potential energy in gravity, relative to the box's corner.
     pub gravitational: f64,
-    /// Momentum (mass · length/time).
+    /// Total momentum (mass · length/time).
     pub momentum: [f64; 2],
-    /// Velocity (length/time).
+    /// Sum of the velocities (length/time).
     pub velocity: [f64; 2],
-    /// Square of the velocity (length²/time²).
+    /// Sum of the squared velocities (length²/time²).
     pub square: f64,
-    /// What gravity has put in since the start (energy).
+    /// Work of gravity since the start (energy).
     pub(crate) gravity_work: f64,
 }
 
 impl GrainSums {
-    /// Adds a grain of the mass and radius of `grain` with a velocity (length/time) and a spin (1/time); `place` gives where it
-    /// is inside the box (length), and is asked only where there is gravity.
+    /// Adds a grain of the mass and radius of `grain` with a velocity (length/time) and a spin (1/time). `place` returns its position inside the
+    /// box (length); it is called with gravity only.
     #[inline]
     pub fn add(
         &mut self,
@@ -68,7 +68,7 @@ impl GrainSums {
             .map(|axis| AxisMotion { twice_kinetic: self.twice_kinetic[axis], momentum: self.momentum[axis] })
     }
 
-    /// Those of grains that follow.
+    /// Adds the sums of grains that follow.
     pub fn join(&mut self, more: &GrainSums) {
         self.count += more.count;
         self.mass += more.mass;

@@ -1,4 +1,4 @@
-//! What is measured of particles, whatever method moves them.
+//! Observables of particles, independent of the method.
 
 mod contacts;
 mod grains;
@@ -18,12 +18,12 @@ use std::ops::Range;
 use stripmine_kernels::law::granular::Contact;
 use stripmine_kernels::over_parts;
 
-/// The scene as observers see it.
+/// Properties of a scene that observables depend on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scenery {
-    /// The box.
+    /// Box.
     pub domain: Domain,
-    /// The contact law.
+    /// Contact law.
     pub contact: Contact,
     /// Acceleration of gravity (length/time²).
     pub gravity: [f64; 2],
@@ -31,50 +31,49 @@ pub struct Scenery {
     pub inertia_factor: f64,
 }
 
-/// One observation. Energies in mass · length²/time².
+/// Observables of one moment. Energies in mass · length²/time².
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Observation {
-    /// The step.
+    /// Number of the step.
     pub step: u64,
-    /// The time.
+    /// Simulated time.
     pub time: f64,
     /// Kinetic energy of the grains' translation.
     pub kinetic: f64,
-    /// Kinetic energy of their rotation.
+    /// Kinetic energy of the grains' rotation.
     pub rotational: f64,
-    /// Energy that contacts store, as their spring has it.
+    /// Elastic energy of the contacts.
     pub elastic: f64,
-    /// Potential energy in gravity, from the box's corner; jumps where a grain crosses a periodic side along gravity.
+    /// Potential energy in gravity, relative to the box's corner; jumps when a grain crosses a periodic side along gravity.
     pub gravitational: f64,
     /// Momentum of the grains along x (mass · length/time).
     pub momentum_x: f64,
     /// Momentum of the grains along y.
     pub momentum_y: f64,
-    /// Temperature of the grains' translation (`temperature()`), about the mean motion along periodic axes.
+    /// Temperature of the grains' translation (`temperature()`), relative to the mean motion along periodic axes.
     pub temperature: f64,
-    /// Pressure of the grains (force/length): (K + ½ Σ F_N |r_i − r_j|)/A over the contacts between grains, with their kinetic energy K
-    /// about the mean motion along periodic axes and the area A of the whole box.
+    /// Pressure of the grains (force/length): (K + ½ Σ F_N |r_i − r_j|)/A over the contacts between grains, with their kinetic energy K relative to
+    /// the mean motion along periodic axes and the area A of the whole box.
     pub pressure: f64,
     /// Mean velocity of the grains along gravity, or along x without gravity (length/time).
     pub flow: f64,
-    /// The deepest contact (fraction of the sum of the radii).
+    /// Deepest contact (fraction of the sum of the radii).
     pub deepest_penetration: f64,
-    /// Contacts with at least one grain.
+    /// Number of contacts with at least one grain.
     pub contacts: u64,
 }
 
-/// What is summed up over the discs of a moment, once: all that is observed of them is read off these.
+/// Sums over the discs of a moment, computed once for all observables.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sums {
-    /// Over the grains.
+    /// Sums over the grains.
     pub grains: GrainSums,
-    /// Over the contacts.
+    /// Sums over the contacts.
     pub contacts: ContactSums,
 }
 
 impl Sums {
-    /// Of particles as a state has them, part by part on all threads. `work` gives what gravity has done to a grain, by its number,
-    /// and is asked only where there is gravity.
+    /// Sums over particles, in parallel by tasks. `work` returns the work of gravity on a grain, by its number; it is called with gravity only.
     pub(crate) fn over_parts(
         particles: &Particles,
         scenery: &Scenery,
@@ -92,7 +91,7 @@ impl Sums {
         sums
     }
 
-    /// Over some grains, one after the other.
+    /// Sums over some grains, one after the other.
     fn over(
         grains: Range<usize>,
         discs: &Placed<'_>,
@@ -113,13 +112,13 @@ impl Sums {
 }
 
 impl Observation {
-    /// Observes particles, one after the other.
+    /// Observes particles sequentially.
     pub fn of(step: u64, time: f64, particles: &Particles, scenery: &Scenery) -> Observation {
         let (discs, grains) = (Placed::new(particles, &scenery.domain), 0..particles.grain_count());
         Observation::new(step, time, &Sums::over(grains, &discs, particles, scenery, |_, _, _| 0.0), scenery)
     }
 
-    /// What sums say.
+    /// Observation from sums.
     pub fn new(step: u64, time: f64, sums: &Sums, scenery: &Scenery) -> Observation {
         let Sums { grains, contacts } = sums;
         let [momentum_x, momentum_y] = grains.momentum;
@@ -152,7 +151,7 @@ impl Observation {
         seen
     }
 
-    /// All energy there is.
+    /// Total energy.
     pub fn energy(&self) -> f64 {
         self.kinetic + self.rotational + self.elastic + self.gravitational
     }

@@ -1,4 +1,4 @@
-//! Temperature and energy error: the definitions that all methods share.
+//! Temperature and energy error: the definitions shared by all methods.
 
 use crate::domain::Domain;
 
@@ -11,11 +11,11 @@ pub struct AxisMotion {
     pub momentum: f64,
 }
 
-/// Temperature kT by equipartition: Σ m v² over the degrees of freedom that move thermally.
+/// Temperature kT by equipartition: Σ m v² over the thermal degrees of freedom.
 ///
-/// Along an axis whose momentum is `conserved` (see [`conserved_axes`]) the mean motion is no heat: it is subtracted and `count` − 1 degrees of
-/// freedom are left; along the others all `count` move. `mass` is that of all particles. Without a degree of freedom (a single particle
-/// in a periodic box) there is no temperature, and the value is NaN.
+/// Along an axis whose momentum is `conserved` (see [`conserved_axes`]) the mean motion is not thermal: it is subtracted and `count` − 1 degrees of
+/// freedom are left; along the others there are `count`. `mass` is that of all particles. Without a degree of freedom (a single particle in a
+/// periodic box) the value is NaN.
 pub(crate) fn temperature(motion: [AxisMotion; 2], conserved: [bool; 2], mass: f64, count: f64) -> f64 {
     let (mut heat, mut freedoms) = (0.0, 0.0);
     for (AxisMotion { twice_kinetic, momentum }, conserved) in motion.into_iter().zip(conserved) {
@@ -25,16 +25,16 @@ pub(crate) fn temperature(motion: [AxisMotion; 2], conserved: [bool; 2], mass: f
     if freedoms > 0.0 { heat.max(0.0) / freedoms } else { f64::NAN }
 }
 
-/// Axes along which particles without a bath keep a mean motion: the periodic ones. A closed side gives momentum back to the box.
+/// Axes along which particles without a bath conserve their mean motion: the periodic ones. A closed side transfers momentum to the box.
 pub(crate) fn conserved_axes(domain: &Domain) -> [bool; 2] {
     domain.periodic()
 }
 
-/// Error of the energy relative to the scale of the energies at the start.
+/// Error of the energy relative to the scale of the initial energies.
 ///
-/// `change` is the total energy (kinetic and every potential term) less that of the start and less the work done on the
-/// particles since. The scale is the larger of |E| and the kinetic energy at the start, so it does not vanish where E does (two bodies on a parabola); where
-/// both vanish it is the kinetic energy now.
+/// `change` is the total energy (kinetic and every potential term) minus its initial value and minus the work done on the particles since. The
+/// scale is the larger of |E| and the kinetic energy at the start, so it does not vanish where E does (two bodies on a parabola). If both vanish,
+/// it is the present kinetic energy.
 pub(crate) fn relative_energy_error(change: f64, start: f64, kinetic_at_start: f64, kinetic: f64) -> f64 {
     let scale = start.abs().max(kinetic_at_start);
     match (scale > 0.0, kinetic > 0.0) {
@@ -48,7 +48,7 @@ pub(crate) fn relative_energy_error(change: f64, start: f64, kinetic_at_start: f
 mod tests {
     use super::*;
 
-    /// By hand: masses 1 and 3 with velocities (1, 2) and (−1, 0); Σ m v² = (4, 4), Σ m v = (−2, 2).
+    /// Hand calculation: masses 1 and 3 with velocities (1, 2) and (−1, 0); Σ m v² = (4, 4), Σ m v = (−2, 2).
     #[test]
     fn temperature_counts_the_degrees_of_freedom_that_move() {
         let motion = [

@@ -1,9 +1,9 @@
-//! Density waves along an axis: what tells them from an even spread.
+//! Density waves along an axis, and statistics that distinguish them from a uniform distribution.
 
 use serde::Serialize;
 use std::f64::consts::TAU;
 
-/// How many places lie in each of `bins` equal parts of `0..length`. What lies at a rim, or beyond, is in the bin there.
+/// Histogram of positions in `bins` equal parts of `0..length`. Positions at an end or beyond are counted in the bin there.
 pub fn histogram(places: impl IntoIterator<Item = f64>, length: f64, bins: usize) -> Vec<u32> {
     let mut counts = vec![0; bins];
     for place in places {
@@ -12,16 +12,16 @@ pub fn histogram(places: impl IntoIterator<Item = f64>, length: f64, bins: usize
     counts
 }
 
-/// Variance over mean of counts, the Fano factor: 1 where particles are independent, less where they keep their
-/// distance, more where they gather. The variance is that of the counts themselves (divided by their number).
+/// Fano factor of counts, their variance over their mean: 1 for independent particles, less if they repel, more if they cluster. The variance is
+/// that of the counts themselves (divided by their number).
 pub fn fano(counts: &[u32]) -> f64 {
     let n = counts.len() as f64;
     let mean = counts.iter().sum::<u32>() as f64 / n;
     counts.iter().map(|&count| (f64::from(count) - mean).powi(2)).sum::<f64>() / n / mean
 }
 
-/// The strongest Fourier amplitude of the density at wavelengths from `shortest` on, as a fraction of the particles:
-/// 1 if all stand at distances of one wavelength, about 1/√N if they stand anywhere.
+/// Largest Fourier amplitude of the density at wavelengths from `shortest` on, as a fraction of the particles: 1 if all are one wavelength apart,
+/// about 1/√N for random positions.
 pub fn strongest_mode(places: &[f64], length: f64, shortest: f64) -> f64 {
     let amplitude = |mode: usize| {
         let turn = TAU * mode as f64 / length;
@@ -34,26 +34,26 @@ pub fn strongest_mode(places: &[f64], length: f64, shortest: f64) -> f64 {
     (1..=(length / shortest) as usize).map(amplitude).fold(0.0, f64::max)
 }
 
-/// Which way waves run: the spectral power at wavelengths from `shortest` on, and its shares.
+/// Directions of waves: the spectral power at wavelengths from `shortest` on, and the fractions of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Directions {
-    /// The mean over wavelengths and times of |Σ exp(ikx)|²/N: 1 where particles are independent.
+    /// Mean over wavelengths and times of |Σ exp(ikx)|²/N: 1 for independent particles.
     pub power: f64,
-    /// Of waves that run towards lower places.
+    /// Fraction of waves that move towards lower positions.
     pub back: f64,
-    /// Of what is the same all the time.
+    /// Fraction that is constant in time.
     pub standing: f64,
-    /// Of waves that run towards higher places.
+    /// Fraction of waves that move towards higher positions.
     pub forth: f64,
-    /// What would run towards lower and towards higher places if each wavelength had one wave of the same strength at all times, that runs at
-    /// the mean rate of that wavelength: a wave that grows and decays has some of its power the other way.
+    /// Fractions towards lower and towards higher positions of a single wave for each wavelength, with the same strength at all times and the mean
+    /// phase velocity of that wavelength. A wave that grows and decays has some power in the opposite direction.
     pub of_one_wave: [f64; 2],
 }
 
-/// Which way the waves run in counts taken at equal intervals of time, all with the same bins of `0..length`.
+/// Directions of the waves in counts taken at equal intervals of time, all with the same bins of `0..length`.
 ///
-/// The density of each wavelength is a complex number that turns one way or the other: a density f(x − ct) turns by
-/// −kc a second.
+/// The density of each wavelength is a complex number that rotates in one direction or the other: a density f(x − ct) rotates by −kc for each unit
+/// of time.
 pub fn directions(looks: &[Vec<u32>], length: f64, shortest: f64) -> Directions {
     let ([mut back, mut standing, mut forth], mut one_wave) = ([0.0; 3], [0.0; 3]);
     let times = looks.len();
@@ -80,13 +80,13 @@ pub fn directions(looks: &[Vec<u32>], length: f64, shortest: f64) -> Directions 
     }
 }
 
-/// The spectral power of a wavelength that runs back, stands, and runs forth.
+/// Spectral power of a wavelength that moves backwards, stands, and moves forwards.
 fn powers(amplitudes: &[[f64; 2]]) -> [f64; 3] {
     let times = amplitudes.len();
     let mut powers = [0.0; 3];
     for frequency in 0..times {
         let [re, im] = transform(frequency, amplitudes.iter().copied());
-        // Frequencies above the half stand for negative ones.
+        // Frequencies above the half are negative ones.
         let way = match frequency {
             0 => 1,
             _ if 2 * frequency < times => 0,
@@ -97,7 +97,7 @@ fn powers(amplitudes: &[[f64; 2]]) -> [f64; 3] {
     powers
 }
 
-/// A wave of the same magnitude at all times that turns by the mean angle of these from look to look.
+/// Wave with the same magnitudes as these at all times and their mean phase change between samples.
 fn of_one_wave(amplitudes: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let turned = amplitudes.windows(2).fold([0.0; 2], |[re, im], pair| {
         let [[a, b], [c, d]] = [pair[0], pair[1]];
@@ -112,7 +112,7 @@ fn of_one_wave(amplitudes: &[[f64; 2]]) -> Vec<[f64; 2]> {
     amplitudes.iter().enumerate().map(at).collect()
 }
 
-/// One component of the discrete Fourier transform.
+/// Component of the discrete Fourier transform.
 fn transform(frequency: usize, values: impl ExactSizeIterator<Item = [f64; 2]>) -> [f64; 2] {
     let turn = -TAU * frequency as f64 / values.len() as f64;
     values.enumerate().fold([0.0; 2], |[re, im], (i, [a, b])| {
@@ -125,7 +125,7 @@ fn transform(frequency: usize, values: impl ExactSizeIterator<Item = [f64; 2]>) 
 mod tests {
     use super::*;
 
-    /// Counts of a wave of two wavelengths along the bins that moves by `shift` bins a look.
+    /// Counts of a wave with two wavelengths along the bins that moves by `shift` bins between samples.
     fn wave(shift: i32) -> Vec<Vec<u32>> {
         let count = |look: i32, bin: i32| {
             10 + (8.0 * (TAU * f64::from(bin - shift * look) / 16.0).cos()).round() as u32
@@ -139,7 +139,7 @@ mod tests {
             let Directions { power, back, standing, forth, of_one_wave } =
                 directions(&wave(shift), 32.0, 8.0);
             assert!((of_one_wave[0] - back).abs() < 1e-2 && (of_one_wave[1] - forth).abs() < 1e-2, "{shift}");
-            // The mean over looks and wavelengths, as it is defined.
+            // Mean over samples and wavelengths, as defined.
             let looks = wave(shift);
             let strength = |counts: &[u32], mode: f64| {
                 let angle = |bin: usize| TAU * mode * bin as f64 / 32.0;
@@ -159,8 +159,8 @@ mod tests {
         }
     }
 
-    /// A wave that runs back and comes and goes has power forth, and so has the one wave of the same strength; two waves that run both ways
-    /// have more of it than one wave has.
+    /// A backward wave that grows and decays has forward power, and so has the single wave of the same strength; two opposite waves have more
+    /// forward power than a single wave.
     #[test]
     fn what_comes_and_goes_is_told_from_what_runs_both_ways() {
         let looks = |of: fn(f64, f64) -> f64| -> Vec<Vec<u32>> {
@@ -180,7 +180,7 @@ mod tests {
     #[test]
     fn an_even_spread_has_no_variance_and_a_heap_has_all_of_it() {
         assert_eq!(fano(&histogram((0..40).map(|i| 0.05 + 0.1 * f64::from(i)), 4.0, 4)), 0.0);
-        // Everything in one of four bins: mean 10, variance (30² + 3·10²)/4.
+        // All in one of four bins: mean 10, variance (30² + 3·10²)/4.
         assert_eq!(fano(&histogram([0.5; 40], 4.0, 4)), 30.0);
     }
 

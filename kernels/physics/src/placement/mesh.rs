@@ -1,17 +1,17 @@
-//! Places of a mesh, drawn at random.
+//! Random sites of a mesh.
 
 use rand::RngExt;
 use std::collections::HashMap;
 use stripmine_kernels::noise::{Purpose, Stream};
 
-/// `count` different places of a mesh of some columns and rows, every choice and order equally likely (Fisher and Yates). Takes
-/// memory for the places drawn, not for the mesh: of the shuffled list only the entries that were exchanged are kept.
+/// Draws `count` different sites of a mesh of some columns and rows, every choice and order equally likely (Fisher and Yates). Memory grows with
+/// the sites drawn, not with the mesh: only exchanged entries of the shuffled list are stored.
 ///
 /// # Panics
-/// If there are fewer places.
+/// If there are fewer sites.
 pub(crate) fn mesh([columns, rows]: [usize; 2], count: usize, seed: u64) -> Vec<[usize; 2]> {
     let places = columns * rows;
-    assert!(count <= places, "{count} of {places} places");
+    assert!(count <= places, "{count} of {places} sites");
     let mut random = Stream::new(seed, Purpose::Placement, 0);
     let mut exchanged = HashMap::new();
     let mut draw = |drawn: usize| {
@@ -28,7 +28,7 @@ pub(crate) fn mesh([columns, rows]: [usize; 2], count: usize, seed: u64) -> Vec<
 mod tests {
     use super::*;
 
-    /// The same places as by a list of all that is shuffled, for meshes of one place to many, a few of them drawn or all.
+    /// Sites equal those of a shuffled list of all, for meshes of one site to many, with a few or all of them drawn.
     #[test]
     fn places_are_those_of_the_shuffled_list() {
         for (columns, rows, count) in [(1, 1, 1), (7, 5, 35), (7, 5, 1), (30, 40, 600), (500, 300, 90)] {
@@ -45,7 +45,7 @@ mod tests {
         }
     }
 
-    /// No place twice, all of them if all are asked for, and each as often as any other in each turn: χ² of 9999 draws of 3 of 6.
+    /// Sites are drawn at most once, and all of them if all are asked for. Each is equally likely in each turn: χ² of 9999 draws of 3 of 6.
     #[test]
     fn places_are_different_and_all_alike() {
         let mut all = mesh([7, 5], 35, 4);
@@ -61,7 +61,7 @@ mod tests {
         }
         let expected = draws as f64 / 6.0;
         for turn in counts {
-            // Five degrees of freedom: one of a thousand is above 20.5.
+            // Five degrees of freedom: χ² exceeds 20.5 with probability 0.001.
             let square: f64 = turn.iter().map(|count: &f64| (count - expected).powi(2) / expected).sum();
             assert!(square < 20.5, "{square}");
         }

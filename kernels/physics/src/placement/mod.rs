@@ -1,4 +1,4 @@
-//! Initial states: where discs are and how fast they start.
+//! Initial positions and velocities.
 
 mod mesh;
 mod random;
@@ -14,20 +14,20 @@ use crate::particles::{Kind, Particle, Particles, in_space};
 use rand::RngExt;
 use stripmine_kernels::noise::{Purpose, Stream, normals};
 
-/// A periodic box filled with equal discs.
+/// Periodic box filled with equal discs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Packing {
-    /// The discs.
+    /// Discs of the packing.
     pub particles: Particles,
     /// Sides of the box (length).
     pub sides: [f64; 2],
 }
 
-/// `least` or a few more discs of diameter 1 and mass 1 on a hexagonal lattice of the given packing fraction, in a box
-/// as square as whole rows allow; each shifted at random by at most 0.45 of the gap, with Maxwell velocities of
-/// temperature `kt` (mass · length²/time²) and no net momentum, without spin.
+/// Places `least` or a few more discs of diameter 1 and mass 1 on a hexagonal lattice of the given packing fraction, in a box as square as whole
+/// rows allow. Each disc is shifted at random by at most 0.45 of the gap. Velocities are Maxwellian of temperature `kt` (mass · length²/time²)
+/// without net momentum; discs do not spin.
 pub fn hexagonal(least: usize, packing_fraction: f64, kt: f64, seed: u64) -> Packing {
-    // A disc's share of the plane is spacing² √3/2.
+    // Area of the plane for each disc: spacing² √3/2.
     let spacing = (std::f64::consts::PI / (2.0 * 3f64.sqrt() * packing_fraction)).sqrt();
     let row_height = spacing * 3f64.sqrt() / 2.0;
     // Rows come in pairs, so that the pattern closes across the periodic side.

@@ -7,17 +7,17 @@ use rand::distr::Distribution;
 use rand::{Rng, RngExt};
 use stripmine_kernels::noise::{Purpose, Stream, normals};
 
-/// What is placed where.
+/// Specification of a random placement.
 #[derive(Clone, Debug)]
 pub(crate) struct Filling<'a> {
-    /// The box.
+    /// Box of the placement.
     pub domain: Domain,
-    /// Lower and upper corner of the room for discs, surfaces included (length). Along a periodic side that it spans
-    /// wholly, centres may be anywhere.
+    /// Lower and upper corner of the region for discs, surfaces included (length). Centres may be anywhere along a periodic side that the region
+    /// spans.
     pub room: [[f64; 2]; 2],
-    /// Discs that are there already.
+    /// Discs already placed.
     pub(crate) obstacles: &'a [Particle],
-    /// How many discs.
+    /// Number of discs.
     pub count: usize,
     /// Mean radius (length).
     pub radius: f64,
@@ -27,39 +27,39 @@ pub(crate) struct Filling<'a> {
     pub cut: f64,
     /// Discs of a second mean radius among them.
     pub second: Second,
-    /// Mass of a disc of the mean radius; others have it times (R/mean)².
+    /// Mass of a disc of the mean radius; masses scale as (R/mean)².
     pub mass: f64,
     pub seed: u64,
 }
 
-/// A second kind of discs, spread evenly over the ids.
+/// Second kind of discs, spread evenly over the ids.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Second {
-    /// Its mean radius (length).
+    /// Mean radius (length).
     pub radius: f64,
-    /// Its share of the number of discs, from 0 to 1.
+    /// Fraction of the number of discs, from 0 to 1.
     pub share: f64,
 }
 
 impl Second {
-    /// Whether the disc of an id, from 1 on, is of this kind: of any first n discs ⌊n · share⌋ are.
+    /// True if the disc of an id, from 1 on, is of this kind: ⌊n · share⌋ of the first n discs are.
     pub(crate) fn has(&self, id: u32) -> bool {
         let up_to = |count: u32| (f64::from(count) * self.share).floor();
         up_to(id) > up_to(id - 1)
     }
 
-    /// The mean of the squared mean radii of both kinds, the first of radius `first` (length²).
+    /// Mean of the squared mean radii of both kinds, the first of radius `first` (length²).
     pub(crate) fn mean_square(&self, first: f64) -> f64 {
         (1.0 - self.share) * first * first + self.share * self.radius * self.radius
     }
 
-    /// The larger of the mean radii that there are, the first being `first` (length).
+    /// Larger of the mean radii in use, the first being `first` (length).
     pub(crate) fn largest(&self, first: f64) -> f64 {
         if self.share > 0.0 { first.max(self.radius) } else { first }
     }
 }
 
-/// Random placement found no room.
+/// Failure of the random placement to find free space.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("random placement found room for {placed} of {asked} discs; the next found none in {tries} tries")]
 pub(crate) struct Jammed {
@@ -67,17 +67,17 @@ pub(crate) struct Jammed {
     pub placed: usize,
     /// Discs asked for.
     pub asked: usize,
-    /// Tries for the one that found no room.
+    /// Tries for the disc that found no space.
     pub(crate) tries: usize,
 }
 
-/// Tries for one disc. Near saturation one in some ten thousand succeeds.
+/// Tries for one disc. Near saturation one in about ten thousand succeeds.
 const TRIES: usize = 200_000;
 
-/// Discs with ids from 1 on, at rest, one after the other where they overlap nothing; a function of the filling alone.
+/// Places discs with ids from 1 on, at rest, one after the other where they overlap nothing. The result depends on the filling alone.
 ///
 /// # Errors
-/// [`Jammed`] if a disc finds no room.
+/// [`Jammed`] if a disc finds no free space.
 pub(crate) fn random(filling: &Filling<'_>) -> Result<Vec<Particle>, Jammed> {
     let Filling { domain, room, obstacles, count, radius: mean, cut, second, mass, seed, .. } = *filling;
     let obstacle = obstacles.iter().map(|disc| disc.radius).fold(0.0, f64::max);
@@ -128,10 +128,10 @@ pub(crate) fn random(filling: &Filling<'_>) -> Result<Vec<Particle>, Jammed> {
     Ok(discs)
 }
 
-/// Gaussian numbers of the given standard deviation, not larger than `cut` in magnitude.
+/// Gaussian numbers of the given standard deviation, at most `cut` in magnitude.
 ///
-/// The distributions of the crate `rand_distr` take logarithms and exponentials of the platform; these are of the portable
-/// `libm`, so that radii are the same bits everywhere.
+/// The distributions of the crate `rand_distr` use the platform's logarithms and exponentials. These use the portable `libm`, so that radii have
+/// the same bits everywhere.
 struct TruncatedNormal {
     deviation: f64,
     cut: f64,
@@ -144,7 +144,7 @@ impl Distribution<f64> for TruncatedNormal {
             return 0.0;
         }
         loop {
-            // Narrow cuts by a flat proposal, wide ones by the Gaussian itself: either is accepted three times in five.
+            // Narrow cuts use a flat proposal, wide ones the Gaussian itself: either is accepted about three times in five.
             let number = if cut < deviation {
                 let flat = random.random_range(-cut..=cut);
                 let z = flat / deviation;
@@ -153,7 +153,7 @@ impl Distribution<f64> for TruncatedNormal {
                 }
                 flat
             } else {
-                // Of (0, 1], where the logarithm exists.
+                // The interval (0, 1], where the logarithm is finite.
                 let radius = (-2.0 * libm::log(1.0 - random.random::<f64>())).sqrt();
                 deviation * radius * libm::cos(random.random_range(0.0..std::f64::consts::TAU))
             };
@@ -164,8 +164,8 @@ impl Distribution<f64> for TruncatedNormal {
     }
 }
 
-/// Gaussian velocities of standard deviation `deviation(disc)` (length/time) for each component, a function of seed and
-/// id; without net momentum if `balanced`.
+/// Gives discs Gaussian velocities of standard deviation `deviation(disc)` (length/time) for each component. They depend on seed and id alone, and
+/// have no net momentum if `balanced`.
 pub(crate) fn stir(discs: &mut [Particle], seed: u64, balanced: bool, deviation: impl Fn(&Particle) -> f64) {
     for disc in discs.iter_mut() {
         disc.velocity = in_space(normals(seed, Purpose::Placement, disc.id, 1).map(|v| v * deviation(disc)));
@@ -198,7 +198,7 @@ mod tests {
         }
     }
 
-    /// Of 40 discs a quarter have the second radius, wherever the count ends, and masses as their areas.
+    /// A quarter of 40 discs has the second radius, evenly spread over the ids, and masses are proportional to areas.
     #[test]
     fn two_kinds_are_mixed_evenly() {
         let second = Second { radius: 0.7, share: 0.25 };
@@ -233,7 +233,7 @@ mod tests {
         assert_ne!(discs, random(&Filling { seed: 10, ..filling }).unwrap());
     }
 
-    /// A change of these bits changes every scene that is placed at random: a new version of `rand` may not bring it unseen.
+    /// A change of these bits changes every scene with a random start; a new version of `rand` must not cause it unnoticed.
     #[test]
     fn the_bits_of_a_start_stay() {
         let mut discs = random(&Filling { count: 40, ..filling() }).unwrap();

@@ -3,22 +3,22 @@
 use crate::domain::Domain;
 use crate::particles::{Kind, Particle, in_space};
 
-/// A row of wall discs along x, across the whole box.
+/// Row of wall discs along x, across the whole box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Row {
     /// Height of the centres (length).
     pub y: f64,
-    /// By how much of the spacing the row is shifted along x.
+    /// Shift of the row along x, in units of the spacing.
     pub shift: f64,
     /// Radius (length).
     pub radius: f64,
-    /// Distance of neighbouring centres (length); the nearest that divides the side of the box is taken.
+    /// Distance of neighbouring centres (length); rounded so that it divides the side of the box.
     pub spacing: f64,
-    /// Mass (mass), which only describes the material.
+    /// Mass; it only describes the material.
     pub mass: f64,
 }
 
-/// The discs of a row, ids from `first_id` on.
+/// Discs of a row, with ids from `first_id` on.
 pub(crate) fn row(domain: &Domain, row: &Row, first_id: u32) -> Vec<Particle> {
     let count = (domain.length(0) / row.spacing).round().clamp(1.0, f64::from(u32::MAX / 4)) as u32;
     let spacing = domain.length(0) / f64::from(count);

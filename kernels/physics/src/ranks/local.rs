@@ -4,10 +4,10 @@ use super::{Parcel, RankError, Ranks};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread;
 
-/// How often it is looked for a message before the thread goes to sleep: to be woken takes longer than most messages do.
+/// Number of polls for a message before the thread sleeps; waking it takes longer than most messages.
 const LOOKS: u32 = 20_000;
 
-/// A rank with a way from and to each other one.
+/// A rank with a channel from and to each other rank.
 pub struct Local {
     rank: usize,
     to: Vec<Sender<Parcel>>,
@@ -15,10 +15,10 @@ pub struct Local {
     looks: u32,
 }
 
-/// As many ranks, each to be given to a thread of its own, which has `threads` threads.
+/// Creates ranks, each for a thread of its own that has `threads` threads.
 pub fn ranks(count: usize, threads: usize) -> Vec<Local> {
     let cores = thread::available_parallelism().map_or(1, usize::from);
-    // Where others need the core it is better to sleep.
+    // Sleeping is better where other threads need the core.
     let looks = if count * threads <= cores { LOOKS } else { 1 };
     let mut ranks: Vec<Local> =
         (0..count).map(|rank| Local { rank, to: vec![], from: vec![], looks }).collect();
@@ -33,9 +33,9 @@ pub fn ranks(count: usize, threads: usize) -> Vec<Local> {
 }
 
 impl Local {
-    /// Sends to a rank. One that has ended is found by waiting for it: what it sent last may name another one that it has lost.
+    /// Sends to a rank. A rank that has ended is detected when it is received from: its last message may name another lost rank.
     fn send(&self, to: usize, parcel: Parcel) {
-        #[expect(clippy::let_underscore_must_use, reason = "the receiver finds that it has ended")]
+        #[expect(clippy::let_underscore_must_use, reason = "the receiver detects that it has ended")]
         let _ = self.to[to].send(parcel);
     }
 
@@ -65,7 +65,7 @@ impl Ranks for Local {
         self.send(below, down);
         self.send(above, up);
         meanwhile();
-        // Of two ranks both messages come from the same one, in the order in which it sent them: down first.
+        // Of two ranks both messages come from the same one, in the order of sending: down first.
         let from_above = self.receive(above)?;
         let from_below = self.receive(below)?;
         Ok([from_below, from_above])
@@ -96,7 +96,7 @@ mod tests {
         Parcel::of(words)
     }
 
-    /// What is sent arrives, at whom and from whom it should, for one rank and for many.
+    /// Messages arrive from and at the right ranks, for one rank and for many.
     #[test]
     fn messages_go_where_they_should() {
         for count in [1, 2, 3, 8] {
@@ -121,7 +121,7 @@ mod tests {
         }
     }
 
-    /// Messages of each kind come from whom they should, as they were sent.
+    /// Messages of each kind come from the right ranks unchanged.
     #[test]
     fn messages_are_opened_by_their_ranks() {
         thread::scope(|scope| {
@@ -132,7 +132,7 @@ mod tests {
                     let all = ranks.gather_messages(own).unwrap();
                     assert_eq!(all, if own == 0 { vec![0, 1, 2] } else { vec![] });
                     assert_eq!(ranks.tell_message((own == 0).then(|| "go on".to_owned())).unwrap(), "go on");
-                    // The second rank sends what is not a number.
+                    // The second rank sends a message that is not a number.
                     let sent = if own == 1 { Parcel(vec![7]) } else { Parcel::of(&own) };
                     let all = ranks.gather(sent).unwrap();
                     let opened: Vec<_> =
@@ -144,7 +144,7 @@ mod tests {
         });
     }
 
-    /// Waiting for a rank that has ended is an error that names it; the others get what was sent to them.
+    /// Receiving from a rank that has ended is an error that names it; the others receive their messages.
     #[test]
     fn a_rank_that_has_ended_is_named() {
         let mut all = ranks(3, 1);
@@ -158,7 +158,7 @@ mod tests {
         assert_eq!(all[0].gather(parcel(&[])), ended);
     }
 
-    /// A rank that has ended is heard to its last message, which may name another that it has lost.
+    /// Messages of a rank arrive after its end: its last one may name another lost rank.
     #[test]
     fn the_last_messages_of_a_rank_are_heard() {
         let mut all = ranks(2, 1);

@@ -1,17 +1,17 @@
-//! Several ranks that carry out one simulation: what they say to each other, whatever carries it.
+//! Several ranks that carry out one simulation: their messages, independent of the transport.
 //!
 //! ```text
-//! halo       to the ranks below and above, in a ring        what stands near them            every step
-//! migrate    from each to each                              who moves over                   now and then
+//! halo       to the ranks below and above, in a ring        particles near the edge          every step
+//! migrate    from each to each                              particles that change rank       occasionally
 //! gather     from each to the first                         sums, in the order of ranks      every step
-//! tell       from the first to all                          what is next, and when to stop   every step
+//! tell       from the first to all                          next moment, and when to stop    every step
 //! ```
 //!
-//! No sum is left to whatever carries the messages: what is gathered is added in an order that depends on the scene alone. So a run has the same bits
-//! on any number of ranks.
+//! No sum is left to the transport. Gathered values are added in an order that depends on the scene alone, so a run has the same bits on any number
+//! of ranks.
 //!
-//! Ranks are threads of this process ([`local`]), or processes that `mpiexec` has started (feature `mpi`): each has its own part of the particles, and
-//! nothing but messages in common.
+//! Ranks are threads of this process ([`local`]), or processes started by `mpiexec` (feature `mpi`). Each has its own part of the particles; they
+//! share nothing but messages.
 
 pub mod local;
 #[cfg(feature = "mpi")]
@@ -26,51 +26,51 @@ use serde::{Deserialize, Serialize};
 use std::cell::Cell;
 use std::iter::once;
 
-/// A rank from which nothing that was asked of it will come.
+/// Failure of a rank to answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, thiserror::Error)]
 pub enum RankError {
     /// The rank has ended.
     #[error("rank {0} has ended")]
     Ended(usize),
-    /// The rank has sent bytes that are not the message that was expected of it.
+    /// The rank has sent bytes that are not the expected message.
     #[error("rank {0} sent a message that cannot be read")]
     Unreadable(usize),
 }
 
-/// One of several ranks. What one sends to another arrives in the order in which it was sent.
+/// One of several ranks. Messages between two ranks arrive in the order in which they were sent.
 pub trait Ranks: Send {
-    /// Which one this is.
+    /// Number of this rank, from 0.
     fn rank(&self) -> usize;
 
-    /// How many there are.
+    /// Number of ranks.
     fn count(&self) -> usize;
 
-    /// The rank below and that above, in a ring.
+    /// Ranks below and above in a ring.
     fn neighbours(&self) -> [usize; 2] {
         let (rank, count) = (self.rank(), self.count());
         [(rank + count - 1) % count, (rank + 1) % count]
     }
 
-    /// Sends something to the rank below and to that above, does something else while these messages are under way, and gives what came from below and from above.
-    /// The first rank is above the last one; of two ranks each is below and above the other.
+    /// Sends a message each to the ranks below and above, runs `meanwhile` while they are in transit, and returns the messages from below and
+    /// above. The first rank is above the last. Of two ranks, each is below and above the other.
     ///
     /// # Errors
     /// [`RankError`]
     fn halo(&self, to: [Parcel; 2], meanwhile: &mut dyn FnMut()) -> Result<[Parcel; 2], RankError>;
 
-    /// Sends something to each rank, and gives what came from each.
+    /// Sends a message to each rank, and returns the messages of all.
     ///
     /// # Errors
     /// [`RankError`]
     fn migrate(&self, to: Vec<Parcel>) -> Result<Vec<Parcel>, RankError>;
 
-    /// Sends something to the first rank, which is given what came from each; the others get nothing.
+    /// Sends a message to the first rank, which returns those of all; the others return nothing.
     ///
     /// # Errors
     /// [`RankError`]
     fn gather(&self, own: Parcel) -> Result<Vec<Parcel>, RankError>;
 
-    /// Gives what the first rank says; the others say nothing.
+    /// Broadcasts a message from the first rank; the others pass none.
     ///
     /// # Errors
     /// [`RankError`]
@@ -78,7 +78,7 @@ pub trait Ranks: Send {
 }
 
 impl dyn Ranks + '_ {
-    /// As [`gather`](Ranks::gather), of messages.
+    /// Gathers serialised messages as [`gather`](Ranks::gather) does.
     ///
     /// # Errors
     /// [`RankError`]
@@ -91,7 +91,7 @@ impl dyn Ranks + '_ {
         once(Ok(own)).chain(others).collect()
     }
 
-    /// As [`tell`](Ranks::tell), of a message.
+    /// Broadcasts a serialised message as [`tell`](Ranks::tell) does.
     ///
     /// # Errors
     /// [`RankError`]
@@ -101,19 +101,19 @@ impl dyn Ranks + '_ {
     }
 }
 
-/// By whom simulations are carried out that begin now.
+/// Ranks that carry out simulations.
 #[derive(Clone, Copy, Debug)]
 pub enum Crew {
-    /// By one rank alone.
+    /// One rank alone.
     One,
-    /// By several threads of this process, each a rank with as many threads as the current pool.
+    /// Several threads of this process, each a rank with as many threads as the current pool.
     Threads(usize),
-    /// By processes, of which this is one; what gives its place among them.
+    /// Processes, including this one; the function returns its rank.
     Processes(fn() -> Box<dyn Ranks>),
 }
 
 impl Crew {
-    /// How many ranks these are.
+    /// Number of ranks.
     pub fn count(self) -> usize {
         match self {
             Crew::One => 1,
@@ -127,14 +127,14 @@ thread_local! {
     static CREW: Cell<Crew> = const { Cell::new(Crew::One) };
 }
 
-/// By whom simulations are carried out that begin now, on this thread.
+/// Ranks that carry out simulations started now on this thread.
 pub(crate) fn crew() -> Crew {
     CREW.get()
 }
 
-/// What `work` gives, where simulations that it begins, on this thread, are carried out by others than before.
+/// Runs `work`; simulations that it starts on this thread are carried out by `crew`.
 pub fn over<R>(crew: Crew, work: impl FnOnce() -> R) -> R {
-    /// Puts back what was, even if that is because of a panic.
+    /// Restores the previous crew, even after a panic.
     struct Before(Crew);
 
     impl Drop for Before {
@@ -147,8 +147,8 @@ pub fn over<R>(crew: Crew, work: impl FnOnce() -> R) -> R {
     work()
 }
 
-/// Tells processes that wait for a simulation that there is no other; for the first rank to call. The message is an option, which holds the
-/// next simulation where there is one.
+/// Dismisses processes that wait for a simulation, since no other follows; called by the first rank. The message is an option that holds the next
+/// simulation, if any.
 ///
 /// # Errors
 /// [`RankError`]
@@ -156,7 +156,7 @@ pub fn dismiss(ranks: &dyn Ranks) -> Result<(), RankError> {
     ranks.tell_message(Some(None::<()>)).map(drop)
 }
 
-/// Waits for the first rank; returns whether it said [`dismiss`] in place of beginning a simulation.
+/// Waits for the first rank; returns true if it called [`dismiss`] instead of starting a simulation.
 pub fn is_dismissed(ranks: &dyn Ranks) -> bool {
     ranks.tell_message::<Option<()>>(None) == Ok(None)
 }

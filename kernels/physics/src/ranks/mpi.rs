@@ -1,7 +1,7 @@
-//! Ranks as processes that `mpiexec` has started.
+//! Ranks as processes started by `mpiexec`.
 //!
-//! Messages go from one process to another, with a tag for each kind and direction: of two ranks in a ring each is below and above the other. Sums are left to no
-//! reduction of MPI, whose order depends on the number of ranks.
+//! Messages go from process to process, with a tag for each kind and direction: of two ranks in a ring each is below and above the other. Sums use
+//! no reduction of MPI, because its order depends on the number of ranks.
 
 use super::{Parcel, RankError, Ranks};
 use mpi::environment::Universe;
@@ -12,29 +12,29 @@ use mpi::traits::{Communicator, Destination, Source};
 use std::thread;
 use std::time::Duration;
 
-/// What is sent, by kind and direction.
+/// Tags of messages, by kind and direction.
 const DOWN: i32 = 1;
 const UP: i32 = 2;
 const MIGRATING: i32 = 3;
 const GATHERED: i32 = 4;
 const TOLD: i32 = 5;
-/// Bytes of a piece of a message: MPI counts with 31 bits.
+/// Size of a piece of a message (bytes): MPI counts with 31 bits.
 const PIECE: usize = 1 << 30;
-/// How often it is looked for a message before other processes may have the core, and before this one sleeps for a moment.
+/// Number of polls for a message before the process yields its core, and before it sleeps.
 const LOOKS: u32 = 2000;
 const LOOKS_AWAKE: u32 = 200_000;
 const MOMENT: Duration = Duration::from_millis(1);
 
-/// What MPI needs to be there; nothing is sent once it is dropped.
+/// Handle of MPI's environment; no message is sent after it is dropped.
 pub struct Session(Universe);
 
 impl Session {
-    /// Joins the processes that `mpiexec` has started; none where that was done already.
+    /// Joins the processes started by `mpiexec`; none if that was done already.
     pub fn begin() -> Option<Session> {
         mpi::initialize().map(Session)
     }
 
-    /// How many processes there are.
+    /// Number of processes.
     pub fn count(&self) -> usize {
         self.0.world().size() as usize
     }
@@ -45,11 +45,11 @@ pub fn abort(code: u8) -> ! {
     World::all().abort(code.into())
 }
 
-/// This process among all.
+/// Rank of this process among all.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct World;
 
-/// The same, as a [`Crew`](super::Crew) asks for it.
+/// Rank of this process, as a [`Crew`](super::Crew) needs it.
 pub fn world() -> Box<dyn Ranks> {
     Box::new(World)
 }
@@ -59,7 +59,7 @@ impl World {
         SimpleCommunicator::world()
     }
 
-    /// Sends a message, and returns once it may be forgotten here.
+    /// Sends a message, and returns once the parcel may be dropped.
     fn send(to: usize, parcel: &Parcel, tag: i32) {
         let all = World::all();
         pieces(parcel).for_each(|piece| all.process_at_rank(to as i32).send_with_tag(piece, tag));
@@ -84,7 +84,7 @@ impl World {
                 return there.matched_receive_vec().0;
             }
             looks = looks.saturating_add(1);
-            // Where there are more ranks than cores, others need this one; MPI's own waiting keeps it.
+            // Other ranks need this core if there are more ranks than cores; MPI's own waiting would keep it.
             match looks {
                 ..=LOOKS => {}
                 ..=LOOKS_AWAKE => thread::yield_now(),
@@ -94,7 +94,7 @@ impl World {
     }
 }
 
-/// A message in pieces, of which the last one alone is shorter than the others.
+/// Pieces of a message; only the last one is shorter than the others.
 fn pieces(Parcel(bytes): &Parcel) -> impl Iterator<Item = &[u8]> {
     (0..=bytes.len() / PIECE).map(|piece| &bytes[piece * PIECE..bytes.len().min((piece + 1) * PIECE)])
 }
@@ -141,7 +141,7 @@ impl Ranks for World {
     }
 
     fn gather(&self, own: Parcel) -> Result<Vec<Parcel>, RankError> {
-        // By doubles: each takes up what the next ranks have taken up, and hands all of it on in the order of ranks.
+        // Gathers along a binary tree: each rank appends the parcels of the next ranks to its own, and sends all of them on in the order of ranks.
         let (rank, count) = (self.rank(), self.count());
         let mut parcels = vec![own];
         let mut apart = 1;
@@ -153,7 +153,7 @@ impl Ranks for World {
             let next = rank + apart;
             if next < count {
                 let packed = World::receive(next, GATHERED).open::<Vec<Parcel>>(next);
-                // The first rank hears of it from all of them.
+                // Every loss is reported to the first rank.
                 let lost = |lost| vec![Parcel::lost(lost); apart.min(count - next)];
                 parcels.extend(packed.unwrap_or_else(lost));
             }
@@ -163,7 +163,7 @@ impl Ranks for World {
     }
 
     fn tell(&self, said: Option<Parcel>) -> Result<Parcel, RankError> {
-        // By halves: each that knows tells those as far from it as there are ranks left between it and the next that knows.
+        // Broadcasts along a binary tree: each rank that has the message sends it half-way to the next rank that has it.
         let (rank, count) = (self.rank(), self.count());
         let mut apart = count.next_power_of_two();
         let mut known = said;

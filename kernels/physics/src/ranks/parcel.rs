@@ -1,19 +1,19 @@
-//! Messages between ranks as bytes: derived, with numbers in bulk.
+//! Messages between ranks as bytes: derived by serde, with a separate form for arrays of numbers.
 
 use super::RankError;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// Bytes that carriers move unread; a message may hold a parcel.
+/// Bytes that a transport moves unread; a message may contain a parcel.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Parcel(pub Vec<u8>);
 
 impl Parcel {
-    /// A message.
+    /// Serialises a message.
     pub fn of<T: Serialize + ?Sized>(message: &T) -> Parcel {
         Parcel::sent(Ok(message))
     }
 
-    /// Sent in place of a message by a rank that lacks what another one should have sent.
+    /// Message of a rank that lacks data from another one.
     pub fn lost(error: RankError) -> Parcel {
         Parcel::sent(Err::<(), _>(error))
     }
@@ -21,16 +21,16 @@ impl Parcel {
     fn sent<T: Serialize>(message: Result<T, RankError>) -> Parcel {
         #[expect(
             clippy::disallowed_methods,
-            reason = "no message has no bytes: who opens what cannot be written names this rank"
+            reason = "no message is empty, so opening a message that could not be written names this rank"
         )]
         let bytes = postcard::to_allocvec(&message).unwrap_or_default();
         Parcel(bytes)
     }
 
-    /// The message of a rank.
+    /// Deserialises the message of a rank.
     ///
     /// # Errors
-    /// [`RankError`] if these bytes are not such a message, or tell that another rank is lost.
+    /// [`RankError`] if these bytes are not such a message, or report the loss of another rank.
     pub fn open<'p, T: Deserialize<'p>>(&'p self, from: usize) -> Result<T, RankError> {
         match postcard::take_from_bytes::<Result<T, RankError>>(&self.0) {
             Ok((message, [])) => message,
@@ -38,17 +38,17 @@ impl Parcel {
         }
     }
 
-    /// Numbers in bulk: as a derived message, each of them would take a call.
+    /// Serialises many numbers at once: as a derived message, each of them would take a call.
     pub(crate) fn of_numbers(numbers: impl IntoIterator<Item = f64>) -> Parcel {
         let bytes: Vec<[u8; size_of::<f64>()]> = numbers.into_iter().map(f64::to_le_bytes).collect();
         Parcel(bytes.into_flattened())
     }
 }
 
-/// The [numbers](Parcel::of_numbers) of a rank, which should be so many.
+/// Deserialises the [numbers](Parcel::of_numbers) of a rank.
 ///
 /// # Errors
-/// [`RankError`] if they are not, or these bytes tell that another rank is lost.
+/// [`RankError`] if their number is not `count`, or these bytes report the loss of another rank.
 pub(crate) fn numbers(
     bytes: &[u8],
     from: usize,
@@ -80,7 +80,7 @@ mod tests {
     type Message = (Option<bool>, Vec<u64>, String, Vec<Parcel>);
 
     proptest! {
-        /// A message is read as it was sent, its numbers to the bit, and refused with the rank's name where bytes are missing or too many.
+        /// A message is read as it was sent, with numbers exact to the bit. Missing or excess bytes are an error that names the rank.
         #[test]
         fn messages_are_read_whole_or_refused(
             flag: Option<bool>, counts: Vec<u64>, text: String, inner: Vec<Vec<u64>>, cut: prop::sample::Index
@@ -105,7 +105,7 @@ mod tests {
         }
     }
 
-    /// The loss of a rank that another one tells of is read as such, whatever message was expected.
+    /// A reported loss of another rank is read as such, whatever message was expected.
     #[test]
     fn losses_are_passed_on() {
         for lost in [RankError::Ended(2), RankError::Unreadable(0)] {

@@ -1,29 +1,30 @@
-//! Means of a function over blocks of a run, with their bars.
+//! Means of a function over blocks of a run, with their error bars.
 
 use crate::averages::student;
 use crate::structure::{Block, widening};
 
-/// Blocks that bars take at least, in the second half of a run.
+/// Smallest number of blocks for error bars, in the second half of a run.
 const FEWEST_BLOCKS: usize = 2;
 
-/// What a function is over, its means with their bars, and its values in each block.
+/// Arguments of a function, its means with error bars, and its values in each block.
 pub(super) struct Function {
     pub(super) over: Vec<Vec<f64>>,
-    /// Not a number where fewer than two blocks have a value.
+    /// Means; NaN if fewer than two blocks have a value.
     pub(super) means: Vec<[f64; 2]>,
     pub(super) blocks: Vec<Block>,
-    /// The lags (looks) where it is over lags, and the looks of a block.
+    /// Lags (samples), for functions of lags, and the samples of a block.
     pub(super) lags: Vec<u64>,
     pub(super) length: u64,
 }
 
 impl Function {
-    /// Its mean over blocks at a place, each with its weight, and the bar; none where there are too few blocks.
+    /// Weighted mean over blocks at an index, with its error bar; none if there are too few blocks.
     pub(super) fn mean_at(&self, place: usize) -> Option<[f64; 2]> {
         self.weighted(|block| [block.means[place], block.weights[place]], place)
     }
 
-    /// The mean over blocks of a number that is of lags up to that at `place`, with its bar; none where there are too few blocks.
+    /// Mean over blocks of a number computed from each, with its error bar; none if there are too few blocks. `place` is the index of the largest
+    /// lag that the number uses.
     pub(super) fn mean(&self, of: impl Fn(&Block) -> f64, place: usize) -> Option<[f64; 2]> {
         self.weighted(|block| [of(block), 1.0], place)
     }
@@ -38,19 +39,19 @@ impl Function {
         Some([mean, wider * bar])
     }
 
-    /// Why nothing is known of it, with what would be enough.
+    /// Reason why the function has no values, with the number of samples that would suffice.
     pub(super) fn missing(&self, looks: u64, every: u64) -> Option<String> {
         let needed = 2 * (FEWEST_BLOCKS as u64 + 1);
         let rarer = match every {
             1 => String::new(),
-            every => format!(", or a larger output.structure_share: only every {every}th counts"),
+            every => format!(", or a larger output.structure_share: only every {every}th is sampled"),
         };
         let why = match () {
             () if looks < needed && self.blocks.len() < FEWEST_BLOCKS => {
-                format!("too few moments were looked at, {looks}: {needed} would do for a first bar{rarer}")
+                format!("too few samples, {looks}: a first error bar needs {needed}{rarer}")
             }
             () if self.blocks.len() < FEWEST_BLOCKS || self.means.iter().all(|[mean, _]| mean.is_nan()) => {
-                format!("there was nothing to be seen at {looks} moments{rarer}")
+                format!("there was no value in {looks} samples{rarer}")
             }
             () => return None,
         };
@@ -58,8 +59,8 @@ impl Function {
     }
 }
 
-/// The mean of values, each with its weight, and half the width of its interval of 95 % by Student's t: as a ratio of sums. Freedoms are
-/// those of as many values as would have the same weight. Not a number where fewer than two count.
+/// Weighted mean of values as a ratio of sums, and the half-width of its 95 % confidence interval by Student's t. The degrees of freedom are those
+/// of the effective number of values. NaN if fewer than two have weight.
 fn mean_of_weighted(values: &[[f64; 2]]) -> [f64; 2] {
     let sum = |of: &dyn Fn(f64, f64) -> f64| values.iter().map(|&[x, w]| of(x, w)).sum::<f64>();
     let (all, squares) = (sum(&|_, w| w), sum(&|_, w| w * w));

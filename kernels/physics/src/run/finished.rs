@@ -1,4 +1,4 @@
-//! Runs that have been written: their rows, their scenes, and what several of them say together.
+//! Finished runs: their rows, their scenes, and averages over several of them.
 
 use super::folder::{SCENE, THERMO};
 use super::identity::{first_difference, physics};
@@ -10,89 +10,89 @@ use crate::quoted;
 use crate::reported::{Class, FilePlace, Reported};
 use std::path::{Path, PathBuf};
 
-/// Longer than any scene (bytes).
+/// Longest scene (bytes).
 pub(super) const LONGEST_SCENE: u64 = 64 << 20;
 
-/// Why runs have no averages.
+/// Reason why runs have no averages.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FinishedError {
-    /// The table of observables.
+    /// The table of observables is invalid.
     #[error(transparent)]
     Table(#[from] TableError),
-    /// A file.
+    /// A file cannot be read.
     #[error(transparent)]
     File(#[from] FileError),
-    /// A file of a run that is not as the run wrote it.
+    /// A file of the run has been changed.
     #[error(
-        "{}:{line}: expected {expected}\n  help: run it again, or take the file from a copy",
+        "{}:{line}: expected {expected}\n  help: run it again, or restore the file from a copy",
         quoted::path(file)
     )]
     Damaged {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
         /// Line, from 1.
         line: usize,
-        /// The content of that line as it should be.
+        /// Expected content of the line.
         expected: String,
     },
-    /// Columns that no method observes.
+    /// The columns are those of no method.
     #[error("{}: its columns are not those of any method of this version", quoted::path(.0))]
     NoMethod(PathBuf),
-    /// Runs of different scenes.
+    /// The runs have different scenes.
     #[error(
-        "{} and {} are not of one scene: `{ours}` in the one, `{theirs}` in the other; only [run], [output] and seeds may differ\n  \
-         help: average them one by one",
+        "{} and {} have different scenes: `{ours}` in the first, `{theirs}` in the other; only [run], [output] and seeds may differ\n  \
+         help: average them separately",
         quoted::path(first),
         quoted::path(other)
     )]
     OtherScene {
-        /// The first run.
+        /// Folder of the first run.
         first: PathBuf,
-        /// One that differs.
+        /// Folder of a run that differs.
         other: PathBuf,
-        /// The first line that differs, of the first run.
+        /// First line that differs, of the first run.
         ours: String,
-        /// Of the other.
+        /// Corresponding line of the other run.
         theirs: String,
     },
-    /// A run given twice.
+    /// A run occurs twice.
     #[error(
-        "{} and {} are one run made twice, of the same scene and seeds: together they say no more than one\n  help: give each \
-         run a seed of its own",
+        "{} and {} are the same run, with the same scene and seeds: together they have no smaller error than one\n  help: give each \
+         run its own seed",
         quoted::path(first),
         quoted::path(other)
     )]
     Twice {
-        /// The first.
+        /// Folder of the first run.
         first: PathBuf,
-        /// The same again.
+        /// Folder of its duplicate.
         other: PathBuf,
     },
-    /// Runs with the same noise.
+    /// Two runs have the same noise.
     #[error(
-        "{} and {} have the same noise, that of seed {seed}: once their starts are forgotten they are one run\n  help: give each \
-         run a law.noise_seed of its own, or leave it out, so that it follows particles.seed",
+        "{} and {} have the same noise, of seed {seed}: once they have decorrelated from their starts they are the same run\n  help: give each \
+         run its own law.noise_seed, or leave it out, so that it follows particles.seed",
         quoted::path(first),
         quoted::path(other)
     )]
     OneNoise {
-        /// The first.
+        /// Folder of the first run.
         first: PathBuf,
-        /// The one with the same noise.
+        /// Folder of the run with the same noise.
         other: PathBuf,
-        /// The seed of the noise.
+        /// Seed of the noise.
         seed: String,
     },
-    /// A function that a run has not written.
+    /// A run has not written the function.
     #[error(
         "{}: the run has written no {name}, or has not ended\n  help: run it with --set 'output.structure=[\"{name}\"]'",
         quoted::path(folder)
     )]
     NoStructure {
-        /// The run.
+        /// Folder of the run.
         folder: PathBuf,
-        /// The function.
+        /// Name of the function.
         name: &'static str,
     },
     /// A function that all runs have written, each over other distances, wave numbers or times.
@@ -142,7 +142,7 @@ impl Reported for FinishedError {
     }
 }
 
-/// A run by its files.
+/// Finished run, read from its files.
 #[derive(Clone, Debug)]
 pub struct Finished {
     folder: PathBuf,
@@ -151,7 +151,7 @@ pub struct Finished {
 }
 
 impl Finished {
-    /// Reads what a run has written so far.
+    /// Reads the files of a run in their present state.
     ///
     /// # Errors
     /// If its scene or its table cannot be read, or no method observes its columns.
@@ -166,12 +166,12 @@ impl Finished {
         Ok(Finished { folder: folder.to_owned(), scene, rows })
     }
 
-    /// What decides the run.
+    /// Lines of the scene that determine the physics.
     fn physics(&self) -> Vec<&str> {
         physics(&self.scene)
     }
 
-    /// That another run is of the same scene with another seed.
+    /// Checks that another run has the same scene with another seed.
     fn is_joined_by(&self, other: &Finished) -> Result<(), FinishedError> {
         let (first, other_folder) = (self.folder.clone(), other.folder.clone());
         if self.physics() == other.physics() {
@@ -196,7 +196,7 @@ impl Finished {
         }
     }
 
-    /// The seed of the noise, and whether the scene states it: otherwise it is that of the start.
+    /// Seed of the noise, and true if the scene states it; otherwise it is that of the start.
     fn noise(&self) -> Option<(&str, bool)> {
         let physics = self.physics();
         let value = |key| physics.iter().find_map(|line| line.strip_prefix(key));
@@ -204,10 +204,10 @@ impl Finished {
     }
 }
 
-/// The averages of a run, or of several of one scene.
+/// Averages of a run, or joined ones of several runs of one scene.
 ///
 /// # Errors
-/// If two of them are not of one scene, or are the same run.
+/// If two of them have different scenes, or are the same run.
 pub fn averages_of(runs: &[Finished]) -> Result<Averages, FinishedError> {
     for (place, run) in runs.iter().enumerate() {
         runs[..place].iter().try_for_each(|before| before.is_joined_by(run))?;
@@ -215,10 +215,10 @@ pub fn averages_of(runs: &[Finished]) -> Result<Averages, FinishedError> {
     Ok(joined(&runs.iter().map(|run| Averages::of(&run.rows)).collect::<Vec<_>>()))
 }
 
-/// The rows of a table, whose first column is the step.
+/// Reads the rows of a table, whose first column is the step.
 ///
 /// # Errors
-/// If they cannot be read, or one is no row of numbers.
+/// If they cannot be read, or one is not a row of numbers.
 pub(super) fn rows_of(mut table: TableReader, quantities: &'static [Quantity]) -> Result<Rows, TableError> {
     let mut rows = Rows::new(quantities);
     while let Some(row) = table.next_row()? {

@@ -1,4 +1,4 @@
-//! The files of a run, and the list of them that its folder has: `run.files`.
+//! Files of a run, and their list in its folder: `run.files`.
 
 use crate::io::FORMATS;
 use crate::io::checkpoint::NAME as CHECKPOINT;
@@ -8,23 +8,23 @@ use crate::structure::OBSERVABLES;
 pub(super) use crate::io::owned_folder::OwnedFolder as RunFolder;
 
 const LIST: &str = "run.files";
-/// The table of observables.
+/// Table of observables.
 pub(super) const THERMO: &str = "thermo.csv";
-/// A row for each event.
+/// Table of events.
 pub(super) const EVENTS: &str = "events.csv";
-/// The scene with every value spelled out.
+/// Scene with every value.
 pub(super) const SCENE: &str = "scene.toml";
-/// What the run says of itself.
+/// Summary of the run.
 pub(super) const SUMMARY: &str = "summary.json";
-/// The checkpoint before the newest.
+/// Checkpoint before the newest.
 const PREVIOUS: &str = "run.checkpoint.previous";
 
-/// What a run writes whatever its scene, beside what grows.
+/// Files that every run writes, except growing ones.
 pub(super) const ALWAYS: [&str; 5] = [LIST, SCENE, SUMMARY, CHECKPOINT, PREVIOUS];
-/// Those that are removed first where a run begins again: without them, what is left is the beginning of a run.
+/// Files removed first when a run starts again: without them, the rest is the beginning of a run.
 pub(super) const CHECKPOINTS: [&str; 2] = [PREVIOUS, CHECKPOINT];
 
-/// The folder of a run.
+/// Folder of a run.
 pub(super) const RUN: FolderKind = FolderKind {
     lock: "run.lock",
     list: LIST,
@@ -38,7 +38,7 @@ fn is_own(name: &str) -> bool {
     all.any(|own| own == name)
 }
 
-/// What must be there for a run to be gone on with.
+/// Files that a run needs to be resumed.
 pub(super) fn needed(has_checkpoint: bool) -> &'static [&'static str] {
     &[LIST, SCENE, CHECKPOINT][..if has_checkpoint { 3 } else { 2 }]
 }

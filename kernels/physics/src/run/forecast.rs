@@ -1,4 +1,4 @@
-//! What is to be expected of a run, before it begins: the step against its limits, its error, how long it takes.
+//! Forecast of a run before it starts: the step and its limits, the error, the time it takes.
 
 use super::structured::every;
 use crate::memory::in_words;
@@ -10,18 +10,18 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// The number of stretches of the beginning that are timed, after the first.
+/// Number of timed intervals at the start of a run, after the first.
 const STRETCHES: usize = 9;
-/// A stretch is timed if it takes as long.
+/// Shortest interval that is timed.
 const LONG_ENOUGH: Duration = Duration::from_millis(3);
-/// No stretch is begun after so long, nor waited for.
+/// Longest time spent on the forecast; no interval starts or is waited for after it.
 const PATIENCE: Duration = Duration::from_millis(400);
-/// The part of a run for a time that is the first stretch.
+/// First interval of a run for a time, as a fraction of the run.
 const FIRST_STRETCH: f64 = 1e-9;
-/// What a run may be faster or slower than its beginning: what moves thickens or thins, and other programs come and go.
+/// Factor by which a run may be faster or slower than its start: density changes, and other programs start and end.
 const MARGIN: f64 = 1.5;
 
-/// What is to be expected of the step of a scene, the same on every host.
+/// Forecast of a scene's step, the same on every host.
 pub fn of_the_step(prepared: &Prepared) -> Vec<Fact> {
     let limits = &prepared.step_limits;
     let mut facts = vec![];
@@ -37,7 +37,7 @@ pub fn of_the_step(prepared: &Prepared) -> Vec<Fact> {
     facts
 }
 
-/// The limit as a multiple of the step, or, above it, the step as one of the limit.
+/// Limit as a multiple of the step or, if the step is larger, the step as a multiple of the limit.
 fn multiple(limit: &StepLimit) -> String {
     match limit.share > 1.0 {
         true => format!("and dt is {} times that", significant(limit.share, 3)),
@@ -49,11 +49,11 @@ fn beyond(limit: &StepLimit) -> &'static str {
     match limit.beyond {
         Beyond::Unstable => "errors grow beyond",
         Beyond::Inaccurate => "inaccurate beyond",
-        Beyond::Unseen => "contacts pass unseen beyond",
+        Beyond::Unseen => "contacts are missed beyond",
     }
 }
 
-/// A warning of a step above limits: the lowest of them, unless the scene's check has warned of its step.
+/// Warning of a step above the lowest limit, unless the scene's check has already warned of its step.
 pub fn above_limits(prepared: &Prepared) -> Option<Warning> {
     let key = DT.path();
     if prepared.warnings.iter().any(|warning| warning.key == key) {
@@ -69,17 +69,17 @@ pub fn above_limits(prepared: &Prepared) -> Option<Warning> {
         limit.name,
         beyond(limit)
     );
-    let suggestion = format!("take dt <= {}", significant(limit.step, 3));
+    let suggestion = format!("use dt <= {}", significant(limit.step, 3));
     Some(Warning { check: limit.name, share: limit.share, is_refusal: false, key, message, suggestion })
 }
 
-/// What there is to be said of the start of a run.
+/// Fact about the start of a run.
 pub fn of_the_start(prepared: &Prepared) -> Option<Fact> {
     let is_it = |fact: &&Fact| fact.data.as_ref().is_some_and(|(name, _)| *name == START_TEMPERATURE);
     prepared.facts.iter().find(is_it).cloned()
 }
 
-/// The memory that it takes, and what this host has left.
+/// Memory needed by the run, and memory available on this host.
 pub fn of_the_memory(prepared: &Prepared) -> Fact {
     let memory = &prepared.memory;
     let left = memory.available.map(|available| format!(" of {} left", in_words(available.bytes)));
@@ -87,7 +87,7 @@ pub fn of_the_memory(prepared: &Prepared) -> Fact {
     Fact::new("memory", json!(memory), "memory of a run", words)
 }
 
-/// How often rows and frames are written, where that is known beforehand, and the structure is looked at.
+/// Number of rows and frames, if known in advance, and the strides of structure samples.
 pub fn of_the_files(prepared: &Prepared) -> Vec<Fact> {
     let schedule = prepared.schedule;
     let counts = [
@@ -100,7 +100,7 @@ pub fn of_the_files(prepared: &Prepared) -> Vec<Fact> {
     if !prepared.output.structure.is_empty() {
         let [rows, snapshots] = every(prepared);
         let words = format!("at every {} and every {}", nth(rows, "row"), nth(snapshots, "snapshot"));
-        facts.push(Fact::new("structure_every", json!([rows, snapshots]), "looks at the structure", words));
+        facts.push(Fact::new("structure_every", json!([rows, snapshots]), "samples of the structure", words));
     }
     facts
 }
@@ -117,8 +117,8 @@ fn nth(number: u64, what: &str) -> String {
     format!("{number}{ending} {what}")
 }
 
-/// How long it takes on this host, as a range, by its first stretches once it is warm and one row of observables; none where it does
-/// not come so far.
+/// Range of the run's duration on this host, from its first intervals after warm-up and one row of observables; none if the start does not get that
+/// far.
 pub fn of_the_time(prepared: &Prepared) -> Option<Fact> {
     let schedule = prepared.schedule;
     let Probed { each, row } = probed(prepared).ok()??;
@@ -132,7 +132,7 @@ pub fn of_the_time(prepared: &Prepared) -> Option<Fact> {
     };
     let [low, typical, high] = seconds;
     let words = format!(
-        "{} to {}: {} {unit} of about {} µs, as the first ones take here once warm, and what is written every so often",
+        "{} to {}: {} {unit} of about {} µs, as measured on the first ones here after warm-up, plus output",
         about(low),
         about(high),
         significant(length, 6),
@@ -152,12 +152,12 @@ fn about(seconds: f64) -> String {
         ("minute", "minutes", 60.0),
         ("second", "seconds", 1.0),
     ];
-    // A unit of which there are fewer than one and a half says too little.
+    // A unit with a count below one and a half is too coarse.
     let (one, many, unit) = units.into_iter().find(|unit| seconds >= 1.5 * unit.2).unwrap_or(units[3]);
     counted((seconds / unit).round(), one, many)
 }
 
-/// How far a run goes, in the unit of its end.
+/// Length of a run, in the unit of its end.
 fn length(until: Until) -> f64 {
     match until {
         Until::Steps(steps) => steps as f64,
@@ -166,7 +166,7 @@ fn length(until: Until) -> f64 {
     }
 }
 
-/// How far it has come, in that unit.
+/// Progress of a run, in the same unit.
 fn gone(until: Until, clock: &Clock) -> f64 {
     match until {
         Until::Steps(_) => clock.steps as f64,
@@ -175,16 +175,16 @@ fn gone(until: Until, clock: &Clock) -> f64 {
     }
 }
 
-/// What the beginning of a run has taken.
+/// Timings of the start of a run.
 struct Probed {
-    /// Wall seconds of a unit of its end: the fewest and the most to be expected, and in between the median.
+    /// Wall time for each unit of the run's end (s): smallest, median and largest to be expected.
     each: [f64; 3],
-    /// Wall seconds of a row of observables.
+    /// Wall time for a row of observables (s).
     row: f64,
 }
 
-/// Runs the beginning of a scene. Stretches that are over too soon to be timed are doubled; the first that is not has met cold
-/// memory and threads that had not begun, and does not count where others follow. None where there is nothing to do.
+/// Times the start of a scene's run. Intervals too short to be timed are doubled. The first timed one is affected by cold memory and starting
+/// threads, and is dropped if others follow. None if the run has nothing to do.
 fn probed(prepared: &Prepared) -> Result<Option<Probed>, Failure> {
     let until = prepared.schedule.until;
     let mut simulation = prepared.start(Purpose::Run)?;
@@ -200,7 +200,7 @@ fn probed(prepared: &Prepared) -> Result<Option<Probed>, Failure> {
             thread::park_timeout(PATIENCE);
             is_late.store(true, Ordering::Relaxed);
         };
-        // Without another thread it is late after the first stretch.
+        // Without a timer thread, the forecast ends after the first interval.
         let timer = thread::Builder::new().spawn_scoped(scope, wait);
         is_late.store(timer.is_err(), Ordering::Relaxed);
         let mut probe = || {
@@ -230,7 +230,7 @@ fn probed(prepared: &Prepared) -> Result<Option<Probed>, Failure> {
     if all > 0.0 && each.is_empty() {
         each.push(begun.elapsed().as_secs_f64() / all);
     }
-    // A stretch that was cut off before anything happened says nothing.
+    // An interval interrupted before anything happened has no rate.
     each.retain(|seconds| seconds.is_finite());
     each.sort_by(f64::total_cmp);
     let mut rows: Vec<f64> = (0..3).map(|_| timed(|| simulation.observe())).collect();

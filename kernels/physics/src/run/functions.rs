@@ -1,4 +1,4 @@
-//! What runs have written of the structure, and what several of one scene say of it together.
+//! Structure functions read from the files of runs, joined over several runs of one scene.
 
 use super::finished::FinishedError;
 use super::folder::SUMMARY;
@@ -11,41 +11,41 @@ use serde_json::Value;
 use std::io::ErrorKind;
 use std::path::Path;
 
-/// Longer than any of the files (bytes).
+/// Longest file (bytes).
 const LONGEST: u64 = 1 << 20;
-/// Coordinates are the same where they differ by less than this part of themselves.
+/// Relative difference below which coordinates count as equal.
 const SAME: f64 = 1e-6;
 
-/// A function of the structure by one run or several.
+/// Structure function from one run or several.
 #[derive(Clone, Debug, Serialize)]
 pub struct Function {
-    /// The name of the observable.
+    /// Name of the observable.
     pub name: &'static str,
-    /// The name of its file.
+    /// Name of its file.
     pub file: &'static str,
-    /// How many runs it is from.
+    /// Number of runs.
     pub runs: usize,
-    /// Where, the mean, and the half width of its interval of 95 %: over blocks of one run, or over runs by Student's t.
+    /// Points: coordinates, mean, and half-width of the 95 % confidence interval, over blocks of one run, or over runs by Student's t.
     pub points: Vec<Point>,
-    /// The numbers that stand for it.
+    /// Numbers that summarise it.
     pub headlines: Vec<Number>,
-    /// What makes the values doubtful, or why no number stands for them.
+    /// Reservation about the values, or the reason why there are no headlines.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub doubt: Option<String>,
-    /// What it is.
+    /// Description of the function.
     #[serde(skip)]
     pub observable: &'static Observable,
 }
 
-/// A function at a place.
+/// Value of a function at a point.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(into = "Vec<f64>")]
 pub struct Point {
-    /// Its coordinates: one, or two.
+    /// Coordinates: one or two.
     pub over: Vec<f64>,
-    /// The mean.
+    /// Value of the mean.
     pub mean: f64,
-    /// Half the width of its interval of 95 %.
+    /// Half-width of the 95 % confidence interval.
     pub bar: f64,
 }
 
@@ -56,24 +56,23 @@ impl From<Point> for Vec<f64> {
     }
 }
 
-/// A number that stands for a function.
+/// Number that summarises a function.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Number {
-    /// Its name.
+    /// Name of the number.
     pub name: &'static str,
-    /// Its unit, empty for pure numbers.
+    /// Unit; empty for pure numbers.
     pub unit: &'static str,
-    /// Its mean.
+    /// Value of the mean.
     pub mean: f64,
-    /// Half the width of its interval of 95 %.
+    /// Half-width of the 95 % confidence interval.
     pub bar: f64,
 }
 
-/// The functions that every one of some runs has written, each where all of them have it. A mean is that of the runs, its bar from
-/// what lies between them; of one run they are its own.
+/// Functions that all of some runs have written. A mean is that of the runs, with an error bar from their spread; for one run both are its own.
 ///
 /// # Errors
-/// [`FinishedError::File`] and [`FinishedError::Damaged`]: a file that is there and cannot be read whole.
+/// [`FinishedError::File`] and [`FinishedError::Damaged`] if a file exists and cannot be read completely.
 pub fn functions_of<'f>(folders: impl Iterator<Item = &'f Path>) -> Result<Vec<Function>, FinishedError> {
     let folders: Vec<&Path> = folders.collect();
     let summaries: Vec<Value> = folders.iter().map(|folder| summary(folder)).collect::<Result<_, _>>()?;
@@ -100,7 +99,7 @@ pub fn functions_of<'f>(folders: impl Iterator<Item = &'f Path>) -> Result<Vec<F
             }
         };
         if observable.is_density_of_places() {
-            // Where no disc was ever seen, nothing tells how seldom one is there.
+            // Positions where no disc was sampled have no known error.
             points.iter_mut().filter(|point| point.mean == 0.0).for_each(|point| point.bar = f64::NAN);
         }
         let headline = |name: &'static str, unit: &'static str| {
@@ -118,10 +117,10 @@ pub fn functions_of<'f>(folders: impl Iterator<Item = &'f Path>) -> Result<Vec<F
     OBSERVABLES.iter().filter_map(|observable| of(observable).transpose()).collect()
 }
 
-/// One of the functions that every one of some runs has written.
+/// Returns one of the functions that all of some runs have written.
 ///
 /// # Errors
-/// [`FinishedError::NoStructure`], if one has not; else as [`functions_of`].
+/// [`FinishedError::NoStructure`] if one has not; others as for [`functions_of`].
 pub fn function_of<'f>(
     folders: impl Iterator<Item = &'f Path> + Clone,
     observable: &'static Observable,
@@ -136,7 +135,7 @@ pub fn function_of<'f>(
     })
 }
 
-/// The heading of a function's file, without its end.
+/// Heading of a function's file, without its line end.
 fn heading(observable: &Observable) -> String {
     let with_unit = |[name, unit]: [&str; 2]| match unit {
         "" => name.to_owned(),
@@ -147,7 +146,7 @@ fn heading(observable: &Observable) -> String {
     columns.join(",")
 }
 
-/// A function as comma-separated values: what it is over, its mean and its bar, lines without a mean left out.
+/// Formats a function as comma-separated values: coordinates, mean and error bar, without lines that lack a mean.
 pub(super) fn csv(observable: &Observable, points: &[Point]) -> String {
     let mut text = heading(observable) + "\n";
     for Point { over, mean, bar } in points.iter().filter(|point| !point.mean.is_nan()) {
@@ -158,13 +157,13 @@ pub(super) fn csv(observable: &Observable, points: &[Point]) -> String {
 }
 
 impl Function {
-    /// As comma-separated values.
+    /// Function as comma-separated values.
     pub fn csv(&self) -> String {
         csv(self.observable, &self.points)
     }
 }
 
-/// The bytes of a file; none where there is no such file.
+/// Reads the bytes of a file; none if it does not exist.
 fn read(path: &Path, most: u64) -> Result<Option<Vec<u8>>, FinishedError> {
     match regular_file::read(path, most) {
         Ok(bytes) => Ok(Some(bytes)),
@@ -224,25 +223,25 @@ fn table(path: &Path, observable: &Observable) -> Result<Option<Table>, Finished
     lines.map(row).collect::<Result<_, _>>().map(Table::Points).map(Some)
 }
 
-/// What a run says at its end; nothing where it has not ended.
+/// Reads the summary of a run; null if it has not ended.
 fn summary(folder: &Path) -> Result<Value, FinishedError> {
     let file = folder.join(SUMMARY);
     let Some(bytes) = read(&file, LONGEST << 4)? else { return Ok(Value::Null) };
     serde_json::from_slice(&bytes).map_err(|error| FinishedError::Damaged {
         line: error.line().max(1),
         file,
-        expected: "JSON, as a run writes it at its end".to_owned(),
+        expected: "the JSON that a run writes at its end".to_owned(),
     })
 }
 
-/// A number that stands for an observable, as a point that is nowhere.
+/// Headline of an observable, as a point without coordinates.
 fn number(summary: &Value, observable: &str, name: &str) -> Option<Point> {
     let find = |list: &Value, name: &str| list.as_array()?.iter().find(|it| it["name"] == name).cloned();
     let found = find(&find(&summary["structure"], observable)?["headlines"], name)?;
     Some(Point { over: vec![], mean: found["mean"].as_f64()?, bar: found["bar"].as_f64()? })
 }
 
-/// What is doubtful of an observable by one run or several.
+/// Reservation about an observable from one run or several.
 fn doubt(summaries: &[Value], observable: &str) -> Option<String> {
     let of = |summary: &Value| {
         let all = summary["structure"].as_array()?;
@@ -254,7 +253,7 @@ fn doubt(summaries: &[Value], observable: &str) -> Option<String> {
     Some(if all == 1 { first.clone() } else { format!("in {some} of {all} runs: {first}") })
 }
 
-/// The points that are in all runs.
+/// Joins the points that all runs have.
 fn joined(runs: &[Vec<Point>]) -> Vec<Point> {
     let [first, others @ ..] = runs else { return vec![] };
     if others.is_empty() {
@@ -279,7 +278,7 @@ fn joined(runs: &[Vec<Point>]) -> Vec<Point> {
 mod tests {
     use super::*;
 
-    /// By hand: 1, 2 and 3 have the mean 2 and the standard error 1/√3, and Student's t for two degrees of freedom is 4.303.
+    /// Hand calculation: 1, 2 and 3 have the mean 2 and the standard error 1/√3, and Student's t for two degrees of freedom is 4.303.
     #[test]
     fn runs_are_joined_where_all_of_them_are() {
         let runs =

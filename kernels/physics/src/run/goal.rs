@@ -1,49 +1,49 @@
-//! The end of a run by what is known of a mean.
+//! End of a run at a target error of a mean.
 
 use crate::averages::{Average, Estimate, Outcome, Rows};
 use crate::method::{Prepared, Quantity};
 use crate::scene::{Target, Width};
 
-/// Rows at which the mean is looked at first.
+/// Number of rows at the first check of the mean.
 const FIRST: u64 = 32;
-/// Then whenever there is this part more of them: looking is little beside the run, and chance has few tries.
+/// Inverse of the fraction by which rows grow between checks: checks then cost little, and a lucky one is unlikely.
 const PART: u64 = 8;
-/// Independent samples that end a run, more than a mean needs: of many looks the one with the shortest bar ends it.
+/// Independent samples that end a run, more than a mean needs: of many checks, the one with the smallest error bar ends it.
 const FEWEST_SAMPLES: f64 = 30.0;
 
-/// The mean that a run is to find.
+/// Target error of a run, with the state of its checks.
 #[derive(Clone, Debug)]
 pub(super) struct Goal {
     target: Target,
     place: usize,
-    /// Rows of the last look, and whether it was reached then.
+    /// Number of rows at the last check, and true if the target was reached then.
     looked: (u64, bool),
 }
 
-/// How well a mean is known.
+/// Present error of a mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Known {
-    /// Half the width of its interval of 95 %, in the terms of the target; none where there is no mean.
+    /// Half-width of the 95 % confidence interval, in the terms of the target; none without a mean.
     pub(super) error: Option<Width>,
-    /// About when it is known well enough (time); none where nothing tells.
+    /// Estimated time at which the target is reached (time); none if unknown.
     pub(super) enough_at: Option<f64>,
     pub(super) is_enough: bool,
 }
 
 impl Goal {
-    /// That of a scene, if it has one.
+    /// Goal of a scene, if it has one.
     pub(super) fn of(prepared: &Prepared, quantities: &[Quantity]) -> Option<Goal> {
         let target = prepared.target.clone()?;
         let place = quantities.iter().position(|quantity| quantity.name == target.quantity)?;
         Some(Goal { target, place, looked: (0, false) })
     }
 
-    /// What is asked for.
+    /// Target error.
     pub(super) fn target(&self) -> &Target {
         &self.target
     }
 
-    /// Whether it is reached, where it is the time to look: after a number of rows, the same in however many sessions.
+    /// Returns true if the target is reached. It is checked at certain numbers of rows, which are the same for any number of sessions.
     pub(super) fn is_reached(&mut self, rows: &Rows) -> bool {
         let count = rows.count();
         if self.looked.0 != count {
@@ -52,14 +52,14 @@ impl Goal {
         self.looked.1
     }
 
-    /// What is known now.
+    /// Present error of the mean.
     pub(super) fn known(&self, rows: &Rows) -> Known {
         match Average::of(rows, self.place).outcome {
             Outcome::Mean(found) => self.of_mean(&found),
             Outcome::TooShort { enough_at, .. } => {
                 Known { error: None, enough_at: Some(enough_at), is_enough: false }
             }
-            // What has not varied may do so later.
+            // A quantity that has been constant may vary later.
             Outcome::Constant { .. }
             | Outcome::Undefined
             | Outcome::Changing { .. }
@@ -74,7 +74,7 @@ impl Goal {
             (Width::Absolute(wanted), Width::Absolute(found)) => found / wanted,
             _ => f64::INFINITY,
         };
-        // The square of the error goes with the time that is averaged over.
+        // The squared error is inversely proportional to the averaged time.
         let longer = wanted.powi(2).max(FEWEST_SAMPLES / found.independent_samples).max(1.0);
         let has_samples = found.independent_samples >= FEWEST_SAMPLES;
         Known {

@@ -1,4 +1,4 @@
-//! The files of a run that grow: begun, taken up again, cut and brought to the disk together.
+//! Growing files of a run: created, resumed, truncated and synced together.
 
 use super::RunError;
 use super::folder::{EVENTS, RunFolder, THERMO};
@@ -14,17 +14,17 @@ use crate::io::{FORMATS, FileError};
 use crate::method::{Clock, Prepared};
 use std::collections::BTreeMap;
 
-/// A file that may grow with a run.
+/// File that may grow during a run.
 struct GrowingSink {
     name: &'static str,
     kind: SinkKind,
-    /// Begun whatever the scene.
+    /// True if every run creates it.
     is_always_there: bool,
-    /// Added to: the scene asks for it.
+    /// True if the scene requests it, so that it is appended to.
     is_asked: bool,
-    /// None where it is not begun.
+    /// Open sink; none before the file is created.
     sink: Option<Box<dyn OpenSink>>,
-    /// The moment of the last frame.
+    /// Moment of the last frame.
     last: Option<Clock>,
 }
 
@@ -37,7 +37,7 @@ impl GrowingSink {
         self.is_always_there || self.is_asked
     }
 
-    /// Adds a moment, unless the last frame is of it already.
+    /// Adds a moment, unless it is that of the last frame.
     fn add(&mut self, moment: &RunMoment<'_>, clock: Clock) -> Result<(), FileError> {
         let Some(sink) = &mut self.sink else { return Ok(()) };
         let is_frame = self.kind.due == Due::Frame;
@@ -51,10 +51,10 @@ impl GrowingSink {
     }
 }
 
-/// The growing files of a run.
+/// Growing files of a run.
 pub(super) struct Growing(Vec<GrowingSink>);
 
-/// Returns the names of the files that a run begins, or writes at its end.
+/// Returns the names of the files that a run creates, at the start or at its end.
 pub(super) fn names(prepared: &Prepared) -> Vec<&'static str> {
     let begun = Growing::of(prepared).0.into_iter().filter(GrowingSink::is_begun).map(|it| it.name);
     let last = FORMATS.iter().filter(|it| matches!(it.writing, FrameWriting::Last(_)));
@@ -72,7 +72,7 @@ fn count(kept: &Counters, name: &str) -> Result<u64, String> {
     }
 }
 
-/// Returns how far a file was written.
+/// Returns the mark of a file.
 fn mark_of(kept: &Counters, file: &str) -> Result<Mark, String> {
     let checksum = count(kept, &format!("{file} checksum"))?;
     let checksum =
@@ -88,7 +88,7 @@ fn last_of(kept: &Counters, file: &str) -> Option<Clock> {
 }
 
 impl Growing {
-    /// Lists all files that may grow; none is begun.
+    /// Lists all files that may grow, without creating one.
     fn of(prepared: &Prepared) -> Growing {
         let rows = GrowingSink::new(THERMO, SinkKind::of::<TextSink<ObservedRows>>(), [true; 2]);
         let of_format = |format: &OutputFormat| match format.writing {
@@ -103,7 +103,7 @@ impl Growing {
         Growing([rows].into_iter().chain(FORMATS.iter().filter_map(of_format)).chain([events]).collect())
     }
 
-    /// Begins the files that a scene asks for.
+    /// Creates the files that a scene requests.
     pub(super) fn begin(
         folder: &RunFolder,
         prepared: &Prepared,
@@ -121,8 +121,8 @@ impl Growing {
         Ok(())
     }
 
-    /// Opens and verifies the files of a checkpoint; nothing is cut yet. `foreign` says whose counters are wrong; `notes` take up
-    /// what is out of the ordinary.
+    /// Opens and verifies the files of a checkpoint without truncating them. `foreign` creates the error for wrong counters; `notes` receives
+    /// unusual findings.
     pub(super) fn resume(
         folder: &RunFolder,
         prepared: &Prepared,
@@ -135,7 +135,7 @@ impl Growing {
             let mark = match mark_of(kept, file.name) {
                 Ok(mark) => mark,
                 Err(reason) if file.is_always_there => return Err(foreign(reason)),
-                // A file that the checkpoint does not know was not asked for, or begun after it.
+                // A file unknown to the checkpoint was not requested, or created after it.
                 Err(_) => continue,
             };
             file.sink = Some((file.kind.resume)(folder.file(file.name), header, mark, notes)?);
@@ -144,8 +144,8 @@ impl Growing {
         Ok(growing)
     }
 
-    /// Cuts the files where the checkpoint was written. Those that it does not know were begun after it, if they are there at
-    /// all: they are begun again if the scene asks for them.
+    /// Truncates the files at the checkpoint. Existing files unknown to the checkpoint were created after it: they are created again if the scene
+    /// requests them.
     pub(super) fn cut(&mut self, folder: &RunFolder, header: &RunHeader) -> Result<(), RunError> {
         for file in &mut self.0 {
             match &mut file.sink {
@@ -156,13 +156,13 @@ impl Growing {
         self.begin_missing(folder, header)
     }
 
-    /// Adds a moment to the files in which something is due and that the scene asks for.
+    /// Adds a moment to the requested files in which something is due.
     pub(super) fn add(&mut self, due: Due, moment: &RunMoment<'_>, clock: Clock) -> Result<(), RunError> {
         let mut asked = self.0.iter_mut().filter(|it| it.kind.due == due && it.is_asked);
         Ok(asked.try_for_each(|it| it.add(moment, clock))?)
     }
 
-    /// Adds a moment to a file, whether the scene asks for it or not.
+    /// Adds a moment to a file, also if the scene does not request it.
     pub(super) fn add_to(
         &mut self,
         name: &str,
@@ -173,7 +173,7 @@ impl Growing {
         Ok(there.try_for_each(|it| it.add(moment, clock))?)
     }
 
-    /// Returns when everything is on the disk; gives what a checkpoint keeps of it.
+    /// Syncs everything to the disk and returns the counters for a checkpoint.
     pub(super) fn mark(&mut self) -> Result<Counters, RunError> {
         let mut counters = Counters::new();
         for GrowingSink { name, sink, last, .. } in &mut self.0 {
@@ -189,7 +189,7 @@ impl Growing {
     }
 }
 
-/// The counters of the moment of a file's last frame: step, time and events.
+/// Names of the counters for the moment of a file's last frame: step, time and events.
 fn last_names(file: &str) -> [String; 3] {
     ["last", "last time", "last events"].map(|what| format!("{file} {what}"))
 }
@@ -208,7 +208,7 @@ mod tests {
         }
     }
 
-    /// Takes every moment but the third.
+    /// Sink that adds every moment but the third.
     struct Numbers(Vec<u64>);
 
     impl OpenSink for Numbers {
@@ -226,8 +226,8 @@ mod tests {
         }
     }
 
-    /// No frame is there twice; without steps frames are of other moments where the time or the events are others. A moment that a
-    /// file takes nothing of is not that of its last frame.
+    /// Frames are written once. Without steps, frames differ if the time or the events do. A moment that adds nothing to a file is not that of
+    /// its last frame.
     #[test]
     fn frames_are_there_once() {
         let (prepared, _) = load("two-discs", &[], METHODS).unwrap();

@@ -1,4 +1,4 @@
-//! What a run was begun with: its scene, its discs, and the program, as far as that decides the bits.
+//! Identity of a run: its scene, its discs, and the program as far as it determines the bits.
 
 use super::folder::SCENE;
 use super::{Job, RunError};
@@ -12,20 +12,20 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Which bits this program promises: raised whenever the same scene gives other bits, or a column of the state or a file of
-/// a run means something else. Programs of one number may go on with each other's runs.
+/// Number of the bits that this program promises. It is raised whenever the same scene gives other bits, or a column of the state or a file of a
+/// run changes its meaning. Programs with the same number may resume each other's runs.
 pub(super) const BITS: u64 = 4;
 
-/// What a run was begun with.
+/// Scene, discs and program that started a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Identity {
-    /// The scene with every value spelled out (TOML).
+    /// Scene with every value (TOML).
     pub(super) scene: String,
-    /// Digest of all discs at the start.
+    /// Digest of all initial discs.
     discs: String,
-    /// The start file, where there is one.
+    /// Path of the start file, if there is one.
     file: Option<String>,
-    /// The program that runs it.
+    /// Program that runs it.
     program: Origin,
 }
 
@@ -42,7 +42,7 @@ impl Identity {
         Identity { scene, discs, file, program: program.clone() }
     }
 
-    /// What a checkpoint keeps of it.
+    /// Entries for a checkpoint.
     pub(super) fn origin(&self, notes: &[String]) -> BTreeMap<String, String> {
         let Origin { version, commit, dirty, target } = self.program.clone();
         let origin = [
@@ -56,10 +56,10 @@ impl Identity {
         origin.map(|(name, value)| (name.to_owned(), value)).into()
     }
 
-    /// Holds it against what the run in `folder` was begun with; gives what has been said of that run so far.
+    /// Compares the identity with that of the run in `folder`, and returns the notes on that run so far.
     ///
     /// # Errors
-    /// If scene or discs are others, or this program does not promise the same bits and is not asked to go on nevertheless.
+    /// If scene or discs differ, or this program does not promise the same bits and `other_version` is false.
     pub(super) fn check(
         &self,
         folder: &Path,
@@ -67,14 +67,14 @@ impl Identity {
         moment: Clock,
         other_version: bool,
     ) -> Result<Vec<String>, RunError> {
-        // Discs are compared by their digest, wherever their file is now.
+        // Discs are compared by their digest, so the start file may have moved.
         let [theirs, ours] = [&checkpoint.scene, &self.scene].map(|scene| without_start_file(scene));
         same_scene(folder, &theirs, &ours)?;
         let said = |name: &str| checkpoint.origin.get(name).cloned().unwrap_or_default();
         if said("discs") != self.discs {
             return Err(RunError::OtherDiscs {
                 folder: folder.to_owned(),
-                file: self.file.clone().unwrap_or_else(|| "as this version makes them".to_owned()),
+                file: self.file.clone().unwrap_or_else(|| "as this version creates them".to_owned()),
                 theirs: short(&said("discs")),
                 ours: short(&self.discs),
             });
@@ -99,7 +99,7 @@ impl Identity {
                 "which does not promise the same bits"
             };
             notes.push(format!(
-                "gone on at {moment} with {}, {promise}; before, with {}",
+                "resumed at {moment} with {}, {promise}; before with {}",
                 program(here),
                 program(&theirs)
             ));
@@ -114,12 +114,12 @@ fn program(origin: &Origin) -> String {
     format!("stripmine {version} of commit {commit}{changed} for {target}")
 }
 
-/// Enough of a digest to tell two apart by eye.
+/// Beginning of a digest, long enough to compare two by eye.
 fn short(digest: &str) -> String {
     digest.chars().take(12).collect()
 }
 
-/// SHA-256 of all bits of all discs, hexadecimal.
+/// SHA-256 of all bits of all discs, in hexadecimal.
 fn digest(particles: &Particles) -> String {
     let mut sum = Sha256::new();
     for &Particle { id, kind, position: [x, y, z], velocity: [u, v, w], angle, omega, radius, mass } in
@@ -134,8 +134,8 @@ fn digest(particles: &Particles) -> String {
     sum.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// What the run in `folder` chose otherwise than `ours`, the resolved scene, where a scene says `auto`; as overrides, for going
-/// on the choice stays.
+/// Choices of the run in `folder` that differ from those of `ours`, the resolved scene, for keys that are `auto` in the scene; as overrides, so
+/// that a resumed run keeps them.
 pub fn chosen_otherwise(
     values: &Values,
     vocabulary: &'static Vocabulary,
@@ -144,7 +144,7 @@ pub fn chosen_otherwise(
 ) -> Vec<String> {
     let file = folder.join(SCENE).display().to_string();
     let known = [vocabulary];
-    // A scene that cannot be read is refused when it is held against this one.
+    // A scene that cannot be read is refused by the later comparison.
     let (Ok(theirs), Ok(ours)) =
         (Values::load(&file, &[], &known), Values::parse("scene", ours, &[], &known))
     else {
@@ -155,10 +155,10 @@ pub fn chosen_otherwise(
     otherwise.filter_map(|key| theirs.choice(key).map(|word| format!("{}={word}", key.path()))).collect()
 }
 
-/// The line of a run's scene that says which discs its start file held.
+/// Comment in a run's scene with the digest of its start file's discs.
 const DISCS: &str = "# discs of this file: SHA-256 ";
 
-/// The scene of a run that starts from a file: where that is, seen from the run's folder, and what it held.
+/// Scene of a run that starts from a file, with the path from the run's folder and the digest of the discs.
 fn with_start_file(scene: &str, file: &Path, discs: &str) -> String {
     let place = toml::Value::from(file.to_string_lossy().into_owned());
     let line = |line: &str| match line.starts_with("file = ") {
@@ -168,7 +168,7 @@ fn with_start_file(scene: &str, file: &Path, discs: &str) -> String {
     scene.lines().map(line).collect()
 }
 
-/// The path of a file from a folder where both lie in a common one, at most two levels up, and so may be moved together; else as it is.
+/// Path of a file relative to a folder, if a common folder is at most two levels up, so that both can be moved together; else the absolute path.
 fn seen_from(folder: &Path, file: &Path) -> PathBuf {
     const LEVELS: usize = 2;
     let place = |folder: &Path| fs::canonicalize(folder).ok();
@@ -187,13 +187,13 @@ fn seen_from(folder: &Path, file: &Path) -> PathBuf {
     }
 }
 
-/// A scene without where its start file is and what that held.
+/// Scene without the path of its start file and the digest.
 fn without_start_file(scene: &str) -> String {
     let is_other = |line: &&str| !(line.starts_with("file = ") || line.starts_with(DISCS));
     scene.lines().filter(is_other).flat_map(|line| [line, "\n"]).collect()
 }
 
-/// Refuses a scene that differs from the run's in more than how long, what is written, and where the start file is.
+/// Refuses a scene that differs from the run's in other keys than duration, output and the path of the start file.
 ///
 /// # Errors
 /// [`RunError::OtherScene`] with the first difference.
@@ -204,8 +204,7 @@ pub(super) fn same_scene(folder: &Path, theirs: &str, ours: &str) -> Result<(), 
     }
 }
 
-/// The lines of a resolved scene that decide what happens in it: without how long it runs and what is written, and with what the start
-/// file held in place of where it is.
+/// Lines of a resolved scene that determine the physics: without duration and output, and with the digest of the start file instead of its path.
 pub(super) fn physics(scene: &str) -> Vec<&str> {
     let knows_discs = scene.lines().any(|line| line.starts_with(DISCS));
     let mut lines = Vec::new();
@@ -222,7 +221,7 @@ pub(super) fn physics(scene: &str) -> Vec<&str> {
     lines
 }
 
-/// The first lines that differ.
+/// First lines that differ.
 pub(super) fn first_difference(theirs: &[&str], ours: &[&str]) -> Option<[String; 2]> {
     let line = (0..theirs.len().max(ours.len())).find(|&line| theirs.get(line) != ours.get(line))?;
     Some([theirs, ours].map(|lines| lines.get(line).map_or("nothing", |line| line).to_owned()))

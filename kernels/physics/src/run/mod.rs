@@ -1,7 +1,7 @@
-//! A run: advance, observe, record; checkpoints, interruption, resumption. What it writes is a folder of its own:
-//! `scene.toml`, `thermo.csv`, `summary.json`, `run.checkpoint`, a list of all this (`run.files`), the particles in each format
-//! ([`FORMATS`](crate::io::FORMATS)) that the scene asks for and, on request, a row for each event (`events.csv`) and what is summed up
-//! of the structure.
+//! Execution of a run: advance, observe, record; checkpoints, interruption, resumption. A run writes a folder of its own: `scene.toml`,
+//! `thermo.csv`, `summary.json`, `run.checkpoint`, a list of these files (`run.files`), and the particles in each format
+//! ([`FORMATS`](crate::io::FORMATS)) that the scene requests. On request it writes a row for each event (`events.csv`) and averages of the
+//! structure.
 
 mod block_means;
 mod finished;
@@ -43,92 +43,92 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// What to do with a folder that holds a run already.
+/// Treatment of a folder that contains a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Existing {
-    /// Refuse.
+    /// Refuse to write.
     Refuse,
-    /// Go on from its newest checkpoint; begin where there is none.
+    /// Resume from the newest checkpoint; start if there is none.
     Resume {
-        /// Also where another version of the program, which does not promise the same bits, began it.
+        /// True to resume also a run of another version of the program that does not promise the same bits.
         other_version: bool,
     },
-    /// Begin from the start; what the run there wrote is lost.
+    /// Start again; the files of the previous run are lost.
     Overwrite,
 }
 
-/// Why a run did not come to its end.
+/// Reason why a run did not complete.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RunError {
-    /// The folder holds a run.
+    /// The folder contains a run.
     #[error(
-        "{} holds a run already: add --resume to go on with it, --overwrite to lose it, or choose another --out",
+        "{} already contains a run: add --resume to continue it, --overwrite to delete it, or choose another --out",
         quoted::path(.0)
     )]
     Exists(PathBuf),
-    /// The folder is another's, or another process writes there.
+    /// The folder belongs to others, or another process writes there.
     #[error(transparent)]
     Folder(#[from] FolderError),
-    /// More is done than asked for.
+    /// The run has passed the end that is asked for.
     #[error(
-        "the run in {} has come to {done} already, and {asked} is asked for: ask for {done} or more",
+        "the run in {} has already reached {done}, beyond the {asked} asked for: ask for {done} or more",
         quoted::path(folder)
     )]
     FewerSteps {
-        /// The folder.
+        /// Folder of the run.
         folder: PathBuf,
-        /// How far the run has come.
+        /// Time, steps or events reached.
         done: Until,
-        /// The end of the scene.
+        /// End of the scene.
         asked: Until,
     },
-    /// The discs at the start are not those of the run.
+    /// The initial discs are not those of the run.
     #[error(
-        "{} was begun with other discs than the scene now has at its start ({file}): digest {theirs} then, {ours} now; give the start back its contents, or begin again in another folder",
+        "{} was started with other discs than the scene now has ({file}): digest {theirs} then, {ours} now; restore the start, or start again in another folder",
         quoted::path(folder)
     )]
     OtherDiscs {
-        /// The folder.
+        /// Folder of the run.
         folder: PathBuf,
-        /// The start file, if there is one.
+        /// Start file, if there is one.
         file: String,
-        /// Beginning of the digest of the run's discs.
+        /// First digits of the digest of the run's discs.
         theirs: String,
-        /// Beginning of the digest of those of the scene.
+        /// First digits of the digest of the scene's discs.
         ours: String,
     },
-    /// The program is not the one of the run.
+    /// Another version of the program wrote the run.
     #[error(
-        "{} was last written by {theirs}; this is {ours}, which does not promise the same bits: go on with that one, or with this one nevertheless by --other-version",
+        "{} was last written by {theirs}; this is {ours}, which does not promise the same bits: resume with that version, or add --other-version to resume with this one",
         quoted::path(folder)
     )]
     OtherVersion {
-        /// The folder.
+        /// Folder of the run.
         folder: PathBuf,
-        /// The program of the run.
+        /// Program of the run.
         theirs: String,
-        /// This program.
+        /// Program that resumes it.
         ours: String,
     },
-    /// The scene is not the one of the run.
+    /// The scene is not that of the run.
     #[error(
-        "{} was run with another scene; its scene.toml says `{theirs}`, the scene given `{ours}` (only [run] and [output] may \
+        "{} was run with another scene; its scene.toml has `{theirs}`, the scene given `{ours}` (only [run] and [output] may \
          change on resumption)",
         quoted::path(folder)
     )]
     OtherScene {
-        /// The folder.
+        /// Folder of the run.
         folder: PathBuf,
-        /// The first line that differs, in the folder.
+        /// First line that differs, in the folder.
         theirs: String,
-        /// The same line of the scene given.
+        /// Corresponding line of the given scene.
         ours: String,
     },
-    /// The scene.
+    /// The scene is invalid.
     #[error(transparent)]
     Scene(#[from] SceneErrors),
-    /// The physics.
+    /// The physics broke a precondition during the run.
     #[error(
         "{}\nthe state of that step is the last frame of {}\n  help: {}",
         failure.what(),
@@ -136,59 +136,59 @@ pub enum RunError {
         failure.remedy
     )]
     Physics {
-        /// What broke.
+        /// Failure of the physics.
         failure: Failure,
-        /// Where the last frame is.
+        /// Path of the file with the last frame.
         snapshot: PathBuf,
     },
-    /// The physics of the first moment, before anything was written.
+    /// The physics broke a precondition before anything was written.
     #[error(transparent)]
     Start(Failure),
-    /// A rank was lost: the state of that step is not known, and is in no file.
+    /// A rank was lost: the state of that step is unknown and in no file.
     #[error(transparent)]
     Lost(Failure),
-    /// The mean that should end the run is not known well enough at its latest end.
+    /// The mean that should end the run did not reach its target error.
     #[error(
-        "{bound} is over, and the mean of {} is {}, not to ± {} (95 %); what was found is in {}{}",
+        "the run reached its latest end, {bound}, but the mean of {} is {}, not to ± {} (95 %); results are in {}{}",
         target.quantity,
         error.map_or_else(|| "not known".to_owned(), |error| format!("known to ± {error}")),
         target.error,
         quoted::path(folder),
-        enough_at.map_or_else(String::new, |time| format!("\n  help: go on with --resume to about time {}", significant(time, 2)))
+        enough_at.map_or_else(String::new, |time| format!("\n  help: extend the run with --resume to about time {}", significant(time, 2)))
     )]
     Unreached {
-        /// The folder of the run.
+        /// Folder of the run.
         folder: PathBuf,
-        /// What was asked for.
+        /// Target error.
         target: Target,
-        /// The latest end.
+        /// Latest end.
         bound: Until,
-        /// The half width of the interval of 95 %, if there is a mean.
+        /// Half-width of the 95 % confidence interval, if there is a mean.
         error: Option<Width>,
-        /// About when it would be reached (time), if anything tells.
+        /// Estimated time at which the target would be reached (time), if known.
         enough_at: Option<f64>,
     },
-    /// A checkpoint that cannot be used.
+    /// The checkpoint cannot be used.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
-    /// A checkpoint of another program or scene.
+    /// The checkpoint is of another program or scene.
     #[error("the checkpoint {}: {reason}", quoted::path(file))]
     Foreign {
-        /// The checkpoint.
+        /// Path of the checkpoint.
         file: PathBuf,
-        /// What does not fit.
+        /// Difference found.
         reason: String,
     },
-    /// A checkpoint that cannot be written.
+    /// The checkpoint cannot be written.
     #[error(transparent)]
     CheckpointWriting(#[from] WriteError),
-    /// A file.
+    /// A file cannot be read or written.
     #[error(transparent)]
     File(#[from] FileError),
-    /// The rows of earlier sessions.
+    /// The rows of earlier sessions are invalid.
     #[error(transparent)]
     Rows(#[from] TableError),
-    /// A file of earlier sessions that grows.
+    /// A growing file of earlier sessions is invalid.
     #[error(transparent)]
     Growing(#[from] GrowingFileError),
 }
@@ -254,37 +254,37 @@ impl Reported for RunError {
     }
 }
 
-/// How a run ended.
+/// End of a run.
 #[derive(Clone, Debug)]
 pub enum Ending {
-    /// All steps are done.
+    /// Completed.
     Done(Box<Summary>),
-    /// Interrupted; a checkpoint was written.
+    /// Interrupted after a checkpoint was written.
     Interrupted {
-        /// How far it has come.
+        /// Moment reached.
         clock: Clock,
     },
 }
 
-/// What is run, and by whom.
+/// Scene to run, with its context.
 #[derive(Clone, Copy)]
 pub struct Job<'j> {
-    /// The scene.
+    /// Prepared scene.
     pub prepared: &'j Prepared,
-    /// What its method observes.
+    /// Quantities of its method.
     pub quantities: &'static [Quantity],
-    /// The program that runs it, for the record.
+    /// Program that runs it, for the record.
     pub program: &'j Origin,
 }
 
-/// At most this part of a run goes by without a word of its progress; a smaller one where that takes longer than a second.
+/// Number of progress reports of a run, and the longest interval between two; it has more reports if this is exceeded.
 const STRIDES: u64 = 1000;
 const LONGEST_STRIDE: Duration = Duration::from_secs(1);
 
-/// Whether a run into a folder begins at the start, as far as the folder tells before anything is computed.
+/// Returns true if a run into a folder starts from the beginning, before anything is computed.
 ///
 /// # Errors
-/// If the folder is another's, or holds a run that is to stay.
+/// If the folder belongs to others, or contains a run that must stay.
 pub fn begins(folder: &Path, existing: Existing) -> Result<bool, RunError> {
     let holds = RUN.listed(folder)?.is_some_and(|names| !names.is_empty());
     if holds {
@@ -297,11 +297,11 @@ pub fn begins(folder: &Path, existing: Existing) -> Result<bool, RunError> {
     }
 }
 
-/// Runs a scene into `folder`. `interrupted` is looked at after every step; `progress(done, all)` hears now and then how much
-/// of the way is done; `notice` hears what is out of the ordinary about going on with a run.
+/// Runs a scene into `folder`. `interrupted` is checked after every step. `progress(done, all)` is called occasionally, and `notice` receives
+/// unusual findings on resumption.
 ///
 /// # Errors
-/// [`RunError`]; where the physics broke, the folder holds the state of that step and a summary that says so.
+/// [`RunError`]; after a failure of the physics, the folder has the state of that step and a summary of the failure.
 pub fn run(
     job: Job<'_>,
     folder: &Path,
@@ -312,10 +312,10 @@ pub fn run(
 ) -> Result<Ending, RunError> {
     let prepared = job.prepared;
     prepared.memory.fits("scene")?;
-    // What would be refused in the end is refused before anything takes its time.
+    // Refusals come before expensive work.
     begins(folder, existing)?;
     let mut simulation = prepared.start(Purpose::Run).map_err(RunError::Start)?;
-    // A beginning that is cut off would leave a folder without a checkpoint; a run that is resumed has one.
+    // An interrupted start would leave a folder without a checkpoint; a resumed run has one.
     let held = (!matches!(existing, Existing::Resume { .. })).then(signals::hold);
     let mut recorder = Recorder::open(folder, existing, job, simulation.as_mut())?;
     let _held = held.unwrap_or_else(signals::hold);
@@ -372,7 +372,7 @@ pub fn run(
     Ok(Ending::Done(Box::new(summary)))
 }
 
-/// How far a run goes between two words of its progress, and looks at the wall clock.
+/// Interval of a run between two progress reports and checks of the wall clock.
 fn stride(until: Until, strides: u64) -> Until {
     match until {
         Until::Steps(steps) => Until::Steps((steps / strides).max(1)),

@@ -1,4 +1,4 @@
-//! A run and its moments, as its files see them.
+//! Constants and moments of a run, for its files.
 
 use crate::averages::Rows;
 use crate::io::run_moment::{FramesEvery, RunHeader, RunMoment};

@@ -1,4 +1,4 @@
-//! The folder of a run: what is written when.
+//! Folder of a run and the schedule of its files.
 
 use super::finished::{LONGEST_SCENE, rows_of};
 use super::folder::{ALWAYS, CHECKPOINTS, RUN, RunFolder, SCENE, SUMMARY, THERMO, needed};
@@ -25,42 +25,42 @@ use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// The counter of events in a checkpoint.
+/// Name of the counter of events in a checkpoint.
 const EVENT_COUNT: &str = "events";
 
-/// Writes the files of a run.
+/// Writer of a run's files.
 pub(super) struct Recorder {
     identity: Identity,
     schedule: Schedule,
     output: Output,
     header: RunHeader,
     quantities: &'static [Quantity],
-    /// When the next row, the next snapshot and the next checkpoint are due.
+    /// Times at which the next row, snapshot and checkpoint are due.
     due: [Option<Until>; 3],
     growing: Growing,
     /// Dropped after what grows in it: until the last frame is written, no other process may have the folder.
     folder: RunFolder,
-    /// What is summed up of the structure.
+    /// Structure functions.
     structured: Structured,
-    /// The rows of observables, those of earlier sessions among them.
+    /// Rows of observables, those of earlier sessions included.
     rows: Rows,
-    /// The mean that ends the run, if one does.
+    /// Target error that ends the run, if there is one.
     goal: Option<Goal>,
-    /// What was out of the ordinary, in the order of the run's sessions.
+    /// Unusual findings, in the order of the run's sessions.
     notes: Vec<String>,
-    /// Which of them are of this session.
+    /// Number of notes of this session.
     new_notes: usize,
-    /// When the newest checkpoint was written, if it says all that there is to say.
+    /// Moment of the newest checkpoint, if it is complete.
     checkpointed: Option<Clock>,
-    /// Since when none has been written, on the wall clock.
+    /// Wall time of the last checkpoint or of the start.
     unsaved_since: Instant,
 }
 
 impl Recorder {
-    /// Begins a run in a folder, or goes on with the one that is there.
+    /// Starts a run in a folder, or resumes the one in it.
     ///
     /// # Errors
-    /// [`RunError`]: the folder is another's, or what is there cannot be gone on with.
+    /// [`RunError`] if the folder belongs to others, or its run cannot be resumed.
     pub(super) fn open(
         path: &Path,
         existing: Existing,
@@ -71,7 +71,7 @@ impl Recorder {
         let mut notes = Vec::new();
         if !folder.is_locked() {
             notes.push(format!(
-                "{}: this file system has no locks; see that no second process writes there",
+                "{}: this file system has no locks; make sure that no other process writes there",
                 quoted::path(path)
             ));
         }
@@ -81,7 +81,7 @@ impl Recorder {
                 Some(latest) => Recorder::resume(folder, latest, job, simulation, other_version, notes),
                 None => {
                     begun_with(&folder, &Identity::of(job, path).scene)?;
-                    notes.push("begun again: there was no checkpoint yet".to_owned());
+                    notes.push("started again: there was no checkpoint yet".to_owned());
                     Recorder::begin(folder, job, simulation, notes)
                 }
             },
@@ -89,7 +89,7 @@ impl Recorder {
         }
     }
 
-    /// Begins the files with the state at the start.
+    /// Creates the files and writes the initial state.
     fn begin(
         mut folder: RunFolder,
         job: Job<'_>,
@@ -140,7 +140,7 @@ impl Recorder {
         }
     }
 
-    /// Takes up a checkpoint: the files are cut where it was written. Nothing is changed before everything is verified.
+    /// Resumes from a checkpoint and truncates the files at it. Nothing is changed before everything is verified.
     fn resume(
         mut folder: RunFolder,
         latest: Latest,
@@ -164,7 +164,7 @@ impl Recorder {
         notes.extend(session);
         if latest.file != newest {
             notes.push(format!(
-                "{} was missing: gone on from the older checkpoint, of {clock}",
+                "{} was missing: resumed from the older checkpoint, of {clock}",
                 quoted::path(&newest)
             ));
         }
@@ -190,7 +190,7 @@ impl Recorder {
 
         folder.claim(ALWAYS.into_iter().chain(names(prepared)), false)?;
         growing.cut(&folder, &header)?;
-        // They speak of an end that is not reached yet.
+        // These files describe an end that the resumed run has not reached.
         folder.remove_own(SUMMARY)?;
         let last = FORMATS.iter().filter(|format| matches!(format.writing, FrameWriting::Last(_)));
         let mut of_the_end = last.map(|format| format.file).chain(OBSERVABLES.iter().map(|it| it.file));
@@ -204,24 +204,24 @@ impl Recorder {
         Ok(recorder)
     }
 
-    /// The averages over the rows so far.
+    /// Averages over the rows so far.
     pub(super) fn averages(&self) -> Averages {
         Averages::of(&self.rows)
     }
 
-    /// Whether the mean that the run is to find is known well enough.
+    /// Returns true if the target error is reached.
     pub(super) fn has_reached_its_goal(&mut self) -> bool {
         self.goal.as_mut().is_some_and(|goal| goal.is_reached(&self.rows))
     }
 
-    /// The goal, and what is known at the end; none where there is no goal, or it is reached.
+    /// Goal and present error; none if there is no goal, or it is reached.
     pub(super) fn missed_goal(&self) -> Option<(&Goal, Known)> {
         let goal = self.goal.as_ref()?;
         let known = goal.known(&self.rows);
         (!known.is_enough).then_some((goal, known))
     }
 
-    /// What this session found out of the ordinary when it began.
+    /// Unusual findings at the start of this session.
     pub(super) fn new_notes(&self) -> &[String] {
         &self.notes[self.notes.len() - self.new_notes..]
     }
@@ -230,12 +230,12 @@ impl Recorder {
         Ok(self.folder.write(SCENE, |out| out.write_all(self.identity.scene.as_bytes())).map(drop)?)
     }
 
-    /// The moments at which something is to be written.
+    /// Moments at which something is due.
     pub(super) fn due(&self) -> impl Iterator<Item = Until> {
         self.due.into_iter().flatten()
     }
 
-    /// Writes what is due; gives the failure that only sums over all particles show.
+    /// Writes everything due; returns a failure that only sums over all particles reveal.
     pub(super) fn write_what_is_due(
         &mut self,
         simulation: &mut dyn Simulation,
@@ -263,7 +263,7 @@ impl Recorder {
             self.growing.add(Due::Frame, &moment, clock)?;
         }
         whole(simulation, ())?;
-        // A checkpoint needs the room of its frame.
+        // A checkpoint needs the memory of its frame.
         drop(moment);
         if checkpoints {
             self.due[2] = checkpoint.next(&clock);
@@ -272,7 +272,7 @@ impl Recorder {
         Ok(None)
     }
 
-    /// Adds rows of events, where the scene asks for them.
+    /// Adds rows of events, if the scene requests them.
     pub(super) fn log(&mut self, simulation: &mut dyn Simulation) -> Result<(), RunError> {
         let events = simulation.take_events();
         let mut moment = moment_of(simulation, &self.header, &self.rows);
@@ -280,7 +280,7 @@ impl Recorder {
         self.growing.add(Due::Events, &moment, simulation.clock())
     }
 
-    /// A row of observables, unless one of them is no finite number where there is one.
+    /// Adds a row of observables, unless one of them is not finite though it must be.
     fn thermo(&mut self, simulation: &mut dyn Simulation) -> Result<Option<Failure>, RunError> {
         if let Err(failure) = simulation.check() {
             return Ok(Some(failure));
@@ -298,15 +298,15 @@ impl Recorder {
         Ok(None)
     }
 
-    /// A frame in each of the files that are asked for and do not have it yet.
+    /// Adds a frame to the requested files that do not have it yet.
     fn snapshot(&mut self, simulation: &dyn Simulation) -> Result<(), RunError> {
         let moment = moment_of(simulation, &self.header, &self.rows);
         let added = self.growing.add(Due::Frame, &moment, simulation.clock());
         whole(simulation, added)?
     }
 
-    /// The state of a failed step, whether snapshots are due or not, and what there is to say of it. Where a rank is lost, its part of the
-    /// state is not known.
+    /// Writes the state of a failed step, also if no snapshot is due, and its summary. If a rank is lost, its part of the state is unknown and no
+    /// frame is written.
     pub(super) fn fail(&mut self, simulation: &dyn Simulation, summary: Summary) -> Result<(), RunError> {
         if simulation.check_ranks().is_ok() {
             let moment = moment_of(simulation, &self.header, &self.rows);
@@ -316,18 +316,18 @@ impl Recorder {
         self.summary(summary).map(drop)
     }
 
-    /// The first format of frames that are read again and asked for; without one, the first that every run has.
+    /// First requested format that can be read back; without one, the first that every run has.
     fn trajectory(&self) -> &'static OutputFormat {
         let mut read = FORMATS.iter().filter(|format| format.is_read());
         read.find(|format| self.output.asks_for(format)).unwrap_or(&FORMATS[0])
     }
 
-    /// Where the frames are.
+    /// Path of the file with the frames.
     pub(super) fn trajectory_path(&self) -> PathBuf {
         self.folder.file(self.trajectory().file)
     }
 
-    /// The complete state, after everything before it is on the disk.
+    /// Writes a checkpoint, after everything before it is on the disk.
     pub(super) fn checkpoint(&mut self, simulation: &dyn Simulation) -> Result<(), RunError> {
         let clock = simulation.clock();
         if self.checkpointed == Some(clock) {
@@ -350,12 +350,12 @@ impl Recorder {
         checkpoint.write_atomically(self.folder.file(NAME))?;
         self.checkpointed = Some(clock);
         self.unsaved_since = Instant::now();
-        // Later than the checkpoint, so that what is still there can be gone on with.
+        // This check follows the checkpoint, so that the remaining files can be resumed.
         Ok(self.folder.still_has(needed(true))?)
     }
 
-    /// The end: a last checkpoint, the last state in every file that is asked for, and what there is to say. The frame comes
-    /// after the checkpoint, so that it is cut off again where a run goes on to more steps.
+    /// Ends the run: writes a last checkpoint, the last state in every requested file, and the summary. The frame follows the checkpoint, so that
+    /// it is truncated if the run is resumed for more steps.
     pub(super) fn finish(
         &mut self,
         simulation: &dyn Simulation,
@@ -377,7 +377,7 @@ impl Recorder {
         self.summary(summary)
     }
 
-    /// `summary.json`.
+    /// Writes `summary.json`.
     fn summary(&self, mut summary: Summary) -> Result<Summary, RunError> {
         summary.notes.clone_from(&self.notes);
         summary.structure = self.structured.summed();
@@ -390,20 +390,20 @@ impl Recorder {
     }
 }
 
-/// Passes on a look at a simulation, to be written; an error where a rank is lost.
+/// Passes on a value read from a simulation; an error if a rank is lost.
 fn whole<T>(simulation: &dyn Simulation, seen: T) -> Result<T, RunError> {
     simulation.check_ranks().map(|()| seen).map_err(RunError::Lost)
 }
 
-/// The failure of a sum over all particles that no number holds.
+/// Failure of a sum over all particles that overflows.
 fn overflow(at: Clock, quantity: &'static str, value: f64) -> Failure {
-    let what = format!("{quantity} is {value}, which is no finite number");
+    let what = format!("{quantity} is {value}, which is not a finite number");
     let remedy = "the units make masses, speeds or stiffness too large for double precision; choose units in which they are \
                   nearer to 1";
     Failure::new(FailureKind::OVERFLOW, what, remedy).at(at).with([(quantity, value)])
 }
 
-/// Refuses another scene than that of a run which has no checkpoint yet.
+/// Refuses another scene than that of a run without a checkpoint.
 fn begun_with(folder: &RunFolder, scene: &str) -> Result<(), RunError> {
     let path = folder.file(SCENE);
     match regular_file::read(&path, LONGEST_SCENE) {

@@ -1,11 +1,11 @@
-//! The structure as a run goes: looked at with its rows and snapshots, kept in its checkpoints, written at its end.
+//! Structure functions of a run: sampled at its rows and snapshots, stored in its checkpoints, written at its end.
 //!
-//! Sums are those of the looks after the start. What comes before the middle of the run is taken for the transient; the rest is in
-//! blocks of time, and a bar is the half width of the interval of 95 % by Student's t of their means: right where blocks are longer
-//! than the structure takes to change. What blocks share by lags that begin in one and end in the next is allowed for.
+//! Samples after the start are summed. The first half of the run counts as the transient. The second half is divided into blocks of time, and an
+//! error bar is the half-width of the 95 % confidence interval by Student's t of the block means. It is correct if blocks are longer than the
+//! correlation time of the structure. Correlations by lags that start in one block and end in the next are accounted for.
 //!
-//! Where rows or snapshots are so close that looking would take more than its share of the run's work, it is done at every second,
-//! third, … of them. The work is counted (`structure::strides`), never measured.
+//! If sampling every row or snapshot would exceed its share of the run's work, only every second, third, … is sampled. The work is counted
+//! (`structure::strides`), never measured.
 
 use super::RunError;
 use super::block_means::Function;
@@ -23,65 +23,65 @@ use crate::structure::{
 use serde::Serialize;
 use std::io::Write as _;
 
-/// What a run sums up of the structure.
+/// Structure functions of a run.
 pub(super) struct Structured {
     setting: Setting,
-    /// Every how many rows and snapshots are looked at.
+    /// Strides of sampled rows and snapshots.
     strides: [u64; 2],
-    /// Rows and snapshots so far, those at the start left out.
+    /// Rows and snapshots so far, without those at the start.
     passed: [u64; 2],
-    /// What is between two looks at rows and at snapshots (steps or time).
+    /// Interval between samples of rows and of snapshots (steps or time).
     spacings: [f64; 2],
     sums: Vec<Sum>,
-    /// What is found at snapshots, where an observable asks for them.
+    /// Samples of snapshots, if an observable needs them.
     look: Option<Look>,
-    /// What discs do to each other, where an observable asks for it.
+    /// Pair forces, if an observable needs them.
     forces: Option<PairForces>,
-    /// The discs at earlier rows, where an observable asks for them, and as they stand.
+    /// Samples at earlier rows, if an observable needs them, and the present state.
     motion: Option<(Motion, States)>,
-    /// Whether discs are followed across periodic sides, and how many particles there are at the start.
+    /// True if discs are followed across periodic sides, and the initial number of particles.
     follows: bool,
     particles: usize,
 }
 
-/// The sums of an observable.
+/// Sums of an observable.
 struct Sum {
     observable: &'static Observable,
     looks: u64,
     blocks: Blocks,
 }
 
-/// What was summed up of an observable.
+/// Summary of an observable.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summed {
-    /// Its name.
+    /// Name of the observable.
     pub name: &'static str,
-    /// The file of the run's folder with its values.
+    /// File with its values in the run's folder.
     pub file: &'static str,
-    /// Looks after the start, those of the transient among them.
+    /// Number of samples after the start, the transient included.
     pub looks: u64,
-    /// Every how many rows or snapshots are looked at.
+    /// Stride of the sampled rows or snapshots.
     pub every: u64,
-    /// Blocks that bars are from.
+    /// Number of blocks for error bars.
     pub(crate) blocks: usize,
-    /// Looks of each of them.
+    /// Number of samples in each block.
     pub(crate) looks_of_a_block: u64,
-    /// What stands for the whole; nothing where there are too few blocks.
+    /// Numbers that summarise it; empty if there are too few blocks.
     pub headlines: Vec<Number>,
-    /// What makes the values doubtful, or why no number stands for them.
+    /// Reservation about the values, or the reason why there are no headlines.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub doubt: Option<String>,
 }
 
-/// The share of a run's work that looking takes at most, where the scene does not say.
+/// Default of the largest fraction of a run's work for sampling.
 const SHARE: f64 = 0.05;
 
-/// The observables that a scene asks for, in the order of their list.
+/// Observables that a scene requests, in the order of their list.
 pub(super) fn chosen(output: &Output) -> impl Iterator<Item = &'static Observable> + use<'_> {
     OBSERVABLES.iter().filter(|observable| output.structure.iter().any(|name| name == observable.name))
 }
 
-/// Every how many rows and snapshots are looked at.
+/// Strides of sampled rows and snapshots.
 pub(super) fn every(prepared: &Prepared) -> [u64; 2] {
     let setting = setting_of(prepared);
     let asked: Vec<&Observable> = chosen(&prepared.output).collect();
@@ -97,7 +97,7 @@ fn setting_of(prepared: &Prepared) -> Setting {
 }
 
 impl Structured {
-    /// Nothing yet of what a scene asks for.
+    /// Empty sums for the observables of a scene.
     pub(super) fn new(prepared: &Prepared) -> Structured {
         let grains = prepared.particles().grains();
         let setting = setting_of(prepared);
@@ -123,10 +123,10 @@ impl Structured {
         }
     }
 
-    /// As a checkpoint kept it. What it does not know, or knows at other moments, begins now, which `notes` hear.
+    /// Restores the sums of a checkpoint. Observables that it lacks, or sampled at other moments, start now; `notes` receives their names.
     ///
     /// # Errors
-    /// A sentence, if the checkpoint is not one of this scene.
+    /// A message, if the checkpoint is not of this scene.
     pub(super) fn resumed(
         prepared: &Prepared,
         checkpoint: &Checkpoint,
@@ -140,9 +140,9 @@ impl Structured {
         };
         let at_same_moments =
             SPACINGS.map(|name| there.sum(&key(name)).ok()) == structured.spacings.map(Some);
-        let wrong = |name: &str| format!("what it says of the structure ({name}) is not of this scene");
+        let wrong = |name: &str| format!("its data of the structure ({name}) are not of this scene");
         let is_known = |observable: &Observable| at_same_moments && column(observable.name).is_some();
-        // What is seen of two moments goes on together or not at all.
+        // Functions of two moments are resumed together or not at all.
         let motion_is_known = structured.moving().all(|sum| is_known(sum.observable));
         if at_same_moments {
             structured.passed = [there.count(&key(PASSED[0]))?, there.count(&key(PASSED[1]))?];
@@ -154,7 +154,7 @@ impl Structured {
                 Seen::Twice { .. } => motion_is_known,
             };
             let Some(values) = column(name).filter(|_| goes_on) else {
-                notes.push(format!("{name} is summed up from here on"));
+                notes.push(format!("{name} is averaged from here on"));
                 continue;
             };
             sum.looks = there.count(&key(&format!("{name} looks")))?;
@@ -173,18 +173,18 @@ impl Structured {
         Ok(structured)
     }
 
-    /// The sums of what is seen of two moments.
+    /// Sums of functions of two moments.
     fn moving(&self) -> impl Iterator<Item = &Sum> {
         self.sums.iter().filter(|sum| matches!(sum.observable.seen, Seen::Twice { .. }))
     }
 
-    /// Whether a row or a snapshot more is one that is looked at.
+    /// Counts a row or a snapshot; returns true if it is sampled.
     fn passes(&mut self, what: usize) -> bool {
         self.passed[what] += 1;
         self.passed[what].is_multiple_of(self.strides[what])
     }
 
-    /// Looks at a moment of which there is a row.
+    /// Samples a moment with a row.
     pub(super) fn row(&mut self, moment: &RunMoment<'_>) {
         if self.motion.is_none() || !self.passes(ROWS) {
             return;
@@ -216,7 +216,7 @@ impl Structured {
         sums.iter_mut().filter(|sum| of(sum).is_some()).for_each(|sum| sum.looks += 1);
     }
 
-    /// Looks at a moment of which there is a snapshot.
+    /// Samples a moment with a snapshot.
     pub(super) fn snapshot(&mut self, moment: &RunMoment<'_>) {
         if self.look.is_none() || !self.passes(SNAPSHOTS) {
             return;
@@ -252,7 +252,7 @@ impl Structured {
         }
     }
 
-    /// Adds everything to what a checkpoint keeps.
+    /// Adds all sums to a checkpoint.
     pub(super) fn keep(&self, snapshot: &mut Snapshot) {
         for Sum { observable: Observable { name, .. }, looks, blocks } in &self.sums {
             snapshot.add_count(&key(&format!("{name} looks")), *looks);
@@ -273,7 +273,7 @@ impl Structured {
         }
     }
 
-    /// Each observable in its file: what it is a function of, its mean, and the bar.
+    /// Writes the file of each observable: coordinates, mean and error bar.
     pub(super) fn write(&self, folder: &RunFolder) -> Result<(), RunError> {
         for sum in &self.sums {
             let Function { over, means, .. } = self.function(sum);
@@ -285,7 +285,7 @@ impl Structured {
         Ok(())
     }
 
-    /// What `summary.json` says of each.
+    /// Entries of `summary.json`.
     pub(super) fn summed(&self) -> Vec<Summed> {
         self.sums.iter().map(|sum| self.summed_of(sum)).collect()
     }
@@ -333,13 +333,13 @@ impl Structured {
         }
     }
 
-    /// The function that an observable is, as far as it is known.
+    /// Function of an observable, as far as it has values.
     fn function(&self, sum: &Sum) -> Function {
         let length = sum.blocks.length();
         let (over, lags, last) = match sum.observable.seen {
             Seen::Once { over, .. } => (over.places(&self.setting), vec![], 0),
             Seen::Twice { .. } => {
-                // Lags no longer than a block, so that blocks share no more than their ends, and all of them are whole.
+                // Lags are at most a block, so that blocks share only their ends, and the last block is dropped.
                 let motion = self.motion.iter().flat_map(|(motion, _)| motion.times());
                 let short = Motion::lags().zip(motion).filter(|(lag, _)| *lag <= length);
                 let (lags, times) = short.map(|(lag, time)| (lag, vec![time])).unzip();
@@ -351,7 +351,7 @@ impl Structured {
         let is_density = sum.observable.is_density_of_places();
         let means = (0..function.over.len()).map_while(|place| {
             let [mean, bar] = function.mean_at(place)?;
-            // Where no disc was ever seen, nothing tells how seldom one is there.
+            // Positions where no disc was sampled have no known error.
             Some([mean, if is_density && mean == 0.0 { f64::NAN } else { bar }])
         });
         function.means = means.collect();
@@ -360,7 +360,7 @@ impl Structured {
     }
 }
 
-/// Of one coordinate itself, of two the distance from the origin.
+/// Coordinate itself, or the distance of two coordinates from the origin.
 fn length(place: &[f64]) -> f64 {
     match *place {
         [along] => along,
@@ -368,17 +368,17 @@ fn length(place: &[f64]) -> f64 {
     }
 }
 
-/// Their places where both are kept.
+/// Indices of rows and snapshots in pairs of values.
 const ROWS: usize = 0;
 const SNAPSHOTS: usize = 1;
 
-/// What checkpoints call the spacings of rows and snapshots, the motion, and its numbers.
+/// Names in checkpoints: the spacings and counts of rows and snapshots, the motion, and its times.
 const SPACINGS: [&str; 2] = ["rows", "snapshots"];
 const PASSED: [&str; 2] = ["rows passed", "snapshots passed"];
 const MOTION: &str = "motion";
 const MOTIONS: [&str; 2] = ["motion first", "motion last"];
 
-/// What checkpoints call something of the structure.
+/// Name of a structure entry in checkpoints.
 fn key(name: &str) -> String {
     format!("structure {name}")
 }
@@ -391,7 +391,7 @@ fn spacing(every: Every) -> f64 {
     }
 }
 
-/// Values of an observable, those for headlines only among them.
+/// Number of values of an observable, those for headlines only included.
 fn width(observable: &Observable, setting: &Setting) -> usize {
     match observable.seen {
         Seen::Once { over, further, .. } => over.places(setting).len() + further,

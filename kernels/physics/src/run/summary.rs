@@ -1,4 +1,4 @@
-//! What a run says of itself at the end.
+//! Summary that a run writes at its end.
 
 use super::structured::Summed;
 use super::{Job, forecast};
@@ -10,61 +10,60 @@ use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 use std::time::{Duration, SystemTime};
 
-/// The content of `summary.json`.
+/// Content of `summary.json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
-    /// The program.
+    /// Program of the run.
     pub origin: Origin,
-    /// The processor, where the system names it, and the platform.
+    /// Processor, if the system names it, and platform.
     pub host: String,
-    /// When this session began, in universal time.
+    /// Start of this session in UTC.
     pub begun: String,
-    /// When it ended.
+    /// End of this session in UTC.
     pub ended: String,
-    /// Seed of the random numbers that made the start; none where it was read or listed.
+    /// Seed of the start's random numbers; none if it was read or listed.
     pub seed: Option<u64>,
-    /// Instructions used, where the method has a choice.
+    /// Instruction set used, if the method has a choice.
     pub instruction_set: Option<Value>,
-    /// Threads used.
+    /// Number of threads used.
     pub threads: usize,
-    /// What the scene left open and has been chosen, with the reason.
+    /// Choices that the scene left open, with the reasons.
     pub choices: Vec<String>,
-    /// What the scene has no need of, with the reason.
+    /// Features of the scene left out as unnecessary, with the reasons.
     pub left_out: Vec<String>,
-    /// What was warned about.
+    /// All warnings.
     pub warnings: Vec<String>,
-    /// What was warned about at the end, with numbers.
+    /// Warnings at the end, with numbers.
     pub checks: Vec<RunWarning>,
-    /// What was to be expected of the step, by name.
+    /// Forecast of the step, by name.
     pub foreseen: Map<String, Value>,
-    /// What was out of the ordinary along the run's sessions: another version of the program, an older checkpoint and the
-    /// like; known once it is written.
+    /// Unusual findings over the run's sessions: another version of the program, an older checkpoint and the like; set when it is written.
     pub notes: Vec<String>,
-    /// What stopped the run, if the physics did.
+    /// Failure of the physics that stopped the run, if any.
     #[serde(serialize_with = "Failure::in_json")]
     pub failure: Option<Failure>,
-    /// The mean of each quantity with its error.
+    /// Mean of each quantity with its error.
     pub averages: Averages,
-    /// What was summed up of the structure.
+    /// Structure functions.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub structure: Vec<Summed>,
-    /// Steps done.
+    /// Number of steps done.
     pub steps: u64,
     /// Simulated time.
     pub time: f64,
-    /// Events so far; 0 where the method has none.
+    /// Number of events so far; 0 if the method has none.
     pub events: u64,
-    /// Wall seconds of this session, writing included.
+    /// Wall time of this session, output included (s).
     pub seconds: f64,
-    /// Wall seconds of this session in each phase.
+    /// Wall time of this session in each phase (s).
     pub phases: BTreeMap<&'static str, f64>,
-    /// What the method says of itself.
+    /// Data of the method.
     #[serde(flatten)]
     pub method: Map<String, Value>,
-    /// Where this session began.
+    /// Moment at which this session started.
     #[serde(skip)]
     pub from: Clock,
-    /// The last state, in a line.
+    /// Last state, in a line.
     #[serde(skip)]
     pub in_words: String,
 }

@@ -1,4 +1,4 @@
-//! The table that a run has written, row by row.
+//! Reader of a run's table, row by row.
 
 use crate::io::{FileError, regular_file};
 use crate::method::is_sound;
@@ -8,23 +8,23 @@ use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
-/// Longer than any row of a run's table (bytes).
+/// Longest row of a run's table (bytes).
 const LONGEST_ROW: u64 = 1 << 16;
 
-/// Why a table cannot be read.
+/// Reason why a table cannot be read.
 #[derive(Debug, thiserror::Error)]
 pub enum TableError {
-    /// No table of a run.
+    /// The file is not the table of a run.
     #[error("{}:{line}: {expected}", quoted::path(file))]
     NoTable {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
         /// Line, from 1.
         line: usize,
-        /// What should stand there.
+        /// Expected content.
         expected: &'static str,
     },
-    /// The system.
+    /// The system refuses to read it.
     #[error(transparent)]
     File(#[from] FileError),
 }
@@ -47,7 +47,7 @@ impl Reported for TableError {
     }
 }
 
-/// A table being read: a heading with a column `time`, then finite numbers.
+/// Open table: a heading with a column `time`, then finite numbers.
 #[derive(Debug)]
 pub struct TableReader {
     path: PathBuf,
@@ -60,7 +60,7 @@ impl TableReader {
     /// Opens a table and reads its heading.
     ///
     /// # Errors
-    /// If the system does not let it be read, or it is no table of a run.
+    /// If the system refuses to read it, or it is not the table of a run.
     pub fn open(path: &Path) -> Result<TableReader, TableError> {
         let file = regular_file::open(path).map_err(FileError::at(path, "reading"))?;
         let (path, file) = (path.to_owned(), BufReader::new(file));
@@ -73,15 +73,15 @@ impl TableReader {
         Ok(table)
     }
 
-    /// The names of the columns.
+    /// Names of the columns.
     pub fn columns(&self) -> &[String] {
         &self.columns
     }
 
-    /// The next row, a number for each column; none at the end.
+    /// Reads the next row, a number for each column; none at the end.
     ///
     /// # Errors
-    /// If the system does not let it be read, or it is no row of numbers.
+    /// If the system refuses to read it, or it is not a row of numbers.
     pub fn next_row(&mut self) -> Result<Option<Vec<f64>>, TableError> {
         let Some(line) = self.next_line()? else { return Ok(None) };
         let row: Result<Vec<f64>, _> = line.split(',').map(str::parse).collect();
@@ -92,7 +92,7 @@ impl TableReader {
         row.map(Some).ok_or_else(|| self.wrong("expected a finite number for each column"))
     }
 
-    /// That there is no row yet.
+    /// Error of a table without rows.
     pub fn without_rows(&self) -> TableError {
         let (file, line) = (self.path.clone(), 2);
         TableError::NoTable {
@@ -115,7 +115,7 @@ impl TableReader {
         }
         self.line += 1;
         if bytes.len() as u64 == LONGEST_ROW {
-            return Err(self.wrong("longer than any row of a run's table"));
+            return Err(self.wrong("the line is longer than any row of a run's table"));
         }
         let text = String::from_utf8(bytes).map_err(|_| self.wrong("not UTF-8 text"))?;
         Ok(Some(text.trim_end_matches(['\n', '\r']).to_owned()))

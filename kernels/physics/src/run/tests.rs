@@ -1,4 +1,4 @@
-//! Runs in every format of the list: a new one is tested by its entry there.
+//! Tests of runs in every format of the list; a new format is tested by its entry there.
 
 use super::{Existing, Job, run};
 use crate::io::FORMATS;
@@ -9,7 +9,7 @@ use std::fs;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Runs a short scene, with all formats or none, until a number of steps, if one is given; the files of formats with their bytes.
+/// Runs a short scene, with all formats or none, until a number of steps, if given; returns the files of formats with their bytes.
 fn files_after(
     folder: &Path,
     is_asked: bool,
@@ -34,8 +34,8 @@ fn files_after(
     FORMATS.iter().filter_map(|format| read(format.file)).collect()
 }
 
-/// Each file is there, has something in it, and is the same however often the run is stopped; a run that overwrites it removes those
-/// that it does not begin, so that the list of the run's files has them.
+/// Each file exists, is not empty, and is the same however often the run is stopped. A run that overwrites another removes the files that it does
+/// not create.
 #[test]
 fn formats_are_begun_resumed_and_removed() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! One function for a section both ways: what it binds to keys is read from values, and written as values.
+//! Binding of a section's fields to its keys, one function for reading and writing.
 
 use super::key_set::{KeySet, SECTIONS};
 use super::keys::{Fallback, Key, Value};
@@ -9,22 +9,22 @@ use super::{SceneError, SceneErrors};
 use crate::input::Reason;
 use crate::words::Words;
 
-/// What meets the fields of a section: reads them from a text, or writes them down.
+/// Visitor of the fields of a section: reads them from a text, or writes them.
 pub trait Binding {
-    /// A field of this value is bound to a key; gives the value that it is to have from now on, if it is to have another.
+    /// Binds a field with this value to a key, and returns the new value of the field, if it changes.
     fn meet(&mut self, key: &'static Key, value: Option<Value>) -> Option<Value>;
 
-    /// Whether fields take their values from a text.
+    /// True if fields take their values from a text.
     fn reads(&self) -> bool {
         false
     }
 
-    /// The scene file, beside which other files are looked for; empty where none is read.
+    /// Path of the scene file, which relative paths start from; empty if none is read.
     fn file(&self) -> &str {
         ""
     }
 
-    /// The frame of the start file that runs of this scene share; none where each reads it itself.
+    /// Frame of the start file shared by runs of this scene; none if each run reads it.
     fn shared_start(&self) -> Option<SharedFrame> {
         None
     }
@@ -34,14 +34,14 @@ macro_rules! define_bindings {
     ($($method:ident, $optional:ident, $variant:ident, $ty:ty;)*) => {
         impl dyn Binding + '_ {
             $(
-                /// A field that always has a value.
+                /// Binds a field that always has a value.
                 pub fn $method(&mut self, key: &'static Key, field: &mut $ty) {
                     if let Some(Value::$variant(value)) = self.meet(key, Some(Value::$variant(field.clone()))) {
                         *field = value;
                     }
                 }
 
-                /// A field that may have none.
+                /// Binds an optional field.
                 pub fn $optional(&mut self, key: &'static Key, field: &mut Option<$ty>) {
                     match self.meet(key, field.clone().map(Value::$variant)) {
                         Some(Value::$variant(value)) => *field = Some(value),
@@ -68,7 +68,7 @@ define_bindings! {
 }
 
 impl dyn Binding + '_ {
-    /// A field that is one of some words.
+    /// Binds a field that is one of some words.
     pub fn choice<W: Words>(&mut self, key: &'static Key, field: &mut W) {
         let mut word = field.word().to_owned();
         self.word(key, &mut word);
@@ -77,7 +77,7 @@ impl dyn Binding + '_ {
         }
     }
 
-    /// A count that fits the memory.
+    /// Binds a count of things in memory.
     pub fn count(&mut self, key: &'static Key, field: &mut usize) {
         let mut count = *field as u64;
         self.whole(key, &mut count);
@@ -85,22 +85,22 @@ impl dyn Binding + '_ {
     }
 }
 
-/// Reads fields from values.
+/// Binding that reads fields from values.
 pub struct Read<'v> {
     values: &'v Values,
     missing: Vec<SceneError>,
 }
 
 impl<'v> Read<'v> {
-    /// From values that have passed their rules.
+    /// Reads from values that have passed their rules.
     pub fn new(values: &'v Values) -> Self {
         Read { values, missing: Vec::new() }
     }
 
-    /// That every field had its value.
+    /// Checks that every field had its value.
     ///
     /// # Errors
-    /// The keys that have neither a value nor a default.
+    /// Keys that have neither a value nor a default.
     pub fn done(self) -> Result<(), SceneErrors> {
         SceneErrors::none_of(self.missing)
     }
@@ -136,13 +136,13 @@ impl Binding for Read<'_> {
     }
 }
 
-/// Writes fields as values.
+/// Binding that writes fields as values.
 #[derive(Default)]
 pub struct Write(Vec<(&'static Key, Value)>);
 
 impl Binding for Write {
     fn meet(&mut self, key: &'static Key, value: Option<Value>) -> Option<Value> {
-        // A choice that another key makes by being given is said by that one.
+        // A choice implied by another key is not written: that key implies it again.
         let is_said = !matches!((&value, key.kind), (Some(Value::Word(word)), kind) if !kind.admits(word));
         self.0.extend(value.filter(|_| is_said).map(|value| (key, value)));
         None
@@ -150,7 +150,7 @@ impl Binding for Write {
 }
 
 impl Write {
-    /// As TOML, every key with its value and unit, in the order of its keys.
+    /// Text in TOML: every key with its value and unit, in the order of the keys.
     pub fn to_toml(&self, keys: &KeySet) -> String {
         let mut text = String::new();
         let sections = std::iter::once("").chain(SECTIONS.iter().map(|(name, _)| *name));

@@ -1,4 +1,4 @@
-//! The keys of the discs at the start.
+//! Keys of the initial discs.
 
 use super::key_set::Rivals;
 use super::keys::Bounds::{Finite, NonNegative, Positive, UpTo, Within};
@@ -24,32 +24,32 @@ const LIST: Use = Some((&GENERATE, &["list"]));
 const OSCILLATING: Use = Some((&WALL_MOTION, &["oscillating"]));
 
 define_keys! {
-    /// The discs of a scene in the plane.
+    /// Discs of a scene in the plane.
     pub static DISCS;
     GENERATE = "particles" "generate", Choice(&["random", "compressed", "mesh", "hexagonal", "pipe", "box", "list"]), "",
         Otherwise("read `file`"), ALWAYS,
-        "How discs are made: at random without overlap; so, but small, and grown while they move and collide, for packing fractions up to 0.88; at places of a square mesh, drawn at random; on a shaken hexagonal lattice; in a pipe along x between two rows of wall discs; above a floor of wall discs; as listed.";
+        "Initial placement. random: without overlap. compressed: placed small and grown while they move and collide, for packing fractions up to 0.88. mesh: random sites of a square mesh. hexagonal: a hexagonal lattice with random shifts. pipe: in a pipe along x between two rows of wall discs. box: above a floor of wall discs. list: as listed.";
     FILE = "particles" "file", Text, "", Otherwise("generated"), ALWAYS,
         "Start file, extended XYZ with id, pos, velo, radius, mass, omega; relative to the scene file.",
         implies (&GENERATE, "file");
     SEED = "particles" "seed", Whole(0, u64::MAX), "", Is("1"), DRAWN,
         "Seed of radii, positions and velocities.";
     COUNT = "particles" "count", Whole(1, 2_147_483_647), "", Otherwise("from `packing_fraction`"), DRAWN,
-        "Number of grains; a hexagonal lattice may take a few more, to close.";
+        "Number of grains; a hexagonal lattice may have a few more to fill its last row.";
     PACKING_FRACTION = "particles" "packing_fraction", Number(Within(0.907)), "", Otherwise("from `count`"), DRAWN,
-        "N π radius² over the area that is open to grains: the box, the clear channel of a pipe, the fill height of a box.";
+        "N π radius² over the area open to grains: the box, the clear channel of a pipe, or the box up to its fill height.";
     RADIUS = "particles" "radius", Number(Positive), "length", Required, GENERATED,
         "Radius of a grain; with a spread, the mean.";
     SECOND_RADIUS = "particles" "second_radius", Number(Positive), "length", Otherwise("`radius`"), PLACED,
         "Mean radius of a second kind of discs.";
     SECOND_SHARE = "particles" "second_share", Number(UpTo(1.0)), "", Is("0.0"), PLACED,
-        "Share of the discs that are of the second kind, from 0 to 1.";
+        "Fraction of the discs that are of the second kind, from 0 to 1.";
     RADIUS_SPREAD = "particles" "radius_spread", Number(UpTo(1.0)), "", Is("0.0"), PLACED,
         "Standard deviation of the Gaussian radii, relative to `radius`.";
     RADIUS_CUT = "particles" "radius_cut", Number(UpTo(1.0)), "", Otherwise("2 `radius_spread`, at most 0.12"), PLACED,
         "Largest deviation of a radius, relative to `radius`.";
     MASS = "particles" "mass", Number(Positive), "mass", Required, GENERATED,
-        "Mass of a disc of radius `radius`; others have it times (their radius/`radius`)².";
+        "Mass of a disc of radius `radius`; masses scale as (their radius/`radius`)².";
     TEMPERATURE = "particles" "temperature", Number(NonNegative), "mass·length²/time²", Otherwise("see `speed`"), DRAWN,
         "kT of Maxwell velocities; no spin.";
     SPEED = "particles" "speed", Number(NonNegative), "length/time", Otherwise("at rest"), DRAWN,
@@ -57,7 +57,7 @@ define_keys! {
     CLEAR_WIDTH = "particles" "clear_width", Number(Positive), "length", Required, PIPE,
         "Width of the pipe between the surfaces of its wall discs; its axis is the middle of the box.";
     SPACING = "particles" "spacing", Number(Positive), "length", Otherwise("2 `radius`"), MESH,
-        "Distance of neighbouring places of the mesh, at least; the nearest that divides the sides is taken.";
+        "Smallest distance of neighbouring sites of the mesh; increased until it divides the sides.";
     FILL_HEIGHT = "particles" "fill_height", Number(Positive), "length", Required, BOX,
         "Height above the floor up to which grains are placed.";
     POSITIONS = "particles" "positions", Pairs, "length", Required, LIST,
@@ -69,11 +69,11 @@ define_keys! {
     RADII = "particles" "radii", Numbers(Positive), "length", Otherwise("all `radius`"), LIST,
         "Radii of the grains.";
     WALL_POSITIONS = "particles" "wall_positions", Pairs, "length", Otherwise("no walls"), LIST,
-        "Centres of wall discs; nothing moves a wall disc but wall_motion: its mass in a contact is infinite.";
+        "Centres of wall discs. Only `wall_motion` moves a wall disc: its mass in a contact is infinite.";
     WALL_RADIUS = "particles" "wall_radius", Number(Positive), "length", Otherwise("0.9 `radius`"), WALLED,
         "Radius of the wall discs.";
     WALL_SPACING = "particles" "wall_spacing", Number(Positive), "length", Otherwise("3 `wall_radius`"), LINED,
-        "Distance of the centres of neighbouring wall discs; the nearest that divides the length is taken.";
+        "Distance of the centres of neighbouring wall discs; rounded so that it divides the length.";
     WALL_MOTION = "particles" "wall_motion", Choice(Motion::WORDS), "", Is("\"fixed\""), HOLDING,
         "Motion of the wall discs, all together.";
     WALL_AMPLITUDE = "particles" "wall_amplitude", Pair(Finite), "length", Required, OSCILLATING,
@@ -91,11 +91,11 @@ pub static DISC_RIVALS: &[Rivals] = &[
 ];
 
 define_words! {
-    /// Whether wall discs move.
+    /// Motion of wall discs.
     pub(super) enum Motion {
-        /// Not at all.
+        /// At rest.
         Fixed = "fixed",
-        /// As a sine.
+        /// Sinusoidal.
         Oscillating = "oscillating",
     }
 }

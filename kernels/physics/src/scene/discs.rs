@@ -1,4 +1,4 @@
-//! The discs at the start of a scene: generated, listed or read; and the motion of wall discs.
+//! Initial discs of a scene, generated, listed or read, and the motion of wall discs.
 
 use super::binding::Binding;
 use super::disc_keys::*;
@@ -9,81 +9,81 @@ use crate::words::define_words;
 use std::path::{Path, PathBuf};
 
 define_words! {
-    /// How the discs at the start come about.
+    /// Kind of the initial placement.
     enum Origin {
         /// At random.
         Random = "random",
-        /// Grown while they move.
+        /// Placed small and grown while they move.
         Compressed = "compressed",
-        /// At places of a mesh.
+        /// At random sites of a mesh.
         Mesh = "mesh",
         /// On a hexagonal lattice.
         Hexagonal = "hexagonal",
         Pipe = "pipe",
         /// Above a floor.
         Box = "box",
-        /// As listed.
+        /// Listed one by one.
         List = "list",
         /// From a file.
         File = "file",
     }
 }
 
-/// The discs at the start.
+/// Initial discs.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Start {
     /// Read from an extended XYZ file.
     File(StartFile),
-    /// As listed.
+    /// Listed one by one.
     List(List),
-    /// On a hexagonal lattice, each shifted at random by at most 0.45 of the gap; the box is made to fit.
+    /// On a hexagonal lattice, each shifted at random by at most 0.45 of the gap; the lattice determines the box.
     Hexagonal {
-        /// Number of discs, at least.
+        /// Smallest number of discs.
         count: usize,
         /// N π R² over the area of the box.
         packing_fraction: f64,
-        /// The discs.
+        /// Properties of the discs.
         grains: Grains,
     },
     /// At random in the box, without overlap.
     Random {
-        /// How many.
+        /// Number or packing fraction.
         amount: Amount,
-        /// The discs.
+        /// Properties of the discs.
         grains: Grains,
     },
-    /// At random in the box, but small, and then grown while they move and collide.
+    /// At random in the box, but small, then grown while they move and collide.
     Compressed {
-        /// How many.
+        /// Number or packing fraction.
         amount: Amount,
-        /// The discs.
+        /// Properties of the discs.
         grains: Grains,
     },
-    /// At places of a square mesh, drawn at random, no place twice.
+    /// At random sites of a square mesh, at most one disc on each.
     Mesh {
-        /// How many.
+        /// Number or packing fraction.
         amount: Amount,
-        /// The discs.
+        /// Properties of the discs.
         grains: Grains,
-        /// Distance of neighbouring places (length), at least.
+        /// Smallest distance of neighbouring sites (length).
         spacing: f64,
     },
     /// At random in a pipe along x between two rows of wall discs, the upper row shifted by half a spacing.
     Pipe {
-        /// How many; the packing fraction is that of the clear channel.
+        /// Number, or packing fraction in the clear channel.
         amount: Amount,
-        /// The discs.
+        /// Properties of the discs.
         grains: Grains,
-        /// The wall discs.
+        /// Wall discs.
         lining: Lining,
         /// Width between the surfaces of the wall discs (length).
         clear_width: f64,
     },
     /// At random above a floor of wall discs.
     Box {
-        /// How many; the packing fraction is that of the fill height.
+        /// Number, or packing fraction in the fill height.
         amount: Amount,
-        /// The discs.
+        /// Properties of the discs.
         grains: Grains,
         /// The floor.
         lining: Lining,
@@ -98,12 +98,12 @@ impl Default for Start {
     }
 }
 
-/// How many discs.
+/// Number of discs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Amount {
-    /// This many.
+    /// Number itself.
     Count(usize),
-    /// As many as make N π R² this part of the area that is open to them.
+    /// Packing fraction N π R² over the area open to the discs.
     PackingFraction(f64),
 }
 
@@ -113,7 +113,7 @@ impl Default for Amount {
     }
 }
 
-/// Discs to be generated.
+/// Properties of generated discs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Grains {
     /// Mean radius (length).
@@ -124,7 +124,7 @@ pub struct Grains {
     pub cut: f64,
     /// Discs of a second mean radius among them.
     pub second: Second,
-    /// Mass of a disc of the mean radius (mass); others have it times (R/mean)².
+    /// Mass of a disc of the mean radius (mass); masses scale as (R/mean)².
     pub mass: f64,
     /// Velocities.
     pub speed: Speed,
@@ -135,9 +135,9 @@ pub struct Grains {
 /// Velocities at the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Speed {
-    /// Gaussian, of this standard deviation for each component (length/time); 0 is rest.
+    /// Gaussian velocities with this standard deviation for each component (length/time); 0 is rest.
     Deviation(f64),
-    /// Maxwell, of this kT (mass·length²/time²).
+    /// Maxwell velocities with this kT (mass·length²/time²).
     Temperature(f64),
 }
 
@@ -147,7 +147,7 @@ impl Default for Speed {
     }
 }
 
-/// Wall discs in a row.
+/// Row of wall discs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Lining {
     /// Radius (length).
@@ -156,7 +156,7 @@ pub struct Lining {
     pub spacing: f64,
 }
 
-/// Discs one by one.
+/// Discs given one by one.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct List {
     /// Centres of the grains (length).
@@ -169,7 +169,7 @@ pub struct List {
     pub radii: Vec<f64>,
     /// Radius (length) of a disc of mass `mass`.
     pub radius: f64,
-    /// Mass of a disc of radius `radius`; others have it times (R/radius)².
+    /// Mass of a disc of radius `radius`; masses scale as (R/radius)².
     pub mass: f64,
     /// Centres of the wall discs (length).
     pub(crate) wall_positions: Vec<[f64; 2]>,
@@ -177,23 +177,23 @@ pub struct List {
     pub wall_radius: f64,
 }
 
-/// How wall discs move, all together.
+/// Common motion of the wall discs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum WallMotion {
-    /// Not at all.
+    /// At rest.
     #[default]
     Fixed,
     /// r(t) = r(0) + a sin(2π f t).
     Oscillating {
-        /// a (length).
+        /// Amplitude a (length).
         amplitude: [f64; 2],
-        /// f (1/time).
+        /// Frequency f (1/time).
         frequency: f64,
     },
 }
 
 impl WallMotion {
-    /// Meets its keys, where a start may have walls.
+    /// Binds its keys if the start may have walls.
     pub fn bind(&mut self, binding: &mut dyn Binding, start: &Start) {
         if matches!(
             start,
@@ -245,7 +245,7 @@ impl Start {
         }
     }
 
-    /// Meets its keys.
+    /// Binds its keys.
     pub fn bind(&mut self, binding: &mut dyn Binding) {
         let mut origin = self.origin();
         binding.choice(&GENERATE, &mut origin);
@@ -288,7 +288,7 @@ impl Start {
         }
     }
 
-    /// Seed of the random numbers that make it; none where it is read or listed.
+    /// Seed of its random numbers; none if the start is read or listed.
     pub fn seed(&self) -> Option<u64> {
         match self {
             Start::File(_) | Start::List(_) => None,
@@ -301,7 +301,7 @@ impl Start {
         }
     }
 
-    /// The file that it is read from.
+    /// Path of the start file, if there is one.
     pub fn file(&self) -> Option<&Path> {
         match self {
             Start::File(file) => Some(file.path()),
@@ -357,7 +357,7 @@ impl Grains {
     }
 }
 
-/// A number that has a value of its own kind where it is not given.
+/// Binds a number whose default depends on other values.
 fn or_else(binding: &mut dyn Binding, key: &'static Key, field: &mut f64, otherwise: f64) {
     match binding.meet(key, Some(Value::Number(*field))) {
         Some(Value::Number(value)) => *field = value,
@@ -391,7 +391,7 @@ impl List {
     }
 }
 
-/// A start file's path: as it is, or beside the scene file.
+/// Path of a start file: absolute, or relative to the scene file.
 fn beside(scene_file: &str, path: &str) -> PathBuf {
     let folder = Path::new(scene_file).parent().unwrap_or(Path::new(""));
     let path = folder.join(path);

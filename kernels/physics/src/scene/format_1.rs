@@ -1,4 +1,4 @@
-//! Scenes of format 1, which are refused with what to change, key by key.
+//! Rejection of scenes of format 1, with the change of each key.
 
 use super::general::{FORMAT, FORMAT_VERSION};
 use super::values::Vocabulary;
@@ -6,10 +6,10 @@ use super::{SceneError, SceneErrors};
 use crate::input::{InputText, Reason};
 use toml::de::{DeTable, DeValue};
 
-/// Refuses a scene of format 1.
+/// Rejects a scene of format 1.
 ///
 /// # Errors
-/// If it is one: every key that says something else in format 2, or something under another name.
+/// A list of the keys that have another meaning or another name in format 2.
 pub(super) fn refuse(
     table: &DeTable<'_>,
     text: &InputText<'_>,

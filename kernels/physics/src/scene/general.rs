@@ -1,4 +1,4 @@
-//! What every scene says, whatever its method: format and units, box, duration, files.
+//! Keys common to all methods: format and units, duration, files.
 
 use super::SceneError;
 use super::binding::Binding;
@@ -15,44 +15,44 @@ use crate::io::output_format::OutputFormat;
 use crate::number::significant;
 use crate::structure;
 
-/// The version of the scene format that this program reads.
+/// Version of the scene format that this program reads.
 pub(crate) const FORMAT_VERSION: u64 = 2;
 
 const ALWAYS: Use = None;
-/// As many steps as a run may have.
+/// Largest number of steps of a run.
 const MOST_STEPS: u64 = 1_000_000_000_000;
 
 define_keys! {
-    /// The top of the file, and the method's name.
+    /// Head of the file, and the method's name.
     pub static HEADING;
     FORMAT = "" "format", OneOf(&[FORMAT_VERSION]), "", Required, ALWAYS,
         "Version of the scene format.";
     UNITS = "" "units", Text, "", Required, ALWAYS,
-        "The unit system, stated once: \"SI\", \"reduced\", … A label; nothing is converted.";
+        "Unit system: \"SI\", \"reduced\", … A label; nothing is converted.";
     METHOD = "method" "kind", Text, "", Required, ALWAYS,
-        "The method by its name; the other keys of the scene are that method's.";
+        "Name of the method, which determines the other keys of the scene.";
 }
 
 define_keys! {
-    /// Duration and output of a method that takes steps.
+    /// Duration and output of a method with time steps.
     pub static STEPPED_RUN;
     STEPS = "run" "steps", Whole(0, MOST_STEPS), "", Otherwise("from `time`"), ALWAYS,
         "Number of steps.";
     TIME = "run" "time", Number(NonNegative), "time", Otherwise("from `steps`"), ALWAYS,
-        "Duration; the nearest whole number of steps.";
+        "Duration; rounded to a whole number of steps.";
     THERMO_EVERY = "run" "thermo_every", Whole(0, MOST_STEPS), "steps", Is("100"), ALWAYS,
         "Steps between rows of thermo.csv; 0 for none.";
     SNAPSHOT_EVERY = "run" "snapshot_every", Whole(0, MOST_STEPS), "steps", Is("1000"), ALWAYS,
-        "Steps between snapshots; 0 for none but the first and the last.";
+        "Steps between snapshots; 0 for the first and the last only.";
     CHECKPOINT_EVERY = "run" "checkpoint_every", Whole(0, MOST_STEPS), "steps", Otherwise("by the wall clock"), ALWAYS,
-        "Steps between checkpoints; 0 for one at the end only. Without it there is one in ten seconds. No result depends on it.";
+        "Steps between checkpoints; 0 for one at the end only. Default: one every ten seconds of wall time. Results do not depend on it.";
 }
 
 define_keys! {
-    /// The end of a run by what is known of a mean.
+    /// End of a run at a target error of a mean.
     pub static TARGETED;
-    TARGET = "run" "until", Kind::Target, "", Otherwise("no such end"), ALWAYS,
-        "Ends the run as soon as the mean of a quantity is known so well: the half width of its interval of 95 %, in percent of the mean or in its unit. The end by number or time that the scene gives is the latest; a run that comes to it first fails.";
+    TARGET = "run" "until", Kind::Target, "", Otherwise("no target"), ALWAYS,
+        "Ends the run once the mean of a quantity reaches a target error: the half-width of its 95 % confidence interval, in percent of the mean or in its unit. `steps` or `time` is the latest end; a run that reaches it first fails.";
 }
 
 static KEYS_OF_FORMATS: [Key; FORMATS.len()] = {
@@ -66,45 +66,45 @@ static KEYS_OF_FORMATS: [Key; FORMATS.len()] = {
     keys
 };
 
-/// Files on request: a key for each of [`FORMATS`], in their order.
+/// Output files: a key for each of [`FORMATS`], in their order.
 pub static OUTPUT: &[&Key] = &KEYS_OF_FORMATS.each_ref();
 
 define_keys! {
-    /// What is summed up as a run goes, where there is a box.
+    /// Averages of the structure during a run, for scenes with a box.
     pub(crate) static SUMMED;
     STRUCTURE = "output" "structure", Kind::Words(&structure::NAMES), "", Is("[]"), ALWAYS,
-        "What of the structure is averaged over the second half of the run, each with its error in a file of its own: of snapshots, msd and vacf of rows of thermo.csv.";
+        "Structure functions averaged over the second half of the run, each in a file of its own with its error. Samples are snapshots; for msd and vacf they are rows of thermo.csv.";
     STRUCTURE_SHARE = "output" "structure_share", Number(Positive), "", Otherwise("0.05"), ALWAYS,
-        "The largest share of a run's work that this may take, by a count of it: where rows or snapshots are closer, every second, third, … of them is looked at. 1000 for all of them.";
+        "Largest fraction of a run's work for structure functions, by a count of operations. Where samples cost more, only every second, third, … row or snapshot is one. 1000 for all of them.";
 }
 
 define_keys! {
-    /// The step of a method that takes steps.
+    /// Time step.
     pub static STEP;
     DT = "integrator" "dt", Number(Positive), "time", Required, ALWAYS,
         "Time step.";
 }
 
-/// A run that takes steps lasts for a number of them, or for a time.
+/// Duration keys of a run with time steps: a number of steps or a time.
 pub static DURATION: &[Rivals] = &[Rivals { keys: &[&STEPS, &TIME], used: ALWAYS, needed: true }];
 
-/// How long a run takes, and how often something is written (steps; 0 is never).
+/// Duration of a run and intervals of its output (steps; 0 is never).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Run {
-    /// Steps to do.
+    /// Number of steps.
     pub steps: u64,
-    /// The mean that ends the run before.
+    /// Target error of a mean that ends the run early.
     pub target: Option<Target>,
     /// Steps between rows of observables.
     pub(crate) thermo_every: u64,
     /// Steps between snapshots.
     pub(crate) snapshot_every: u64,
-    /// Steps between checkpoints; by the wall clock if none.
+    /// Steps between checkpoints; by wall time if none.
     pub(crate) checkpoint_every: Option<u64>,
 }
 
 impl Run {
-    /// Meets its keys; a time becomes the nearest number of steps of `dt` (time).
+    /// Binds its keys; a time is rounded to a whole number of steps of `dt` (time).
     pub fn bind(&mut self, binding: &mut dyn Binding, dt: f64) {
         let mut time = None;
         binding.number_if_any(&TIME, &mut time);
@@ -119,7 +119,7 @@ impl Run {
     }
 }
 
-/// That a duration is no more steps than can be counted.
+/// Checks that a duration has at most the largest number of steps.
 pub fn too_many_steps(values: &Values) -> Vec<SceneError> {
     let given = values.given(&TIME).and_then(|_| Some((values.number(&TIME)?, values.number(&DT)?)));
     let Some((time, dt)) = given.filter(|(time, dt)| time / dt > MOST_STEPS as f64) else { return vec![] };
@@ -128,29 +128,29 @@ pub fn too_many_steps(values: &Values) -> Vec<SceneError> {
     vec![error.expecting(format!("at most {} steps", significant(MOST_STEPS as f64, 1)))]
 }
 
-/// Which files are written.
+/// Output files of a run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Output {
-    /// The formats that particles are written in, by their keys.
+    /// Formats for particles, by their keys.
     pub(crate) formats: Vec<&'static str>,
-    /// The names of what is summed up of the structure.
+    /// Names of the structure functions.
     pub structure: Vec<String>,
-    /// The largest share of the work that may take.
+    /// Largest fraction of the work for structure functions.
     pub(crate) structure_share: Option<f64>,
 }
 
 impl Output {
-    /// Whether particles are written in a format.
+    /// True if particles are written in a format.
     pub fn asks_for(&self, format: &OutputFormat) -> bool {
         self.formats.contains(&format.key)
     }
 
-    /// Whether displacements are asked for, for which discs are followed across periodic sides.
+    /// True if a structure function needs displacements, for which discs are followed across periodic sides.
     pub(crate) fn follows_motion(&self) -> bool {
         self.structure.iter().filter_map(|name| structure::observable(name)).any(|it| it.follows_motion())
     }
 
-    /// Meets its keys.
+    /// Binds its keys.
     pub fn bind(&mut self, binding: &mut dyn Binding) {
         let asked = FORMATS.iter().zip(OUTPUT.iter().copied()).filter(|&(format, key)| {
             let mut is_asked = self.asks_for(format);
@@ -163,7 +163,7 @@ impl Output {
     }
 }
 
-/// Format, units and method at the head of a scene.
+/// Binds format, units and method at the head of a scene.
 pub fn bind_heading(binding: &mut dyn Binding, units: &mut String, method: &'static str) {
     binding.whole(&FORMAT, &mut { FORMAT_VERSION });
     binding.word(&UNITS, units);

@@ -1,4 +1,4 @@
-//! What a key is: its name, type, range, unit, default and documentation.
+//! Keys of scenes: name, type, range, unit, default and documentation.
 
 use super::target::{Target, Width};
 use crate::input::{Mistakes, Reason};
@@ -8,7 +8,7 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeInteger, DeValue};
 
-/// The value of a key, read and in range.
+/// Value of a key, read and in range.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     /// A number.
@@ -23,20 +23,20 @@ pub enum Value {
     Pair([f64; 2]),
     /// Yes or no for each axis.
     Switches([bool; 2]),
-    /// A list of vectors.
+    /// List of vectors.
     Pairs(Vec<[f64; 2]>),
-    /// A list of numbers.
+    /// List of numbers.
     Numbers(Vec<f64>),
-    /// A list of rows of numbers.
+    /// List of rows of numbers.
     Rows(Vec<Vec<f64>>),
-    /// A mean to be known so well.
+    /// Target error of a mean.
     Target(Target),
-    /// Some words of those to choose from.
+    /// Some of the words to choose from.
     Words(Vec<String>),
 }
 
 impl Value {
-    /// As TOML; numbers in shortest round-trip form.
+    /// Text in TOML; numbers have the shortest form that reads back to the same bits.
     pub fn to_toml(&self) -> String {
         let list = |items: Vec<String>| format!("[{}]", items.join(", "));
         let pair = |pair: &[f64; 2]| format!("[{:?}, {:?}]", pair[0], pair[1]);
@@ -60,7 +60,7 @@ impl Value {
     }
 }
 
-/// The range of a number; every number must be finite.
+/// Range of a number; every number must be finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bounds {
     /// Any finite number.
@@ -78,7 +78,7 @@ pub enum Bounds {
 }
 
 impl Bounds {
-    /// Whether a number is in the range.
+    /// True if a number is in the range.
     pub(crate) fn admit(self, value: f64) -> bool {
         value.is_finite()
             && match self {
@@ -103,7 +103,7 @@ impl Bounds {
     }
 }
 
-/// The type of a key's value.
+/// Type of a key's value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
     /// A number.
@@ -126,7 +126,7 @@ pub enum Kind {
     Pairs,
     /// `[a, b, …]`, all in the range.
     Numbers(Bounds),
-    /// `[[a, b, …], …]`, each row of as many finite numbers.
+    /// `[[a, b, …], …]`, each row with this number of finite numbers.
     Rows(usize),
     /// `{ quantity = "…", error = "…%" }`, or a number as the error.
     Target,
@@ -134,7 +134,7 @@ pub enum Kind {
     Words(&'static [&'static str]),
 }
 
-/// Why a value cannot be read, and where in the text it stands.
+/// Reason why a value cannot be read, with its location in the text.
 pub(super) struct Fault {
     pub(super) span: Range<usize>,
     pub(super) reason: Reason,
@@ -151,7 +151,7 @@ impl Fault {
 type Read<T> = Result<T, Vec<Fault>>;
 
 impl Kind {
-    /// What is asked for, in words.
+    /// Description of the values of this type.
     pub fn words(self) -> String {
         let joined = |words: Vec<String>| match words.split_last() {
             Some((last, [])) => last.clone(),
@@ -180,7 +180,7 @@ impl Kind {
         }
     }
 
-    /// Whether a word may stand there: any, where words are not chosen from some.
+    /// True if a word is admitted. Types other than a choice of words admit any.
     pub(super) fn admits(self, word: &str) -> bool {
         match self {
             Kind::Choice(words) => words.iter().any(|choice| is_choice(choice, word)),
@@ -188,7 +188,7 @@ impl Kind {
         }
     }
 
-    /// Reads a value, with every fault of it.
+    /// Reads a value and returns all its faults.
     pub(super) fn read(self, value: &Spanned<DeValue<'_>>) -> Read<Value> {
         Ok(match self {
             Kind::Number(bounds) => Value::Number(number(value, bounds)?),
@@ -211,7 +211,7 @@ impl Kind {
     }
 }
 
-/// What stands there, in words: a value where it is short.
+/// Description of a value; short values are quoted.
 fn found(value: &DeValue<'_>) -> String {
     let short = |text: &str| quoted(&text.chars().take(40).collect::<String>());
     match value {
@@ -250,7 +250,7 @@ fn number(value: &Spanned<DeValue<'_>>, bounds: Bounds) -> Read<f64> {
         _ => return wrong_type(value),
     };
     match number {
-        // No negative zero: what is written must come back equal.
+        // Negative zero becomes zero, so that a written value reads back equal.
         Some(number) if bounds.admit(number) => Ok(number + 0.0),
         _ => out_of_range(value),
     }
@@ -262,7 +262,7 @@ fn whole(value: &Spanned<DeValue<'_>>, admit: impl Fn(u64) -> bool) -> Read<u64>
             let digits = integer.as_str().trim_start_matches('+');
             u64::from_str_radix(digits, integer.radix()).ok()
         }
-        // 1e6 is a way to write a count.
+        // Counts may be written as 1e6.
         DeValue::Float(float) => match float.as_str().parse::<f64>() {
             Ok(number) if (0.0..=2f64.powi(53)).contains(&number) && number.fract() == 0.0 => {
                 Some(number as u64)
@@ -293,7 +293,7 @@ fn text(value: &Spanned<DeValue<'_>>) -> Read<String> {
     }
 }
 
-/// Whether a text is one of the choices that a word stands for.
+/// True if a text is one of the choices that a word stands for.
 fn is_choice(word: &str, text: &str) -> bool {
     match word.strip_suffix("N") {
         Some(stem) if stem.ends_with(':') => {
@@ -322,7 +322,7 @@ fn list<T>(value: &Spanned<DeValue<'_>>, item: impl Fn(&Spanned<DeValue<'_>>) ->
         }
         let rest = items.len() - number - 1;
         if faults.len() >= Mistakes::NAMED / 2 && rest > 0 {
-            let found = format!("wrong in as many places; the {rest} items after this one are not looked at");
+            let found = format!("wrong in too many items; the {rest} items after this one are not checked");
             faults.push(Fault::new(value, Reason::Type, found));
             break;
         }
@@ -338,7 +338,7 @@ fn pair<T>(value: &Spanned<DeValue<'_>>, item: impl Fn(&Spanned<DeValue<'_>>) ->
 fn target(value: &Spanned<DeValue<'_>>) -> Read<Target> {
     let Some(table) = value.get_ref().as_table() else { return wrong_type(value) };
     let (Some(quantity), Some(error), 2) = (table.get("quantity"), table.get("error"), table.len()) else {
-        let names = "a table without just `quantity` and `error`";
+        let names = "a table whose keys are not just `quantity` and `error`";
         return Err(vec![Fault::new(value, Reason::Type, names)]);
     };
     let width = match error.get_ref() {
@@ -351,38 +351,38 @@ fn target(value: &Spanned<DeValue<'_>>) -> Read<Target> {
     }
 }
 
-/// What stands for a key that is not given.
+/// Default of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fallback {
-    /// Nothing: wherever the key is used it must be given.
+    /// Required: the key must be given wherever it is used.
     Required,
-    /// This value, as TOML.
+    /// Value in TOML.
     Is(&'static str),
-    /// What these words say.
+    /// Default described in words.
     Otherwise(&'static str),
 }
 
-/// Where a key is used: everywhere, or with some choices of another key.
+/// Condition of a key: always, or with some choices of another key.
 pub(crate) type Use = Option<(&'static Key, &'static [&'static str])>;
 
-/// A key of a scene file.
+/// Key of a scene file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Key {
-    /// The section, empty for the top of the file.
+    /// Section; empty for the head of the file.
     pub section: &'static str,
-    /// The name.
+    /// Name within the section.
     pub name: &'static str,
-    /// The type of its value.
+    /// Type of the value.
     pub kind: Kind,
-    /// The unit, empty for pure numbers and words.
+    /// Unit; empty for pure numbers and words.
     pub unit: &'static str,
-    /// What stands where it is not given.
+    /// Default.
     pub fallback: Fallback,
-    /// Where it is used.
+    /// Condition under which it is used.
     pub used: Use,
-    /// The choice of another key that giving this one makes.
+    /// Choice of another key that this key implies when given.
     pub(crate) implies: Option<(&'static Key, &'static str)>,
-    /// What it means.
+    /// Documentation.
     pub doc: &'static str,
 }
 
@@ -392,7 +392,7 @@ impl Key {
         if self.section.is_empty() { self.name.to_owned() } else { format!("{}.{}", self.section, self.name) }
     }
 
-    /// What should stand there, with the unit.
+    /// Expected value with its unit.
     pub fn expected(&self) -> String {
         let unit = if self.unit.is_empty() { String::new() } else { format!(" ({})", self.unit) };
         format!("{} = {}{unit}", self.name, self.kind.words())
@@ -404,7 +404,7 @@ impl Key {
     }
 }
 
-/// Defines keys as statics, each with its documentation, and the list of them in the order in which they are written.
+/// Defines keys as statics, each with its documentation, and their list in the order in which they are written.
 macro_rules! define_keys {
     (
         $(#[$meta:meta])* $vis:vis static $list:ident;

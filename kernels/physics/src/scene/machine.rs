@@ -1,4 +1,4 @@
-//! How the arithmetic is done, as far as methods share it.
+//! Keys of the arithmetic shared by methods.
 
 use super::binding::Binding;
 use super::keys::Fallback::Is;
@@ -21,21 +21,21 @@ define_words! {
 }
 
 define_keys! {
-    /// Precision.
+    /// Precision of the arithmetic.
     pub(crate) static ARITHMETIC;
     PRECISION = "machine" "precision", Choice(Precision::WORDS), "", Is("\"f64\""), None,
         "Precision; mixed keeps the state in f64 and computes forces in f32.";
 }
 
 define_keys! {
-    /// Instructions.
+    /// SIMD instructions of the arithmetic.
     pub(crate) static INSTRUCTIONS;
     INSTRUCTION_SET = "machine" "instruction_set", Choice(&["auto", "scalar", "wide", "neon", "avx2", "avx512"]), "",
         Is("\"auto\""), None,
-        "The SIMD instructions; auto takes the widest that the processor has.";
+        "SIMD instructions; auto selects the widest set of the processor.";
 }
 
-/// Meets the keys of precision and instructions; no instruction set is the widest there is.
+/// Binds the keys of precision and instruction set; no instruction set means the widest available.
 pub(crate) fn bind_arithmetic(
     binding: &mut dyn Binding,
     precision: &mut Precision,
@@ -45,7 +45,7 @@ pub(crate) fn bind_arithmetic(
     bind_instructions(binding, instruction_set);
 }
 
-/// Meets a method's key of how its programs are executed.
+/// Binds a method's key for the execution of its programs.
 pub(crate) fn bind_execution(binding: &mut dyn Binding, key: &'static Key, execution: &mut Execution) {
     let mut name = execution_name(*execution);
     binding.word(key, &mut name);
@@ -56,7 +56,7 @@ pub(crate) fn bind_execution(binding: &mut dyn Binding, key: &'static Key, execu
     };
 }
 
-/// The name of a way to execute programs, in scenes and on the command line.
+/// Name of an execution of programs, in scenes and on the command line.
 pub(crate) fn execution_name(execution: Execution) -> String {
     match execution {
         Execution::Chained => "chained".to_owned(),
@@ -65,7 +65,7 @@ pub(crate) fn execution_name(execution: Execution) -> String {
     }
 }
 
-/// Meets the key of the instructions; none is the widest set there is.
+/// Binds the key of the instruction set; none means the widest available.
 pub(crate) fn bind_instructions(binding: &mut dyn Binding, instruction_set: &mut Option<InstructionSet>) {
     let mut name = instruction_set.map_or("auto", InstructionSet::name).to_owned();
     binding.word(&INSTRUCTION_SET, &mut name);

@@ -1,9 +1,8 @@
-//! Scenes: what is simulated, as a TOML file says it.
+//! Scene files: TOML descriptions of a simulation.
 //!
-//! A method states which keys its scenes have ([`Vocabulary`]); each key knows name, type, range, unit, default and
-//! documentation ([`Key`]). A text is read through them, all mistakes at once, each with its place ([`Values`],
-//! [`SceneErrors`]); one function for each section binds its fields to its keys, both for reading and for writing
-//! ([`Binding`]). No method is known here: what is here is what several of them share.
+//! A method states the keys of its scenes ([`Vocabulary`]). Each key has a name, type, range, unit, default and documentation ([`Key`]). Reading a
+//! text reports all mistakes at once, each with its location ([`Values`], [`SceneErrors`]). One function for each section binds its fields to its
+//! keys, both for reading and for writing ([`Binding`]). This module names no method: it contains the keys that several of them share.
 
 mod binding;
 mod disc_keys;

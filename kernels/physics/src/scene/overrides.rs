@@ -1,4 +1,4 @@
-//! Values that a scene is to have in place of its own, key by key.
+//! Overrides of a scene's values, key by key.
 
 use super::keys::{Key, Value};
 use crate::words::Words;
@@ -6,8 +6,8 @@ use serde::{Serialize, Serializer};
 use toml::Spanned;
 use toml::de::DeValue;
 
-/// Overrides of a scene, by their keys: an unknown key does not compile. [`Values::with`](super::Values::with) takes them in;
-/// [`texts`](Overrides::texts) writes them as a command line gives them.
+/// Overrides of a scene by their keys, so that an unknown key does not compile. [`Values::with`](super::Values::with) applies them;
+/// [`texts`](Overrides::texts) formats them for a command line.
 ///
 /// ```
 /// use stripmine_physics::method::{METHODS, prepare, vocabularies};
@@ -24,12 +24,12 @@ use toml::de::DeValue;
 pub struct Overrides(Vec<(&'static Key, Value)>);
 
 impl Overrides {
-    /// No overrides.
+    /// Creates an empty list of overrides.
     pub fn new() -> Overrides {
         Overrides::default()
     }
 
-    /// Adds an override. Of two for the same key the later one holds.
+    /// Adds an override; the last one for a key applies.
     #[must_use]
     pub fn set(mut self, key: &'static Key, value: impl Into<Value>) -> Overrides {
         self.0.push((key, value.into()));
@@ -43,7 +43,7 @@ impl Overrides {
         self
     }
 
-    /// Is true if nothing is overridden.
+    /// True if nothing is overridden.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
@@ -59,7 +59,7 @@ impl Overrides {
     }
 }
 
-/// A value as one types it: whole numbers without a point, words without quotes where these are not needed.
+/// Value as a user types it: whole numbers without a point, words without quotes where possible.
 pub(super) fn typed(value: &Value) -> String {
     let toml = value.to_toml();
     match value {
@@ -68,7 +68,7 @@ pub(super) fn typed(value: &Value) -> String {
     }
 }
 
-/// The value that one types on a command line, where a word needs no quotes.
+/// Parses a value typed on a command line, where a word needs no quotes.
 pub(super) fn as_typed(text: &str) -> Spanned<DeValue<'_>> {
     Spanned::new(0..0, DeValue::parse(text).map_or(DeValue::String(text.into()), Spanned::into_inner))
 }
@@ -129,7 +129,7 @@ mod tests {
     use crate::method::{METHODS, vocabularies};
     use crate::scene::{DT, FILE, PRECISION, Precision, VELOCITIES, Values};
 
-    /// Set values are read, typed and as texts, to the bit.
+    /// Overrides given as values and as texts read back exactly.
     #[test]
     fn values_come_back_as_they_were_set() {
         let known = vocabularies(METHODS);
@@ -148,7 +148,7 @@ mod tests {
         }
     }
 
-    /// Words that read back as themselves need no quotes; `2024-01-01`, `12` and a word between blanks do.
+    /// Words that read back as themselves need no quotes; `2024-01-01`, `12` and a word with outer blanks do.
     #[test]
     fn words_are_quoted_where_they_must_be() {
         for (word, text) in

@@ -1,4 +1,4 @@
-//! From a preset's name, a file or a text to values that have passed every rule.
+//! Reading of scenes: from a preset's name, a file or a text to checked values.
 
 use super::general::METHOD;
 use super::overrides::Overrides;
@@ -12,8 +12,7 @@ use std::path::Path;
 const LONGEST: u64 = 64 << 20;
 
 impl Values {
-    /// Reads the text of a scene for one of some methods, with overrides `section.key=value`; `file` is the name that errors
-    /// give it.
+    /// Reads the text of a scene for one of some methods, with overrides `section.key=value`. `file` is its name in errors.
     ///
     /// # Errors
     /// [`SceneErrors`]: every mistake of text and overrides.
@@ -26,7 +25,7 @@ impl Values {
         text::read(file, text, overrides, methods)?.checked()
     }
 
-    /// The values of the scene with further overrides, as if its text were read again with all of them: of two for one key the later one holds.
+    /// Returns the values with further overrides, as if the text were read again with all of them; the last one for a key applies.
     ///
     /// # Errors
     /// [`SceneErrors`]: every mistake of the overrides, which cannot change the method.
@@ -37,22 +36,23 @@ impl Values {
             text::set(&mut values, key, value);
         }
         if values.given(&METHOD) != self.given(&METHOD) {
-            let error = values
-                .spot(&METHOD)
-                .error(Reason::Contradiction, "the method of a scene that was read is fixed");
+            let error = values.spot(&METHOD).error(
+                Reason::Contradiction,
+                "an override cannot change the method of a scene that is already read",
+            );
             values.errors.push(error);
         }
         values.checked()
     }
 
-    /// Holds all rules against the values.
+    /// Applies all rules to the values.
     fn checked(mut self) -> Result<Values, SceneErrors> {
         rules::apply(&mut self);
         std::mem::take(&mut self.errors).none_of(&self.file)?;
         Ok(self)
     }
 
-    /// Reads the scene that is a preset's name or a file's path, with overrides.
+    /// Reads a scene by a preset's name or a file's path, with overrides.
     ///
     /// # Errors
     /// [`SceneErrors`]: neither preset nor readable file, or every mistake of the text.
@@ -64,8 +64,8 @@ impl Values {
         Values::parse(what, &Values::text(what, methods)?, overrides, methods)
     }
 
-    /// Reads the text of the scene that is a preset's name or a file's path. A program that needs the scene several times parses this text each time: the file
-    /// may change meanwhile.
+    /// Reads the text of a scene by a preset's name or a file's path. A program that needs the scene several times should parse this text each
+    /// time, since the file may change.
     ///
     /// # Errors
     /// [`SceneErrors`]: neither preset nor readable file.

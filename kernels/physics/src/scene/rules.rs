@@ -1,4 +1,4 @@
-//! What keys demand of each other: which are used, which are missing, which exclude each other, which must agree.
+//! Rules between keys: unused, missing, exclusive and inconsistent ones.
 
 use super::SceneError;
 use super::disc_keys::{COUNT, GENERATE, OMEGAS, PACKING_FRACTION, POSITIONS, RADII, VELOCITIES};
@@ -7,7 +7,7 @@ use super::keys::{Fallback, Key, Value};
 use super::values::Values;
 use crate::input::Reason;
 
-/// Holds all rules against the values, drops what overrides have made meaningless, and notes every mistake.
+/// Applies all rules to the values, sets aside values that overrides make obsolete, and records every mistake.
 pub(super) fn apply(values: &mut Values) {
     rivals(values);
     unused(values);
@@ -27,7 +27,7 @@ fn rivals(values: &mut Values) {
         if values.applies(rivals.used) != Some(true) {
             continue;
         }
-        // An override takes the place of all rivals that the file gives.
+        // An override replaces all rivals given in the file.
         if rivals.keys.iter().filter_map(|key| values.entry(key)).any(|entry| entry.overrides) {
             for key in rivals.keys {
                 if values.entry(key).is_some_and(|entry| !entry.overrides) {
@@ -64,7 +64,7 @@ fn unused(values: &mut Values) {
         if choices.contains(&choice.as_str()) {
             continue;
         }
-        // Another choice made on the command line leaves the file's keys for the old one behind.
+        // A choice made on the command line makes the file's keys for the old choice obsolete.
         if !entry.overrides && values.is_chosen_by_override(by) {
             values.set_aside(key);
             continue;
@@ -75,7 +75,7 @@ fn unused(values: &mut Values) {
         };
         let error = entry
             .spot
-            .error(Reason::Unused, format!("`{}` means nothing with {chosen}", key.path()))
+            .error(Reason::Unused, format!("`{}` has no effect with {chosen}", key.path()))
             .advising(format!("leave it out; it is used with {}", choices.join(", ")));
         values.errors.push(error);
     }
@@ -95,13 +95,13 @@ fn missing(values: &mut Values) {
     }
 }
 
-/// What the keys of a start demand of each other.
+/// Inconsistencies between the keys of a start.
 pub fn disagreements(values: &Values) -> Vec<SceneError> {
     let mut errors = Vec::new();
     let choice = values.choice(&GENERATE);
     match choice.as_deref() {
         Some("hexagonal") => {
-            let why = "a hexagonal lattice closes on both sides";
+            let why = "a hexagonal lattice is periodic along x and y";
             errors.extend(periodic_as(values, [true, true], why));
             for key in [&COUNT, &PACKING_FRACTION] {
                 if !values.gives(key) && !values.is_faulty(key) {
@@ -124,7 +124,7 @@ pub fn disagreements(values: &Values) -> Vec<SceneError> {
     errors
 }
 
-/// Lists that do not have a value for each grain.
+/// Reports lists that do not have one value for each grain.
 fn lengths_of_lists(values: &Values) -> Vec<SceneError> {
     let mut errors = Vec::new();
     let Some(Value::Pairs(positions)) = values.given(&POSITIONS) else { return errors };

@@ -1,13 +1,13 @@
-//! The file that discs at the start are read from.
+//! Start files of scenes.
 
 use crate::io::extxyz::{Frame, ReadError, Which, read};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-/// The last frame of a start file with the path that it is from, for all runs of a scene; filled by the first.
+/// Path and last frame of a start file, shared by all runs of a scene and filled by the first.
 pub(super) type SharedFrame = Arc<OnceLock<(PathBuf, Frame)>>;
 
-/// A start file, which runs that share it read once.
+/// Start file, read once by the runs that share it.
 #[derive(Clone, Debug, Default)]
 pub struct StartFile {
     path: PathBuf,
@@ -25,15 +25,15 @@ impl StartFile {
         StartFile { path, shared }
     }
 
-    /// Its path.
+    /// Path of the file.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Its last frame, as it was when the first of the runs that share it read it.
+    /// Returns the last frame, as the first of the runs that share it has read it.
     ///
     /// # Errors
-    /// [`ReadError`], where it cannot be read or holds no frame.
+    /// [`ReadError`] if the file cannot be read or has no frame.
     pub(crate) fn last_frame(&self) -> Result<Frame, ReadError> {
         let known = self.shared.as_ref().and_then(|shared| shared.get());
         if let Some((_, frame)) = known.filter(|(path, _)| *path == self.path) {

@@ -1,27 +1,27 @@
-//! How well the mean of a quantity is to be known.
+//! Target errors of means.
 
 use crate::number::significant;
 
-/// The mean of a quantity, and the half width of its interval of 95 % that is asked for.
+/// Target error of the mean of a quantity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Target {
-    /// The name of the quantity.
+    /// Name of the quantity.
     pub quantity: String,
-    /// Half the width.
+    /// Half-width of the 95 % confidence interval.
     pub error: Width,
 }
 
-/// Half the width of an interval.
+/// Half-width of a confidence interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Width {
-    /// In parts of a hundred of the mean.
+    /// Percentage of the mean.
     Percent(f64),
-    /// In the unit of the quantity.
+    /// Value in the unit of the quantity.
     Absolute(f64),
 }
 
 impl Width {
-    /// Of a text such as `0.1%`, or of a number; none where it is neither, or not above 0.
+    /// Parses a text such as `0.1%`, or a number; none if it is neither, or not above 0.
     pub fn parse(text: &str) -> Option<Width> {
         let (number, of): (&str, fn(f64) -> Width) = match text.strip_suffix('%') {
             Some(number) => (number, Width::Percent),
@@ -31,7 +31,7 @@ impl Width {
         (value.is_finite() && value > 0.0).then(|| of(value))
     }
 
-    /// Whether a bar is as short.
+    /// True if a half-width is at most this one.
     pub(crate) fn holds(self, mean: f64, bar: f64) -> bool {
         match self {
             Width::Percent(percent) => bar <= 0.01 * percent * mean.abs(),
@@ -39,7 +39,7 @@ impl Width {
         }
     }
 
-    /// A bar in the same terms.
+    /// Half-width in the same terms.
     pub(crate) fn same_of(self, mean: f64, bar: f64) -> Width {
         match self {
             Width::Percent(_) => Width::Percent(100.0 * bar / mean.abs()),
@@ -58,7 +58,7 @@ impl std::fmt::Display for Width {
 }
 
 impl Target {
-    /// As TOML, in shortest round-trip form.
+    /// Text in TOML, in the shortest form that reads back to the same bits.
     pub fn to_toml(&self) -> String {
         let error = match self.error {
             Width::Percent(percent) => format!("\"{percent:?}%\""),

@@ -1,4 +1,4 @@
-//! The keys of every method.
+//! Tests of the keys of every method.
 
 use super::keys::Kind::{Number, Numbers, Pair, Pairs};
 use super::{Fallback, SECTIONS};
@@ -21,7 +21,7 @@ fn every_key_is_documented_and_its_default_is_a_value_of_its_type() {
     }
 }
 
-/// A key that measures something says in what.
+/// Every dimensional key has a unit.
 #[test]
 fn dimensional_keys_have_units() {
     let pure = [

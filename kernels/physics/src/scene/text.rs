@@ -1,4 +1,4 @@
-//! From the text of a scene to values that are each right for themselves.
+//! Parsing of a scene's text into values that are valid on their own.
 
 use super::general::{FORMAT, METHOD};
 use super::key_set::{KeySet, SECTIONS};
@@ -13,7 +13,7 @@ use crate::words::nearest;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// The method that a text and its overrides ask for, and where they do.
+/// Method that a text and its overrides name, and the location of its name.
 fn asked_method(table: &DeTable<'_>, text: &InputText<'_>, overrides: &[String]) -> Option<(String, Spot)> {
     let overriding = overrides.iter().rev().find_map(|text| {
         let (path, value) = text.split_once('=')?;
@@ -41,7 +41,7 @@ pub(super) fn read(
     let known = |name: &str| methods.iter().copied().find(|method| method.keys.method == name);
     let vocabulary = match &asked {
         Some((name, spot)) => known(name).ok_or_else(|| unknown_method(name, spot, methods))?,
-        // The rest of the file is read as if it were of the first method; that its name is missing is said too.
+        // Without a method's name the file is read as if it named the first one; the missing name is reported too.
         None => methods.first().copied().ok_or_else(|| unknown_method("", &Spot::default(), methods))?,
     };
     let mut values = Values::none(file, vocabulary, methods);
@@ -51,7 +51,7 @@ pub(super) fn read(
     }
     let version = values.errors.named().iter().find(|error| error.reason == Reason::Format);
     if let Some(error) = version.cloned() {
-        // Another version has other keys: what else seems wrong may not be.
+        // Another version has other keys, so further errors may be spurious.
         return Err(error.into());
     }
     for text in overrides {
@@ -71,7 +71,7 @@ fn unknown_method(name: &str, spot: &Spot, methods: &[&'static Vocabulary]) -> S
     }
 }
 
-/// Takes an override in.
+/// Applies an override.
 fn override_with(values: &mut Values, text: &str, methods: &[&'static Vocabulary]) {
     let file = format!("--set {text}");
     let spot = Spot { file: file.clone(), place: None };
@@ -90,7 +90,7 @@ fn override_with(values: &mut Values, text: &str, methods: &[&'static Vocabulary
     }
 }
 
-/// Takes an override of a known key in, with the checks and the words of one that is typed.
+/// Applies an override of a known key, with the checks and messages of a typed one.
 pub(super) fn set(values: &mut Values, key: &Key, value: &Value) {
     let text = typed(value);
     let file = format!("--set {}={text}", key.path());
@@ -100,7 +100,7 @@ pub(super) fn set(values: &mut Values, key: &Key, value: &Value) {
     source.key(values, key.section, &name, &as_typed(&text));
 }
 
-/// A text that values come from: the file, or an option of the command line.
+/// Source of values: the file, or an option of the command line.
 struct Source<'s> {
     text: Option<&'s InputText<'s>>,
     file: &'s str,
@@ -116,7 +116,7 @@ impl Source<'_> {
         }
     }
 
-    /// A key or section at the top of the file.
+    /// Reads a key or section at the head of the file.
     fn top(
         &self,
         values: &mut Values,
@@ -144,7 +144,7 @@ impl Source<'_> {
             None => {
                 values.faulty.extend(self.keys.section(section).map(Key::id));
                 let spot = Spot { file: self.file.to_owned(), place };
-                let error = spot.error(Reason::Type, format!("`{section}` is no table"));
+                let error = spot.error(Reason::Type, format!("`{section}` is not a table"));
                 values.errors.push(error.expecting(format!("[{section}], and keys in the lines below it")));
             }
         }
@@ -161,7 +161,7 @@ impl Source<'_> {
             .expecting(names.map(|name| format!("[{name}]")).join(" "));
         if let Some(nearest) = nearest(name.get_ref(), names) {
             error = error.advising(format!("did you mean [{nearest}]?"));
-            // What is missing is not missing, only under another name.
+            // Its keys are not missing: they are under a misspelt name.
             values.faulty.extend(self.keys.section(nearest).map(Key::id));
         }
         values.errors.push(error);
@@ -223,7 +223,7 @@ impl Source<'_> {
         };
         error = match unknown.help() {
             Help::Advice(advice, meant) => {
-                // What is missing is not missing, only under another name.
+                // A misspelt key is not missing.
                 values.faulty.extend(meant.iter().map(|key| key.id()));
                 error.advising(advice)
             }
@@ -235,9 +235,7 @@ impl Source<'_> {
     fn fault(&self, key: &Key, fault: &Fault) -> SceneError {
         let format = key.id() == FORMAT.id() && fault.reason == Reason::Range;
         let (reason, message) = match fault.reason {
-            Reason::Range if format => {
-                (Reason::Format, format!("this program does not read the format that {} names", fault.found))
-            }
+            Reason::Range if format => (Reason::Format, format!("unknown scene format: {}", fault.found)),
             Reason::Range => (Reason::Range, format!("`{}` cannot be {}", key.path(), fault.found)),
             other => (other, format!("`{}` is {}", key.path(), fault.found)),
         };

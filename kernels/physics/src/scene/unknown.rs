@@ -1,4 +1,4 @@
-//! Help for a key that a method does not have.
+//! Help for keys that a method lacks.
 
 use super::general::METHOD;
 use super::key_set::KeySet;
@@ -6,30 +6,30 @@ use super::keys::Key;
 use super::values::Vocabulary;
 use crate::words::nearest;
 
-/// A key that a method does not have.
+/// Key that a method lacks.
 #[derive(Clone, Copy)]
 pub(super) struct Unknown<'u> {
     pub(super) keys: &'static KeySet,
-    /// Every method.
+    /// All methods.
     pub(super) methods: &'u [&'static Vocabulary],
-    /// The section that it was given in.
+    /// Section in which it was given.
     pub(super) section: &'static str,
     pub(super) name: &'u str,
-    /// Whether it comes from the command line, where a key may be given without its section.
+    /// True if it comes from the command line, where a key may be given without its section.
     pub(super) overrides: bool,
 }
 
-/// What helps against it.
+/// Help for an unknown key.
 pub(super) enum Help {
-    /// A sentence, and the keys that may be meant.
+    /// Sentence, and the keys that may be meant.
     Advice(String, Vec<&'static Key>),
-    /// The keys of the section, for nothing is near.
+    /// Keys of the section, since none is similar.
     Expected(String),
 }
 
 impl Unknown<'_> {
-    /// The most specific help that there is: what the method says of such a key; methods that have it; a key of the section that
-    /// says it more exactly; the section that has the name; the nearest name.
+    /// Most specific help available, in this order: the method's own advice, methods that have the key, a longer name in the section, a section
+    /// that has the name, the most similar name.
     pub(super) fn help(self) -> Help {
         let sentence = |text: String| Help::Advice(text, vec![]);
         let (path, method) = (self.path(), self.keys.method);
@@ -80,7 +80,7 @@ impl Unknown<'_> {
         if self.section.is_empty() { self.name.to_owned() } else { format!("{}.{}", self.section, self.name) }
     }
 
-    /// Keys of the section whose names have all words of the name and more: `bath_temperature` for `temperature`.
+    /// Keys of the section that contain all words of the name and more: `bath_temperature` for `temperature`.
     fn more_exact(self) -> Vec<&'static Key> {
         let has = |key: &&'static Key| {
             self.name.split('_').all(|word| key.name.split('_').any(|other| other == word))
@@ -88,8 +88,7 @@ impl Unknown<'_> {
         if self.section.is_empty() { vec![] } else { self.keys.section(self.section).filter(has).collect() }
     }
 
-    /// The keys of the method that are called so, in whichever section; or, where there are none, the nearest of the section, or of all
-    /// where no section is given.
+    /// Keys of the method with this name, in any section. Without any: the most similar of the section, or of all keys if no section is given.
     fn full_names(self) -> Vec<&'static Key> {
         let called = |name: &str| self.keys.keys().filter(|key| key.name == name).collect::<Vec<_>>();
         match called(self.name) {
@@ -114,8 +113,8 @@ fn did_you_mean(keys: Vec<&'static Key>) -> Help {
 mod tests {
     use crate::method::{METHODS, load};
 
-    /// For each method keys that are misspelt, of other programs, of other methods or in the wrong section, in a file and on the command line:
-    /// no help leads to a key that means something else.
+    /// Keys that are misspelt, of other programs, of other methods or in the wrong section, for each method, in a file and on the command line: no
+    /// help suggests a key with another meaning.
     #[test]
     fn help_leads_to_the_key_that_is_meant() {
         for (preset, key, words) in [

@@ -1,4 +1,4 @@
-//! What the scenes of a method may say (its keys, what they demand of each other, scenes to start from), and the values of a scene, with their places.
+//! Vocabulary of a method's scenes (keys, rules, presets), and the values of a scene with their locations.
 
 use super::SceneError;
 use super::key_set::KeySet;
@@ -8,88 +8,88 @@ use crate::input::{Mistakes, Place, Spot};
 use std::collections::{BTreeMap, BTreeSet};
 use toml::de::DeValue;
 
-/// A scene that comes with the program.
+/// Scene that is built into the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Preset {
-    /// The name.
+    /// Name of the preset.
     pub name: &'static str,
-    /// The file, with comments.
+    /// Text of the scene file, with comments.
     pub text: &'static str,
 }
 
 impl Preset {
-    /// What it shows: the first line of its text.
+    /// Title of the scene: the first line of its text.
     pub fn title(&self) -> &'static str {
         self.text.lines().next().unwrap_or_default().trim_start_matches(['#', ' '])
     }
 }
 
-/// A key of format 1, with what says the same in format 2.
+/// Key of format 1 with its equivalent in format 2.
 #[derive(Clone, Copy, Debug)]
 pub struct Renamed {
     /// `section.key` of format 1.
     pub old: &'static str,
-    /// What to write instead.
+    /// Equivalent in format 2.
     pub new: &'static str,
 }
 
-/// What the scenes of a method may say.
+/// Vocabulary of a method's scenes.
 #[derive(Debug)]
 pub struct Vocabulary {
-    /// Its keys.
+    /// Keys of the method.
     pub keys: KeySet,
-    /// What else must agree; each gives every mistake that it finds.
+    /// Rules between keys; each returns every mistake that it finds.
     pub rules: &'static [fn(&Values) -> Vec<SceneError>],
-    /// Scenes to start from.
+    /// Presets of the method.
     pub presets: &'static [Preset],
-    /// What scenes of format 1 said otherwise.
+    /// Keys that format 1 spelt differently.
     pub renamed: &'static [Renamed],
 }
 
 pub(super) type Id = (&'static str, &'static str);
 
-/// A value with where it comes from.
+/// Value with its location.
 #[derive(Clone, Debug)]
 pub(super) struct Entry {
     pub(super) value: Value,
     pub(super) spot: Spot,
-    /// Where the items of a list stand; nothing where they come from an override.
+    /// Locations of the items of a list; empty if they come from an override.
     pub(super) items: Vec<Place>,
     pub(super) overrides: bool,
 }
 
-/// The values of a scene as they were given, with their places.
+/// Values of a scene as given, with their locations.
 #[derive(Clone, Debug)]
 pub struct Values {
     pub(super) file: String,
     pub(super) vocabulary: &'static Vocabulary,
-    /// The methods that the scene could have named, for help with unknown keys.
+    /// Methods that the scene could have named, for help with unknown keys.
     pub(super) methods: Vec<&'static Vocabulary>,
     pub(super) values: BTreeMap<Id, Entry>,
-    /// Values of the text that overrides have made meaningless; further overrides may give them their meaning back.
+    /// Values of the text that overrides made obsolete; further overrides may restore them.
     pub(super) set_aside: BTreeMap<Id, Entry>,
     pub(super) sections: BTreeMap<&'static str, Place>,
-    /// Keys that were given, but not well.
+    /// Keys that were given with an invalid value.
     pub(super) faulty: BTreeSet<Id>,
     pub(super) errors: Mistakes,
-    /// The frame of its start file, where other scenes share it.
+    /// Frame of the start file, if other scenes share it.
     pub(super) start: Option<SharedFrame>,
 }
 
 impl Values {
-    /// The same, with a start file that is read once: all clones, and scenes [with the start of this one](Self::with_start_of), take what the first of them read.
+    /// Makes all clones, and scenes [with the start of this one](Self::with_start_of), read the start file once.
     #[must_use]
     pub fn sharing_start(self) -> Values {
         Values { start: Some(SharedFrame::default()), ..self }
     }
 
-    /// The same, with the start file as another scene has read it.
+    /// Takes the start file as another scene has read it.
     #[must_use]
     pub fn with_start_of(self, other: &Values) -> Values {
         Values { start: other.start.clone(), ..self }
     }
 
-    /// Those of no text: everything is as the program that made the scene says.
+    /// Values without a text: the program that made the scene supplies everything.
     pub(crate) fn of_no_text(vocabulary: &'static Vocabulary) -> Values {
         Values::none("scene", vocabulary, &[])
     }
@@ -112,17 +112,17 @@ impl Values {
         }
     }
 
-    /// The method that the scene names.
+    /// Method that the scene names.
     pub fn method(&self) -> &'static str {
         self.vocabulary.keys.method
     }
 
-    /// The file, the preset, or what else errors call it.
+    /// Name of the scene in errors: the file, the preset, or another.
     pub fn file(&self) -> &str {
         &self.file
     }
 
-    /// Where to look for a key: where it stands, or its section, or the file.
+    /// Location of a key, or of its section if it is not given, or the file.
     pub fn spot(&self, key: &Key) -> Spot {
         match self.values.get(&key.id()) {
             Some(entry) => entry.spot.clone(),
@@ -130,14 +130,14 @@ impl Values {
         }
     }
 
-    /// Where an item of a list stands.
+    /// Location of an item of a list.
     pub(crate) fn item_spot(&self, key: &Key, item: usize) -> Spot {
         let place = self.entry(key).and_then(|entry| entry.items.get(item));
         let spot = self.spot(key);
         Spot { place: place.copied().or(spot.place), ..spot }
     }
 
-    /// Puts the value of a key aside, as overrides have made it meaningless.
+    /// Sets aside a value that overrides made obsolete.
     pub(super) fn set_aside(&mut self, key: &Key) {
         self.set_aside.extend(self.values.remove_entry(&key.id()));
     }
@@ -146,17 +146,17 @@ impl Values {
         self.values.get(&key.id())
     }
 
-    /// Whether a key was given, and well.
+    /// True if a key was given with a valid value.
     pub fn gives(&self, key: &Key) -> bool {
         self.values.contains_key(&key.id())
     }
 
-    /// What was given for a key, if it was given well.
+    /// Value given for a key, if valid.
     pub fn given(&self, key: &Key) -> Option<&Value> {
         self.entry(key).map(|entry| &entry.value)
     }
 
-    /// Whether what is used with some choices of a key is used; nothing where the choice is not known.
+    /// True if the condition of a key is met; none if the choice is unknown.
     pub(super) fn applies(&self, used: Use) -> Option<bool> {
         match used {
             None => Some(true),
@@ -164,17 +164,17 @@ impl Values {
         }
     }
 
-    /// Whether a key means anything in this scene.
+    /// True if a key is used in this scene.
     pub fn is_used(&self, key: &Key) -> bool {
         self.applies(key.used) == Some(true)
     }
 
-    /// Whether a key was given, but not well.
+    /// True if a key was given with an invalid value.
     pub(crate) fn is_faulty(&self, key: &Key) -> bool {
         self.faulty.contains(&key.id())
     }
 
-    /// The value of a key, given or by default; nothing where there is none, or a faulty one.
+    /// Value of a key, given or by default; none if it has neither, or an invalid one.
     pub fn value(&self, key: &Key) -> Option<Value> {
         match (self.given(key), key.fallback) {
             (Some(value), _) => Some(value.clone()),
@@ -186,7 +186,7 @@ impl Values {
         }
     }
 
-    /// The value of a key, given or by default, if it is a number.
+    /// Value of a key, given or by default, if it is a number.
     pub fn number(&self, key: &Key) -> Option<f64> {
         match self.value(key) {
             Some(Value::Number(value)) => Some(value),
@@ -194,7 +194,7 @@ impl Values {
         }
     }
 
-    /// The value of a key, given or by default, if it is a word; what another key implies counts as given.
+    /// Value of a key, given or by default, if it is a word. A choice that another key implies counts as given.
     pub fn choice(&self, key: &Key) -> Option<String> {
         for other in self.implying(key) {
             if self.gives(other) {
@@ -210,13 +210,13 @@ impl Values {
         }
     }
 
-    /// Keys that make a choice of another one by being given.
+    /// Keys that imply a choice of this one when given.
     pub(super) fn implying(&self, key: &Key) -> impl Iterator<Item = &'static Key> {
         let id = key.id();
         self.vocabulary.keys.keys().filter(move |other| other.implies.is_some_and(|(of, _)| of.id() == id))
     }
 
-    /// Whether an override made the choice of a key.
+    /// True if an override made the choice of a key.
     pub(super) fn is_chosen_by_override(&self, key: &Key) -> bool {
         let own = self.entry(key).into_iter();
         own.chain(self.implying(key).filter_map(|other| self.entry(other))).any(|entry| entry.overrides)

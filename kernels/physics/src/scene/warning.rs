@@ -1,21 +1,21 @@
-//! Warnings about a scene that runs.
+//! Warnings about scenes that run.
 
 use serde::Serialize;
 
-/// Something that a scene may do but that seldom ends well.
+/// Property of a scene that is allowed but rarely intended.
 #[derive(Clone, Debug, PartialEq, Serialize, thiserror::Error)]
 #[error("{key}: {message}\n  help: {suggestion}")]
 pub struct Warning {
-    /// The check that found it.
+    /// Check that found it.
     pub check: &'static str,
-    /// The value found over the largest one that is allowed; infinite where nothing of the kind is.
+    /// Value found over the largest one allowed; infinite if none is allowed.
     pub share: f64,
-    /// True for a reason to refuse the scene, which was prepared nevertheless: at any step.
+    /// True if it is a reason to reject the scene, which was nevertheless prepared: this one is independent of the step.
     pub is_refusal: bool,
-    /// The key that decides it.
+    /// Key responsible.
     pub key: String,
-    /// What was found, with the numbers.
+    /// Finding, with its numbers.
     pub message: String,
-    /// What to do about it.
+    /// Remedy.
     pub suggestion: String,
 }

@@ -1,4 +1,4 @@
-//! Whether the discs at the start lie in the box, and do not overlap.
+//! Checks of the initial discs: inside the box, without overlap.
 
 use super::Stated;
 use crate::domain::Domain;
@@ -9,10 +9,10 @@ use crate::scene::{
     FILE, GENERATE, POSITIONS, Reason, SceneError, Spot, Start, WALL_AMPLITUDE, WALL_POSITIONS, WallMotion,
 };
 
-/// At most this many overlaps or strays are named one by one.
+/// Largest number of overlaps or discs outside that are listed.
 const NAMED: usize = 5;
 
-/// Discs that are not in the box.
+/// Lists discs outside the box.
 pub fn outside(stated: &Stated<'_>, domain: &Domain, particles: &Particles) -> Vec<SceneError> {
     let [[left, bottom], [right, top]] =
         [domain.corner(), [domain.origin[0] + domain.length(0), domain.origin[1] + domain.length(1)]];
@@ -37,12 +37,12 @@ pub fn outside(stated: &Stated<'_>, domain: &Domain, particles: &Particles) -> V
             errors.push(spot.error(Reason::Outside, message).expecting(inside));
         } else if disc.kind == Kind::Wall && leaves(disc.place()) {
             let message = format!(
-                "{what} {} at ({x}, {y}) swings by ({}, {}) out of the box, which reaches from ({left}, {bottom}) to \
+                "{what} {} at ({x}, {y}) oscillates by ({}, {}) out of the box, which extends from ({left}, {bottom}) to \
                  ({right}, {top})",
                 disc.id, sweep[0], sweep[1]
             );
             let error = stated.spot(&WALL_AMPLITUDE).error(Reason::Outside, message);
-            errors.push(error.advising("lower the amplitude, or put the walls farther inside"));
+            errors.push(error.advising("lower the amplitude, or place the walls farther inside"));
         }
         if errors.len() == NAMED {
             break;
@@ -51,7 +51,7 @@ pub fn outside(stated: &Stated<'_>, domain: &Domain, particles: &Particles) -> V
     errors
 }
 
-/// A disc of a kind, in a word.
+/// Noun for a disc of a kind.
 pub(crate) fn noun(kind: Kind) -> &'static str {
     match kind {
         Kind::Grain => "disc",
@@ -59,12 +59,12 @@ pub(crate) fn noun(kind: Kind) -> &'static str {
     }
 }
 
-/// A number to nine digits: the last ones of a sum say nothing.
+/// Rounds a number to nine digits, without the rounding errors of sums.
 pub(crate) fn readable(number: f64) -> f64 {
     format!("{number:.8e}").parse().unwrap_or(number)
 }
 
-/// Where a disc is listed, or what made it.
+/// Location where a disc is listed, or of the key that created it.
 fn spot_of(stated: &Stated<'_>, particles: &Particles, number: usize) -> Spot {
     match *stated.start {
         Start::List(_) => match number.checked_sub(particles.grain_count()) {
@@ -76,14 +76,14 @@ fn spot_of(stated: &Stated<'_>, particles: &Particles, number: usize) -> Spot {
     }
 }
 
-/// Pairs that overlap too deep: how many, and the deepest of them, in the order of their depth.
+/// Pairs that overlap too deeply: their number, and the deepest ones sorted by depth.
 #[derive(Default)]
 struct Deep {
     worst: Vec<(usize, usize, f64)>,
     count: usize,
 }
 
-/// At most as many pairs are counted: where all discs lie on a heap there are as many as the square of their number.
+/// Largest number of pairs counted: if all discs overlap, pairs grow with the square of their number.
 const COUNTED: usize = 1_000_000;
 
 impl Deep {
@@ -97,8 +97,8 @@ impl Deep {
     }
 }
 
-/// Visits the pairs that overlap deeper than `limit`, a fraction of the sum of their radii, as (first, second, penetration), for as long as
-/// `visit` says so.
+/// Visits the pairs that overlap deeper than `limit`, a fraction of the sum of their radii, as (first, second, penetration), until `visit` returns
+/// false.
 fn visit_overlaps(
     domain: &Domain,
     particles: &Particles,
@@ -121,8 +121,8 @@ fn visit_overlaps(
     }
 }
 
-/// How many pairs overlap deeper than `limit`, and how deep the deepest of them is, both as fractions of the sum of their radii. Counting ends
-/// at the first pair that overlaps deeper than `enough`.
+/// Number of pairs that overlap deeper than `limit` and the deepest overlap, both as fractions of the sum of their radii. Counting ends at the
+/// first pair that overlaps deeper than `enough`.
 pub(crate) fn deepest_overlap(
     domain: &Domain,
     particles: &Particles,
@@ -137,7 +137,7 @@ pub(crate) fn deepest_overlap(
     (count, deepest)
 }
 
-/// Pairs that overlap deeper than `limit`, a fraction of the sum of the radii; `reason` says why they must not.
+/// Reports pairs that overlap deeper than `limit`, a fraction of the sum of the radii; `reason` explains why they must not.
 pub(crate) fn overlaps(
     stated: &Stated<'_>,
     domain: &Domain,

@@ -1,4 +1,4 @@
-//! Discs that grow to their radii while they move.
+//! Compression of discs: they grow to their radii while they move.
 
 use super::filling::{COMPRESSED, fill, grain_count};
 use super::{Stated, Uncompressed};
@@ -9,10 +9,10 @@ use crate::placement::Second;
 use crate::scene::{Amount, GENERATE, Grains, Reason, SceneError};
 use std::f64::consts::PI;
 
-/// The packing fraction at which discs begin to grow.
+/// Packing fraction at which growth starts.
 const SPARSE: f64 = 0.35;
 
-/// Discs placed while they are small, and grown.
+/// Places discs while they are small, then lets them grow.
 pub(super) fn compressed(
     stated: &Stated<'_>,
     domain: &Domain,
@@ -32,7 +32,7 @@ pub(super) fn compressed(
         match why {
             Uncompressed::Jammed { reached } => {
                 let message = format!(
-                    "{count} discs grew to a packing fraction of {} of {}, and jam",
+                    "{count} discs jam at a packing fraction of {}, below the {} asked for",
                     significant(reached, 4),
                     significant(packing, 4)
                 );
@@ -41,7 +41,7 @@ pub(super) fn compressed(
             }
             Uncompressed::TooSmall => {
                 let message =
-                    "the box is too small for discs to grow in: each would see others across two sides";
+                    "the box is too small for discs to grow in: one would reach another across two sides";
                 spot.error(Reason::Placement, message)
                     .advising("take a larger box, or generate = \"hexagonal\"")
             }

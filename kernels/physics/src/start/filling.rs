@@ -1,4 +1,4 @@
-//! What all ways to place discs share: how many there may be, one disc, and a room filled at random.
+//! Common parts of all placements: limits on the number of discs, one disc, and a region filled at random.
 
 use super::Stated;
 use crate::domain::Domain;
@@ -9,24 +9,24 @@ use crate::placement::{Filling, random, stir};
 use crate::scene::{Amount, COUNT, GENERATE, Grains, Key, PACKING_FRACTION, Reason, SceneError};
 use std::f64::consts::PI;
 
-/// Most discs of one kind, grains or walls: with those of the other their ids must be numbers of 32 bits.
+/// Largest number of discs of one kind, grains or walls: the ids of both kinds together have 32 bits.
 pub(super) const MOST: f64 = (u32::MAX / 2) as f64;
-/// Beyond this packing fraction random sequential placement jams, however large the box.
+/// Packing fraction at which random sequential placement jams, however large the box.
 pub(super) const JAMMING: f64 = 0.547;
-/// Beyond this one discs that grow find no order in which they fit, in any time worth waiting for.
+/// Largest packing fraction of growing discs: beyond it they find no order that fits within a reasonable time.
 pub(super) const COMPRESSED: f64 = 0.885;
 
-/// Whether the machine has the memory to place that many discs and to look for overlaps: each disc, and its entry in a map of
-/// squares whose number is a power of two. Asked before anything is placed.
+/// Checks, before anything is placed, that the machine has the memory to place the discs and to search for overlaps: each disc, and its entry in a
+/// map of squares whose size is a power of two.
 pub(super) fn placeable(stated: &Stated<'_>, count: f64, key: &Key) -> Result<(), SceneError> {
-    /// Bytes of an entry of the map, and of a disc in its square.
+    /// Size of an entry of the map, and of a disc in its square (bytes).
     const SQUARE: [f64; 2] = [25.0, 40.0];
     let squares = (count * 8.0 / 7.0).log2().ceil().exp2();
     let needed = count * (size_of::<Particle>() as f64 + SQUARE[1]) + squares * SQUARE[0];
     match memory::available() {
         Some(Available { bytes, by }) if needed > bytes as f64 => {
             let message = format!(
-                "to place {} discs takes {} of memory; {} has {} left",
+                "placing {} discs takes {} of memory; {} has {} left",
                 significant(count, 5),
                 memory::in_words(needed as u64),
                 by.in_words(),
@@ -52,7 +52,7 @@ pub(super) fn disc(id: u32, kind: Kind, position: [f64; 2], radius: f64, [unit, 
     }
 }
 
-/// How many grains fill an area that is open to them, at most up to a packing fraction.
+/// Number of grains that fill an area, up to a packing fraction.
 pub(super) fn grain_count(
     stated: &Stated<'_>,
     amount: Amount,
@@ -76,19 +76,15 @@ pub(super) fn grain_count(
     }
     if count < 1.0 {
         return Err(refuse(format!(
-            "no disc: one alone fills {} of the area open to grains",
+            "this is less than one disc, which alone fills {} of the area open to grains",
             significant(share, 4)
         )));
     }
-    // Few discs in a small box may do better than many in a large one.
+    // A few discs in a small box may reach a higher fraction than many in a large one.
     let compresses = most == COMPRESSED;
     let bound = if compresses { most } else { most * (1.0 + 2.0 / count.sqrt()) };
     if fraction > bound {
-        let how = if compresses {
-            "discs that grow find their places up to about"
-        } else {
-            "random placement jams at about"
-        };
+        let how = if compresses { "growing discs jam at about" } else { "random placement jams at about" };
         let error = refuse(format!(
             "{count} discs fill {} of the area open to grains; {how} {most}",
             significant(fraction, 4)
@@ -116,9 +112,9 @@ pub(super) fn fill(
         Filling { domain: *domain, room, obstacles, count, radius, spread, cut, second, mass, seed };
     let mut discs = random(&filling).map_err(|jammed| {
         let error = stated.spot(&GENERATE).error(Reason::Placement, jammed.to_string());
-        error.advising("lower count or packing_fraction, or make more room")
+        error.advising("lower count or packing_fraction, or enlarge the box")
     })?;
-    // Where walls take up momentum there is none to balance.
+    // Walls absorb momentum, so it is balanced without walls only.
     let balanced = domain.periodic() == [true; 2] && obstacles.is_empty() && discs.len() > 1;
     stir(&mut discs, seed, balanced, |disc| grains.deviation(disc.mass));
     Ok(discs)

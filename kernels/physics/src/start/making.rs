@@ -1,4 +1,4 @@
-//! The discs of a scene.
+//! Creation of a scene's initial discs.
 
 use super::compressing::compressed;
 use super::filling::{JAMMING, MOST, disc, fill, grain_count, placeable};
@@ -14,7 +14,7 @@ use crate::scene::{
     SIDES, SceneError, Speed, Start, StartFile, WALL_SPACING, WallMotion, Warning,
 };
 
-/// Smallest and largest radius: those that the scene admits, and those that there are.
+/// Smallest and largest radius: those that the scene admits, or those found in a list or file.
 pub(crate) fn radii(start: &Start, found: Option<[f64; 2]>) -> Option<[f64; 2]> {
     let spread = |grains: &Grains| {
         let cut = if grains.spread > 0.0 { grains.cut } else { 0.0 };
@@ -33,20 +33,20 @@ pub(crate) fn radii(start: &Start, found: Option<[f64; 2]>) -> Option<[f64; 2]> 
     }
 }
 
-/// What a scene starts with.
+/// Initial state of a scene.
 pub struct Made {
-    /// The box.
+    /// Box.
     pub domain: Domain,
-    /// The discs, wrapped into the box, walls with the velocity that their motion starts with.
+    /// Discs, wrapped into the box; walls have the initial velocity of their motion.
     pub particles: Particles,
-    /// What is to be said of how they were read.
+    /// Warnings about the start.
     pub warnings: Vec<Warning>,
 }
 
-/// The box and the discs at the start.
+/// Creates the box and the initial discs.
 ///
 /// # Errors
-/// [`SceneError`]: why there are none.
+/// [`SceneError`] if the start cannot be created.
 pub fn make(stated: &Stated<'_>) -> Result<Made, SceneError> {
     let domain = stated.domain.stated().unwrap_or(Domain::planar([0.0; 2], [1.0; 2], [true; 2]));
     resolved(stated, &domain, radii(stated.start, None))?;
@@ -96,9 +96,9 @@ pub fn make(stated: &Stated<'_>) -> Result<Made, SceneError> {
             key: FILE.path(),
             message: format!(
                 "{count} wall discs have a velocity or spin in the start file, first wall disc {} with ({}, {}) and \
-                 {}; walls move as particles.wall_motion says, so these are not used",
+                 {}; particles.wall_motion alone moves walls, so these are ignored",
                 first.id, significant(first.velocity[0], 5), significant(first.velocity[1], 5), significant(first.omega, 5)),
-            suggestion: "set particles.wall_motion, or make them grains (species Si)".to_owned(),
+            suggestion: "set particles.wall_motion, or turn them into grains (species Si)".to_owned(),
         });
     }
     for disc in particles.all_mut() {
@@ -110,7 +110,7 @@ pub fn make(stated: &Stated<'_>) -> Result<Made, SceneError> {
     Ok(Made { domain, particles, warnings })
 }
 
-/// Whether numbers can tell positions in the box apart far better than the smallest of the radii, where these are known.
+/// Checks that floating-point numbers resolve positions in the box far better than the smallest radius, if known.
 fn resolved(stated: &Stated<'_>, domain: &Domain, radii: Option<[f64; 2]>) -> Result<(), SceneError> {
     /// Largest error of a position, relative to the smallest radius.
     const COARSEST: f64 = 1e-6;
@@ -122,19 +122,19 @@ fn resolved(stated: &Stated<'_>, domain: &Domain, radii: Option<[f64; 2]>) -> Re
             let far_away = domain.origin[axis].abs() > domain.length(axis);
             let key: &Key = if far_away { &ORIGIN } else { &SIDES };
             let message = format!(
-                "positions as far as {farthest} are known to {step} only, too coarse for discs of radius {smallest}",
+                "positions up to {farthest} have a resolution of {step}, too coarse for discs of radius {smallest}",
                 farthest = significant(farthest, 6),
                 step = significant(step, 2),
                 smallest = significant(smallest, 6)
             );
             let error = stated.spot(key).error(Reason::Geometry, message);
-            return Err(error.advising("bring the box nearer to the origin, or choose units that suit it"));
+            return Err(error.advising("move the box nearer to the origin, or choose other units"));
         }
     }
     Ok(())
 }
 
-/// The discs of the last frame of a start file, which must be of the scene's box.
+/// Discs of the last frame of a start file, whose box must be that of the scene.
 fn from_file(
     stated: &Stated<'_>,
     domain: &Domain,
@@ -146,7 +146,7 @@ fn from_file(
         stated.spot(&FILE).error(Reason::StartFile, format!("the start file cannot be used: {error}"))
     })?;
     if frame.particles.is_empty() {
-        let message = format!("the start file {} holds no disc", quoted::path(path));
+        let message = format!("the start file {} contains no disc", quoted::path(path));
         return Err(stated.spot(&FILE).error(Reason::StartFile, message));
     }
     for (found, here, key) in
@@ -155,7 +155,7 @@ fn from_file(
         let apart = |axis: usize| (found[axis] - here[axis]).abs() > 1e-9 * domain.length(axis);
         if apart(0) || apart(1) {
             let message = format!(
-                "`{}` is {here:?}, but the box of the start file {} says {found:?}",
+                "`{}` is {here:?}, but the box of the start file {} has {found:?}",
                 key.path(),
                 quoted::path(path)
             );
@@ -165,7 +165,7 @@ fn from_file(
     }
     if let Some(found) = frame.periodic.filter(|&found| found != domain.periodic()) {
         let message = format!(
-            "`domain.periodic` is {:?}, but the start file {} says pbc = {found:?} along x and y",
+            "`domain.periodic` is {:?}, but the start file {} has pbc = {found:?} along x and y",
             domain.periodic(),
             quoted::path(path)
         );
@@ -179,10 +179,10 @@ fn from_file(
             is_refusal: false,
             key: FILE.path(),
             message: format!(
-                "ids of the start file {} begin at 0; each is raised by one, in all files of the run too",
+                "ids of the start file {} begin at 0; each is raised by one, also in all files of the run",
                 quoted::path(path)
             ),
-            suggestion: "write ids from 1, or take 1 off to compare particles with those of the start file"
+            suggestion: "number ids from 1, or subtract 1 to compare particles with those of the start file"
                 .to_owned(),
         });
     }
@@ -209,7 +209,7 @@ fn on_lattice(
     packing_fraction: f64,
     grains: &Grains,
 ) -> (Domain, Particles) {
-    // Velocities of the packing's discs of mass 1.
+    // Velocities are those of discs of mass 1.
     let kt = match grains.speed {
         Speed::Deviation(speed) => speed * speed,
         Speed::Temperature(kt) => kt / grains.mass,
@@ -226,7 +226,7 @@ fn on_lattice(
     (Domain::planar(origin, sides, stated.domain.periodic), packing.particles)
 }
 
-/// Wall discs with ids behind those of `count` grains.
+/// Wall discs with ids after those of `count` grains.
 fn lined(
     stated: &Stated<'_>,
     domain: &Domain,
@@ -237,7 +237,7 @@ fn lined(
     let each = domain.length(0) / lining.spacing;
     if each * rows.len() as f64 > MOST {
         let message = format!(
-            "a row takes {each} wall discs; more than {MOST} cannot be numbered",
+            "a row has {each} wall discs; at most {MOST} can be numbered",
             each = significant(each, 5),
             MOST = significant(MOST, 4)
         );
@@ -295,7 +295,7 @@ fn above_floor(
     lining: &Lining,
     fill_height: f64,
 ) -> Result<Particles, SceneError> {
-    // As low as its motion leaves it inside the box.
+    // The floor is as low as possible with its motion inside the box.
     let swing = match stated.walls {
         WallMotion::Fixed => 0.0,
         WallMotion::Oscillating { amplitude, .. } => amplitude[1].abs(),

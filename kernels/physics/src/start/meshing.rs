@@ -1,4 +1,4 @@
-//! Discs at places of a mesh.
+//! Discs at random sites of a mesh.
 
 use super::Stated;
 use super::filling::{MOST, disc, placeable};
@@ -9,7 +9,7 @@ use crate::placement::{mesh, stir};
 use crate::scene::{Amount, COUNT, Grains, PACKING_FRACTION, Reason, SPACING, SceneError};
 use std::f64::consts::PI;
 
-/// Discs at places of a square mesh, drawn at random.
+/// Places discs at random sites of a square mesh.
 pub(super) fn on_mesh(
     stated: &Stated<'_>,
     domain: &Domain,
@@ -28,14 +28,14 @@ pub(super) fn on_mesh(
     let refuse = |message: String| stated.spot(key).error(Reason::Placement, message);
     if !(1.0..=MOST).contains(&count) {
         return Err(refuse(format!(
-            "{count} discs are none, or more than the {MOST} that can be numbered",
+            "{count} discs are not between 1 and the {MOST} that can be numbered",
             count = significant(count, 5),
             MOST = significant(MOST, 4)
         )));
     }
     if count > counts[0] * counts[1] {
         let message = format!(
-            "{count} discs, but the mesh has {} × {} = {} places {spacing} apart",
+            "{count} discs, but the mesh has {} × {} = {} sites {spacing} apart",
             counts[0],
             counts[1],
             counts[0] * counts[1]
@@ -44,7 +44,7 @@ pub(super) fn on_mesh(
     }
     if counts[0] * counts[1] > MOST {
         let message = format!(
-            "a mesh of {} × {} places is more than the {MOST} that can be numbered",
+            "a mesh of {} × {} sites has more than the {MOST} that can be numbered",
             counts[0],
             counts[1],
             MOST = significant(MOST, 4)

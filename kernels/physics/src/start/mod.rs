@@ -1,4 +1,4 @@
-//! The discs at the start: made as the scene states, and held against the box and each other.
+//! Initial discs of a scene: created, then checked against the box and each other.
 
 mod checks;
 mod compressing;
@@ -16,33 +16,33 @@ pub(crate) use noise::noise_seed;
 use crate::particles::Particle;
 use crate::scene::{Domain, Key, Spot, Start, Values, WallMotion};
 
-/// What a scene states of its start, with the places where it does.
+/// Start of a scene as stated, with the locations of its keys.
 #[derive(Clone, Copy, Debug)]
 pub struct Stated<'s> {
-    /// The values and their places.
+    /// Values and their locations.
     pub values: &'s Values,
-    /// The box.
+    /// Box.
     pub domain: &'s Domain,
-    /// The discs.
+    /// Initial discs.
     pub start: &'s Start,
-    /// The motion of wall discs.
+    /// Motion of wall discs.
     pub walls: WallMotion,
-    /// What lets grains grow.
+    /// Function that lets grains grow.
     pub compress: Compress,
 }
 
-/// Lets grains in a box grow from a scale of their radii (below 1) to the whole, with a seed; their places change.
+/// Lets grains in a box grow from a scale of their radii (below 1) to the whole, with a seed; it moves them.
 pub(crate) type Compress = fn(&crate::domain::Domain, &mut [Particle], f64, u64) -> Result<(), Uncompressed>;
 
-/// Why grains did not come to their radii.
+/// Reason why grains did not reach their radii.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Uncompressed {
-    /// They leave each other no more room.
+    /// The discs jam.
     Jammed {
-        /// The packing fraction that was reached.
+        /// Packing fraction reached.
         reached: f64,
     },
-    /// The box is too small for so large ones.
+    /// The box is too small for discs of these radii.
     TooSmall,
 }
 

@@ -1,13 +1,13 @@
-//! Seeds of the random numbers that a run draws.
+//! Seeds of a run's random numbers.
 
 use crate::particles::{Particle, Particles};
 use crate::scene::Start;
 use stripmine_kernels::noise::seed_of_state;
 
-/// The seed with which bath and thermal walls draw.
+/// Seed of the random numbers of bath and thermal walls.
 ///
-/// A generated start has it from the scene. A start that is listed or read from a file makes one of its own of that and of the state: a run that
-/// continues from a frame does not repeat the noise of the run before.
+/// A generated start uses the scene's seed. A start that is listed or read from a file derives its seed from the scene's and from the state, so
+/// that a run continued from a frame does not repeat the noise of the previous run.
 pub(crate) fn noise_seed(start: &Start, seed: u64, particles: &Particles) -> u64 {
     if start.seed().is_some() {
         return seed;
@@ -24,8 +24,8 @@ mod tests {
     use crate::method::{METHODS, load};
     use crate::scene::List;
 
-    /// A generated start draws with the scene's seed; the same particles listed with a seed of their own, which depends on the seed and on
-    /// every place and velocity.
+    /// A generated start uses the scene's seed. The same particles as a list have another seed, which depends on the scene's seed and on every
+    /// position and velocity.
     #[test]
     fn a_listed_start_has_a_seed_of_its_own() {
         let (prepared, _) = load("langevin-free", &["particles.count=5".to_owned()], METHODS).unwrap();

@@ -1,25 +1,25 @@
-//! Sums by blocks of time: a bounded number of them, however long a run is.
+//! Sums over blocks of time: the number of blocks is bounded, however long a run is.
 
-/// Blocks at most; then each two become one.
+/// Largest number of blocks; beyond it, pairs of blocks are merged.
 pub(super) const MOST: usize = 32;
 
-/// Sums of the values of a function over looks, by blocks of as many looks.
+/// Sums of a function's values over samples, in blocks of equally many samples.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Blocks {
     width: usize,
-    /// Looks of a block.
+    /// Samples of a block.
     length: u64,
-    /// For each block its sums, then the weights of the values in each of them.
+    /// Sums and then weights of the values, for each block.
     rows: Vec<Vec<f64>>,
 }
 
 impl Blocks {
-    /// None yet, of a function of `width` values, at least one.
+    /// Empty blocks of a function with `width` values, at least one.
     pub(crate) fn new(width: usize) -> Blocks {
         Blocks { width: width.max(1), length: 1, rows: vec![] }
     }
 
-    /// Those that [`Blocks::length`] and [`Blocks::column`] were of; none where they do not fit a function of `width` values.
+    /// Restores blocks from [`Blocks::length`] and [`Blocks::column`]; none if they do not fit a function of `width` values.
     pub(crate) fn restored(width: usize, length: u64, column: &[f64]) -> Option<Blocks> {
         let width = width.max(1);
         let fits = length.is_power_of_two() && column.len().is_multiple_of(2 * width);
@@ -27,7 +27,7 @@ impl Blocks {
         (fits && rows.len() <= MOST).then_some(Blocks { width, length, rows })
     }
 
-    /// Looks of a block.
+    /// Samples of a block.
     pub(crate) fn length(&self) -> u64 {
         self.length
     }
@@ -37,7 +37,7 @@ impl Blocks {
         self.rows.concat()
     }
 
-    /// Adds a value that counts by its weight, of the look of a number, the first of which is 0.
+    /// Adds a weighted value of a sample; samples are numbered from 0.
     pub(crate) fn add(&mut self, look: u64, place: usize, value: f64, weight: f64) {
         while look / self.length >= MOST as u64 {
             self.length *= 2;
@@ -56,8 +56,8 @@ impl Blocks {
         self.rows[block][self.width + place] += weight;
     }
 
-    /// The means of the whole blocks of the second half of `looks` looks, but for `last` more at the end, each with its weights: what
-    /// comes before is taken for the transient. A mean without weight is not a number.
+    /// Means of the complete blocks of the second half of `looks` samples, without the `last` blocks at the end, each with its weights. The first
+    /// half is treated as the transient. A mean without weight is NaN.
     pub(crate) fn second_half(&self, looks: u64, last: usize) -> Vec<Block> {
         let whole = ((looks / self.length) as usize).min(self.rows.len()).saturating_sub(last);
         let mean = |row: &Vec<f64>| {
@@ -71,11 +71,11 @@ impl Blocks {
     }
 }
 
-/// The values of a function in a block of looks.
+/// Means of a function over a block of samples.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Block {
     pub means: Vec<f64>,
-    /// How much is in each.
+    /// Weights of the means.
     pub(crate) weights: Vec<f64>,
 }
 
@@ -83,7 +83,7 @@ pub(crate) struct Block {
 mod tests {
     use super::*;
 
-    /// However many looks, a block is the mean of its own looks, and there are 8 to 16 of them.
+    /// Each block is the mean of its own samples, and there are 8 to 16 of them for any number of samples.
     #[test]
     fn blocks_are_means_of_their_looks() {
         for looks in [1_u64, 2, 31, 32, 33, 100, 1000] {

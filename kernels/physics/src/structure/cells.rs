@@ -1,51 +1,50 @@
-//! Discs in the order of cells, in compact columns, with their images across periodic sides: all who are within a reach of a disc
-//! stand in a few spans.
+//! Discs sorted by cells, in compact columns, with their images across periodic sides: everything within reach of a disc is stored in a few spans.
 
 use super::discs::Discs;
 use super::setting::Setting;
 use std::ops::Range;
 
-/// Discs of rows that a thread takes at a time, at least.
+/// Smallest number of discs in the rows of one task.
 const AT_A_TIME: usize = 512;
-/// Places that are read at once: as many stand behind the last disc.
+/// Number of positions read at once; as many are stored behind the last disc.
 pub(super) const AT_ONCE: usize = 8;
-/// The cells of an axis number less.
+/// Largest number of cells along an axis.
 const MOST_CELLS: f64 = 4096.0;
-/// Periods of the box in which images are looked for, at most: discs that reach farther are larger than their box.
+/// Largest number of periods of the box searched for images; discs that reach farther are larger than their box.
 const MOST_PERIODS: f64 = 16.0;
 
-/// Discs sorted into rows of cells. What is behind a periodic side stands there once more, so that no search has to ask for it.
+/// Discs sorted into rows of cells. Images across periodic sides are stored too, so that searches need no wrapping.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Cells {
-    /// Where the first cell of the box begins, and cells by length, along each axis.
+    /// Start of the first cell of the box, and cells per length, along each axis.
     origin: [f64; 2],
     by_length: [f64; 2],
-    /// Cells of the box along each axis, and cells of images before and behind them.
+    /// Cells of the box along each axis, and cells of images before and after them.
     count: [usize; 2],
     margin: [usize; 2],
-    /// Of each disc its cell in the box; then how many are in each cell of the box, and where they begin among `order`.
+    /// Cell of each disc in the box, then the number of discs in each cell and the start of each cell in `order`.
     cell_of: Vec<u32>,
     box_starts: Vec<u32>,
     order: Vec<u32>,
-    /// Where the discs of each cell begin, images among them, and the end.
+    /// Start of each cell, images included, and the end.
     starts: Vec<u32>,
-    /// Places (length) in the order of cells, and the number of each disc.
+    /// Positions (length) in the order of cells, and the number of each disc.
     pub(super) x: Vec<f64>,
     pub(super) y: Vec<f64>,
     pub(super) number: Vec<u32>,
-    /// Rows of cells of the box that are a thread's.
+    /// Rows of the box for each task.
     pub(super) parts: Vec<Range<usize>>,
 }
 
 impl Cells {
-    /// Sorts the discs; finds those within `reach` (length).
+    /// Sorts the discs for searches within `reach` (length).
     pub(super) fn sort(&mut self, setting: &Setting, discs: &Discs, reach: f64) {
         let domain = setting.domain;
         let sides = domain.lengths();
-        // About a disc in each.
+        // Cells contain about one disc.
         let edge = (sides[0] * sides[1] / discs.x.len() as f64).sqrt().max(setting.diameter);
         for (axis, side) in sides.into_iter().enumerate() {
-            // One cell also where an overflow leaves no number.
+            // The comparison gives one cell if an overflow yields NaN.
             let count = if side / edge >= 1.0 { (side / edge).floor().min(MOST_CELLS) } else { 1.0 };
             self.origin[axis] = domain.origin[axis];
             self.by_length[axis] = count / side;
@@ -60,7 +59,7 @@ impl Cells {
         self.share_out();
     }
 
-    /// The discs of each cell of the box, in the order of their numbers.
+    /// Sorts the discs of each cell of the box by their numbers.
     fn sort_into_box(&mut self, discs: &Discs) {
         let [columns, rows] = self.count;
         let (origin, by_length) = (self.origin, self.by_length);
@@ -80,7 +79,7 @@ impl Cells {
             *start = sum;
         }
         self.order.resize(discs.x.len(), 0);
-        // Each start moves to the end of its cell, which is where the next one began.
+        // Each start moves to the end of its cell, where the next one starts.
         for (&cell, number) in self.cell_of.iter().zip(0..) {
             let place = &mut self.box_starts[cell as usize];
             self.order[*place as usize] = number;
@@ -90,7 +89,7 @@ impl Cells {
         self.box_starts[0] = 0;
     }
 
-    /// Cells with their images, row by row.
+    /// Stores cells with their images, row by row.
     fn lay_out(&mut self, discs: &Discs, sides: [f64; 2]) {
         let image = |axis: usize, at: usize| {
             let (count, at) = (self.count[axis] as i64, at as i64 - self.margin[axis] as i64);
@@ -114,13 +113,13 @@ impl Cells {
             }
         }
         self.starts.push(self.number.len() as u32);
-        // Distances are found so many at once, the last ones of a span with what follows.
+        // Distances are computed in batches; the last batch of a span reads beyond its end.
         let room = [f64::INFINITY; AT_ONCE];
         self.x.extend(room);
         self.y.extend(room);
     }
 
-    /// Rows of the box by the discs in them: the same parts whatever the threads.
+    /// Splits the rows of the box into tasks by their discs, independent of the number of threads.
     fn share_out(&mut self) {
         self.parts.clear();
         let (mut begin, mut discs) = (0, 0);
@@ -133,7 +132,7 @@ impl Cells {
         }
     }
 
-    /// Cells along each axis with the images.
+    /// Number of cells along each axis with the images.
     #[inline(always)]
     fn all(&self) -> [usize; 2] {
         [0, 1].map(|axis| self.count[axis] + 2 * self.margin[axis])
@@ -144,15 +143,15 @@ impl Cells {
         self.starts[row * self.all()[0] + column] as usize
     }
 
-    /// The discs of the box in one of its rows.
+    /// Discs of the box in one of its rows.
     #[inline(always)]
     pub(super) fn own(&self, row: usize) -> Range<usize> {
         let (row, first) = (row + self.margin[1], self.margin[0]);
         self.start(row, first)..self.start(row, first + self.count[0])
     }
 
-    /// Those that may be within a reach of a place in a row of the box, in a row that is `up` above it (below, if negative), where
-    /// `half` is how far they reach along it ([`Cells::halves`]); none where there is no such row.
+    /// Span of discs that may be within reach of a position in a row of the box. The span is in the row `up` above it (below, if negative), and
+    /// `half` is its half-width there ([`Cells::halves`]). Empty if there is no such row.
     #[inline(always)]
     pub(super) fn span(&self, row: usize, up: i64, x: f64, half: f64) -> Range<usize> {
         let [columns, rows] = self.all();
@@ -164,16 +163,16 @@ impl Cells {
             let cell = (at - self.origin[0]) * self.by_length[0] + self.margin[0] as f64;
             let last = (columns - 1) as f64;
             let cell = if cell > 0.0 { cell } else { 0.0 };
-            // Cells of an axis are few.
+            // An axis has few cells, so the index fits 32 bits.
             (if cell < last { cell } else { last }) as i32 as usize
         };
         let (row, first, last) = (row as usize, column(x - half), column(x + half));
         self.start(row, first)..self.start(row, last + 1)
     }
 
-    /// How far those within `reach` are along a row, for the row of a disc and each one above it (length).
+    /// Half-widths of the spans within `reach` along a row, for the row of a disc and each one above it (length).
     pub(super) fn halves(&self, reach: f64) -> impl Iterator<Item = f64> + use<'_> {
-        // A row is at least so far away.
+        // Smallest distance of a row.
         let away = |up: i64| (up as f64 - 1.0).max(0.0) / self.by_length[1];
         let rows = (reach * self.by_length[1]).ceil().min(self.all()[1] as f64) as i64;
         (0..=rows).map(move |up| (reach * reach - away(up) * away(up)).max(0.0).sqrt())

@@ -1,39 +1,39 @@
-//! The diffusion constant by two functions of lags, and whether lags are long enough for it.
+//! Diffusion constant from two functions of lags, and the test that lags are long enough.
 //!
-//! Both are known to rise towards it. Where velocities are forgotten within a time τ, the slope of the mean square displacement between
-//! half a lag t and the lag is short of 4 D by the part 2τ/t (exp(−t/2τ) − exp(−t/τ)), and the integral of the autocorrelation of velocities
-//! by exp(−t/τ). From one octave of lags to the next they still change, which tells τ; where they change by more than their error, lags have to
-//! be so many τ long that what is missing does not matter, and it is added to the bar.
+//! Both estimates approach it from below. If velocities decorrelate within a time τ, the slope of the mean square displacement between half a lag t
+//! and the lag falls short of 4 D by the fraction 2τ/t (exp(−t/2τ) − exp(−t/τ)), and the integral of the velocity autocorrelation by exp(−t/τ). The
+//! change from one octave of lags to the next determines τ. If the change exceeds its error, lags must be so many τ long that the missing part is
+//! small; it is added to the error bar.
 
 use super::blocks::MOST as MOST_BLOCKS;
 use super::motion::{integral, slope};
 use super::{Verdict, Whole};
 use crate::number::significant;
 
-/// Lags are at least so many times τ: what is missing is 0.1 and 0.2 %.
+/// Required lags over τ: the missing part is then 0.1 and 0.2 %.
 const LONG_ENOUGH: [f64; 2] = [10.0, 6.0];
-/// A change is one where it is larger than its half width of the interval of 95 % by this factor.
+/// Smallest significant change, in half-widths of its 95 % confidence interval.
 const CERTAIN: f64 = 2.0;
-/// Longer than what would be enough, for τ has an error.
+/// Safety factor on the recommended length, since τ has an error.
 const MARGIN: f64 = 1.25;
-/// Of what remains of the autocorrelation at the first lag, the least for its integral to be known: by trapeziums it is 1 % off
-/// where it decays exponentially.
+/// Smallest autocorrelation at the first lag, relative to lag 0, for its integral to be accurate: the trapezoidal rule then has an error of 1 % for
+/// exponential decay.
 const RESOLVED: f64 = 0.7;
-/// Lags over τ among which the ratio of two octaves is looked for.
+/// Range of lags over τ in which the ratio of two octaves is searched.
 const RATIOS: [f64; 2] = [0.05, 200.0];
 
-/// The constant by a function of lags.
+/// Estimate of the constant from a function of lags.
 struct Rising {
-    /// Of an octave of lags, by the lags, the values and the places of its ends.
+    /// Estimate from an octave of lags: lags, values and the indices of the octave's ends.
     of: fn(&[f64], &[f64], [usize; 2]) -> f64,
-    /// What is missing (part of the whole) at a lag over τ.
+    /// Missing fraction at a lag over τ.
     missing: fn(f64) -> f64,
-    /// The ratio to the next octave, which ends at a lag over τ.
+    /// Ratio to the next octave, which ends at a lag over τ.
     ratio: fn(f64) -> f64,
     long_enough: f64,
 }
 
-/// What is missing of the slope between half a lag and the lag.
+/// Missing fraction of the slope between half a lag and the lag.
 fn missing_of_slope(x: f64) -> f64 {
     2.0 / x * (libm::exp(-0.5 * x) - libm::exp(-x))
 }
@@ -52,7 +52,7 @@ const INTEGRAL: Rising = Rising {
     long_enough: LONG_ENOUGH[1],
 };
 
-/// The places among lags of a quarter and half of the longest one, and its own; then those of half of it, down to four rows.
+/// Indices of a quarter and a half of the longest lag and of the lag itself; then those of half of it, down to four rows.
 fn octaves(lags: &[f64]) -> Vec<[usize; 3]> {
     let [Some(&first), Some(&last)] = [lags.get(1), lags.last()] else { return vec![] };
     let at = |lag: f64| lags.partition_point(|&it| it < lag * (1.0 - 1e-6));
@@ -62,12 +62,12 @@ fn octaves(lags: &[f64]) -> Vec<[usize; 3]> {
 }
 
 impl Rising {
-    /// D by the longest octave, of a block or of means.
+    /// D from the longest octave, of a block or of means.
     fn constant(&self, lags: &[f64], values: &[f64]) -> f64 {
         octaves(lags).first().map_or(f64::NAN, |&[_, half, last]| (self.of)(lags, values, [half, last]))
     }
 
-    /// τ (time) by the changes from octave to octave: the longest that one of them tells; none where none changes.
+    /// Correlation time τ from the changes between octaves, the longest one; none if no change is significant.
     fn memory(&self, whole: &Whole<'_>) -> Option<f64> {
         let of = |&[quarter, half, last]: &[usize; 3]| {
             let later = |block: &[f64]| (self.of)(whole.over, block, [half, last]);
@@ -79,7 +79,7 @@ impl Rising {
         octaves(whole.over).iter().filter_map(of).reduce(f64::max)
     }
 
-    /// The lag over τ at which two octaves have a ratio.
+    /// Lag over τ at which two octaves have a ratio.
     fn lags_of(&self, ratio: f64) -> f64 {
         let [mut low, mut high] = RATIOS;
         while high - low > 1e-6 * high {
@@ -89,33 +89,34 @@ impl Rising {
         low
     }
 
-    /// What is missing at the longest lag, over what is there.
+    /// Missing part at the longest lag, relative to the estimate.
     fn bias(&self, whole: &Whole<'_>) -> f64 {
         let (Some(memory), Some(last)) = (self.memory(whole), whole.over.last()) else { return 0.0 };
         let missing = (self.missing)(last / memory);
         missing / (1.0 - missing)
     }
 
-    /// Why there is no constant, with what would be enough.
+    /// Reason why there is no constant, with the run that would give one.
     fn judge(&self, whole: &Whole<'_>) -> Verdict {
         if whole.setting.domain.periodic() != [true; 2] {
-            let why = "no diffusion constant: closed sides bound the displacements, and both sides would have to be periodic";
+            let why =
+                "no diffusion constant: closed sides bound the displacements; both sides must be periodic";
             return Verdict::None(why.to_owned());
         }
         let Some(&last) = whole.over.last().filter(|_| !octaves(whole.over).is_empty()) else {
             return Verdict::None(format!(
-                "no diffusion constant: the longest lag is of fewer than 4 rows; at least {} rows would do",
+                "no diffusion constant: the longest lag spans fewer than 4 rows; write at least {} rows",
                 4 * MOST_BLOCKS
             ));
         };
         match self.memory(whole) {
             Some(memory) if memory * self.long_enough > last => {
-                // A lag is at least the length of the run over the number of blocks.
+                // The longest lag is at least the length of the run over the number of blocks.
                 let enough =
                     (MARGIN * MOST_BLOCKS as f64 * self.long_enough * memory).max(2.0 * whole.elapsed);
                 Verdict::None(format!(
-                    "no diffusion constant: motion is not diffusive yet at the longest lag, {}, for it is remembered for about {}; a run \
-                     until about time {} would do",
+                    "no diffusion constant: motion is not diffusive yet at the longest lag, {}: velocities are correlated for about {}; extend the run \
+                     until about time {} to resolve it",
                     significant(last, 2),
                     significant(memory, 2),
                     significant(enough, 2)
@@ -126,37 +127,37 @@ impl Rising {
     }
 }
 
-/// D by the slope of the mean square displacement, between half of the longest lag and the longest lag.
+/// D from the slope of the mean square displacement, between half of the longest lag and the longest lag.
 pub(super) fn by_displacements(whole: &Whole<'_>, block: &[f64]) -> f64 {
     SLOPE.constant(whole.over, &block[..whole.over.len()])
 }
 
-/// What it may be short of (part).
+/// Relative bias of the slope.
 pub(super) fn bias_of_displacements(whole: &Whole<'_>) -> f64 {
     SLOPE.bias(whole)
 }
 
-/// Why there is no such constant.
+/// Judgement of the slope.
 pub(super) fn judge_displacements(whole: &Whole<'_>) -> Verdict {
     SLOPE.judge(whole)
 }
 
-/// D by half of the integral of ⟨v(0)·v(t)⟩, trapezium by trapezium.
+/// D as half of the integral of ⟨v(0)·v(t)⟩ by the trapezoidal rule.
 pub(super) fn by_velocities(whole: &Whole<'_>, block: &[f64]) -> f64 {
     INTEGRAL.constant(whole.over, &block[..whole.over.len()])
 }
 
-/// What it may be short of (part).
+/// Relative bias of the integral.
 pub(super) fn bias_of_velocities(whole: &Whole<'_>) -> f64 {
     INTEGRAL.bias(whole)
 }
 
-/// Why there is no such constant: also where velocities are forgotten between two rows.
+/// Judgement of the integral; it also fails if velocities decorrelate between two rows.
 pub(super) fn judge_velocities(whole: &Whole<'_>) -> Verdict {
     match INTEGRAL.judge(whole) {
         Verdict::Sound if whole.means[1][0] < RESOLVED * whole.means[0][0] => Verdict::None(
-            "no diffusion constant: rows too far apart, velocities are forgotten from one to the next; rows in which they fall by less \
-             than a third would do"
+            "no diffusion constant: rows too far apart, velocities decorrelate between them; write rows so often that the autocorrelation falls by less \
+             than a third"
                 .to_owned(),
         ),
         verdict => verdict,
@@ -167,7 +168,7 @@ pub(super) fn judge_velocities(whole: &Whole<'_>) -> Verdict {
 mod tests {
     use super::*;
 
-    /// By hand, for velocities that are forgotten exponentially: M = 4 (t − 1 + exp(−t)), C = 2 exp(−t), τ = D = 1.
+    /// Hand calculation for exponential decorrelation: M = 4 (t − 1 + exp(−t)), C = 2 exp(−t), τ = D = 1.
     #[test]
     fn what_is_missing_is_that_of_exponential_memory() {
         for last in [1.0_f64, 3.0, 10.0] {

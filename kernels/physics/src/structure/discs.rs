@@ -1,6 +1,6 @@
-//! Discs as a look has them.
+//! Discs of a sample.
 
-/// The discs that are there, in the order of the scene, in columns.
+/// Discs present, in the order of the scene, in columns.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Discs {
     pub(super) x: Vec<f64>,

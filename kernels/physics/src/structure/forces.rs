@@ -1,4 +1,4 @@
-//! Forces between discs as they stand: pair by pair, and as the stress on a grid.
+//! Forces between discs at one moment: pair by pair, and as the stress on a grid.
 
 use super::cells::Cells;
 use super::discs::Discs;
@@ -12,20 +12,20 @@ use std::ops::Range;
 use std::sync::Arc;
 use stripmine_kernels::sweep::pair::{Body, Pair};
 
-/// Cells of the grid of a stress, at most.
+/// Largest number of cells of the stress grid.
 const MOST_CELLS: f64 = 400.0;
-/// Components of a stress: xx, xy, yy.
+/// Number of components of a stress: xx, xy, yy.
 const COMPONENTS: usize = 3;
 
-/// The force along x and y on the first of a pair.
+/// Force along x and y on the first of a pair.
 pub(crate) type PairForce = dyn Fn(&Pair) -> [f64; 2] + Send + Sync;
 
-/// What two particles do to each other at any moment.
+/// Pair forces of a method at any moment.
 #[derive(Clone)]
 pub struct PairForces {
-    /// Farthest distance (length) at which a pair acts.
+    /// Largest distance (length) at which a pair interacts.
     pub reach: f64,
-    /// What a pair does.
+    /// Force of a pair.
     pub of: Arc<PairForce>,
 }
 
@@ -35,7 +35,7 @@ impl Debug for PairForces {
     }
 }
 
-/// Discs, walls among them, with what they do to each other.
+/// Discs, walls included, with their pair forces.
 struct Acting<'a> {
     particles: &'a [Particle],
     forces: &'a PairForces,
@@ -58,8 +58,8 @@ impl<'a> Acting<'a> {
         Acting { particles, forces, cells, halves }
     }
 
-    /// Each pair of which one may move, of some rows and those above: their numbers, the way from the second to the first (length),
-    /// and the force on the first.
+    /// Visits each pair with a mobile disc of some rows and those above: the numbers, the vector from the second to the first (length), and the
+    /// force on the first.
     fn each(&self, rows: Range<usize>, mut each: impl FnMut([usize; 2], [f64; 2], [f64; 2])) {
         let Acting { particles, forces, cells, halves } = self;
         for row in rows {
@@ -84,7 +84,7 @@ impl<'a> Acting<'a> {
     }
 }
 
-/// A disc as a law sees it, at the origin.
+/// Disc as a law reads it, at the origin.
 fn body(disc: &Particle) -> Body {
     Body {
         position: [0.0; 2],
@@ -95,7 +95,7 @@ fn body(disc: &Particle) -> Body {
     }
 }
 
-/// The sum of the magnitudes of the forces that act on each disc (force), walls among them, in their order.
+/// Sum of the magnitudes of the forces on each disc (force), walls included, in their order.
 pub fn forces_on_each(setting: &Setting, particles: &[Particle], forces: &PairForces) -> Vec<f64> {
     let mut sums = vec![0.0; particles.len()];
     let mut cells = Cells::default();
@@ -108,8 +108,7 @@ pub fn forces_on_each(setting: &Setting, particles: &[Particle], forces: &PairFo
     sums
 }
 
-/// The sum of the forces that pairs exert on each disc (force), in their order: on walls too, but for pairs of walls. A one-sided
-/// `forces.reach` of 0 gives none.
+/// Net pair force on each disc (force), in their order. Walls are included, pairs of walls are not. A `forces.reach` of 0 gives none.
 pub fn net_forces(setting: &Setting, particles: &[Particle], forces: &PairForces) -> Vec<[f64; 2]> {
     let mut sums = vec![[0.0; 2]; particles.len()];
     let mut cells = Cells::default();
@@ -125,14 +124,14 @@ pub fn net_forces(setting: &Setting, particles: &[Particle], forces: &PairForces
     sums
 }
 
-/// Cells of the grid along each axis: nearly square, each wider than a disc.
+/// Number of cells of the grid along each axis: nearly square, each wider than a disc.
 fn counts(setting: &Setting) -> [usize; 2] {
     let [x, y] = setting.domain.lengths();
     let edge = (x * y / MOST_CELLS).sqrt().max(setting.diameter);
     [x, y].map(|side| (side / edge).floor().clamp(1.0, MOST_CELLS) as usize)
 }
 
-/// The middles of the cells of the grid (length), row by row.
+/// Centres of the cells of the grid (length), row by row.
 pub(super) fn grid(setting: &Setting) -> Vec<[f64; 2]> {
     let [columns, rows] = counts(setting);
     let middle = |axis: usize, at: usize, count: usize| {
@@ -143,18 +142,18 @@ pub(super) fn grid(setting: &Setting) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// The flow of momentum in each cell of the grid.
+/// Momentum flux in each cell of the grid.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Stress {
     /// Components cell by cell (force/length).
     sums: Vec<f64>,
-    /// The same of each part (energy).
+    /// Components of each task (energy).
     parts: Vec<Vec<f64>>,
     cells: Cells,
 }
 
 impl Stress {
-    /// Sums it up: motion of the grains, and half of each pair in the cell of either disc. Parts are added in their order.
+    /// Sums the motion of the grains, and half of each pair in the cell of either disc. Tasks are added in their order.
     pub(super) fn sum(&mut self, setting: &Setting, particles: &[Particle], forces: &PairForces) {
         let [columns, rows] = counts(setting);
         let domain = setting.domain;
@@ -191,7 +190,7 @@ impl Stress {
         self.sums.iter_mut().for_each(|sum| *sum *= by_area);
     }
 
-    /// A component in each cell (force/length).
+    /// Component in each cell (force/length).
     pub(super) fn component(&self, component: usize, values: &mut [f64]) {
         let cells = self.sums.chunks_exact(COMPONENTS);
         values.iter_mut().zip(cells).for_each(|(value, cell)| *value = cell[component]);

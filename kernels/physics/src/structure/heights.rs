@@ -1,8 +1,8 @@
-//! Pairs that an ideal gas has at a distance above a floor, where nothing bounds it from above.
+//! Expected pairs of an ideal gas at a distance, above a floor without a ceiling.
 //!
-//! The area that centres can reach has no end there. The ideal gas is the discs of the same moment, each at its height, but anywhere along the
-//! floor: what gravity makes of the heights is no correlation of pairs. Differences of heights are shared out to the nearest of some heights, which
-//! are much closer than bins and each have a table of the chance to be in each bin of distances.
+//! The area that centres can reach is infinite there. The ideal gas has the discs of the same moment, each at its height but anywhere along the
+//! floor, so that density profiles due to gravity are not counted as correlations. Differences of heights are distributed to the nearest tabulated
+//! heights. These are much closer than bins, and each has a table of probabilities for the bins of distances.
 
 use super::discs::Discs;
 use super::ideal::{Size, sizes};
@@ -11,29 +11,29 @@ use super::setting::Setting;
 use crate::domain::Side;
 use crate::particles::Particles;
 
-/// Heights with a table in a bin of distances.
+/// Number of tabulated heights in a bin of distances.
 const STEPS: usize = 8;
 
-/// The pairs that the ideal gas of one moment has.
+/// Expected pairs of the ideal gas of one moment.
 #[derive(Clone, Debug)]
 pub(super) struct Heights {
-    /// Sizes that the sides of the box treat differently.
+    /// Sizes that differ in their distance from the sides of the box.
     sizes: Vec<Size>,
     bins: usize,
-    /// Differences of heights by length.
+    /// Tabulated heights per length.
     by_length: f64,
-    /// Of each pair of sizes and each height: chances from the first bin that such a pair can be in.
+    /// Probabilities from the first possible bin, for each pair of sizes and each height.
     chances: Vec<Vec<f64>>,
-    /// Heights in ascending order, each with the place of the size.
+    /// Heights in ascending order, each with the index of its size.
     ascending: Vec<(f64, usize)>,
-    /// Pairs of each pair of sizes at each height.
+    /// Number of pairs of each pair of sizes at each height.
     counts: Vec<f64>,
-    /// Pairs in each bin of distances.
+    /// Number of pairs in each bin of distances.
     pub(super) pairs: Vec<f64>,
 }
 
 impl Heights {
-    /// Of the discs of a scene in a box with an open top.
+    /// Tables for the discs of a scene in a box with an open top.
     pub(super) fn new(setting: &Setting, particles: &Particles) -> Heights {
         let mut sizes = sizes(particles.grains());
         if setting.domain.is_periodic(0) {
@@ -62,7 +62,7 @@ impl Heights {
         Heights { sizes, bins, by_length, chances, ascending: vec![], counts, pairs }
     }
 
-    /// Finds the pairs of the ideal gas of some discs.
+    /// Computes the pairs of the ideal gas of some discs.
     pub(super) fn find(&mut self, discs: &Discs) {
         let Heights { sizes, bins, by_length, chances, ascending, counts, pairs } = self;
         let size_of = |radius: f64| {
@@ -96,14 +96,14 @@ impl Heights {
     }
 }
 
-/// The chance that discs of two radii, each anywhere along a side, are nearer to each other along it than some length.
+/// Probability that discs of two radii, each anywhere along a side, are closer along it than some length.
 fn chance_along(side: Side, radii: [f64; 2], way: f64) -> f64 {
     let room = match side {
         Side::Closed(length) => radii.map(|radius| (length - 2.0 * radius).max(0.0)),
         _ => return (2.0 * way / side.length()).min(1.0),
     };
     let [narrow, wide] = [room[0].min(room[1]), room[0].max(room[1])];
-    // Up to here the narrow room lies within reach of the wide one.
+    // The narrow range is within reach of the wide one up to here.
     let [inner, outer] = [0.5 * (wide - narrow), 0.5 * (wide + narrow)];
     match () {
         () if way >= outer => 1.0,
@@ -114,7 +114,7 @@ fn chance_along(side: Side, radii: [f64; 2], way: f64) -> f64 {
     }
 }
 
-/// Nanoseconds that it takes a disc to find them: its pairs, and its part of the tables.
+/// Cost for each disc (ns): its pairs, and its part of the tables.
 pub(super) fn nanoseconds(setting: &Setting, discs: usize) -> f64 {
     const PAIR: f64 = 1.5;
     const CHANCE: f64 = 0.3;
@@ -127,14 +127,14 @@ pub(super) fn nanoseconds(setting: &Setting, discs: usize) -> f64 {
 mod tests {
     use super::*;
 
-    /// Hand sums: density of the difference of two uniform places.
+    /// Hand calculation: density of the difference of two uniform positions.
     #[test]
     fn chances_along_a_side_are_those_of_two_uniform_places() {
         for (side, radii, way, chance) in [
             (Side::Periodic(10.0), [0.5, 1.0], 2.0, 0.4),
-            // In rooms of 9 and 9: 1 − (1 − 3/9)².
+            // Ranges of 9 and 9: 1 − (1 − 3/9)².
             (Side::Closed(10.0), [0.5; 2], 3.0, 5.0 / 9.0),
-            // In rooms of 4 and 8: from the middle, 2 along each way are within the wide room.
+            // Ranges of 4 and 8: from the centre, 2 in each direction are within the wide range.
             (Side::Closed(10.0), [3.0, 1.0], 1.0, 0.25),
             (Side::Closed(10.0), [1.0, 3.0], 4.0, (16.0 + 2.0 * 6.0 * 2.0 - 16.0 + 4.0) / 32.0),
             (Side::Closed(10.0), [3.0, 1.0], 6.0, 1.0),

@@ -1,8 +1,8 @@
-//! Pairs that an ideal gas has at a distance: discs that know nothing of each other, in the area that their centres can reach.
+//! Expected pairs of an ideal gas at a distance: independent discs in the area that their centres can reach.
 //!
-//! The chance of two discs to be in a bin is the area of its ring, times the share of the ring that is reachable from a reachable place,
-//! over the reachable area. That share has a formula between closed sides for discs of one size; an integral over angles for sizes that
-//! differ; and is sampled on a grid where there are wall discs, of which the part counts that is connected to the start of the discs.
+//! The probability of two discs in a bin is the area of its ring, times the fraction of the ring that is reachable from a reachable position, over
+//! the reachable area. This fraction has a formula between closed sides for discs of one size. For several sizes it is an integral over angles.
+//! With wall discs it is sampled on a grid, on the part connected to the initial discs.
 
 use super::pairs::{BINS, bins};
 use super::setting::Setting;
@@ -11,29 +11,29 @@ use crate::particles::{Kind, Particle, Particles};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use std::f64::consts::{PI, TAU};
 
-/// Sizes of discs that are told apart, at most.
+/// Largest number of disc sizes distinguished.
 const SIZES: usize = 4;
-/// Angles of a quarter turn.
+/// Number of angles in a quarter turn.
 const ANGLES: usize = 256;
-/// Samples of each bin.
+/// Number of samples for each bin.
 const SAMPLES: usize = 1 << 14;
-/// Edge of the cells of the grid over the radius, a power of two: rims of walls at multiples of a radius from a side lie between cells. Cells
-/// at most.
+/// Edge of the grid's cells over the radius, and the largest number of cells. The edge is a power of two, so that edges of walls at multiples of a
+/// radius from a side fall between cells.
 const EDGE: f64 = 0.0625;
 const MOST_CELLS: f64 = 4e6;
-/// A sequence that fills a square evenly: powers of the inverse of the root of x³ = x + 1.
+/// Sequence that fills a square evenly: powers of the inverse of the root of x³ = x + 1.
 const EVEN: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
 
 /// Discs of about one size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Size {
-    /// Their mean radius (length).
+    /// Mean radius (length).
     pub(super) radius: f64,
-    /// How many there are.
+    /// Number of discs.
     count: f64,
 }
 
-/// For each bin of distances the chance of a pair of discs to be in it. Walls and the connected area are those of the start.
+/// Probability of a pair of discs in each bin of distances. Walls and the connected area are those of the start.
 pub(super) fn chances(setting: &Setting, particles: &Particles) -> Vec<f64> {
     let domain = &setting.domain;
     let has_walls = particles.grain_count() < particles.len();
@@ -49,7 +49,7 @@ pub(super) fn chances(setting: &Setting, particles: &Particles) -> Vec<f64> {
     let [x, y] = setting.room();
     let closed = [0, 1].map(|axis| f64::from(!domain.is_periodic(axis)));
     let [over_x, over_y] = [closed[0] / x, closed[1] / y];
-    // Within a distance r of a place, on average over all places: the set covariance of the rectangle, integrated.
+    // Area within a distance r of a position, averaged over all positions: the integrated set covariance of the rectangle.
     let within = |r: f64| {
         let (linear, square) = (2.0 / PI * (over_x + over_y), over_x * over_y / PI);
         2.0 * PI * r * r * (0.5 - linear * r / 3.0 + 0.25 * square * r * r)
@@ -59,7 +59,7 @@ pub(super) fn chances(setting: &Setting, particles: &Particles) -> Vec<f64> {
     (0..bins(setting)).map(of).collect()
 }
 
-/// The chance over pairs of sizes, where `by_area` gives it for a unit of area at a distance.
+/// Averages the probability over pairs of sizes; `by_area` is the probability per unit of area at a distance.
 fn of_sizes(
     setting: &Setting,
     sizes: &[Size],
@@ -70,7 +70,7 @@ fn of_sizes(
     let of = |bin: usize| {
         let [inner, outer] = [bin, bin + 1].map(|edge| edge as f64 * width);
         let ring = PI * (outer * outer - inner * inner);
-        // The mean distance over the ring: shares that fall linearly are exact.
+        // The mean distance over the ring makes linear fractions exact.
         let middle = 2.0 / 3.0 * (outer + inner - outer * inner / (outer + inner));
         let mut chance = 0.0;
         for (a, one) in sizes.iter().enumerate() {
@@ -84,7 +84,7 @@ fn of_sizes(
     (0..bins(setting)).into_par_iter().map(of).collect()
 }
 
-/// Discs by their radius: each radius alone where there are few, else ranges of them with about as many discs each.
+/// Groups discs by radius: each radius alone if there are few, else ranges of radii with about as many discs each.
 pub(super) fn sizes(grains: &[Particle]) -> Vec<Size> {
     let mut radii: Vec<f64> = grains.iter().map(|grain| grain.radius).collect();
     radii.sort_by(f64::total_cmp);
@@ -102,8 +102,8 @@ pub(super) fn sizes(grains: &[Particle]) -> Vec<Size> {
     radii.chunks(radii.len().div_ceil(SIZES)).map(of).collect()
 }
 
-/// The share of places of a disc of one radius from which a way of a length leads to a place of one of another radius, over the area
-/// that the latter has; the mean over all directions.
+/// Fraction of positions of a disc of one radius from which a step of a length leads to a position of one of another radius, over the area of the
+/// latter; averaged over all directions.
 fn shared_area(domain: &Domain, radii: [f64; 2], r: f64) -> f64 {
     let room = |axis: usize, radius: f64| match domain.is_periodic(axis) {
         true => domain.length(axis),
@@ -124,26 +124,26 @@ fn shared_area(domain: &Domain, radii: [f64; 2], r: f64) -> f64 {
     mean / radii.map(|radius| room(0, radius) * room(1, radius)).iter().product::<f64>()
 }
 
-/// The cells of a grid over the rectangle between closed sides that the centre of a disc can be in, coming from where the discs are.
+/// Grid over the rectangle between closed sides, with the cells that the centre of a disc can reach from the initial discs.
 struct Grid {
     domain: Domain,
-    /// The lower left corner of the rectangle (length): no cell is cut by a closed side.
+    /// Lower left corner of the rectangle (length); no closed side cuts a cell.
     origin: [f64; 2],
     counts: [usize; 2],
     edges: [f64; 2],
-    /// Row by row.
+    /// True for reached cells, row by row.
     is_reached: Vec<bool>,
-    /// Those that are.
+    /// Reached cells.
     reached: Vec<u32>,
 }
 
 impl Grid {
-    /// For discs of a radius (length).
+    /// Grid for discs of a radius (length).
     fn new(domain: &Domain, radius: f64, particles: &Particles) -> Grid {
         let edge = (EDGE * radius).max((domain.area() / MOST_CELLS).sqrt());
         let rim = [0, 1].map(|axis| if domain.is_periodic(axis) { 0.0 } else { radius });
         let origin = [0, 1].map(|axis| domain.origin[axis] + rim[axis]);
-        // A disc that fills its box has a cell.
+        // A disc that fills its box has one cell.
         let lengths = [0, 1].map(|axis| (domain.length(axis) - 2.0 * rim[axis]).max(edge));
         let counts = lengths.map(|length| (length / edge).ceil().max(1.0) as usize);
         let edges = [0, 1].map(|axis| lengths[axis] / counts[axis] as f64);
@@ -153,7 +153,7 @@ impl Grid {
         grid
     }
 
-    /// The cells whose middle no wall disc keeps the centre of a disc from.
+    /// Marks the cells at whose centre a disc overlaps no wall disc.
     fn free_of_walls(&self, radius: f64, particles: &Particles) -> Vec<bool> {
         let [columns, rows] = self.counts;
         let mut is_free = vec![true; columns * rows];
@@ -177,7 +177,7 @@ impl Grid {
         is_free
     }
 
-    /// The cell of a column and a row, across periodic sides; none beyond others.
+    /// Cell of a column and a row, across periodic sides; none beyond closed ones.
     fn cell(&self, at: [i64; 2]) -> Option<usize> {
         let mut inside = [0; 2];
         for axis in 0..2 {
@@ -188,7 +188,7 @@ impl Grid {
         Some(inside[1] * self.counts[0] + inside[0])
     }
 
-    /// Reaches all cells that are connected to a disc through free ones. A disc that touches a wall may be in a cell that is not free.
+    /// Marks all cells connected to a disc through free ones. A disc that touches a wall may be in a cell that is not free.
     fn flood(&mut self, is_free: &[bool], grains: &[Particle]) {
         let mut is_reached = vec![false; is_free.len()];
         let mut reached: Vec<u32> = vec![];
@@ -214,17 +214,17 @@ impl Grid {
                 enter(self.cell(at), &mut reached);
             }
         }
-        // In the order of cells, so that samples are spread evenly.
+        // The order of cells spreads samples evenly.
         reached.sort_unstable();
         (self.is_reached, self.reached) = (is_reached, reached);
     }
 
-    /// The area that is reached (length²).
+    /// Reached area (length²).
     fn area(&self) -> f64 {
         self.reached.len() as f64 * self.edges[0] * self.edges[1]
     }
 
-    /// The share of reached places from which a way of a length leads to one that is reached on another grid, over all directions.
+    /// Fraction of reached positions from which a step of a length leads to one that is reached on another grid, over all directions.
     fn share(&self, other: &Grid, r: f64) -> f64 {
         let reached = self.reached.len() as f64;
         let leads = |sample: usize| {
@@ -254,7 +254,7 @@ mod tests {
         Particle { id, kind, position, velocity: [0.0; 3], angle: 0.0, omega: 0.0, radius, mass: 1.0 }
     }
 
-    /// Between walls, an integral over angles and samples on a grid are the formula of the rectangle.
+    /// The integral over angles and the samples on a grid agree with the formula of the rectangle.
     #[test]
     fn three_ways_to_the_share_of_a_ring_agree() {
         let discs = Particles::new((0..3).map(|id| disc(id, Kind::Grain, [3.0, 4.0], 0.5)).collect());
@@ -274,7 +274,7 @@ mod tests {
         }
     }
 
-    /// A channel between rows of wall discs that nearly touch is a strip: its rim is a little uneven. Outside of it there is nothing.
+    /// A channel between rows of nearly touching wall discs is a strip with slightly uneven edges, and nothing outside of it is reached.
     #[test]
     fn a_channel_is_what_its_walls_leave() {
         let mut all = vec![disc(0, Kind::Grain, [10.0, 6.0], 0.5)];
@@ -286,7 +286,7 @@ mod tests {
         let particles = Particles::new(all);
         let domain = Domain::planar([0.0; 2], [20.0, 12.0], [true, false]);
         let grid = Grid::new(&domain, 0.5, &particles);
-        // Centres reach up to 1 from the middles of the walls.
+        // Centres come within 1 of the centres of the walls.
         assert!((grid.area() / (20.0 * 4.0) - 1.0).abs() < 0.01, "{}", grid.area());
         for r in [0.5, 2.0, 3.5] {
             let strip = 1.0 - 2.0 * r / (4.0 * PI);

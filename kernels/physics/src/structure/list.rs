@@ -1,20 +1,20 @@
-//! The observables of the structure, one after the other.
+//! List of the observables of the structure.
 
 use super::waves;
 use super::{Asks, Headline, Observable, Over, Seen, Verdict, Whole};
 use super::{diffusion, motion, neighbours, pairs, single};
 use crate::number::significant;
 
-/// Every function can be relied on.
+/// Judgement that always accepts the function.
 const SOUND: fn(&Whole<'_>) -> Verdict = |_| Verdict::Sound;
-/// Nothing but statistical error.
+/// Bias of headlines with statistical error only.
 const NO_BIAS: fn(&Whole<'_>) -> f64 = |_| 0.0;
 
-/// A grid over the box.
+/// Coordinates of a grid over the box.
 const PLACES: &[[&str; 2]] = &[["x", "length"], ["y", "length"]];
-/// Where the definition of the stress comes from.
-const STRESS: &str = "Irving and Kirkwood 1950, half of a pair to either disc (Thompson, Plimpton and Mattson 2009); velocities as seen from the box";
-/// The number that stands for a component of the stress.
+/// Source of the definition of the stress.
+const STRESS: &str = "Irving and Kirkwood 1950, each disc takes half of a pair (Thompson, Plimpton and Mattson 2009); velocities relative to the box";
+/// Headline of a component of the stress.
 const OVER_BOX: [Headline; 1] = [Headline {
     name: "mean over the box",
     unit: "force/length",
@@ -22,14 +22,14 @@ const OVER_BOX: [Headline; 1] = [Headline {
     bias: NO_BIAS,
 }];
 
-/// All of them.
+/// All observables.
 pub static OBSERVABLES: [Observable; 16] = [
     Observable {
         name: "g(r)",
         file: "g.csv",
         over: &[["r", "length"]],
         value: ["g", ""],
-        doc: "Pairs at a distance over those of an ideal gas in the area that centres of discs can reach, between closed sides and wall discs; below an open top, of discs at the same heights, but anywhere along the floor.",
+        doc: "Pairs at a distance over those of an ideal gas in the area that centres of discs can reach between closed sides and wall discs. With an open top the ideal gas has discs at the same heights, anywhere along the floor.",
         source: "Hansen and McDonald, Theory of Simple Liquids, section 2.5; closed sides by the set covariance of a rectangle (Stoyan \
                  and Stoyan 1994)",
         seen: Seen::Once {
@@ -91,8 +91,8 @@ pub static OBSERVABLES: [Observable; 16] = [
         file: "coordination.csv",
         over: &[["neighbours", ""]],
         value: ["share of discs", ""],
-        doc: "Shares of discs by their number of neighbours: others nearer than 1.5 times the sum of the radii.",
-        source: "the first minimum of g(r) of dense discs lies there",
+        doc: "Fractions of discs by their number of neighbours: others nearer than 1.5 times the sum of the radii.",
+        source: "first minimum of g(r) of dense discs",
         seen: Seen::Once {
             over: Over::Axis(neighbours::neighbour_numbers),
             of: |it, values, _| neighbours::coordination(&it.discs, &it.neighbours, values),
@@ -112,8 +112,8 @@ pub static OBSERVABLES: [Observable; 16] = [
         file: "psi6.csv",
         over: &[["|psi6| of a disc", ""]],
         value: ["density", ""],
-        doc: "Distribution of the hexatic order of single discs, ψ6 = ⟨exp(6iθ)⟩ over the six nearest, or all others where there are fewer.",
-        source: "Nelson and Halperin 1979; six nearest neighbours in place of Voronoi's",
+        doc: "Distribution of the hexatic order of single discs, ψ6 = ⟨exp(6iθ)⟩ over the six nearest discs, or over all others if there are fewer.",
+        source: "Nelson and Halperin 1979; six nearest neighbours instead of Voronoi's",
         seen: Seen::Once {
             over: Over::Axis(neighbours::orders),
             of: |it, values, _| neighbours::hexatic(&it.neighbours, values),
@@ -162,7 +162,7 @@ pub static OBSERVABLES: [Observable; 16] = [
         file: "density-x.csv",
         over: &[["x", "length"]],
         value: ["density", "1/length²"],
-        doc: "Centres of discs by area in a hundred slices along the first axis; below an open top, by the area up to the highest centre of the moment.",
+        doc: "Centres of discs by area in a hundred slices along the first axis; with an open top, by the area up to the highest centre of the moment.",
         source: "Hansen and McDonald, Theory of Simple Liquids, section 2.5: the single-particle density, averaged across the axis",
         seen: Seen::Once {
             over: Over::Axis(single::slices::<0>),
@@ -178,7 +178,7 @@ pub static OBSERVABLES: [Observable; 16] = [
         file: "density-y.csv",
         over: &[["y", "length"]],
         value: ["density", "1/length²"],
-        doc: "Centres of discs by area in a hundred slices along the second axis, up to the height that the scene gives.",
+        doc: "Centres of discs by area in a hundred slices along the second axis, up to the height of the scene's box.",
         source: "Hansen and McDonald, Theory of Simple Liquids, section 2.5: the single-particle density, averaged across the axis",
         seen: Seen::Once {
             over: Over::Axis(single::slices::<1>),
@@ -194,7 +194,7 @@ pub static OBSERVABLES: [Observable; 16] = [
         file: "flow-x.csv",
         over: &[["x", "length"]],
         value: ["velocity along y", "length/time"],
-        doc: "Velocity of the discs along y in a hundred slices along x: all momentum over all mass that was there.",
+        doc: "Velocity of the discs along y in a hundred slices along x: total momentum over total mass in the slice.",
         source: "Irving and Kirkwood 1950: momentum density over mass density",
         seen: Seen::Once {
             over: Over::Axis(single::slices::<0>),
@@ -210,7 +210,7 @@ pub static OBSERVABLES: [Observable; 16] = [
         file: "flow-y.csv",
         over: &[["y", "length"]],
         value: ["velocity along x", "length/time"],
-        doc: "Velocity of the discs along x in a hundred slices along y: all momentum over all mass that was there.",
+        doc: "Velocity of the discs along x in a hundred slices along y: total momentum over total mass in the slice.",
         source: "Irving and Kirkwood 1950: momentum density over mass density",
         seen: Seen::Once {
             over: Over::Axis(single::slices::<1>),
@@ -226,8 +226,8 @@ pub static OBSERVABLES: [Observable; 16] = [
         file: "temperature-x.csv",
         over: &[["x", "length"]],
         value: ["kT", "energy"],
-        doc: "Kinetic energy beside the flow of the slice, ΣΣm|v − u|²/(2Σ(n − 1)) over discs and snapshots, in a hundred slices along the first axis.",
-        source: "Irving and Kirkwood 1950: the kinetic part, with one disc less a snapshot for the mean velocity",
+        doc: "Kinetic energy relative to the flow of the slice, ΣΣm|v − u|²/(2Σ(n − 1)) over discs and snapshots, in a hundred slices along the first axis.",
+        source: "Irving and Kirkwood 1950: the kinetic part, with one disc fewer in each snapshot for the mean velocity",
         seen: Seen::Once {
             over: Over::Axis(single::slices::<0>),
             of: |it, values, weights| single::temperature::<0>(&it.setting, &it.discs, values, weights),
@@ -242,8 +242,8 @@ pub static OBSERVABLES: [Observable; 16] = [
         file: "temperature-y.csv",
         over: &[["y", "length"]],
         value: ["kT", "energy"],
-        doc: "Kinetic energy beside the flow of the slice, ΣΣm|v − u|²/(2Σ(n − 1)) over discs and snapshots, in a hundred slices along the second axis.",
-        source: "Irving and Kirkwood 1950: the kinetic part, with one disc less a snapshot for the mean velocity",
+        doc: "Kinetic energy relative to the flow of the slice, ΣΣm|v − u|²/(2Σ(n − 1)) over discs and snapshots, in a hundred slices along the second axis.",
+        source: "Irving and Kirkwood 1950: the kinetic part, with one disc fewer in each snapshot for the mean velocity",
         seen: Seen::Once {
             over: Over::Axis(single::slices::<1>),
             of: |it, values, weights| single::temperature::<1>(&it.setting, &it.discs, values, weights),
@@ -258,7 +258,7 @@ pub static OBSERVABLES: [Observable; 16] = [
         file: "stress-xx.csv",
         over: PLACES,
         value: ["stress xx", "force/length"],
-        doc: "Flow of momentum along x through a line across x, positive under pressure: Σm v_x v_x of the discs of a cell and half of r_x F_x of each of their pairs, walls among them, over its area.",
+        doc: "Flux of x momentum through a line normal to x, positive under pressure: Σm v_x v_x of the discs of a cell and half of r_x F_x of each of their pairs, walls included, over its area.",
         source: STRESS,
         seen: Seen::Once {
             over: Over::Grid,
@@ -274,7 +274,7 @@ pub static OBSERVABLES: [Observable; 16] = [
         file: "stress-xy.csv",
         over: PLACES,
         value: ["stress xy", "force/length"],
-        doc: "Flow of momentum along y through a line across x, as the stress xx: the symmetric part, (r_x F_y + r_y F_x)/2 of each pair.",
+        doc: "Flux of y momentum through a line normal to x, as the stress xx: the symmetric part, (r_x F_y + r_y F_x)/2 of each pair.",
         source: STRESS,
         seen: Seen::Once {
             over: Over::Grid,
@@ -290,7 +290,7 @@ pub static OBSERVABLES: [Observable; 16] = [
         file: "stress-yy.csv",
         over: PLACES,
         value: ["stress yy", "force/length"],
-        doc: "Flow of momentum along y through a line across y, as the stress xx.",
+        doc: "Flux of y momentum through a line normal to y, as the stress xx.",
         source: STRESS,
         seen: Seen::Once {
             over: Over::Grid,
@@ -306,7 +306,7 @@ pub static OBSERVABLES: [Observable; 16] = [
         file: "msd.csv",
         over: &[["lag", "time"]],
         value: ["mean square displacement", "length²"],
-        doc: "Mean square displacement of a disc within a time, followed across periodic sides.",
+        doc: "Mean square displacement of a disc during a time, followed across periodic sides.",
         source: "Einstein 1905: 4 D t in the plane after long times",
         seen: Seen::Twice { of: motion::square_displacement, follows: true },
         headlines: &[Headline {
@@ -335,26 +335,26 @@ pub static OBSERVABLES: [Observable; 16] = [
     },
 ];
 
-/// Where a function is largest; the first place of several.
+/// Index of the largest value; the first one of equals.
 fn peak(values: &[f64]) -> usize {
     let larger = |best: usize, at: usize| if values[at] > values[best] { at } else { best };
     (0..values.len()).fold(0, larger)
 }
 
-/// Where the mean of a function is largest.
+/// Index of the largest mean.
 fn highest(whole: &Whole<'_>) -> usize {
     let means: Vec<f64> = whole.means.iter().map(|[mean, _]| *mean).collect();
     peak(&means)
 }
 
-/// A peak ends where the function has fallen by this part of it.
+/// Relative fall of the function that ends a peak.
 const FALL: f64 = 0.1;
-/// A difference is one where it is larger than the bars by this factor.
+/// Smallest significant difference, in units of the error bars.
 const CERTAIN: f64 = 2.0;
-/// How many places around a peak of the mean it is in a block.
+/// Distance within which a block's peak is searched around the peak of the mean (bins).
 const AROUND: usize = 5;
 
-/// Where the mean of a function has its first peak above 1: from there it falls by a part of it, and by more than its error.
+/// Index of the first peak of the mean above 1: the function then falls by a fraction of it and by more than its error.
 fn first_peak(whole: &Whole<'_>) -> usize {
     let mut best = 0;
     for (at, &[mean, bar]) in whole.means.iter().enumerate() {
@@ -368,45 +368,45 @@ fn first_peak(whole: &Whole<'_>) -> usize {
     best
 }
 
-/// Where a block of a function is largest near the peak of its mean.
+/// Index of the largest value of a block near the peak of the mean.
 fn peak_near(block: &[f64], place: usize) -> usize {
     let first = place.saturating_sub(AROUND);
     first + peak(&block[first..(place + AROUND + 1).min(block.len())])
 }
 
-/// Rounding of sums of shares.
+/// Rounding error of sums of fractions.
 const ROUNDING: f64 = 1e-9;
 
-/// Whether there is a peak at all.
+/// Accepts the function if it has a significant peak.
 fn judge_peak(whole: &Whole<'_>) -> Verdict {
     let [height, bar] = whole.means[first_peak(whole)];
     match height - CERTAIN * bar > 1.0 {
         true => Verdict::Sound,
         false => Verdict::None(
-            "no peak stands out of the noise: g(r) is 1 within twice its bar everywhere".to_owned(),
+            "no peak is above the noise: g(r) is 1 within twice its error bar everywhere".to_owned(),
         ),
     }
 }
 
-/// Discs were above the highest slice.
+/// Reports discs above the highest slice.
 fn judge_heights(whole: &Whole<'_>) -> Verdict {
     let slice = whole.setting.domain.area() / whole.over.len() as f64;
     let seen = whole.means.iter().map(|[mean, _]| mean * slice).sum::<f64>() / whole.setting.discs as f64;
     match whole.setting.has_open_top && seen < 1.0 - ROUNDING {
         true => Verdict::Doubt(format!(
-            "{} % of the discs are above the highest slice, for the top is open: a larger second side would have them",
+            "{} % of the discs are above the highest slice of the open box; enlarge the second of domain.sides to include them",
             significant(100.0 * (1.0 - seen), 2)
         )),
         false => Verdict::Sound,
     }
 }
 
-/// Whether every number of neighbours has a line.
+/// Reports discs whose number of neighbours has no line.
 fn judge_lines(whole: &Whole<'_>) -> Verdict {
     let lines = whole.over.len();
     match (whole.mean)(&|block| block[lines + 1], 0) {
         Some([share, _]) if share > 0.0 => Verdict::Doubt(format!(
-            "{} % of the discs have more than {} neighbours and no line; the mean number counts them",
+            "{} % of the discs have more than {} neighbours, which have no line; the mean number includes them",
             significant(100.0 * share, 2),
             lines - 1
         )),

@@ -1,4 +1,4 @@
-//! One look at the discs: what several observables need is found once, in memory that is kept from look to look.
+//! Samples of the discs. Data that several observables need are computed once, in memory that is reused for each sample.
 
 use super::cells::Cells;
 use super::discs::Discs;
@@ -12,19 +12,19 @@ use super::waves::Waves;
 use super::{Asks, Observable, Seen};
 use crate::particles::{Particles, States};
 
-/// What is seen of discs as they stand.
+/// Sample of discs at one moment.
 #[derive(Clone, Debug)]
 pub struct Look {
     pub(super) setting: Setting,
-    /// Radius and mass of each grain of the scene.
+    /// Radius and mass of each grain.
     sizes: Vec<[f64; 2]>,
     states: States,
     pub(super) discs: Discs,
     cells: Cells,
     pub(super) distances: Distances,
-    /// The chance of a pair of an ideal gas to be in each bin of distances, where pairs are asked for.
+    /// Probability of a pair of an ideal gas in each bin of distances, if pairs are needed.
     pub(super) chances: Vec<f64>,
-    /// The pairs of an ideal gas at the heights of the moment, where pairs are asked for and the box has an open top.
+    /// Pairs of an ideal gas at the heights of the moment, if pairs are needed and the box has an open top.
     pub(super) heights: Option<Heights>,
     pub(super) neighbours: Neighbours,
     pub(super) waves: Waves,
@@ -33,7 +33,7 @@ pub struct Look {
 }
 
 impl Look {
-    /// For some observables of the particles of a scene.
+    /// Prepares samples for some observables of a scene's particles.
     pub fn new<'o>(
         setting: Setting,
         particles: &Particles,
@@ -62,7 +62,7 @@ impl Look {
         }
     }
 
-    /// Looks at states that `put` gives; false where no disc is left.
+    /// Samples the states that `put` stores; false if no disc is left.
     pub fn at(&mut self, put: impl FnOnce(&mut States)) -> bool {
         put(&mut self.states);
         self.take_up();
@@ -94,17 +94,17 @@ impl Look {
         true
     }
 
-    /// Whether an observable asks for something.
+    /// True if an observable needs these data.
     pub fn asks(&self, what: Asks) -> bool {
         self.asked.contains(&what)
     }
 
-    /// What the discs of this moment do to each other, walls among them.
+    /// Computes the forces between the discs of this moment, walls included.
     pub fn meet(&mut self, particles: &Particles, forces: &PairForces) {
         self.stress.sum(&self.setting, particles.all(), forces);
     }
 
-    /// The values of an observable that is seen of one moment, and by what each of them counts in a mean.
+    /// Values of an observable of one moment, and their weights in a mean.
     pub fn values(&self, observable: &Observable) -> [Vec<f64>; 2] {
         let Seen::Once { over, of, further, .. } = observable.seen else { return [vec![], vec![]] };
         let width = over.places(&self.setting).len() + further;
@@ -113,7 +113,7 @@ impl Look {
         [values, weights]
     }
 
-    /// The states as the columns of those that are there.
+    /// Copies the states of the discs present into columns.
     fn take_up(&mut self) {
         let Discs { x, y, vx, vy, radius, mass } = &mut self.discs;
         [&mut *x, y, vx, vy, radius, mass].into_iter().for_each(|column| column.clear());
@@ -129,7 +129,7 @@ impl Look {
     }
 }
 
-/// ψ6 of each disc, its real and its imaginary part: the mean of exp(6iθ) over the six nearest.
+/// Hexatic order ψ6 of each disc, real and imaginary part: the mean of exp(6iθ) over the six nearest.
 pub fn hexatic_orders(setting: &Setting, discs: &Particles) -> Vec<[f64; 2]> {
     let mut look = Look::new(*setting, discs, std::iter::empty());
     look.states.take_up(discs);
@@ -144,7 +144,7 @@ pub fn hexatic_orders(setting: &Setting, discs: &Particles) -> Vec<[f64; 2]> {
     look.neighbours.each()
 }
 
-/// What an observable says of some discs, and by what each value counts in a mean.
+/// Values of an observable for some discs, and their weights in a mean.
 pub fn seen(observable: &'static Observable, setting: Setting, discs: &Particles) -> [Vec<f64>; 2] {
     let mut look = Look::new(setting, discs, std::iter::once(observable));
     if look.at(|states| states.take_up(discs)) { look.values(observable) } else { [vec![], vec![]] }

@@ -1,7 +1,7 @@
-//! The structure of discs in a box and how it changes with time: what a run may sum up as it goes.
+//! Structure of discs in a box and its change in time, averaged during a run.
 //!
-//! Each observable is a row of one list (`list`). What is seen of one moment is averaged over the snapshots of a run, what is seen of two
-//! over its rows; sums are kept by blocks of time (`blocks`), from which errors come.
+//! Each observable is an entry of one list (`list`). Functions of one moment are averaged over the snapshots of a run, functions of two over its
+//! rows. Sums are stored by blocks of time (`blocks`), which yield the errors.
 
 mod blocks;
 mod cells;
@@ -30,86 +30,86 @@ pub use setting::Setting;
 pub(crate) use work::bytes;
 pub use work::strides;
 
-/// A function of a distance, a time or the like that a run may sum up.
+/// Function of a distance, a time or the like that a run can average.
 #[derive(Debug)]
 pub struct Observable {
-    /// Its name in scenes.
+    /// Name in scenes.
     pub name: &'static str,
-    /// The file of a run's folder that it is written to.
+    /// File in the run's folder.
     pub file: &'static str,
-    /// What it is a function of, one thing or the two coordinates, each with the unit; empty for pure numbers.
+    /// Arguments of the function, one quantity or two coordinates, each with its unit; the unit is empty for pure numbers.
     pub over: &'static [[&'static str; 2]],
-    /// What its values are, with the unit.
+    /// Quantity of the values, with the unit.
     pub value: [&'static str; 2],
-    /// What it is.
+    /// Definition in words.
     pub doc: &'static str,
-    /// Where its definition comes from.
+    /// Source of the definition.
     pub source: &'static str,
-    /// How it is seen.
+    /// Sampling of the function.
     pub seen: Seen,
-    /// The numbers that stand for the whole.
+    /// Numbers that summarise it.
     pub headlines: &'static [Headline],
-    /// Whether these, and the function, can be relied on.
+    /// Decides whether the function and its headlines are reliable.
     pub judged: fn(&Whole<'_>) -> Verdict,
 }
 
 impl Observable {
-    /// Whether discs are followed across periodic sides for it.
+    /// True if it needs discs followed across periodic sides.
     pub(crate) fn follows_motion(&self) -> bool {
         matches!(self.seen, Seen::Twice { follows: true, .. })
     }
 
-    /// Whether it counts discs by place: 0 says that none was seen, and not how seldom one is there.
+    /// True if it counts discs by position: a value of 0 then means that none was sampled, not that the density is 0.
     pub(crate) fn is_density_of_places(&self) -> bool {
         self.name.starts_with("density(")
     }
 }
 
-/// How an observable is seen.
+/// Sampling of an observable.
 #[derive(Clone, Copy, Debug)]
 pub enum Seen {
-    /// Of the discs as they stand, at each snapshot.
+    /// At single moments: the snapshots.
     Once {
-        /// What it is a function of: the middles of bins.
+        /// Arguments: centres of bins.
         over: Over,
-        /// Its values, and more that are for headlines only; and by what each counts in a mean, which is 1 if nothing else is said. Not a
-        /// number, or without weight, where there is nothing to be seen.
+        /// Computes its values, then further ones for headlines only, and their weights in a mean, which are 1 by default. A value is NaN or has no
+        /// weight if a sample does not define it.
         of: fn(&Look, &mut [f64], &mut [f64]),
-        /// How many these are.
+        /// Number of further values.
         further: usize,
-        /// What is found for it.
+        /// Data that it needs.
         asks: Asks,
     },
-    /// Of discs at two moments, at each row.
+    /// At pairs of moments: the rows.
     Twice {
-        /// Its value by means over the discs: of Δx², Δy², v(0)·v(t) along x and along y.
+        /// Value as a function of means over the discs: of Δx², Δy², v(0)·v(t) along x and along y.
         of: fn([f64; 4]) -> f64,
-        /// Whether that takes discs that are followed across periodic sides.
+        /// True if it needs discs followed across periodic sides.
         follows: bool,
     },
 }
 
-/// What a look finds for several observables together.
+/// Data that a sample provides to several observables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Asks {
-    /// Nothing but the discs.
+    /// Discs only.
     Discs,
     /// Pairs by their distance.
     Distances,
-    /// The discs around each.
+    /// Neighbours of each disc.
     Neighbours,
     /// Density waves.
     Waves,
-    /// What discs, walls among them, do to each other.
+    /// Forces between discs, walls included.
     Forces,
 }
 
-/// The middles of bins, or wave vectors.
+/// Arguments of a function: centres of bins, or wave vectors.
 #[derive(Clone, Copy, Debug)]
 pub enum Over {
     /// Along an axis.
     Axis(fn(&Setting) -> Vec<f64>),
-    /// Of the cells of a grid over the box, row by row.
+    /// Cells of a grid over the box, row by row.
     Grid,
     /// Wave vectors, each along one of the periodic axes.
     Waves,
@@ -126,48 +126,49 @@ impl Over {
     }
 }
 
-/// A number that stands for a whole function.
+/// Number that summarises a function.
 #[derive(Debug)]
 pub struct Headline {
-    /// Its name.
+    /// Name of the number.
     pub name: &'static str,
-    /// Its unit, empty for pure numbers.
+    /// Unit; empty for pure numbers.
     pub unit: &'static str,
-    /// Its value in a block of a function.
+    /// Value for a block of the function.
     pub of: fn(&Whole<'_>, &[f64]) -> f64,
-    /// What its mean may be off by beyond its statistical error (part of it).
+    /// Relative bias of the mean beyond its statistical error.
     pub bias: fn(&Whole<'_>) -> f64,
 }
 
-/// The mean over blocks of a number of each, with its bar; of a number that is of lags up to one at a place. None where blocks are too few.
+/// Mean over blocks of a number computed from each, with its error bar. The second argument is the index of the largest lag that the number uses.
+/// None if blocks are too few.
 pub(crate) type Estimator<'e> = dyn Fn(&dyn Fn(&[f64]) -> f64, usize) -> Option<[f64; 2]> + 'e;
 
-/// A function that was summed up, at least one value of it.
+/// Averaged function with at least one value.
 pub struct Whole<'w> {
-    /// The box and the discs at the start.
+    /// Box and initial discs.
     pub setting: &'w Setting,
-    /// What it is over: of wave vectors and places their length.
+    /// Arguments; of wave vectors and positions their length.
     pub over: &'w [f64],
-    /// Its means, each with its bar.
+    /// Means with their error bars.
     pub means: &'w [[f64; 2]],
-    /// The time of the run so far; 0 where it is not of lags.
+    /// Time of the run so far; 0 unless the arguments are lags.
     pub elapsed: f64,
-    /// What means over blocks are found by.
+    /// Estimator of means over blocks.
     pub mean: &'w Estimator<'w>,
 }
 
-/// Whether a function, and the numbers that stand for it, can be relied on.
+/// Reliability of a function and its headlines.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
-    /// They can.
+    /// Reliable.
     Sound,
-    /// They stand, but for this.
+    /// Usable with this reservation.
     Doubt(String),
-    /// The numbers cannot be had, for this reason.
+    /// Not available, for this reason.
     None(String),
 }
 
-/// Their names, for scenes.
+/// Names of all observables, for scenes.
 pub static NAMES: [&str; OBSERVABLES.len()] = {
     let mut names = [""; OBSERVABLES.len()];
     let mut place = 0;
@@ -178,7 +179,7 @@ pub static NAMES: [&str; OBSERVABLES.len()] = {
     names
 };
 
-/// The observable of a name.
+/// Observable with a name.
 pub fn observable(name: &str) -> Option<&'static Observable> {
     OBSERVABLES.iter().find(|observable| observable.name == name)
 }

@@ -1,4 +1,4 @@
-//! The discs around each: numbers of neighbours, and hexatic order. Every other disc counts once, by its nearest image.
+//! Neighbours of each disc: their number, and hexatic order. Every other disc counts once, by its nearest image.
 
 use super::cells::{AT_ONCE, Cells};
 use super::discs::Discs;
@@ -12,52 +12,52 @@ use std::f64::consts::PI;
 use std::ops::Range;
 use stripmine_kernels::backend::{Registers, Task, dispatch_best};
 
-/// Neighbours are nearer than this many sums of the radii.
+/// Largest distance of neighbours, in sums of the radii.
 const NEIGHBOURS: f64 = 1.5;
-/// Numbers of neighbours that have a line, for discs that overlap; and at most.
+/// Smallest and largest cap on the numbers of neighbours with a line, for discs that overlap.
 const LINES: [f64; 2] = [24.0, 1000.0];
 /// Bins of the order of single discs.
 const ORDERS: usize = 50;
-/// Whom the hexatic order is over.
+/// Number of discs that the hexatic order averages over.
 const NEAREST: usize = 6;
-/// Where these are looked for, farther and farther, in mean distances 1/√n: about ten others are there in a gas, and twelve in a
-/// corner. Where there still are fewer, all discs are looked at.
+/// Increasing search radii for these, in mean distances 1/√n. A gas has about ten others within the first, a corner twelve. If there still are
+/// fewer, all discs are searched.
 const LOOKED_FOR: [f64; 3] = [1.8, 2.7, 4.0];
 
-/// The discs around each.
+/// Neighbours of all discs.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Neighbours {
     parts: Vec<Around>,
-    /// Whether ψ6 of each disc is kept beside the sums.
+    /// True if ψ6 of each disc is stored beside the sums.
     pub(super) keeps_each: bool,
 }
 
-/// What some discs have around them, summed up, and room for the others around one.
+/// Sums over the neighbours of some discs, with buffers for one disc.
 #[derive(Clone, Debug)]
 struct Around {
-    /// Discs by their number of neighbours, those with more than have a line, and the neighbours of all.
+    /// Discs by number of neighbours, discs with more than any line has, and the total number of neighbours.
     numbers: Vec<u32>,
     beyond: u32,
     neighbours: u64,
-    /// Discs by the bin of |ψ6|, and those that have one.
+    /// Discs by the bin of |ψ6|, and discs that have a ψ6.
     orders: [u32; ORDERS],
     ordered: u32,
     /// Sums of ψ6, and of |ψ6|.
     order: [f64; 3],
-    /// Of those around a disc the ways along x and y (length), the squares of the distances, and the places in the order of cells.
+    /// Neighbours of a disc: components of the distance along x and y (length), squared distances, and indices in the order of cells.
     right: Vec<f64>,
     up: Vec<f64>,
     squares: Vec<f64>,
     places: Vec<usize>,
-    /// ψ6 of each disc by its number, where it is kept.
+    /// Stored ψ6 of each disc by its number.
     each: Vec<(u32, [f64; 2])>,
-    /// The reach (length) that was last asked for, and how far it goes along each row.
+    /// Search radius (length) of the last query, and its half-width along each row.
     reach: f64,
     halves: Vec<f64>,
 }
 
 impl Neighbours {
-    /// How far neighbours and the six nearest are looked for (length).
+    /// Search radius for neighbours and the six nearest (length).
     pub(super) fn reach(setting: &Setting, discs: usize) -> f64 {
         (2.0 * NEIGHBOURS * setting.largest_radius).max(Neighbours::looked_for(setting, discs)[2])
     }
@@ -68,7 +68,7 @@ impl Neighbours {
         LOOKED_FOR.map(|distances| distances * apart)
     }
 
-    /// Looks around every disc.
+    /// Finds the neighbours of every disc.
     pub(super) fn find(&mut self, setting: &Setting, discs: &Discs, cells: &Cells) {
         let none = Around {
             numbers: vec![0; most_neighbours(setting) + 1],
@@ -96,7 +96,7 @@ impl Neighbours {
         });
     }
 
-    /// ψ6 of each disc, where it was kept, in the order of their numbers.
+    /// Stored ψ6 of each disc, in the order of their numbers.
     pub(super) fn each(&self) -> Vec<[f64; 2]> {
         let mut all: Vec<(u32, [f64; 2])> =
             self.parts.iter().flat_map(|part| part.each.iter().copied()).collect();
@@ -104,18 +104,18 @@ impl Neighbours {
         all.into_iter().map(|(_, order)| order).collect()
     }
 
-    /// The sum of a number of each part, in the order of the parts.
+    /// Sum of a number over the tasks, in their order.
     fn sum<T: Into<f64>>(&self, of: impl Fn(&Around) -> T) -> f64 {
         self.parts.iter().map(|part| of(part).into()).sum()
     }
 
-    /// The neighbours of all discs.
+    /// Total number of neighbours.
     fn count(&self) -> u64 {
         self.parts.iter().map(|part| part.neighbours).sum()
     }
 }
 
-/// Looks around the discs of some rows.
+/// Neighbour search for the discs of some rows.
 struct Looking<'c> {
     discs: &'c Discs,
     domain: &'c Domain,
@@ -133,7 +133,7 @@ impl Task<f64> for Looking<'_> {
         let Looking { discs, domain, cells, rows, looked_for, largest, keeps_each, around } = self;
         let radius = &discs.radius;
         around.begin();
-        // Images that are farther than half a side are not the nearest ones.
+        // Images farther than half a side are not the nearest ones.
         let halves = [0, 1].map(|axis| match domain.is_periodic(axis) {
             true => 0.5 * domain.length(axis),
             false => f64::INFINITY,
@@ -181,7 +181,7 @@ impl Task<f64> for Looking<'_> {
 }
 
 impl Around {
-    /// Nothing is seen yet.
+    /// Resets the sums.
     fn begin(&mut self) {
         self.numbers.fill(0);
         self.orders.fill(0);
@@ -191,8 +191,8 @@ impl Around {
         self.reach = f64::NAN;
     }
 
-    /// Notes the discs nearer than `reach` (length) to a disc, itself left out and each by its nearest image, which is within half a
-    /// side: how many. Entries that follow are at no finite distance.
+    /// Stores the discs nearer than `reach` (length) to a disc, without itself and each by its nearest image within half a side, and returns their
+    /// number. Entries beyond it are at infinite distance.
     #[inline(always)]
     fn look(
         &mut self,
@@ -203,7 +203,7 @@ impl Around {
         [half_x, half_y]: [f64; 2],
     ) -> usize {
         let (x, y) = (cells.x[own], cells.y[own]);
-        // Mostly the same for one disc after the other.
+        // Consecutive discs mostly have the same radius.
         if reach != self.reach {
             self.reach = reach;
             self.halves.clear();
@@ -222,7 +222,7 @@ impl Around {
             }
             for begin in (span.start..span.end).step_by(AT_ONCE) {
                 let [right, up, squares] = ways(cells, begin, [x, y]);
-                // Written in any case, one over the other where it is too far.
+                // The entry is written in any case and overwritten if it is too far.
                 for at in 0..AT_ONCE.min(span.end - begin) {
                     self.squares[found] = squares[at];
                     self.right[found] = right[at];
@@ -239,7 +239,7 @@ impl Around {
         found
     }
 
-    /// The same of all other discs, however far.
+    /// Stores all other discs, at any distance.
     fn look_at_all(&mut self, domain: &Domain, discs: &Discs, own: usize) -> usize {
         for column in [&mut self.squares, &mut self.right, &mut self.up] {
             column.clear();
@@ -259,10 +259,10 @@ impl Around {
         found
     }
 
-    /// ⟨exp(6iθ)⟩ over the six nearest of those found; over all where they are fewer, not a number of none.
+    /// Mean of exp(6iθ) over the six nearest of those found; over all if they are fewer, NaN if there are none.
     #[inline(always)]
     fn hexatic(&self, found: usize) -> [f64; 2] {
-        // The smallest so far, in order: each pushes what is larger along.
+        // The smallest distances so far are sorted; each pushes larger ones along.
         let mut nearest = [f64::INFINITY; NEAREST];
         for &square in &self.squares[..found] {
             let mut pushed = square;
@@ -292,7 +292,7 @@ impl Around {
         [x, y].map(|lanes| lanes.iter().sum::<f64>() / count as f64)
     }
 
-    /// The same where several are just as far as the sixth: the first ones of these count.
+    /// Hexatic order if several discs are as far as the sixth: the first ones of these count.
     fn hexatic_of_equals(&self, found: usize, farthest: f64) -> [f64; 2] {
         let nearer = self.squares[..found].iter().filter(|&&square| square < farthest).count();
         let (mut sum, mut equals) = ([0.0; 2], NEAREST - nearer);
@@ -308,8 +308,7 @@ impl Around {
     }
 }
 
-/// The largest number of neighbours that has a line: what fits around the largest disc, were all others as the smallest. Discs
-/// overlap a little.
+/// Largest number of neighbours with a line: as many of the smallest discs as fit around the largest one. Discs may overlap a little.
 fn most_neighbours(setting: &Setting) -> usize {
     let [large, small] = [setting.largest_radius, setting.smallest_radius];
     let rim = NEIGHBOURS * (large + small) + small;
@@ -317,7 +316,7 @@ fn most_neighbours(setting: &Setting) -> usize {
     (fit.clamp(LINES[0], LINES[1]) as usize).min(setting.discs.max(1) - 1)
 }
 
-/// About how many others are looked at for those around a disc of the mean size.
+/// Number of candidates for the neighbours of a disc of mean size, about.
 pub(super) fn candidates(setting: &Setting, discs: usize) -> f64 {
     let [x, y] = setting.room();
     let near = (NEIGHBOURS * (0.5 * setting.diameter + setting.largest_radius))
@@ -329,7 +328,7 @@ pub(super) fn neighbour_numbers(setting: &Setting) -> Vec<f64> {
     (0..=most_neighbours(setting)).map(|number| number as f64).collect()
 }
 
-/// Shares of discs by their number of neighbours; then the mean number, and the share of discs with more than have a line.
+/// Computes the fractions of discs by their number of neighbours, then the mean number, and the fraction of discs with more than any line has.
 pub(super) fn coordination(discs: &Discs, found: &Neighbours, values: &mut [f64]) {
     let discs = discs.x.len() as f64;
     let (shares, whole) = values.split_at_mut(values.len() - 2);
@@ -340,13 +339,13 @@ pub(super) fn coordination(discs: &Discs, found: &Neighbours, values: &mut [f64]
     whole[1] = found.sum(|part| part.beyond) / discs;
 }
 
-/// The middles of the bins of |ψ6|.
+/// Centres of the bins of |ψ6|.
 pub(super) fn orders(_: &Setting) -> Vec<f64> {
     (0..ORDERS).map(|bin| (bin as f64 + 0.5) / ORDERS as f64).collect()
 }
 
-/// The density of |ψ6| of the discs, then |Ψ6|, the order of all of them, and the mean |ψ6|: of discs that have others around them; not
-/// numbers where there are none.
+/// Computes the density of |ψ6| of the discs, then |Ψ6|, the order of all of them, and the mean |ψ6|. Only discs with others around them count;
+/// without any the values are NaN.
 pub(super) fn hexatic(found: &Neighbours, values: &mut [f64]) {
     let discs = found.sum(|part| part.ordered);
     let (densities, whole) = values.split_at_mut(ORDERS);
@@ -358,7 +357,7 @@ pub(super) fn hexatic(found: &Neighbours, values: &mut [f64]) {
     whole[1] = single;
 }
 
-/// (x + iy)⁶.
+/// Sixth power (x + iy)⁶.
 #[inline(always)]
 fn sixth_power([x, y]: [f64; 2]) -> [f64; 2] {
     let [a, b] = [x * x - y * y, 2.0 * x * y];

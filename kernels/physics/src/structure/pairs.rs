@@ -1,4 +1,4 @@
-//! Pairs of discs by their distance, and what an ideal gas has of them.
+//! Pairs of discs by their distance, and the pair correlation g(r).
 
 use super::cells::{AT_ONCE, Cells};
 use super::discs::Discs;
@@ -10,14 +10,14 @@ use rayon::iter::{
 use std::ops::Range;
 use stripmine_kernels::backend::{Registers, Task, dispatch_best};
 
-/// Bins of distances in a mean diameter, so that one of them begins at contact.
+/// Bins of distances in a mean diameter; an integer, so that one of them starts at contact.
 pub(super) const BINS: f64 = 50.0;
-/// How many bins of distances there are.
+/// Number of bins of distances.
 pub(super) fn bins(setting: &Setting) -> usize {
     (setting.reach * BINS / setting.diameter + 1e-9).floor() as usize
 }
 
-/// The middles of the bins of distances (length).
+/// Centres of the bins of distances (length).
 pub(super) fn distances(setting: &Setting) -> Vec<f64> {
     (0..bins(setting)).map(|bin| (bin as f64 + 0.5) * setting.diameter / BINS).collect()
 }
@@ -26,12 +26,12 @@ pub(super) fn distances(setting: &Setting) -> Vec<f64> {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Distances {
     counts: Vec<u64>,
-    /// The same of each part, then those that are farther.
+    /// Counts of each task, then pairs beyond the last bin.
     parts: Vec<Vec<u32>>,
 }
 
 impl Distances {
-    /// Each pair once: of the box with those behind it in its row and with those in the rows above.
+    /// Counts each pair once: every disc of the box with those behind it in its row and with those in the rows above.
     pub(super) fn count(&mut self, setting: &Setting, cells: &Cells) {
         let count = bins(setting);
         let halves: Vec<f64> = cells.halves(setting.reach).collect();
@@ -41,7 +41,7 @@ impl Distances {
             counts.resize(count + 1, 0);
             let by_length = BINS / setting.diameter;
             let counting = Counting { cells, rows: rows.clone(), halves: &halves, by_length, counts };
-            // The best set is one of this processor.
+            // The dispatch selects an instruction set of this processor.
             dispatch_best(counting);
         };
         self.parts.par_iter_mut().zip(cells.parts.par_iter()).for_each(of);
@@ -53,7 +53,7 @@ impl Distances {
     }
 }
 
-/// Counts the pairs of some rows of the box.
+/// Count of the pairs of some rows of the box.
 struct Counting<'c> {
     cells: &'c Cells,
     rows: Range<usize>,
@@ -78,7 +78,7 @@ impl Task<f64> for Counting<'_> {
                         let bins = squares.map(|square| {
                             let bin = square.sqrt() * by_length;
                             let bin = if bin < far { bin } else { far };
-                            // SAFETY: it is a number, not below 0 and at most `far`, the last place of `counts`, which are few.
+                            // SAFETY: it is not NaN, not below 0 and at most `far`, the last index of `counts`, which fits in 32 bits.
                             unsafe { bin.to_int_unchecked::<i32>() }
                         });
                         for &bin in &bins[..AT_ONCE.min(span.end - begin)] {
@@ -91,7 +91,7 @@ impl Task<f64> for Counting<'_> {
     }
 }
 
-/// From a place to some discs one after the other: along x, along y (length), and the squares of the distances.
+/// Vectors from a position to consecutive discs along x and y (length), and the squared distances.
 #[inline(always)]
 pub(super) fn ways(cells: &Cells, first: usize, [x, y]: [f64; 2]) -> [[f64; AT_ONCE]; 3] {
     let [mut right, mut up, mut squares] = [[0.0; AT_ONCE]; 3];
@@ -105,7 +105,7 @@ pub(super) fn ways(cells: &Cells, first: usize, [x, y]: [f64; 2]) -> [[f64; AT_O
     [right, up, squares]
 }
 
-/// Pairs of discs by the bin of their distance, found in cells.
+/// Counts pairs of discs by the bin of their distance with a cell search.
 pub fn pair_counts(setting: &Setting, discs: &[Particle]) -> Vec<u64> {
     let of = |place: fn(&Particle) -> f64| discs.iter().map(place).collect();
     let discs = Discs { x: of(|it| it.position[0]), y: of(|it| it.position[1]), ..Discs::default() };
@@ -115,7 +115,7 @@ pub fn pair_counts(setting: &Setting, discs: &[Particle]) -> Vec<u64> {
     distances.counts
 }
 
-/// The same by looking at every pair: the oracle.
+/// Counts pairs of discs by a loop over all of them: the reference for tests.
 pub fn pair_counts_of_all(setting: &Setting, discs: &[Particle]) -> Vec<u64> {
     let mut counts = vec![0; bins(setting)];
     for (number, own) in discs.iter().enumerate() {
@@ -128,7 +128,8 @@ pub fn pair_counts_of_all(setting: &Setting, discs: &[Particle]) -> Vec<u64> {
     counts
 }
 
-/// g(r) in each bin: pairs over those of an ideal gas of this moment. A mean over moments is all pairs over all those of the ideal gases.
+/// g(r) in each bin: pairs over those of the ideal gas of this moment. Weights make a mean over moments the ratio of all pairs to all those of the
+/// ideal gases.
 pub(super) fn correlation_over(found: &Distances, pairs: &[f64], values: &mut [f64], weights: &mut [f64]) {
     let bins = values.iter_mut().zip(weights).zip(&found.counts).zip(pairs);
     for (((value, weight), &count), &pairs) in bins {
@@ -136,7 +137,7 @@ pub(super) fn correlation_over(found: &Distances, pairs: &[f64], values: &mut [f
     }
 }
 
-/// g(r) in each bin: pairs over those that an ideal gas has on average, of which each pair has a `chance`.
+/// g(r) in each bin: pairs over the mean number in an ideal gas, where each pair has a probability `chance`.
 pub(super) fn correlation(discs: &Discs, found: &Distances, chances: &[f64], values: &mut [f64]) {
     let discs = discs.x.len() as f64;
     let pairs = 0.5 * discs * (discs - 1.0);

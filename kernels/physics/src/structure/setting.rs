@@ -1,37 +1,37 @@
-//! What an observable is measured by: the box and the size of the discs at the start.
+//! Reference lengths of observables: the box and the sizes of the initial discs.
 
 use crate::domain::Domain;
 use crate::particles::Particles;
 
-/// Mean diameters up to which pairs are looked at.
+/// Largest distance of pairs, in mean diameters.
 const REACH: f64 = 4.0;
 
-/// The box, and lengths that bins go by.
+/// Box, and lengths that define bins.
 #[derive(Clone, Copy, Debug)]
 pub struct Setting {
-    /// The box.
+    /// Box.
     pub domain: Domain,
-    /// The mean diameter of the discs at the start (length).
+    /// Mean initial diameter (length).
     pub diameter: f64,
-    /// The largest radius at the start (length).
+    /// Largest initial radius (length).
     pub(crate) largest_radius: f64,
-    /// The smallest radius at the start (length).
+    /// Smallest initial radius (length).
     pub(crate) smallest_radius: f64,
-    /// How many discs there are at the start.
+    /// Initial number of discs.
     pub discs: usize,
-    /// How far pairs are looked at (length).
+    /// Largest distance of pairs (length).
     pub reach: f64,
-    /// Whether discs may be above the upper end of the second side.
+    /// True if discs may be above the upper end of the second side.
     pub has_open_top: bool,
 }
 
 impl Setting {
-    /// Of a box and the discs in it at the start.
+    /// Setting of a box and its initial discs.
     pub fn new(domain: Domain, particles: &Particles) -> Setting {
         Setting::of(domain, particles, false)
     }
 
-    /// The same of a box without a ceiling. The second side is the height that the scene gives, up to which profiles go.
+    /// Setting of a box without a ceiling. The second side is the height stated by the scene, up to which profiles extend.
     pub fn with_open_top(domain: Domain, particles: &Particles) -> Setting {
         Setting::of(domain, particles, true)
     }
@@ -50,7 +50,7 @@ impl Setting {
         Setting { domain, diameter, largest_radius, smallest_radius, discs: discs.len(), reach, has_open_top }
     }
 
-    /// The sides of the rectangle that centres of discs of the mean size may be in, were there no wall discs (length).
+    /// Sides of the rectangle that centres of discs of the mean size can reach without wall discs (length).
     pub fn room(&self) -> [f64; 2] {
         [0, 1].map(|axis| match self.domain.is_periodic(axis) {
             true => self.domain.length(axis),

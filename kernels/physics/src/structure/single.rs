@@ -1,27 +1,27 @@
-//! Distributions of what each disc has alone: velocities and places.
+//! Distributions of single-disc properties: velocities and positions.
 
 use super::discs::Discs;
 use super::setting::Setting;
 
 /// Width of the bins of velocities, and their number: from −5 to 5.
 const VELOCITIES: (f64, usize) = (0.1, 100);
-/// Slices of the box along an axis.
+/// Number of slices of the box along an axis.
 const SLICES: usize = 100;
 
-/// The middles of the bins of velocities.
+/// Centres of the bins of velocities.
 pub(super) fn speeds(_: &Setting) -> Vec<f64> {
     let (width, count) = VELOCITIES;
     (0..count).map(|bin| (bin as f64 + 0.5 - 0.5 * count as f64) * width).collect()
 }
 
-/// The density of the components of v/√(kT/m), and their kurtosis, which is 3 by Maxwell.
+/// Computes the density of the components of v/√(kT/m), and their kurtosis, which is 3 for a Maxwell distribution.
 pub(super) fn velocities(discs: &Discs, values: &mut [f64], weights: &mut [f64]) {
     let (width, count) = VELOCITIES;
     let components = 2.0 * discs.x.len() as f64;
     let moving = || discs.vx.iter().zip(&discs.vy).zip(&discs.mass);
     let temperature = moving().map(|((x, y), mass)| mass * (x * x + y * y)).sum::<f64>() / components;
     if temperature <= 0.0 {
-        // Of discs at rest there is none.
+        // Discs at rest have no distribution.
         weights.fill(0.0);
         return;
     }
@@ -40,13 +40,13 @@ pub(super) fn velocities(discs: &Discs, values: &mut [f64], weights: &mut [f64])
     values.iter_mut().zip(counts).for_each(|(value, count)| *value = f64::from(count) / (components * width));
 }
 
-/// The middles of slices of the box along an axis (length).
+/// Centres of slices of the box along an axis (length).
 pub(super) fn slices<const AXIS: usize>(setting: &Setting) -> Vec<f64> {
     let (origin, width) = (setting.domain.origin[AXIS], setting.domain.length(AXIS) / SLICES as f64);
     (0..SLICES).map(|slice| origin + (slice as f64 + 0.5) * width).collect()
 }
 
-/// Of each slice: how many discs, their mass, momentum and twice their kinetic energy. Discs above an open top are in none.
+/// Number of discs, mass, momentum and twice the kinetic energy in each slice. Discs above an open top are in none.
 fn sums<const AXIS: usize>(setting: &Setting, discs: &Discs) -> [[f64; 5]; SLICES] {
     let Setting { domain, has_open_top, .. } = setting;
     let by_length = SLICES as f64 / domain.length(AXIS);
@@ -64,8 +64,8 @@ fn sums<const AXIS: usize>(setting: &Setting, discs: &Discs) -> [[f64; 5]; SLICE
     sums
 }
 
-/// Centres of discs by area (1/length²) in each of these slices. Below an open top slices along the floor reach up to the highest
-/// centre, and count by their area.
+/// Number density of discs (1/length²) in each slice. With an open top, slices along the floor extend to the highest centre and are weighted by
+/// their area.
 pub(super) fn density<const AXIS: usize>(
     setting: &Setting,
     discs: &Discs,
@@ -83,7 +83,7 @@ pub(super) fn density<const AXIS: usize>(
     values.iter_mut().zip(sums::<AXIS>(setting, discs)).for_each(|(value, [discs, ..])| *value = discs * one);
 }
 
-/// The velocity across the axis (length/time): Σmv/Σm, which counts by the mass in the slice; 0 where there is no disc.
+/// Velocity across the axis (length/time): Σmv/Σm, weighted by the mass in the slice; 0 without discs.
 pub(super) fn flow<const AXIS: usize>(
     setting: &Setting,
     discs: &Discs,
@@ -97,8 +97,8 @@ pub(super) fn flow<const AXIS: usize>(
     }
 }
 
-/// kT of both components beside the flow of the slice, which takes one disc's part away: Σm|v − u|²/(2(n − 1)), which counts by the
-/// degrees of freedom n − 1; 0 where there are fewer than two discs.
+/// kT of both components relative to the flow of the slice, which removes one disc's degrees of freedom: Σm|v − u|²/(2(n − 1)), weighted by n − 1;
+/// 0 for fewer than two discs.
 pub(super) fn temperature<const AXIS: usize>(
     setting: &Setting,
     discs: &Discs,

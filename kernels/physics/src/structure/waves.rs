@@ -7,19 +7,20 @@ use rayon::slice::ParallelSlice;
 use std::f64::consts::TAU;
 use stripmine_kernels::backend::{Registers, Task, dispatch_best};
 
-/// Waves along an axis, the longest ones first, then others up to the largest wave number times the diameter: how many of each.
+/// Waves along an axis: the number of the longest ones, then the number of others up to the largest wave number, and that number times the
+/// diameter.
 const WAVES: [u32; 2] = [128, 128];
 const LARGEST: f64 = 25.0;
-/// Discs whose waves are summed up together.
+/// Discs in the sums of one task.
 const AT_A_TIME: usize = 512;
-/// Discs at once, each with sums of its own.
+/// Discs processed together, each with its own sums.
 const LANES: usize = 8;
 
-/// A complex number of each of some discs.
+/// Complex number of each of some discs.
 type Turns = [[f64; LANES]; 2];
 
-/// The periods along a side of each of its waves: all of them up to the largest wave number where they are not too many, else the
-/// longest and, evenly between these and the shortest, as many others.
+/// Periods along a side of each of its waves: all up to the largest wave number if these are not too many, else the longest and, evenly between
+/// these and the shortest, as many others.
 fn periods(setting: &Setting, axis: usize) -> Vec<u32> {
     let [longest, others] = WAVES;
     let most = (LARGEST / setting.diameter * setting.domain.length(axis) / TAU) as u32;
@@ -31,24 +32,24 @@ fn periods(setting: &Setting, axis: usize) -> Vec<u32> {
     (1..=longest).chain((1..=others).map(between)).collect()
 }
 
-/// The periodic axes.
+/// Periodic axes of the box.
 fn axes(setting: &Setting) -> impl Iterator<Item = usize> {
     let domain = setting.domain;
     (0..2).filter(move |&axis| domain.is_periodic(axis))
 }
 
-/// How many sums a disc is part of.
+/// Number of sums that a disc contributes to.
 pub(super) fn sums_of_a_disc(setting: &Setting) -> usize {
     axes(setting).map(|axis| periods(setting, axis).len()).sum()
 }
 
-/// Bytes at most of the sums of waves along an axis.
+/// Largest memory of the sums of waves along an axis (bytes).
 pub(super) fn bytes_of_waves(discs: usize) -> u64 {
     let waves = WAVES.iter().sum::<u32>() as usize;
     (discs.div_ceil(AT_A_TIME) * waves * size_of::<Turns>()) as u64
 }
 
-/// The wave vector of each wave (1/length): those along x, then those along y.
+/// Wave vector of each wave (1/length): those along x, then those along y.
 pub(super) fn vectors(setting: &Setting) -> Vec<[f64; 2]> {
     let along = |axis: usize| {
         let of = move |periods: u32| {
@@ -61,12 +62,12 @@ pub(super) fn vectors(setting: &Setting) -> Vec<[f64; 2]> {
     axes(setting).flat_map(along).collect()
 }
 
-/// S(k) = |Σ exp(ikr)|²/N of each wave.
+/// Structure factor S(k) = |Σ exp(ikr)|²/N of each wave.
 pub(super) fn factor(waves: &Waves, values: &mut [f64]) {
     values.copy_from_slice(&waves.factor);
 }
 
-/// The waves of a box, and their sums.
+/// Waves of a box, and their sums.
 #[derive(Clone, Debug)]
 pub(super) struct Waves {
     along: Vec<Along>,
@@ -74,18 +75,18 @@ pub(super) struct Waves {
     parts: Vec<Vec<Turns>>,
 }
 
-/// The waves along an axis: each by a step of periods from the one before.
+/// Waves along an axis, each a step of periods from the one before.
 #[derive(Clone, Debug)]
 struct Along {
     axis: usize,
-    /// The steps that there are.
+    /// Different steps that occur.
     different: Vec<u32>,
-    /// The place of each wave's among them.
+    /// Index of each wave's step among them.
     steps: Vec<usize>,
 }
 
 impl Waves {
-    /// Those of a box.
+    /// Waves of a box.
     pub(super) fn new(setting: &Setting) -> Waves {
         let of = |axis: usize| {
             let ends = periods(setting, axis).into_iter();
@@ -104,7 +105,7 @@ impl Waves {
         }
     }
 
-    /// Sums up the discs.
+    /// Sums over the discs.
     pub(super) fn sum(&mut self, setting: &Setting, discs: &Discs) {
         let Waves { along, factor, parts } = self;
         let count = discs.x.len();
@@ -122,7 +123,7 @@ impl Waves {
             });
             for (wave, value) in values.by_ref().take(steps.len()).enumerate() {
                 let part = |sums: &Vec<Turns>| sums[wave].map(|lanes| lanes.iter().sum::<f64>());
-                // Added in the order of the discs, however many threads.
+                // The sum is in the order of the discs for any number of threads.
                 let [x, y] = parts.iter().map(part).fold([0.0; 2], |[x, y], [a, b]| [x + a, y + b]);
                 *value = (x * x + y * y) / count as f64;
             }
@@ -130,7 +131,7 @@ impl Waves {
     }
 }
 
-/// Sums up exp(ikr) of some discs for each wave along an axis.
+/// Sum of exp(ikr) over some discs for each wave along an axis.
 struct Summing<'w> {
     places: &'w [f64],
     origin: f64,
@@ -146,7 +147,7 @@ impl Task<f64> for Summing<'_> {
         let Summing { places, origin, by_length, different, steps, sums } = self;
         let mut turns = vec![[[0.0; LANES]; 2]; different.len()];
         for places in places.chunks(LANES) {
-            // What is not there adds nothing.
+            // Missing discs add nothing.
             let [mut one, mut now] = [[[0.0; LANES]; 2]; 2];
             for (at, place) in places.iter().enumerate() {
                 let (sine, cosine) = libm::sincos((place - origin) * by_length);
@@ -174,7 +175,7 @@ fn product(a: &Turns, b: &Turns) -> Turns {
     product
 }
 
-/// A power by squares.
+/// Power by repeated squaring.
 #[inline(always)]
 fn power(one: &Turns, exponent: u32) -> Turns {
     let (mut square, mut rest) = (*one, exponent);

@@ -1,4 +1,4 @@
-//! What looking takes: how often it is done for its part of a run's work, and its memory.
+//! Cost of sampling: the stride that keeps it within its share of a run's work, and its memory.
 
 use super::heights;
 use super::neighbours::candidates as neighbours_looked_at;
@@ -7,9 +7,9 @@ use super::{Asks, Motion, Observable, Seen, Setting};
 use crate::particles::{Particle, States};
 use std::f64::consts::PI;
 
-/// Nanoseconds of a disc: to take it up, in a pair within reach, with its neighbours and for each disc that might be one, in a density
-/// wave, in what it is alone, with the forces on it; in a row, and to be followed across periodic sides. Then of each value of a function.
-/// They were measured once; nothing is measured in a run, so that every machine looks at the same moments.
+/// Cost for each disc (ns): to copy it, for a pair within reach, for its neighbours and each candidate, in a density wave, for single-disc
+/// functions, for forces; in a row, and to follow it across periodic sides. Then the cost of each value of a function. They were measured once.
+/// Nothing is measured during a run, so that every machine samples the same moments.
 const TAKEN_UP: f64 = 60.0;
 const PAIR: f64 = 8.0;
 const NEIGHBOURS: f64 = 100.0;
@@ -21,7 +21,7 @@ const ROW: f64 = 55.0;
 const FOLLOWED: f64 = 20.0;
 const VALUE: f64 = 8.0;
 
-/// Nanoseconds that looks at a row and at a snapshot take a disc.
+/// Cost of sampling a row and a snapshot for each disc (ns).
 fn nanoseconds(observables: &[&Observable], setting: &Setting, discs: usize) -> [f64; 2] {
     let [mut row, mut snapshot]: [f64; 2] = [0.0; 2];
     let (mut found, [x, y]) = (vec![], setting.room());
@@ -34,7 +34,7 @@ fn nanoseconds(observables: &[&Observable], setting: &Setting, discs: usize) -> 
                 continue;
             }
         };
-        // Functions of few discs are more work than the discs.
+        // Functions of few discs cost more for their values than for the discs.
         let values = VALUE * over.places(setting).len() as f64 / discs as f64;
         snapshot = snapshot.max(TAKEN_UP) + values;
         if asks != Asks::Discs && found.contains(&asks) {
@@ -55,8 +55,8 @@ fn nanoseconds(observables: &[&Observable], setting: &Setting, discs: usize) -> 
     [row, snapshot]
 }
 
-/// Every how many rows and snapshots are looked at, so that looking takes at most a share of the work of a run: `work` is what lies
-/// between two of each (nanoseconds of a disc), 0 where it is not known. Either has half the share where both are asked for.
+/// Strides of sampled rows and snapshots such that sampling takes at most a share of a run's work. `work` is the cost between two of each (ns for
+/// each disc), 0 if unknown. If both are sampled, each has half the share.
 pub fn strides(
     observables: &[&Observable],
     setting: &Setting,
@@ -73,8 +73,7 @@ pub fn strides(
     [stride(0), stride(1)]
 }
 
-/// Bytes that looking takes at one time, in a run of at most as many looks at rows: what is kept of earlier ones, twice while a
-/// checkpoint is written.
+/// Memory for sampling in a run with at most `rows` samples of rows (bytes). Earlier samples are stored, twice while a checkpoint is written.
 pub(crate) fn bytes(observables: &[&Observable], discs: usize, rows: Option<u64>) -> u64 {
     let moves = observables.iter().any(|observable| matches!(observable.seen, Seen::Twice { .. }));
     let stands = observables.iter().any(|observable| matches!(observable.seen, Seen::Once { .. }));
@@ -92,7 +91,7 @@ pub(crate) fn bytes(observables: &[&Observable], discs: usize, rows: Option<u64>
         let meets =
             |observable: &&Observable| matches!(observable.seen, Seen::Once { asks: Asks::Forces, .. });
         if observables.iter().any(meets) {
-            // The particles once more, their places, and the sums of every 512 of them.
+            // A copy of the particles, their positions, and the sums of every 512 of them.
             bytes += ((size_of::<Particle>() + 6 * size_of::<f64>()) * discs) as u64;
         }
         let waves =

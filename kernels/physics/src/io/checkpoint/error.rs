@@ -1,105 +1,105 @@
-//! What can be wrong with a checkpoint, and what is left.
+//! Faults of checkpoints, and the older checkpoint that is left.
 
 use super::VERSION;
 use crate::quoted::{self, quoted};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Why a checkpoint cannot be used.
+/// Reason why a checkpoint cannot be used.
 #[derive(Debug, thiserror::Error)]
 #[error("checkpoint {}: {fault}{}{}", quoted::path(file), place(*.offset), advice(file, kept))]
 pub struct CheckpointError {
-    /// The file.
+    /// Path of the file.
     pub file: PathBuf,
-    /// The byte at which it goes wrong, from 0, where known.
+    /// First wrong byte, from 0, if known.
     pub offset: Option<u64>,
-    /// What is wrong.
+    /// Fault of the file.
     pub fault: Fault,
-    /// The older checkpoint beside it.
+    /// Older checkpoint beside it.
     pub kept: Kept,
 }
 
 impl CheckpointError {
-    /// Whether the content is at fault, not the system that should have read it.
+    /// True if the content is at fault, not the system.
     pub fn is_corrupt(&self) -> bool {
         !matches!(self.fault, Fault::Io(_))
     }
 }
 
-/// What is wrong with a checkpoint.
+/// Fault of a checkpoint.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Fault {
-    /// The system would not let it be read.
+    /// The system refuses to read it.
     #[error("cannot be read: {0}")]
     Io(#[from] io::Error),
-    /// It does not begin as a checkpoint does.
-    #[error("is no checkpoint: its first bytes are not those of one")]
+    /// The signature of a checkpoint is missing.
+    #[error("is not a checkpoint: its first bytes are not the signature of one")]
     Magic,
-    /// Of a format that this program does not know.
+    /// The format version is unknown to this program.
     #[error("has format version {found}, but this program reads version {VERSION}")]
     Version {
-        /// The version it states.
+        /// Version that it states.
         found: u32,
     },
-    /// Shorter than it says.
+    /// The file is shorter than it states.
     #[error("is truncated: {found} bytes of {}", length(*.promised))]
     Truncated {
-        /// Bytes there are.
+        /// Bytes of the file.
         found: u64,
-        /// Bytes there should be, where that is known.
+        /// Bytes it should have, if known.
         promised: Option<u64>,
     },
-    /// Longer than it says.
+    /// The file is longer than it states.
     #[error("has {extra} bytes after its end")]
     Trailing {
-        /// Bytes too many.
+        /// Number of excess bytes.
         extra: u64,
     },
     /// Bytes have changed since it was written.
     #[error("is corrupt: the checksum of {part} is wrong")]
     Checksum {
-        /// The part.
+        /// Part with the wrong checksum.
         part: String,
     },
-    /// A length that reaches beyond what is there.
+    /// A length exceeds the file.
     #[error("is corrupt: {what} has a length of {claimed}, but {left} bytes are left")]
     Length {
-        /// What is to be that long.
+        /// Item with this length.
         what: &'static str,
-        /// The length it states.
+        /// Length that it states.
         claimed: u64,
-        /// Bytes left for it.
+        /// Bytes left.
         left: u64,
     },
-    /// Bytes that mean nothing at their place.
+    /// Bytes have no meaning at their location.
     #[error("is corrupt: {0}")]
     Meaningless(&'static str),
-    /// A name given twice.
-    #[error("is corrupt: {what} `{}` is there twice", quoted(name))]
+    /// A name occurs twice.
+    #[error("is corrupt: {what} `{}` occurs twice", quoted(name))]
     Repeated {
         /// Column, counter or entry of the origin.
         what: &'static str,
-        /// Its name.
+        /// Repeated name.
         name: String,
     },
 }
 
-/// The older checkpoint that is kept beside the newest.
+/// Older checkpoint beside the newest.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Kept {
-    /// There is none.
+    /// There is no older checkpoint.
     Nothing,
-    /// It is whole.
+    /// A valid file.
     Whole {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
-        /// The step it was written at.
+        /// Step at which it was written.
         step: u64,
     },
-    /// It cannot be used either.
+    /// A file that cannot be used either.
     Unusable {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
     },
 }
@@ -116,15 +116,15 @@ fn advice(file: &Path, kept: &Kept) -> String {
     match kept {
         Kept::Nothing => "\n  help: no older checkpoint is kept beside it; start the run again".to_owned(),
         Kept::Whole { file: older, step } => format!(
-            "\n  kept: the older one, {},{} is whole\
-             \n  help: to go on from it, rename it to {}",
+            "\n  kept: the older checkpoint, {},{} is valid\
+             \n  help: to resume from it, rename it to {}",
             quoted::path(older),
-            // A method that takes no steps counts none.
+            // A method without steps counts none.
             if *step > 0 { format!(" of step {step},") } else { String::new() },
             quoted::path(file)
         ),
         Kept::Unusable { file: older } => format!(
-            "\n  kept: the older one, {}, but it cannot be used either\n  help: start the run again",
+            "\n  kept: the older checkpoint, {}, but it cannot be used either\n  help: start the run again",
             quoted::path(older)
         ),
     }

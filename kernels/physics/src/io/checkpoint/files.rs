@@ -1,4 +1,4 @@
-//! Checkpoints in a folder: replaced in one step, the one before kept.
+//! Checkpoints in a folder: replaced atomically, with the previous one kept.
 
 use super::error::{CheckpointError, Fault, Kept};
 use super::{Checkpoint, WriteError, reading};
@@ -9,30 +9,30 @@ use std::fs;
 use std::io::{self, BufReader, ErrorKind};
 use std::path::{Path, PathBuf};
 
-/// Name of the newest checkpoint in the folder of a run.
+/// Name of the newest checkpoint in a run's folder.
 pub const NAME: &str = "run.checkpoint";
 
-/// The newest checkpoint that a folder has.
+/// Newest checkpoint of a folder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Latest {
-    /// Its file; the older one if the newest is not there.
+    /// Path of the file; the older one if the newest is missing.
     pub file: PathBuf,
-    /// What it holds.
+    /// Content of the file.
     pub checkpoint: Checkpoint,
 }
 
-/// Where the checkpoint before this one is kept: `NAME.previous`.
+/// Path of the previous checkpoint: `NAME.previous`.
 pub fn previous(path: &Path) -> PathBuf {
     let mut name = OsString::from(path);
     name.push(".previous");
     PathBuf::from(name)
 }
 
-/// Reads the newest checkpoint of a folder, none if it has none. If the newest is missing but the one before
-/// it is there, reads that one; if the newest is corrupt, does not: that is for the user to decide.
+/// Reads the newest checkpoint of a folder, if any. If the newest is missing, reads the previous one. If the newest is corrupt, returns an error:
+/// the user decides.
 ///
 /// # Errors
-/// If it is corrupt or cannot be read; the error says what is kept.
+/// If it is corrupt or cannot be read; the error names the checkpoint that is left.
 pub fn read_latest(folder: &Path) -> Result<Option<Latest>, CheckpointError> {
     let newest = folder.join(NAME);
     for file in [previous(&newest), newest.clone()].into_iter().rev() {
@@ -46,19 +46,19 @@ pub fn read_latest(folder: &Path) -> Result<Option<Latest>, CheckpointError> {
 }
 
 impl Checkpoint {
-    /// A checkpoint from the bytes of its file.
+    /// Decodes the bytes of a checkpoint file.
     ///
     /// # Errors
-    /// What is wrong, and the byte at which it is, where known.
+    /// The fault, and its byte offset if known.
     pub fn decode(bytes: &[u8]) -> Result<Checkpoint, (Option<u64>, Fault)> {
         reading::decode(bytes, bytes.len() as u64)
     }
 
-    /// Reads a checkpoint, every bit as it was written.
+    /// Reads a checkpoint, exact to the bit.
     ///
     /// # Errors
-    /// If it is truncated, changed in a single bit, longer than it says, of another version, or cannot be read;
-    /// the error says what is kept.
+    /// If it is truncated, changed in a single bit, longer than it states, of another version, or unreadable. The error names the checkpoint that
+    /// is left.
     pub fn read(path: impl AsRef<Path>) -> Result<Checkpoint, CheckpointError> {
         let path = path.as_ref();
         read_one(path).map_err(|(offset, fault)| {
@@ -72,11 +72,11 @@ impl Checkpoint {
         })
     }
 
-    /// Puts the checkpoint in the place of the one at `path`, which is kept as [`previous`]. At every moment
-    /// there is a whole checkpoint on the disk, and when this returns the new one is.
+    /// Replaces the checkpoint at `path`, which is kept as [`previous`]. At every moment a valid checkpoint is on the disk, and on return it is the
+    /// new one.
     ///
     /// # Errors
-    /// If two columns have one name, or the system does not let it be written; then the one at `path` stays.
+    /// If two columns have the same name, or the file cannot be written; then the one at `path` stays.
     pub fn write_atomically(&self, path: impl AsRef<Path>) -> Result<(), WriteError> {
         let path = path.as_ref();
         for (i, (name, _)) in self.columns.iter().enumerate() {
@@ -99,8 +99,8 @@ fn read_one(path: &Path) -> Result<Checkpoint, reading::Found> {
     reading::decode(BufReader::new(file), length)
 }
 
-/// Gives the file at `path`, if there is one, its second name [`previous`], so that `path` is never without a
-/// file. Where the file system has no second names, moves it there.
+/// Gives the file at `path`, if any, the second name [`previous`], so that `path` always exists. Moves the file if the file system has no hard
+/// links.
 fn keep(path: &Path) -> io::Result<()> {
     let older = previous(path);
     match temporary(0o666).make_in(folder_of(path), |link| fs::hard_link(path, link)) {
@@ -108,7 +108,7 @@ fn keep(path: &Path) -> io::Result<()> {
             let link = link.into_temp_path();
             let name = link.to_path_buf();
             link.persist(&older).map_err(|error| error.error)?;
-            // Renaming one name of a file to another of its names does nothing.
+            // Renaming a file to another of its names does nothing.
             remove_if_there(&name).map_err(|error| error.cause)
         }
         Err(cause) if cause.kind() == ErrorKind::NotFound => Ok(()),

@@ -1,6 +1,6 @@
-//! Checkpoints: everything a run needs to go on, in one binary file that is either whole or refused.
+//! Checkpoints: the complete state of a run in one binary file that is either valid or rejected.
 //!
-//! All numbers are little-endian; a text is its length in bytes (`u64`) and UTF-8.
+//! Numbers are little-endian; a text is its length in bytes (`u64`) and UTF-8.
 //!
 //! ```text
 //! header   magic (8 bytes) · version u32 · sections u32 · length of the file u64 · checksum u32
@@ -10,8 +10,8 @@
 //!   COLM   name text · tag u8 · count u64 · elements
 //! ```
 //!
-//! There is one `STAT`, then a `COLM` for each column. A checksum is the CRC-32 of all bytes before it, other
-//! checksums left out. The header keeps its shape in every version.
+//! There is one `STAT`, then a `COLM` for each column. A checksum is the CRC-32 of all bytes before it, without other checksums. The header has the
+//! same layout in every version.
 
 mod error;
 mod files;
@@ -24,62 +24,62 @@ pub use writing::WriteError;
 
 use std::collections::BTreeMap;
 
-/// The version of the format that this program writes and reads.
+/// Format version that this program writes and reads.
 pub(crate) const VERSION: u32 = 1;
 
 const MAGIC: [u8; 8] = *b"\x93STRIPM\n";
 const HEADER: u64 = 28;
-/// Kind, length and checksum of a section.
+/// Bytes of kind, length and checksum of a section.
 const SECTION_FRAME: u64 = 16;
 
-/// The state of a run between two steps.
+/// State of a run between two steps.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Checkpoint {
-    /// Steps done.
+    /// Number of steps done.
     pub step: u64,
-    /// Time reached (time).
+    /// Simulated time (time).
     pub time: f64,
-    /// The scene with all its defaults, TOML.
+    /// Scene with all its defaults in TOML.
     pub scene: String,
-    /// The program that wrote it: version, commit, target and the like.
+    /// Program that wrote it: version, commit, target and the like.
     pub origin: BTreeMap<String, String>,
-    /// What a run counts and sums up.
+    /// Counters and sums of the run.
     pub counters: BTreeMap<String, Counter>,
-    /// Values for each particle or cell, by name; each with a length of its own.
+    /// Values of each particle or cell, by name; lengths may differ.
     pub columns: Vec<(String, Column)>,
 }
 
-/// A number that a run carries along.
+/// Counter or sum of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Counter {
-    /// How many.
+    /// Whole number.
     Count(u64),
-    /// How much; all its bits are kept.
+    /// Floating-point sum, exact to the bit.
     Sum(f64),
 }
 
-/// Values of one type; all their bits are kept.
+/// Values of one type, exact to the bit.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Column {
     /// Double precision.
     F64(Vec<f64>),
     /// Single precision.
     F32(Vec<f32>),
-    /// Whole numbers of 32 bits.
+    /// Unsigned integers of 32 bits.
     U32(Vec<u32>),
-    /// Whole numbers of 64 bits.
+    /// Unsigned integers of 64 bits.
     U64(Vec<u64>),
 }
 
 impl Checkpoint {
-    /// The column of that name.
+    /// Column with a name.
     pub fn column(&self, name: &str) -> Option<&Column> {
         self.columns.iter().find(|(other, _)| other == name).map(|(_, column)| column)
     }
 }
 
 impl Column {
-    /// How many values.
+    /// Number of values.
     pub fn len(&self) -> usize {
         match self {
             Column::F64(values) => values.len(),
@@ -89,12 +89,12 @@ impl Column {
         }
     }
 
-    /// Whether there are none.
+    /// True if there are no values.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The type's tag in the file, and the bytes of a value.
+    /// Tag of the type in the file, and bytes of a value.
     fn tag_and_width(&self) -> (u8, u64) {
         match self {
             Column::F64(_) => (0, 8),

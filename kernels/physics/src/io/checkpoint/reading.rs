@@ -1,4 +1,4 @@
-//! A checkpoint from bytes; whatever the bytes, an error or the checkpoint that was written.
+//! Decoding of checkpoints: any bytes give an error or the checkpoint that was written.
 
 use super::error::Fault;
 use super::{Checkpoint, Column, Counter, HEADER, MAGIC, SECTION_FRAME, VERSION};
@@ -6,14 +6,14 @@ use crc32fast::Hasher;
 use std::collections::{BTreeMap, HashSet};
 use std::io::{self, ErrorKind, Read};
 
-/// A fault, and the byte at which it is, where known.
+/// Fault, and its byte offset if known.
 pub(super) type Found = (Option<u64>, Fault);
 
 fn at(offset: u64, fault: Fault) -> Found {
     (Some(offset), fault)
 }
 
-/// Takes bytes in and keeps their checksum.
+/// Reader that computes a checksum.
 struct Source<R> {
     input: R,
     offset: u64,
@@ -34,7 +34,7 @@ impl<R: Read> Source<R> {
         Ok(bytes)
     }
 
-    /// Compares the checksum of a part that began at `start`.
+    /// Compares the checksum of a part that starts at `start`.
     fn check(&mut self, start: u64, part: impl FnOnce() -> String) -> Result<(), Found> {
         let mut stated = [0; 4];
         self.raw(&mut stated)?;
@@ -45,7 +45,7 @@ impl<R: Read> Source<R> {
     }
 }
 
-/// Reads a checkpoint of `length` bytes.
+/// Decodes a checkpoint of `length` bytes.
 pub(super) fn decode(input: impl Read, length: u64) -> Result<Checkpoint, Found> {
     let mut source = Source { input, offset: 0, checksum: Hasher::new() };
     if length < HEADER {
@@ -94,7 +94,7 @@ pub(super) fn decode(input: impl Read, length: u64) -> Result<Checkpoint, Found>
     Ok(checkpoint)
 }
 
-/// The payload of the next section, and the byte where it begins.
+/// Payload of the next section, and its byte offset.
 fn section(
     source: &mut Source<impl Read>,
     length: u64,
@@ -124,7 +124,7 @@ fn section(
         _ => format!("column {i} of {}", sections - 1),
     })?;
     if kind != *if i == 0 { b"STAT" } else { b"COLM" } {
-        return Err(at(start, Fault::Meaningless("a section of another kind is expected here")));
+        return Err(at(start, Fault::Meaningless("another kind of section is expected here")));
     }
     Ok((first, payload))
 }
@@ -141,7 +141,7 @@ fn state(rest: &mut Payload, checkpoint: &mut Checkpoint) -> Result<(), Found> {
         match tag {
             0 => Ok(Counter::Count(bits)),
             1 => Ok(Counter::Sum(f64::from_bits(bits))),
-            _ => Err(at(offset, Fault::Meaningless("a counter is of no known type"))),
+            _ => Err(at(offset, Fault::Meaningless("a counter has an unknown type"))),
         }
     })?;
     Ok(())
@@ -161,13 +161,13 @@ fn column(rest: &mut Payload, checkpoint: &mut Checkpoint, names: &mut HashSet<S
         1 => Column::F32(rest.values(count, |bytes| f32::from_bits(u32::from_le_bytes(bytes)))?),
         2 => Column::U32(rest.values(count, u32::from_le_bytes)?),
         3 => Column::U64(rest.values(count, u64::from_le_bytes)?),
-        _ => return Err(at(tag_at, Fault::Meaningless("a column is of no known type"))),
+        _ => return Err(at(tag_at, Fault::Meaningless("a column has an unknown type"))),
     };
     checkpoint.columns.push((name, column));
     Ok(())
 }
 
-/// What is left of a payload, and the byte of the file where that begins.
+/// Rest of a payload, and its byte offset in the file.
 struct Payload<'a> {
     bytes: &'a [u8],
     offset: u64,
@@ -220,7 +220,7 @@ impl<'a> Payload<'a> {
         Ok(map)
     }
 
-    /// All that is left, which must be `count` values.
+    /// Reads the rest, which must be `count` values.
     fn values<T, const WIDTH: usize>(
         &mut self,
         count: u64,

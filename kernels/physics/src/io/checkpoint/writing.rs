@@ -1,4 +1,4 @@
-//! A checkpoint as bytes.
+//! Encoding of checkpoints.
 
 use super::{Checkpoint, Column, Counter, HEADER, MAGIC, SECTION_FRAME, VERSION};
 use crate::io::FileError;
@@ -6,18 +6,18 @@ use crc32fast::Hasher;
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
-/// Why a checkpoint cannot be written.
+/// Reason why a checkpoint cannot be written.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
-    /// The system would not let it be written.
+    /// The system refuses to write it.
     #[error(transparent)]
     File(#[from] FileError),
-    /// Two columns of one name.
-    #[error("two columns are called `{0}`; a checkpoint needs one name for each")]
+    /// Two columns have the same name.
+    #[error("two columns have the name `{0}`; give each column its own name")]
     RepeatedColumn(String),
 }
 
-/// Passes bytes on and keeps their checksum.
+/// Writer that computes a checksum.
 struct Checksummed<W> {
     out: W,
     checksum: Hasher,
@@ -71,7 +71,7 @@ impl Checkpoint {
         sink.out.flush()
     }
 
-    /// The payload of `STAT`.
+    /// Payload of `STAT`.
     fn state(&self) -> Vec<u8> {
         let mut bytes = Vec::new();
         bytes.extend(self.step.to_le_bytes());
@@ -90,7 +90,7 @@ impl Checkpoint {
     }
 }
 
-/// Bytes of the payload of `COLM`.
+/// Size of the payload of `COLM` (bytes).
 fn column_bytes(name: &str, column: &Column) -> u64 {
     8 + name.len() as u64 + 1 + 8 + column.len() as u64 * column.tag_and_width().1
 }

@@ -1,4 +1,4 @@
-//! What can be wrong with an extended XYZ file, and where.
+//! Mistakes in extended XYZ files, with their locations.
 
 use super::format::Format;
 use crate::io::trajectory::TrajectoryError;
@@ -7,80 +7,80 @@ use crate::quoted::{self, quoted};
 use std::fmt;
 use std::io;
 
-/// Why a file of frames cannot be used: all mistakes found, in the order of their lines.
+/// All mistakes found in a file of frames, in the order of their lines.
 #[derive(Debug, thiserror::Error)]
 #[error("{}", listing(self))]
 pub struct ReadError {
-    /// The file.
+    /// Name of the file.
     pub file: String,
-    /// The first mistakes; at least one.
+    /// First mistakes; at least one.
     pub mistakes: Vec<Mistake>,
-    /// How many more there are.
+    /// Number of further mistakes.
     pub more: usize,
 }
 
-/// One mistake.
+/// Mistake with its location.
 #[derive(Debug)]
 pub struct Mistake {
-    /// Line, from 1; nothing where the file cannot be read at all.
+    /// Line, from 1; none if the file cannot be read at all.
     pub line: Option<usize>,
-    /// Column in characters, from 1; nothing where the whole line is meant.
+    /// Column in characters, from 1; none if the whole line is meant.
     pub column: Option<usize>,
-    /// What is wrong.
+    /// Reason of the mistake.
     pub reason: Reason,
 }
 
-/// What is wrong at a place of an extended XYZ file.
+/// Reason of a mistake in an extended XYZ file.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Reason {
-    /// The system would not let it be read.
+    /// The system refuses to read it.
     #[error("cannot be read: {0}")]
     Io(#[from] io::Error),
-    /// A line longer than any that means something.
-    #[error("the line is longer than {most} bytes; a row has some twenty numbers")]
+    /// A line longer than any valid one.
+    #[error("the line is longer than {most} bytes; expected a row of about twenty numbers")]
     LongLine {
-        /// The bound (bytes).
+        /// Limit (bytes).
         most: usize,
     },
-    /// Nothing in it.
+    /// An empty file.
     #[error("the file is empty; expected the number of discs")]
     Empty,
-    /// Bytes that are no text.
+    /// Bytes that are not text.
     #[error("not UTF-8 text")]
     NotText,
-    /// No number where a frame begins.
+    /// A missing number at the start of a frame.
     #[error("expected the number of discs, which begins a frame, found `{}`{}", quoted(found), after(*.previous))]
     Count {
-        /// What stands there.
+        /// Text found.
         found: String,
-        /// Line of the count of the frame before, which may be too small.
+        /// Line of the previous frame's count, which may be too small.
         previous: Option<usize>,
     },
     /// The file ends within a frame.
     #[error(
-        "truncated: the file ends after {found} of the {promised} discs that line {line} promises{}",
+        "truncated: the file ends after {found} of the {promised} discs that line {line} announces{}",
         whole(*.frames)
     )]
     Truncated {
-        /// Discs of the last frame that are there.
+        /// Discs present of the last frame.
         found: usize,
         /// Discs that it should have.
         promised: usize,
-        /// Line that promises them.
+        /// Line that states their number.
         line: usize,
-        /// Frames before it, which are whole.
+        /// Complete frames before it.
         frames: usize,
     },
-    /// A quote or bracket that does not close.
+    /// A quote or bracket that is not closed.
     #[error("`{0}` is never closed")]
     Unclosed(char),
-    /// No such key in the comment line.
+    /// A key missing in the comment line.
     #[error("the comment line has no `{key}`; expected {expected}")]
     MissingKey {
-        /// The key.
+        /// Missing key.
         key: &'static str,
-        /// What should stand there.
+        /// Expected value.
         expected: &'static str,
     },
     /// A key given twice.
@@ -89,28 +89,28 @@ pub enum Reason {
     /// A value that the key cannot have.
     #[error("{key} is `{}`; expected {expected}", quoted(found))]
     Value {
-        /// The key.
+        /// Key with this value.
         key: &'static str,
-        /// What stands there.
+        /// Value found.
         found: String,
-        /// What should stand there.
+        /// Expected value.
         expected: &'static str,
     },
     /// A box that is not rectangular.
     #[error("number {at} of Lattice is {value}; boxes are rectangles, so expected 0")]
     Tilt {
-        /// Which of the nine numbers, from 1.
+        /// Number of the entry among the nine, from 1.
         at: usize,
-        /// The number.
+        /// Value found.
         value: f64,
     },
     /// A file of another format.
     #[error(
-        "this is {0}; extended XYZ is what is read, with columns for positions, velocities, radii and masses: convert it, for \
+        "this is {0}; expected extended XYZ, with columns for positions, velocities, radii and masses: convert it, for \
          example with OVITO (Export File, XYZ)"
     )]
     Format(Format),
-    /// A quantity for which `Properties` names no column.
+    /// A quantity without a column in `Properties`.
     #[error(
         "Properties has no column {0}; add it to the file, for example in OVITO (Compute property, Export File, XYZ) or in ASE \
          (atoms.set_array)"
@@ -122,9 +122,9 @@ pub enum Reason {
     /// A column of another type or width.
     #[error("Properties has `{}`; expected `{expected}`", quoted(found))]
     ColumnShape {
-        /// What stands there.
+        /// Shape found.
         found: String,
-        /// What should stand there.
+        /// Expected shape.
         expected: &'static str,
     },
     /// A row with too few or too many fields.
@@ -135,20 +135,20 @@ pub enum Reason {
         /// Fields that `Properties` adds up to.
         expected: usize,
     },
-    /// A field that is no number.
+    /// A field that is not a number.
     #[error("{column} is `{}`; expected a number", quoted(found))]
     Number {
         /// Name of the column.
         column: &'static str,
-        /// What stands there.
+        /// Text found.
         found: String,
     },
-    /// Infinite, or no number at all.
+    /// An infinite number or NaN.
     #[error("{column} is `{}`; expected a finite number", quoted(found))]
     NotFinite {
         /// Name of the column.
         column: &'static str,
-        /// What stands there.
+        /// Text found.
         found: String,
     },
     /// A radius or mass that is zero or negative.
@@ -156,44 +156,44 @@ pub enum Reason {
     NotPositive {
         /// Name of the column.
         column: &'static str,
-        /// The number.
+        /// Value found.
         value: f64,
     },
-    /// A component that a disc in the plane does not have.
+    /// A component out of the plane.
     #[error("component {component} of {column} is {value}; discs lie in the plane, so expected 0")]
     OutOfPlane {
         /// Name of the column.
         column: &'static str,
         /// `x`, `y` or `z`.
         component: char,
-        /// The number.
+        /// Value found.
         value: f64,
     },
-    /// An id that is no whole number of 32 bits.
+    /// An id that is not a whole number of 32 bits.
     #[error("id is `{}`; expected a whole number from 0 to 4294967295", quoted(.0))]
     Id(String),
-    /// Ids that begin at 0 and so are raised by one, which the last has no number for.
+    /// Ids from 0 whose last one cannot be raised.
     #[error("id is 4294967295, and another is 0; ids that begin at 0 end at 4294967294")]
     LastId,
     /// An id that another disc has.
     #[error("id {id} is taken by the disc in line {line}")]
     RepeatedId {
-        /// The id.
+        /// Repeated id.
         id: u32,
-        /// The line that has it first.
+        /// Line of its first occurrence.
         line: usize,
     },
 }
 
 fn after(previous: Option<usize>) -> String {
-    previous.map_or_else(String::new, |line| format!("; does line {line} promise too few?"))
+    previous.map_or_else(String::new, |line| format!("; does line {line} announce too few?"))
 }
 
 fn whole(frames: usize) -> String {
     match frames {
         0 => String::new(),
-        1 => "; the frame before is whole".to_owned(),
-        _ => format!("; the {frames} frames before are whole"),
+        1 => "; the frame before is complete".to_owned(),
+        _ => format!("; the {frames} frames before are complete"),
     }
 }
 
@@ -202,7 +202,7 @@ impl Mistake {
         Mistake { line: Some(line), column: None, reason }
     }
 
-    /// At a byte of a line's text.
+    /// Mistake at a byte of a line's text.
     pub(super) fn at(line: usize, text: &str, byte: usize, reason: Reason) -> Mistake {
         let column = text.get(..byte).map(|before| before.chars().count() + 1);
         Mistake { line: Some(line), column, reason }
@@ -219,7 +219,7 @@ impl From<Mistake> for Mistakes {
     }
 }
 
-/// Mistakes as they are found; keeps the first ones and counts the rest.
+/// Collection of mistakes; keeps the first ones and counts the rest.
 #[derive(Debug, Default)]
 pub(super) struct Mistakes {
     first: Vec<Mistake>,
@@ -229,12 +229,12 @@ pub(super) struct Mistakes {
 impl Mistakes {
     const KEPT: usize = 20;
 
-    /// Whether one more would be kept; where not, its place need not be found.
+    /// True if a further mistake would be kept; otherwise its location need not be found.
     pub(super) fn has_room(&self) -> bool {
         self.first.len() < Mistakes::KEPT
     }
 
-    /// One more, of which nothing is said.
+    /// Counts a mistake without keeping it.
     pub(super) fn count(&mut self) {
         self.more += 1;
     }
@@ -257,8 +257,7 @@ impl Mistakes {
 }
 
 impl ReadError {
-    /// What the system said, if the file could not be read at all: a matter of input and output, not of
-    /// content.
+    /// Error of the system, if the file could not be read at all.
     pub fn system(&self) -> Option<&io::Error> {
         self.mistakes.iter().find_map(|mistake| match &mistake.reason {
             Reason::Io(cause) => Some(cause),
@@ -278,7 +277,7 @@ impl From<ReadError> for TrajectoryError {
     }
 }
 
-/// `line:column: ` as far as known.
+/// Formats `line:column: ` as far as known.
 impl fmt::Display for Mistake {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         for number in [self.line, self.column].into_iter().flatten() {

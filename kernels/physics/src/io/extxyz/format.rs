@@ -1,11 +1,11 @@
-//! Formats of other programs, as far as their first bytes show them.
+//! Formats of other programs, recognised by their first bytes.
 
 use std::fmt;
 
-/// A format that is not read.
+/// Format that this program does not read as frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// Trajectory of HOOMD-blue, or of this program.
+    /// Trajectory of HOOMD-blue or of this program.
     Gsd,
     /// Positions of CHARMM, NAMD or LAMMPS.
     Dcd,
@@ -23,7 +23,7 @@ pub enum Format {
     Hdf5,
     /// A container of arrays.
     NetCdf,
-    /// Text of two bytes a character.
+    /// Text with two bytes for each character.
     Utf16,
 }
 
@@ -44,7 +44,7 @@ impl fmt::Display for Format {
     }
 }
 
-/// First bytes, and where they are.
+/// Signatures: offset and bytes.
 const SIGNATURES: [(usize, &[u8], Format); 8] = [
     (0, b"\xdf\x65\xdf\x65\xdf\x65\xdf\x65", Format::Gsd),
     (4, b"CORD", Format::Dcd),
@@ -57,7 +57,7 @@ const SIGNATURES: [(usize, &[u8], Format); 8] = [
 ];
 
 impl Format {
-    /// The format of a file that begins with these bytes; none where it may be XYZ.
+    /// Format of a file that starts with these bytes; none if it may be XYZ.
     pub(super) fn of(first: &[u8]) -> Option<Format> {
         let begins = |&&(at, bytes, _): &&(usize, &[u8], Format)| {
             first.get(at..).is_some_and(|rest| rest.starts_with(bytes))
@@ -65,7 +65,7 @@ impl Format {
         if let Some(&(_, _, format)) = SIGNATURES.iter().find(begins) {
             return Some(format);
         }
-        // LAMMPS passes over the first line; below it, in any order, are the numbers of things and the box.
+        // LAMMPS ignores the first line; after it, counts and the box come in any order.
         let mut lines = first.split(|&byte| byte == b'\n').skip(1).take(40);
         let words = |line: &[u8]| {
             String::from_utf8_lossy(line).split_ascii_whitespace().map(str::to_owned).collect::<Vec<_>>()
@@ -77,7 +77,7 @@ impl Format {
         lines.any(is_data).then_some(Format::LammpsData)
     }
 
-    /// The format of a file whose second line, behind a number of discs, is this one; none where it is extended XYZ.
+    /// Format of a file whose second line, after a number of discs, is this one; none if it is extended XYZ.
     pub(super) fn of_comment(comment: &str) -> Option<Format> {
         if comment.contains('=') {
             return None;

@@ -1,4 +1,4 @@
-//! The comment line: `key=value` pairs, and the columns that `Properties` names.
+//! Comment line of a frame: `key=value` pairs, and the columns named by `Properties`.
 
 use super::Room;
 use super::error::{Mistake, Mistakes, Reason};
@@ -6,7 +6,7 @@ use super::format::Format;
 use super::real::number;
 use super::rows::Layout;
 
-/// What a comment line says.
+/// Content of a comment line.
 pub(super) struct Header {
     pub(super) cell: [f64; 2],
     pub(super) origin: [f64; 2],
@@ -17,7 +17,7 @@ pub(super) struct Header {
     pub(super) layout: Layout,
 }
 
-/// A key and its value, with the byte where the key begins.
+/// Key and value, with the byte offset of the key.
 struct Entry {
     key: String,
     value: String,
@@ -41,14 +41,14 @@ impl Entry {
     }
 }
 
-/// Reads a comment line; reports every key that is wrong.
+/// Parses a comment line; reports every wrong key.
 pub(super) fn parse(text: &str, line: usize, room: Room) -> Result<Header, Mistakes> {
     let mut mistakes = Mistakes::default();
     let entries = entries(text).map_err(|(byte, reason)| Mistake::at(line, text, byte, reason))?;
     if let Some(format) = Format::of_comment(text) {
         return Err(Mistake::in_line(line, Reason::Format(format)).into());
     }
-    // Finding a column takes as long as the line: only for what is said.
+    // Locating a column takes time in proportion to the line, so it is done only for mistakes that are listed.
     let mut keep = |entry: &Entry, reason| match mistakes.has_room() {
         true => mistakes.add(Mistake::at(line, text, entry.byte, reason)),
         false => mistakes.count(),
@@ -125,9 +125,9 @@ const KEYS: [&str; 7] = ["lattice", "properties", "origin", "pbc", "time", "step
 const LATTICE: &str = "\"Lx 0 0 0 Ly 0 0 0 Lz\" with positive sides";
 const PROPERTIES: &str = super::PROPERTIES;
 const ORIGIN: &str = "\"x y z\"";
-const BOUNDARIES: &str = "\"T F F\" (or \"T F\"), T where the box repeats along x, y, z";
+const BOUNDARIES: &str = "\"T F F\" (or \"T F\"), T where the box is periodic along x, y, z";
 
-/// Tilt of a box that is rounding (relative to its shorter side): programs make rectangles from angles of 90°.
+/// Largest tilt of a box due to rounding, relative to its shortest side: programs compute rectangles from angles of 90°.
 const ROUNDING: f64 = 1e-12;
 
 /// Sides of a rectangular box.
@@ -160,7 +160,7 @@ fn boundaries(entry: &Entry) -> Option<[bool; 2]> {
     }
 }
 
-/// Cuts a comment line into its entries, keys in lower case; a key without a value has an empty one.
+/// Splits a comment line into entries with keys in lower case; a key without a value has an empty one.
 fn entries(text: &str) -> Result<Vec<Entry>, (usize, Reason)> {
     let mut rest = Cursor { text, byte: 0 };
     let mut entries = Vec::new();
@@ -205,7 +205,7 @@ impl Cursor<'_> {
         }
     }
 
-    /// A word in quotes or brackets (which go), or up to the next blank; a key ends at `=` too.
+    /// Reads a word in quotes or brackets, which are removed, or up to the next blank; a key also ends at `=`.
     fn word(&mut self, key: bool) -> Result<String, (usize, Reason)> {
         let start = self.byte;
         let mut word = String::new();

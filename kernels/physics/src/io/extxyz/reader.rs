@@ -1,4 +1,4 @@
-//! Reading frames, one after the other.
+//! Reading of frames in sequence.
 
 use super::error::{Mistake, Mistakes, ReadError, Reason};
 use super::format::Format;
@@ -13,12 +13,12 @@ use std::path::Path;
 /// Longest line (bytes); other programs may write hundreds of columns.
 const LONGEST_LINE: usize = 1 << 20;
 
-/// Which frame of a file.
+/// Selection of a frame in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Which {
-    /// The first; what follows it is looked at only to see that the count is right.
+    /// First frame; the text after it is only checked for another frame's count.
     First,
-    /// The last; those before it are passed over unread.
+    /// Last frame; earlier ones are skipped without parsing.
     #[default]
     Last,
 }
@@ -26,7 +26,7 @@ pub enum Which {
 /// Reads one frame of a file.
 ///
 /// # Errors
-/// All mistakes of the frame, with their lines; the first place where the file is not cut into frames.
+/// All mistakes of the frame, with their lines, or the first line at which frames cannot be separated.
 pub fn read(path: impl AsRef<Path>, which: Which) -> Result<Frame, ReadError> {
     let mut frames = Frames::open(path)?;
     match which {
@@ -40,7 +40,7 @@ pub fn read(path: impl AsRef<Path>, which: Which) -> Result<Frame, ReadError> {
     .ok_or_else(|| Mistakes::from(Mistake::in_line(1, Reason::Empty)).of_file(&frames.name))
 }
 
-/// The frames of a text, one after the other; ends after the first that is wrong.
+/// Iterator over the frames of a text; ends after the first wrong one.
 pub struct Frames<R> {
     name: String,
     raw: RawFrames<R>,
@@ -52,7 +52,7 @@ impl Frames<BufReader<File>> {
     /// Opens a file.
     ///
     /// # Errors
-    /// If the system does not let it be read.
+    /// If the system refuses to read it.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, ReadError> {
         let name = path.as_ref().display().to_string();
         match regular_file::open(path.as_ref()) {
@@ -63,12 +63,12 @@ impl Frames<BufReader<File>> {
 }
 
 impl<R: BufRead> Frames<R> {
-    /// Reads from anything; errors call it by the name.
+    /// Reads frames from a reader; `name` is used in errors.
     pub fn new(reader: R, name: impl Into<String>) -> Self {
         Frames { name: name.into(), raw: RawFrames::new(reader), room: Room::Plane, failed: false }
     }
 
-    /// The same, of whatever runs write.
+    /// Accepts everything that runs write: bodies in space and frames without a box.
     pub fn in_space(self) -> Self {
         Frames { room: Room::Space, ..self }
     }
@@ -99,33 +99,33 @@ impl<R: BufRead> Iterator for Frames<R> {
     }
 }
 
-/// A frame cut out of a file, not yet read.
+/// Frame whose text is not parsed yet.
 pub(super) struct RawFrame {
     /// Line of the count, from 1.
     line: usize,
     count: usize,
-    /// Comment line and rows.
+    /// Text of the comment line and the rows.
     text: Vec<u8>,
 }
 
 impl RawFrame {
-    /// What the comment line says.
+    /// Parses the comment line.
     pub(super) fn header(&self, room: Room) -> Result<header::Header, Mistakes> {
         let comment = self.text.split(|&byte| byte == b'\n').next().unwrap_or_default();
         header::parse(utf8(comment, self.line + 1)?, self.line + 1, room)
     }
 }
 
-/// Cuts a text into frames.
+/// Splitter of a text into frames.
 pub(super) struct RawFrames<R> {
     reader: R,
-    /// Lines read.
+    /// Number of lines read.
     line: usize,
-    /// Line of the count of the frame before.
+    /// Line of the previous frame's count.
     previous: Option<usize>,
-    /// Frames read.
+    /// Number of frames read.
     frames: usize,
-    /// A count line read ahead.
+    /// Count line read in advance.
     ahead: Option<Vec<u8>>,
 }
 
@@ -134,7 +134,7 @@ impl<R: BufRead> RawFrames<R> {
         RawFrames { reader, line: 0, previous: None, frames: 0, ahead: None }
     }
 
-    /// The next frame, none after the last; blank lines between frames are passed over.
+    /// Reads the next frame, none after the last; skips blank lines between frames.
     pub(super) fn next_frame(&mut self) -> Result<Option<RawFrame>, Mistake> {
         let Some(count) = self.count()? else { return Ok(None) };
         let line = self.line;
@@ -151,7 +151,7 @@ impl<R: BufRead> RawFrames<R> {
         Ok(Some(RawFrame { line, count, text }))
     }
 
-    /// That a frame, or nothing, begins here.
+    /// Checks that a frame starts here or the text ends.
     fn check_boundary(&mut self) -> Result<(), Mistake> {
         let mut line = Vec::new();
         self.count_line(&mut line)?;
@@ -160,7 +160,7 @@ impl<R: BufRead> RawFrames<R> {
         Ok(())
     }
 
-    /// Passes over the mark that some editors put before a text, and refuses what is known to be of another format.
+    /// Skips the byte order mark that some editors write, and rejects known other formats.
     fn begin(&mut self) -> Result<(), Mistake> {
         const MARK: &[u8] = b"\xef\xbb\xbf";
         let first = self.reader.fill_buf().map_err(Mistake::reading)?;
@@ -184,7 +184,7 @@ impl<R: BufRead> RawFrames<R> {
         self.parse_count(&line)
     }
 
-    /// The next line that is not blank; stays empty at the end.
+    /// Reads the next line that is not blank; leaves it empty at the end.
     fn count_line(&mut self, line: &mut Vec<u8>) -> Result<(), Mistake> {
         while line.trim_ascii().is_empty() {
             line.clear();
@@ -246,7 +246,7 @@ fn parse(raw: &RawFrame, room: Room) -> Result<Frame, Mistakes> {
             }
         }
     }
-    // Other programs begin at 0.
+    // Other programs number from 0.
     let has_raised_ids = lines_of_ids.contains_key(&0);
     if has_raised_ids {
         if let Some(&line) = lines_of_ids.get(&u32::MAX) {

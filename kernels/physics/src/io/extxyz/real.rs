@@ -1,6 +1,6 @@
-//! Numbers as other programs write them.
+//! Numbers as formatted by other programs.
 
-/// A number as programs write it, Fortran's too, whose exponent may be a `D`.
+/// Parses a number, also with the exponent `D` of Fortran.
 pub(super) fn number(text: &str) -> Option<f64> {
     text.parse().ok().or_else(|| {
         let at = text.find(['D', 'd']).filter(|&at| at > 0)?;

@@ -1,14 +1,14 @@
-//! The rows of a frame: where `Properties` puts each column, and a disc from its fields.
+//! Rows of a frame: the layout given by `Properties`, and discs from their fields.
 
 use super::Room;
 use super::error::{Mistake, Reason};
 use super::real::number;
 use crate::particles::{Kind, Particle};
 
-/// A column that a frame may have.
+/// Column that a frame may have.
 struct Column {
     name: &'static str,
-    /// The shapes that are read, the one that this program writes first.
+    /// Accepted shapes; the first one is written by this program.
     shapes: &'static [&'static str],
 }
 
@@ -16,7 +16,7 @@ const fn column(name: &'static str, shapes: &'static [&'static str]) -> Column {
     Column { name, shapes }
 }
 
-/// Planar programs write two columns of a vector, and one of the angular velocity. ASE knows velocities as momenta over masses.
+/// Planar programs write vectors with two columns and the angular velocity with one. ASE stores velocities as momenta and masses.
 const COLUMNS: [Column; 9] = [
     column("species", &["species:S:1"]),
     column("pos", &["pos:R:3", "pos:R:2"]),
@@ -29,7 +29,7 @@ const COLUMNS: [Column; 9] = [
     column("momenta", &["momenta:R:3", "momenta:R:2"]),
 ];
 
-/// Places in [`COLUMNS`].
+/// Indices in [`COLUMNS`].
 const SPECIES: usize = 0;
 const POS: usize = 1;
 const ID: usize = 2;
@@ -40,22 +40,22 @@ const OMEGA: usize = 6;
 const MASSES: usize = 7;
 const MOMENTA: usize = 8;
 
-/// Quantities that a start cannot do without: the columns of which one has them, and how a message calls these.
+/// Quantities that a start requires: the columns, one of which must be present, and their name in messages.
 const REQUIRED: [(&[usize], &str); 4] = [
     (&[POS], "`pos:R:3` (or `pos:R:2`)"),
-    (&[VELO, MOMENTA], "`velo:R:3` (or `velo:R:2`, or `momenta:R:3`, which are divided by the masses)"),
+    (&[VELO, MOMENTA], "`velo:R:3` (or `velo:R:2`, or `momenta:R:3`, which is divided by the masses)"),
     (&[RADIUS], "`radius:R:1`"),
     (&[MASS, MASSES], "`mass:R:1` (or `masses:R:1`)"),
 ];
 
-/// The first field of each of the columns and how many there are, and how many fields a row has.
+/// First field and width of each column, and the number of fields of a row.
 pub(super) struct Layout {
     columns: [Option<(usize, usize)>; COLUMNS.len()],
     fields: usize,
 }
 
 impl Layout {
-    /// From `name:type:width:…`; columns that we do not know are passed over.
+    /// Parses `name:type:width:…`; unknown columns are skipped.
     pub(super) fn parse(text: &str) -> Result<Layout, Vec<Reason>> {
         let parts: Vec<&str> = text.trim().split(':').collect();
         let mut layout = Layout { columns: [None; COLUMNS.len()], fields: 0 };
@@ -83,7 +83,7 @@ impl Layout {
             layout.fields = end;
         }
         for (columns, expected) in REQUIRED {
-            // A column of the wrong shape is there.
+            // A column of the wrong shape counts as present.
             let is_named = |&column: &usize| parts.chunks(3).any(|part| part[0] == COLUMNS[column].name);
             if !columns.iter().any(is_named) {
                 reasons.push(Reason::MissingColumn(expected));
@@ -92,17 +92,17 @@ impl Layout {
         if reasons.is_empty() { Ok(layout) } else { Err(reasons) }
     }
 
-    /// Reports whether rows have ids; discs without are numbered from 1.
+    /// Returns true if rows have ids; otherwise discs are numbered from 1.
     pub(super) fn has_ids(&self) -> bool {
         self.columns[ID].is_some()
     }
 
-    /// The column of a quantity that two columns may have.
+    /// Column of a quantity that two columns may provide.
     fn either(&self, first: usize, second: usize) -> usize {
         if self.columns[first].is_some() { first } else { second }
     }
 
-    /// A disc from a row, with the id 0 where the rows have none; `fields` is there to be used again.
+    /// Parses a disc; its id is 0 if rows have none. `fields` is a buffer for reuse.
     pub(super) fn disc<'a>(
         &self,
         text: &'a str,
@@ -135,7 +135,7 @@ impl Layout {
     }
 }
 
-/// A row cut into its fields, as many as the layout asks for.
+/// Row split into its fields, as many as the layout requires.
 struct Row<'a> {
     layout: &'a Layout,
     text: &'a str,
@@ -144,7 +144,7 @@ struct Row<'a> {
 }
 
 impl Row<'_> {
-    /// The fields of a column; none if the frame does not have it.
+    /// Fields of a column; none if the frame lacks it.
     fn fields(&self, column: usize) -> &[&str] {
         let Some((first, width)) = self.layout.columns[column] else { return &[] };
         self.fields.get(first..first + width).unwrap_or(&[])
@@ -155,7 +155,7 @@ impl Row<'_> {
         Mistake::at(self.line, self.text, byte, reason)
     }
 
-    /// The numbers of a column, and 0 for those that it does not have.
+    /// Numbers of a column, with 0 for missing ones.
     fn vector<const WIDTH: usize>(&self, column: usize) -> Result<[f64; WIDTH], Mistake> {
         let name = COLUMNS[column].name;
         let mut numbers = [0.0; WIDTH];
@@ -180,7 +180,7 @@ impl Row<'_> {
         Err(self.wrong(self.fields(column)[0], reason))
     }
 
-    /// The velocity of a momentum.
+    /// Velocity from a momentum.
     fn over(&self, momentum: [f64; 3], mass: f64) -> Result<[f64; 3], Mistake> {
         let velocity = momentum.map(|p| p / mass);
         match velocity.iter().zip(self.fields(MOMENTA)).find(|(speed, _)| !speed.is_finite()) {
@@ -192,7 +192,7 @@ impl Row<'_> {
         }
     }
 
-    /// The angular velocity; 0 where the frame has none.
+    /// Angular velocity; 0 if the frame has none.
     fn spin(&self) -> Result<f64, Mistake> {
         if let [_] = self.fields(OMEGA) {
             let [omega] = self.vector(OMEGA)?;
@@ -203,7 +203,7 @@ impl Row<'_> {
         Ok(omega)
     }
 
-    /// Components that only a body in space has.
+    /// Checks that components of a body in space are 0.
     fn zeros(&self, column: usize, components: &[(usize, f64)]) -> Result<(), Mistake> {
         match components.iter().find(|(_, value)| *value != 0.0) {
             None => Ok(()),

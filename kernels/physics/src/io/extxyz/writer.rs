@@ -1,4 +1,4 @@
-//! Writing a frame.
+//! Writing of frames.
 
 use super::{DEPTH, Frame, Frames, OF_ASE, PROPERTIES};
 use crate::io::growing_file::GrowingFile;
@@ -35,15 +35,15 @@ impl TextFormat for Snapshots {
     }
 }
 
-/// Writes a frame, numbers in the shortest form that reads back to the same bits.
+/// Writes a frame; numbers have the shortest form that reads back to the same bits.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn write(frame: &Frame, out: &mut impl Write) -> io::Result<()> {
     let Frame { particles, cell: [lx, ly], origin: [x, y], periodic, time, step, seed, .. } = frame;
     let [bottom, top] = DEPTH;
     writeln!(out, "{}", particles.len())?;
-    // Space without end has no cell.
+    // Unbounded space has no cell.
     let is_open = lx.is_infinite() || ly.is_infinite();
     if is_open {
         write!(out, "pbc=\"F F F\" ")?;
@@ -80,7 +80,7 @@ pub fn write(frame: &Frame, out: &mut impl Write) -> io::Result<()> {
     Ok(())
 }
 
-/// A row under way: numbers come to text a third as fast by the standard library.
+/// Buffer of a row. Its number formatting is three times as fast as the standard library's.
 #[derive(Default)]
 struct Row {
     text: String,
@@ -89,11 +89,11 @@ struct Row {
 
 impl Row {
     fn word(&mut self, word: &dyn std::fmt::Display) {
-        #[expect(clippy::let_underscore_must_use, reason = "a string takes whatever is written")]
+        #[expect(clippy::let_underscore_must_use, reason = "writing to a string cannot fail")]
         let _ = std::fmt::Write::write_fmt(&mut self.text, format_args!(" {word}"));
     }
 
-    /// Numbers in the shortest form that reads back to the same bits.
+    /// Appends numbers in the shortest form that reads back to the same bits.
     fn numbers<const N: usize>(&mut self, numbers: [f64; N]) {
         for number in numbers {
             self.text.push(' ');

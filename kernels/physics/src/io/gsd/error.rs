@@ -1,4 +1,4 @@
-//! What can be wrong with a GSD file, and where.
+//! Mistakes in GSD files, with their locations.
 
 use crate::io::trajectory::TrajectoryError;
 use crate::quoted::{self, quoted};
@@ -6,30 +6,30 @@ use std::fmt;
 use std::io;
 use std::path::PathBuf;
 
-/// Why a trajectory cannot be read.
+/// Reason why a trajectory cannot be read.
 #[derive(Debug, thiserror::Error)]
 #[error("{}: {place}{reason}", quoted::path(file))]
 pub struct ReadError {
-    /// The file.
+    /// Path of the file.
     pub file: PathBuf,
-    /// Where in it.
+    /// Location in the file.
     pub place: Place,
-    /// What is wrong.
+    /// Reason.
     pub reason: Reason,
 }
 
-/// A place in a GSD file.
+/// Location in a GSD file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Place {
-    /// The file as such.
+    /// Whole file.
     File,
-    /// A byte, from 0.
+    /// Byte, from 0.
     Byte(u64),
-    /// A chunk of a frame, from 0.
+    /// Chunk of a frame.
     Chunk {
-        /// The frame.
+        /// Number of the frame, from 0.
         frame: u64,
-        /// The name.
+        /// Name of the chunk.
         chunk: &'static str,
     },
 }
@@ -44,77 +44,77 @@ impl fmt::Display for Place {
     }
 }
 
-/// What is wrong at a place of a GSD file.
+/// Reason of an error at a location of a GSD file.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Reason {
-    /// The system would not let it be read.
+    /// The system refuses to read it.
     #[error("cannot be read: {0}")]
     Io(#[from] io::Error),
-    /// Something else stands there.
+    /// The bytes are not the expected ones.
     #[error("expected {0}")]
     Expected(&'static str),
-    /// The file ends before.
-    #[error("{what} ends at byte {end}, the file at byte {length}")]
+    /// The file ends early.
+    #[error("{what} ends at byte {end}, but the file at byte {length}")]
     Truncated {
-        /// What is cut off.
+        /// Truncated part.
         what: &'static str,
-        /// Where it should end.
+        /// Expected end.
         end: u64,
-        /// Where the file ends.
+        /// End of the file.
         length: u64,
     },
-    /// A chunk for which there is no memory.
-    #[error("it takes {length} bytes, and the system has no memory for them")]
+    /// There is no memory for a chunk.
+    #[error("it needs {length} bytes of memory, which are not available")]
     Memory {
-        /// Its length (bytes).
+        /// Length of the chunk (bytes).
         length: u64,
     },
-    /// A chunk without content.
+    /// A chunk has no content on the disk.
     #[error(
-        "it takes {length} bytes, but the whole file only {on_disk} on the disk: the file has holes; copy it again from its source"
+        "it has {length} bytes, but the whole file occupies only {on_disk} on the disk: the file has holes; copy it again from its source"
     )]
     Hole {
-        /// Its length (bytes).
+        /// Length of the chunk (bytes).
         length: u64,
-        /// Bytes that the file takes on the disk.
+        /// Bytes of the file on the disk.
         on_disk: u64,
     },
-    /// A chunk that is not there.
+    /// A chunk is missing.
     #[error(
-        "there is no such chunk, nor one in frame 0 for as many particles; expected what stripmine writes"
+        "there is no such chunk, and frame 0 has none for as many particles; expected a file written by stripmine"
     )]
     Missing,
-    /// A chunk of another size or type.
+    /// A chunk has another size or type.
     #[error("found {found}; expected {expected}")]
     Shape {
         /// Rows, columns and type.
         found: String,
-        /// What they should be.
+        /// Expected rows, columns and type.
         expected: String,
     },
-    /// A number that means nothing.
+    /// A number is invalid.
     #[error("row {row} is `{}`; expected {expected}", quoted(found))]
     Number {
-        /// The row, from 0.
+        /// Row, from 0.
         row: usize,
-        /// The number.
+        /// Number found.
         found: String,
-        /// What it should be.
+        /// Expected number.
         expected: &'static str,
     },
-    /// An id that another particle has.
-    #[error("row {row} is {id}, which is the id of another particle, too")]
+    /// An id occurs twice.
+    #[error("row {row} is {id}, which is also the id of another particle")]
     RepeatedId {
-        /// The row, from 0.
+        /// Row, from 0.
         row: usize,
-        /// The id.
+        /// Repeated id.
         id: u32,
     },
 }
 
 impl ReadError {
-    /// What the system said, if the file could not be read at all: a matter of input and output, not of content.
+    /// Error of the system, if the file could not be read at all.
     pub fn system(&self) -> Option<&io::Error> {
         match &self.reason {
             Reason::Io(cause) => Some(cause),

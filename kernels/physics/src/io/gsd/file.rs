@@ -1,8 +1,8 @@
-//! The file layer: chunks by frame and name, at the end of a file that grows, and the index that finds them.
+//! File layer of GSD: chunks by frame and name, appended to a growing file, and the index that locates them.
 //!
-//! Where everything lies is decided by the frames alone, so that a run that is gone on with writes the bytes of one that was never
-//! stopped. Whenever the process is killed, heading and index are of whole frames: an index that has moved is written before the
-//! heading that names it, a frame before its entries.
+//! The layout depends on the frames alone, so that a resumed run writes the same bytes as one that was never stopped. Heading and index always
+//! describe complete frames, whenever the process is killed. A moved index is written before the heading that refers to it, and a frame before its
+//! entries.
 
 use super::layout::{ENTRY, Element, Entry, HEADING, Heading, Index, aligned, list_of};
 use crate::io::FileError;
@@ -12,12 +12,12 @@ use std::fs::File;
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-/// Entries of the first index.
+/// Number of entries in the first index.
 const FIRST_CAPACITY: u64 = 1024;
-/// Bytes that are handed to the system at a time.
+/// Size of the write buffer (bytes).
 const BUFFER: usize = 1 << 18;
 
-/// A file being written at its end, by this process alone.
+/// GSD file that only this process appends to.
 #[derive(Debug)]
 pub(crate) struct GsdFile {
     path: PathBuf,
@@ -25,22 +25,22 @@ pub(crate) struct GsdFile {
     names: Vec<String>,
     frames: u64,
     index: Index,
-    /// Entries in the index.
+    /// Number of used entries of the index.
     used: u64,
-    /// Bytes of the file.
+    /// Length of the file (bytes).
     end: u64,
-    /// Of all chunks and then their entries, frame by frame.
+    /// Checksum of all chunks and then their entries, frame by frame.
     checksum: Hasher,
-    /// Entries of the frame under way, as bytes, and a chunk of it.
+    /// Entries of the current frame, as bytes, and one of its chunks.
     entries: Vec<u8>,
     chunk: Vec<u8>,
 }
 
 impl GsdFile {
-    /// Begins a file without frames where nothing is; chunks will have these names.
+    /// Creates a file without frames; `names` are the names of its chunks.
     ///
     /// # Errors
-    /// If something is there already, or the system does not let it be written.
+    /// If the path exists, or the system refuses to write it.
     pub(super) fn create(path: impl Into<PathBuf>, names: Vec<String>) -> Result<Self, FileError> {
         let path = path.into();
         let created = created(&path)?;
@@ -50,11 +50,10 @@ impl GsdFile {
         Ok(file)
     }
 
-    /// Goes on at a mark; what was written after it is cut off by [`cut`](Self::cut).
+    /// Resumes a file at a mark; [`cut`](Self::cut) removes everything after it.
     ///
     /// # Errors
-    /// If what was there at the mark is not there any more, the file is a link, or the system does not let it be read
-    /// and written.
+    /// If the bytes before the mark have changed, the file is a link, or the system refuses to read or write it.
     pub(super) fn resume(
         path: impl Into<PathBuf>,
         names: Vec<String>,
@@ -72,7 +71,7 @@ impl GsdFile {
         Ok(file)
     }
 
-    /// A file as it is before the first frame.
+    /// State of a file before the first frame.
     fn empty(path: PathBuf, file: File, names: Vec<String>) -> GsdFile {
         let index = Index { at: HEADING + list_of(&names).len() as u64, capacity: FIRST_CAPACITY };
         GsdFile {
@@ -89,7 +88,7 @@ impl GsdFile {
         }
     }
 
-    /// The heading as it is now.
+    /// Heading for the present state.
     fn heading(&self) -> [u8; HEADING as usize] {
         let names = [HEADING, list_of(&self.names).len() as u64];
         Heading { index: self.index, names }.bytes()
@@ -102,9 +101,9 @@ impl GsdFile {
         self.out.seek(SeekFrom::Start(self.end)).map(drop)
     }
 
-    /// Reads the frames up to a length, each where it must be; whether they are there, and all of the index.
+    /// Reads the frames up to a length, each at its expected location. Returns true if all of them and the index are there.
     fn read_up_to(&mut self, length: u64) -> io::Result<bool> {
-        /// Bytes of the heading that say where the index is.
+        /// Bytes of the heading that locate the index.
         const MOVES: std::ops::Range<usize> = 8..24;
         let (first, list) = (self.heading(), list_of(&self.names));
         let mut heading = [0; HEADING as usize];
@@ -132,8 +131,8 @@ impl GsdFile {
         Ok(is_found && self.end == length)
     }
 
-    /// The next index lies behind the frames before it, and begins with the entries of the one before: these are compared, so that
-    /// together with those of the frames the whole index is. Nothing follows them in the one before.
+    /// Reads the next index, which follows the frames before it. Its first entries must equal those of the previous index, which must have no more.
+    /// With the entries of the frames, the whole index is then checked.
     fn read_next_index(&mut self, length: u64) -> io::Result<bool> {
         let (before, next) = (self.index, self.next_index());
         self.end = next.at + ENTRY * next.capacity;
@@ -155,7 +154,7 @@ impl GsdFile {
         Ok(bytes)
     }
 
-    /// Takes a frame up into the checksum; whether it is there.
+    /// Adds a frame to the checksum; returns true if it is complete.
     fn read_frame(&mut self, length: u64) -> io::Result<bool> {
         let (frame, first) = (self.frames, self.index.at + ENTRY * self.used);
         let mut entries = self.read_at(first, ENTRY as usize * self.names.len())?;
@@ -185,15 +184,15 @@ impl GsdFile {
         Ok(true)
     }
 
-    /// Cuts off what a resumed file has after its mark; to be called once it is certain that the run goes on.
+    /// Truncates a resumed file at its mark; to be called once it is certain that the run resumes.
     ///
     /// # Errors
-    /// If the system does not let it be cut.
+    /// If the system refuses to truncate it.
     pub(super) fn cut(&mut self) -> Result<(), FileError> {
         self.cut_here().map_err(FileError::at(&self.path, "cutting"))
     }
 
-    /// First the heading, for the index of the mark is still there; the file is whole after each of these.
+    /// The heading is written first, since the index of the mark still exists. The file is valid after each write.
     fn cut_here(&mut self) -> io::Result<()> {
         let (heading, Index { at, capacity }) = (self.heading(), self.index);
         self.overwrite(0, &heading)?;
@@ -203,19 +202,19 @@ impl GsdFile {
         self.out.seek(SeekFrom::Start(self.end)).map(drop)
     }
 
-    /// Writes over what is there, or at the end.
+    /// Overwrites bytes, or appends at the end.
     fn overwrite(&mut self, at: u64, bytes: &[u8]) -> io::Result<()> {
         let file = self.out.get_mut();
         file.seek(SeekFrom::Start(at))?;
         file.write_all(bytes)
     }
 
-    /// The file.
+    /// Path of the file.
     pub(super) fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Whether a frame might find no room in the index.
+    /// True if the index may lack space for a frame.
     fn is_index_full(&self) -> bool {
         self.index.capacity - self.used < self.names.len() as u64
     }
@@ -224,7 +223,7 @@ impl GsdFile {
         Index { at: self.end, capacity: 2 * self.index.capacity }
     }
 
-    /// An index twice as large, at the end.
+    /// Appends an index of twice the size.
     fn grow_index(&mut self) -> io::Result<()> {
         let (from, to) = (self.index, self.next_index());
         let entries = self.read_at(from.at, (ENTRY * self.used) as usize)?;
@@ -236,10 +235,10 @@ impl GsdFile {
         self.overwrite(0, &heading)
     }
 
-    /// Begins the next frame.
+    /// Starts the next frame.
     ///
     /// # Errors
-    /// Those of the file; also if something else has cut or lengthened it.
+    /// Errors of the file; also if another program has changed its length.
     pub(super) fn begin_frame(&mut self) -> io::Result<()> {
         is_as_long_as_written(self.out.get_ref(), self.end)?;
         if self.is_index_full() {
@@ -249,10 +248,10 @@ impl GsdFile {
         self.out.seek(SeekFrom::Start(self.end)).map(drop)
     }
 
-    /// Adds a chunk to the frame: rows of so many numbers. Chunks come in the order of the names.
+    /// Adds a chunk to the frame: rows of `COLUMNS` numbers. Chunks must be added in the order of the names.
     ///
     /// # Errors
-    /// Those of the file.
+    /// Errors of the file.
     pub(super) fn add<E: Element, const COLUMNS: usize>(
         &mut self,
         name: &str,
@@ -282,10 +281,10 @@ impl GsdFile {
         self.out.write_all(&self.chunk)
     }
 
-    /// Ends the frame: from now on the index has it.
+    /// Ends the frame and adds it to the index.
     ///
     /// # Errors
-    /// Those of the file.
+    /// Errors of the file.
     pub(super) fn end_frame(&mut self) -> io::Result<()> {
         self.out.flush()?;
         let entries = std::mem::take(&mut self.entries);
@@ -297,10 +296,10 @@ impl GsdFile {
         Ok(())
     }
 
-    /// Returns when all that was written is on the disk, and says how far that is; to be called before a checkpoint.
+    /// Syncs the file to the disk and returns its mark; to be called before a checkpoint.
     ///
     /// # Errors
-    /// If the system does not let it be written, or the file has been removed, replaced or changed meanwhile.
+    /// If the system refuses to write it, or the file has been removed, replaced or changed meanwhile.
     pub(super) fn sync(&mut self) -> Result<Mark, FileError> {
         synced(&self.path, self.out.get_ref(), self.end)?;
         Ok(Mark { bytes: self.end, checksum: self.checksum.clone().finalize() })

@@ -1,11 +1,11 @@
-//! Heading, names and index of a file, as bytes.
+//! Binary layout of a GSD file: heading, names and index.
 
-/// Bytes of the heading, and of an entry of the index.
+/// Sizes of the heading and of an entry of the index (bytes).
 pub(super) const HEADING: u64 = 256;
 pub(super) const ENTRY: u64 = 32;
-/// The list of names is a multiple of this (bytes).
+/// Alignment of the length of the list of names (bytes).
 const NAMES: usize = 64;
-/// Chunks and index begin at multiples of this (bytes), so that what maps a file into memory finds numbers at their alignment.
+/// Alignment of chunks and index (bytes), so that memory-mapped numbers are aligned.
 pub(super) const ALIGNED: u64 = 8;
 
 const MAGIC: u64 = 0x65DF_65DF_65DF_65DF;
@@ -19,20 +19,20 @@ const fn version(major: u32, minor: u32) -> u32 {
     major << 16 | minor
 }
 
-/// The next place at which a chunk or an index may begin.
+/// Next offset at which a chunk or an index may start.
 pub(super) const fn aligned(place: u64) -> u64 {
     place.next_multiple_of(ALIGNED)
 }
 
-/// Numbers that chunks are made of.
+/// Type of the numbers in a chunk.
 pub(super) trait Element: Copy {
-    /// The code of the type in the index.
+    /// Code of the type in the index.
     const CODE: u8;
 
-    /// Writes its bytes to as many.
+    /// Writes its bytes.
     fn put(self, bytes: &mut [u8]);
 
-    /// The number of as many bytes as it has.
+    /// Reads a number from its bytes.
     fn of(bytes: &[u8]) -> Self;
 }
 
@@ -65,7 +65,7 @@ elements! {
     f64 10;
 }
 
-/// Bytes of a number of a type; none where there is no such type.
+/// Size of a number of a type (bytes); none for an unknown type.
 const fn size_of_type(code: u8) -> Option<u64> {
     match code {
         1 | 5 | 11 => Some(1),
@@ -76,7 +76,7 @@ const fn size_of_type(code: u8) -> Option<u64> {
     }
 }
 
-/// Where the index is, and for how many entries.
+/// Offset of the index, and its number of entries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Index {
     pub(super) at: u64,
@@ -84,27 +84,27 @@ pub(super) struct Index {
 }
 
 impl Index {
-    /// The first byte behind it; none where no file is so long.
+    /// Offset of its end; none if it overflows.
     pub(super) fn end(self) -> Option<u64> {
         self.capacity.checked_mul(ENTRY)?.checked_add(self.at)
     }
 }
 
-/// What the heading says.
+/// Content of the heading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Heading {
     pub(super) index: Index,
-    /// The first byte of the names, and how many bytes they have.
+    /// Offset of the list of names, and its length (bytes).
     pub(super) names: [u64; 2],
 }
 
-/// Places in the heading: of application and schema, of which the longest name has 63 bytes.
+/// Offsets of application and schema in the heading; a name has at most 63 bytes.
 const APPLICATION_AT: usize = 48;
 const SCHEMA_AT: usize = 112;
 const SCHEMA_END: usize = 176;
 
 impl Heading {
-    /// The heading of a file with an index and names.
+    /// Encodes the heading of a file.
     pub(super) fn bytes(self) -> [u8; HEADING as usize] {
         let mut bytes = [0; HEADING as usize];
         let Heading { index, names } = self;
@@ -117,10 +117,10 @@ impl Heading {
         bytes
     }
 
-    /// Reads the heading of a file that this program may have written.
+    /// Decodes the heading of a file written by this program.
     ///
     /// # Errors
-    /// The first byte that is wrong, and what should stand there.
+    /// The first wrong byte, and the expected content.
     pub(super) fn read(bytes: &[u8; HEADING as usize]) -> Result<Heading, (u64, &'static str)> {
         let wide = |number: usize| u64::of(&bytes[8 * number..][..8]);
         let names = wide(4).checked_mul(NAMES as u64).ok_or((32, "a list of names inside the file"))?;
@@ -128,7 +128,7 @@ impl Heading {
         let own = heading.bytes();
         let differs = |from: usize, end: usize| bytes[from..end] != own[from..end];
         let checks = [
-            (0, 8, "the eight bytes that a GSD file begins with"),
+            (0, 8, "the eight bytes of the signature of a GSD file"),
             (40, 44, "version 1.4 of the schema"),
             (44, 48, "version 2.0 of the file layer"),
             (APPLICATION_AT, SCHEMA_AT, "`stripmine` as the application"),
@@ -141,26 +141,26 @@ impl Heading {
     }
 }
 
-/// A list of names, as long as such lists are.
+/// Encoded list of names, padded to its alignment.
 pub(super) fn list_of(names: &[String]) -> Vec<u8> {
     let mut bytes: Vec<u8> = names.iter().flat_map(|name| name.bytes().chain([0])).collect();
-    // It ends with a name that is empty.
+    // An empty name ends the list.
     bytes.resize((bytes.len() + 1).next_multiple_of(NAMES), 0);
     bytes
 }
 
-/// The names of a list; none where it has no end, or is no text.
+/// Names of a list; none if it has no end or is not text.
 pub(super) fn names_of(list: &[u8]) -> Option<Vec<String>> {
     let text = std::str::from_utf8(list).ok()?.strip_suffix('\0')?;
     Some(text.split('\0').take_while(|name| !name.is_empty()).map(str::to_owned).collect())
 }
 
-/// What the index says of a chunk.
+/// Entry of the index: location and shape of a chunk.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Entry {
     pub(super) frame: u64,
     pub(super) rows: u64,
-    /// Where it begins (bytes); 0 where there is no chunk.
+    /// Offset of the chunk (bytes); 0 for an unused entry.
     pub(super) at: u64,
     pub(super) columns: u32,
     pub(super) name: u16,
@@ -177,7 +177,7 @@ impl Entry {
         bytes
     }
 
-    /// Of as many bytes as it has.
+    /// Decodes an entry.
     pub(super) fn of(bytes: &[u8]) -> Entry {
         let wide = |number: usize| u64::of(&bytes[8 * number..][..8]);
         let name = u16::from_le_bytes([bytes[28], bytes[29]]);
@@ -191,7 +191,7 @@ impl Entry {
         }
     }
 
-    /// The first byte behind the chunk; none where its numbers are of no known type, or no file is so long.
+    /// Offset of the chunk's end; none for an unknown type or if it overflows.
     pub(super) fn end(self) -> Option<u64> {
         let numbers = self.rows.checked_mul(self.columns.into())?;
         numbers.checked_mul(size_of_type(self.code)?)?.checked_add(self.at)

@@ -1,20 +1,18 @@
-//! Trajectories as GSD, the General Simulation Data format of HOOMD-blue: file layer 2.0, schema `hoomd` 1.4. Each frame is found
-//! by its number, without those before it.
+//! Trajectories as GSD, the General Simulation Data format of HOOMD-blue: file layer 2.0, schema `hoomd` 1.4. Frames can be read in any order.
 //!
 //! ```text
-//! heading   256 bytes: where the names and the index are
-//! names     one after the other, each with a 0 behind it
-//! index     32 bytes a chunk: its frame, name, size and place; zeros where there is none yet
+//! heading   256 bytes: locations of the names and the index
+//! names     one after the other, each followed by a 0
+//! index     32 bytes a chunk: its frame, name, size and location; zeros for unused entries
 //! chunks    rows of numbers, each at a multiple of 8 bytes
-//! index     twice as large, where the one before is full: what that one says, and more
+//! index     twice as large, once the previous one is full: its entries, and more
 //! chunks    …
 //! ```
 //!
-//! What the schema knows is in single precision, positions from the centre of the box. The same in double precision, as the run has
-//! it, is below `log/`.
+//! Fields of the schema are in single precision, with positions relative to the centre of the box. Their double-precision values are below `log/`.
 //!
-//! The crate `hoomd-gsd` 1.4.0 does not replace the file layer: it cannot cut frames off behind a checkpoint, the place of its index
-//! depends on when it is synced (a resumed file has other bytes), it asserts what a damaged index says, and it brings 60 crates.
+//! The crate `hoomd-gsd` 1.4.0 cannot replace the file layer. It cannot truncate frames after a checkpoint. The location of its index depends on
+//! when it is synced, so a resumed file has other bytes. It asserts what a damaged index states, and it brings 60 crates.
 
 mod error;
 mod file;
@@ -40,7 +38,7 @@ pub(crate) const FORMAT: OutputFormat = OutputFormat {
     reading: FrameReading::Opens(|path| Ok(reader(Frames::open(path)?))),
 };
 
-/// The chunks of a frame; behind them comes a `log/` for each quantity that is logged. Readers expect every `log/` in the first frame.
+/// Chunks of a frame, before a `log/` for each logged quantity. Readers expect every `log/` in the first frame.
 const CHUNKS: [&str; 22] = [
     STEP,
     DIMENSIONS,
@@ -76,13 +74,13 @@ const MASS: &str = "particles/mass";
 const DIAMETER: &str = "particles/diameter";
 const POSITION: &str = "particles/position";
 const VELOCITY: &str = "particles/velocity";
-/// Periods moved since the start, where they are followed.
+/// Periods crossed since the start, if they are counted.
 const IMAGE: &str = "particles/image";
 const TIME: &str = "log/time";
-/// Sides and lower left corner of the box in double precision; sides without end where there is no box.
+/// Sides and lower left corner of the box in double precision; infinite sides without a box.
 const SIDES: &str = "log/box/sides";
 const CORNER: &str = "log/box/corner";
-/// 1 where the box repeats.
+/// 1 for periodic sides.
 const PERIODIC: &str = "log/box/periodic";
 const ID: &str = "log/particles/id";
 const RADIUS: &str = "log/particles/radius";
@@ -93,5 +91,5 @@ const EXACT_VELOCITY: &str = "log/particles/velocity";
 const ANGLE: &str = "log/particles/angle";
 const OMEGA: &str = "log/particles/omega";
 
-/// The type of a grain and of a wall disc, by their numbers; as in extended XYZ.
+/// Type names of grains and wall discs, by type number; as in extended XYZ.
 const TYPE_NAMES: [[u8; 3]; 2] = [*b"Si\0", *b"W\0\0"];

@@ -1,4 +1,4 @@
-//! Reading the frames that this program writes.
+//! Reading of GSD files written by this program.
 
 use super::error::{Place, ReadError, Reason};
 use super::layout::{ENTRY, Element, Entry, HEADING, Heading, names_of};
@@ -14,12 +14,12 @@ use std::fs::{File, Metadata};
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
-/// The frames of a file: by their numbers, or one after the other; ends after the first that is wrong.
+/// Frames of a file, by number or as an iterator that ends after the first wrong one.
 #[derive(Debug)]
 pub struct Frames {
     path: PathBuf,
     file: File,
-    /// Bytes that the file takes on the disk: fewer than it is long where it has holes.
+    /// Bytes of the file on the disk: fewer than its length if it has holes.
     on_disk: u64,
     names: Vec<String>,
     index: Vec<Entry>,
@@ -31,7 +31,7 @@ impl Frames {
     /// Opens a file and reads its index.
     ///
     /// # Errors
-    /// If the system does not let it be read, it is no such file, or it is cut off.
+    /// If the system refuses to read it, or it is not such a file, or it is truncated.
     pub fn open(path: impl AsRef<Path>) -> Result<Frames, ReadError> {
         let path = path.as_ref().to_owned();
         let opened = regular_file::open(&path).map_err(Reason::Io);
@@ -46,15 +46,15 @@ impl Frames {
         }
     }
 
-    /// How many frames there are.
+    /// Number of frames.
     pub fn frame_count(&self) -> u64 {
         self.index.last().map_or(0, |entry| entry.frame + 1)
     }
 
-    /// A frame by its number, from 0; none behind the last.
+    /// Reads a frame by its number, from 0; none after the last.
     ///
     /// # Errors
-    /// If the system does not let it be read, or its chunks are not those that this program writes.
+    /// If the system refuses to read it, or its chunks are not those that this program writes.
     pub fn frame(&mut self, number: u64) -> Result<Option<Frame>, ReadError> {
         if number >= self.frame_count() {
             return Ok(None);
@@ -86,9 +86,9 @@ impl Iterator for Frames {
 
 type Wrong = (Place, Reason);
 
-/// The longest list of names that entries of 16 bits can number, of which each has at most 63 letters (bytes).
+/// Longest list of names (bytes): entries number names with 16 bits, and each name has at most 63 letters.
 const LONGEST_NAMES: u64 = 64 << 16;
-/// Chunks up to this length may be holes of the file (bytes); of longer ones a hundredth must be on the disk.
+/// Longest chunk that may be a hole of the file (bytes); of longer ones a hundredth must be on the disk.
 const MOST_HOLES: u64 = 1 << 24;
 
 #[cfg(unix)]
@@ -101,7 +101,7 @@ fn on_disk(file: &Metadata) -> u64 {
     file.len()
 }
 
-/// The names and the entries of a file.
+/// Reads the names and the entries of a file.
 fn index(file: &File) -> Result<(Vec<String>, Vec<Entry>), Wrong> {
     let system = |cause: io::Error| (Place::File, Reason::Io(cause));
     let length = file.metadata().map_err(system)?.len();
@@ -124,7 +124,8 @@ fn index(file: &File) -> Result<(Vec<String>, Vec<Entry>), Wrong> {
 
     let mut list = vec![0; length_of_names as usize];
     file.seek(SeekFrom::Start(first)).and_then(|_| file.read_exact(&mut list)).map_err(system)?;
-    let names = names_of(&list).ok_or(wrong(first, "names with a 0 behind each, and behind the last two"))?;
+    let names =
+        names_of(&list).ok_or(wrong(first, "names that end with a 0 each, and the last one with two"))?;
 
     file.seek(SeekFrom::Start(index.at)).map_err(system)?;
     let mut entries: Vec<Entry> = vec![];
@@ -136,7 +137,7 @@ fn index(file: &File) -> Result<(Vec<String>, Vec<Entry>), Wrong> {
             break;
         }
         if bytes[ENTRY as usize - 1] != 0 || usize::from(entry.name) >= names.len() {
-            return Err(wrong(at, "an entry of the index, of a chunk with a name"));
+            return Err(wrong(at, "an entry of the index for a chunk with a name"));
         }
         let follows = match entries.last() {
             None => entry.frame == 0,
@@ -159,7 +160,7 @@ fn index(file: &File) -> Result<(Vec<String>, Vec<Entry>), Wrong> {
     Ok((names, entries))
 }
 
-/// The chunks of a frame.
+/// Access to the chunks of a frame.
 struct Chunks<'f> {
     frames: &'f mut Frames,
     number: u64,
@@ -170,7 +171,7 @@ impl Chunks<'_> {
         (Place::Chunk { frame: self.number, chunk }, reason)
     }
 
-    /// Rows of so many numbers, of the frame or, where it has none, of the first one; none where that has none either.
+    /// Reads rows of a number of columns from the frame or, if it lacks the chunk, from the first frame; none if both lack it.
     fn rows<E: Element>(
         &mut self,
         chunk: &'static str,
@@ -179,7 +180,7 @@ impl Chunks<'_> {
     ) -> Result<Option<Vec<E>>, Wrong> {
         let Some(name) = self.frames.names.iter().position(|name| name == chunk) else { return Ok(None) };
         let found = self.frames.entry(self.number, name);
-        // What the first frame has is of its own particles.
+        // The first frame may have another number of particles.
         let of_first = || self.frames.entry(0, name).filter(|first| first.rows == rows as u64);
         let Some(entry) = found.or_else(of_first) else { return Ok(None) };
         if (entry.rows, entry.columns, entry.code) != (rows as u64, columns as u32, E::CODE) {
@@ -220,7 +221,7 @@ impl Chunks<'_> {
         Ok(self.needed(chunk, 1, 1)?[0])
     }
 
-    /// Finite numbers, and greater than 0 where they must be.
+    /// Reads finite numbers, greater than 0 if required.
     fn numbers(
         &mut self,
         chunk: &'static str,
@@ -235,7 +236,7 @@ impl Chunks<'_> {
         Err(self.wrong(chunk, reason))
     }
 
-    /// The sides of the box; without end where there is none.
+    /// Sides of the box; infinite without a box.
     fn sides(&mut self) -> Result<[f64; 2], Wrong> {
         let sides = self.needed::<f64>(SIDES, 2, 1)?;
         let Some(row) = sides.iter().position(|side| side.is_nan() || *side <= 0.0) else {

@@ -1,7 +1,7 @@
-//! The schema layer: what of a frame is written as which chunk.
+//! Schema layer of GSD: chunks of a frame.
 //!
-//! What is as in the first frame is left out, for readers take it from there: masses, sizes, ids and types where the particles are
-//! the same, the box of a plane, angles and spins where nothing turns.
+//! A chunk equal to that of the first frame is omitted, since readers take it from there. This concerns masses, sizes, ids and types if the
+//! particles are the same, the box of a planar scene, and angles and spins if nothing rotates.
 
 use super::file::GsdFile;
 use super::{
@@ -19,31 +19,31 @@ use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// A frame, and what is logged with it.
+/// Frame with its logged values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoggedFrame {
-    /// The particles in their box, which other files may have, too.
+    /// Particles in their box, shared with other files.
     pub frame: Arc<Frame>,
-    /// How many periods each has moved along x and y since the start; empty where that is not known.
+    /// Periods that each particle has crossed along x and y since the start; empty if unknown.
     pub images: Vec<[i32; 2]>,
-    /// A value for each quantity that is logged; not a number where it is not known.
+    /// Value of each logged quantity; NaN if unknown.
     pub values: Vec<f64>,
 }
 
-/// A trajectory being written.
+/// Open trajectory.
 #[derive(Debug)]
 pub struct Writer {
     file: GsdFile,
-    /// The chunks of what is logged.
+    /// Names of the logged chunks.
     logged: Vec<String>,
     first: Option<First>,
 }
 
-/// What of the first frame later ones need not say again.
+/// Properties of the first frame that later frames may omit.
 #[derive(Debug)]
 struct First {
     ids: Vec<u32>,
-    /// Whether anything is turned or turns.
+    /// True if any particle has an angle or rotates.
     turns: bool,
     sides: [f32; 6],
 }
@@ -177,18 +177,18 @@ fn names(logged: &[String]) -> Vec<String> {
     CHUNKS.into_iter().map(str::to_owned).chain(logged.iter().cloned()).collect()
 }
 
-/// The box as the schema has it.
+/// Box in the schema's terms.
 struct Cell {
-    /// Along x, y and z, and how they are tilted.
+    /// Sides along x, y and z, then the tilts.
     sides: [f32; 6],
-    /// Where the schema has its origin.
+    /// Centre of the box, the schema's origin.
     centre: [f64; 3],
     is_plane: bool,
 }
 
 impl Cell {
-    /// The box of a plane has no depth, and sides twice, four times, … as long where discs fly above one without a ceiling. Space without end has none: a cube about the origin stands for it that holds all, with a power
-    /// of two as its side, so that it seldom changes.
+    /// A planar box has no depth, and its sides are doubled until they contain discs above an open box. Unbounded space is represented by a cube
+    /// about the origin that contains all particles. Its side is a power of two, so that it rarely changes.
     fn of(frame: &Frame) -> Cell {
         let Frame { cell: [lx, ly], origin: [x, y], particles, .. } = frame;
         if lx.is_finite() && ly.is_finite() {
@@ -209,7 +209,7 @@ impl Cell {
     }
 }
 
-/// The next larger power of two of a number from 1 on.
+/// Next larger power of two of a number from 1 on.
 fn above(number: f64) -> f64 {
     const FRACTION: u64 = (1 << 52) - 1;
     2.0 * f64::from_bits(number.to_bits() & !FRACTION)
