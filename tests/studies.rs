@@ -95,7 +95,7 @@ fn a_scene_without_comparable_positions_is_refused_with_what_to_ask() {
     let refused = study(Path::new("shaken-box"), &folder.path().join("study"), &["--budget", "5"]);
     let said = said(&refused);
     assert_eq!(refused.status.code(), Some(2), "{said}");
-    assert!(said.contains("positions of shaken-box cannot be compared: trajectories part"), "{said}");
+    assert!(said.contains("positions of shaken-box cannot be compared: trajectories diverge"), "{said}");
     assert!(said.contains("stripmine chart accuracy shaken-box --of temperature"), "{said}");
 }
 

@@ -1,4 +1,4 @@
-//! Maps as frames.
+//! Frames of stability maps.
 
 use super::alarms::alarms;
 use super::boundary::Edge;
@@ -11,10 +11,10 @@ use crate::study::alarm::{Alarm, Finding};
 
 type Maps = [(String, Stability)];
 
-/// Edges over seeds that are farther apart than this many tolerances differ.
+/// Boundaries of different seeds disagree if they are more than this many tolerances apart.
 const APART: f64 = 2.0;
 
-/// The frames of maps, each with a name for its rows.
+/// Returns the frames of maps, each with a name for its rows.
 pub(crate) fn made(maps: &Maps) -> Made {
     let seeds = maps.first().map_or(vec![], |(_, data)| data.seeds.clone());
     let frames = [
@@ -32,7 +32,7 @@ pub(crate) fn made(maps: &Maps) -> Made {
     Made::of(frames).with_seeds(seeds)
 }
 
-/// The edge of what works over the step beyond which theory says that errors grow: middle, lowest and highest over the values.
+/// Ratio of the stability boundary to the step beyond which theory predicts growing errors: median, lowest and highest over the values.
 fn of_theory(data: &Stability) -> Option<[f64; 3]> {
     let at = data.values.iter().zip(&data.boundaries);
     let ratio = |(&value, boundary): (&f64, &Boundary)| {
@@ -43,7 +43,7 @@ fn of_theory(data: &Stability) -> Option<[f64; 3]> {
     Some([median(ratios.iter().copied()), *ratios.first()?, *ratios.last()?])
 }
 
-/// A row for each map: its axes, how many places there are of which kind, and how edges compare with theory and over seeds.
+/// A row for each map: its axes, numbers of runs by kind, and boundaries compared with theory and over seeds.
 fn of_maps(maps: &Maps) -> Frame {
     let count = |of: fn(&Stability) -> usize| move |(_, data): &&(String, Stability)| of(data);
     let theory =
@@ -114,13 +114,13 @@ fn of_maps(maps: &Maps) -> Frame {
         .frame("maps", "Maps: axes, places by kind, and edges beside theory")
 }
 
-/// Edges as multiples of the scene's own step: the middle, the lowest and the highest over the seeds.
+/// Boundaries in multiples of the scene's own step: median, lowest and highest over the seeds.
 fn multiples(data: &Stability, edges: &[Edge]) -> [Cell; 3] {
     let numbers = over_seeds(edges).map(|steps| steps.map(|step| Cell::Number(step / data.step, 2)));
     numbers.unwrap_or([const { Cell::Nothing }; 3])
 }
 
-/// Position of an edge that no seed has within the map.
+/// Position of a boundary that lies outside the map.
 fn beyond(edges: &[Edge]) -> Option<&'static str> {
     match edges {
         _ if over_seeds(edges).is_some() => None,
@@ -165,7 +165,7 @@ fn said(maps: &Maps) -> Frame {
         .frame("said", "What the program says of it")
 }
 
-/// Every place of every map.
+/// All runs of all maps.
 fn cells(maps: &Maps) -> Frame {
     let cells = maps.iter().flat_map(|(name, data)| {
         let rows = data.values.iter().zip(&data.map);
@@ -192,7 +192,7 @@ fn cells(maps: &Maps) -> Frame {
         .frame("cells", "Every place")
 }
 
-/// Every edge of every seed.
+/// Boundaries of all seeds.
 fn boundaries(maps: &Maps) -> Frame {
     let edges = maps.iter().flat_map(|(name, data)| {
         let boundaries = data.values.iter().zip(&data.boundaries);
@@ -224,7 +224,7 @@ fn boundaries(maps: &Maps) -> Frame {
         .frame("edges", "Every edge")
 }
 
-/// The longest step of each integrator that works over the step beyond which theory says that its errors grow, at the scene's own
+/// Ratio of each integrator's longest working step to the step beyond which theory predicts growing errors, at the scene's own
 /// values.
 fn pairs(maps: &Maps) -> Frame {
     let pairs = maps.iter().flat_map(|(name, data)| {
@@ -238,7 +238,7 @@ fn pairs(maps: &Maps) -> Frame {
         .frame("pairs", "Longest step that works over the step beyond which theory says that errors grow")
 }
 
-/// The edge of what works over the seeds, and the step of theory, at every value.
+/// Stability boundary over the seeds, and the theoretical step, at every value.
 fn edges(maps: &Maps) -> Frame {
     let at = maps.iter().flat_map(|(name, data)| {
         data.values.iter().zip(&data.boundaries).map(move |(value, boundary)| {
@@ -258,7 +258,7 @@ fn edges(maps: &Maps) -> Frame {
         .frame("edges-over-seeds", "The edge of what works over the seeds, and the step of theory")
 }
 
-/// Straight lines of the maps, by their ends: the scene's own step, and values of the parameter that theory names.
+/// Straight lines of the maps, by their ends: the scene's own step, and parameter values with a theoretical meaning.
 fn lines(maps: &Maps) -> Frame {
     let ends = |(name, data): &(String, Stability)| {
         let [low, high] = [data.steps[0], data.steps[data.steps.len() - 1]];
@@ -279,7 +279,7 @@ fn lines(maps: &Maps) -> Frame {
         .frame("lines", "The scene's own step, and values that theory names")
 }
 
-/// Values at which nothing is known of what is right.
+/// Values without a reference.
 fn unjudged(maps: &Maps) -> Frame {
     let all = maps.iter().flat_map(|(name, data)| data.unjudged.iter().map(move |it| (name, it)));
     Rows::of(all)

@@ -1,4 +1,4 @@
-//! Diagrams as frames.
+//! Frames of diagrams.
 
 use super::conclusions::{as_good, own_run, wishes as wishes_of};
 use super::dataset::{Configuration, Run, Scenes, WorkPrecision};
@@ -11,7 +11,7 @@ use crate::results::Made;
 use crate::statistics::median;
 use crate::study::trial::RunFailure;
 
-/// Frames of diagrams, each with a name for its rows.
+/// Returns the frames of diagrams, each with a name for its rows.
 pub(crate) fn made(scenes: &Scenes) -> Made {
     Made::of([
         of_scenes(scenes),
@@ -28,7 +28,7 @@ pub(crate) fn made(scenes: &Scenes) -> Made {
     ])
 }
 
-/// A row for each scene: its own configuration beside the cheapest that is as accurate, and the limits of the comparison.
+/// A row for each scene: its own configuration, the cheapest that is as accurate, and the limits of the comparison.
 fn of_scenes(scenes: &Scenes) -> Frame {
     Rows::of(scenes)
         .text("scene", |(name, _)| name)
@@ -57,17 +57,17 @@ fn of_scenes(scenes: &Scenes) -> Frame {
         .frame("scenes", "Scenes: the own configuration, and the limits of the comparison")
 }
 
-/// Step in steps of the scene's own.
+/// Step in multiples of the scene's own.
 fn in_own_steps(run: &Run) -> f64 {
     libm::exp2(f64::from(run.power))
 }
 
-/// Reason of the failure of a run; empty where it came to its end.
+/// Reason of the failure of a run; empty where it finished.
 fn why(run: &Run) -> &str {
     run.outcome.as_ref().err().map_or("", |failure| &failure.why)
 }
 
-/// Difference of the repeats of a run, in parts of the shortest: the median over the runs.
+/// Relative difference of the repeats of a run: the median over the runs.
 fn spread(data: &WorkPrecision) -> f64 {
     let of = |run: &Run| {
         let [least, most] = [f64::min, f64::max].map(|end| run.costs.iter().copied().reduce(end));
@@ -135,7 +135,7 @@ fn of_collisions(scenes: &Scenes) -> Frame {
         .frame("collision", "One collision: how the error of what comes out falls")
 }
 
-/// Every error with the scene's own step.
+/// All errors at the scene's own step.
 fn errors(scenes: &Scenes) -> Frame {
     let own = scenes.iter().flat_map(|(name, data)| {
         let own = data.runs.iter().filter(|run| run.power == 0 && data.of(run).is_primary);
@@ -157,7 +157,7 @@ fn errors(scenes: &Scenes) -> Frame {
 
 fn references(scenes: &Scenes) -> Frame {
     let ended_by = |ended_by: &EndedBy| match ended_by {
-        EndedBy::Growth => "the error of four times the step comes to a tenth of a radius",
+        EndedBy::Growth => "the error at four times the step reaches a tenth of a radius",
         EndedBy::Scene => "the scene ends",
         EndedBy::Budget => "more would take too long",
     };
@@ -196,7 +196,7 @@ fn failed(scenes: &Scenes) -> Frame {
         .frame("failed", "Failures and their reasons")
 }
 
-/// Configurations in which the scene is refused, and why; those that are refused in every scheme and precision as one.
+/// Configurations in which the scene is refused, with the reason; those refused in every scheme and precision are merged.
 fn refused(data: &WorkPrecision) -> Vec<(String, &RunFailure)> {
     let mut all: Vec<(String, &RunFailure)> = vec![];
     for it in &data.configurations {
@@ -212,7 +212,7 @@ fn refused(data: &WorkPrecision) -> Vec<(String, &RunFailure)> {
     all
 }
 
-/// Runs that broke, their step, and why; those of one scheme that broke alike as one.
+/// Runs that failed, with step and reason; runs of one scheme with the same failure are merged.
 fn broken(data: &WorkPrecision) -> Vec<(String, f64, &RunFailure)> {
     let mut all: Vec<(String, f64, &RunFailure)> = vec![];
     for run in &data.runs {
@@ -220,7 +220,7 @@ fn broken(data: &WorkPrecision) -> Vec<(String, f64, &RunFailure)> {
         let scheme = &data.of(run).scheme;
         let mut alike = data.runs.iter().filter(|it| it.step == run.step && data.of(it).scheme == *scheme);
         let what = match alike.all(|other| other.outcome.as_ref().err() == Some(failure)) {
-            true => format!("{scheme}, in every configuration that was run"),
+            true => format!("{scheme}, in every configuration tried"),
             false => data.of(run).label.clone(),
         };
         if !all.iter().any(|(known, step, _)| *known == what && *step == run.step) {
