@@ -31,7 +31,7 @@ pub(crate) struct Way {
     pub(crate) cost: Option<f64>,
     /// Longest usable step (time); none where the method has no time step.
     pub step: Option<f64>,
-    /// What bounds the step, with its numbers.
+    /// Limit of the step, with its numbers.
     pub bound: Option<String>,
     /// Skin of the neighbour lists, where changing it pays: the scene's own and the better one (length), and the ratio of the costs.
     pub skin: Option<[f64; 3]>,

@@ -12,12 +12,12 @@ pub(crate) enum Held {
 
 /// Values made of numbers, and their form in a file.
 pub(crate) trait OfNumbers: Sized {
-    /// The same value with each number as a file stores it.
+    /// Form of the value in a file, with each number as stored.
     type Held: Serialize + for<'de> Deserialize<'de>;
 
     fn held(&self) -> Self::Held;
 
-    /// None where a word is not a number.
+    /// Reads a stored value; none where a word is not a number.
     fn of(held: Self::Held) -> Option<Self>;
 }
 

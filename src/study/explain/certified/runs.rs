@@ -89,7 +89,7 @@ impl Ensemble<'_> {
         let starts = (0..seeds).map(|seed| self.start(&plan.overrides, number * seeds + seed));
         let starts: Vec<Prepared> = starts.collect::<Result<_, _>>()?;
         let most = LATE * self.target.limit;
-        // Of a conserved quantity every sample counts.
+        // Every sample of a conserved quantity counts.
         let span = if self.target.is_kept() { Span::Time } else { Span::Planned };
         let one = |at: usize| self.value(&self.sample(&starts[at], span(plan.time, Some(most)))?);
         let begun = self.trial.watch.now();
