@@ -143,7 +143,7 @@ fn deserialized<T: DeserializeOwned>(
             Err(cause) => cause,
         };
         let span = cause.span().unwrap_or(WHOLE);
-        // Of entries with the same range the innermost comes last.
+        // The innermost of several entries with the same range comes last.
         let entry = entries.iter().rev().find(|it| it.spans.contains(&span));
         let names = entry.map_or(&[][..], |it| &it.names[..]);
         let path = names.join(".");

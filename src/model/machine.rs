@@ -115,7 +115,7 @@ pub struct MachineModel {
     chaining: Option<Known<bool>>,
     /// Clock periods per strip.
     pub(super) loop_overhead: Option<Quantity>,
-    /// None where vectors have any length.
+    /// Vector registers; none where vectors have any length.
     pub(super) vector_registers: Option<VectorRegisters>,
     /// Clock periods by class; `default` applies to all other classes.
     pub(super) start_up: BTreeMap<String, Quantity>,

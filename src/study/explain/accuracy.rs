@@ -152,7 +152,7 @@ fn points(curves: &[Curve<'_>]) -> Frame {
         .number("most", 6, |(.., point)| point.most)
         .frame(
             "points",
-            "Least error over the wall time of a run: expected bias, and statistical error with 95 % confidence",
+            "Smallest error over the wall time of a run: expected bias, and statistical error with 95 % confidence",
         )
 }
 

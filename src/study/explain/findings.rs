@@ -153,6 +153,8 @@ impl Work<'_> {
         self.trial.sample(&prepared, observed, span).map_err(|failure| first_line(&failure.what()))
     }
 
+    /// Returns a result, unless the user stopped the trials.
+    ///
     /// # Errors
     /// [`ExplainError::Stopped`], once the user stops the trials: those made since are too short.
     pub(super) fn unless_stopped<T>(&self, made: T) -> Result<T, ExplainError> {

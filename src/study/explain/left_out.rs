@@ -124,7 +124,7 @@ fn table(rows: &[Row]) -> Frame {
         .number("± (95 %) of that", 1, |it| share(it, 1))
         .number("time saved (%)", 0, |it| Some(100.0 * (1.0 - it.twin.cost?)))
         .text("verdict", |it| it.verdict())
-        .frame("left-out", "What scenes may be modelled without")
+        .frame("left-out", "Effect of simpler models")
 }
 
 fn not_compared(without: &[Without]) -> Frame {
@@ -132,7 +132,7 @@ fn not_compared(without: &[Without]) -> Frame {
         .text("scene", |it| it.scene)
         .text("quantity", |it| it.quantity)
         .text("because", |it| it.why.clone())
-        .frame("not-compared", "Scenes that are compared with nothing")
+        .frame("not-compared", "Scenes without a comparison")
 }
 
 fn summary(rows: &[Row], without: &[Without], seconds: f64) -> Frame {
@@ -148,7 +148,7 @@ fn summary(rows: &[Row], without: &[Without], seconds: f64) -> Frame {
         .count("undecided", |()| count("undecided"))
         .number("trials of a scene (s)", 1, |()| seconds)
         .number("largest change at which something may be left out (%)", 0, |()| 100.0 * MOST)
-        .frame("summary", "Twins in numbers")
+        .frame("summary", "Simpler models in numbers")
 }
 
 #[cfg(test)]

@@ -90,6 +90,8 @@ pub(super) struct Length {
     pub(super) why: String,
 }
 
+/// Run length and number of seeds of a plan.
+///
 /// # Errors
 /// Error of a single run, where more are needed and the scene has only one start.
 pub(super) fn length(case: &Case, best: &Weighed<'_>, findings: &Findings) -> Result<Length, f64> {

@@ -168,7 +168,7 @@ fn fastest(all: &[Rival]) -> Frame {
         .number("ratio", 2, |(.., it)| it.ratio())
         .number("lowest", 2, |(.., it)| it.lowest())
         .number("highest", 2, |(.., it)| it.highest())
-        .frame("fastest", "Our rate over theirs, by the fastest of our configurations")
+        .frame("fastest", "Our rate over theirs, for our fastest configuration")
 }
 
 fn same(all: &[Rival]) -> Frame {
@@ -188,7 +188,7 @@ fn memory(all: &[Rival]) -> Frame {
         .count("particles", |(_, it)| it.particles)
         .number("ours (MB)", 0, |(_, it)| 1e-6 * it.ours as f64)
         .number("theirs (MB)", 0, |(_, it)| 1e-6 * it.theirs as f64)
-        .frame("memory", "The most memory that both programs had at once")
+        .frame("memory", "Peak memory of both programs")
 }
 
 fn summary(all: &[Rival]) -> Frame {
@@ -196,7 +196,7 @@ fn summary(all: &[Rival]) -> Frame {
     let differ = same.filter(|it| (it.ours - it.theirs).abs() > it.within).count();
     Rows::of([differ])
         .count("quantities that differ", |differ| *differ)
-        .frame("summary", "Quantities in which both programs must agree and do not")
+        .frame("summary", "Quantities that should agree between both programs but do not")
 }
 
 fn programs(all: &[Rival]) -> Frame {

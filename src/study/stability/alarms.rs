@@ -77,7 +77,7 @@ pub(crate) fn alarms(maps: &[(String, Stability)]) -> Frame {
         .count("wrong, by nothing else", |(.., record)| record.alone)
         .number("largest value over limit, right", 3, |(.., record)| record.largest_right)
         .number("smallest value over limit, wrong by nothing else", 3, |(.., record)| record.smallest_alone)
-        .frame("alarms", "Hits and false alarms of every limit of theory and every check")
+        .frame("alarms", "Correct warnings and false alarms of every limit and check")
 }
 
 #[cfg(test)]

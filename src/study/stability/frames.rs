@@ -111,7 +111,7 @@ fn of_maps(maps: &Maps) -> Frame {
         })
         .number("spread over seeds", 3, |(_, data)| median(spreads(data).into_iter()))
         .text("left out", |(_, data)| data.left_out.clone().unwrap_or_default())
-        .frame("maps", "Maps: axes, places by kind, and edges beside theory")
+        .frame("maps", "Maps: axes, runs by kind, and boundaries compared with theory")
 }
 
 /// Boundaries in multiples of the scene's own step: median, lowest and highest over the seeds.
@@ -162,7 +162,7 @@ fn said(maps: &Maps) -> Frame {
         .number("warned of before", 0, |(.., said)| said.warned_before as f64)
         .number("warned of by the run", 0, |(.., said)| said.warned_by_run as f64)
         .number("nothing said", 0, |(_, class, said)| class.ends().then_some(said.unsaid as f64))
-        .frame("said", "What the program says of it")
+        .frame("said", "Warnings by outcome of a run")
 }
 
 /// All runs of all maps.
@@ -189,7 +189,7 @@ fn cells(maps: &Maps) -> Frame {
         .text("warned_by_run", |(.., cell)| cell.warned_by_run().join(", "))
         .text("findings", |(.., cell)| cell.alarms.iter().map(Alarm::words).collect::<Vec<_>>().join(", "))
         .text("what", |(.., cell)| &cell.what)
-        .frame("cells", "Every place")
+        .frame("cells", "Every run")
 }
 
 /// Boundaries of all seeds.
@@ -221,7 +221,7 @@ fn boundaries(maps: &Maps) -> Frame {
         .number("seed", 0, |(.., seed, _)| **seed as f64)
         .number("largest_step_that_does", 6, |(_, data, .., edge)| does(data, edge))
         .number("smallest_step_that_does_not", 6, |(_, data, .., edge)| does_not(data, edge))
-        .frame("edges", "Every edge")
+        .frame("edges", "Every boundary")
 }
 
 /// Ratio of each integrator's longest working step to the step beyond which theory predicts growing errors, at the scene's own
@@ -235,7 +235,7 @@ fn pairs(maps: &Maps) -> Frame {
         .text("scene", |(name, ..)| *name)
         .text("integrator", |(_, scheme, _)| *scheme)
         .number("edge over theory", 3, |(.., ratio)| *ratio)
-        .frame("pairs", "Longest step that works over the step beyond which theory says that errors grow")
+        .frame("pairs", "Longest working step over the step beyond which theory predicts growing errors")
 }
 
 /// Stability boundary over the seeds, and the theoretical step, at every value.
@@ -255,7 +255,7 @@ fn edges(maps: &Maps) -> Frame {
         .number("highest seed", 6, |(.., edge, _)| edge.map(|edge| edge[2]))
         .number("theory", 6, |(.., theory)| theory.map(|(step, _)| step))
         .text("by", |(.., theory)| theory.map_or("", |(_, name)| name))
-        .frame("edges-over-seeds", "The edge of what works over the seeds, and the step of theory")
+        .frame("edges-over-seeds", "Stability boundary over the seeds, and theoretical step")
 }
 
 /// Straight lines of the maps, by their ends: the scene's own step, and parameter values with a theoretical meaning.
@@ -276,7 +276,7 @@ fn lines(maps: &Maps) -> Frame {
         .text("line", |(_, line, ..)| line.clone())
         .number("value", 6, |(.., value, _)| *value)
         .number("step", 6, |(.., step)| *step)
-        .frame("lines", "The scene's own step, and values that theory names")
+        .frame("lines", "The scene's own step, and values with a theoretical meaning")
 }
 
 /// Values without a reference.
@@ -286,5 +286,5 @@ fn unjudged(maps: &Maps) -> Frame {
         .text("scene", |(name, _)| *name)
         .number("value", 6, |(_, (value, _))| *value)
         .text("reason", |(_, (_, why))| why)
-        .frame("unjudged", "Values at which the runs with the smallest step break, too")
+        .frame("unjudged", "Values without a reference: runs at the smallest step fail, too")
 }

@@ -54,7 +54,7 @@ fn of_scenes(scenes: &Scenes) -> Frame {
         .count("starts of the collision", |(_, data)| data.collision.as_ref().map_or(0, |it| it.phases))
         .text("machine", |(_, data)| data.machine.clone().unwrap_or_default())
         .number("difference of repeats (%)", 0, |(_, data)| 100.0 * spread(data))
-        .frame("scenes", "Scenes: the own configuration, and the limits of the comparison")
+        .frame("scenes", "Scenes: their own configurations, and the limits of the comparison")
 }
 
 /// Step in multiples of the scene's own.
@@ -117,7 +117,7 @@ fn orders(scenes: &Scenes) -> Frame {
         .cells(STEPS_OF, |(.., order)| steps_of(order.fitted))
         .number("theory", 1, |(.., order)| order.theory.map(|(order, _)| order))
         .cell("what decides it", |(.., order)| order.theory.map(|(_, why)| why))
-        .frame("orders", "Orders of convergence, measured and by theory")
+        .frame("orders", "Orders of convergence, measured and theoretical")
 }
 
 fn of_collisions(scenes: &Scenes) -> Frame {
@@ -132,7 +132,7 @@ fn of_collisions(scenes: &Scenes) -> Frame {
         .number("order of the RMS", 2, |(.., order)| order.spread.map(|it| it.order))
         .number("order of the mean", 2, |(.., order)| order.mean.map(|it| it.order))
         .cells(STEPS_OF, |(.., order)| steps_of(order.spread))
-        .frame("collision", "One collision: how the error of what comes out falls")
+        .frame("collision", "Single collision: order of the error of its outcomes")
 }
 
 /// All errors at the scene's own step.
@@ -152,7 +152,7 @@ fn errors(scenes: &Scenes) -> Frame {
         .into_iter()
         .fold(rows, with_errors)
         .number("cost of a unit of time (ms)", 3, |(.., run)| run.cost().map(|cost| 1e3 * cost))
-        .frame("errors", "Every error with the scene's own step")
+        .frame("errors", "All errors at the scene's own step")
 }
 
 fn references(scenes: &Scenes) -> Frame {
@@ -178,7 +178,7 @@ fn references(scenes: &Scenes) -> Frame {
             [] => "nothing".to_owned(),
             left_out => left_out.join("; "),
         })
-        .frame("references", "The time that is compared, and the error of the reference")
+        .frame("references", "Compared time, and error of the reference")
 }
 
 fn failed(scenes: &Scenes) -> Frame {

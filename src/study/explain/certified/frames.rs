@@ -89,7 +89,7 @@ fn within(plans: &[Judged]) -> Frame {
         .count("missed by bias", |of| of.runs(|it| it.missed_by(Cause::Bias)))
         .count("missed by statistics", |of| of.runs(|it| it.missed_by(Cause::Statistics)))
         .count("broken", |of| of.runs(|it| it.broken))
-        .frame("within", "Runs within the error that was asked for")
+        .frame("within", "Runs within the target error")
 }
 
 /// Reason why a plan was refused or is undecided; otherwise the cause of its misses.
@@ -134,7 +134,7 @@ fn table(plans: &[Judged]) -> Frame {
         .short("taken (s)", seconds(1))
         .number("trials (s)", 1, |it| it.trials)
         .text("plan", |it| it.carried().map_or(String::new(), |it| it.plan.clone()))
-        .frame("plans", "Plans, carried out")
+        .frame("plans", "Plans that were carried out")
 }
 
 /// A plan with its costs relative to the best of a grid.
@@ -185,7 +185,7 @@ fn errors(plans: &[Judged]) -> Frame {
         .text("class", |(class, ..)| *class)
         .number("error over the one asked for", 3, |(_, part, _)| *part)
         .number("runs with at most that (%)", 2, |(.., share)| *share)
-        .frame("errors", "Errors of runs over those that were asked for")
+        .frame("errors", "Errors of runs relative to the target error")
 }
 
 /// Returns the share of plans over their largest cost relative to the best. A curve ends below 100 % where some plans do not reach the error.
