@@ -220,7 +220,7 @@ mod tests {
             ("relation = \"equals\"", "tolerance = 0.1", "a tolerance needs a relation"),
             ("expected = 59\n", "", "`expected` and `relation`"),
             ("value = \"x\"\n", "", "needs a verdict"),
-            ("item = \"table\"\n", "", "needs the item"),
+            ("item = \"table\"\n", "", "needs the `item`"),
             ("reference = \"table 1\"\n", "", "needs a `reference`"),
             ("since = \"2026-11-26\"\n", "", "since"),
             ("\"BP93\"", "\"BP94\"", "BP93"),

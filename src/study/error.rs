@@ -95,7 +95,7 @@ pub(crate) enum StudyError {
     )]
     OutOfRange { name: &'static str, range: [f64; 2], bounds: [f64; 2] },
     #[error(
-        "every run of the scene fails; tried:{}\n  help: lower integrator.dt, or fix what the failures name",
+        "no run of the scene gave a usable result; tried:{}\n  help: lower integrator.dt, or fix what the failures name",
         tried.iter().map(|(what, why)| format!("\n  {what}: {why}")).collect::<String>()
     )]
     EveryRunFails {
