@@ -327,7 +327,7 @@ fn what_cannot_be_planned_is_refused() {
     ends_with(
         &bad(&kepler),
         4,
-        &["no plan reaches an error of 1e-30 of energy_error", "the smallest error found is"],
+        &["no configuration tried reaches an error of 1e-30 of energy_error", "the smallest error found is"],
     );
 }
 
@@ -386,9 +386,9 @@ fn trials_that_were_stopped_go_on() {
     if code == Some(130) {
         assert!(runs() >= 3);
     } else {
-        ends_with(&ended, 4, &["no plan reaches"]);
+        ends_with(&ended, 4, &["no configuration tried reaches"]);
     }
-    ends_with(&command.output().unwrap(), 4, &["no plan reaches an error of 1e-30"]);
+    ends_with(&command.output().unwrap(), 4, &["no configuration tried reaches an error of 1e-30"]);
     assert_eq!((journals(), runs()), (vec![], 0));
 }
 

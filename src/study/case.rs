@@ -37,7 +37,7 @@ impl Case {
     /// Parses a scene from its text, under a name, with overrides.
     ///
     /// # Errors
-    /// As of [`load`](Case::load).
+    /// [`SceneErrors`] as for [`load`](Case::load).
     pub(crate) fn parse(
         what: &str,
         text: &str,

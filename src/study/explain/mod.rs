@@ -111,7 +111,7 @@ pub(crate) enum ExplainError {
     },
     /// No configuration reaches the error.
     #[error(
-        "no plan reaches an error of {} of {quantity}: {unreached}\n  help: accept a larger error, or {}",
+        "no configuration tried reaches an error of {} of {quantity}: {unreached}\n  help: accept a larger error, or {}",
         significant(unreached.wanted, 3),
         unreached.advice()
     )]

@@ -53,7 +53,7 @@ impl Display for Unreached {
         match self.takes {
             Some([takes, limit]) => write!(
                 out,
-                "a plan that takes about {} would, above the limit of {}, within which the error is {}",
+                "reaching it takes about {}, above the limit of {}, which gives an error of {}",
                 seconds(takes),
                 seconds(limit),
                 significant(self.least, 2)
