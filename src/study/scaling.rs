@@ -64,8 +64,7 @@ pub(crate) struct Phase {
     /// True for work outside steps.
     pub(crate) is_beside: bool,
     /// Serial part by Amdahl's law, from the fewest and the most threads; below 0 where the speedup exceeds the number of threads. None for a single
-    /// number
-    /// of threads, or where nothing was measured.
+    /// number of threads, or where nothing was measured.
     pub(crate) serial: Option<f64>,
 }
 

@@ -30,9 +30,8 @@ pub(crate) struct Convoy {
 /// Groups the instructions of a program into convoys. Each instruction, in order, joins the last convoy unless its unit is occupied, or it needs
 /// a result of that convoy and the machine does not chain.
 ///
-/// The number of registers is unlimited, so only true dependences count. An expansion is a chain
-/// of dependent steps with its classes spread evenly over it: machine files state the number of each, not their order. Data
-/// stored by a convoy are not loaded by the same convoy.
+/// The number of registers is unlimited, so only true dependences count. An expansion is a chain of dependent steps with its classes spread evenly
+/// over it: machine files state the number of each, not their order. Data stored by a convoy are not loaded by the same convoy.
 pub(crate) fn convoys(machine: &MachineModel, order: &[Outline], memory: Memory) -> Vec<Convoy> {
     let mut issue = Issue { machine, memory, convoys: vec![], used: HashMap::new(), results: HashMap::new() };
     for outline in order {

@@ -1,8 +1,7 @@
 //! Clocks: conversion of the operations of a program to clock periods.
 //!
-//! Every clock has the form of Hennessy and Patterson's strip-mining formula,
-//! `T(n) = ceil(n / MVL) (T_loop + T_start) + n T_chime`, and differs in the values of its three numbers
-//! (its charge). The list is a ladder: each rung after the first two adds one property of vector machines to the rung
+//! Every clock has the form of Hennessy and Patterson's strip-mining formula, `T(n) = ceil(n / MVL) (T_loop + T_start) + n T_chime`, and differs in
+//! the values of its three numbers (its charge). The list is a ladder: each rung after the first two adds one property of vector machines to the rung
 //! before it, so a table shows the effect of that property.
 
 mod convoy;
@@ -17,7 +16,7 @@ use super::machine::MachineModel;
 
 macro_rules! define_clocks {
     ($(($variant:ident, $name:literal, $charge:path, $doc:literal)),* $(,)?) => {
-        /// A clock: charges the operations of a program, in clock periods of the machine.
+        /// Clock that charges the operations of a program, in clock periods of the machine.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum Clock {
             $(#[doc = $doc] $variant,)*

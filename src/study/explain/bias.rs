@@ -65,8 +65,7 @@ pub(super) struct Seen {
 
 impl Seen {
     /// Estimates the difference of case `place` from a window and the one before, for a quantity with a memory (time) and for the mean over a run
-    /// that
-    /// shows part `of_run` of the steady-state bias.
+    /// that shows part `of_run` of the steady-state bias.
     pub(super) fn of(
         [before, window]: [&Window; 2],
         place: usize,

@@ -1,7 +1,6 @@
 //! Bias of a step estimated from single collisions of two particles of the scene. Each collision is compared with one at a far shorter step, averaged
-//! over the
-//! phase within a step at which the contact begins. A relative error of collisions causes about the same relative error of means, and needs no long
-//! run.
+//! over the phase within a step at which the contact begins. A relative error of collisions causes about the same relative error of means, and needs
+//! no long run.
 
 use super::findings::{Way, Work};
 use super::mean::Mean;
@@ -33,8 +32,7 @@ struct Change {
 
 impl Work<'_> {
     /// Returns the relative error of collisions at a step of a configuration, in impulses and spin and in the energy lost. None where particles do
-    /// not touch or
-    /// a collision fails.
+    /// not touch or a collision fails.
     pub(super) fn error_of_collisions(&self, way: &Way, step: f64, mean: &Mean) -> Option<f64> {
         let trials = self.case.entry.trials?;
         let speed = approach(&mean.states, &self.case.prepared.domain);

@@ -1,6 +1,5 @@
 //! Energy drift along long runs. An integrator without a shadow energy loses or gains a little in every step, and the loss accumulates where nothing
-//! drives or
-//! dissipates. A mean then changes with the length of its run, which pairs of short runs do not show.
+//! drives or dissipates. A mean then changes with the length of its run, which pairs of short runs do not show.
 
 use super::findings::{Way, Work};
 use super::mean::Mean;

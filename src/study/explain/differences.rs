@@ -48,8 +48,7 @@ enum Trouble {
 
 impl Work<'_> {
     /// Measures the bias of the cheapest configuration of each integrator. All that differ in precision or search alone share it: rounding is far
-    /// below the
-    /// resolution of a mean.
+    /// below the resolution of a mean.
     pub(super) fn biases(&self, ways: &mut [Way], mean: &Mean) {
         if self.case.entry.trials.is_none() {
             return;

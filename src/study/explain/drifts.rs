@@ -40,8 +40,7 @@ struct Costs {
 
 impl Work<'_> {
     /// Measures the deviation over whole runs, one after the other. The next run is of the configuration expected to reach the error most cheaply, as
-    /// long as
-    /// one may be cheaper than the best found.
+    /// long as one may be cheaper than the best found.
     ///
     /// A part of a run says nothing about the rest: bodies may have a close encounter late.
     pub(super) fn drifts(&self, mut ways: Vec<Way>) -> Result<Findings, ExplainError> {

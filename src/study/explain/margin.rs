@@ -9,8 +9,7 @@ const SURE: f64 = 0.95;
 /// counted with noise.
 const FULL: f64 = 96.0;
 /// Factor on the length of a run: its average cuts off a part as a transient and takes the larger of two errors. Calibrated on the correlated series
-/// of the test
-/// below, which therefore does not confirm it; item `plans` tests it.
+/// of the test below, which therefore does not confirm it; item `plans` tests it.
 const CUT_OFF: f64 = 1.15;
 /// Relative rounding margin of a time, so that the error bar computed from it is not too large.
 const ROUNDED_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
@@ -20,8 +19,7 @@ pub(crate) struct Bars {
     /// Square of the error bar of a mean over one unit of time.
     square: f64,
     /// For each possible number of waves of an error bar: the time from which it applies (time), and the factor by which the square of the error bar
-    /// may exceed
-    /// the prediction of the trials.
+    /// may exceed the prediction of the trials.
     levels: Vec<WaveLevel>,
 }
 
@@ -35,8 +33,7 @@ impl Known {
     /// Error bars of runs of any length.
     ///
     /// The square of an error bar is t² s² over the time, with t of Student's distribution. The variance s² of the trials and that of the run, each a
-    /// χ² over its
-    /// degrees of freedom, have a ratio that follows the F distribution.
+    /// χ² over its degrees of freedom, have a ratio that follows the F distribution.
     pub(crate) fn bars(&self) -> Bars {
         let all = |margin| Bars { square: self.square, levels: vec![WaveLevel { from: 0.0, margin }] };
         if self.square == 0.0 || !self.freedoms.is_finite() {
@@ -99,8 +96,8 @@ mod tests {
     use stripmine_physics::averages::{LIKELY_ENOUGH, Outcome, estimated, student};
 
     /// Error bars of independent normal values with a variance of 1, computed as in averages: from 1.2 √n waves, at most 16, whose squares are
-    /// independent. A plan
-    /// is made from some values, and the error bar of another run of the planned length should be as small as requested. Each case has 2000 plans.
+    /// independent. A plan is made from some values, and the error bar of another run of the planned length should be as small as requested. Each
+    /// case has 2000 plans.
     #[test]
     fn bars_come_out_as_small_as_planned() {
         let mut state = 7_u64;
@@ -131,10 +128,8 @@ mod tests {
     }
 
     /// Correlated values, as in runs: a plan is made from the estimate of a series of some independent samples, and the error bar of another series
-    /// of the planned length
-    /// should be as small as requested, in 400 plans per case. The length was calibrated on the first memory alone, and the second confirms it. The
-    /// third is half noise:
-    /// there 88 % to 95 % of the error bars were small enough, and its limit of 86 % was set after that.
+    /// of the planned length should be as small as requested, in 400 plans per case. The length was calibrated on the first memory alone, and the
+    /// second confirms it. The third is half noise: there 88 % to 95 % of the error bars were small enough, and its limit of 86 % was set after that.
     #[test]
     fn bars_of_correlated_series_come_out_as_small_as_planned() {
         let mut state = 11_u64;

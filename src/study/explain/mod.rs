@@ -1,9 +1,8 @@
 //! The planner: finds the configuration, step and run length that reach a target error at the least cost.
 //!
 //! Short trial runs measure the cost of each configuration (`findings`), the longest step before a theoretical limit, a check or a failure, the
-//! scatter of the
-//! mean, and its bias at a long step (`bias`). From these follow the cheapest step and run length (`optimum`), and with them a plan (`plan`).
-//! Nothing here is fitted: what the trials could not resolve counts as error, with its error bar.
+//! scatter of the mean, and its bias at a long step (`bias`). From these follow the cheapest step and run length (`optimum`), and with them a plan
+//! (`plan`). Nothing here is fitted: what the trials could not resolve counts as error, with its error bar.
 
 pub(crate) mod accuracy;
 mod alike;

@@ -42,8 +42,7 @@ pub(super) const UNBIASED: f64 = 0.25;
 /// time) plus a statistical error that a run reaches after `time_for` it. None where bias alone exceeds the error.
 ///
 /// A shorter step costs more per unit of time and has less bias, which leaves more of the error to statistics and so needs less time. A bias that
-/// grows
-/// with the time needs a longer run, which is found by iteration from below.
+/// grows with the time needs a longer run, which is found by iteration from below.
 pub(crate) fn optimum(
     terms: Terms,
     (error, shortest): (f64, f64),

@@ -91,8 +91,7 @@ pub(crate) fn plan(
 }
 
 /// Puts first, among configurations as cheap within timing accuracy, the scene's own, or else the first in the order of the settings: longer trials
-/// then
-/// lead to the same plan.
+/// then lead to the same plan.
 pub(super) fn prefer(weighed: &mut [Weighed<'_>], case: &Case) {
     let Some(cheapest) = weighed.first().map(|it| it.optimum.seconds) else { return };
     let own = case.own.label();

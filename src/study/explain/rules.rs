@@ -159,8 +159,7 @@ fn trials_by_a_made_time_come_out_the_same() {
 }
 
 /// By hand: the square of an error bar is 16 in a unit of time and well known, so an error of 0.01 takes 160 000 units of time at 1 s each; the error
-/// within
-/// the limit of an hour is 4/√3600 = 0.0667.
+/// within the limit of an hour is 4/√3600 = 0.0667.
 #[test]
 fn a_plan_above_the_limit_says_what_the_limit_gives() {
     let case = gas();

@@ -1,10 +1,8 @@
 //! Bias of a step from a single run, for integrators that conserve a shadow energy.
 //!
 //! Such an integrator conserves H + h² H₂ up to higher powers of the step h, so the energy H of a run without friction and drive fluctuates as −h²
-//! H₂.
-//! To leading order a mean of A at the step is that of short steps less β h² Cov(A, H₂), which is β Cov(A, H) along the run (Bond and Leimkuhler,
-//! Acta
-//! Numerica 16, 2007). The statistical error falls with h², as the bias does.
+//! H₂. To leading order a mean of A at the step is that of short steps less β h² Cov(A, H₂), which is β Cov(A, H) along the run (Bond and Leimkuhler,
+//! Acta Numerica 16, 2007). The statistical error falls with h², as the bias does.
 
 use super::findings::{Way, Work};
 use super::mean::Mean;

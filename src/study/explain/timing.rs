@@ -27,8 +27,7 @@ impl Work<'_> {
     /// Times every configuration at its longest step, and sorts them by cost.
     ///
     /// The cheapest search or engine is determined with the scene's own integrator and precision, as results are the same; then integrators and
-    /// precisions are
-    /// timed with it.
+    /// precisions are timed with it.
     pub(super) fn timed_ways(&self) -> Result<Vec<Way>, ExplainError> {
         let all = Choice::all(self.case.entry.axes);
         let own = &self.case.own;
@@ -58,8 +57,7 @@ impl Work<'_> {
     }
 
     /// Times configurations in a race: all are timed, then the better half again for twice as long each, and so on until the best leads or their
-    /// times
-    /// overlap. After the deadline none but the scene's own is begun.
+    /// times overlap. After the deadline none but the scene's own is begun.
     ///
     /// The smallest of several times counts, as other programs disturb the others.
     fn timed(&self, choices: &[&Choice], seconds: f64, end: f64) -> Vec<Way> {

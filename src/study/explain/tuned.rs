@@ -15,8 +15,7 @@ pub(crate) struct Tuned {
 }
 
 /// Returns values for the `auto` settings of a scene, from the cheapest cached configuration with the scene's own integrator and precision. None
-/// where
-/// nothing is cached of it or of a similar scene, or no setting is `auto`. Explicit settings of a scene are never changed.
+/// where nothing is cached of it or of a similar scene, or no setting is `auto`. Explicit settings of a scene are never changed.
 ///
 /// # Errors
 /// [`KeptError`] if the cache cannot be read.

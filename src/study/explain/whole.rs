@@ -71,8 +71,7 @@ impl Work<'_> {
     }
 
     /// Measures whole runs from several starts, as many at once as there are threads, for about `seconds`. A sample of the same configuration from
-    /// the
-    /// scene's own start is the first, if it is long enough.
+    /// the scene's own start is the first, if it is long enough.
     pub(super) fn whole_runs(
         &self,
         overrides: &Overrides,

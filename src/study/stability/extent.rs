@@ -13,10 +13,9 @@ const SMALLEST: usize = 3;
 /// Approximate number of runs per boundary, and their cost: each is as long as one with four own steps.
 const EDGE: [f64; 2] = [8.0, 8.0 / 4.0];
 /// Share of the time that is planned: measured, not derived. The rest covers costs unknown in advance: samples of runs, biased means that are
-/// repeated with
-/// another seed, boundaries below the scene's own step. Maps of four scenes took 1.7 to 2.6 times the seconds of [`Costs::of_map`], and 1/2.6 is
-/// 0.38; which scenes
-/// these were is not recorded. A test checks the planned time (`no_map_takes_more_than_its_time`); none checks the actual time.
+/// repeated with another seed, boundaries below the scene's own step. Maps of four scenes took 1.7 to 2.6 times the seconds of [`Costs::of_map`], and
+/// 1/2.6 is 0.38; which scenes these were is not recorded. A test checks the planned time (`no_map_takes_more_than_its_time`); none checks the actual
+/// time.
 const PLANNED: f64 = 0.38;
 
 /// Costs of runs.
@@ -148,8 +147,7 @@ mod tests {
     }
 
     /// By hand: a map of 3 values and steps (0.5, 8 and 128 of the own) from one seed with one integrator. Steps: 3 (2 + 1/8 + 1/128 + 16 + 2) + 16 +
-    /// 2, starts:
-    /// 3 (3 + 8 + 8) + 8 + 8.
+    /// 2, starts: 3 (3 + 8 + 8) + 8 + 8.
     #[test]
     fn a_map_costs_its_steps_and_starts() {
         let [steps, starts] = Costs { each: 1.0, start: 1.0, schemes: 1 }.of_map(3, 1);

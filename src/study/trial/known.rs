@@ -125,8 +125,7 @@ impl Known {
     /// Returns the mean with its variance at another spacing of rows (time).
     ///
     /// The variance of a mean over rows Δ apart is that of values with exponentially decaying correlation, v Δ coth(v Δ/s). Here v is the variance of
-    /// a single value and s that
-    /// of close rows in a unit of time: the limits are s for close rows, and v Δ for independent rows.
+    /// a single value and s that of close rows in a unit of time: the limits are s for close rows, and v Δ for independent rows.
     #[must_use]
     pub(crate) fn looked_at(&self, every: f64) -> Known {
         if self.single == 0.0 || every <= self.every {
@@ -182,10 +181,8 @@ mod tests {
     }
 
     /// By hand, for a variance of 1 and an error bar of two standard errors: rows Δ apart of values that keep a part m in a unit of time have 4 Δ (1
-    /// + m^Δ)/(1 − m^Δ). With
-    /// m = 0.9 that is 76 for every value and 79 for every eighth: the eighth is enough. With m = 0 it is 4 and 32: every value counts, unless a row
-    /// costs as much as
-    /// eight units of time.
+    /// + m^Δ)/(1 − m^Δ). With m = 0.9 that is 76 for every value and 79 for every eighth: the eighth is enough. With m = 0 it is 4 and 32: every
+    /// value counts, unless a row costs as much as eight units of time.
     #[test]
     fn rows_are_as_close_as_pays() {
         let near = |found: f64, exact: f64| (found / exact - 1.0).abs() < 0.25;

@@ -99,8 +99,7 @@ impl Course {
 }
 
 /// Runs configurations from the same states over at least two windows, each twice as long, until the next would exceed `seconds`. Runs stay together
-/// in the first
-/// windows; where time is left, the last are those of independent runs.
+/// in the first windows; where time is left, the last are those of independent runs.
 ///
 /// # Errors
 /// [`Broken`] names the configuration that failed.

@@ -291,8 +291,7 @@ impl Trial<'_> {
     }
 
     /// Wall seconds of a unit of time without rows, and of a row. Longer stretches cost less per unit of time by their share of a row, which takes
-    /// more than
-    /// its observation.
+    /// more than its observation.
     fn costs(
         &self,
         simulation: &mut dyn Simulation,
@@ -330,8 +329,7 @@ impl Trial<'_> {
     }
 
     /// Stretch that takes between `least` and `most` seconds. It consists of steps, fewer than [`STEPS`] only where more would exceed `most`, or, for
-    /// a method
-    /// without steps, of a part of the time between rows.
+    /// a method without steps, of a part of the time between rows.
     fn stride(
         &self,
         simulation: &mut dyn Simulation,

@@ -62,8 +62,7 @@ fn is_collision(subject: &Subject) -> bool {
 }
 
 /// Runs the collision with every scheme at some steps (time, rising), each from as many starts as there are phases. None unless the scene is a
-/// collision of two
-/// discs that separate within its time.
+/// collision of two discs that separate within its time.
 ///
 /// # Errors
 /// [`StudyError`] as for [`Runs::recall`].

@@ -16,8 +16,7 @@ pub(crate) struct Cheapest<'d> {
 }
 
 /// Returns the cheapest run with an error of positions of at most `error`. Among ties it is the scene's own configuration, or the first in the order
-/// of the
-/// settings.
+/// of the settings.
 fn cheapest(data: &WorkPrecision, error: f64, is_meant: fn(&Run) -> bool) -> Option<Cheapest<'_>> {
     let serves = |run: &&Run| is_meant(run) && run.error(Measure::Position).is_some_and(|it| it <= error);
     let timed: Vec<(&Run, f64)> =
@@ -31,8 +30,7 @@ fn cheapest(data: &WorkPrecision, error: f64, is_meant: fn(&Run) -> bool) -> Opt
 }
 
 /// For each target error that is above the reference's own and reached by a run, returns the cheapest run without a warning, or the reason why no run
-/// is
-/// recommended.
+/// is recommended.
 pub(crate) fn wishes(data: &WorkPrecision) -> Vec<(f64, Result<Cheapest<'_>, String>)> {
     let floor = data.reference.floor.get(&Measure::Position).copied().unwrap_or(0.0);
     let answer = |wish: f64| {

@@ -133,8 +133,7 @@ impl Planned<'_> {
     }
 
     /// Runs the reference and returns it with its final state. It has a fraction of the smallest step tried, and is compared with a run at twice that
-    /// step and one
-    /// with another scheme.
+    /// step and one with another scheme.
     ///
     /// # Errors
     /// [`StudyError::EveryRunFails`] if one of the three fails.

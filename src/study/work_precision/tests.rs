@@ -210,8 +210,7 @@ fn no_run_with_an_objection_is_recommended() {
 }
 
 /// Among runs whose costs agree within a tenth the scene's own configuration is named, or the first in the order of the settings. On a clock in which
-/// a step of every
-/// configuration takes the same time, all of them tie.
+/// a step of every configuration takes the same time, all of them tie.
 #[test]
 fn ties_go_to_the_scene_s_own_configuration() {
     let data = measured(&written(PRESSED, &[]), &effort(4.0)).unwrap();

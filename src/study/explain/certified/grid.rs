@@ -45,8 +45,7 @@ pub(crate) struct Costs {
     /// Cost of the plan's configuration and step, run for as long as the reference requires; none where their bias exceeds the error.
     pub(crate) choice: Option<f64>,
     /// Costs of the scene's own values, of neighbour lists always, and of the scene's own integrator in f64 at its longest step; none where the error
-    /// is
-    /// not reached, or the method has no such configuration.
+    /// is not reached, or the method has no such configuration.
     pub(crate) baselines: [Option<f64>; 3],
     /// Best configuration of the grid, and its wall seconds.
     pub(crate) best: String,
@@ -326,8 +325,7 @@ mod tests {
     }
 
     /// By hand. The square of an error bar is 16 in a unit of time, known exactly; the transient is 3, so an error of 0.5 without bias takes 64 + 3,
-    /// with a
-    /// bias of 0.1 100 + 3. The speed of a hundred threads makes no plan of several runs cheaper.
+    /// with a bias of 0.1 100 + 3. The speed of a hundred threads makes no plan of several runs cheaper.
     #[test]
     fn costs_are_over_the_cheapest_that_reaches_the_error() {
         let case = Case::load("dense-gas", &["particles.count=100".to_owned()], METHODS).unwrap();

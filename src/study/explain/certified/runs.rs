@@ -82,8 +82,7 @@ impl Ensemble<'_> {
     }
 
     /// Carries out a plan from starts that no other number uses, and returns the mean of all seeds and the wall seconds. The seeds run side by side
-    /// if the plan
-    /// is alone, otherwise one after the other.
+    /// if the plan is alone, otherwise one after the other.
     fn carried_out(&self, plan: &Plan, number: usize, is_alone: bool) -> Result<[f64; 2], String> {
         let seeds = plan.seeds as usize;
         let starts = (0..seeds).map(|seed| self.start(&plan.overrides, number * seeds + seed));

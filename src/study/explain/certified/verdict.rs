@@ -75,8 +75,7 @@ mod tests {
     use super::*;
 
     /// By hand, for a reference of 10 and an error of 2: runs, error bar of the reference, and the number within, missed by bias, missed by
-    /// statistics, failed;
-    /// none where nothing is decided.
+    /// statistics, failed; none where nothing is decided.
     type Case = (&'static [f64], usize, f64, Option<[usize; 4]>);
 
     #[test]
