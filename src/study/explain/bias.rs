@@ -100,7 +100,7 @@ pub(super) fn fitted(seen: &[Seen], power: f64) -> [f64; 2] {
     });
     let (mut upper, mut lower, mut best) = (0.0, 0.0, f64::INFINITY);
     for (law, value, bar) in terms {
-        // A common factor of the weights cancels; squares of small error bars would underflow.
+        // A common factor of the weights cancels; squares of small error bars would not.
         let weight = (law / bar).powi(2);
         upper += weight * value / law;
         lower += weight;
