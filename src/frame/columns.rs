@@ -39,9 +39,7 @@ pub(crate) enum Role {
     Number,
     /// 95 % half-width of the number before it, or the error named in the table's note.
     Error,
-    /// Lowest of several numbers.
     Lowest,
-    /// Highest of several numbers.
     Highest,
 }
 

@@ -26,10 +26,8 @@ pub(crate) struct Package {
     name: String,
     title: String,
     profile: String,
-    /// Seeds of the random numbers.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub seeds: Vec<u64>,
-    /// Files.
     pub(crate) resources: Vec<Resource>,
 }
 
@@ -38,7 +36,6 @@ pub(crate) struct Package {
 pub(crate) struct Resource {
     name: String,
     title: String,
-    /// Name of the file.
     pub path: String,
     format: String,
     encoding: String,

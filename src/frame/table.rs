@@ -167,9 +167,7 @@ fn grouped(digits: &str) -> String {
 pub(crate) struct Table {
     /// Name for files, in lower case.
     pub name: String,
-    /// Title of the table.
     pub title: String,
-    /// Column headings, with units.
     pub columns: Vec<String>,
     /// Rows, each as long as the headings.
     pub rows: Vec<Vec<Cell>>,
@@ -178,12 +176,10 @@ pub(crate) struct Table {
 }
 
 impl Table {
-    /// Adds a note.
     pub(crate) fn note(self, note: impl Into<String>) -> Table {
         self.notes([note])
     }
 
-    /// Adds several notes.
     pub(crate) fn notes(mut self, notes: impl IntoIterator<Item = impl Into<String>>) -> Table {
         self.notes.extend(notes.into_iter().map(Into::into));
         self

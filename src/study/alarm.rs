@@ -8,13 +8,9 @@ use stripmine_physics::number::significant;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Finding {
-    /// The step is within the limit.
     Within,
-    /// A warning before the run.
     Warned,
-    /// The scene is refused.
     Refused,
-    /// A warning during the run.
     WarnedByRun,
 }
 

@@ -22,21 +22,12 @@ pub(crate) enum StudyError {
          a smaller scene",
         significant(*needed, 2)
     )]
-    TooLittleTime {
-        /// Processor seconds of the smallest map.
-        needed: f64,
-        budget: f64,
-    },
+    TooLittleTime { needed: f64, budget: f64 },
     /// Trajectories of the scene cannot be compared.
     #[error(
         "positions of {scene} cannot be compared: {why}\n  help: chart the error of a mean: stripmine chart accuracy {scene} --of {quantity}"
     )]
-    NoTrajectories {
-        scene: String,
-        why: String,
-        /// A quantity that has a mean.
-        quantity: &'static str,
-    },
+    NoTrajectories { scene: String, why: String, quantity: &'static str },
     /// The user interrupted the study. Finished runs are kept.
     #[error("interrupted; the same command resumes after the finished runs")]
     Interrupted,

@@ -31,7 +31,6 @@ impl State {
         State(grains.iter().map(body).collect())
     }
 
-    /// Number of moving particles.
     pub(super) fn len(&self) -> usize {
         self.0.len()
     }

@@ -11,7 +11,6 @@ use crate::study::trial::Trial;
 use crate::study::{Case, Choice};
 use stripmine_physics::method::Decides;
 
-/// Name of the item.
 pub(crate) const NAME: &str = "accuracy";
 
 /// Steps of a curve, in parts of the longest.
@@ -199,7 +198,6 @@ fn biases(findings: &Findings, curves: &[Curve<'_>]) -> Frame {
         .frame("biases", "Bias of the mean by the step")
 }
 
-/// The cheapest run for each error.
 fn wishes(findings: &Findings, curves: &[Curve<'_>]) -> Frame {
     let mean = findings.mean.mean.abs();
     let cheapest = |wish: f64| {

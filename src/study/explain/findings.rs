@@ -74,7 +74,6 @@ pub(crate) struct Findings {
 }
 
 impl Way {
-    /// The settings of all axes.
     pub(super) fn choice(&self, case: &Case) -> Choice {
         let settings: Vec<(&str, &str)> =
             self.settings.iter().map(|(axis, name)| (axis.as_str(), name.as_str())).collect();
@@ -103,7 +102,6 @@ pub(super) struct Work<'w> {
 /// A simpler model of a scene, as measured.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Without {
-    /// Name of the omitted part.
     pub name: String,
     /// Mean of the simpler model less the mean of the scene, and its error bar; none where it fails or has no mean.
     #[serde(with = "any_number")]

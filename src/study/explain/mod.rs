@@ -82,12 +82,7 @@ pub(crate) struct Target {
 pub(crate) enum ExplainError {
     /// The scene does not observe the named quantity.
     #[error("this scene does not observe `{name}`\n  help: use one of {}", known.join(", "))]
-    NoSuchQuantity {
-        /// Requested name.
-        name: String,
-        /// Observed quantities.
-        known: Vec<&'static str>,
-    },
+    NoSuchQuantity { name: String, known: Vec<&'static str> },
     /// Every configuration of the scene fails.
     #[error(
         "every trial of the scene fails; tried:{}\n  help: lower integrator.dt, or fix what the failures name",
@@ -101,7 +96,6 @@ pub(crate) enum ExplainError {
     )]
     NoMean {
         quantity: &'static str,
-        /// Observed behaviour.
         why: String,
         /// Trial time that would suffice (s), estimated from these trials.
         enough: Option<f64>,
@@ -127,7 +121,6 @@ pub(crate) enum ExplainError {
     )]
     TooQuick {
         quantity: &'static str,
-        /// Available wall seconds.
         within: f64,
         /// Wall seconds of the fastest plan.
         least: f64,

@@ -24,10 +24,8 @@ impl Interval {
 pub(crate) struct Decision {
     /// Subject of the decision.
     pub what: String,
-    /// Recommended value.
     pub(crate) chosen: String,
     pub(crate) why: String,
-    /// Alternatives.
     pub(crate) beside: Vec<Beside>,
 }
 
@@ -56,7 +54,6 @@ pub(crate) struct Plan {
     pub mean: Option<[f64; 2]>,
     /// Requested error, in the quantity's unit.
     pub error: Option<f64>,
-    /// Decisions in order.
     pub(crate) decisions: Vec<Decision>,
     /// Expected error, in the quantity's unit.
     pub expected: Expected,
@@ -126,7 +123,6 @@ pub(crate) struct LeftOut {
     pub(crate) cost: Option<f64>,
     /// Verdict for the target error.
     pub(crate) need: Need,
-    /// Verdict in words.
     pub says: String,
 }
 

@@ -104,7 +104,6 @@ pub(crate) struct SchemeLimit {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Said {
     pub all: usize,
-    /// Refused by the program.
     pub refused: usize,
     /// Warned of before the run.
     pub(crate) warned_before: usize,
@@ -115,7 +114,6 @@ pub(crate) struct Said {
 }
 
 impl Stability {
-    /// All runs of the map.
     pub(crate) fn cells(&self) -> impl Iterator<Item = &Cell> {
         self.map.iter().flatten()
     }

@@ -39,7 +39,6 @@ impl Class {
         Class::Failed(Cause::Other),
     ];
 
-    /// Name of the class.
     pub(crate) const fn name(self) -> &'static str {
         match self {
             Class::Works => "works",

@@ -25,7 +25,6 @@ pub(crate) enum Cause {
 }
 
 impl Cause {
-    /// Name of the cause.
     pub(crate) const fn name(self) -> &'static str {
         match self {
             Cause::Penetration => "penetration",
@@ -49,7 +48,6 @@ pub(crate) struct RunFailure {
 }
 
 impl RunFailure {
-    /// Failure by interruption.
     pub(super) fn interrupted() -> RunFailure {
         RunFailure { cause: Cause::Interrupted, why: String::new() }
     }

@@ -44,7 +44,6 @@ pub(crate) struct Sample {
     pub outcome: Outcome,
     /// Set if it went beyond the end of the scene's own run.
     pub(crate) comes_beyond_end: bool,
-    /// Warnings of its checks.
     pub warnings: Vec<RunWarning>,
     /// Time series of the quantity: end of each stretch (time), and its value.
     pub(crate) series: Vec<[f64; 2]>,

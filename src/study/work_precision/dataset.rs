@@ -24,7 +24,6 @@ pub(crate) struct WorkPrecision {
     pub own: String,
     pub(crate) growth: Growth,
     pub(crate) plan: Plan,
-    /// Compared time (time).
     pub duration: f64,
     /// Events per particle in that time.
     pub(crate) encounters: Encounters,

@@ -27,7 +27,6 @@ pub(crate) struct Encounters {
 }
 
 impl Encounters {
-    /// Name of the events.
     pub(crate) fn name(&self) -> &'static str {
         if self.of_contacts { "contacts" } else { "turns of the velocity" }
     }

@@ -21,7 +21,6 @@ pub(crate) enum Measure {
 }
 
 impl Measure {
-    /// Every measure.
     pub(crate) const ALL: [Measure; 5] = [
         Measure::Position,
         Measure::LargestPosition,

@@ -18,11 +18,9 @@ pub(crate) enum Class {
 }
 
 impl Class {
-    /// Every class.
     pub(crate) const ALL: [Class; 5] =
         [Class::Driven, Class::Granular, Class::HardDiscs, Class::Bath, Class::Bodies];
 
-    /// Name of the class.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Class::Driven => "driven granular",
@@ -37,12 +35,10 @@ impl Class {
 /// A scene, a quantity and the target errors, each of which is a plan.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Asked {
-    /// Kind of the scene.
     pub(crate) class: Class,
     /// Name of the preset, or of a scene with its text.
     preset: &'static str,
     text: Option<&'static str>,
-    /// Overrides of the scene.
     overrides: &'static [&'static str],
     pub quantity: &'static str,
     /// Target errors of the mean, or of the value of a conserved quantity.

@@ -12,12 +12,10 @@ const BIASED: f64 = 0.5;
 pub(crate) enum Cause {
     /// The mean of all runs is biased.
     Bias,
-    /// The runs scatter.
     Statistics,
 }
 
 impl Cause {
-    /// The cause in a word.
     pub(super) fn word(self) -> &'static str {
         match self {
             Cause::Bias => "bias",
