@@ -1,4 +1,4 @@
-//! What several runs say together.
+//! Statistics over several runs.
 
 use serde::Serialize;
 use std::fmt;
@@ -6,23 +6,23 @@ use stripmine_physics::averages::of_correlated;
 pub(crate) use stripmine_physics::averages::student;
 use stripmine_physics::number::with_bar;
 
-/// A figure over independent runs.
+/// Mean and range of a quantity over independent runs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Spread {
-    /// The mean.
+    /// Mean.
     pub mean: f64,
-    /// Standard error of the mean; none of a single run.
+    /// Standard error of the mean; none for a single run.
     pub error: Option<f64>,
-    /// The smallest.
+    /// Smallest value.
     pub lowest: f64,
-    /// The largest.
+    /// Largest value.
     pub highest: f64,
-    /// Runs.
+    /// Number of runs.
     pub runs: usize,
 }
 
 impl Spread {
-    /// Of at least one value.
+    /// Computes the spread of at least one value.
     pub fn of(values: &[f64]) -> Spread {
         let n = values.len() as f64;
         let mean = values.iter().sum::<f64>() / n;
@@ -37,12 +37,12 @@ impl Spread {
     }
 }
 
-/// A mean with half the width of the interval that holds it in 95 of 100 studies.
+/// A mean with half the width of its 95 % confidence interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Mean {
     /// The mean.
     pub value: f64,
-    /// Half the width.
+    /// Half the width of the interval (the error bar).
     pub bar: f64,
 }
 
@@ -53,36 +53,36 @@ impl fmt::Display for Mean {
 }
 
 impl Mean {
-    /// Of independent values, at least one; a single one leaves the bar without an end.
+    /// Mean of at least one independent value; the error bar of a single one is infinite.
     pub fn of(values: &[f64]) -> Mean {
         let Spread { mean, error, runs, .. } = Spread::of(values);
         Mean { value: mean, bar: error.map_or(f64::INFINITY, |error| student(0.95, runs - 1) * error) }
     }
 
-    /// Of values one after the other in time, at least one: their correlation counts.
+    /// Mean of a time series of at least one value, which may be correlated.
     pub(crate) fn of_course(values: &[f64]) -> Mean {
         of_correlated(values).map_or_else(|| Mean::of(values), |[value, bar]| Mean { value, bar })
     }
 
-    /// In parts of a known value: how far from it.
+    /// Relative deviation from a known value.
     pub(crate) fn off(self, known: f64) -> Mean {
         Mean { value: self.value / known - 1.0, bar: (self.bar / known).abs() }
     }
 
-    /// The same in percent.
+    /// Converts to percent.
     pub(crate) fn percent(self) -> Mean {
         Mean { value: 100.0 * self.value, bar: 100.0 * self.bar }
     }
 }
 
-/// The middle one, the upper of two; not a number if there is none.
+/// Median, the upper of two middle values; NaN of an empty sequence.
 pub(crate) fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.collect();
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
-/// The probability that independent values of a distribution lie at least as far from it as these do, by the largest
+/// Probability that independent values of a distribution deviate from it at least as far as these, by the largest
 /// difference of the distribution functions (Kolmogorov and Smirnov, with Stephens' correction for few values).
 pub(crate) fn kolmogorov_smirnov(mut values: Vec<f64>, distribution: impl Fn(f64) -> f64) -> f64 {
     values.sort_by(f64::total_cmp);
@@ -102,7 +102,7 @@ pub(crate) fn kolmogorov_smirnov(mut values: Vec<f64>, distribution: impl Fn(f64
 
 /// Returns the 95 % interval of a probability by Wilson's score, from the successes among independent trials (at least one).
 pub(crate) fn wilson(came_true: usize, trials: usize) -> [f64; 2] {
-    // The quantile of the normal distribution.
+    // Quantile of the normal distribution.
     const Z: f64 = 1.959_963_984_540_054;
     let (count, share) = (trials as f64, came_true as f64 / trials as f64);
     let middle = share + Z * Z / (2.0 * count);
@@ -110,13 +110,13 @@ pub(crate) fn wilson(came_true: usize, trials: usize) -> [f64; 2] {
     [-1.0, 1.0].map(|sign| ((middle + sign * half) / (1.0 + Z * Z / count)).clamp(0.0, 1.0))
 }
 
-/// The value below which a share of rising values lies; none of none.
+/// Value below which a given share of sorted values lies; none for an empty slice.
 pub(crate) fn quantile(rising: &[f64], share: f64) -> Option<f64> {
     let last = rising.len().checked_sub(1)?;
     Some(rising[(share * last as f64).round() as usize])
 }
 
-/// Slope of the straight line of least squares through points; 0 through fewer than two.
+/// Slope of the least-squares line through points; 0 for fewer than two.
 pub(crate) fn slope(x: &[f64], y: &[f64]) -> f64 {
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let (middle, height) = (mean(x), mean(y));
@@ -125,7 +125,7 @@ pub(crate) fn slope(x: &[f64], y: &[f64]) -> f64 {
     if spread > 0.0 { rise / spread } else { 0.0 }
 }
 
-/// The non-negative `x` of least `|A x - b|`, by coordinate descent on the normal equations; rows are (features, value).
+/// Non-negative `x` that minimises `|A x - b|`, by coordinate descent on the normal equations; rows are (features, value).
 pub(crate) fn non_negative<const N: usize>(rows: &[([f64; N], f64)]) -> [f64; N] {
     let mut square = [[0.0; N]; N];
     let mut right = [0.0; N];
@@ -189,7 +189,7 @@ mod tests {
         assert_eq!(Mean::of(&[1.0]).bar, f64::INFINITY);
     }
 
-    /// Critical distances of the tables (Stephens 1974): 1.358 and 1.628 for 5 and 1 of 100; and values that are even.
+    /// Critical distances of the tables (Stephens 1974): 1.358 and 1.628 for 5 and 1 of 100; and evenly spaced values.
     #[test]
     fn the_probability_of_a_distance_is_that_of_the_tables() {
         for (scaled, p) in [(1.358, 0.05), (1.628, 0.01)] {
@@ -199,7 +199,7 @@ mod tests {
             let found = kolmogorov_smirnov(values, |x: f64| (x + shift - 0.5 / f64::from(count)).min(1.0));
             assert!((found / p - 1.0).abs() < 0.02, "{found} {p}");
         }
-        // Few values: of ten the critical distance is 0.4092 for 5 of 100. The distribution lies above them, or below.
+        // Critical distance for ten values: 0.4092 for 5 of 100. The distribution is above or below them.
         for above in [true, false] {
             let values: Vec<f64> =
                 (0..10).map(|at| f64::from(at) / 10.0 + if above { 0.1 } else { 0.0 }).collect();

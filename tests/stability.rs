@@ -111,10 +111,10 @@ fn maps_that_cannot_be_are_refused_with_what_may_be() {
         let _ = fs::remove_dir_all(out);
     };
     refused(&["--over", "colour"], 2, &["colour", "stiffness, damping"]);
-    refused(&["--over", "damping"], 2, &["has no damping", "--range"]);
-    refused(&["--range", "5", "1"], 2, &["--range 5 1", "rises"]);
+    refused(&["--over", "damping"], 2, &["does not set damping", "--range"]);
+    refused(&["--range", "5", "1"], 2, &["--range 5 1", "rising"]);
     refused(&["--range", "0", "1"], 2, &["--range 0 1"]);
-    refused(&["--over", "size-ratio", "--range", "0.5", "2"], 2, &["size-ratio", "from 1 at"]);
+    refused(&["--over", "size-ratio", "--range", "0.5", "2"], 2, &["size-ratio", "from 1 to"]);
     refused(&["--tolerance", "0"], 2, &["tolerance"]);
     let other = folder.path().join("other");
     assert!(map(scene.to_str().unwrap(), &other, &[]).status.success());
@@ -155,9 +155,7 @@ fn a_scene_that_fails_at_every_step_says_what_was_tried() {
     let said = said(&output);
     assert_eq!(output.status.code(), Some(4), "{said}");
     assert!(
-        said.contains("tried were")
-            && said.contains("stiffness = 1e-6, step 5e-4")
-            && said.contains("overlap"),
+        said.contains("tried:") && said.contains("stiffness = 1e-6, step 5e-4") && said.contains("overlap"),
         "{said}"
     );
 }

@@ -79,9 +79,9 @@ fn scenes_without_an_answer_are_refused_with_what_was_tried() {
         assert!(data["error"]["message"].is_string());
         let _ = fs::remove_dir_all(out);
     };
-    refused(&["--set", "run.time=0.01"], 4, &["over after 5 steps", "run.thermo_every"]);
+    refused(&["--set", "run.time=0.01"], 4, &["ends after 5 steps", "run.thermo_every"]);
     let soft = ["--set", "law.stiffness=1e-6", "--set", "run.time=5"];
-    refused(&soft, 4, &["tried were", "overlap", "step 0.002", "step 2.5e-4"]);
+    refused(&soft, 4, &["tried:", "overlap", "step 0.002", "step 2.5e-4"]);
     refused(&["--set", "law.friction=-1"], 3, &["law.friction"]);
     refused(&["--budget", "0"], 2, &["1..=86400"]);
     refused(&["--repeats", "101"], 2, &["1..=100"]);
@@ -95,7 +95,7 @@ fn a_scene_without_comparable_positions_is_refused_with_what_to_ask() {
     let refused = study(Path::new("shaken-box"), &folder.path().join("study"), &["--budget", "5"]);
     let said = said(&refused);
     assert_eq!(refused.status.code(), Some(2), "{said}");
-    assert!(said.contains("positions of shaken-box cannot be compared: trajectories part"), "{said}");
+    assert!(said.contains("positions of shaken-box cannot be compared: trajectories diverge"), "{said}");
     assert!(said.contains("stripmine chart accuracy shaken-box --of temperature"), "{said}");
 }
 

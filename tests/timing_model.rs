@@ -36,7 +36,7 @@ fn bad_machine_files_are_named_with_line_and_column() {
     let folder = tempfile::tempdir().unwrap();
     for (old, new, said) in [
         ("value = 20", "value = -20", "mine.toml:6:21: `start_up.default` is -20"),
-        ("default =", "subtract =", "`subtract` names no class of operations"),
+        ("default =", "subtract =", "`subtract` is not a class of operations"),
         ("year = ", "jahr = ", "unknown field `jahr`"),
         ("title = \"Mine\"\n", "", "missing field `title`"),
     ] {
@@ -74,7 +74,7 @@ fn a_machine_that_is_not_there_is_answered_with_those_that_are() {
 fn beyond_the_calibrated_range_nothing_is_predicted() {
     for (arguments, said) in [
         (["--particles", "5000000"], "calibrated range of 8 to 4000000"),
-        (["--particles", "200000"], "200000 discs lie outside the calibrated range of 60 to 32000"),
+        (["--particles", "200000"], "200000 discs are outside the calibrated range of 60 to 32000"),
     ] {
         let out = stripmine(&[&["validate-model"][..], &arguments].concat()).code(4);
         let complaint = String::from_utf8_lossy(&out.get_output().stderr).into_owned();

@@ -144,7 +144,7 @@ class Studies(InFolder):
     def test_wrong_options_are_errors_in_the_words_of_the_command(self):
         scene = stripmine.scene("hard-disks", DISCS)
         for options, message, remedy in [
-            ({"of": "presure"}, "`presure` is nothing that this scene observes\n  help: one of", "compressibility"),
+            ({"of": "presure"}, "this scene does not observe `presure`\n  help: use one of", "compressibility"),
             ({"of": "compressibility", "error": "-1%"}, "'-1%' for '--error", ""),
             ({"of": "compressibility", "error": 0}, "'0' for '--error", ""),
             ({"window": (1,)}, "window", ""),

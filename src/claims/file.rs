@@ -18,12 +18,12 @@ pub enum Source {
     /// Theory, and published results of other programs.
     #[serde(rename = "literature")]
     Literature,
-    /// Aims of our own.
+    /// Our own aims.
     Stripmine,
 }
 
 impl Source {
-    /// All of them, in the order of the report.
+    /// All sources, in the order of the report.
     pub const ALL: [Source; 6] =
         [Source::BP93, Source::ISO99, Source::LAN17, Source::PWP, Source::Literature, Source::Stripmine];
 
@@ -39,7 +39,7 @@ impl Source {
         }
     }
 
-    /// Its file of claims.
+    /// Name of its file of claims.
     pub fn file(self) -> String {
         format!("{}.toml", self.name().to_lowercase())
     }
@@ -53,28 +53,28 @@ pub struct Claim {
     pub id: String,
     /// Source.
     pub source: Source,
-    /// Place in the source.
+    /// Location in the source.
     pub place: String,
-    /// Item of the report under which it stands; none where no item answers it.
+    /// Report item that tests it; none where no item does.
     pub item: Option<String>,
     /// Statement.
     pub text: String,
-    /// Expression over the item's frames that answers it.
+    /// Expression over the item's frames that gives the value.
     pub value: Option<String>,
-    /// Expression of the value's 95 % half-width.
+    /// Expression for the value's 95 % half-width.
     pub error: Option<String>,
-    /// Limit; its keys stand beside the others.
+    /// Limit; its keys are on the same level as the others.
     pub limit: Limit,
     /// Origin of the expected value: paper and table, program with version and command, or a formula.
     pub(crate) reference: Option<String>,
-    /// Sentence that a reader needs.
+    /// Note for the reader.
     pub(crate) note: Option<String>,
-    /// Verdict where no value is judged.
+    /// Verdict of a claim without a value.
     pub verdict: Option<Unjudged>,
     /// Earlier limits, the newest first.
     #[serde(default)]
     pub before: Vec<Limit>,
-    /// Place in its file.
+    /// Location in its file.
     #[serde(skip)]
     pub at: Spot,
 }
@@ -83,15 +83,15 @@ pub struct Claim {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Limit {
-    /// Day on which it was set: year-month-day.
+    /// Date on which it was set: year-month-day.
     pub since: String,
     /// Expected value.
     pub expected: Option<Expected>,
     /// Relation of the value to the expected one.
     pub(crate) relation: Option<Relation>,
-    /// Tolerance in the unit of the value.
+    /// Absolute tolerance, in the unit of the value.
     pub(crate) tolerance: Option<f64>,
-    /// Tolerance as a share of the expected value.
+    /// Tolerance relative to the expected value.
     pub(crate) relative: Option<f64>,
 }
 
@@ -118,9 +118,9 @@ pub enum Expected {
 pub(crate) enum Relation {
     /// Equal within the tolerance.
     Equals,
-    /// Not smaller, but for the tolerance.
+    /// Not smaller, within the tolerance.
     AtLeast,
-    /// Not larger, but for the tolerance.
+    /// Not larger, within the tolerance.
     AtMost,
     /// Between two numbers.
     Between,
@@ -129,16 +129,16 @@ pub(crate) enum Relation {
 /// Verdict of a claim without a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 pub enum Unjudged {
-    /// No study answers it yet.
+    /// No study tests it yet.
     #[serde(rename = "not tested yet")]
     NotTested,
-    /// The source says two things that exclude each other.
+    /// The source contradicts itself.
     #[serde(rename = "source contradicts itself")]
     Contradiction,
 }
 
 impl Claim {
-    /// Refuses the claim, with its place.
+    /// Error that rejects the claim, with its location.
     pub(super) fn refused(&self, cause: impl Into<String>) -> InputErrors {
         self.at.error(Reason::Contradiction, cause).into()
     }
@@ -147,11 +147,13 @@ impl Claim {
         let Limit { expected, relation, tolerance, relative, .. } = &self.limit;
         let has_tolerance = tolerance.is_some() || relative.is_some();
         let cause = match (&self.value, self.verdict) {
-            (Some(_), Some(_)) => "a claim with a value has no verdict of its own",
+            (Some(_), Some(_)) => "a claim with a value must not have a `verdict`",
             (None, None) => {
                 "a claim without a value needs a verdict: `not tested yet` or `source contradicts itself`"
             }
-            (Some(_), None) if self.item.is_none() => "a claim with a value needs the item that has it",
+            (Some(_), None) if self.item.is_none() => {
+                "a claim with a value needs the `item` that provides it"
+            }
             (_, _) if has_tolerance && relation.is_none() => "a tolerance needs a relation",
             (Some(_), None) if expected.is_none() || relation.is_none() => {
                 "a value needs `expected` and `relation`"
@@ -166,10 +168,10 @@ impl Claim {
     }
 }
 
-/// Claims of a file's text.
+/// Parses the claims of a file.
 ///
 /// # Errors
-/// [`InputErrors`] with the place of what cannot be understood.
+/// [`InputErrors`] with the location of the mistake.
 pub fn read(file: &str, text: &str) -> Result<Vec<Claim>, InputErrors> {
     #[derive(Deserialize)]
     #[serde(deny_unknown_fields)]
@@ -218,7 +220,7 @@ mod tests {
             ("relation = \"equals\"", "tolerance = 0.1", "a tolerance needs a relation"),
             ("expected = 59\n", "", "`expected` and `relation`"),
             ("value = \"x\"\n", "", "needs a verdict"),
-            ("item = \"table\"\n", "", "needs the item"),
+            ("item = \"table\"\n", "", "needs the `item`"),
             ("reference = \"table 1\"\n", "", "needs a `reference`"),
             ("since = \"2026-11-26\"\n", "", "since"),
             ("\"BP93\"", "\"BP94\"", "BP93"),

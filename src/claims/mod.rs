@@ -1,7 +1,7 @@
-//! Claims of the sources and aims of ours as data: a text, the value of a result that answers it, and what is expected.
+//! Claims of the sources and our own aims as data: a text, the value of a result that tests it, and the expected value.
 //!
-//! Each source has a file in the folder `claims`. The verdict of a claim follows from its value, the value's error, what is expected and
-//! the tolerance: no sentence of a page decides it.
+//! Each source has a file in the folder `claims`. The verdict on a claim follows from its value, the value's error, the expected value and
+//! the tolerance; no sentence of a page decides it.
 
 mod file;
 mod verdict;
@@ -13,15 +13,15 @@ use crate::frame::{Expressions, Scope};
 use rust_embed::RustEmbed;
 use stripmine_physics::input::InputErrors;
 
-/// The files of claims: read from the source tree by a development build, part of the program in a release.
+/// Files of claims: read from the source tree by a development build, embedded in a release.
 #[derive(RustEmbed)]
 #[folder = "claims"]
 struct Files;
 
-/// Every claim, source by source, in the order of the files.
+/// Reads all claims, source by source, in the order of the files.
 ///
 /// # Errors
-/// [`InputErrors`] with the file and the line of what cannot be understood.
+/// [`InputErrors`] with the file and line of the mistake.
 pub fn all() -> Result<Vec<Claim>, InputErrors> {
     let mut claims = vec![];
     for source in Source::ALL {
@@ -38,7 +38,7 @@ pub fn all() -> Result<Vec<Claim>, InputErrors> {
     Ok(claims)
 }
 
-/// Judges the claims of an item by its frames, as far as these have what is needed: a quick study has fewer rows. Others are not tested.
+/// Judges the claims of an item by its frames. A quick study may lack the data for some: these count as not tested.
 pub(crate) fn judge_where_possible<'c>(
     claims: &'c [Claim],
     item: &str,
@@ -55,7 +55,7 @@ pub(crate) fn judge_where_possible<'c>(
 /// Judges the claims of an item by its frames, which were made on a day (year-month-day).
 ///
 /// # Errors
-/// [`InputErrors`] if an expression names a table or a column that is not there.
+/// [`InputErrors`] if an expression names a table or column that does not exist.
 pub fn judge<'c>(
     claims: &'c [Claim],
     item: &str,

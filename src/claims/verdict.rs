@@ -9,20 +9,20 @@ use stripmine_physics::number::{significant, with_bar};
 /// Verdict of a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
-    /// The value is within the limit, with the whole of its error.
+    /// The value is within the limit, including its error.
     Reproduced,
-    /// The value is outside the limit, with the whole of its error.
+    /// The value is outside the limit, including its error.
     NotReproduced,
-    /// The value's error reaches over the limit.
+    /// The value's error crosses the limit.
     Undecided,
-    /// The source says two things that exclude each other.
+    /// The source contradicts itself.
     Contradiction,
-    /// No study answers the claim yet.
+    /// No study tests the claim yet.
     NotTested,
 }
 
 impl Verdict {
-    /// All of them, in the order of tables.
+    /// All verdicts, in the order of tables.
     pub const ALL: [Verdict; 5] = [
         Verdict::Reproduced,
         Verdict::NotReproduced,
@@ -31,7 +31,7 @@ impl Verdict {
         Verdict::NotTested,
     ];
 
-    /// In words.
+    /// Verdict in words.
     pub const fn words(self) -> &'static str {
         match self {
             Verdict::Reproduced => "reproduced",
@@ -50,7 +50,7 @@ pub struct Judged<'c> {
     pub claim: &'c Claim,
     /// Its verdict.
     pub verdict: Verdict,
-    /// Value, for a reader; nothing where there is none.
+    /// Formatted value; empty where there is none.
     pub value: String,
     /// Set if the limit is newer than the result.
     pub(crate) is_too_new: bool,
@@ -63,7 +63,7 @@ impl PartialEq for Claim {
 }
 
 impl Judged<'_> {
-    /// A claim that no item judges.
+    /// Judgement of a claim that no item tests.
     pub(crate) fn unjudged(claim: &Claim) -> Judged<'_> {
         let verdict = match claim.verdict {
             Some(Unjudged::Contradiction) => Verdict::Contradiction,
@@ -72,7 +72,7 @@ impl Judged<'_> {
         Judged { claim, verdict, value: String::new(), is_too_new: false }
     }
 
-    /// Expectation, for a reader.
+    /// Formatted expectation.
     pub fn expected(&self) -> String {
         let Limit { expected, relation, tolerance, relative, .. } = &self.claim.limit;
         let number = |value: &f64| significant(*value, 8);
@@ -152,7 +152,7 @@ pub(super) fn judge<'c>(
     }
 }
 
-/// Verdict on a value by the ends of what is allowed.
+/// Verdict on a value, from the ends of the allowed range.
 fn verdict(value: f64, error: f64, [low, high]: [f64; 2]) -> Verdict {
     match [value - error, value + error] {
         [least, most] if least >= low && most <= high => Verdict::Reproduced,
@@ -161,7 +161,7 @@ fn verdict(value: f64, error: f64, [low, high]: [f64; 2]) -> Verdict {
     }
 }
 
-/// Verdict of two values together: one that fails decides.
+/// Verdict on two values together: one failure decides.
 fn worse(one: Verdict, other: Verdict) -> Verdict {
     match (one, other) {
         (Verdict::NotReproduced, _) | (_, Verdict::NotReproduced) => Verdict::NotReproduced,
@@ -198,11 +198,11 @@ fn limits(
     }
 }
 
-/// The numbers of a value: one, or those of a list; a truth is 1 or 0.
+/// Numbers of a value: one, or those of a list; a truth value is 1 or 0.
 fn numbers(value: &Value) -> Result<Vec<f64>, String> {
     let one = |value: Value| match value.kind() {
         ValueKind::None => Ok(f64::NAN),
-        _ => f64::try_from(value.clone()).map_err(|_| format!("`{value}` is no number")),
+        _ => f64::try_from(value.clone()).map_err(|_| format!("`{value}` is not a number")),
     };
     match value.kind() {
         ValueKind::Seq | ValueKind::Iterable => {
@@ -270,7 +270,7 @@ mod tests {
         for (value, named) in [
             ("value = \"u.x\"\n", "t"),
             ("value = \"t.at(name='a').y\"\n", "it has name, x, x_error"),
-            ("value = \"t[0].name\"\n", "`a` is no number"),
+            ("value = \"t[0].name\"\n", "`a` is not a number"),
             ("value = \"t.where(name='c').column('x')\"\n", "empty list"),
         ] {
             let said = judged(&format!("{value}{limit}")).unwrap_err();

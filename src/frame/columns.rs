@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// A table of results: columns with a type, a unit and a meaning, and rows as long as the columns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
-    /// Name of its file, without the ending.
+    /// Name of its file, without the extension.
     pub name: String,
     /// Content in one line.
     pub title: String,
@@ -22,30 +22,28 @@ pub struct Column {
     pub name: String,
     /// Meaning, as a heading.
     pub doc: String,
-    /// Unit; none for words, counts and ratios.
+    /// Unit; none for words, counts or ratios.
     pub unit: Option<String>,
-    /// Part that it plays beside the columns of the same heading.
+    /// Role among the columns of the same heading.
     pub(crate) role: Role,
-    /// Digits that a page shows.
+    /// Digits shown on a page.
     pub digits: Option<Digits>,
 }
 
-/// Part that a column plays beside the columns of the same heading.
+/// Role of a column among those of the same heading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Role {
     Words,
     Count,
     Number,
-    /// 95 % half-width of the number before it, or the error that the table's note names.
+    /// 95 % half-width of the number before it, or the error named in the table's note.
     Error,
-    /// Lowest of several numbers.
     Lowest,
-    /// Highest of several numbers.
     Highest,
 }
 
-/// Digits that a page shows of a number.
+/// Digits shown of a number on a page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Digits {
@@ -55,7 +53,7 @@ pub enum Digits {
     Short,
 }
 
-/// Content of a place of a [`Frame`].
+/// Content of a cell of a [`Frame`].
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     /// Nothing, or no finite number.
@@ -69,17 +67,17 @@ pub enum Value {
 }
 
 impl Value {
-    /// A number, or nothing where it is not finite.
+    /// Wraps a number; infinities and NaN become nothing.
     pub(super) fn number(value: f64) -> Value {
         if value.is_finite() { Value::Number(value) } else { Value::Nothing }
     }
 }
 
 impl Frame {
-    /// Position of a column.
+    /// Index of a column.
     ///
     /// # Errors
-    /// A sentence with the names that exist.
+    /// A sentence with the existing names.
     pub fn position(&self, column: &str) -> Result<usize, String> {
         let found = self.columns.iter().position(|it| it.name == column);
         found.ok_or_else(|| {
@@ -89,9 +87,9 @@ impl Frame {
     }
 }
 
-/// For programs.
+/// Export for programs.
 impl Frame {
-    /// The rows as a list of objects, by the names of the columns.
+    /// Rows as a list of objects, keyed by the names of the columns.
     pub fn json(&self) -> serde_json::Value {
         let value = |value: &Value| match value {
             Value::Nothing => serde_json::Value::Null,
@@ -108,12 +106,12 @@ impl Frame {
 }
 
 impl Role {
-    /// All of them, in the order of columns.
+    /// All roles, in the order of columns.
     pub(super) const ALL: [Role; 6] =
         [Role::Number, Role::Count, Role::Error, Role::Lowest, Role::Highest, Role::Words];
 }
 
-/// In the order of the columns of one heading.
+/// Orders roles as the columns of one heading.
 impl PartialOrd for Role {
     fn partial_cmp(&self, other: &Role) -> Option<std::cmp::Ordering> {
         let place = |role: &Role| Role::ALL.iter().position(|it| it == role);

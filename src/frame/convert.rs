@@ -1,8 +1,8 @@
-//! Tables of cells as frames, and back: cells of one heading are several typed columns.
+//! Conversion between tables of cells and frames: cells of one heading become several typed columns.
 
 use super::{Cell, Column, Digits, Frame, Role, Table, Value, names};
 
-/// A table of cells as a frame: each column of cells gives as many typed columns as its cells need.
+/// Converts a table of cells to a frame: each column of cells becomes as many typed columns as its cells need.
 impl From<&Table> for Frame {
     fn from(table: &Table) -> Frame {
         let mut columns: Vec<Column> = vec![];
@@ -10,7 +10,7 @@ impl From<&Table> for Frame {
         let mut before = String::new();
         for (source, heading) in table.columns.iter().enumerate() {
             let mut base = names::of(heading);
-            // A heading that only qualifies the column before, or occurs twice, is named after both.
+            // A heading that only qualifies the column before, or is repeated, is named after both.
             let is_known = |name: &str| columns.iter().any(|column| column.name == name);
             if heading.starts_with('±') || is_known(&base) {
                 base = format!("{before}_{base}");
@@ -45,7 +45,7 @@ impl From<&Table> for Frame {
     }
 }
 
-/// A frame for reading: columns of one heading become one.
+/// Converts a frame for reading: columns of one heading become one.
 impl From<&Frame> for Table {
     fn from(frame: &Frame) -> Table {
         let mut groups: Vec<Vec<usize>> = vec![];
@@ -75,7 +75,7 @@ impl From<&Frame> for Table {
     }
 }
 
-/// Columns that cells of one heading need.
+/// Roles of the columns that cells of one heading need.
 fn roles<'c, I: Iterator<Item = &'c Cell>>(cells: impl Fn() -> I) -> Vec<Role> {
     let has = |is_so: fn(&Cell) -> bool| cells().any(is_so);
     let ranges = has(|cell| matches!(cell, Cell::Range(..) | Cell::Spread { .. }));
@@ -94,7 +94,7 @@ fn roles<'c, I: Iterator<Item = &'c Cell>>(cells: impl Fn() -> I) -> Vec<Role> {
     all.into_iter().filter(|(is_there, _)| *is_there).map(|(_, role)| role).collect()
 }
 
-/// Digits that cells show; the most where they differ.
+/// Digits shown of some cells; the most where they differ.
 fn digits<'c, I: Iterator<Item = &'c Cell>>(cells: impl Fn() -> I) -> Option<Digits> {
     let decimals = cells().filter_map(|cell| match cell {
         Cell::Number(_, decimals)

@@ -1,16 +1,16 @@
-//! Frames as comma-separated values with a description of every column, and back.
+//! Frames as comma-separated values with a description of every column: writing and reading.
 
 use super::{Column, Digits, Frame, Role, Value};
 use serde::{Deserialize, Serialize};
 
-/// First characters that a spreadsheet takes for the beginning of a formula.
+/// First characters that a spreadsheet interprets as the beginning of a formula.
 const FORMULA: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];
 
-/// Writes the frame's rows, numbers with all their digits. Words that a spreadsheet would take for a formula get an apostrophe before
-/// them, which it takes for the mark of a text.
+/// Writes the frame's rows, numbers with all their digits. Words that a spreadsheet would interpret as a formula are prefixed with an apostrophe,
+/// which marks a text.
 ///
 /// # Errors
-/// Errors of the writer.
+/// I/O errors of the writer.
 pub(crate) fn write(frame: &Frame, out: impl std::io::Write) -> std::io::Result<()> {
     let mut writer = csv::Writer::from_writer(out);
     writer.write_record(frame.columns.iter().map(|column| &column.name))?;
@@ -26,10 +26,8 @@ pub(crate) struct Package {
     name: String,
     title: String,
     profile: String,
-    /// Seeds of the random numbers.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub seeds: Vec<u64>,
-    /// Files.
     pub(crate) resources: Vec<Resource>,
 }
 
@@ -38,7 +36,6 @@ pub(crate) struct Package {
 pub(crate) struct Resource {
     name: String,
     title: String,
-    /// The file's name.
     pub path: String,
     format: String,
     encoding: String,
@@ -67,7 +64,7 @@ struct Field {
 }
 
 impl Package {
-    /// Description of the frames of an item.
+    /// Describes the frames of an item.
     pub(crate) fn of<'f>(
         name: &str,
         title: &str,
@@ -122,17 +119,17 @@ impl Field {
     }
 }
 
-/// Reads a frame that [`write()`] wrote, by its description.
+/// Reads a frame written by [`write()`], by its description.
 ///
 /// # Errors
-/// A sentence with the line and the column of a cell that is not of its column's type.
+/// A sentence with line and column of a cell whose type differs from that of its column.
 pub(crate) fn read(resource: Resource, bytes: &[u8]) -> Result<Frame, String> {
     let columns: Vec<Column> = resource.schema.fields.into_iter().map(Field::column).collect();
     let mut reader = csv::Reader::from_reader(bytes);
     let names: Vec<String> =
         reader.headers().map_err(|cause| cause.to_string())?.iter().map(str::to_owned).collect();
     if !columns.iter().map(|column| &column.name).eq(&names) {
-        return Err(format!("{}: the columns are not those of datapackage.json", resource.path));
+        return Err(format!("{}: the columns differ from those in datapackage.json", resource.path));
     }
     let row = |(at, record): (usize, csv::Result<csv::StringRecord>)| {
         let record = record.map_err(|cause| cause.to_string())?;
@@ -191,7 +188,7 @@ mod tests {
         assert_eq!(written(&table)[0], ["c"]);
     }
 
-    /// Numbers, their errors and the words between them each have a column; a file says what a column is.
+    /// Numbers, their errors and words each have a column; a file describes each column.
     #[test]
     fn every_column_holds_numbers_or_words() {
         let cells = [
@@ -229,7 +226,7 @@ mod tests {
         assert_eq!([&fields[1]["type"], &fields[6]["type"]], ["string", "integer"]);
     }
 
-    /// Files hold all that a page shows: read again, tables and files are the same.
+    /// Files contain everything a page shows: tables are unchanged after writing and reading.
     #[test]
     fn frames_are_read_as_they_were_written() {
         let cells = [

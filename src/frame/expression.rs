@@ -1,4 +1,4 @@
-//! Expressions over frames, in the language of the pages' templates: the values of claims and the numbers in sentences.
+//! Expressions over frames, in the language of the page templates: values of claims and numbers in sentences.
 
 use super::{Frame, Value as Content};
 use crate::statistics::median;
@@ -8,21 +8,21 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use stripmine_physics::number::{counted, in_tens, range, significant, with_bar};
 
-/// Names that an expression may use: the frames of an item.
+/// Names available to an expression: the frames of an item.
 #[derive(Clone, Debug)]
 pub struct Scope(Arc<Names>);
 
-/// Frames by name, and the element that a figure is repeated for.
+/// Frames by name, and the element of a repeated figure.
 #[derive(Clone, Debug)]
 struct Names(BTreeMap<String, Arc<Frame>>, Option<Value>);
 
-/// Name of the element that a figure is repeated for.
+/// Name of the element of a repeated figure.
 const EACH: &str = "it";
 /// Name of a row among its own cells, for columns whose names begin with a digit: `row['1_thread']`.
 const ROW: &str = "row";
 
 impl Scope {
-    /// Frames by their names, with `_` for `-` and `.`.
+    /// Collects frames by their names, with `_` for `-` and `.`.
     pub fn of(frames: impl IntoIterator<Item = Frame>) -> Scope {
         let named = |frame: Frame| (frame.name.replace(['-', '.'], "_"), Arc::new(frame));
         Scope(Arc::new(Names(frames.into_iter().map(named).collect(), None)))
@@ -33,10 +33,10 @@ impl Scope {
         Scope(Arc::new(Names(self.0.0.clone(), Some(it.clone()))))
     }
 
-    /// The frame of a name.
+    /// Returns the frame with a name.
     ///
     /// # Errors
-    /// A sentence with the names that exist.
+    /// A sentence with the existing names.
     pub fn frame(&self, name: &str) -> Result<&Arc<Frame>, String> {
         self.0.0.get(name).ok_or_else(|| self.0.missing(name))
     }
@@ -63,7 +63,7 @@ impl Object for Names {
     }
 }
 
-/// A row of a frame, and the element that a figure is repeated for.
+/// A row of a frame, and the element of a repeated figure.
 #[derive(Debug)]
 struct Row(Arc<Frame>, usize, Option<Value>);
 
@@ -97,7 +97,7 @@ impl Object for Row {
     }
 }
 
-/// A frame is the list of its rows; one of a single row also gives its cells by their names.
+/// Exposes a frame as the list of its rows; a frame with a single row also exposes its cells by name.
 impl Object for Frame {
     fn repr(self: &Arc<Self>) -> ObjectRepr {
         ObjectRepr::Seq
@@ -183,7 +183,7 @@ fn numbers(values: &Value) -> Result<Vec<f64>, Error> {
 }
 
 impl Expressions {
-    /// The language with its own functions: `median`, `all`, `any`, `ln`, `sqrt`, and filters that write numbers for readers.
+    /// Creates the language with its functions `median`, `all`, `any`, `ln`, `sqrt`, and filters that format numbers.
     pub fn new() -> Expressions {
         let mut all = Environment::new();
         all.set_undefined_behavior(UndefinedBehavior::Strict);
@@ -207,23 +207,23 @@ impl Expressions {
         Expressions(all)
     }
 
-    /// Value of an expression over frames.
+    /// Evaluates an expression over frames.
     ///
     /// # Errors
-    /// A sentence that names a table or a column that is not there, and those that are.
+    /// A sentence with the missing table or column, and the existing ones.
     pub fn value(&self, expression: &str, scope: &Scope) -> Result<Value, String> {
         let compiled = self.0.compile_expression(expression).map_err(|cause| said(&cause, scope))?;
         let value = compiled.eval(scope.value()).map_err(|cause| said(&cause, scope))?;
         match value.is_undefined() {
-            true => Err(format!("`{expression}` is not there; {}", scope.0.missing(expression))),
+            true => Err(format!("`{expression}` does not exist; {}", scope.0.missing(expression))),
             false => Ok(value),
         }
     }
 
-    /// Value of an expression over the cells of a row, by the names of its columns.
+    /// Evaluates an expression over the cells of a row, by the names of its columns.
     ///
     /// # Errors
-    /// A sentence that names a column that is not there, and those that are.
+    /// A sentence with the missing column, and the existing ones.
     pub(crate) fn of_row(
         &self,
         expression: &str,
@@ -236,17 +236,17 @@ impl Expressions {
         value.map_err(|cause| cause.detail().map_or_else(|| cause.to_string(), str::to_owned))
     }
 
-    /// A text with its expressions filled in.
+    /// Fills in the expressions of a text.
     ///
     /// # Errors
-    /// The line within the text, and a sentence that names a table or a column that is not there, and those that are.
+    /// The line within the text, and a sentence with the missing table or column, and the existing ones.
     pub fn text(&self, template: &str, scope: &Scope) -> Result<String, (usize, String)> {
         let filled = self.0.render_str(template, scope.value());
         filled.map_err(|cause| (cause.line().unwrap_or(1), said(&cause, scope)))
     }
 }
 
-/// The cause in a sentence; names that exist where one is not there.
+/// Describes an error in a sentence, with the existing names where one is missing.
 fn said(cause: &Error, scope: &Scope) -> String {
     let inner = std::error::Error::source(cause).map(ToString::to_string);
     let detail = cause.detail().map(str::to_owned).or(inner).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Results as tables with typed columns. Files for programs, tables and charts of a page, and the values of claims all come from a
+//! Results as tables with typed columns. Data files, tables and charts of a page, and the values of claims are all made from a
 //! [`Frame`].
 
 mod columns;

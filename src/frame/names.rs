@@ -1,6 +1,6 @@
-//! What columns of files are called: a heading in small letters of ASCII, without its unit, and one name for one quantity.
+//! Names of columns in files, derived from headings: lower-case ASCII without the unit, and one name for each quantity.
 
-/// Headings that mean the same, and the name that all of them have.
+/// Synonymous headings, with their common name.
 const SAME: [(&str, &[&str]); 11] = [
     ("packing_fraction", &["ν", "packing fraction", "packing fraction ν"]),
     ("occupancy", &["ρ", "occupancy ρ", "occupancy ρ = NP/LMAX"]),
@@ -27,7 +27,7 @@ const SAME: [(&str, &[&str]); 11] = [
     ("scene", &["scene", "scenes"]),
 ];
 
-/// Letters that ASCII lacks.
+/// Spelling of letters outside ASCII.
 const LETTERS: [(char, &str); 18] = [
     ('α', "alpha"),
     ('γ', "gamma"),
@@ -49,7 +49,7 @@ const LETTERS: [(char, &str); 18] = [
     ('½', "half"),
 ];
 
-/// The unit at the end of a heading, in brackets; what stands in brackets and is no unit, as `95 %`, is none.
+/// Unit at the end of a heading, in brackets; text in brackets that is not a unit, such as `95 %`, is ignored.
 pub(crate) fn unit(heading: &str) -> Option<&str> {
     let (_, unit) = heading.strip_suffix(')')?.rsplit_once(" (")?;
     let is_unit = unit.chars().count() <= 12
@@ -58,7 +58,7 @@ pub(crate) fn unit(heading: &str) -> Option<&str> {
     is_unit.then_some(unit)
 }
 
-/// The name of a column with a heading.
+/// Name of a column with a heading.
 pub(super) fn of(heading: &str) -> String {
     let bare = unit(heading).map_or(heading, |unit| heading[..heading.len() - unit.len() - 2].trim_end());
     let same = SAME.iter().find(|(_, headings)| headings.contains(&bare));

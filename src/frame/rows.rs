@@ -1,9 +1,9 @@
-//! Frames and tables, column by column.
+//! Builder of frames and tables, column by column.
 
 use super::{Cell, Frame, Table};
 use crate::statistics::Mean;
 
-/// A table while its columns are added. Each is its heading, and what its cell is of an item; an item is a row.
+/// A table under construction. Each column is a heading and a function from items to cells; each item is a row.
 #[derive(Debug)]
 pub struct Rows<T> {
     columns: Vec<String>,
@@ -11,22 +11,22 @@ pub struct Rows<T> {
 }
 
 impl<T> Rows<T> {
-    /// A row for each item, without columns so far.
+    /// Starts a table with a row for each item and no columns.
     pub fn of(items: impl IntoIterator<Item = T>) -> Rows<T> {
         Rows { columns: vec![], rows: items.into_iter().map(|item| (item, vec![])).collect() }
     }
 
-    /// A column of words.
+    /// Adds a column of words.
     pub fn text<W: Into<String>>(self, heading: impl Into<String>, of: impl Fn(&T) -> W) -> Rows<T> {
         self.column(heading.into(), &|item| Cell::Text(of(item).into()))
     }
 
-    /// A column of counts.
+    /// Adds a column of counts.
     pub fn count<C: TryInto<u64>>(self, heading: impl Into<String>, of: impl Fn(&T) -> C) -> Rows<T> {
         self.column(heading.into(), &|item| of(item).try_into().map_or(Cell::Nothing, Cell::Count))
     }
 
-    /// A column of numbers with a number of decimals; an item may have none.
+    /// Adds a column of numbers with a number of decimals; an item may have none.
     pub fn number<N: Into<Option<f64>>>(
         self,
         heading: impl Into<String>,
@@ -38,7 +38,7 @@ impl<T> Rows<T> {
         })
     }
 
-    /// Two columns: a mean with a number of decimals, and its 95 % half-width; an item may have none.
+    /// Adds two columns: a mean with a number of decimals, and its 95 % half-width; an item may have none.
     pub fn mean<M: Into<Option<Mean>>>(
         self,
         heading: impl Into<String>,
@@ -52,24 +52,24 @@ impl<T> Rows<T> {
         })
     }
 
-    /// A column of numbers of any size, shown with two digits; an item may have none.
+    /// Adds a column of numbers of any size, shown with two digits; an item may have none.
     pub fn short<N: Into<Option<f64>>>(self, heading: impl Into<String>, of: impl Fn(&T) -> N) -> Rows<T> {
         self.column(heading.into(), &|item| of(item).into().map_or(Cell::Nothing, Cell::Short))
     }
 
-    /// A column of any cells.
+    /// Adds a column of any cells.
     pub fn cell<C: Into<Cell>>(self, heading: impl Into<String>, of: impl Fn(&T) -> C) -> Rows<T> {
         self.column(heading.into(), &|item| of(item).into())
     }
 
-    /// A column, compiled once for all columns of such items.
+    /// Adds a column; compiled once for all columns of such items.
     fn column(mut self, heading: String, of: &dyn Fn(&T) -> Cell) -> Rows<T> {
         self.columns.push(heading);
         self.rows.iter_mut().for_each(|(item, cells)| cells.push(of(item)));
         self
     }
 
-    /// Several columns, whose number the data have.
+    /// Adds several columns, as many as there are headings.
     pub fn cells<C: Into<Cell>, R: IntoIterator<Item = C>>(
         mut self,
         headings: impl IntoIterator<Item = impl Into<String>>,
@@ -82,7 +82,7 @@ impl<T> Rows<T> {
         self
     }
 
-    /// The frame: columns for programs, typed by their cells.
+    /// Builds the frame, with columns for programs, typed by their cells.
     pub fn frame(self, name: impl Into<String>, title: impl Into<String>) -> Frame {
         Frame::from(&self.table(name, title))
     }
@@ -114,7 +114,7 @@ mod tests {
         assert_eq!(table.rows[0], first);
         assert_eq!(table.rows[1][2..], [Cell::Nothing, Cell::Count(2), Cell::Count(4)]);
         assert_eq!(table.notes, ["none"]);
-        // Without rows the headings stay.
+        // Without rows the headings remain.
         assert_eq!(Rows::of([0u64; 0]).count("n", |n| *n).table("", "").columns, ["n"]);
     }
 }

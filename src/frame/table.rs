@@ -4,18 +4,18 @@ use super::{Digits, Value};
 use serde::{Deserialize, Serialize};
 use stripmine_physics::number::{in_tens, significant};
 
-/// What stands in a place of a table.
+/// Content of a cell of a table.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Cell {
     /// Words.
     Text(String),
     /// A count.
     Count(u64),
-    /// A measured or computed number, and the number of decimals that are shown.
+    /// A measured or computed number, and the number of decimals shown.
     Number(f64, usize),
     /// A number of any size, shown with two digits.
     Short(f64),
-    /// A number with its error, which the table's note names, and the number of decimals that are shown.
+    /// A number with its error, which the table's note explains, and the number of decimals shown.
     WithError {
         /// The number.
         value: f64,
@@ -24,23 +24,23 @@ pub enum Cell {
         /// Decimals of both.
         decimals: usize,
     },
-    /// The lowest and the highest of several numbers, and the number of decimals that are shown.
+    /// Lowest and highest of several numbers, and the number of decimals shown.
     Range([f64; 2], usize),
     /// The median of several numbers, with their range.
     Spread {
         /// The median.
         value: f64,
-        /// The lowest and the highest.
+        /// Lowest and highest value.
         range: [f64; 2],
         /// Decimals of all.
         decimals: usize,
     },
-    /// Nothing: the source has no such entry.
+    /// Empty: the source has no such entry.
     Nothing,
 }
 
 impl Cell {
-    /// A number with its error; alone where it has none.
+    /// A number with its error; a plain number where it has none.
     pub(crate) fn with_error(value: f64, error: Option<f64>, decimals: usize) -> Cell {
         match error {
             Some(error) => Cell::WithError { value, error, decimals },
@@ -48,7 +48,7 @@ impl Cell {
         }
     }
 
-    /// As a person reads it: thousands set apart.
+    /// Formats the cell for reading, with grouped thousands.
     pub(crate) fn for_reading(&self) -> String {
         match self {
             Cell::Text(text) => text.clone(),
@@ -69,14 +69,14 @@ impl Cell {
         }
     }
 
-    /// Whether it is set flush right.
+    /// True if it is right-aligned.
     pub fn is_number(&self) -> bool {
         !matches!(self, Cell::Text(_))
     }
 }
 
 impl Cell {
-    /// Puts the parts of a frame's columns of one heading together: number, count, error, lowest, highest, words.
+    /// Combines the columns of one heading to a cell: number, count, error, lowest, highest, words.
     pub(super) fn of(parts: [Option<Value>; 6], digits: Option<Digits>) -> Cell {
         let decimals = match digits {
             Some(Digits::Decimals(decimals)) => decimals,
@@ -124,14 +124,14 @@ impl From<u64> for Cell {
     }
 }
 
-/// Nothing where there is none.
+/// Converts none to an empty cell.
 impl<T: Into<Cell>> From<Option<T>> for Cell {
     fn from(value: Option<T>) -> Self {
         value.map_or(Cell::Nothing, Into::into)
     }
 }
 
-/// With a number of decimals, thousands set apart.
+/// Formats a number with decimals and grouped thousands.
 fn decimal(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     match text.split_once('.') {
@@ -140,7 +140,7 @@ fn decimal(value: f64, decimals: usize) -> String {
     }
 }
 
-/// With two digits, in tens where it is small or large.
+/// Formats a number with two digits, with a power of ten where it is small or large.
 fn short(value: f64) -> String {
     match value.abs() {
         0.0 => "0".to_owned(),
@@ -149,7 +149,7 @@ fn short(value: f64) -> String {
     }
 }
 
-/// Digits in groups of three, set apart by thin blanks.
+/// Groups digits by three, separated by thin spaces.
 fn grouped(digits: &str) -> String {
     let (sign, digits) = digits.split_at(usize::from(digits.starts_with('-')));
     let mut out = sign.to_owned();
@@ -165,25 +165,21 @@ fn grouped(digits: &str) -> String {
 /// A titled table with notes below.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Table {
-    /// A name for files, in lower case.
+    /// Name for files, in lower case.
     pub name: String,
-    /// What it shows.
     pub title: String,
-    /// Column headings, with units.
     pub columns: Vec<String>,
     /// Rows, each as long as the headings.
     pub rows: Vec<Vec<Cell>>,
-    /// What a reader must also know.
+    /// Notes that a reader needs.
     pub(crate) notes: Vec<String>,
 }
 
 impl Table {
-    /// With a note more.
     pub(crate) fn note(self, note: impl Into<String>) -> Table {
         self.notes([note])
     }
 
-    /// With further notes.
     pub(crate) fn notes(mut self, notes: impl IntoIterator<Item = impl Into<String>>) -> Table {
         self.notes.extend(notes.into_iter().map(Into::into));
         self

@@ -1,7 +1,7 @@
-//! Reads the TOML files of machines and hosts.
+//! Reader of the TOML files of machines and hosts.
 //!
-//! The types that a file is read into are its grammar; a rule of the file checks single values. All mistakes are found at once: serde
-//! stops at the first one, which is taken out of what it reads next.
+//! The type of a file is its grammar; a rule of the file checks single values. All mistakes are found at once: serde
+//! stops at the first one, which is removed before it reads again.
 
 use serde::de::DeserializeOwned;
 use std::ops::Range;
@@ -12,20 +12,20 @@ use stripmine_physics::words::nearest;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Deserializer};
 
-/// Longest file (bytes).
+/// Largest size of a file (bytes).
 const LONGEST: u64 = 4 << 20;
-/// Bytes of a whole file.
+/// Range of a whole file.
 const WHOLE: Range<usize> = 0..usize::MAX;
 
 /// A kind of file, which is read into a `T`.
 pub(super) struct Kind<T> {
-    /// The version that this program reads.
+    /// Format version that this program reads.
     pub(super) format: u32,
-    /// What to do about another version.
+    /// Advice for other versions.
     pub(super) remedy: Option<&'static str>,
-    /// Says what is wrong with a value, whatever the others are.
+    /// Describes an error of a single value, if any.
     pub(super) wrong: fn(&Entry<'_>) -> Option<String>,
-    /// Completes what was read, or returns the path of an entry that disagrees with others, and why.
+    /// Completes the file, or returns the path of an entry that contradicts others, and why.
     pub(super) completed: fn(T) -> Result<T, (String, String)>,
 }
 
@@ -34,7 +34,7 @@ pub(super) struct Entry<'t> {
     /// Names of the tables around it, and its own.
     pub(super) names: Vec<&'t str>,
     pub(super) value: &'t DeValue<'t>,
-    /// Bytes of its name and of its value. Those of a table may be of its last heading.
+    /// Byte ranges of its name and of its value. For a table they may be those of its last heading.
     spans: [Range<usize>; 2],
 }
 
@@ -52,13 +52,13 @@ impl Entry<'_> {
         }
     }
 
-    /// The byte at which messages say that it is.
+    /// Byte offset for messages.
     fn at(&self) -> usize {
         self.spans[usize::from(!self.value.is_table())].start
     }
 }
 
-/// A value and all that is in it, which have these names and places.
+/// Lists a value and everything in it, with names and byte ranges.
 fn entries<'t>(names: Vec<&'t str>, spans: [Range<usize>; 2], value: &'t DeValue<'t>) -> Vec<Entry<'t>> {
     let mut all = vec![Entry { names: names.clone(), value, spans }];
     match value {
@@ -73,7 +73,7 @@ fn entries<'t>(names: Vec<&'t str>, spans: [Range<usize>; 2], value: &'t DeValue
     all
 }
 
-/// Takes an entry out of a table; returns whether it was there.
+/// Removes an entry from a table; returns true if it existed.
 fn remove(table: &mut DeTable<'_>, names: &[&str]) -> bool {
     match names {
         [] => false,
@@ -89,7 +89,7 @@ impl<T: DeserializeOwned> Kind<T> {
     /// Reads a file.
     ///
     /// # Errors
-    /// [`InputErrors`]: the system does not let it be read, it is not UTF-8, or as [`Kind::read`].
+    /// [`InputErrors`]: the file cannot be read, it is not UTF-8, or as for [`Kind::read`].
     pub(super) fn load(&self, path: &Path) -> Result<T, InputErrors> {
         let file = path.display().to_string();
         let nowhere = Spot { file: file.clone(), place: None };
@@ -97,17 +97,17 @@ impl<T: DeserializeOwned> Kind<T> {
         self.read(&file, &text)
     }
 
-    /// Reads a file's text; `file` is the name that errors give it.
+    /// Reads a file's text; `file` is its name in errors.
     ///
     /// # Errors
-    /// [`InputErrors`]: not TOML, another version, all mistakes of single entries, or the disagreement of right ones.
+    /// [`InputErrors`]: not TOML, another version, all mistakes of single entries, or a contradiction between valid ones.
     pub(super) fn read(&self, file: &str, text: &str) -> Result<T, InputErrors> {
         let text = InputText::new(file, text);
         let table = text.table()?;
         let root = DeValue::Table(table.clone());
         let entries = entries(vec![], [0..0, WHOLE], &root);
         let format = entries.iter().find(|it| it.names == ["format"]);
-        // A file of another version has other entries: its version is the mistake.
+        // A file of another version has other entries, so only its version is reported.
         if let Some((it, found)) = format.and_then(|it| Some((it, it.number()?)))
             && found != f64::from(self.format)
         {
@@ -128,14 +128,14 @@ impl<T: DeserializeOwned> Kind<T> {
     }
 }
 
-/// Reads a table that has these entries; adds what serde finds wrong with it to the mistakes.
+/// Deserialises a table with these entries; adds the errors of serde to the mistakes.
 fn deserialized<T: DeserializeOwned>(
     text: &InputText<'_>,
     mut table: DeTable<'_>,
     entries: &[Entry<'_>],
     mistakes: &mut Mistakes,
 ) -> Result<T, InputError> {
-    // What is missing because it was wrong, or has another name, is no mistake of its own.
+    // Entries missing because they were wrong or misspelt are not reported again.
     let mut gone: Vec<String> = vec![];
     loop {
         let cause = match T::deserialize(Deserializer::from(Spanned::new(WHOLE, table.clone()))) {
@@ -143,7 +143,7 @@ fn deserialized<T: DeserializeOwned>(
             Err(cause) => cause,
         };
         let span = cause.span().unwrap_or(WHOLE);
-        // Of entries with one place the innermost comes last.
+        // The innermost of several entries with the same range comes last.
         let entry = entries.iter().rev().find(|it| it.spans.contains(&span));
         let names = entry.map_or(&[][..], |it| &it.names[..]);
         let path = names.join(".");
@@ -173,7 +173,7 @@ fn deserialized<T: DeserializeOwned>(
     }
 }
 
-/// The path of an entry of a table.
+/// Path of an entry of a table.
 fn below(path: &str, name: &str) -> String {
     if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") }
 }

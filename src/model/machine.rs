@@ -1,37 +1,37 @@
-//! A machine of the timing model.
+//! Description of a vector machine.
 
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use stripmine_kernels::isa::op::{OpClass, OpCounts};
 
-/// Where a number comes from.
+/// Provenance of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Provenance {
     /// Printed in the source that the note names.
     Sourced,
-    /// Follows from sourced facts, by the argument in the note.
+    /// Derived from sourced facts, by the argument in the note.
     Derived,
-    /// Our choice, for the reason in the note; no source we could point to.
+    /// Our choice, for the reason in the note; no source was found.
     Assumed,
 }
 
-/// A number or a fact with its provenance; the unit is that of the entry it stands for.
+/// A number or a fact with its provenance; the unit is that of its entry.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table of value, provenance and note")]
 pub(crate) struct Known<T> {
     /// The number, positive and finite, or the fact.
     pub value: T,
-    /// Says whether it was printed somewhere, follows from something or is our choice.
+    /// Origin of the value: a source, a derivation or our choice.
     pub provenance: Provenance,
-    /// The source, the derivation or the reason; never empty.
+    /// Source, derivation or reason; never empty.
     pub(crate) note: String,
 }
 
 /// A number with its provenance.
 pub(crate) type Quantity = Known<f64>;
 
-/// The vector registers of one processor.
+/// Vector registers of one processor.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct VectorRegisters {
@@ -46,31 +46,31 @@ pub(super) struct VectorRegisters {
 pub(super) struct Unit {
     /// Names of the classes that they serve.
     serves: Vec<String>,
-    /// Instructions of these classes that run at once.
+    /// Instructions of these classes that execute at once.
     count: Quantity,
-    /// Elements a clock period of each; 1 by default.
+    /// Elements per clock period of each; 1 by default.
     rate: Option<Quantity>,
 }
 
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct MemoryPorts {
-    /// Loads that run at once; loads and stores together where there are no ports for stores.
+    /// Loads that execute at once; loads and stores together where there are no ports for stores.
     load_ports: Quantity,
-    /// Stores that run at once; none where they share the ports of the loads.
+    /// Stores that execute at once; none where they share the ports of the loads.
     store_ports: Option<Quantity>,
-    /// Elements a clock period of each port; 1 by default.
+    /// Elements per clock period of each port; 1 by default.
     rate: Option<Quantity>,
-    /// Elements a clock period through an index vector; as `rate` by default.
+    /// Elements per clock period through an index vector; as `rate` by default.
     gather_rate: Option<Quantity>,
 }
 
 /// Executions per class of operations; classes that do not occur are absent.
 pub(crate) type ClassCounts = BTreeMap<OpClass, u64>;
 
-/// Executions that replace one operation of a class that a machine lacks.
+/// Replacement of one operation of a class that a machine lacks.
 ///
-/// The class itself, where it occurs, stands for the unit of the machine that serves it (`divide` for the reciprocal
+/// The class itself, where it occurs, denotes the unit of the machine that serves it (`divide` for the reciprocal
 /// approximation) and is not expanded again. All counts come from one sequence of operations and so share one provenance.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -81,7 +81,7 @@ pub(super) struct Expansion {
     _note: String,
 }
 
-/// Something that instructions compete for.
+/// A resource that instructions compete for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Resource<'m> {
     /// Functional units of a kind, by name.
@@ -96,14 +96,14 @@ pub(crate) enum Resource<'m> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Occupied<'m> {
     pub(crate) resource: Resource<'m>,
-    /// Instructions that find place at once.
+    /// Instructions that it serves at once.
     pub count: f64,
-    /// Elements a clock period.
+    /// Elements per clock period.
     pub rate: f64,
 }
 
-/// One processor of a vector machine, as its file states it. Classes of operations go by their names. A clock that needs what is left
-/// out charges as the clock before it.
+/// One processor of a vector machine, as stated in its file. Classes of operations are given by name. If an entry needed by a clock is
+/// omitted, the clock charges as the one before it.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MachineModel {
@@ -111,54 +111,54 @@ pub struct MachineModel {
     pub(super) title: String,
     year: Quantity,
     pub(super) clock_period_ns: Quantity,
-    /// Whether a result feeds the next instruction element by element.
+    /// True if a result feeds the next instruction element by element.
     chaining: Option<Known<bool>>,
-    /// Clock periods of each strip.
+    /// Clock periods per strip.
     pub(super) loop_overhead: Option<Quantity>,
-    /// None where vectors have any length.
+    /// Vector registers; none where vectors have any length.
     pub(super) vector_registers: Option<VectorRegisters>,
-    /// Clock periods by class; `default` is for all classes that are not named.
+    /// Clock periods by class; `default` applies to all other classes.
     pub(super) start_up: BTreeMap<String, Quantity>,
     #[serde(default)]
     units: BTreeMap<String, Unit>,
     memory: Option<MemoryPorts>,
     #[serde(default)]
     pub(super) expansions: BTreeMap<String, Expansion>,
-    /// The expansions followed to the end, down to classes that the machine executes.
+    /// Complete expansions, down to classes that the machine executes.
     #[serde(skip)]
     pub(super) executed: BTreeMap<OpClass, ClassCounts>,
 }
 
-/// The start-up of classes that are not named.
+/// Key of the start-up of all other classes.
 pub(super) const DEFAULT: &str = "default";
 
 impl MachineModel {
-    /// The name of the machine in a heading.
+    /// Name of the machine in a heading.
     pub fn title(&self) -> &str {
         &self.title
     }
 
-    /// The clock period in nanoseconds.
+    /// Clock period in nanoseconds.
     pub fn clock_period_ns(&self) -> f64 {
         self.clock_period_ns.value
     }
 
-    /// The start-up D of an operation of `class`, in clock periods: BP93 section 3, the pipeline depth.
+    /// Start-up D of an operation of `class`, in clock periods: BP93 section 3, the pipeline depth.
     ///
-    /// Zero for a class that never executes because its expansion does without it.
+    /// Zero for a class that never executes because its expansion does not contain it.
     pub(crate) fn start_up(&self, class: OpClass) -> f64 {
         let start_up = self.start_up.get(class.name()).or_else(|| self.start_up.get(DEFAULT));
         start_up.map_or(0.0, |start_up| start_up.value)
     }
 
-    /// The operations executed for one of `class`: itself, or its expansion followed to the end.
+    /// Operations executed for one of `class`: itself, or its complete expansion.
     pub fn steps(&self, class: OpClass) -> ClassCounts {
         self.executed.get(&class).cloned().unwrap_or_else(|| ClassCounts::from([(class, 1)]))
     }
 
-    /// The operations executed for `counts`, once those that the machine lacks are expanded.
+    /// Operations executed for `counts`, after expanding those that the machine lacks.
     ///
-    /// Saturates where a count leaves the range of `u64`.
+    /// Saturates where a count exceeds the range of `u64`.
     pub fn expand(&self, counts: &OpCounts) -> ClassCounts {
         let mut executed = ClassCounts::new();
         for &class in OpClass::ALL {
@@ -170,8 +170,8 @@ impl MachineModel {
         executed
     }
 
-    /// The same machine with every assumed start-up, and an assumed loop overhead, at zero: what a result keeps without
-    /// them.
+    /// Copy of the machine with every assumed start-up, and an assumed loop overhead, set to zero: shows which results depend
+    /// on them.
     #[must_use]
     pub(crate) fn without_assumed_start_ups(&self) -> MachineModel {
         let mut known = self.clone();
@@ -182,7 +182,7 @@ impl MachineModel {
         known
     }
 
-    /// Names of the entries that are our own choice, such as `start_up.add`.
+    /// Names of the assumed entries, such as `start_up.add`.
     pub(crate) fn assumed(&self) -> Vec<String> {
         let mut all: Vec<(String, Option<Provenance>)> = vec![];
         let mut add = |name: String, it: Option<&Quantity>| all.push((name, it.map(|it| it.provenance)));
@@ -211,17 +211,17 @@ impl MachineModel {
         all.into_iter().map(|(name, _)| name).collect()
     }
 
-    /// Whether the machine says which operations can run at once.
+    /// True if the machine states which operations can execute at once.
     pub(crate) fn has_units(&self) -> bool {
         !self.units.is_empty()
     }
 
-    /// Whether a result feeds the next instruction element by element.
+    /// True if a result feeds the next instruction element by element.
     pub(crate) fn chains(&self) -> bool {
         self.chaining.as_ref().is_some_and(|chaining| chaining.value)
     }
 
-    /// The resource that an instruction of `class` occupies; none where the machine says nothing of it.
+    /// Resource that an instruction of `class` occupies; none where the machine does not state it.
     pub(crate) fn unit(&self, class: OpClass) -> Option<Occupied<'_>> {
         let number =
             |quantity: &Option<Quantity>, otherwise| quantity.as_ref().map_or(otherwise, |q| q.value);

@@ -1,5 +1,5 @@
 //! Machine files: TOML in which every number is a table of its value, its provenance and a note. The fields of [`MachineModel`]
-//! say what stands where, `machines/cray-1.toml` is an example of almost all.
+//! define the entries; `machines/cray-1.toml` is an example of almost all.
 
 use super::file::{Entry, Kind};
 use super::machine::{ClassCounts, DEFAULT, MachineModel, add_scaled};
@@ -8,27 +8,27 @@ use stripmine_physics::input::InputErrors;
 use toml::de::DeValue;
 
 const KIND: Kind<MachineModel> = Kind { format: 1, remedy: None, wrong, completed: MachineModel::completed };
-/// Operations that one operation may come to; a clock writes them out one by one.
+/// Largest number of operations in an expansion; clocks process them one by one.
 const LONGEST_EXPANSION: u64 = 10_000;
 
 impl MachineModel {
     /// Reads a machine file.
     ///
     /// # Errors
-    /// [`InputErrors`]: the system does not let it be read, or as [`MachineModel::parse`].
+    /// [`InputErrors`]: the file cannot be read, or as for [`MachineModel::parse`].
     pub fn load(file: &str) -> Result<MachineModel, InputErrors> {
         KIND.load(file.as_ref())
     }
 
-    /// Reads a machine from the `text` of a machine file; `file` is the name that errors give it.
+    /// Reads a machine from the `text` of a machine file; `file` is its name in errors.
     ///
     /// # Errors
-    /// [`InputErrors`]: every entry that cannot be, or, once every entry is right, a mistake that only the whole machine shows.
+    /// [`InputErrors`]: every invalid entry, or, once all entries are valid, a mistake of the machine as a whole.
     pub fn parse(file: &str, text: &str) -> Result<MachineModel, InputErrors> {
         KIND.read(file, text)
     }
 
-    /// The machine with its expansions followed to the end. Every class that it executes has a start-up and, where units are named,
+    /// Completes the machine with its full expansions. Every class that it executes must have a start-up and, where units are named,
     /// a unit.
     fn completed(mut self) -> Result<MachineModel, (String, String)> {
         for class in OpClass::ALL.iter().filter(|class| self.expansions.contains_key(class.name())) {
@@ -52,24 +52,24 @@ impl MachineModel {
         Ok(self)
     }
 
-    /// Operations, of classes that the machine executes, that one operation of a class that is expanded comes to.
+    /// Operations of executed classes that one operation of an expanded class consists of.
     fn executed_for(&self, class: OpClass) -> Result<ClassCounts, (String, String)> {
         let path = format!("expansions.{}", class.name());
         let what = match self.follow(class, &mut vec![]) {
-            Err(circle) => format!("`{path}` never ends: {}", circle.join(" -> ")),
+            Err(circle) => format!("`{path}` is circular: {}", circle.join(" -> ")),
             Ok(executed) => {
                 let count = executed.values().fold(0_u64, |sum, count| sum.saturating_add(*count));
                 if count <= LONGEST_EXPANSION {
                     return Ok(executed);
                 }
-                let most = format!("but at most {LONGEST_EXPANSION} are counted out");
-                format!("`{path}` comes to {count} operations, {most}")
+                let most = format!("above the maximum of {LONGEST_EXPANSION}");
+                format!("`{path}` expands to {count} operations, {most}")
             }
         };
         Err((path, what))
     }
 
-    /// Follows the expansion of `class` to its end; `open` holds the classes being expanded, an error the circle.
+    /// Follows the expansion of `class` to its end; `open` holds the classes being expanded; an error contains the circle.
     fn follow(&self, class: OpClass, open: &mut Vec<OpClass>) -> Result<ClassCounts, Vec<&'static str>> {
         let own = ClassCounts::from([(class, 1)]);
         let Some(expansion) = self.expansions.get(class.name()) else { return Ok(own) };
@@ -93,13 +93,13 @@ fn class_of(name: &str) -> Option<OpClass> {
     OpClass::ALL.iter().copied().find(|class| class.name() == name)
 }
 
-/// Says what is wrong with an entry, whatever the others are.
+/// Describes an error of a single entry, if any.
 fn wrong(entry: &Entry<'_>) -> Option<String> {
     let path = entry.path();
     match (&entry.names[..], entry.value) {
         ([.., "note"], DeValue::String(note)) if note.trim().is_empty() => {
             let of = path.trim_end_matches(".note");
-            Some(format!("the note of `{of}` is empty; say where the number comes from"))
+            Some(format!("the note of `{of}` is empty; expected the origin of the number"))
         }
         (["start_up", name], _) if *name != DEFAULT => no_class(name, &path),
         (["units", _, "serves"], DeValue::String(name)) => no_class(name, &path),
@@ -117,10 +117,10 @@ fn wrong(entry: &Entry<'_>) -> Option<String> {
 fn no_class(name: &str, path: &str) -> Option<String> {
     let known = || OpClass::ALL.iter().map(|class| class.name()).collect::<Vec<_>>().join(", ");
     let is_known = class_of(name).is_some();
-    (!is_known).then(|| format!("`{path}`: `{name}` names no class of operations; known are {}", known()))
+    (!is_known).then(|| format!("`{path}`: `{name}` is not a class of operations; known are {}", known()))
 }
 
-/// Says what is wrong with the number of an entry. With larger ones a sum of all that a program does might not be finite.
+/// Describes an error of a number, if any. The upper bounds keep the sum over a program finite.
 fn unlikely(value: f64, of: &[&str]) -> Option<String> {
     let (most, is_counted) = match of.last() {
         Some(&"year") => (9999.0, true),
@@ -158,7 +158,7 @@ mod tests {
         note = "here"
     "#;
 
-    /// What is said about the good file once `old` in it is replaced by `new`.
+    /// Error message for the good file with `old` replaced by `new`.
     fn complaint(old: &str, new: &str) -> String {
         assert!(GOOD.contains(old), "{old}");
         MachineModel::parse("bad.toml", &GOOD.replace(old, new)).unwrap_err().to_string()
@@ -189,9 +189,9 @@ mod tests {
             ("value = 1976", "value = -1", "`year` is -1, but must be positive"),
             ("why not", " ", "the note of `start_up.default` is empty"),
             ("\"here\"\n    ", "\"\"\n    ", "the note of `expansions.divide` is empty"),
-            ("divide = { value", "division = { value", "`division` names no class of operations"),
-            ("[expansions.divide]", "[expansions.root]", "`root` names no class of operations"),
-            ("multiply = 3", "times = 3", "`times` names no class of operations"),
+            ("divide = { value", "division = { value", "`division` is not a class of operations"),
+            ("[expansions.divide]", "[expansions.root]", "`root` is not a class of operations"),
+            ("multiply = 3", "times = 3", "`times` is not a class of operations"),
             ("multiply = 3", "multiply = 0", "`expansions.divide.steps.multiply` is 0"),
             (divide, "steps = {}", "`expansions.divide.steps` has no steps"),
             (default, "", "neither `start_up.add` nor `start_up.default` is given"),
@@ -231,7 +231,7 @@ mod tests {
             note = "a circle"
         "#;
         let error = MachineModel::parse("bad.toml", &format!("{GOOD}{circle}")).unwrap_err();
-        let said = "`expansions.multiply` never ends: multiply -> divide -> multiply";
+        let said = "`expansions.multiply` is circular: multiply -> divide -> multiply";
         assert!(error.to_string().contains(said), "{error}");
     }
 
@@ -276,7 +276,7 @@ mod tests {
             (5, "the note of `clock_period_ns` is empty"),
             (6, "`chaining.value`: invalid type: string \"no\", expected a boolean"),
             (7, "`loop_overhead`: missing field `note`"),
-            (10, "`division` names no class"),
+            (10, "`division` is not a class"),
             (10, "`start_up.division` is 0"),
             (11, "`memory`: missing field `load_ports`"),
         ] {

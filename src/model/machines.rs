@@ -1,4 +1,4 @@
-//! The machines that come with the program.
+//! Machines shipped with the program.
 
 use super::machine::MachineModel;
 use stripmine_physics::input::InputErrors;
@@ -12,26 +12,26 @@ macro_rules! embedded {
     };
 }
 
-/// The machines that come with the program: name and text of the file.
+/// Shipped machines: name and text of the file.
 const PRESETS: &[(&str, &str)] = embedded!["paper", "cray-1", "cyber-205", "cray-y-mp-el", "sx-aurora"];
 
-/// Why there is no such machine.
+/// Failures to find a machine.
 #[derive(Debug, thiserror::Error)]
 pub enum MachineError {
-    /// No preset has the name asked for, and it does not look like that of a file.
+    /// No preset has this name, and it is not the path of a machine file.
     #[error(
-        "unknown machine `{}`; known are {}, and machine files by their path, which ends in .toml{}",
+        "unknown machine `{}`; known are {}, and machine files by a path that ends in .toml{}",
         quoted(name),
         known.join(", "),
         suggestion(name, known.iter().copied())
     )]
     Unknown {
-        /// The name asked for.
+        /// The requested name.
         name: String,
-        /// All names that would have done.
+        /// All valid names.
         known: Vec<&'static str>,
     },
-    /// A file that cannot be used.
+    /// A file cannot be used.
     #[error(transparent)]
     File(#[from] InputErrors),
 }
@@ -50,19 +50,19 @@ impl Reported for MachineError {
 
     fn remedy(&self) -> Option<String> {
         matches!(self, MachineError::Unknown { .. })
-            .then(|| "take one of the known machines, or write a file".to_owned())
+            .then(|| "use one of the known machines, or write a machine file".to_owned())
     }
 }
 
-/// The names of the presets, the paper's own machine first.
+/// Names of the presets, the paper's own machine first.
 pub fn names() -> impl Iterator<Item = &'static str> {
     PRESETS.iter().map(|&(name, _)| name)
 }
 
-/// The machine called `name`: a preset, or the file at that path, if it ends in `.toml`.
+/// Finds a machine by name: a preset, or the file at that path, if it ends in `.toml`.
 ///
 /// # Errors
-/// [`MachineError`] where no preset has that name, or the file is bad.
+/// [`MachineError`] if no preset has that name, or the file is invalid.
 pub fn find(name: &str) -> Result<MachineModel, MachineError> {
     if !name.ends_with(".toml") {
         return preset(name);
@@ -70,16 +70,16 @@ pub fn find(name: &str) -> Result<MachineModel, MachineError> {
     Ok(MachineModel::load(name)?)
 }
 
-/// The preset called `name`.
+/// Returns a preset by name.
 ///
 /// # Errors
-/// [`MachineError::Unknown`] where no preset has that name.
+/// [`MachineError::Unknown`] if no preset has that name.
 pub fn preset(name: &str) -> Result<MachineModel, MachineError> {
     let (known, text) = PRESETS
         .iter()
         .find(|&&(known, _)| known == name)
         .ok_or_else(|| MachineError::Unknown { name: name.to_owned(), known: names().collect() })?;
-    // The texts are part of the program and a test reads them all: no user can get here with a bad one.
+    // The texts are part of the program and covered by a test, so parsing cannot fail here.
     Ok(MachineModel::parse(known, text)?)
 }
 
@@ -93,7 +93,7 @@ mod tests {
     fn every_preset_parses_and_knows_all_start_ups() {
         for name in names() {
             let machine = preset(name).unwrap();
-            // Every operation that a program counts must end in classes with a start-up.
+            // Every operation that a program counts must expand to classes with a start-up.
             let mut counts = OpCounts::default();
             Op::ALL.iter().for_each(|&op| counts.record(op));
             for class in machine.expand(&counts).into_keys() {
@@ -118,7 +118,7 @@ mod tests {
         (0..5).for_each(|_| counts.record(Op::SquareRoot));
         (0..2).for_each(|_| counts.record(Op::Divide));
         counts.record(Op::Load);
-        // A square root holds 3 quotients, 4 products, 4 sums and 4 bit operations; a quotient 3 products.
+        // A square root consists of 3 quotients, 4 products, 4 sums and 4 bit operations; a quotient of 3 products.
         let expected =
             [(Add, 5 * 4), (Multiply, 5 * (4 + 3 * 3) + 2 * 3), (Divide, 5 * 3 + 2), (Logical, 5 * 4)];
         assert_eq!(machine.expand(&counts), expected.into_iter().chain([(Load, 1)]).collect());
@@ -129,8 +129,8 @@ mod tests {
         let error = preset("cray-3").unwrap_err();
         assert_eq!(
             error.to_string(),
-            "unknown machine `cray-3`; known are paper, cray-1, cyber-205, cray-y-mp-el, sx-aurora, and machine \
-             files by their path, which ends in .toml\n  \
+            "unknown machine `cray-3`; known are paper, cray-1, cyber-205, cray-y-mp-el, sx-aurora, and machine files by a \
+             path that ends in .toml\n  \
              help: did you mean cray-1?"
         );
     }

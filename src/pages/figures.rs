@@ -1,4 +1,4 @@
-//! Figures of a page: charts and maps by expressions over the columns of frames, and pictures that a study drew.
+//! Figures of a page: charts and maps by expressions over the columns of frames, and pictures drawn by a study.
 
 use super::{Filling, Shown, Text};
 use crate::frame::{Frame, Scope};
@@ -14,17 +14,17 @@ use toml::Spanned;
 #[serde(deny_unknown_fields)]
 pub(super) struct FigureSpec {
     name: Text,
-    /// List of elements, for each of which there is such a figure; expressions call the element `it`.
+    /// List of elements, each of which gets such a figure; expressions call the element `it`.
     each: Option<Text>,
-    /// Condition of the figure; none for a figure that is always there.
+    /// Condition of the figure; none for an unconditional one.
     when: Option<Text>,
-    /// List of elements, for each of which the chart has a panel; expressions call the element `it`.
+    /// List of elements, each of which gets a panel of the chart; expressions call the element `it`.
     panels: Option<Text>,
     /// Name of a panel.
     panel: Option<Text>,
     title: Text,
     caption: Option<Text>,
-    /// Axes of a chart or a map; none of a picture that the study drew.
+    /// Axes of a chart or a map; none for a picture drawn by the study.
     x: Option<AxisSpec>,
     y: Option<AxisSpec>,
     #[serde(default)]
@@ -35,12 +35,12 @@ pub(super) struct FigureSpec {
 }
 
 impl FigureSpec {
-    /// Name of its file, without the ending.
+    /// Name of its file, without the extension.
     pub(super) fn name(&self) -> &str {
         self.name.get_ref()
     }
 
-    /// Returns whether the study draws it.
+    /// True if the study draws the picture.
     pub(super) fn is_drawn(&self) -> bool {
         self.x.is_none() || self.y.is_none()
     }
@@ -56,7 +56,7 @@ struct AxisSpec {
     limits: Option<[f64; 2]>,
 }
 
-/// A truth, or an expression of one.
+/// A truth value, or an expression that gives one.
 #[derive(Debug, Deserialize)]
 #[serde(untagged)]
 enum Truth {
@@ -70,7 +70,7 @@ impl Default for Truth {
     }
 }
 
-/// Points of a chart: an expression over the cells of a row gives each coordinate, a number or a name. An axis with names has them in the
+/// Points of a chart: expressions over the cells of a row give the coordinates, numbers or names. An axis with names lists them in the
 /// order of the rows, from the left or from above.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -80,30 +80,30 @@ struct SeriesSpec {
     y: Text,
     /// Half-width of the interval of y.
     error: Option<Text>,
-    /// Ends of the interval of y; of x where y is a name.
+    /// Ends of the interval of y, or of x where y is a name.
     spread: Option<[Text; 2]>,
-    /// Name in the legend: one series.
+    /// Name in the legend of a single series.
     name: Option<Text>,
-    /// Name in the legend by row: a series for each.
+    /// Name in the legend by row: one series for each name.
     by: Option<Text>,
-    /// Rows that are drawn.
+    /// Condition of the rows that are drawn.
     only: Option<Text>,
     style: Style,
-    /// Colour of the first series; the next one that is free where it is left out.
+    /// Colour of the first series; by default the next free one.
     hue: Option<usize>,
-    /// Puts points in the order of x.
+    /// Sorts points by x.
     #[serde(default)]
     sorted: bool,
 }
 
-/// A part of the plane that means something.
+/// A highlighted part of the plane.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct BandSpec {
-    /// List of elements, for each of which there is such a part; expressions call the element `it`.
+    /// List of elements, each of which gets such a part; expressions call the element `it`.
     each: Option<Text>,
     label: Text,
-    /// Ends on the horizontal axis, numbers or expressions; equal ones make a line.
+    /// Ends on the horizontal axis, numbers or expressions; equal ones give a line.
     x: Option<Spanned<[End; 2]>>,
     /// Ends on the vertical axis.
     y: Option<Spanned<[End; 2]>>,
@@ -124,11 +124,11 @@ struct MapSpec {
     x: Text,
     y: Text,
     value: Text,
-    /// Quantity that the colour shows.
+    /// Quantity shown by the colour.
     shade: AxisSpec,
 }
 
-/// The figures that a page describes at once: one, or one for each element of a list.
+/// Builds the figures of one specification: one, or one for each element of a list.
 pub(super) fn figures(
     spec: &FigureSpec,
     fill: &Filling<'_>,
@@ -153,7 +153,7 @@ fn elements(list: &Text, fill: &Filling<'_>) -> Result<Vec<Scope>, InputErrors> 
     Ok(all.map(|it| fill.scope.with_it(&it)).collect())
 }
 
-/// The figure of a page.
+/// Builds a figure of a page.
 fn figure(spec: &FigureSpec, fill: &Filling<'_>, shown: &Shown<'_>) -> Result<Figure, InputErrors> {
     let title = fill.text(&spec.title)?;
     let caption = spec.caption.as_ref().map_or(Ok(String::new()), |caption| fill.text(caption))?;
@@ -252,7 +252,7 @@ fn band(mut chart: Chart, spec: &BandSpec, fill: &Filling<'_>) -> Result<Chart, 
     Ok(chart)
 }
 
-/// Series of a chart. Names that are new to its axes are added to theirs.
+/// Builds the series of a chart. New names are added to their axes.
 fn series(
     spec: &SeriesSpec,
     next: usize,
@@ -294,7 +294,7 @@ fn series(
     Ok(all)
 }
 
-/// Cells in the order of their places: numbers rise, words keep their order. A place without a row is empty.
+/// Cells in the order of their coordinates: numbers rise, words keep their order. A point without a row is empty.
 fn mapped(spec: &MapSpec, [x, y]: [Axis; 2], fill: &Filling<'_>) -> Result<Map, InputErrors> {
     let frame = fill.frame(&spec.from)?;
     let rows = Rows { frame, fill };
@@ -329,7 +329,7 @@ fn mapped(spec: &MapSpec, [x, y]: [Axis; 2], fill: &Filling<'_>) -> Result<Map, 
     Ok(Map { x, y, value: axis(&spec.shade, fill)?, rows })
 }
 
-/// Rows of a frame, whose cells expressions name.
+/// Rows of a frame, whose cells are named in expressions.
 struct Rows<'r> {
     frame: &'r Arc<Frame>,
     fill: &'r Filling<'r>,
@@ -341,7 +341,7 @@ impl Rows<'_> {
         value.map_err(|cause| self.fill.refused(text.span().start, cause))
     }
 
-    /// Place on an axis: a number, or the position of a name.
+    /// Coordinate on an axis: a number, or the index of a name.
     fn place(&self, text: &Text, row: usize, names: &mut Vec<String>) -> Result<Option<f64>, InputErrors> {
         let value = self.value(text, row)?;
         let Some(name) = value.as_str() else { return self.number(text, row) };
@@ -358,10 +358,10 @@ impl Rows<'_> {
     }
 }
 
-/// A number; none of a cell without content.
+/// A number; none for an empty cell.
 fn number(value: &Value) -> Result<Option<f64>, String> {
     match value.kind() {
         ValueKind::None => Ok(None),
-        _ => f64::try_from(value.clone()).map(Some).map_err(|_| format!("`{value}` is no number")),
+        _ => f64::try_from(value.clone()).map(Some).map_err(|_| format!("`{value}` is not a number")),
     }
 }

@@ -1,7 +1,7 @@
-//! Pages of items: the words, tables and charts of each are a template in the folder `pages`, filled from the item's frames.
+//! Pages of items: a template in the folder `pages` has the words, tables and charts of each, and is filled from the item's frames.
 //!
-//! A template has two parts. Between lines of `+++` stands TOML: title, question, what is expected, tables by the name of their frame,
-//! figures by expressions over its columns. Below stand the paragraphs; the first is the answer. Every text may hold expressions in
+//! A template has two parts. Between lines of `+++` there is TOML: title, question, expectation, tables by the name of their frame,
+//! figures by expressions over its columns. Below are the paragraphs; the first is the answer. Every text may contain expressions in
 //! double braces.
 
 mod figures;
@@ -17,7 +17,7 @@ use serde::Deserialize;
 use stripmine_physics::input::{InputErrors, InputText, Reason};
 use toml::Spanned;
 
-/// The templates: read from the source tree by a development build, part of the program in a release.
+/// Templates: read from the source tree by a development build, embedded in a release.
 #[derive(RustEmbed)]
 #[folder = "pages"]
 struct Files;
@@ -25,7 +25,7 @@ struct Files;
 /// Line that begins and ends the first part of a template.
 const FENCE: &str = "+++\n";
 
-/// A text that may hold expressions, with its place in the file.
+/// A text that may contain expressions, with its location in the file.
 type Text = Spanned<String>;
 
 /// A template.
@@ -33,9 +33,9 @@ type Text = Spanned<String>;
 pub(crate) struct Page {
     name: String,
     header: Header,
-    /// Whole file.
+    /// Text of the whole file.
     text: String,
-    /// Byte at which the paragraphs begin.
+    /// Byte offset of the paragraphs.
     body: usize,
 }
 
@@ -51,7 +51,7 @@ struct Header {
     /// Set for results that depend on the host.
     #[serde(default)]
     host: bool,
-    /// Place among the results of the report's first screen.
+    /// Position among the results on the report's first screen.
     front: Option<u8>,
     #[serde(default)]
     figure: Vec<FigureSpec>,
@@ -64,26 +64,26 @@ struct Header {
     film: Option<FilmSpec>,
 }
 
-/// Time and memory that an item takes on the two cores of the report's host.
+/// Time and memory of an item on the two cores of the report's host.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Cost {
-    /// Seconds of the quick size; none where the item is made in full only.
+    /// Seconds of the quick size; none where the item is only made in full.
     pub quick: Option<f64>,
     /// Seconds in full.
     pub full: f64,
-    /// Seconds where `--all` asks for more of the item.
+    /// Seconds with `--all`, where it adds to the item.
     pub all: Option<f64>,
-    /// MiB of memory in full, at most.
+    /// Peak memory in full (MiB).
     #[serde(default = "usual_memory")]
     #[cfg_attr(
         not(test),
-        expect(dead_code, reason = "a test holds it against the memory of the report's host")
+        expect(dead_code, reason = "a test compares it with the memory of the report's host")
     )]
     pub memory: u64,
 }
 
-/// MiB that most items stay below.
+/// Memory that most items stay below (MiB).
 fn usual_memory() -> u64 {
     256
 }
@@ -94,25 +94,25 @@ fn usual_memory() -> u64 {
 struct TableSpec {
     from: Text,
     title: Option<Text>,
-    /// Columns that are shown; all of them where none are named.
+    /// Columns shown; all of them by default.
     columns: Option<Spanned<Vec<String>>>,
     #[serde(default)]
     notes: Vec<Text>,
 }
 
-/// Lines of a file of the item.
+/// Lines quoted from a file of the item.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Excerpt {
     file: Text,
     caption: Text,
-    /// First line, from 1.
+    /// First line, counted from 1.
     #[serde(default = "first")]
     from: usize,
     lines: usize,
 }
 
-/// Words beside the item's film.
+/// Text beside the item's film.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct FilmSpec {
@@ -126,7 +126,7 @@ fn first() -> usize {
 /// Data of an item that its page shows.
 pub(crate) struct Shown<'d> {
     pub frames: &'d [Frame],
-    /// Pictures that are no charts of frames, by name.
+    /// Pictures that are not charts of frames, by name.
     pub pictures: &'d [(String, Picture)],
     pub(crate) film: Option<&'d Film>,
     /// Further files: name and contents.
@@ -136,10 +136,10 @@ pub(crate) struct Shown<'d> {
 }
 
 impl Page {
-    /// The template of an item, if there is one. A development build reads its file.
+    /// Reads the template of an item, if there is one. A development build reads its file.
     ///
     /// # Errors
-    /// [`InputErrors`] with the line that cannot be understood.
+    /// [`InputErrors`] with the line of the mistake.
     pub(crate) fn of(name: &str) -> Result<Option<Page>, InputErrors> {
         let Some(file) = Files::get(&format!("{name}.md")) else { return Ok(None) };
         Page::read(name, String::from_utf8_lossy(&file.data).into_owned()).map(Some)
@@ -151,7 +151,7 @@ impl Page {
             |at: usize, cause: &str| InputText::new(&file, &text).spot(at).error(Reason::Syntax, cause);
         let header = text.strip_prefix(FENCE).ok_or_else(|| wrong(0, "the first line is not `+++`"))?;
         let end = header.find(&format!("\n{FENCE}")).ok_or_else(|| wrong(0, "no second line of `+++`"))? + 1;
-        // The blank head keeps places as they are in the file.
+        // The blank first line preserves line numbers of the file.
         let padded = format!("   \n{}", &header[..end]);
         let parsed = toml::from_str(&padded);
         let header: Header =
@@ -164,12 +164,12 @@ impl Page {
         &self.header.title
     }
 
-    /// Names of the pictures that the study draws.
+    /// Names of the pictures drawn by the study.
     pub(crate) fn drawn(&self) -> Vec<&str> {
         self.header.figure.iter().filter(|it| it.is_drawn()).map(FigureSpec::name).collect()
     }
 
-    /// Names of files that the page quotes or links.
+    /// Names of files quoted or linked by the page.
     pub(crate) fn files(&self) -> Vec<&str> {
         let quoted = self.header.excerpt.iter().map(|it| it.file.get_ref());
         quoted.chain(&self.header.files).map(String::as_str).collect()
@@ -185,10 +185,10 @@ impl Page {
         self.header.cost
     }
 
-    /// The item as a section of the report, with its claims judged as of the day on which the data were made.
+    /// Fills the template and returns the section of the report, with its claims judged as of the day on which the data were made.
     ///
     /// # Errors
-    /// [`InputErrors`] if the template or a claim names a table or a column that is not there.
+    /// [`InputErrors`] if the template or a claim names a table or column that does not exist.
     pub(crate) fn section(
         &self,
         shown: &Shown<'_>,
@@ -226,7 +226,7 @@ impl Page {
         if let (Some(spec), Some(film)) = (film, shown.film) {
             section.film = Some(Film { title: fill.text(&spec.title)?, ..film.clone() });
         }
-        // Claims may speak of the points of a chart, too.
+        // Claims may refer to the points of a chart, too.
         let of_charts = section.figures.iter().filter_map(figure_data).map(|table| Frame::from(&table));
         let scope = Scope::of(shown.frames.iter().cloned().chain(of_charts));
         let judged = claims::judge_where_possible(claims, &self.name, &scope, date);
@@ -235,7 +235,7 @@ impl Page {
     }
 }
 
-/// A template that is filled from frames.
+/// A template being filled from frames.
 #[derive(Clone, Copy)]
 struct Filling<'p> {
     page: &'p Page,
@@ -244,13 +244,13 @@ struct Filling<'p> {
 }
 
 impl Filling<'_> {
-    /// Refuses what stands at a place of the file.
+    /// Error that rejects the text at a byte offset of the file.
     fn refused(&self, at: usize, cause: impl Into<String>) -> InputErrors {
         let file = file(&self.page.name);
         InputText::new(&file, &self.page.text).spot(at).error(Reason::Contradiction, cause).into()
     }
 
-    /// A text of the file with its expressions filled in.
+    /// Fills in the expressions of a text of the file.
     fn at(&self, text: &str, at: usize) -> Result<String, InputErrors> {
         self.expressions.text(text, self.scope).map_err(|(down, cause)| {
             let lines = text.split_inclusive('\n').take(down - 1);
@@ -299,12 +299,12 @@ impl Filling<'_> {
     }
 }
 
-/// The file of a template, by the name of its item.
+/// File of a template, by the name of its item.
 fn file(name: &str) -> String {
     format!("pages/{name}.md")
 }
 
-/// Words in one line, as paragraphs are read.
+/// Joins the lines of a paragraph.
 fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }

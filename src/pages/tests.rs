@@ -1,4 +1,4 @@
-//! Templates are filled from frames, and name what they lack.
+//! Templates are filled from frames, and errors name missing parts.
 
 use super::*;
 use crate::frame::Rows;
@@ -70,7 +70,7 @@ fn a_page_is_filled_from_frames() {
     assert_eq!(table.notes, ["All 3."]);
 }
 
-/// Words in the place of a coordinate are names on its axis: from the left, or from above.
+/// Words as coordinates are names on the axis, from the left or from above.
 #[test]
 fn words_are_names_on_an_axis() {
     let chart = |x: &str, y: &str| {
@@ -95,7 +95,7 @@ fn words_are_names_on_an_axis() {
     assert_eq!(points, expected);
 }
 
-/// A figure for each element of a list, which its texts and expressions call `it`.
+/// A figure is repeated for each element of a list, which its texts and expressions call `it`.
 #[test]
 fn a_figure_is_repeated() {
     let each = "name = \"over-steps-{{ it }}\"\neach = \"['a', 'b']\"";
@@ -109,7 +109,7 @@ fn a_figure_is_repeated() {
     assert_ne!(a.x.scale, b.x.scale);
 }
 
-/// Places of a map are numbers that rise, or words in the order of the rows; a place without a row is empty.
+/// Coordinates of a map are rising numbers, or words in the order of the rows; a point without a row is empty.
 #[test]
 fn a_map_has_a_cell_for_each_row() {
     let map = "map = { from = \"errors\", x = \"steps\", y = \"scheme\", value = \"error\", shade = { label = \"error\" } }";

@@ -1,54 +1,50 @@
-//! Warnings of a run: limits of theory, checks of the scene, checks along the run.
+//! Warnings of a run: theoretical limits, checks of the scene, and checks during the run.
 
 use serde::{Deserialize, Serialize};
 use stripmine_physics::method::{Prepared, RunWarning};
 use stripmine_physics::number::significant;
 
-/// Moment and weight of an alarm, rising.
+/// Time and severity of a warning, in rising order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Finding {
-    /// The step is within the limit.
     Within,
-    /// A warning before the run.
     Warned,
-    /// The scene is refused.
     Refused,
-    /// A warning of the run itself.
     WarnedByRun,
 }
 
 impl Finding {
-    /// True if the user is told.
+    /// True if the user is warned.
     pub(crate) fn is_told(self) -> bool {
         self != Finding::Within
     }
 }
 
-/// Finding of a check.
+/// Result of a check.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Alarm {
     pub check: String,
     pub(crate) finding: Finding,
-    /// The value over its limit, above 1 where the user is told; none where nothing of the kind is allowed.
+    /// Value over its limit, above 1 where the user is warned; none where any value is an error.
     pub share: Option<f64>,
-    /// Sentence for a reader.
+    /// Message for the user.
     pub message: String,
 }
 
 impl Alarm {
-    /// Findings of a scene before it runs: every limit of its step, within it or not, and every warning of its check.
+    /// Results of all checks before a run: every limit of its step, exceeded or not, and every warning of its check.
     pub(crate) fn before(scene: &Prepared) -> Vec<Alarm> {
         let mut alarms: Vec<Alarm> = vec![];
         let limits = scene.step_limits.iter().map(|limit| {
             let finding = if limit.is_passed() { Finding::Warned } else { Finding::Within };
             let share = significant(limit.share, 3);
-            let message = format!("the step is {share} times the limit \"{}\" of theory", limit.name);
+            let message = format!("the step is {share} times the theoretical limit \"{}\"", limit.name);
             (limit.name, finding, limit.share, message)
         });
         let warnings = scene.warnings.iter().map(|warning| {
             let finding = if warning.is_refusal { Finding::Refused } else { Finding::Warned };
-            (warning.check, finding, warning.share, format!("checked: {}", warning.message))
+            (warning.check, finding, warning.share, format!("check: {}", warning.message))
         });
         for (check, finding, share, message) in limits.chain(warnings) {
             let share = Some(share).filter(|share| share.is_finite());
@@ -60,7 +56,7 @@ impl Alarm {
         alarms
     }
 
-    /// The check, its value over the limit, and the warning that it led to.
+    /// Describes the check, its value over the limit, and the resulting warning.
     pub(crate) fn words(&self) -> String {
         let share = self.share.map_or(String::new(), |share| format!(" {}", significant(share, 3)));
         let told = match self.finding {
@@ -72,7 +68,7 @@ impl Alarm {
         format!("{}{share}{told}", self.check)
     }
 
-    /// Warning of a run. Checks differ in the side on which their limit lies.
+    /// Warning during a run. The limit of a check may be an upper or a lower bound.
     pub(crate) fn of_run(warning: &RunWarning) -> Alarm {
         let share = (warning.value / warning.limit).abs();
         let share = share.max(share.recip());
@@ -80,7 +76,7 @@ impl Alarm {
             check: warning.check.to_owned(),
             finding: Finding::WarnedByRun,
             share: Some(share).filter(|share| share.is_finite()),
-            message: format!("warned of: {}", warning.message),
+            message: format!("warning: {}", warning.message),
         }
     }
 }

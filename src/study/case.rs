@@ -1,4 +1,4 @@
-//! A scene that a study begins with, and its configurations.
+//! Scene of a study, with its configurations.
 
 use super::Choice;
 use crate::results::Identity;
@@ -12,32 +12,32 @@ const JOURNALED: &str = "11";
 /// A scene, its method, and its own configuration.
 pub(crate) struct Case {
     what: String,
-    /// Overrides as a user typed them; the values have them.
+    /// Overrides as typed by the user; the values include them.
     overrides: Vec<String>,
     methods: Methods,
     pub entry: &'static Entry,
-    /// The values of the scene as they were given. Scene and start file are read once: all trials are of the same scene, whatever becomes of the files.
+    /// Values of the scene. Scene and start file are read once: all trials are of the same scene, even if the files change.
     pub values: Values,
-    /// The scene as it was given.
+    /// The scene, prepared with its own values.
     pub prepared: Prepared,
     /// Its own configuration.
     pub own: Choice,
 }
 
 impl Case {
-    /// The scene that is a preset's name or a file's path, with overrides.
+    /// Loads a scene by the name of a preset or the path of a file, with overrides.
     ///
     /// # Errors
-    /// [`SceneErrors`] if the scene is bad, or takes more memory than there is.
+    /// [`SceneErrors`] if the scene is invalid, or needs more memory than there is.
     pub(crate) fn load(what: &str, overrides: &[String], methods: Methods) -> Result<Case, SceneErrors> {
         let text = Values::text(what, &vocabularies(methods))?;
         Case::parse(what, &text, overrides, methods)
     }
 
-    /// The scene of a text, under a name, with overrides.
+    /// Parses a scene from its text, under a name, with overrides.
     ///
     /// # Errors
-    /// As of [`load`](Case::load).
+    /// [`SceneErrors`] as for [`load`](Case::load).
     pub(crate) fn parse(
         what: &str,
         text: &str,
@@ -47,7 +47,7 @@ impl Case {
         Case::of(what, text, overrides, methods, None)
     }
 
-    /// With the start file as another scene has read it, where one is given.
+    /// Parses a scene; the start file is shared with another scene that has read it, if one is given.
     fn of(
         what: &str,
         text: &str,
@@ -74,13 +74,13 @@ impl Case {
         })
     }
 
-    /// The arguments that name it on a command line.
+    /// Arguments that name the scene on a command line.
     pub(crate) fn arguments(&self) -> String {
         let set = self.overrides.iter().map(|text| format!(" --set {text}"));
         std::iter::once(self.what.clone()).chain(set).collect()
     }
 
-    /// The step, where the method takes steps (time).
+    /// Time step of the scene; none where the method has none (time).
     pub(crate) fn step(&self) -> Option<f64> {
         self.values.number(self.entry.trials?.step)
     }
@@ -106,12 +106,12 @@ impl Case {
         Identity { of: format!("{study} of {}", self.arguments()), digest }
     }
 
-    /// The scene with further overrides.
+    /// Prepares the scene with further overrides.
     pub(crate) fn prepared_with(&self, more: &Overrides) -> Result<Prepared, SceneErrors> {
         Ok(prepare(self.values.with(more)?, self.methods)?.0)
     }
 
-    /// A scene by the same methods, from the same start file if it has one.
+    /// Parses another scene with the same methods, and the same start file if it has one.
     pub(crate) fn beside(&self, text: &str) -> Result<Case, SceneErrors> {
         Case::of(&self.what, text, &[], self.methods, Some(&self.values))
     }
@@ -126,7 +126,8 @@ mod tests {
     use stripmine_physics::particles::Particles;
     use stripmine_physics::scene::TIME;
 
-    /// A scene and its start file may change or go once they are read: every preparation has the discs of the beginning, and so has a scene beside it.
+    /// A scene and its start file may change or vanish once they are read: every later preparation uses the original discs, and so does a derived
+    /// scene.
     #[test]
     fn a_scene_and_its_start_file_are_read_once() {
         let folder = tempfile::tempdir().unwrap();
@@ -156,7 +157,7 @@ mod tests {
         let again = |case: &Case| {
             case.prepared_with(&Overrides::new().set(&TIME, 2.0)).unwrap().particles().checksum()
         };
-        // Another frame, then none.
+        // First another frame, then no files.
         let mut others = gas.particles().clone();
         others.all_mut()[0].velocity[0] += 1.0;
         written(&others);

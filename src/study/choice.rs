@@ -3,7 +3,7 @@
 use stripmine_physics::method::{Axis, Decides, Prepared, Setting};
 use stripmine_physics::scene::Overrides;
 
-/// Configurations tie that take no more than this many times as long as the quickest.
+/// Largest ratio of the times of two configurations that tie.
 pub(crate) const TIE: f64 = 1.1;
 
 /// A setting for each axis.
@@ -17,7 +17,7 @@ impl PartialEq for Choice {
 }
 
 impl Choice {
-    /// Every combination of settings, those of the first axis changing slowest.
+    /// Every combination of settings, the first axis changing slowest.
     pub(crate) fn all(axes: &'static [Axis]) -> Vec<Choice> {
         let begin = vec![Choice(vec![])];
         axes.iter().fold(begin, |choices, axis| {
@@ -30,7 +30,7 @@ impl Choice {
         })
     }
 
-    /// Configuration of a scene itself; the first setting where its own is not among those of an axis.
+    /// The scene's own configuration; the first setting of an axis that does not list the scene's own.
     pub(crate) fn own(axes: &'static [Axis], prepared: &Prepared) -> Choice {
         let of = |axis: &'static Axis| {
             let own = (axis.own)(prepared).and_then(|name| axis.setting(&name));
@@ -50,22 +50,22 @@ impl Choice {
         changed
     }
 
-    /// Names of its settings.
+    /// Label of the configuration: names of its settings.
     pub(crate) fn label(&self) -> String {
         self.0.iter().map(|(_, setting)| setting.name).collect::<Vec<_>>().join(" ")
     }
 
-    /// The settings, by the names of their axes.
+    /// Settings with the names of their axes.
     pub(crate) fn settings(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
         self.0.iter().map(|(axis, setting)| (axis.name, setting.name))
     }
 
-    /// The overrides that it makes in a scene.
+    /// Overrides that select the configuration.
     pub(crate) fn overrides(&self) -> Overrides {
         self.0.iter().fold(Overrides::new(), |made, (_, setting)| made.and(&(setting.overrides)()))
     }
 
-    /// The setting that decides the order of convergence.
+    /// Setting of the axis that decides the order of convergence.
     pub(crate) fn scheme(&self) -> Option<&'static Setting> {
         self.of(Decides::Order).next()
     }
@@ -74,12 +74,12 @@ impl Choice {
         self.0.iter().filter(move |(axis, _)| axis.decides == decides).map(|(_, setting)| *setting)
     }
 
-    /// The names of the settings of a kind.
+    /// Names of the settings on axes of a kind.
     pub(crate) fn names(&self, decides: Decides) -> Vec<&'static str> {
         self.of(decides).map(|setting| setting.name).collect()
     }
 
-    /// True if the settings of a kind are those of another choice.
+    /// True if the settings on axes of a kind equal those of another choice.
     pub(crate) fn agrees(&self, other: &Choice, decides: Decides) -> bool {
         self.names(decides) == other.names(decides)
     }

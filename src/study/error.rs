@@ -11,61 +11,52 @@ use stripmine_physics::scene::SceneErrors;
 /// Reason why a study has no result.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum StudyError {
-    /// The method states no trials.
+    /// The method has no time step to vary.
     #[error(
-        "scenes of the method {0} take no time steps, and this study varies the step\n  help: choose a scene of another method"
+        "scenes of the method {0} take no time steps, but this study varies the step\n  help: choose a scene of another method"
     )]
     NothingToVary(&'static str),
-    /// Less time than the smallest study takes.
+    /// The budget is below the smallest study.
     #[error(
-        "the smallest map of the scene takes about {} processor seconds, more than --budget {budget}\n  help: raise --budget, or choose \
+        "the smallest map of the scene takes about {} processor seconds, above --budget {budget}\n  help: raise --budget, or choose \
          a smaller scene",
         significant(*needed, 2)
     )]
-    TooLittleTime {
-        /// Processor seconds of the smallest map.
-        needed: f64,
-        budget: f64,
-    },
-    /// Errors of positions say nothing of the scene.
+    TooLittleTime { needed: f64, budget: f64 },
+    /// Trajectories of the scene cannot be compared.
     #[error(
         "positions of {scene} cannot be compared: {why}\n  help: chart the error of a mean: stripmine chart accuracy {scene} --of {quantity}"
     )]
-    NoTrajectories {
-        scene: String,
-        why: String,
-        /// A quantity that has a mean.
-        quantity: &'static str,
-    },
-    /// The user asked for the end. Finished runs are kept.
-    #[error("interrupted; the same command resumes with the runs that were finished")]
+    NoTrajectories { scene: String, why: String, quantity: &'static str },
+    /// The user interrupted the study. Finished runs are kept.
+    #[error("interrupted; the same command resumes after the finished runs")]
     Interrupted,
-    /// The scene is run without vector programs.
+    /// The scene has no vector programs.
     #[error(
-        "a step of {0} has no vector programs: discs fly from event to event, nothing acts between particles, or they fit no \
+        "a step of {0} has no vector programs: discs move from event to event, particles do not interact, or they fit no \
          lattice in the box\n  help: choose a scene of lattice-md, langevin with pairs, or nbody"
     )]
     NoPrograms(String),
-    /// The method names something in its trials that it does not observe.
+    /// The trials of the method name a quantity that it does not observe.
     #[error(transparent)]
     Unknown(#[from] UnknownName),
     #[error(transparent)]
     Scene(#[from] SceneErrors),
-    /// The scene as it stands.
+    /// A run of the scene failed.
     #[error(transparent)]
     Physics(#[from] Failure),
-    /// A scene that is timed.
+    /// A timing of the scene failed.
     #[error(transparent)]
     Measurement(#[from] MeasurementError),
-    /// Threads that the system does not give.
-    #[error("the threads cannot be had: {0}; ask for fewer with --threads")]
+    /// Threads could not be started.
+    #[error("the threads cannot be started: {0}; ask for fewer with --threads")]
     Threads(rayon::ThreadPoolBuildError),
-    /// Error of the studies of one method.
+    /// Error of a study of a single method.
     #[error("{0}")]
     Own(Box<dyn Reported>),
-    /// The scene ends before anything is seen of it.
+    /// The scene ends before its first output.
     #[error(
-        "the scene is over after {steps} steps, before its first output (after {first}): no run of it was tried\n  help: \
+        "the scene ends after {steps} steps, before its first output (after {first}); nothing was run\n  help: \
          raise run.steps or run.time, or lower run.thermo_every"
     )]
     OverBeforeOutput {
@@ -73,41 +64,41 @@ pub(crate) enum StudyError {
         /// Steps up to the first row.
         first: u64,
     },
-    /// The method lets nothing of that name vary.
-    #[error("`{name}` is nothing that may be varied beside the step\n  help: one of {}", known.join(", "))]
+    /// The method has no parameter of that name to vary.
+    #[error("`{name}` is not a parameter that can be varied besides the step\n  help: use one of {}", known.join(", "))]
     NoSuchParameter { name: String, known: Vec<&'static str> },
-    /// The scene has no value of anything that its method varies, so that nothing suggests itself.
+    /// The scene sets none of the parameters that its method can vary, so no range can be derived.
     #[error(
-        "the scene has no value of its own of what may be varied beside the step\n  help: choose what and from where to where: --over \
+        "the scene sets none of the parameters that can be varied besides the step\n  help: choose a parameter and its range: --over \
          NAME --range LOW HIGH, with one of {}",
         known.join(", ")
     )]
     NothingOfItsOwn { known: Vec<&'static str> },
-    /// The scene has nothing of what is to be varied, so that no range suggests itself.
+    /// The scene does not set the parameter to be varied, so no range can be derived.
     #[error(
-        "the scene has no {0} of its own to vary\n  help: choose a range: --range LOW HIGH; or something else: --over NAME"
+        "the scene does not set {0}, so its range is unknown\n  help: choose a range: --range LOW HIGH; or another parameter: --over NAME"
     )]
     NothingOfTheKind(&'static str),
-    /// A range that cannot be.
+    /// The range is invalid.
     #[error(
-        "--range {} {} is none for {name}: it rises, from {} at the least to {} at the most",
+        "--range {} {} is invalid for {name}: expected two rising values from {} to {}",
         range[0], range[1], significant(bounds[0], 3), significant(bounds[1], 3)
     )]
     OutOfRange { name: &'static str, range: [f64; 2], bounds: [f64; 2] },
     #[error(
-        "no run of the scene came to its end as it should; tried were:{}\n  help: lower integrator.dt, or mend what the failures name",
+        "no run of the scene gave a usable result; tried:{}\n  help: lower integrator.dt, or fix what the failures name",
         tried.iter().map(|(what, why)| format!("\n  {what}: {why}")).collect::<String>()
     )]
     EveryRunFails {
         /// Runs that were tried, and why they failed.
         tried: Vec<(String, String)>,
     },
-    /// A measuring process was asked for something else than it measures.
+    /// The measuring process received parameters that it cannot read.
     #[error(
-        "the measuring process cannot read its parameters: {0}\n  help: let both processes be of one version"
+        "the measuring process cannot read its parameters: {0}\n  help: use one version of the program for both processes"
     )]
     Parameters(serde_json::Error),
-    /// The journal cannot be read, or is another scene's.
+    /// The journal cannot be read, or belongs to another scene.
     #[error(transparent)]
     Journal(#[from] JournalError),
 }

@@ -1,4 +1,4 @@
-//! Items of the report that studies make.
+//! Report items made by studies.
 
 use super::Subject;
 use super::explain::certified::{self, Effort, QUICK, SCENES, certified};
@@ -12,7 +12,7 @@ use crate::results::{Item, Journal, Lab, Made, Size};
 use stripmine_physics::method::METHODS;
 use stripmine_physics::signals;
 
-/// Every item, in the order of its chapter.
+/// All items, in the order of their chapter.
 pub(crate) const ITEMS: &[Item] = &[
     Item::of("work-precision", speed_against_accuracy),
     Item::of("stability", where_it_works),
@@ -21,7 +21,7 @@ pub(crate) const ITEMS: &[Item] = &[
     Item::of("rivals", rivals::made),
 ];
 
-/// Plans, carried out and judged.
+/// Tests of plans by carrying them out.
 fn plans_judged(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     let (scenes, effort) = match size {
         Size::Quick => {
@@ -34,7 +34,7 @@ fn plans_judged(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     Ok(certified::made(&certified(scenes, effort, lab.progress)?))
 }
 
-/// Scenes without parts of their models.
+/// Simpler models of scenes.
 fn left_out_compared(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     Ok(match size {
         Size::Quick => left_out::compared(Some(&["shaken-box", "langevin-dense"]), 2.0, lab.progress)?,
@@ -42,19 +42,19 @@ fn left_out_compared(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     })
 }
 
-/// Scenes whose trajectories are comparable, by name, preset and overrides as one types them, the first of each method also where time is short.
+/// Scenes with comparable trajectories: name, preset and overrides as typed. In quick reports only the first of each method is used.
 const TIMED: &[&[(&str, &str, &[&str])]] = &[
     &[("two-discs", "two-discs", &["run.time=3.2"]), ("dense-gas", "dense-gas", &["particles.count=100"])],
     &[("kepler", "kepler", &["run.time=31.4"]), ("figure-eight", "figure-eight", &[])],
 ];
 
-/// A fluid of particles in a bath.
+/// A fluid of particles in a heat bath.
 const FLUID: &[&str] = &["law.kind=wca", "particles.count=300", "domain.sides=[20.7, 20.7]", "run.time=5"];
 
-/// Name, preset, overrides and the parameter that is varied.
+/// Name, preset, overrides and varied parameter of a map.
 type Mapped = (&'static str, &'static str, &'static [&'static str], &'static str);
 
-/// Maps, the first of each method also where time is short.
+/// Maps; in quick reports only the first of each method is used.
 const MAPPED: &[&[Mapped]] = &[
     &[
         ("two-discs", "two-discs", &["run.time=3.2"], "damping"),
@@ -108,13 +108,13 @@ fn speed_against_accuracy(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> 
     Ok(work_precision::made(&scenes))
 }
 
-/// Scene of a preset, with overrides as one types them.
+/// Loads a preset with overrides as typed.
 fn subject(preset: &str, overrides: &[&str]) -> Result<Subject, Failure> {
     let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
     Ok(Subject::load(preset, &overrides, METHODS)?)
 }
 
-/// Stability of the scenes listed.
+/// Stability maps of the scenes listed.
 fn where_it_works(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
     let progress = lab.progress;
     let most = if effort == Size::Quick { 1 } else { usize::MAX };
@@ -122,7 +122,7 @@ fn where_it_works(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
         Size::Quick => stability::Effort { budget: 6.0, size: 6, seeds: 1, tolerance: 0.2 },
         Size::Full | Size::All => stability::Effort { budget: 16.0, size: 16, seeds: 2, tolerance: 0.05 },
     };
-    // Every scene is read before the first takes its time.
+    // Every scene is read before the first map takes its time.
     let mut surveys = vec![];
     for &(name, preset, overrides, parameter) in
         MAPPED.iter().flat_map(|of_method| of_method.iter().take(most))

@@ -1,4 +1,4 @@
-//! Studies that any method joins by stating its trials: speed against accuracy. They know methods by their entries alone.
+//! Studies of any method that states its trials: speed against accuracy, stability, plans. They use the entries of methods alone.
 
 mod alarm;
 mod case;

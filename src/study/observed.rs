@@ -1,4 +1,4 @@
-//! Quantities that studies observe of a scene: places of those that its method names in its trials, looked up once.
+//! Quantities that studies observe: indices of the quantities that a method names in its trials, looked up once.
 
 use stripmine_physics::method::observed::{UnknownName, find};
 use stripmine_physics::method::{Quantity, Trials};
@@ -7,15 +7,15 @@ use stripmine_physics::method::{Quantity, Trials};
 #[derive(Debug)]
 pub(crate) struct Watched {
     pub name: &'static str,
-    /// Place among those observed.
+    /// Index among the observed quantities.
     pub place: usize,
-    /// True if it comes and goes with single contacts, so that it has a mean over independent seeds alone.
+    /// True if it fluctuates with single contacts, so that its mean is meaningful over independent seeds only.
     pub(crate) fluctuates: bool,
-    /// True if it is a velocity: a mean of it means nothing but beside the speeds.
+    /// True if it is a velocity, whose mean is compared with the speeds.
     pub(crate) is_velocity: bool,
 }
 
-/// The balance of energy.
+/// Indices of the terms of the energy balance.
 #[derive(Debug)]
 pub(crate) struct Balanced {
     error: usize,
@@ -29,33 +29,33 @@ impl Balanced {
         values[self.error]
     }
 
-    /// Magnitudes of the energies that move, added up (energy).
+    /// Sum of the magnitudes of the energies (energy).
     pub(crate) fn energies(&self, values: &[f64]) -> f64 {
         self.energies.iter().map(|&place| values[place].abs()).sum()
     }
 
-    /// The energies added up (energy).
+    /// Sum of the energies (energy).
     pub(crate) fn energy(&self, values: &[f64]) -> f64 {
         self.energies.iter().map(|&place| values[place]).sum()
     }
 
-    /// Magnitudes of the work from outside, added up (energy).
+    /// Sum of the magnitudes of external work (energy).
     pub(crate) fn inputs(&self, values: &[f64]) -> f64 {
         self.inputs.iter().map(|&place| values[place].abs()).sum()
     }
 }
 
-/// Quantities of a scene.
+/// Quantities that studies observe of a scene.
 #[derive(Debug)]
 pub(crate) struct Observed {
     /// Quantities that have a mean in a run.
     pub(crate) means: Vec<Watched>,
-    /// The balance of energy, where the method observes one.
+    /// Energy balance, where the method observes one.
     pub balance: Option<Balanced>,
 }
 
 impl Observed {
-    /// Quantities that the trials of a method name, among those that it observes.
+    /// Looks up the quantities that the trials of a method name.
     pub(crate) fn of(trials: &Trials, quantities: &[Quantity]) -> Result<Observed, UnknownName> {
         let places = |names: &[&str]| -> Result<Vec<usize>, UnknownName> {
             names.iter().map(|name| find(quantities, name)).collect()

@@ -1,4 +1,4 @@
-//! Runs of a scene for a study: made now, or found in its journal.
+//! Runs of a scene for a study, made now or recalled from its journal.
 
 use super::trial::{Course, RunFailure, Trial};
 use super::{StudyError, Subject};
@@ -8,10 +8,10 @@ use serde::de::DeserializeOwned;
 use stripmine_physics::method::{Prepared, Purpose, Simulation};
 use stripmine_physics::signals;
 
-/// Steps of a probe at most.
+/// Most steps of a timing run.
 const PROBED: u64 = 4096;
 
-/// A study under way.
+/// State of a study.
 pub(crate) struct Runs<'r> {
     pub(crate) subject: &'r Subject,
     pub(crate) trial: Trial<'r>,
@@ -20,10 +20,10 @@ pub(crate) struct Runs<'r> {
 }
 
 impl Runs<'_> {
-    /// Result of a run, or its failure: from the journal, if it was finished before and `fits`; otherwise made now and kept.
+    /// Returns the result of a run, or its failure: from the journal, if a finished run `fits`; otherwise from a new run, which is recorded.
     ///
     /// # Errors
-    /// [`StudyError::Interrupted`], of which nothing is kept, and [`StudyError::Journal`].
+    /// [`StudyError::Interrupted`], which is not recorded, and [`StudyError::Journal`].
     pub(crate) fn recall<T: Serialize + DeserializeOwned>(
         &self,
         key: &str,
@@ -40,10 +40,10 @@ impl Runs<'_> {
         })
     }
 
-    /// Runs a scene and returns its end; `look` sees it at every look, and before the first step.
+    /// Runs a scene and returns its final state; `look` is called at every sample, and before the first step.
     ///
     /// # Errors
-    /// [`RunFailure`] if it breaks, or the user asks for the end.
+    /// [`RunFailure`] if it fails, or the user interrupts it.
     pub(crate) fn follow(
         &self,
         scene: &Prepared,
@@ -54,10 +54,10 @@ impl Runs<'_> {
         self.trial.follow(scene, purpose, course, self.meter, look)
     }
 
-    /// Seconds of a step, by the first steps of a scene.
+    /// Measures the seconds of a step over the first steps of a scene.
     ///
     /// # Errors
-    /// [`RunFailure`] if it breaks, or the user asks for the end.
+    /// [`RunFailure`] if it fails, or the user interrupts it.
     pub(crate) fn probe(&self, scene: &Prepared) -> Result<f64, RunFailure> {
         self.trial.seconds_of_a_step(scene, self.subject.steps.min(PROBED))
     }

@@ -1,4 +1,4 @@
-//! One bench on several numbers of ranks and threads: what each phase gains, and which part of it does not.
+//! Scaling of one bench over ranks and threads: the speedup of each phase, and its serial part.
 
 use serde_json::{Map, Value};
 use std::collections::BTreeSet;
@@ -6,8 +6,8 @@ use std::time::Instant;
 use stripmine_physics::method::throughput::{Measurement, MeasurementError, Throughput, TimedRun};
 use stripmine_physics::ranks;
 
-/// The name of the whole step among its phases, of what is in no phase, and of what is done beside steps: the start, a row of observables, all particles
-/// as they stand, what a checkpoint keeps.
+/// Names of the whole step, of the rest outside its phases, and of the work outside steps: the start, a row of observables, all particles, and the
+/// contents of a checkpoint.
 pub(crate) const WHOLE: &str = "whole step";
 const REST: &str = "in no phase";
 const BESIDE: [&str; 4] = ["start", "row", "particles", "snapshot"];
@@ -20,41 +20,38 @@ pub(crate) struct Scaling {
     pub particles: usize,
     /// Steps or events of each repeat.
     pub steps: u64,
-    /// Repeats, in turn.
     pub(crate) repeats: usize,
-    /// How: precision, integrator and the like.
+    /// Precision, integrator and other settings.
     pub settings: Map<String, Value>,
-    /// True if the final state has the same bits on all of them.
+    /// True if the final state is bit-identical on all of them.
     pub(crate) same_bits: bool,
-    /// By rising number of threads in all.
+    /// Results by rising total number of threads.
     pub(crate) by_threads: Vec<OfThreads>,
-    /// Each phase of the step, the dearest first, then what is done beside steps.
+    /// Phases of the step, the most expensive first, then the work outside steps.
     pub phases: Vec<Phase>,
 }
 
-/// How many ranks, and threads of each.
+/// Number of ranks, and threads of each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Crew {
     pub ranks: usize,
-    /// Threads of each.
     pub threads: usize,
 }
 
 impl Crew {
-    /// Threads in all.
+    /// Total number of threads.
     pub(crate) fn all(self) -> usize {
         self.ranks * self.threads
     }
 }
 
-/// The bench on some ranks and threads.
+/// Result of the bench on some ranks and threads.
 #[derive(Clone, Debug)]
 pub(crate) struct OfThreads {
-    /// How many.
     pub(crate) crew: Crew,
-    /// Work in a second: the best repeat, and the median one.
+    /// Work per second: best repeat, and median.
     pub rate: [f64; 2],
-    /// The best rate over that of the fewest threads.
+    /// Best rate over that of the fewest threads.
     pub(crate) gain: f64,
 }
 
@@ -62,19 +59,19 @@ pub(crate) struct OfThreads {
 #[derive(Clone, Debug)]
 pub(crate) struct Phase {
     pub name: String,
-    /// Nanoseconds of a particle and step, of the best repeat, or of a particle, once, for what is done beside steps.
+    /// Nanoseconds per particle and step in the best repeat; per particle for work outside steps.
     pub(crate) nanoseconds: Vec<f64>,
-    /// True if it is done beside steps.
+    /// True for work outside steps.
     pub(crate) is_beside: bool,
-    /// The part of it that does not gain by threads, by Amdahl's law from the fewest and the most threads; below 0 where it gains more than there are
-    /// threads. None where there is one number of them, or nothing to be seen.
+    /// Serial part by Amdahl's law, from the fewest and the most threads; below 0 where the speedup exceeds the number of threads. None for a single
+    /// number of threads, or where nothing was measured.
     pub(crate) serial: Option<f64>,
 }
 
-/// Measures; repeats are made in turn, so that other programs meet all numbers of threads alike.
+/// Measures the scaling. Repeats alternate, so that other programs disturb all numbers of threads alike.
 ///
 /// # Errors
-/// [`MeasurementError`] if the scene is bad or breaks while running, or there are no threads.
+/// [`MeasurementError`] if the scene is invalid or fails, or threads cannot be started.
 pub(crate) fn scaling(
     measurement: &dyn Fn() -> Result<Measurement, MeasurementError>,
     crews: &[Crew],
@@ -126,7 +123,7 @@ fn told(crews: &[Crew], measured: Vec<(Throughput, [f64; 4])>) -> Scaling {
     };
     let of =
         |name: &str| results.iter().map(|it| each(it, it.phases.get(name).copied().unwrap_or(0.0))).collect();
-    // Some have phases that one rank has not.
+    // Several ranks have phases that one rank lacks.
     let most =
         |name: &str| results.iter().filter_map(|it| it.phases.get(name)).fold(0.0_f64, |a, b| a.max(*b));
     let names: BTreeSet<&str> = results.iter().flat_map(|it| it.phases.keys().copied()).collect();
@@ -157,7 +154,7 @@ fn told(crews: &[Crew], measured: Vec<(Throughput, [f64; 4])>) -> Scaling {
     }
 }
 
-/// The part s of a time that does not gain, where t(n) ∝ s + (1 − s)/n, from the fewest and the most threads.
+/// Serial part s of a time, where t(n) ∝ s + (1 − s)/n, from the fewest and the most threads.
 fn serial(threads: &[usize], times: &[f64]) -> Option<f64> {
     let ([a, .., b], [first, .., last]) = (threads, times) else { return None };
     let ([a, b], ratio) = ([a, b].map(|&count| 1.0 / count as f64), last / first);
@@ -165,7 +162,7 @@ fn serial(threads: &[usize], times: &[f64]) -> Option<f64> {
 }
 
 impl Scaling {
-    /// What a number of threads would gain over one, were the parts that do not gain all that keeps it back; none where that was not seen.
+    /// Predicted speedup of a number of threads over one by Amdahl's law; none where the serial part is unknown.
     pub(crate) fn foreseen(&self, threads: usize) -> Option<f64> {
         let serial = self.phases.iter().find(|phase| phase.name == WHOLE)?.serial?.max(0.0);
         Some(1.0 / (serial + (1.0 - serial) / threads as f64))
@@ -185,7 +182,7 @@ mod tests {
                 assert!((found - part).abs() < 1e-12, "{part} {counts:?}: {found}");
             }
         }
-        // Twice as fast on two threads and a little more: below nothing.
+        // Slightly more than twice as fast on two threads: a negative serial part.
         assert!(serial(&[1, 2], &[2.0, 0.9]).unwrap() < 0.0);
         assert_eq!((serial(&[1], &[2.0]), serial(&[1, 2], &[0.0, 0.0])), (None, None));
     }

@@ -1,26 +1,26 @@
-//! Messages and numbers as studies quote them.
+//! Shortened messages and numbers, as studies quote them.
 
 use stripmine_physics::number::significant;
 
 /// Significant digits of a number in a quoted message.
 const DIGITS: usize = 4;
 
-/// A failure in the words of its first line, without its advice, with numbers for a reader.
+/// Returns the first line of a failure message, with shortened numbers and without its advice.
 pub(crate) fn first_line(message: &str) -> String {
     shortened(message.lines().next().unwrap_or_default())
 }
 
-/// A number as it is printed to some digits.
+/// Rounds a number to the digits it is printed with.
 pub(crate) fn rounded(value: f64, digits: usize) -> f64 {
     significant(value, digits).parse().unwrap_or(value)
 }
 
-/// A text whose decimal numbers have at most four significant digits. Whole numbers (steps, discs) and versions stay.
+/// Shortens the decimal numbers of a text to four significant digits. Whole numbers (steps, discs) and versions stay.
 fn shortened(text: &str) -> String {
     let mut short = String::with_capacity(text.len());
     let mut rest = text;
     while let Some(at) = rest.find(|it: char| it.is_ascii_digit()) {
-        // A number ends where neither digits nor points follow.
+        // A number ends at the first character that is neither a digit nor a point.
         let length = number_length(&rest[at..]);
         let (before, number) = (&rest[..at], &rest[at..at + length]);
         let is_part_of_a_name = before.ends_with(|it: char| it.is_alphanumeric() || it == '_');
@@ -34,10 +34,10 @@ fn shortened(text: &str) -> String {
     short + rest
 }
 
-/// Bytes of the digits and points at the beginning of a text, with an exponent.
+/// Length in bytes of the number at the beginning of a text, with its exponent.
 fn number_length(text: &str) -> usize {
     let digits = |text: &str| text.find(|it: char| !it.is_ascii_digit() && it != '.').unwrap_or(text.len());
-    // A point that ends a sentence is none of a number.
+    // A point that ends a sentence does not belong to the number.
     let length = text[..digits(text)].trim_end_matches('.').len();
     let Some(exponent) = text[length..].strip_prefix('e') else { return length };
     let sign = usize::from(exponent.starts_with(['-', '+']));

@@ -1,11 +1,11 @@
-//! A state of a run as studies compare it: particles by id, and differences between two states of one scene.
+//! State of a run as studies compare it: particles by id, and differences between two states of one scene.
 
 use serde::{Deserialize, Serialize};
 use stripmine_physics::domain::Domain;
 use stripmine_physics::method::Prepared;
 use stripmine_physics::particles::{Kind, Particle, Particles, in_space};
 
-/// A particle that moves.
+/// A moving particle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Body {
     position: [f64; 2],
@@ -15,12 +15,12 @@ struct Body {
     mass: f64,
 }
 
-/// The particles that move, by id.
+/// The moving particles, by id.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct State(Vec<Body>);
 
 impl State {
-    /// Of particles as a simulation gives them.
+    /// Extracts the state from particles of a simulation.
     pub(super) fn of(particles: &Particles) -> State {
         let mut grains: Vec<&Particle> = particles.grains().iter().collect();
         grains.sort_by_key(|grain| grain.id);
@@ -31,7 +31,6 @@ impl State {
         State(grains.iter().map(body).collect())
     }
 
-    /// Number of particles that move.
     pub(super) fn len(&self) -> usize {
         self.0.len()
     }
@@ -41,20 +40,20 @@ impl State {
         self.0.iter().map(|body| body.position)
     }
 
-    /// Root of the mean square distance between the particles of two states, and the largest (length).
+    /// Root mean square distance between the particles of two states, and the largest (length).
     pub(super) fn distance(&self, other: &State, domain: &Domain) -> [f64; 2] {
         let squares = self.0.iter().zip(&other.0).map(|(a, b)| {
             let way = domain.displacement(a.position, b.position);
             way.iter().map(|part| part * part).sum::<f64>()
         });
         let (sum, largest) = squares.fold((0.0, 0.0), |(sum, largest): (f64, f64), square| {
-            // NaN is the largest distance there is.
+            // NaN counts as the largest distance.
             (sum + square, if square <= largest || largest.is_nan() { largest } else { square })
         });
         [(sum / self.0.len().max(1) as f64).sqrt(), largest.sqrt()]
     }
 
-    /// Root of the mean square speed (length/time).
+    /// Root mean square speed (length/time).
     pub(super) fn speed(&self) -> f64 {
         let squares: f64 =
             self.0.iter().map(|body| body.velocity.iter().map(|part| part * part).sum::<f64>()).sum();
@@ -68,8 +67,8 @@ impl State {
         ([sum(0), sum(1)], scale)
     }
 
-    /// Angular momentum about the corner of the box, and the sum of its parts' magnitudes (mass · length²/time); none in a
-    /// box with periodic sides, where it has no meaning.
+    /// Angular momentum about the corner of the box, and the sum of the magnitudes of its parts (mass · length²/time); none in a
+    /// box with periodic sides, where it is undefined.
     pub(crate) fn angular_momentum(&self, domain: &Domain, inertia: Option<f64>) -> Option<(f64, f64)> {
         if domain.periodic().contains(&true) {
             return None;
@@ -84,7 +83,7 @@ impl State {
     }
 
     /// Relative velocity of two particles (length/time) and the distance of their surfaces (length); none unless there are
-    /// just two.
+    /// exactly two.
     pub(super) fn pair(&self, domain: &Domain) -> Option<([f64; 2], f64)> {
         let [a, b] = self.0.as_slice() else { return None };
         let way = domain.displacement(a.position, b.position);
@@ -93,7 +92,7 @@ impl State {
     }
 }
 
-/// Particles with each that moves displaced along x and y by `by` (length), which is given its place among all.
+/// Displaces each moving particle along x and y by `by` (length), a function of its index.
 pub(crate) fn displaced(
     particles: &Particles,
     domain: &Domain,
@@ -108,7 +107,7 @@ pub(crate) fn displaced(
     moved
 }
 
-/// A scene whose particles fly for a time longer before what happens first.
+/// Delays a scene: its particles first fly freely for a time.
 pub(crate) fn delayed(scene: &Prepared, late: f64) -> Prepared {
     let begin = displaced(scene.particles(), &scene.domain, |_, disc| {
         disc.planar_velocity().map(|part| -late * part)
@@ -140,7 +139,7 @@ mod tests {
         let mut domain = Domain::planar([0.0; 2], [10.0; 2], [true, false]);
         let [a, b] = [[[9.5, 1.0], [4.0, 4.0]], [[0.5, 1.0], [4.0, 4.0]]].map(|at| State::of(&particles(at)));
         assert_eq!(a.distance(&b, &domain), [0.5f64.sqrt(), 1.0]);
-        // A particle that is nowhere is as far as can be.
+        // A particle at NaN has an undefined distance.
         let lost = State::of(&particles([[9.5, 1.0], [f64::NAN, 4.0]]));
         assert!(a.distance(&lost, &domain).iter().all(|distance| distance.is_nan()));
         assert_eq!((a.momentum(), a.angular_momentum(&domain, None)), (([6.0, 0.0], 6.0), None));

@@ -1,4 +1,4 @@
-//! Scene of a study, with the trials that its method allows.
+//! Scene of a study of the time step, with the trials of its method.
 
 use super::observed::{Observed, Watched};
 use super::{Case, Choice, StudyError};
@@ -25,10 +25,10 @@ impl Deref for Subject {
 }
 
 impl Subject {
-    /// The scene that is a preset's name or a file's path, with overrides.
+    /// Loads a scene by the name of a preset or the path of a file, with overrides.
     ///
     /// # Errors
-    /// [`StudyError`] if the scene is bad, its method states no trials, or it is over before anything is seen of it.
+    /// [`StudyError`] if the scene is invalid, its method has no time step, or it ends before its first output.
     pub(crate) fn load(what: &str, overrides: &[String], methods: Methods) -> Result<Subject, StudyError> {
         let case = Case::load(what, overrides, methods)?;
         let nothing = StudyError::NothingToVary(case.entry.vocabulary.keys.method);
@@ -49,7 +49,7 @@ impl Subject {
         Ok(Subject { case, trials, observed, step, steps })
     }
 
-    /// The scene in a configuration, with a step (time) and further overrides.
+    /// Prepares the scene in a configuration, with a step (time) and further overrides.
     pub(crate) fn prepared_as(
         &self,
         choice: &Choice,
@@ -59,7 +59,7 @@ impl Subject {
         self.prepared_with(&self.overrides(choice, step, more))
     }
 
-    /// The scene in a configuration, even where theory refuses the step.
+    /// Prepares the scene in a configuration, even where theory forbids the step.
     pub(crate) fn prepared_at_any_step(
         &self,
         choice: &Choice,
@@ -78,17 +78,17 @@ impl Subject {
         self.own.with(self.trials.references[number])
     }
 
-    /// The time of the scene (time).
+    /// Duration of the scene (time).
     pub(crate) fn duration(&self) -> f64 {
         self.steps as f64 * self.step
     }
 
-    /// Order of convergence by theory, for a setting of the axis that decides it.
+    /// Theoretical order of convergence, for a setting of the axis that decides it.
     pub(crate) fn theory(&self, setting: &Setting) -> Option<Theory> {
         (self.trials.theory)(&self.values, &self.prepared, setting)
     }
 
-    /// Unit of a dimension, such as `1/time`, in the units that the scene names; none of a pure number.
+    /// Unit of a dimension, such as `1/time`, in the units of the scene; none for a pure number.
     pub(crate) fn unit(&self, dimension: &str) -> Option<String> {
         let label = self.values.choice(&UNITS).unwrap_or_default();
         match (dimension, label.as_str()) {
@@ -104,7 +104,7 @@ impl Subject {
         self.observed.means.iter().filter(move |watched| has_seeds || !watched.fluctuates)
     }
 
-    /// True if a mean is of a velocity, which means nothing but beside the speeds.
+    /// True for the mean of a velocity, which is compared with the speeds.
     pub(crate) fn is_velocity(&self, name: &str) -> bool {
         self.observed.means.iter().any(|watched| watched.name == name && watched.is_velocity)
     }

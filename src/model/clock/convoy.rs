@@ -7,32 +7,31 @@ use std::collections::HashMap;
 use stripmine_kernels::backend::tape::{Outline, Place, RegisterName};
 use stripmine_kernels::isa::{Array, OpClass};
 
-/// How loads and stores find memory.
+/// Model of memory access.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Memory {
-    /// As many ports as instructions, an element a clock period each.
+    /// An unlimited number of ports, each with an element per clock period.
     NeverBusy,
-    /// The ports and rates that the machine states.
+    /// The ports and rates of the machine.
     Ports,
 }
 
-/// Instructions that run at once.
+/// Instructions that execute at once.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Convoy {
     /// Clock periods until the last of its units delivers its first element.
     pub(crate) start_up: f64,
-    /// Clock periods an element: those of its slowest unit.
+    /// Clock periods per element, those of its slowest unit.
     pub(crate) chime: f64,
-    /// Instructions, those of expansions each for itself.
+    /// Number of instructions; the steps of an expansion count individually.
     pub instructions: usize,
 }
 
-/// The convoys of a program: each instruction, in order, joins the convoy before it unless its unit is taken, or it needs
+/// Groups the instructions of a program into convoys. Each instruction, in order, joins the last convoy unless its unit is occupied, or it needs
 /// a result of that convoy and the machine does not chain.
 ///
-/// Registers are as many as the program needs and never in the way; only true dependences count. An expansion is a chain
-/// of dependent steps, its classes spread evenly over it: machine files say how many of each, not in which order. What a
-/// convoy has stored is not loaded by the same convoy.
+/// The number of registers is unlimited, so only true dependences count. An expansion is a chain of dependent steps with its classes spread evenly
+/// over it: machine files state the number of each, not their order. Data stored by a convoy are not loaded by the same convoy.
 pub(crate) fn convoys(machine: &MachineModel, order: &[Outline], memory: Memory) -> Vec<Convoy> {
     let mut issue = Issue { machine, memory, convoys: vec![], used: HashMap::new(), results: HashMap::new() };
     for outline in order {
@@ -41,7 +40,7 @@ pub(crate) fn convoys(machine: &MachineModel, order: &[Outline], memory: Memory)
     issue.convoys
 }
 
-/// What an instruction may wait for.
+/// A result that an instruction may wait for.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 enum Result {
     Register(RegisterName),
@@ -59,7 +58,7 @@ impl Result {
     }
 }
 
-/// The convoy being filled, and what it has in hand.
+/// The convoy being filled, with the units and results in use.
 struct Issue<'m> {
     machine: &'m MachineModel,
     memory: Memory,
@@ -81,7 +80,7 @@ impl Issue<'_> {
         }
     }
 
-    /// Issues one step, which needs what the instruction reads and its step `before`; when its first element comes.
+    /// Issues one step, which needs the operands of the instruction and its step `before`; returns the time of its first element.
     fn step(&mut self, class: OpClass, outline: &Outline, before: Option<f64>) -> f64 {
         let unit = self.machine.unit(class).filter(|unit| {
             !(self.memory == Memory::NeverBusy && matches!(unit.resource, Resource::Loads | Resource::Stores))
@@ -114,7 +113,7 @@ impl Issue<'_> {
     }
 }
 
-/// The classes of an expansion, each as often as it occurs, spread evenly among the others.
+/// Classes of an expansion, each as often as it occurs, spread evenly among the others.
 fn spread(steps: &ClassCounts) -> Vec<OpClass> {
     let mut placed: Vec<(f64, OpClass)> = steps
         .iter()

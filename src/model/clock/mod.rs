@@ -1,9 +1,8 @@
-//! Clocks: clock periods from the operations of a program, in one list.
+//! Clocks: conversion of the operations of a program to clock periods.
 //!
-//! Every clock has the form of Hennessy and Patterson's strip-mining formula,
-//! `T(n) = ceil(n / MVL) (T_loop + T_start) + n T_chime`, and differs in what it takes for its three numbers
-//! (its charge). The list is a ladder: each rung after the first two adds one property of vector machines to the rung
-//! before it, so that a table shows what that property is worth.
+//! Every clock has the form of Hennessy and Patterson's strip-mining formula, `T(n) = ceil(n / MVL) (T_loop + T_start) + n T_chime`, and differs in
+//! the values of its three numbers (its charge). The list is a ladder: each rung after the first two adds one property of vector machines to the rung
+//! before it, so a table shows the effect of that property.
 
 mod convoy;
 #[cfg(test)]
@@ -17,7 +16,7 @@ use super::machine::MachineModel;
 
 macro_rules! define_clocks {
     ($(($variant:ident, $name:literal, $charge:path, $doc:literal)),* $(,)?) => {
-        /// One way of charging the operations of a program, in clock periods of the machine.
+        /// Clock that charges the operations of a program, in clock periods of the machine.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum Clock {
             $(#[doc = $doc] $variant,)*
@@ -32,12 +31,12 @@ macro_rules! define_clocks {
                 match self { $(Clock::$variant => $name),* }
             }
 
-            /// What the clock takes into account, in one line.
+            /// Description of the clock in one line.
             pub const fn meaning(self) -> &'static str {
                 match self { $(Clock::$variant => $doc),* }
             }
 
-            /// What `machine` is charged for `work`, for vectors of any length.
+            /// Charge of `work` on `machine`, for vectors of any length.
             ///
             /// Operations the machine lacks are expanded first.
             fn charge(self, machine: &MachineModel, work: &Work) -> Charge {
@@ -71,14 +70,14 @@ impl Clock {
     }
 }
 
-/// The three numbers of a clock: what a program costs on a machine, for vectors of any length.
+/// Three numbers of a clock: cost of a program on a machine, for vectors of any length.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Charge {
-    /// Elements of a strip, MVL; none where vectors of any length are worked on in one go.
+    /// Elements of a strip, MVL; none where vectors of any length are processed in one go.
     strip: Option<f64>,
-    /// Clock periods that every strip costs, `T_loop + T_start`.
+    /// Clock periods per strip, `T_loop + T_start`.
     each_strip: f64,
-    /// Clock periods that every element costs, `T_chime`.
+    /// Clock periods per element, `T_chime`.
     each_element: f64,
 }
 
@@ -91,44 +90,44 @@ impl Charge {
     }
 }
 
-/// `NOP · n`: time in proportion to the number of operations.
+/// `NOP · n`: time proportional to the number of operations.
 fn operations(machine: &MachineModel, work: &Work) -> Charge {
     Charge { each_element: work.sum(machine, |_| 1.0), ..Charge::default() }
 }
 
-/// `NOP · n · D`: without a pipeline every element waits for the whole depth of its unit.
+/// `NOP · n · D`: without a pipeline every element passes through the whole depth of its unit.
 fn scalar(machine: &MachineModel, work: &Work) -> Charge {
     Charge { each_element: work.sum(machine, |start_up| start_up), ..Charge::default() }
 }
 
-/// `NOP · (n + D)`: the pipeline fills once, then delivers one element a clock period.
+/// `NOP · (n + D)`: the pipeline fills once, then delivers one element per clock period.
 fn paper(machine: &MachineModel, work: &Work) -> Charge {
     Charge { each_strip: work.sum(machine, |start_up| start_up), ..operations(machine, work) }
 }
 
-/// As the paper's, with a start-up for every strip of one register, and the loop around the strips.
+/// Charges as the paper's clock, with a start-up for every strip of one register, and the loop around the strips.
 ///
-/// A machine without vector registers is charged as by the paper's clock.
+/// A machine without vector registers is charged by the paper's clock.
 fn registers(machine: &MachineModel, work: &Work) -> Charge {
     strip_mined(machine, paper(machine, work))
 }
 
-/// `T_start` and `T_chime` from the convoys of the program, memory taken as never busy.
+/// `T_start` and `T_chime` from the convoys of the program; memory is never busy.
 fn chained(machine: &MachineModel, work: &Work) -> Charge {
     in_convoys(machine, work, Memory::NeverBusy)
 }
 
-/// As chained, with as many loads and stores in a convoy as the machine has ports for, at the rate of its memory.
+/// Charges as the chained clock, with as many loads and stores in a convoy as the machine has ports, at the rate of its memory.
 ///
-/// A machine that states nothing about its memory is charged as by the chained clock. Not modelled: conflicts of memory
-/// banks, and the loads and stores of vectors for which the machine has too few registers.
+/// A machine without stated memory is charged by the chained clock. Conflicts of memory banks, and the loads and stores of vectors for
+/// which the machine has too few registers, are not modelled.
 fn ports(machine: &MachineModel, work: &Work) -> Charge {
     in_convoys(machine, work, Memory::Ports)
 }
 
-/// The charge of a program's convoys.
+/// Charge of a program's convoys.
 ///
-/// A machine that states no functional units, and work in no known order, is charged as by the strip-mined clock.
+/// A machine without stated functional units, and work in no known order, are charged by the strip-mined clock.
 fn in_convoys(machine: &MachineModel, work: &Work, memory: Memory) -> Charge {
     let (Some(order), true) = (work.order(), machine.has_units()) else {
         return registers(machine, work);
@@ -142,7 +141,7 @@ fn in_convoys(machine: &MachineModel, work: &Work, memory: Memory) -> Charge {
     strip_mined(machine, charge)
 }
 
-/// A charge for every strip instead of once, with the overhead of the loop if it has a pass.
+/// Charges every strip instead of the whole vector, with the overhead of the loop if it has a pass.
 fn strip_mined(machine: &MachineModel, charge: Charge) -> Charge {
     let loop_overhead = machine.loop_overhead.as_ref().filter(|_| charge.each_element > 0.0);
     Charge {

@@ -1,4 +1,4 @@
-//! Golden values of the sources, and what every clock promises.
+//! Golden values of the sources, and properties of every clock.
 
 use super::*;
 use crate::model::machine::MachineModel;
@@ -145,7 +145,7 @@ fn the_convoys_of_daxpy_are_those_of_the_textbook() {
     assert_eq!(convoys.iter().map(|convoy| convoy.start_up).collect::<Vec<_>>(), [19.0, 18.0, 12.0]);
     assert_eq!(Clock::Ports.clocks(&machine, &daxpy(), 200), 856.0);
     assert_eq!(Clock::Ports.clocks(&machine, &daxpy(), 1000), 4024.0);
-    // With memory never busy all of it is one convoy, as long as its chain: 12 + 7 + 6 + 12.
+    // With memory never busy there is a single convoy, as long as its chain: 12 + 7 + 6 + 12.
     assert_eq!(Clock::Chained.clocks(&machine, &daxpy(), 200), 4.0 * (15.0 + 37.0) + 200.0);
 }
 

@@ -1,11 +1,11 @@
-//! What a clock is asked about.
+//! Operations that a clock charges.
 
 use crate::model::machine::MachineModel;
 use stripmine_kernels::Runnable;
 use stripmine_kernels::backend::tape::Outline;
 use stripmine_kernels::isa::OpCounts;
 
-/// What a program executes: how often each operation and, where a program stands behind the counts, in which order.
+/// Operations of a program: the number of each and, if known, their order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Work {
     counts: OpCounts,
@@ -13,24 +13,24 @@ pub struct Work {
 }
 
 impl Work {
-    /// The instructions of a program.
+    /// Instructions of a program.
     pub fn of(program: &dyn Runnable) -> Work {
         Work::in_order(program.outlines().instructions)
     }
 
-    /// These instructions, one after the other.
+    /// Instructions in a given order.
     pub fn in_order(order: Vec<Outline>) -> Work {
         let mut counts = OpCounts::default();
         order.iter().flat_map(Outline::operations).for_each(|op| counts.record(op));
         Work { counts, order }
     }
 
-    /// The instructions in their order; none where only counts are known, which no clock can chain.
+    /// Instructions in their order; none where only counts are known, which no clock can chain.
     pub fn order(&self) -> Option<&[Outline]> {
         (!self.order.is_empty()).then_some(&self.order)
     }
 
-    /// Adds up `each(D)` over all operations that `machine` executes.
+    /// Sums `each(D)` over all operations that `machine` executes.
     pub(super) fn sum(&self, machine: &MachineModel, each: impl Fn(f64) -> f64) -> f64 {
         machine
             .expand(&self.counts)

@@ -1,4 +1,4 @@
-//! The costs of a program: what a run of it is charged for, and at which price.
+//! Costs of a program: the amounts that a run is charged for, and their prices.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -10,23 +10,23 @@ use stripmine_kernels::isa::{Array, OpClass};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Costs {
-    /// A run of a program.
+    /// Price of a run of a program.
     pub run: f64,
-    /// The start of a pass of the interpreter.
+    /// Price of the start of a pass of the interpreter.
     pub start: f64,
-    /// An operation of an element.
+    /// Price of an operation on an element.
     pub(crate) operation: f64,
-    /// The same through an index vector, in addition.
+    /// Additional price through an index vector.
     pub indexed: f64,
-    /// A byte, at each of the footprints.
+    /// Price of a byte, at each of the footprints.
     pub bytes: Vec<f64>,
 }
 
-/// Costs on lanes of one element type, and how registers of these are shaped.
+/// Costs on lanes of one element type, and the layout of their registers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LaneCosts {
-    /// Bytes of an element in a register of each file: numbers, predicates, indices.
+    /// Bytes of an element in a register of each file (numbers, predicates, indices).
     pub(crate) register_bytes: [f64; 3],
     /// Lanes of a hardware register.
     pub lanes: usize,
@@ -36,7 +36,7 @@ pub struct LaneCosts {
     pub(crate) chained: Costs,
 }
 
-/// What a run of a program is charged for: a run, starts of passes, operations of elements, those through an index vector, and bytes at
+/// Amounts that a run of a program is charged for: a run, starts of passes, operations on elements, those through an index vector, and bytes at
 /// each footprint.
 pub(crate) type Charges = Vec<f64>;
 
@@ -48,7 +48,7 @@ impl Costs {
         Costs { run, start, operation, indexed, bytes: prices.iter().skip(4).copied().collect() }
     }
 
-    /// Nanoseconds of what is charged.
+    /// Total of the charges in nanoseconds.
     pub(crate) fn total(&self, charges: &Charges) -> f64 {
         let prices = [self.run, self.start, self.operation, self.indexed]
             .into_iter()
@@ -57,7 +57,7 @@ impl Costs {
     }
 }
 
-/// What a run of a program over `n` elements is charged for, on registers of this shape, among the arrays of its step.
+/// Charges of a run of a program over `n` elements, with registers of this layout, among the arrays of its step.
 pub(crate) fn charges(
     outlines: &Outlines,
     (n, execution): (usize, Execution),
@@ -78,12 +78,12 @@ pub(crate) fn charges(
     charges.resize(4 + footprints.len(), 0.0);
     for (times, length) in strips(n, execution) {
         if !is_chained {
-            // What is left beyond whole hardware registers goes element by element, in a pass of its own.
+            // Elements beyond whole hardware registers are processed one by one, in a pass of their own.
             let is_whole = length < lanes || length.is_multiple_of(lanes.max(1));
             charges[1] += times * outlines.passes.len() as f64 * if is_whole { 1.0 } else { 2.0 };
         }
         let [first, again] = around.moved(outlines, length as f64, register_bytes);
-        // A loop keeps what it visits again in hardware registers.
+        // A loop keeps data that it visits again in hardware registers.
         for moved in if is_chained { vec![first] } else { vec![first, again] } {
             let shares = shares(footprints, moved.footprint);
             charges[4..].iter_mut().zip(shares).for_each(|(sum, share)| *sum += times * share * moved.bytes);
@@ -92,7 +92,7 @@ pub(crate) fn charges(
     charges
 }
 
-/// By how much each of some points counts for a value: two neighbours share it, by the logarithm.
+/// Weights of some points for a value: its two neighbours share it, by logarithmic interpolation.
 fn shares(points: &[f64], value: f64) -> Vec<f64> {
     let mut shares = vec![0.0; points.len()];
     let Some(last) = points.len().checked_sub(1) else { return shares };
@@ -104,14 +104,14 @@ fn shares(points: &[f64], value: f64) -> Vec<f64> {
     shares
 }
 
-/// Bytes of a line, the least that moves between levels.
+/// Bytes of a cache line, the smallest transfer between levels.
 const LINE: f64 = 64.0;
 
-/// The arrays of a step by name and element type, and how many bytes each has.
+/// Arrays of a step by name and element type, with their sizes in bytes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Around(BTreeMap<(Array, &'static str), f64>);
 
-/// Bytes that are moved, and how many are gone over before they are visited again.
+/// Bytes moved, and the footprint between two visits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Moved {
     bytes: f64,
@@ -119,9 +119,9 @@ struct Moved {
 }
 
 impl Around {
-    /// Of programs that run one after the other over vectors of these lengths.
+    /// Collects the arrays of programs that run one after the other over vectors of these lengths.
     pub(crate) fn of_step(programs: &[(&Outlines, usize)]) -> Around {
-        // What is visited element by element somewhere is as long as there; an index vector says nothing about it.
+        // An array visited element by element has that length; an index vector gives no length.
         let [mut direct, mut indexed]: [BTreeMap<_, f64>; 2] = Default::default();
         for (outlines, n) in programs {
             for place in places(outlines) {
@@ -138,8 +138,8 @@ impl Around {
         Around(indexed)
     }
 
-    /// What a program moves in a strip of `n` elements: arrays that it visits for the first time, which lie as far as all of the
-    /// step's, and what it visits again or has in registers, of `register_bytes` by file.
+    /// Bytes that a program moves in a strip of `n` elements: of arrays that it visits for the first time, at the footprint of the whole
+    /// step, and of arrays that it visits again or has in registers, of `register_bytes` by file.
     fn moved(&self, outlines: &Outlines, n: f64, register_bytes: [f64; 3]) -> [Moved; 2] {
         let (mut first, mut again, mut visited) = (0.0, 0.0, vec![]);
         for place in places(outlines) {
@@ -149,7 +149,7 @@ impl Around {
                     continue;
                 }
                 Place::Memory(it) => (n * element_bytes(it.element), it),
-                // A line for an element that an index leads to, but no more than there is.
+                // An indexed element moves a whole line, but at most the whole array.
                 Place::Indexed(it) => {
                     let all = self.0.get(&(it.array, it.element)).copied().unwrap_or(f64::INFINITY);
                     ((n * LINE).min(all), it)
@@ -177,7 +177,7 @@ fn places(outlines: &Outlines) -> impl Iterator<Item = &Place> {
     outlines.passes.iter().flat_map(|pass| pass.reads.iter().chain(&pass.writes))
 }
 
-/// How often an execution goes over how many elements.
+/// Strips of an execution: their number and length.
 fn strips(n: usize, execution: Execution) -> impl Iterator<Item = (f64, usize)> {
     let strip = if let Execution::Strip(strip) = execution { strip.min(n) } else { n }.max(1);
     [((n / strip) as f64, strip), (1.0, n % strip)].into_iter().filter(|&(times, n)| times > 0.0 && n > 0)
@@ -214,7 +214,7 @@ mod tests {
         let program = Outlines { lane: "f64", instructions, passes, registers: [0; 3] };
         let charged = |n, execution| charges(&program, (n, execution), SHAPE, &Around::default(), &[]);
         assert_eq!(charged(8, Execution::Eager), [1.0, 2.0, 16.0, 8.0]);
-        // Passes begin twice where elements are left over, and once a strip.
+        // Passes start twice where elements are left over, and once per strip.
         assert_eq!(charged(9, Execution::Eager), [1.0, 4.0, 18.0, 9.0]);
         assert_eq!(charged(9, Execution::Strip(4)), [1.0, 6.0, 18.0, 9.0]);
         assert_eq!(charged(9, Execution::Chained), [1.0, 0.0, 18.0, 0.0]);

@@ -1,4 +1,4 @@
-//! Host files: what `calibrate` writes, as TOML.
+//! Host files, as written by `calibrate`, in TOML.
 
 use super::model::HostModel;
 use crate::model::file::{Entry, Kind};
@@ -6,41 +6,41 @@ use std::path::Path;
 use stripmine_kernels::InstructionSet;
 use stripmine_physics::input::InputErrors;
 
-/// The version of the file format that this program reads.
+/// Format version that this program reads.
 pub(crate) const FORMAT: u32 = 15;
 const KIND: Kind<HostModel> =
     Kind { format: FORMAT, remedy: Some("calibrate again"), wrong, completed: HostModel::checked };
-/// Above every number of a host file: with larger ones a sum of all that a step does might not be finite.
+/// Upper bound of the numbers of a host file: with larger ones the sum over a step might not be finite.
 const MOST: f64 = 1e15;
 
 impl HostModel {
     /// Reads a host file.
     ///
     /// # Errors
-    /// [`InputErrors`]: the system does not let it be read, or as [`HostModel::parse`].
+    /// [`InputErrors`]: the file cannot be read, or as for [`HostModel::parse`].
     pub fn load(path: &Path) -> Result<HostModel, InputErrors> {
         KIND.load(path)
     }
 
-    /// Reads a host file's text; `file` is the name that errors give it.
+    /// Reads a host file's text; `file` is its name in errors.
     ///
     /// # Errors
-    /// [`InputErrors`]: another format, every entry that cannot be, or the disagreement of right ones.
+    /// [`InputErrors`]: another format, every invalid entry, or a contradiction between valid ones.
     pub fn parse(file: &str, text: &str) -> Result<HostModel, InputErrors> {
         KIND.read(file, text)
     }
 
-    /// The text of its file.
+    /// Text of its file.
     ///
     /// # Errors
-    /// Where TOML cannot say an entry.
+    /// Fails where TOML cannot represent an entry.
     pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
         let mut value = toml::Value::try_from(self)?;
         readable(&mut value);
         Ok(HEADING.to_owned() + &toml::to_string(&value)?)
     }
 
-    /// The model, if its entries agree with each other.
+    /// Checks that the entries agree with each other.
     fn checked(self) -> Result<HostModel, (String, String)> {
         let wrong = |path: &str, what: String| Err((path.to_owned(), format!("`{path}` {what}")));
         let sets: Vec<&str> = InstructionSet::ALL.iter().map(|set| set.name()).collect();
@@ -65,11 +65,11 @@ impl HostModel {
     }
 }
 
-/// Says what is wrong with the number of an entry.
+/// Describes the error of a number, if any.
 fn wrong(entry: &Entry<'_>) -> Option<String> {
     let number = entry.number()?;
     let (range, words) = match entry.names.last() {
-        // Lanes of a register, and elements of a vector.
+        // Numbers of lanes and of elements.
         Some(&"lanes") => (1.0..=65_536.0, "a whole number from 1 to 65536".to_owned()),
         Some(&"shortest" | &"longest") => (1.0..=2_f64.powi(40), "a whole number from 1 to 2^40".to_owned()),
         _ => (0.0..=MOST, format!("from 0 to {MOST:e}")),
@@ -77,22 +77,22 @@ fn wrong(entry: &Entry<'_>) -> Option<String> {
     (!range.contains(&number)).then(|| format!("`{}` is {number}, but must be {words}", entry.path()))
 }
 
-/// What stands above the numbers.
+/// Comment at the top of a host file.
 const HEADING: &str = "\
-# What a host takes, as `stripmine calibrate` has measured it. Times are in nanoseconds, footprints in bytes. What counts is the middle of
-# the samples, under whatever else the machine was doing.
+# Prices of a host, measured by `stripmine calibrate`. Times are in nanoseconds, footprints in bytes. Each number is the median of
+# its samples, under the load that the machine had.
 #
-# programs   prices of a run of a program, of the start of a pass, of an operation of an element, of one through an index vector in
-#            addition, and of a byte by how many bytes are gone over before it is visited again; interpreted and in a compiled loop;
+# programs   prices of a run of a program, of the start of a pass, of an operation on an element, of its additional cost through an
+#            index vector, and of a byte by the footprint between two visits; interpreted and in a compiled loop;
 #            fitted to the programs of the lattice method on drill scenes
-# rates      work whose amount depends on the data, by method, phase and precision: a step, disc, cell, candidate, contact, making of
+# rates      work whose amount depends on the data, by method, phase and precision: a step, disc, cell, candidate, contact, rebuild of
 #            lists, disc whose lists are rebuilt, entry of these
 ";
 
-/// Digits that a number is written with.
+/// Significant digits of a number in the file.
 const DIGITS: i32 = 4;
 
-/// Numbers with as many digits as a person reads.
+/// Rounds numbers to the digits that a person reads.
 fn readable(value: &mut toml::Value) {
     match value {
         toml::Value::Float(number) if number.is_finite() && *number != 0.0 => {
@@ -106,10 +106,10 @@ fn readable(value: &mut toml::Value) {
     }
 }
 
-/// The host model that comes with the program: of the machine that it was developed on.
+/// Host model shipped with the program: that of the development machine.
 ///
 /// # Errors
-/// [`InputErrors`] never, as a test of the shipped text holds.
+/// [`InputErrors`] never, as a test reads the shipped text.
 pub fn default_model() -> Result<HostModel, InputErrors> {
     HostModel::parse("the shipped host model", include_str!("default.toml"))
 }

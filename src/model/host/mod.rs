@@ -1,6 +1,6 @@
-//! Today's hosts, in one line for every execution: `t = start-ups + operations × time + bytes × time of their level`. Operations are
-//! charged alike, but for those through an index vector; bytes by how much the program goes over before it visits them again. Work
-//! whose amount depends on the data is charged by units of it.
+//! Timing model of today's hosts, for every execution: `t = start-ups + operations × time + bytes × time of their level`. All operations cost
+//! the same, except those through an index vector. The price of a byte depends on the footprint between two visits. Work
+//! whose amount depends on the data is charged per unit.
 
 mod costs;
 mod file;

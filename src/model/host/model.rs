@@ -1,4 +1,4 @@
-//! A host: all that is known of it, and what a program takes there.
+//! Model of a host, and its predictions for programs.
 
 use super::costs::{Around, LaneCosts, charges};
 use super::out_of_range::OutOfRange;
@@ -9,42 +9,42 @@ use stripmine_kernels::Execution;
 use stripmine_kernels::backend::tape::Outlines;
 use stripmine_physics::number::{counted, significant};
 
-/// How the numbers were measured.
+/// Conditions of a measurement.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Measured {
-    /// In which state the machine was: quiet, busy, how noisy, or unknown.
+    /// State of the machine: quiet, busy, noisy, changing, or unknown.
     pub state: String,
-    /// Load average of the last minute before it began; none where the system does not say.
+    /// Load average of the last minute before the start; none where the system does not report it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub load: Option<f64>,
-    /// Seconds that it took.
+    /// Duration of the measurement (s).
     pub seconds: f64,
-    /// Median, over all points, of half the range of the middle half of the samples, as a share; none where most points have too few.
+    /// Median, over all points, of the relative half-range of the middle half of the samples; none where most points have too few.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spread: Option<f64>,
-    /// Median, over all points, of how far the two halves of the measurement differ; none where most points have too few.
+    /// Median, over all points, of the difference between the two halves of the measurement; none where most points have too few.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) disagreement: Option<f64>,
     /// Shortest vectors.
     pub(crate) shortest: usize,
     /// Longest vectors.
     pub(crate) longest: usize,
-    /// Median deviation of the programs from the prices that were fitted to them.
+    /// Median deviation of the programs from the prices fitted to them.
     pub(crate) residual: f64,
 }
 
 impl Measured {
-    /// With a larger half range of the samples the machine was noisy, with a larger difference between the halves changing.
+    /// Largest spread of a steady machine: beyond it the samples are noisy, or the halves of the measurement differ.
     const UNSTEADY: f64 = 0.05;
 
-    /// The state of a machine with so many cores and this load, whose samples lie so far apart, and the halves of whose measurement so.
+    /// State of a machine with some cores and a load, from the spread of the samples and the difference between the halves of the measurement.
     pub(crate) fn state_of(
         [spread, disagreement]: [Option<f64>; 2],
         load: Option<f64>,
         cores: usize,
     ) -> String {
-        // A core is free for what is measured, or half of the only one.
+        // One core is free for the measurement, or half of the only one.
         let bearable = (cores as f64 - 1.0).max(0.5);
         let busy = load.filter(|load| *load > bearable).map(|load| {
             let cores = counted(cores, "core", "cores");
@@ -60,7 +60,7 @@ impl Measured {
                 noisy.into_iter().chain(changing).collect()
             }
             _ => vec![
-                "in an unknown state: too few samples of each program tell how far they scatter".to_owned(),
+                "in an unknown state: too few samples of each program to measure their scatter".to_owned(),
             ],
         };
         let said: Vec<String> = busy.into_iter().chain(seen).collect();
@@ -72,43 +72,43 @@ impl Measured {
     }
 }
 
-/// A host.
+/// Model of a host.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HostModel {
     /// Version of the file format.
     pub(crate) format: u32,
-    /// The processor and the platform.
+    /// Processor and platform.
     pub title: String,
-    /// The instructions it was measured with.
+    /// Instruction set of the measurement.
     pub(crate) instruction_set: String,
-    /// Footprints at which a byte has a price, rising; between two of them it is in between, by the logarithm (bytes).
+    /// Footprints at which a byte has a price, rising; prices between them are interpolated by the logarithm (bytes).
     pub(crate) footprints: Vec<f64>,
-    /// How it was measured.
+    /// Conditions of the measurement.
     pub(crate) measured: Measured,
     /// Prices of programs by the element type of the lanes.
     pub programs: BTreeMap<String, LaneCosts>,
     /// Fewest and most discs of the steps that rates were fitted to.
     pub discs: [f64; 2],
-    /// Work whose amount depends on the data, by method.
+    /// Rates of work whose amount depends on the data, by method.
     pub rates: BTreeMap<String, Rates>,
 }
 
 impl HostModel {
-    /// By what the host differs from another one, in words; none where it is the same processor with the same instructions.
+    /// Describes the difference from another host; none for the same processor with the same instructions.
     pub(crate) fn differs_from(&self, title: &str, instruction_set: &str) -> Option<String> {
         ((&*self.title, &*self.instruction_set) != (title, instruction_set)).then(|| {
             format!(
-                "the model is of {} by {}, and this host is {title}, which measures by {instruction_set}",
+                "the model is of {} by {}, but this host is {title} and measures by {instruction_set}",
                 self.title, self.instruction_set
             )
         })
     }
 
-    /// Whether vectors of `n` elements lie within what was measured.
+    /// Checks that vectors of `n` elements are within the measured range.
     ///
     /// # Errors
-    /// [`OutOfRange::Length`] where they do not.
+    /// [`OutOfRange::Length`] if they are not.
     pub(crate) fn admits(&self, n: usize) -> Result<(), OutOfRange> {
         let Measured { shortest, longest, .. } = self.measured;
         if n < shortest || n > longest {
@@ -120,7 +120,7 @@ impl HostModel {
     /// Nanoseconds of a phase of a method whose work depends on the data.
     ///
     /// # Errors
-    /// [`OutOfRange`] where nothing was measured that could say.
+    /// [`OutOfRange`] where the measurements do not cover it.
     pub(crate) fn rated(
         &self,
         (method, name, precision): (&str, &str, &str),
@@ -137,7 +137,7 @@ impl HostModel {
     /// Nanoseconds of a run of a program over `n` elements, among the arrays of a step.
     ///
     /// # Errors
-    /// [`OutOfRange`] where nothing was measured that could say.
+    /// [`OutOfRange`] where the measurements do not cover it.
     pub(crate) fn program(
         &self,
         outlines: &Outlines,
@@ -164,7 +164,7 @@ mod tests {
     use stripmine_kernels::backend::tape::{Outline, Place, Reference};
     use stripmine_kernels::isa::{Array, Op};
 
-    /// A host on which a pass takes 10 ns to begin and 0.5 an element, a run 100, a loop 7, and a byte 0.25 or 0.125.
+    /// A host on which a pass takes 10 ns to start and 0.5 ns per element, a run 100 ns, a loop 7 ns, and a byte 0.25 or 0.125 ns.
     fn host() -> HostModel {
         let of = LaneCosts {
             register_bytes: [8.0, 1.0, 4.0],
@@ -188,7 +188,7 @@ mod tests {
         Outlines { lane: "f64", instructions: all.clone(), passes: all, registers: [0; 3] }
     }
 
-    /// By hand: two passes over 100 elements at once, in strips of 32 of which the last has 4, and as a loop.
+    /// By hand: two passes over 100 elements at once, in strips of 32 with 4 in the last, and as a loop.
     #[test]
     fn every_strip_begins_every_byte_counts_and_a_loop_visits_each_once() {
         let around = Around::of_step(&[(&sums(1), 100)]);
@@ -204,7 +204,7 @@ mod tests {
         assert_eq!(beyond, Err(OutOfRange::Discs { discs: 9.0, fewest: 0.0, most: 0.0 }));
     }
 
-    /// One sample has no spread, whatever the load; a load above the free cores is no quiet machine.
+    /// A single sample has no spread, whatever the load; a load above the free cores means that the machine is not quiet.
     #[test]
     fn a_state_is_said_only_as_far_as_it_was_measured() {
         let state = |seen: [Option<f64>; 2], load: Option<f64>| Measured::state_of(seen, load, 2);

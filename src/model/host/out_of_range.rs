@@ -1,31 +1,29 @@
-//! What a host model cannot say.
+//! Predictions outside the measurements of a host model.
 
-/// Why there is no prediction.
+/// Reason why there is no prediction.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub(crate) enum OutOfRange {
-    /// Vectors longer or shorter than those that were measured.
+    /// Vectors longer or shorter than those measured.
     #[error(
-        "vectors of {n} elements lie outside the calibrated range of {shortest} to {longest}: calibrate on them, or ask \
-         for another number of particles"
+        "vectors of {n} elements are outside the calibrated range of {shortest} to {longest}: calibrate on them, or choose \
+         another number of particles"
     )]
     Length {
-        /// Elements asked for.
         n: usize,
-        /// Shortest vectors.
+        /// Shortest vectors measured.
         shortest: usize,
-        /// Longest vectors.
+        /// Longest vectors measured.
         longest: usize,
     },
-    /// More or fewer discs than those that were measured.
+    /// More or fewer discs than those measured.
     #[error(
-        "{discs} discs lie outside the calibrated range of {fewest} to {most}: ask for another number of particles"
+        "{discs} discs are outside the calibrated range of {fewest} to {most}: choose another number of particles"
     )]
     Discs {
-        /// Discs asked for.
         discs: f64,
-        /// Fewest discs.
+        /// Fewest discs measured.
         fewest: f64,
-        /// Most discs.
+        /// Most discs measured.
         most: f64,
     },
     /// An execution, precision or program that was not measured.

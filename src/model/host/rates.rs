@@ -1,44 +1,44 @@
-//! Work whose amount depends on the data: a time for each step, disc, cell, candidate, contact and entry of a list.
+//! Rates of work whose amount depends on the data: a time for each step, disc, cell, candidate, contact and list entry.
 
 use super::out_of_range::OutOfRange;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// How much there is to do in a step: measured in a run, or estimated.
+/// Amounts of work in a step: measured in a run, or estimated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Amounts {
-    /// Steps, one: what a phase takes even without work.
+    /// Steps, always one: the cost of a phase without work.
     pub steps: f64,
     pub discs: f64,
     /// Cells of the lattice; none for lists.
     pub cells: f64,
-    /// Entries of lists; on the lattice the occupied cells in half the mask, as if discs lay at random.
+    /// Entries of lists; on the lattice the occupied cells in half the mask, for randomly placed discs.
     pub(crate) candidates: f64,
-    /// Pairs that the law is asked about.
+    /// Pairs for which the law is evaluated.
     pub contacts: f64,
-    /// How often lists are rebuilt, on average.
+    /// Average number of list rebuilds.
     pub(crate) makings: f64,
-    /// Discs whose lists are rebuilt, on average.
+    /// Average number of discs whose lists are rebuilt.
     pub(crate) remade: f64,
-    /// Entries of the lists that are rebuilt, on average.
+    /// Average number of entries of rebuilt lists.
     pub(crate) relisted: f64,
 }
 
-/// A number for each of the [`Amounts`].
+/// One number for each of the [`Amounts`].
 pub(crate) type Units = [f64; 8];
 
 impl Amounts {
-    /// The amounts by unit.
+    /// Amounts in the order of units.
     pub(crate) fn values(&self) -> Units {
         let Amounts { steps, discs, cells, candidates, contacts, makings, remade, relisted } = *self;
         [steps, discs, cells, candidates, contacts, makings, remade, relisted]
     }
 }
 
-/// Nanoseconds of each unit in the phases of a method, by phase and precision.
+/// Nanoseconds per unit in the phases of a method, by phase and precision.
 pub(crate) type Rates = BTreeMap<String, BTreeMap<String, Units>>;
 
-/// The part of the phase `index` in which lists are made.
+/// Name of the part of the phase `index` that builds lists.
 pub(crate) const MAKING: &str = "making lists";
 
 /// Nanoseconds of a phase.

@@ -1,4 +1,4 @@
-//! Least error of a mean over the wall time of its run, for each integrator: bias and chance added, by the best of some steps.
+//! Smallest error of a mean against the wall time of its run, for each integrator: bias plus statistical error at the best of some steps.
 
 use super::drift::Tried;
 use super::findings::{Findings, Way};
@@ -11,41 +11,40 @@ use crate::study::trial::Trial;
 use crate::study::{Case, Choice};
 use stripmine_physics::method::Decides;
 
-/// Name of the item.
 pub(crate) const NAME: &str = "accuracy";
 
-/// Steps of a curve in parts of the longest.
+/// Steps of a curve, in parts of the longest.
 const STEPS: [f64; 3] = [1.0, 0.5, 0.25];
-/// Points of a curve between a wall time and ten times that.
+/// Points of a curve per decade of wall time.
 const POINTS: i32 = 8;
-/// Decades of wall time that curves cover.
+/// Decades of wall time of a curve.
 const DECADES: i32 = 4;
 /// Independent samples of the shortest run.
 const SHORTEST: f64 = 5.0;
-/// Errors for which the cheapest point is named, in parts of the mean.
+/// Errors for which the cheapest run is listed, in parts of the mean.
 const WISHES: [f64; 5] = [0.1, 0.03, 0.01, 0.003, 0.001];
 
-/// A configuration with the least error that one of its steps has in each wall time.
+/// Smallest error of a configuration against wall time, at the best of its steps.
 struct Curve<'f> {
     way: &'f Way,
     points: Vec<Point>,
 }
 
-/// An error in a wall time.
+/// Error at a wall time.
 struct Point {
     /// Wall seconds of a run.
     seconds: f64,
     /// The step (time); none where the method takes none.
     step: Option<f64>,
-    /// Expected bias and chance, and the most that they are.
+    /// Expected sum of bias and statistical error, and its upper bound.
     error: f64,
     most: f64,
 }
 
-/// Measures a scene in trials of some seconds, as frames. The plan is marked where an error is asked for.
+/// Measures a scene in trials of some seconds and returns frames. The plan is marked if an error is requested.
 ///
 /// # Errors
-/// [`ExplainError`] if every trial breaks, or the quantity has no mean.
+/// [`ExplainError`] if every trial fails, or the quantity has no mean.
 pub(crate) fn accuracy(
     case: &Case,
     target: &Target,
@@ -70,7 +69,7 @@ fn made(scene: &str, target: &Target, findings: &Findings, plan: Option<&Plan>, 
     ])
 }
 
-/// The cheapest configuration of each integrator; where there are none, of each engine.
+/// Returns the cheapest configuration of each integrator, or of each engine where there are no integrators.
 fn curves<'f>(case: &Case, findings: &'f Findings) -> Vec<Curve<'f>> {
     let chance = findings.chance();
     let mut chosen: Vec<(&Way, Choice)> = vec![];
@@ -86,7 +85,7 @@ fn curves<'f>(case: &Case, findings: &'f Findings) -> Vec<Curve<'f>> {
     chosen.iter().map(|(way, _)| Curve { way, points: least_errors(way, case, findings, &chance) }).collect()
 }
 
-/// The least errors over wall times.
+/// Smallest errors against wall time.
 fn least_errors(way: &Way, case: &Case, findings: &Findings, chance: &Chance) -> Vec<Point> {
     let Some(cost) = way.cost else { return vec![] };
     if let (Some(drift), Some(step), Some(time)) = (&way.drift, way.step, case.duration()) {
@@ -97,10 +96,10 @@ fn least_errors(way: &Way, case: &Case, findings: &Findings, chance: &Chance) ->
         return drift.tried.iter().map(of).filter(|it| it.error.is_finite() && it.error > 0.0).collect();
     }
     let mean = &findings.mean;
-    // Of a unit of time by itself, and of its rows; the fewest of whole runs are a part of the start.
+    // Costs of a unit of time: the steps alone, and its rows. The fixed rows of whole runs belong to the start.
     let rows = findings.row * mean.rows();
     let start = findings.start + if rows > 0.0 { 0.0 } else { findings.of_rows(0.0) };
-    // A mean that does not vary has no shortest run.
+    // A mean without fluctuations has no shortest run.
     let shortest = findings.whole.unwrap_or(if mean.apart > 0.0 { SHORTEST * mean.apart } else { 1.0 });
     let first = start + (cost + rows) * (shortest + mean.transient);
     let walls = (0..=POINTS * DECADES).map(|at| first * 10f64.powf(f64::from(at) / f64::from(POINTS)));
@@ -152,11 +151,11 @@ fn points(curves: &[Curve<'_>]) -> Frame {
         .number("most", 6, |(.., point)| point.most)
         .frame(
             "points",
-            "Least error over the wall time of a run: expected bias, and chance with a probability of 95 %",
+            "Smallest error over the wall time of a run: expected bias, and statistical error with 95 % confidence",
         )
 }
 
-/// The scene's own values and the plan.
+/// The scene as it stands, and the plan.
 fn marks(plan: Option<&Plan>, target: &Target) -> Frame {
     let own = plan
         .and_then(|plan| plan.own.as_ref())
@@ -199,7 +198,6 @@ fn biases(findings: &Findings, curves: &[Curve<'_>]) -> Frame {
         .frame("biases", "Bias of the mean by the step")
 }
 
-/// The cheapest run for each error.
 fn wishes(findings: &Findings, curves: &[Curve<'_>]) -> Frame {
     let mean = findings.mean.mean.abs();
     let cheapest = |wish: f64| {

@@ -1,24 +1,24 @@
-//! Which scenes are so alike that what is the cheapest for one is so for the other.
+//! Similarity of scenes: decides whether timings of one scene apply to another.
 
 use crate::study::Case;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// Scenes are alike up to this factor of particles, and this difference of packing fractions: crossings lie farther apart.
+/// Largest ratio of particle counts and largest difference of packing fractions between similar scenes: crossings of costs lie farther apart.
 const PARTICLES: f64 = 2.0;
 const PACKING: f64 = 0.05;
 
-/// What decides which way to run a scene is the cheapest.
+/// Properties of a scene that decide which configuration is the fastest.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Alike {
     method: String,
     particles: usize,
-    /// Area of the particles over that of the box; 0 where there is none.
+    /// Area of the particles over that of the box; 0 where the box has no area.
     packing_fraction: f64,
 }
 
 impl Alike {
-    /// Of a scene.
+    /// Returns the properties of a scene.
     pub(super) fn of(case: &Case) -> Alike {
         let particles = case.prepared.particles();
         let discs: f64 = particles.grains().iter().map(|it| PI * it.radius * it.radius).sum();
@@ -30,7 +30,7 @@ impl Alike {
         }
     }
 
-    /// How far two scenes are from each other, 0 for equal ones; none where they are not alike.
+    /// Distance between two scenes, 0 for equal ones; none where they are not similar.
     pub(super) fn apart(&self, other: &Alike) -> Option<f64> {
         let of_particles = (self.particles.max(1) as f64 / other.particles.max(1) as f64).ln().abs();
         let apart = (of_particles / PARTICLES.ln())

@@ -1,4 +1,4 @@
-//! The mean of another start beside that of the scene's own.
+//! Comparison of the mean from another start with that from the scene's own.
 
 use super::findings::{Way, Work};
 use super::mean::Mean;
@@ -7,15 +7,15 @@ use stripmine_physics::averages::{Average, Outcome, Rows};
 use stripmine_physics::method::Quantity;
 use stripmine_physics::scene::SEED;
 
-/// Starts differ where their means are as many bars apart: about three standard errors.
+/// Means of two starts differ if they are this many error bars apart: about three standard errors.
 const SURE: f64 = 1.5;
 
 impl Work<'_> {
-    /// The mean of another start less that of the scene's own, where that is beyond both bars.
+    /// Returns the mean from another start less that from the scene's own, if it exceeds both error bars.
     ///
-    /// Noise may hide the end of a transient from one of the two runs: means that differ are compared again from the later end on.
+    /// Noise may hide the end of a transient in one of the two runs. Means that differ are therefore compared again after the later transient.
     pub(super) fn starts_differ(&self, way: &Way, mean: &mut Mean) -> Option<f64> {
-        // Of whole runs each has another.
+        // Whole runs have different starts anyway.
         let seed = self.case.prepared.seed.filter(|_| self.whole.is_none())?;
         let another =
             Way { overrides: way.overrides.clone().set(&SEED, seed.wrapping_add(1)), ..way.clone() };
@@ -25,7 +25,7 @@ impl Work<'_> {
         if differ(&mean.known, &other) {
             let observed = (self.case.entry.quantities, self.target.place);
             let later = mean.known.transient.max(other.transient);
-            // A run that ends before that tells nothing.
+            // A run that ends before that gives no mean.
             other = after(&sample.rows, observed, (&other, sample.pace()), later)?;
             let pace = sample.pace().map(|_| Pace { cost: mean.cost, row: mean.row });
             mean.known = after(&mean.rows, observed, (&mean.known, pace), later).unwrap_or(mean.known);
@@ -36,7 +36,7 @@ impl Work<'_> {
     }
 }
 
-/// True if two means are beyond both bars of each other.
+/// True if two means differ by more than both error bars.
 fn differ(one: &Known, other: &Known) -> bool {
     (one.mean - other.mean).abs() > SURE * one.bar.hypot(other.bar)
 }

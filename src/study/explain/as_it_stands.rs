@@ -1,4 +1,4 @@
-//! The scene as it stands in the place of a plan that is no better.
+//! The scene as it stands, returned instead of a plan that is no better.
 
 use super::findings::Findings;
 use super::plan::{TIME_WITHIN, own_rows};
@@ -7,14 +7,14 @@ use super::words::seconds;
 use crate::study::Case;
 use stripmine_physics::scene::Overrides;
 
-/// What the decision is about that leaves the scene as it stands.
+/// Subject of the decision that leaves the scene as it stands.
 pub(super) const AS_IT_STANDS: &str = "the scene";
 
-/// Errors are alike that differ by rounding alone.
+/// Relative difference below which two errors are equal: rounding alone.
 const ROUNDING: f64 = 1e-9;
 
 impl Plan {
-    /// The plan; or the scene as it stands, where its error is as small and it takes no longer.
+    /// Returns the plan, or the scene as it stands where its error is as small and it takes no longer.
     #[must_use]
     pub(super) fn or_as_it_stands(self, case: &Case, findings: &Findings) -> Plan {
         let is_better = |own: &super::recommended::Own| {
@@ -29,7 +29,7 @@ impl Plan {
             way.phases.iter().map(|(name, cost)| (name.clone(), cost * slower * time)).collect()
         });
         let why = format!(
-            "no plan reaches an error as small in less time: the best takes {}",
+            "no plan reaches an equally small error in less time; the best takes {}",
             seconds(self.seconds.likely)
         );
         Plan {

@@ -1,70 +1,71 @@
-//! How far a step takes a mean off, by paired runs at a step and at half of it, and at other steps by the known order of the scheme.
+//! Bias of a mean by the time step, from paired runs at a step and at half of it; other steps follow from the order of the scheme.
 
 use crate::study::trial::{Window, any_number, part, steady};
 use serde::{Deserialize, Serialize};
 use stripmine_physics::averages::of_independent;
 use stripmine_physics::number::significant;
 
-/// Part of the correction of a short window that is taken for its own uncertainty: the memory of a quantity is rarely a single exponential.
+/// Part of the correction for a short window that counts as its uncertainty: the memory of a quantity is rarely a single exponential.
 const OF_CORRECTION: f64 = 0.5;
 
-/// Two measurements disagree that are as many bars apart: about three standard errors.
+/// Two measurements disagree if they differ by this many error bars: about three standard errors.
 const SURE: f64 = 1.5;
 
-/// A significant bias disagrees with that of single collisions from so many times it on: these do not know how a quantity answers to them.
+/// A significant bias disagrees with the estimate from single collisions if it is this many times larger: collisions alone do not say how a quantity
+/// responds to them.
 const DISAGREES: f64 = 4.0;
 
-/// Windows that show as much of a bias show all of it.
+/// A window that shows this part of a bias counts as showing all of it.
 const FULL: f64 = 0.95;
 
-/// The bias of a configuration.
+/// Bias of a configuration by its time step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Bias {
-    /// The longest step that was compared (time).
+    /// Longest step compared (time).
     pub step: f64,
-    /// The mean at that step less that of the limit of short steps (the quantity's unit).
+    /// Mean at that step less the mean in the limit of short steps (the quantity's unit).
     #[serde(with = "any_number")]
     pub shift: f64,
-    /// Half the width of the interval of 95 % of that.
+    /// Half the width of its 95 % confidence interval.
     #[serde(with = "any_number")]
     pub bar: f64,
-    /// The power of the step with which it falls.
+    /// Power of the step that the bias is proportional to.
     pub(crate) power: f64,
-    /// The window over which runs were compared (time).
+    /// Window over which runs were compared (time).
     #[serde(with = "any_number")]
     pub window: f64,
-    /// The part of the bias that such a window shows.
+    /// Part of the bias that such a window shows.
     #[serde(with = "any_number")]
     pub part: f64,
-    /// States from which runs were compared.
+    /// Number of states that the paired runs started from.
     pub starts: usize,
-    /// The bias by pairs of runs and its bar; none where none ended.
+    /// Bias from paired runs and its error bar; none where no pair finished.
     pub pairs: Option<[f64; 2]>,
-    /// The bias by the shadow energy and its bar; none where there is no such energy.
+    /// Bias from the shadow energy and its error bar; none where there is no such energy.
     pub shadow: Option<[f64; 2]>,
-    /// The size of the bias by single collisions; none where particles do not touch.
+    /// Magnitude of the bias from single collisions; none where particles do not touch.
     pub collisions: Option<f64>,
-    /// Its growth by the drift of energy, where that adds up along a run (per unit of time).
+    /// Growth of the bias by energy drift, where that accumulates along a run (per unit of time).
     #[serde(with = "any_number")]
     pub(crate) creep: f64,
 }
 
-/// A difference at a step, for a window.
+/// Difference of means at a step, for a window.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seen {
     /// The step (time).
     pub(super) step: f64,
-    /// The step of the reference, where it is of the same integrator (time); 0 where it is of a better one.
+    /// Step of the reference, where it uses the same integrator (time); 0 where it uses a better one.
     pub(super) reference: f64,
-    /// The difference that the window shows.
+    /// Difference over the window.
     pub(super) shown: f64,
-    /// The difference that it tells of the steady state, or of a whole run, and half the width of its interval of 95 %.
+    /// Estimated difference of the steady state, or of a whole run, and half the width of its 95 % interval.
     pub(super) difference: [f64; 2],
 }
 
 impl Seen {
-    /// Of a configuration at a place, by a window and the one before, for a quantity with a memory (time); of the mean over a run that has a part of the
-    /// bias of the steady state.
+    /// Estimates the difference of case `place` from a window and the one before, for a quantity with a memory (time) and for the mean over a run
+    /// that shows part `of_run` of the steady-state bias.
     pub(super) fn of(
         [before, window]: [&Window; 2],
         place: usize,
@@ -89,9 +90,9 @@ impl Seen {
     }
 }
 
-/// The bias at the first step by one fit of β (h^p − h_r^p) through all differences, each with the weight of its bar.
+/// Returns the bias at the first step and its error bar, by a single weighted fit of β (h^p − h_r^p) to all differences.
 ///
-/// Differences share the reference, so that their errors are not independent: the bar is that of the best one, no less.
+/// The differences share the reference, so their errors are correlated: the error bar is that of the best difference, no smaller.
 pub(super) fn fitted(seen: &[Seen], power: f64) -> [f64; 2] {
     let terms = seen.iter().map(|it| {
         let law = it.step.powf(power) - it.reference.powf(power);
@@ -99,7 +100,7 @@ pub(super) fn fitted(seen: &[Seen], power: f64) -> [f64; 2] {
     });
     let (mut upper, mut lower, mut best) = (0.0, 0.0, f64::INFINITY);
     for (law, value, bar) in terms {
-        // A common factor of the weights cancels; squares of small bars would not.
+        // A common factor of the weights cancels; squares of small error bars would not.
         let weight = (law / bar).powi(2);
         upper += weight * value / law;
         lower += weight;
@@ -113,7 +114,7 @@ pub(super) fn fitted(seen: &[Seen], power: f64) -> [f64; 2] {
 }
 
 impl Bias {
-    /// By the differences at some steps over a window (time) that shows a part of the bias.
+    /// Estimates the bias from the differences at some steps over a window (time) that shows `part` of it.
     pub(super) fn of(seen: &[Seen], power: f64, window: f64, part: f64, starts: usize) -> Bias {
         let [shift, bar] = fitted(seen, power);
         let shown = seen.first().map_or(0.0, |it| it.shown);
@@ -137,8 +138,8 @@ impl Bias {
         Bias { pairs: Some([self.shift, self.bar]), ..self }
     }
 
-    /// With the bias at a step (time) by the shadow energy, and its bar: the mean of both, each with the weight of its bar. Where they disagree, pairs of runs
-    /// count, and the difference is a part of their bar.
+    /// Combines the bias with the one from the shadow energy at a step (time), each weighted by its error bar. If they disagree, paired runs
+    /// are used and the difference is added to their error bar.
     #[must_use]
     pub(super) fn with_shadow(self, step: f64, [shift, bar]: [f64; 2]) -> Bias {
         let scale = (self.step / step).powf(self.power);
@@ -162,26 +163,26 @@ impl Bias {
         }
     }
 
-    /// With the size of the bias by single collisions (the quantity's unit).
+    /// Adds the magnitude of the bias from single collisions (the quantity's unit).
     #[must_use]
     pub(super) fn with_collisions(self, collisions: Option<f64>) -> Bias {
         Bias { collisions, ..self }
     }
 
-    /// With the growth of the bias at a step (time) by the drift of energy (per unit of time).
+    /// Adds the growth of the bias by energy drift at a step (per unit of time).
     #[must_use]
     pub(super) fn with_creep(self, step: f64, creep: f64) -> Bias {
         Bias { creep: (self.step / step).powf(self.power) * creep, ..self }
     }
 
-    /// True unless pairs of runs and the shadow energy differ by more than their bars.
+    /// True unless paired runs and the shadow energy differ by more than their error bars.
     fn agrees(&self) -> bool {
         self.pairs
             .zip(self.shadow)
             .is_none_or(|(pairs, shadow)| (pairs[0] - shadow[0]).abs() <= SURE * pairs[1].hypot(shadow[1]))
     }
 
-    /// Of a step (time) whose means no pairs of runs compared: nothing is known of it.
+    /// Unknown bias of a step (time) for which no paired runs exist.
     pub(super) fn unknown(step: f64, power: f64) -> Bias {
         Bias {
             step,
@@ -198,13 +199,13 @@ impl Bias {
         }
     }
 
-    /// The measurement, for a reader.
+    /// Describes the measurement in words.
     pub(super) fn in_words(&self) -> String {
         let both = |[shift, bar]: [f64; 2]| format!("{} ± {}", significant(shift, 2), significant(bar, 2));
         let mut words = match self.pairs {
-            None => "no pairs of runs ended in the time of the trials: --patient has more".to_owned(),
+            None => "no paired runs finished within the trial time (use --patient for more)".to_owned(),
             Some(pairs) => format!(
-                "at {} it is {}, by {} pairs of runs over {}{}",
+                "at a step of {} it is {}, from {} paired runs over a time of {}{}",
                 significant(self.step, 3),
                 both(pairs),
                 self.starts,
@@ -217,105 +218,103 @@ impl Bias {
         };
         if let Some(shadow) = self.shadow {
             let but = if self.agrees() { "" } else { ", which disagrees" };
-            words.push_str(&format!("; {} by the shadow energy{but}", both(shadow)));
+            words.push_str(&format!("; {} from the shadow energy{but}", both(shadow)));
         }
         if let Some(collisions) = self.collisions {
             let but = match self.shift.abs() - self.bar > DISAGREES * collisions {
-                true => ", which is too little",
-                false if self.below() < collisions => ", which is too much",
+                true => ", too small to explain it",
+                false if self.below() < collisions => ", larger than measured",
                 false => "",
             };
-            words.push_str(&format!("; about {} by single collisions{but}", significant(collisions, 2)));
+            words.push_str(&format!("; about {} from single collisions{but}", significant(collisions, 2)));
         }
         if self.creep > 0.0 {
-            words.push_str(&format!(
-                "; the drift of energy adds {} per unit of time",
-                significant(self.creep, 2)
-            ));
+            words.push_str(&format!("; energy drift adds {} per unit of time", significant(self.creep, 2)));
         }
         words
     }
 
-    /// True if it is beyond its bar.
+    /// True if the bias exceeds its error bar.
     pub(crate) fn is_significant(&self) -> bool {
         self.shift.abs() > self.bar
     }
 
-    /// The most that it is at the step that was compared, with a probability of 95 % (the quantity's unit).
+    /// Upper bound of the bias at the compared step, with 95 % confidence (the quantity's unit).
     pub(crate) fn below(&self) -> f64 {
         self.shift.abs() + self.bar
     }
 
-    /// The bias that is expected at the step that was compared (the quantity's unit).
+    /// Expected bias at the compared step (the quantity's unit).
     ///
-    /// A significant one as it was measured; one that is not, less the part that its error makes of it.
+    /// A significant bias counts as measured; from any other the contribution of its statistical error is subtracted.
     pub(crate) fn expected(&self) -> f64 {
         if self.is_significant() {
             return self.shift.abs();
         }
-        // The standard error is about half of the bar. Of an unknown bias nothing is left but that of collisions, which is no larger than what was measured.
+        // The standard error is about half of the error bar. Of an unknown bias only the estimate from collisions is left, limited by the measured
+        // bound.
         let measured = (self.shift.powi(2) - 0.25 * self.bar.powi(2)).max(0.0).sqrt();
         measured.max(self.collisions.unwrap_or(0.0).min(self.below()))
     }
 
-    /// The bias of a step (time) over that of the one that was compared.
+    /// Ratio of the bias at a step (time) to that at the compared step.
     fn part_at(&self, step: f64) -> f64 {
         (step / self.step).powf(self.power)
     }
 
-    /// The measured bias at a step (the quantity's unit), and half the width of its interval of 95 %.
+    /// Measured bias at a step (the quantity's unit), and half the width of its 95 % interval.
     pub(super) fn measured_at(&self, step: f64) -> [f64; 2] {
         [self.shift, self.bar].map(|value| self.part_at(step) * value)
     }
 
-    /// The bias at a step by pairs of runs (the quantity's unit), and its bar.
+    /// Bias at a step from paired runs (the quantity's unit), and its error bar.
     pub(super) fn pairs_at(&self, step: f64) -> Option<[f64; 2]> {
         self.pairs.map(|both| both.map(|value| self.part_at(step) * value))
     }
 
-    /// The bias at a step by the shadow energy (the quantity's unit), and its bar.
+    /// Bias at a step from the shadow energy (the quantity's unit), and its error bar.
     pub(super) fn shadow_at(&self, step: f64) -> Option<[f64; 2]> {
         self.shadow.map(|both| both.map(|value| self.part_at(step) * value))
     }
 
-    /// The size of the bias at a step by single collisions (the quantity's unit).
+    /// Magnitude of the bias at a step from single collisions (the quantity's unit).
     pub(super) fn collisions_at(&self, step: f64) -> Option<f64> {
         self.collisions.map(|size| self.part_at(step) * size)
     }
 
-    /// The bias that is expected at a step (the quantity's unit), and the most that it is.
+    /// Expected bias at a step (the quantity's unit), and its upper bound.
     pub(crate) fn at(&self, step: f64) -> Off {
         self.over(step, 0.0)
     }
 
-    /// Returns the expected bias of a run of a length (time) at a step, and its upper bound. It grows with the length where energy drifts.
+    /// Returns the expected bias of a run of a given length (time) at a step, and its upper bound. Both grow with the length where energy drifts.
     pub(crate) fn over(&self, step: f64, time: f64) -> Off {
         let [part, creep] = [1.0, self.creep * time].map(|it| self.part_at(step) * it);
         Off { shift: part * self.expected() + creep, below: part * self.below() + creep }
     }
 }
 
-/// Distance of a mean from the limit of short steps.
+/// Distance of a mean from its limit at short steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub(crate) struct Off {
     /// Expected distance.
     pub shift: f64,
-    /// The most that it is, with a probability of 95 %.
+    /// Upper bound, with 95 % confidence.
     pub below: f64,
 }
 
 impl Off {
-    /// A distance that is known.
+    /// A distance known exactly.
     pub(crate) fn exactly(shift: f64) -> Off {
         Off { shift, below: shift }
     }
 
-    /// The most that a mean is off where chance takes it off by `chance` with a probability of 95 %.
+    /// Total error of the mean, with a statistical error of `chance` at 95 % confidence.
     pub(crate) fn with(self, chance: f64) -> f64 {
         self.shift + chance
     }
 
-    /// The part of an error that is left to chance; none where there is nothing left.
+    /// Part of an error left to statistics; none where the bias uses it up.
     pub(crate) fn leaves(self, error: f64) -> Option<f64> {
         Some(error - self.shift).filter(|left| *left > 0.0)
     }
@@ -339,7 +338,7 @@ mod tests {
         assert!((bar - 0.04 * 0.001 / 0.0375).abs() < 1e-12, "{bar}");
     }
 
-    /// Half of the correction of a window is a part of the bar: here 0.5 (0.02 − 0.01).
+    /// Half of the correction for a short window is added to the error bar: here 0.5 (0.02 − 0.01).
     #[test]
     fn a_bias_falls_with_the_step() {
         let bias = Bias::of(&[Seen { shown: 0.01, ..seen(0.2, 0.0, [0.02, 0.002]) }], 1.0, 2.0, 0.5, 16);
@@ -350,14 +349,14 @@ mod tests {
         assert!((bias.at(0.4).shift - 0.04).abs() < 1e-12);
     }
 
-    /// An unknown bias is neither bought off nor said to be small.
+    /// An unknown bias neither shortens the step nor counts as small.
     #[test]
     fn an_unknown_bias_has_no_bound() {
         let bias = Bias::unknown(0.2, 1.0);
         assert!(!bias.is_significant() && bias.expected() == 0.0 && bias.at(0.1).below.is_infinite());
     }
 
-    /// A bias that is not significant is not bought off: 0.1 ± 0.4 leaves an error of 0.3 whole.
+    /// A bias within its error bar does not shorten the step: 0.1 ± 0.4 leaves an error of 0.3 whole.
     #[test]
     fn noise_is_no_bias() {
         let bias = Bias::of(&[seen(0.2, 0.0, [0.1, 0.4])], 1.0, 2.0, 1.0, 16);
@@ -365,7 +364,7 @@ mod tests {
         assert_eq!((bias.expected(), bias.at(0.2).leaves(0.3)), (0.0, Some(0.3)));
     }
 
-    /// By hand: bars of 0.3 and 0.1 have the weights 1 and 9; at twice the step with the power 2 the shadow energy says four times as much.
+    /// By hand: error bars of 0.3 and 0.1 have the weights 1 and 9; at twice the step, with power 2, the shadow energy predicts four times as much.
     #[test]
     fn pairs_and_the_shadow_energy_are_weighed() {
         let pairs = Bias::of(&[seen(0.2, 0.0, [1.0, 0.3])], 2.0, 1.0, 1.0, 16);
@@ -385,10 +384,10 @@ mod tests {
         let bias = Bias::of(&[seen(0.2, 0.0, [1.0, 0.1])], 2.0, 1.0, 1.0, 16).with_creep(0.1, 1e-3);
         assert!((bias.over(0.2, 10.0).shift - 1.04).abs() < 1e-12 && bias.at(0.2).shift == 1.0);
         assert!((bias.over(0.1, 10.0).shift - 0.26).abs() < 1e-12);
-        assert!(bias.in_words().contains("the drift of energy adds 0.004 "), "{}", bias.in_words());
+        assert!(bias.in_words().contains("energy drift adds 0.004 "), "{}", bias.in_words());
     }
 
-    /// A bias that is not significant is that of single collisions, and no more than was measured.
+    /// A bias within its error bar is taken from single collisions, and is no more than the measured bound.
     #[test]
     fn collisions_tell_the_bias_that_is_not_seen() {
         let of = |collisions: f64| {

@@ -1,5 +1,6 @@
-//! Bias of a step in single collisions of two particles as the scene has them: by how much each changes less, or more, than at a far shorter step, in the
-//! mean over where in a step the contact begins. Collisions that err by a part let means err by about that part, which needs no long run.
+//! Bias of a step estimated from single collisions of two particles of the scene. Each collision is compared with one at a far shorter step, averaged
+//! over the phase within a step at which the contact begins. A relative error of collisions causes about the same relative error of means, and needs
+//! no long run.
 
 use super::findings::{Way, Work};
 use super::mean::Mean;
@@ -11,18 +12,18 @@ use stripmine_physics::method::{Encounter, Purpose, Until};
 use stripmine_physics::particles::{Particle, Particles};
 use stripmine_physics::scene::Overrides;
 
-/// Distances of the line of flight from the other's centre, in sums of the radii: all are as likely in a plane.
+/// Impact parameters, in sums of the radii: equally likely in a plane.
 const OFFSETS: [f64; 4] = [0.125, 0.375, 0.625, 0.875];
-/// Places within a step where contacts begin.
+/// Phases within a step at which contacts begin.
 const PHASES: u32 = 8;
 /// The step of the reference, in parts of the step.
 const REFERENCE: f64 = 1.0 / 32.0;
-/// Steps of a collision at most.
+/// Most steps of a collision.
 const MOST: f64 = 2e4;
-/// Collisions that lose less than this part of the energy have no loss to err by.
+/// Collisions that lose less than this part of the energy count as elastic.
 const LOSSLESS: f64 = 1e-3;
 
-/// A collision: the change of the first particle's velocity and of the speed of its surface (length/time), and the energy lost over that before.
+/// Change in a collision: velocity of the first particle and speed of its surface (length/time), and the part of the energy lost.
 #[derive(Clone, Copy, Debug, Default)]
 struct Change {
     impulse: [f64; 3],
@@ -30,8 +31,8 @@ struct Change {
 }
 
 impl Work<'_> {
-    /// The part by which a step of a configuration changes what collisions do: impulses and spin, and the energy lost. None where particles do not touch or
-    /// a collision breaks.
+    /// Returns the relative error of collisions at a step of a configuration, in impulses and spin and in the energy lost. None where particles do
+    /// not touch or a collision fails.
     pub(super) fn error_of_collisions(&self, way: &Way, step: f64, mean: &Mean) -> Option<f64> {
         let trials = self.case.entry.trials?;
         let speed = approach(&mean.states, &self.case.prepared.domain);
@@ -40,7 +41,7 @@ impl Work<'_> {
         for offset in OFFSETS {
             let text = (trials.encounter)(&self.case.prepared, Encounter { speed, offset })?;
             let case = self.case.beside(&text).ok()?;
-            // Grains at rest hardly meet.
+            // Grains at rest hardly collide.
             if case.duration()? > MOST * step {
                 return None;
             }
@@ -66,7 +67,7 @@ impl Work<'_> {
         Some(of_impulse.max(of_loss)).filter(|part| part.is_finite())
     }
 
-    /// A collision that begins later by a time.
+    /// Runs a collision delayed by a time.
     fn changed(&self, case: &Case, overrides: Overrides, late: f64) -> Option<Change> {
         let prepared = case.prepared_with(&overrides).ok()?;
         let prepared = delayed(&prepared, late);
@@ -74,7 +75,7 @@ impl Work<'_> {
         let end = Until::Time(case.duration()?);
         simulation.advance(&[end], self.trial.stop).ok()?;
         let is_over = end.has_come(&simulation.clock()) && !self.trial.stop.load(Ordering::Relaxed);
-        // Particles that do not turn have no energy of it.
+        // Particles that do not rotate have no rotational energy.
         let inertia =
             self.case.entry.trials.and_then(|trials| (trials.inertia)(&self.case.values)).unwrap_or(0.0);
         let energy = |particles: &Particles| {
@@ -94,17 +95,17 @@ impl Work<'_> {
     }
 }
 
-/// Particles of a state whose next neighbours are looked for, at most, and states.
+/// Most particles of a state that are paired with their nearest neighbour, and most states.
 const LOOKED_AT: [usize; 2] = [64, 8];
 
-/// Speed at which neighbours approach (length/time): root of the mean square of the velocity of each relative to its next.
+/// Speed at which neighbours approach (length/time): root mean square of the velocity of each particle relative to its nearest neighbour.
 fn approach(states: &[Particles], domain: &Domain) -> f64 {
     let some = states.iter().step_by(states.len().div_ceil(LOOKED_AT[1]).max(1));
     let all: Vec<f64> = some.flat_map(|state| relative(state, domain)).collect();
     (all.iter().sum::<f64>() / all.len() as f64).sqrt()
 }
 
-/// Squares of the velocities of some particles relative to their next (length²/time²).
+/// Squared velocities of some particles relative to their nearest neighbour (length²/time²).
 fn relative(state: &Particles, domain: &Domain) -> Vec<f64> {
     let grains = state.grains();
     let every = grains.len().div_ceil(LOOKED_AT[0]).max(1);
@@ -126,7 +127,7 @@ mod tests {
     use super::*;
     use stripmine_physics::method::{METHODS, load};
 
-    /// Two discs that approach at 1, each the other's next; with a state of half that speed the mean square is (1 + 0.25)/2.
+    /// Two discs that approach at 1, each the other's nearest; with a state of half that speed the mean square is (1 + 0.25)/2.
     #[test]
     fn the_speed_of_approach_is_that_of_neighbours() {
         let (prepared, _) = load("two-discs", &[], METHODS).unwrap();

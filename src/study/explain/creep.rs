@@ -1,5 +1,5 @@
-//! Drift of energy along long runs: an integrator without a shadow energy loses or gains a little in every step, and what is lost stays lost where
-//! nothing is put in and nothing rubs. A mean then moves on with the time of its run, which no pair of short runs shows.
+//! Energy drift along long runs. An integrator without a shadow energy loses or gains a little in every step, and the loss accumulates where nothing
+//! drives or dissipates. A mean then changes with the length of its run, which pairs of short runs do not show.
 
 use super::findings::{Way, Work};
 use super::mean::Mean;
@@ -9,15 +9,15 @@ use crate::study::trial::Span;
 use stripmine_physics::averages::of_independent;
 use stripmine_physics::method::Decides;
 
-/// Part of the time in which a configuration shows its drift.
+/// Share of the trial time for the drift of a configuration.
 const SHARE: f64 = 0.03;
-/// Stretches of which each half of a run is made: a mean of the second half less that of the first, stretch by stretch, is half of the drift.
+/// Stretches of each half of a run: the mean of the second half less that of the first, stretch by stretch, is half of the drift.
 const STRETCHES: usize = 8;
-/// Energy that comes or goes, in parts of all that moves, above which a run is not conservative.
+/// Part of all moving energy that may enter or leave a conservative run.
 const KEPT: f64 = 1e-9;
 
 impl Work<'_> {
-    /// For each integrator that is followed: its choice, its longest step (time), and the growth of a bias at that.
+    /// For each integrator in use, returns its choice, its longest step (time), and the growth of its bias at that step.
     pub(super) fn creeps(&self, ways: &[Way], mean: &Mean) -> Vec<(Choice, f64, f64)> {
         let mut all: Vec<(Choice, f64, f64)> = vec![];
         for way in ways.iter().filter(|way| way.dropped.is_none()) {
@@ -30,9 +30,9 @@ impl Work<'_> {
         all
     }
 
-    /// The growth of a bias at the longest step (the quantity's unit, per unit of time); 0 where energy comes and goes, or its drift is not seen.
+    /// Growth of a bias at the longest step (the quantity's unit, per unit of time); 0 where energy enters or leaves, or no drift is significant.
     ///
-    /// Energies, and with them temperature and pressure, change by the same part; a mean over the run by half of that.
+    /// Energies, and with them temperature and pressure, change by the same part; a mean over the run changes by half of that.
     fn creep(&self, way: &Way, mean: &Mean) -> f64 {
         let keeps_shadow = || {
             let integrators = self.case.entry.trials?.shadow?.integrators;
@@ -53,7 +53,7 @@ impl Work<'_> {
         seen.map_or(0.0, |[rate, _]| 0.5 * rate.abs() * mean.known.mean.abs())
     }
 
-    /// The balance of energy of a run in which none is put in or lost: what is missing is an error.
+    /// Returns the energy balance of a run without drive or dissipation: any imbalance is an error.
     pub(super) fn conservative(&self, rows: &[Vec<f64>]) -> Option<Balanced> {
         let balance = Observed::of(self.case.entry.trials?, self.case.entry.quantities).ok()?.balance?;
         let [first, last] = [rows.first()?, rows.last()?];
@@ -64,7 +64,7 @@ impl Work<'_> {
     }
 }
 
-/// The relative drift of energy in a unit of time, and half the width of its interval of 95 %.
+/// Relative energy drift per unit of time, and half the width of its 95 % interval.
 fn drift(balance: &Balanced, rows: &[Vec<f64>]) -> Option<[f64; 2]> {
     let length = rows.len() / (2 * STRETCHES);
     if length == 0 {

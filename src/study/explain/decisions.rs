@@ -1,4 +1,4 @@
-//! What a plan recommends, choice by choice, each with its reason and what stands beside it.
+//! Decisions of a plan, each with its reason and its alternatives.
 
 use super::findings::{Findings, Way};
 use super::lengths::{Length, Weighed};
@@ -6,7 +6,7 @@ use super::recommended::{Beside, Decision, LeftOut, Need};
 use crate::study::Case;
 use stripmine_physics::number::significant;
 
-/// Every choice of a plan.
+/// Returns every decision of a plan.
 pub(super) fn decisions(
     case: &Case,
     findings: &Findings,
@@ -18,7 +18,7 @@ pub(super) fn decisions(
     let mut all = vec![];
     for (axis, chosen) in &best.way.settings {
         let mut beside: Vec<Beside> = vec![];
-        // Of each other setting the cheapest way that has it.
+        // The cheapest configuration represents each other setting.
         let known = weighed.iter().map(|it| it.way);
         for way in known.chain(&findings.ways) {
             let Some((_, other)) = way.settings.iter().find(|(name, _)| name == axis) else { continue };
@@ -36,10 +36,12 @@ pub(super) fn decisions(
             });
         }
         let why = match beside.iter().filter_map(|it| it.cost).reduce(f64::min) {
-            Some(next) if next > 1.05 => format!("the next takes {} times as long", significant(next, 2)),
-            Some(_) => "another is as cheap, within what can be timed".to_owned(),
-            None if beside.is_empty() => "there is no other".to_owned(),
-            None => "no other comes into question".to_owned(),
+            Some(next) if next > 1.05 => {
+                format!("the next best takes {} times as long", significant(next, 2))
+            }
+            Some(_) => "another setting is as fast, within the accuracy of the timing".to_owned(),
+            None if beside.is_empty() => "the only setting".to_owned(),
+            None => "no other setting is usable".to_owned(),
         };
         all.push(Decision { what: axis.clone(), chosen: chosen.clone(), why, beside });
     }
@@ -47,7 +49,7 @@ pub(super) fn decisions(
         what: "skin".to_owned(),
         chosen: significant(skin, 3),
         why: format!(
-            "a step takes {} of the time that it takes with the scene's own, {}",
+            "a step takes {} times as long as with the scene's own skin of {}",
             significant(cost, 2),
             significant(own, 3)
         ),
@@ -77,20 +79,17 @@ pub(super) fn decisions(
 /// Reason of the length of a run.
 fn run_length(case: &Case, findings: &Findings, length: &Length, window: Option<[f64; 2]>) -> String {
     if let Some([from, _]) = window {
-        return format!(
-            "to the end of the window that is asked for, which begins at {}",
-            significant(from, 4)
-        );
+        return format!("to the end of the requested window, which begins at {}", significant(from, 4));
     }
     if findings.whole.is_some() {
-        return "the scene's own: the quantity changes all along, and what is asked for is its mean over the whole run".to_owned();
+        return "the scene's own: the quantity never becomes stationary, so its mean is taken over the whole run".to_owned();
     }
     let mut why = format!(
-        "{} to average over{} for a chance of ± {}, after a transient of {}",
+        "averages over {}{} for a statistical error of ± {}, after a transient of {}",
         significant(length.time, 3),
         match findings.mean.every {
             0.0 => String::new(),
-            every => format!(", by rows {} apart,", significant(every, 2)),
+            every => format!(" in rows {} apart", significant(every, 2)),
         },
         significant(findings.chance().over(length.time), 2),
         significant(findings.mean.transient, 3)
@@ -98,7 +97,7 @@ fn run_length(case: &Case, findings: &Findings, length: &Length, window: Option<
     let apart = findings.mean.apart;
     if let Some(own) = case.duration().filter(|own| apart > *own) {
         why.push_str(&format!(
-            "; values stay alike for a time of {}, longer than the scene's own run of {}, which is one sample",
+            "; values stay correlated for a time of {}, longer than the scene's own run of {}, which is one sample",
             significant(apart, 2),
             significant(own, 3)
         ));
@@ -111,18 +110,18 @@ fn step_decision(case: &Case, best: &Weighed<'_>, longest: f64, wanted: f64) -> 
     let own = case
         .step()
         .map_or(String::new(), |own| format!("{} times the scene's own; ", significant(step / own, 2)));
-    let bound = best.way.bound.clone().unwrap_or_else(|| "nothing bounds it by theory".to_owned());
+    let bound = best.way.bound.clone().unwrap_or_else(|| "no theoretical limit".to_owned());
     let mut beside = vec![Beside {
         name: significant(longest, 3),
         cost: None,
-        why: format!("the longest that nothing speaks against ({bound})"),
+        why: format!("the longest usable step ({bound})"),
     }];
     if best.optimum.part == 1.0 {
         beside.clear();
     }
     let why = match best.way.bias {
         Some(bias) => format!(
-            "{own}bias {} of the {} allowed; {}",
+            "{own}bias {}, of an allowed error of {}; {}",
             match bias.is_significant() {
                 true => significant(best.optimum.bias.shift, 2),
                 false if best.optimum.bias.below.is_infinite() => "unknown".to_owned(),
@@ -145,26 +144,28 @@ fn why_not(way: &Way, own: Option<&Weighed<'_>>, best: &Weighed<'_>) -> String {
         return match drift.least() {
             least if least.is_finite() => {
                 format!(
-                    "off by {} at the best of the steps tried, and dearer at those that are enough",
+                    "changes by {} at the best step tried; steps that reach the error cost more",
                     significant(least, 2)
                 )
             }
-            _ => "no run of it came to the end".to_owned(),
+            _ => "none of its runs finished".to_owned(),
         };
     }
     match (own, way.cost) {
-        (Some(own), _) if own.optimum.seconds > best.optimum.seconds => "for the same error".to_owned(),
-        (Some(_), _) => "as cheap".to_owned(),
-        (None, Some(_)) if way.bias.is_some() => "its bias is more than the error asked for".to_owned(),
+        (Some(own), _) if own.optimum.seconds > best.optimum.seconds => {
+            "slower for the same error".to_owned()
+        }
+        (Some(_), _) => "as fast for the same error".to_owned(),
+        (None, Some(_)) if way.bias.is_some() => "its bias exceeds the target error".to_owned(),
         (None, Some(cost)) => format!(
-            "a unit of time costs {} times as much at its longest step; its means were not compared",
+            "a unit of time costs {} times as much at its longest step; its bias was not measured",
             costs(cost)
         ),
-        (None, None) => "it was not timed".to_owned(),
+        (None, None) => "not timed".to_owned(),
     }
 }
 
-/// What was seen of what the scene may be modelled without.
+/// Returns the changes of the mean by simpler models, each judged against the target error.
 pub(super) fn left_out(findings: &Findings, wanted: f64, mean: f64) -> Vec<LeftOut> {
     let all = findings.without.iter().map(|it| {
         let off = it.difference.map(|[difference, bar]| {
@@ -182,7 +183,7 @@ pub(super) fn left_out(findings: &Findings, wanted: f64, mean: f64) -> Vec<LeftO
         let says = match need {
             Need::Yes => format!("needed: without it the mean changes {off}"),
             Need::No => format!("not needed for this error: without it the mean changes {off}"),
-            Need::Undecided => format!("not decided: the mean changes {off}"),
+            Need::Undecided => format!("undecided: the mean changes {off}"),
             Need::NotCompared => match &it.failed {
                 Some(why) => format!("not compared: {why}"),
                 None => "not compared".to_owned(),
@@ -193,10 +194,10 @@ pub(super) fn left_out(findings: &Findings, wanted: f64, mean: f64) -> Vec<LeftO
     all.chain(digits(findings)).collect()
 }
 
-/// The digits in which a scene is mostly run, and half of them.
+/// Usual precision and the lower one it is compared with.
 const DIGITS: [&str; 2] = ["f64", "f32"];
 
-/// The second half of the digits, by the cheapest way that was timed with and without.
+/// Compares single with double precision by the cheapest configuration timed in both.
 fn digits(findings: &Findings) -> Option<LeftOut> {
     let of =
         |way: &Way, axis: &str| way.settings.iter().find(|(name, _)| name == axis).map(|(_, it)| it.clone());
@@ -210,7 +211,7 @@ fn digits(findings: &Findings) -> Option<LeftOut> {
     let mut halves = findings.ways.iter().filter(|way| of(way, AXIS).as_deref() == Some(DIGITS[1]));
     let (half, cost) = halves.find_map(|half| {
         let full = with(half)?;
-        // Steps may differ.
+        // The steps of the two may differ.
         let cost = half.cost? * half.step? / (full.cost? * full.step?);
         Some((half, cost))
     })?;
@@ -219,7 +220,7 @@ fn digits(findings: &Findings) -> Option<LeftOut> {
         (None, Some(bias)) => (
             Need::No,
             format!(
-                "not needed: with half of them the mean was {} ± {} off at a step of {}, that of the step among it",
+                "not needed: in f32 the mean has a bias of {} ± {} at a step of {}, including the bias of that step",
                 significant(bias.shift, 2),
                 significant(bias.bar, 2),
                 significant(bias.step, 3)
@@ -228,7 +229,7 @@ fn digits(findings: &Findings) -> Option<LeftOut> {
         (None, None) => (Need::NotCompared, "not compared".to_owned()),
     };
     Some(LeftOut {
-        name: "the second half of the digits (f32 for f64)".to_owned(),
+        name: "double precision (f32 for f64)".to_owned(),
         change: None,
         cost: Some(cost),
         need,
@@ -236,5 +237,5 @@ fn digits(findings: &Findings) -> Option<LeftOut> {
     })
 }
 
-/// The axis of digits.
+/// Name of the precision axis.
 const AXIS: &str = "precision";

@@ -1,4 +1,4 @@
-//! Bias of the steps of each integrator, by runs from the same states.
+//! Bias of the steps of each integrator, from runs that start from the same states.
 
 use super::bias::{Bias, Seen};
 use super::findings::{HALVINGS, Way, Work, sort};
@@ -8,28 +8,27 @@ use crate::study::{Choice, first_line};
 use stripmine_physics::method::{Decides, Prepared, Purpose};
 use stripmine_physics::scene::Overrides;
 
-/// Integrators whose means are compared.
+/// Most integrators whose means are compared.
 const COMPARED: usize = 3;
-/// The step of the reference in parts of the shortest that is compared, and steps of each integrator in parts of its longest.
+/// Step of the reference, in parts of the shortest step compared, and steps of each integrator, in parts of its longest.
 const REFERENCE: f64 = 0.25;
 const STEPS: [f64; 2] = [1.0, 0.5];
-/// Part of the time in which runs show whether their steps are warned of.
+/// Share of the time of the first runs, which show whether steps raise warnings.
 const SCOUT: f64 = 0.1;
-/// Rows are this many of the longest steps apart, and so many are the first half of the first window; or, where forces depend on time, so many are
-/// a period.
+/// Spacing of rows in longest steps, rows in the first half of the first window, and rows per period where forces depend on time.
 const APART: f64 = 8.0;
 const FIRST: u64 = 2;
 const A_PERIOD: u64 = 16;
-/// The mean over a run that remembers all of it has this part of the bias of a steady state: 1 − (1 − 1/e).
+/// Part of the steady-state bias in the mean over a run that remembers all of it: 1 − (1 − 1/e).
 const OF_WHOLE_RUN: f64 = 0.367_879_441_171_442_3;
-/// Windows that are weighed, in parts of the longest in which runs stay together: shorter ones have hardly any contacts in them.
+/// Shortest window used, in parts of the longest in which runs stay together: shorter ones contain hardly any contacts.
 const SHORTER: f64 = 0.125;
-/// Errors of means fall with a power of the step between these: contacts have kinks.
+/// Range of the power of the step that errors of means follow: contacts have kinks.
 const POWERS: [f64; 2] = [1.0, 2.0];
 
-/// Configurations that are compared, the reference first, each with its step.
+/// Configurations to compare, the reference first, each with its step.
 struct Cases {
-    /// Integrators, by the place of their cheapest configuration.
+    /// Index of the cheapest configuration of each integrator.
     firsts: Vec<usize>,
     prepared: Vec<(Prepared, f64)>,
     /// Steps between two rows.
@@ -37,39 +36,39 @@ struct Cases {
     reference: Choice,
 }
 
-/// Why there are no pairs of runs.
+/// Reasons why there are no paired runs.
 enum Trouble {
-    /// There are too few states to begin from.
+    /// Too few states to start from.
     FewStates,
-    /// Two windows of all cases take longer than there is time.
+    /// Two windows of all cases exceed the available time.
     TooDear,
-    /// A case, by its place, and why it broke.
+    /// Index of the case that failed, and the reason.
     Broken(usize, String),
 }
 
 impl Work<'_> {
-    /// The bias of the cheapest configuration of each integrator, and of all that differ from it in digits or search alone: rounding is far below
-    /// what can be seen of a mean.
+    /// Measures the bias of the cheapest configuration of each integrator. All that differ in precision or search alone share it: rounding is far
+    /// below the resolution of a mean.
     pub(super) fn biases(&self, ways: &mut [Way], mean: &Mean) {
         if self.case.entry.trials.is_none() {
             return;
         }
         let creeps = self.creeps(ways, mean);
         let all = self.shares[2] * self.seconds;
-        // A few short pairs come first: they are made again for as long as steps are shortened. None is shorter than a period.
+        // A few short pairs come first, and are repeated for as long as steps are shortened. None is shorter than a period.
         let mut seconds = if self.case.prepared.model.period().is_some() { all } else { SCOUT * all };
         let mut most = COMPARED;
         for _ in 0..=HALVINGS * COMPARED as u32 {
             let Some(cases) = self.cases(ways, most) else { break };
             match self.paired(&cases, mean, seconds) {
                 Err(Trouble::FewStates) => break,
-                // A scout has little time.
+                // The first short runs have little time.
                 Err(Trouble::TooDear) if seconds < all => seconds = all,
-                // The best and the scene's own are enough; fewer there cannot be.
+                // The best configuration and the scene's own are the fewest that can be compared.
                 Err(Trouble::TooDear) if most > 1 => most -= 1,
                 Err(Trouble::TooDear) => break,
                 Err(Trouble::Broken(at, why)) => {
-                    // The reference has the shortest step of all: its configuration cannot be run.
+                    // The reference has the shortest step of all: its configuration is unusable.
                     let Some(first) = at.checked_sub(1).map(|at| cases.firsts[at / STEPS.len()]) else {
                         break;
                     };
@@ -78,7 +77,7 @@ impl Work<'_> {
                 Ok(paired) => {
                     let warned = |first: usize| {
                         let all = &paired.warnings[1 + first * STEPS.len()];
-                        all.first().map(|warning| format!("warned of: {}", warning.message))
+                        all.first().map(|warning| format!("warning: {}", warning.message))
                     };
                     let (at, why) = match (0..cases.firsts.len()).find_map(|at| Some((at, warned(at)?))) {
                         Some(found) if self.left() > 0.0 => found,
@@ -99,7 +98,7 @@ impl Work<'_> {
         for way in ways.iter_mut().filter(|way| way.bias.is_none() && way.dropped.is_none()) {
             match way.step {
                 None => {}
-                Some(_) if is_any_known => way.dropped = Some("its means were not compared".to_owned()),
+                Some(_) if is_any_known => way.dropped = Some("its bias was not measured".to_owned()),
                 // Limits and warnings alone then bound the step.
                 Some(step) => way.bias = Some(Bias::unknown(step, self.power(&self.choice(way)))),
             }
@@ -113,7 +112,7 @@ impl Work<'_> {
         sort(ways);
     }
 
-    /// Adds to the biases of pairs those by the shadow energy and by single collisions.
+    /// Adds the biases from the shadow energy and from single collisions to those from paired runs.
     fn without_pairs(&self, ways: &mut [Way], mean: &Mean) {
         let of_mean =
             ways.iter().find_map(|way| Some((self.choice(way), mean.step?, self.of_shadow(way, mean)?)));
@@ -137,13 +136,13 @@ impl Work<'_> {
         }
     }
 
-    /// Configurations to compare; none where one cannot be prepared.
+    /// Returns the configurations to compare; none where one cannot be prepared.
     fn cases(&self, ways: &[Way], most: usize) -> Option<Cases> {
         let mut firsts: Vec<usize> = vec![];
         for (at, way) in ways.iter().enumerate().filter(|(_, way)| way.dropped.is_none()) {
             let own = self.choice(way);
             let is_another = firsts.iter().all(|&it| !self.choice(&ways[it]).agrees(&own, Decides::Order));
-            // The scene's own is always among them: a plan states the error of the scene's own values.
+            // The scene's own is always included: a plan states the error of the scene's own values.
             let is_own = own.agrees(&self.case.own, Decides::Order);
             if is_another && (firsts.len() < most || is_own) {
                 firsts.push(at);
@@ -162,7 +161,7 @@ impl Work<'_> {
         let of_reference = (reference.overrides(), REFERENCE * shortest);
         let (overrides, steps): (Vec<Overrides>, Vec<f64>) =
             std::iter::once(of_reference).chain(of_firsts).unzip();
-        // Noise of a long step is made of that of whole short ones.
+        // Noise of a long step is composed of that of whole short ones.
         let is_noisy = self.case.prepared.model.with_noise(0, 1).is_some();
         let whole = |steps: u64| if is_noisy { steps.next_power_of_two() } else { steps };
         let steps: Vec<u64> = steps.iter().map(|step| whole((spacing / step).ceil() as u64)).collect();
@@ -174,14 +173,14 @@ impl Work<'_> {
         Some(Cases { firsts, prepared, steps, reference })
     }
 
-    /// Runs of all cases from the same states.
+    /// Runs all cases from the same states.
     fn paired(&self, cases: &Cases, mean: &Mean, seconds: f64) -> Result<Paired, Trouble> {
         let steps = &cases.steps;
         if mean.states.len() < FEWEST {
             return Err(Trouble::FewStates);
         }
         let first = self.case.prepared.model.period().map_or(FIRST, |_| A_PERIOD);
-        // From as many states as two windows can be had of.
+        // As many states as leave time for two windows.
         let two_windows = 4 * first * steps.iter().sum::<u64>();
         let seconds = seconds.min(self.left());
         let fitting = seconds * rayon::current_num_threads() as f64 / (mean.step_cost * two_windows as f64);
@@ -192,7 +191,7 @@ impl Work<'_> {
         let begin = |case: usize, start: usize| {
             let state = mean.states[start * mean.states.len() / starts].clone();
             let prepared = cases.prepared[case].0.model.started_from(state);
-            // Of a start all runs see the same noise, and each start another.
+            // All runs from one state see the same noise; each state has its own.
             let parts = (steps[0] / steps[case]) as u32;
             let prepared = prepared.model.with_noise(start as u64, parts).unwrap_or(prepared);
             prepared.start(Purpose::Run).map_err(|failure| first_line(&failure.what()))
@@ -203,9 +202,9 @@ impl Work<'_> {
             .map_err(|broken| Trouble::Broken(broken.at, broken.why))
     }
 
-    /// The biases that paired runs show.
+    /// Assigns the biases measured by paired runs.
     fn assign(&self, ways: &mut [Way], cases: &Cases, paired: &Paired, mean: &Mean) {
-        // A run that changes all along remembers all of it. Values within a period make up for each other, which is no short memory.
+        // A run that never becomes stationary remembers all of itself. Values within a period compensate each other, which is no short memory.
         let period = self.case.prepared.model.period().unwrap_or(0.0);
         let memory = self.whole.unwrap_or((0.5 * mean.known.apart).max(period));
         let of_run = self.whole.map_or(1.0, |_| OF_WHOLE_RUN);
@@ -226,7 +225,7 @@ impl Work<'_> {
                     .collect();
                 Bias::of(&seen, power, both[1].time, part(both[1].time, memory), paired.starts)
             });
-            // Longer windows show more of the bias, and scatter more: the one of the smallest bar tells most.
+            // Longer windows show more of the bias but scatter more: the one with the smallest error bar is used.
             let best = bias.filter(|it| it.below().is_finite()).min_by(|a, b| a.bar.total_cmp(&b.bar));
             for way in ways.iter_mut().filter(|way| self.choice(way).agrees(&choice, Decides::Order)) {
                 way.bias = best;
@@ -234,12 +233,12 @@ impl Work<'_> {
         }
     }
 
-    /// The power of the step with which errors of means fall: that of theory for positions, within [`POWERS`].
+    /// Power of the step that errors of means follow: the theoretical order for positions, within [`POWERS`].
     fn power(&self, choice: &Choice) -> f64 {
         self.theory(choice).map_or(POWERS[1], |order| order.clamp(POWERS[0], POWERS[1]))
     }
 
-    /// The power of the step with which errors of positions fall by theory.
+    /// Theoretical order of position errors in the step.
     pub(super) fn theory(&self, choice: &Choice) -> Option<f64> {
         let (trials, scheme) = self.case.entry.trials.zip(choice.scheme())?;
         Some((trials.theory)(&self.case.values, &self.case.prepared, scheme)?.order)

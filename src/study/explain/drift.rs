@@ -1,15 +1,15 @@
-//! Quantities that should keep their value and do not quite: how far they go over a whole run, at the steps that were tried.
+//! Deviation of conserved quantities over a whole run, at the steps tried.
 
 use crate::study::rounded;
 use crate::study::trial::any_number;
 use serde::{Deserialize, Serialize};
 
-/// How far a quantity goes from its first value in a run.
+/// Largest deviation of a quantity from its first value, at one step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Tried {
     /// The step (time).
     pub step: f64,
-    /// The farthest (the quantity's unit); infinite where the run breaks.
+    /// Largest deviation (the quantity's unit); infinite where the run fails.
     #[serde(with = "any_number")]
     pub(crate) farthest: f64,
 }
@@ -17,7 +17,7 @@ pub(crate) struct Tried {
 /// Runs of a configuration at several steps.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Drift {
-    /// The longest step first.
+    /// Runs, the longest step first.
     pub(crate) tried: Vec<Tried>,
 }
 
@@ -28,22 +28,22 @@ impl Drift {
         self.tried.sort_by(|a, b| b.step.total_cmp(&a.step));
     }
 
-    /// The longest step that was tried at which it goes no farther than an error, as at no shorter one; none where there is none.
+    /// Returns the longest step tried at which the deviation stays within an error at this step and at all shorter ones.
     pub(crate) fn step_for(&self, error: f64) -> Option<Tried> {
         self.tried.iter().rev().take_while(|it| it.farthest <= error).last().copied()
     }
 
-    /// How far it goes at a step that was tried.
+    /// Deviation at a step that was tried.
     pub(crate) fn at(&self, step: f64) -> Option<f64> {
         self.tried.iter().find(|it| rounded(it.step, 4) == rounded(step, 4)).map(|it| it.farthest)
     }
 
-    /// The least that was seen (the quantity's unit); infinite where nothing was.
+    /// Smallest deviation found (the quantity's unit); infinite where no run finished.
     pub(crate) fn least(&self) -> f64 {
         self.tried.iter().map(|it| it.farthest).fold(f64::INFINITY, f64::min)
     }
 
-    /// The step at which it is expected to go no farther than an error, by the two shortest steps; none where these tell nothing.
+    /// Step at which the deviation is expected to reach an error, extrapolated from the two shortest steps; none where they show no trend.
     pub(super) fn expected_step(&self, error: f64) -> Option<f64> {
         let [.., long, short] = self.tried.as_slice() else { return None };
         let power = libm::log(long.farthest / short.farthest) / libm::log(long.step / short.step);
@@ -51,13 +51,13 @@ impl Drift {
         Some(short.step * libm::pow(error / short.farthest, power.recip()))
     }
 
-    /// The next step to try for an error: half of the shortest until the error is reached, or a quarter where half is not
-    /// expected to be enough; then between the longest that reaches it and the one above; none
-    /// where these are closer than [`CLOSE`], or half of a step is no better.
+    /// Next step to try for an error. Steps are halved until the error is reached, or quartered where half is not expected to be enough.
+    /// Then the interval between the longest step that reaches it and the one above is bisected. None where these are
+    /// closer than [`CLOSE`], or where halving gains nothing.
     pub(super) fn next(&self, error: f64) -> Option<f64> {
         let shortest = self.tried.last()?;
         let Some(found) = self.step_for(error) else {
-            // Rounding is all that is left, or chaos: two halvings in a row that gain nothing.
+            // Only rounding is left, or chaos: two halvings in a row gain nothing.
             let gains =
                 |pair: &[Tried]| pair[1].farthest < 0.5 * pair[0].farthest || pair[0].farthest.is_infinite();
             let last = self.tried.windows(2).rev().take(2);
@@ -72,10 +72,10 @@ impl Drift {
     }
 }
 
-/// Errors are expected to fall with a power of the step between these.
+/// Range of the power of the step that deviations are assumed to follow.
 const POWERS: [f64; 2] = [0.5, 9.0];
 
-/// Steps as close as this factor are not told apart.
+/// Steps within this factor are not distinguished.
 const CLOSE: f64 = 1.3;
 
 #[cfg(test)]
@@ -88,7 +88,7 @@ mod tests {
         drift
     }
 
-    /// A step counts only if all shorter ones reach the error too: one long step may do so by chance.
+    /// A step counts only if all shorter ones reach the error too: one long step may reach it by coincidence.
     #[test]
     fn the_longest_step_reaches_the_error_as_all_shorter_ones_do() {
         let drift = tried(&[[0.8, 1e-7], [0.4, 1e-5], [0.2, 1e-6], [0.1, 1e-8]]);

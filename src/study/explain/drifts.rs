@@ -1,4 +1,4 @@
-//! Distance of quantities that should keep their value over the whole run, step by step: long steps are cheap and come first.
+//! Measures the deviation of conserved quantities over whole runs, step by step: long steps are cheap and come first.
 
 use super::ExplainError;
 use super::findings::{Findings, NO_TIME, NoRun, Way, Work, sort};
@@ -10,15 +10,15 @@ use serde::{Deserialize, Serialize};
 use stripmine_physics::averages::{Outcome, student};
 use stripmine_physics::method::Decides;
 
-/// The longest step that is tried, in steps of the scene.
+/// Longest step tried, in steps of the scene.
 const LONGEST: f64 = 64.0;
-/// Starts of which each goes its own way: where a scene has a seed.
+/// Independent starts of a scene with a seed.
 const STARTS: u64 = 6;
-/// Where there is no time for several, another start goes as far as that many times this one.
+/// Factor on the deviation of one start where there is no time for several.
 const MARGIN: f64 = 2.0;
-/// Probability of the interval on both sides of a mean whose upper end is that of 95 % on one side.
+/// Two-sided confidence whose upper end is that of 95 % one-sided.
 const TWO_SIDED: f64 = 0.9;
-/// The error that is looked for where none is asked for and the scene's own is not known.
+/// Target error where none is given and the scene's own is unknown.
 pub(super) const WANTED: f64 = 1e-3;
 
 /// A run to the end of the scene.
@@ -29,7 +29,7 @@ struct WholeRun {
     costs: Option<Costs>,
 }
 
-/// Wall seconds until the first step, of a row, and of a unit of time, whole and in each phase.
+/// Wall seconds until the first step, of a row, and of a unit of time, in total and in each phase.
 #[derive(Serialize, Deserialize)]
 struct Costs {
     start: f64,
@@ -39,14 +39,14 @@ struct Costs {
 }
 
 impl Work<'_> {
-    /// How far what should keep its value goes over the whole run: by one run after the other, of the configuration that is expected to reach the error at
-    /// the least cost, as long as one may be cheaper than the best that is known.
+    /// Measures the deviation over whole runs, one after the other. The next run is of the configuration expected to reach the error most cheaply, as
+    /// long as one may be cheaper than the best found.
     ///
-    /// A part of a run tells nothing of the rest: bodies may meet late.
+    /// A part of a run says nothing about the rest: bodies may have a close encounter late.
     pub(super) fn drifts(&self, mut ways: Vec<Way>) -> Result<Findings, ExplainError> {
         let unknown = || ExplainError::NoMean {
             quantity: self.target.quantity.name,
-            why: "the scene does not say how long it runs, or its method takes no steps".to_owned(),
+            why: "the scene states no run time, or its method has no time step".to_owned(),
             enough: None,
             run: None,
         };
@@ -70,9 +70,9 @@ impl Work<'_> {
         self.own_run(&mut ways, [time, own]);
         for way in ways.iter_mut().filter(|way| way.dropped.is_none()) {
             let why = match &way.drift {
-                None => "no run of it was expected to be the cheapest, or fitted in the time of the trials",
+                None => "no run of it was expected to be the cheapest, or none fitted into the trial time",
                 Some(drift) if drift.least().is_infinite() => {
-                    "its runs break at the steps that may be cheaper"
+                    "its runs fail at every step that could be cheaper"
                 }
                 Some(_) => continue,
             };
@@ -83,7 +83,7 @@ impl Work<'_> {
                 ways.iter().filter_map(|way| Some(way.cost? * way.step?)).fold(f64::INFINITY, f64::min);
             return Err(ExplainError::NoMean {
                 quantity: self.target.quantity.name,
-                why: "no run came to the end of the scene in the time of the trials".to_owned(),
+                why: "no run reached the end of the scene within the trial time".to_owned(),
                 enough: Some(2.0 * cheapest / own * time).filter(|seconds| seconds.is_finite()),
                 run: self.run_as_it_stands(&ways),
             });
@@ -103,7 +103,7 @@ impl Work<'_> {
         })
     }
 
-    /// The scene as it stands, where time is left for it: a user knows its values.
+    /// Runs the scene as it stands, where time is left: its user knows its values.
     fn own_run(&self, ways: &mut [Way], [time, own]: [f64; 2]) {
         let label = self.case.own.label();
         let Some(way) = ways.iter_mut().find(|way| way.label == label && way.dropped.is_none()) else {
@@ -120,8 +120,8 @@ impl Work<'_> {
         }
     }
 
-    /// A run of the whole scene: how far it goes, and, where that is no farther than wanted and starts are random, how far another start goes at most with
-    /// a probability of 95 %.
+    /// Runs the whole scene and returns the deviation. If that is within `wanted` and starts are random, more starts are run, and the bound for
+    /// another start with 95 % confidence is returned.
     fn whole_run(&self, way: &Way, step: f64, [time, wanted]: [f64; 2]) -> Result<WholeRun, NoRun> {
         let first = self.run_of_start(way, step, time, 0)?;
         if self.case.prepared.seed.is_none() || first.farthest > wanted {
@@ -135,7 +135,7 @@ impl Work<'_> {
         Ok(WholeRun { farthest: farthest_of_another(&all), ..first })
     }
 
-    /// A run from a start of a number: one that breaks goes infinitely far.
+    /// Runs a numbered start; a run that fails has an infinite deviation.
     fn run_of_start(&self, way: &Way, step: f64, time: f64, number: u64) -> Result<WholeRun, NoRun> {
         let left = self.left();
         if left == 0.0 {
@@ -160,13 +160,13 @@ impl Work<'_> {
         sample.cut_off(time).map_or(Ok(WholeRun { farthest, costs: Some(costs) }), |why| Err(NoRun(why)))
     }
 
-    /// The run of the configuration that is expected to reach the error at the least cost: its place and step; none where no time is left for it.
+    /// Returns index and step of the run that is expected to reach the error most cheaply; none where no time is left for it.
     fn next_run(&self, ways: &[Way], [time, own]: [f64; 2]) -> Option<(usize, f64)> {
         let wanted = self.wanted_drift(ways, own);
         let seconds = |way: &Way, step: f64| Some(way.cost? * way.step? / step * time);
         let reached = |way: &Way| seconds(way, way.drift.as_ref()?.step_for(wanted)?.step);
         let best = ways.iter().filter_map(reached).fold(f64::INFINITY, f64::min);
-        // Of those that differ by what decides the cost alone the cheapest.
+        // Among configurations that differ in cost alone, only the cheapest is tried.
         let is_dearer = |way: &Way, other: &Way| {
             let [own, others] = [way, other].map(|it| self.choice(it));
             let is_alike = own.agrees(&others, Decides::Order) && own.agrees(&others, Decides::Digits);
@@ -175,7 +175,7 @@ impl Work<'_> {
         };
         let is_cheapest = |way: &Way| way.drift.is_some() || !ways.iter().any(|other| is_dearer(way, other));
         let is_tried = |way: &Way| way.dropped.is_none() && is_cheapest(way);
-        // Rounding is far below the error of a step: other digits begin at the step at which the finest reach the error.
+        // Rounding is far below the error of a step: lower precisions begin at the step at which the highest precision reaches the error.
         let finest = self.case.own.with(self.case.entry.trials?.references[0]);
         let of_finest = |way: &Way| {
             let own = self.choice(way);
@@ -201,7 +201,7 @@ impl Work<'_> {
         Some((next.0, next.1))
     }
 
-    /// The error of a run that is looked for: that which is asked for, or the scene's own as soon as it is known.
+    /// Target error of a run: the requested one, or the scene's own once it is known.
     fn wanted_drift(&self, ways: &[Way], own: f64) -> f64 {
         let of_own = || {
             let own_way = ways.iter().find(|way| way.label == self.case.own.label());
@@ -211,8 +211,8 @@ impl Work<'_> {
     }
 }
 
-/// Returns the distance that another start keeps within with a probability of 95 %, from the distances of some. Logarithms are taken to be normally distributed:
-/// the next of them is below their mean and t s √(1 + 1/n), with the one-sided t of Student's distribution.
+/// Returns the upper bound of the deviation of another start with 95 % confidence. Logarithms are assumed normally distributed: the next is
+/// below their mean plus t s √(1 + 1/n), with the one-sided t of Student's distribution.
 fn farthest_of_another(all: &[f64]) -> f64 {
     let largest = all.iter().copied().fold(0.0, f64::max);
     if largest == 0.0 || !largest.is_finite() {

@@ -1,4 +1,4 @@
-//! What is measured of a scene before anything is recommended, and the scene at work.
+//! Measurements of a scene that a plan is based on, and the state of its trials.
 
 use super::ExplainError;
 use super::Target;
@@ -12,52 +12,51 @@ use std::sync::atomic::Ordering;
 use stripmine_physics::method::Prepared;
 use stripmine_physics::scene::Overrides;
 
-/// How often a step that fails or is warned of is halved.
+/// Most halvings of a step that fails or raises a warning.
 pub(super) const HALVINGS: u32 = 6;
-/// Parts of the time that is given: to time the configurations, to the mean, to the bias of steps, to twins that leave something out, to another
-/// start.
+/// Shares of the trial time: timing of configurations, mean, bias of steps, simpler models, another start.
 pub(super) const SHARES: [f64; 5] = [0.15, 0.3, 0.35, 0.12, 0.08];
 
-/// A way to run the scene, as measured.
+/// A configuration of the scene, as measured.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Way {
-    /// What it is called.
     pub label: String,
-    /// Its settings, by axis.
+    /// Settings, by axis.
     pub settings: Vec<(String, String)>,
-    /// The overrides that it makes, which its settings and its skin say.
+    /// Overrides of the scene, which follow from the settings and the skin.
     #[serde(skip)]
     pub overrides: Overrides,
-    /// Wall seconds of a unit of time at `step`; none where it was given up.
+    /// Wall seconds of a unit of time at `step`; none where the configuration was dropped before it was timed.
     #[serde(with = "any_number")]
     pub(crate) cost: Option<f64>,
-    /// The longest step that nothing speaks against (time); none where the method takes none.
+    /// Longest usable step (time); none where the method has no time step.
     pub step: Option<f64>,
-    /// What bounds it, with its numbers.
+    /// Limit of the step, with its numbers.
     pub bound: Option<String>,
-    /// Where it pays to change the skin of its lists: its own and the better one (length), and the cost with this over that with its own.
+    /// Skin of the neighbour lists, where changing it pays: the scene's own and the better one (length), and the ratio of the costs.
     pub skin: Option<[f64; 3]>,
-    /// Wall seconds of a unit of time in each phase, by name, at `step`; none where it was not timed.
+    /// Wall seconds of a unit of time in each phase, by name, at `step`; empty where it was not timed.
     pub phases: Vec<(String, f64)>,
-    /// What it is off by; none where it was not compared.
+    /// Bias of its step; none where it was not measured.
     pub(crate) bias: Option<Bias>,
-    /// How far what should keep its value goes, where that is asked for.
+    /// Deviation of a conserved quantity, where that is the target.
     pub(crate) drift: Option<Drift>,
-    /// Why it was followed no further.
+    /// Reason why it was dropped.
     pub(crate) dropped: Option<String>,
 }
 
-/// What was measured.
+/// Measurements of a scene.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Findings {
-    /// Ways, the cheapest first, those that were given up last.
+    /// Configurations by cost, dropped ones last.
     pub ways: Vec<Way>,
     pub mean: Known,
-    /// The label of the configuration that it was measured by.
+    /// Label of the configuration that measured the mean.
     pub(crate) mean_way: String,
-    /// Where the quantity changes all along and its mean over the whole run is asked for: the scene's own time (time).
+    /// The scene's own run time, where the quantity never becomes stationary and its mean over the whole run is the target (time).
     pub whole: Option<f64>,
-    /// By how much the mean of another start differs, where that is beyond both bars: what is kept of a start does not average out.
+    /// Difference between the means of another start and of this one, where it exceeds both error bars: a conserved quantity of the start does not
+    /// average out.
     #[serde(with = "any_number")]
     pub(crate) starts_differ: Option<f64>,
     /// Wall seconds until the first step.
@@ -66,16 +65,15 @@ pub(crate) struct Findings {
     /// Wall seconds of a row.
     #[serde(with = "any_number")]
     pub row: f64,
-    /// Cost of one thread over that of all.
+    /// Cost with one thread over that with all threads.
     #[serde(with = "any_number")]
     pub(crate) one_thread: f64,
     pub threads: usize,
-    /// What the scene may be modelled without.
+    /// Simpler models of the scene.
     pub without: Vec<Without>,
 }
 
 impl Way {
-    /// The settings of all axes.
     pub(super) fn choice(&self, case: &Case) -> Choice {
         let settings: Vec<(&str, &str)> =
             self.settings.iter().map(|(axis, name)| (axis.as_str(), name.as_str())).collect();
@@ -83,40 +81,39 @@ impl Way {
     }
 }
 
-/// A scene at work.
+/// State of the trials of a scene.
 pub(super) struct Work<'w> {
     pub(super) case: &'w Case,
     pub(super) target: &'w Target,
     pub(super) seconds: f64,
-    /// Parts of these, as [`SHARES`].
+    /// Shares of the trial time, as [`SHARES`].
     pub(super) shares: [f64; 5],
-    /// No trial begins later, and one that has begun ends then (s of the watch).
+    /// Deadline: no trial begins later, and a running one ends then (s of the watch).
     pub(super) end: f64,
     pub(super) trial: Trial<'w>,
-    /// Finished trials: those of the same study that was interrupted are not made again.
+    /// Finished trials: an interrupted study does not repeat them.
     pub(super) journal: &'w Journal,
-    /// Wall seconds of the scene as it stands, once they are known.
+    /// Wall seconds of the scene as it stands, once known.
     pub(super) as_it_stands: Option<f64>,
-    /// The scene's own time, where the quantity changes all along and its mean over the whole run is asked for (time).
+    /// The scene's own run time, where the quantity never becomes stationary and its mean over the whole run is the target (time).
     pub(super) whole: Option<f64>,
 }
 
-/// What the scene may be modelled without.
+/// A simpler model of a scene, as measured.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Without {
-    /// What is lacking.
     pub name: String,
-    /// The mean less that with it, and its bar; none where it breaks or has no mean.
+    /// Mean of the simpler model less the mean of the scene, and its error bar; none where it fails or has no mean.
     #[serde(with = "any_number")]
     pub(crate) difference: Option<[f64; 2]>,
-    /// Cost over that with it.
+    /// Cost over the cost of the scene.
     #[serde(with = "any_number")]
     pub(crate) cost: Option<f64>,
-    /// Why there is nothing to compare.
+    /// Reason why nothing could be compared.
     pub(crate) failed: Option<String>,
 }
 
-/// Why a run gave nothing.
+/// Reason why a run has no result.
 pub(super) struct NoRun(pub(super) String);
 
 impl From<JournalError> for NoRun {
@@ -125,8 +122,8 @@ impl From<JournalError> for NoRun {
     }
 }
 
-/// Why a trial was not made.
-pub(super) const NO_TIME: &str = "the time of the trials was over: --patient has more";
+/// Reason of trials that were not run.
+pub(super) const NO_TIME: &str = "the trial time was used up (use --patient for more)";
 
 impl Work<'_> {
     /// Seconds until the trials end.
@@ -154,8 +151,10 @@ impl Work<'_> {
         self.trial.sample(&prepared, observed, span).map_err(|failure| first_line(&failure.what()))
     }
 
+    /// Returns a result, unless the user stopped the trials.
+    ///
     /// # Errors
-    /// [`ExplainError::Stopped`], once the user stops the trials: those made since are shorter than they should be.
+    /// [`ExplainError::Stopped`], once the user stops the trials: those made since are too short.
     pub(super) fn unless_stopped<T>(&self, made: T) -> Result<T, ExplainError> {
         if self.trial.stop.load(Ordering::Relaxed) { Err(ExplainError::Stopped) } else { Ok(made) }
     }
@@ -165,7 +164,7 @@ impl Work<'_> {
     }
 }
 
-/// The cheapest first, those that were given up last.
+/// Sorts configurations by cost, dropped ones last.
 pub(super) fn sort(ways: &mut [Way]) {
     let key = |way: &Way| (way.dropped.is_some(), way.cost.unwrap_or(f64::INFINITY));
     ways.sort_by(|a, b| key(a).0.cmp(&key(b).0).then(key(a).1.total_cmp(&key(b).1)));

@@ -1,4 +1,4 @@
-//! Plans for what should keep its value: the step at which it goes no farther than is asked for.
+//! Plans for conserved quantities: the step at which their deviation stays within the target error.
 
 use super::Target;
 use super::bias::Off;
@@ -14,10 +14,10 @@ use super::unreached::Unreached;
 use crate::study::Case;
 use stripmine_physics::number::significant;
 
-/// What is recommended for a quantity that should keep its value over the scene's own time.
+/// Returns the cheapest plan for a quantity that should be conserved over the scene's own run.
 ///
 /// # Errors
-/// [`Unreached`], where no way comes to what is asked for.
+/// [`Unreached`], where no configuration reaches the target.
 pub(crate) fn keeping(
     case: &Case,
     target: &Target,
@@ -94,23 +94,20 @@ pub(crate) fn keeping(
     })
 }
 
-/// The step, with how far the quantity goes at it and at the next longer one.
+/// Decision on the step, with the deviation at it and at the next longer one.
 fn step_of(drift: &Drift, step: f64, time: f64) -> Decision {
     let at = |step: f64| drift.at(step).map_or("unknown".to_owned(), |farthest| significant(farthest, 2));
     let longer = drift.tried.iter().rev().find(|it| it.step > step * (1.0 + 1e-9));
     let longer = longer.map_or(String::new(), |it| {
-        let farthest = if it.farthest.is_finite() {
-            significant(it.farthest, 2)
-        } else {
-            "a run that breaks".to_owned()
-        };
+        let farthest =
+            if it.farthest.is_finite() { significant(it.farthest, 2) } else { "the run fails".to_owned() };
         format!("; at {}: {farthest}", significant(it.step, 4))
     });
     Decision {
         what: "dt".to_owned(),
         chosen: significant(step, 4),
         why: format!(
-            "off by at most {} in the whole run, a time of {}{longer}",
+            "changes by at most {} over the whole run of {}{longer}",
             at(step),
             significant(time, 3)
         ),

@@ -1,4 +1,4 @@
-//! What was measured of scenes, kept for this host and this version of the program: the second time costs nothing.
+//! Cache of measurements, for this host and this version of the program: a repeated plan needs no trials.
 
 use super::Target;
 use super::alike::Alike;
@@ -21,25 +21,25 @@ use stripmine_physics::number::significant;
 use stripmine_physics::quoted;
 use stripmine_physics::reported::{Class, Reported};
 
-/// The folder of the user's caches, by the variables that name it.
+/// Variables that name the user's cache folder, and the folder below.
 const PLACES: [(&str, &str); 2] = [("XDG_CACHE_HOME", "stripmine"), ("HOME", ".cache/stripmine")];
-/// Longer than any kept file (bytes).
+/// Upper bound of the size of a cached file (bytes).
 const LONGEST: u64 = 1 << 22;
-/// Between a key and the seconds of trials, in the name of the folder of their journal.
+/// Separator between a key and the trial time, in the folder name of a journal.
 const BEGUN: &str = ".trials-";
-/// Digits of a key.
+/// Hexadecimal digits of a key.
 const KEY: usize = 24;
 
-/// Why what is kept is of no use.
+/// Failures of the cache.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum KeptError {
-    /// A file that is not as it was written.
-    #[error("{} is damaged: it is ignored, and written again after the trials", quoted::path(.0))]
+    /// A cached file cannot be parsed.
+    #[error("{} is damaged: it is ignored, and rewritten after the trials", quoted::path(.0))]
     Damaged(PathBuf),
-    /// The journal of trials that were interrupted.
+    /// The journal of interrupted trials failed.
     #[error(transparent)]
     Journal(#[from] JournalError),
-    /// A file or folder that cannot be read, written or removed.
+    /// A file or folder cannot be read, written or removed.
     #[error(transparent)]
     File(#[from] FileError),
 }
@@ -53,37 +53,37 @@ impl Reported for KeptError {
     }
 }
 
-/// Where measurements are kept; nowhere, where the user has no folder for it.
+/// Folder of cached measurements; disabled where the user has no cache folder.
 #[derive(Clone, Debug)]
 pub(crate) struct Kept {
     folder: Option<PathBuf>,
     host: String,
 }
 
-/// A file of what was measured.
+/// A cached file.
 #[derive(Serialize, Deserialize)]
 struct File {
-    /// The key of the scene: the name of the file.
+    /// Key of the scene: the name of the file.
     scene: String,
-    /// Processor and version that it was measured with.
+    /// Processor and version of the measurement.
     host: String,
-    /// When.
+    /// Time of the measurement.
     moment: String,
-    /// Seconds of trials that were asked for, and that they took.
+    /// Trial time that was requested, and that was used (s).
     seconds: f64,
     taken: f64,
-    /// What other scenes are held against.
+    /// Properties by which similar scenes are found.
     alike: Alike,
     findings: Findings,
 }
 
-/// As much of a commit as tells it from others.
+/// Abbreviates a commit to a unique prefix.
 fn short(commit: &str) -> &str {
     commit.get(..10).unwrap_or(commit)
 }
 
 impl Kept {
-    /// In the user's folder of caches, for this processor, number of threads and version.
+    /// Opens the cache in the user's cache folder, for this processor, number of threads and version.
     pub(crate) fn here() -> Kept {
         Kept::within(PLACES.iter().find_map(|(variable, below)| place(&std::env::var_os(variable)?, below)))
     }
@@ -95,7 +95,7 @@ impl Kept {
             here.machine.processor,
             rayon::current_num_threads(),
             here.origin.version,
-            // Between versions it is another program with every commit.
+            // Between versions every commit is a different program.
             if here.origin.is_committed() {
                 format!(" of {}", short(&here.origin.commit))
             } else {
@@ -105,7 +105,7 @@ impl Kept {
         Kept { folder, host }
     }
 
-    /// What a scene and a quantity are kept as: the error that is asked for matters only where it decides which runs are made.
+    /// Key of a scene and a quantity. The target error matters only for conserved quantities, where it decides which runs are made.
     pub(crate) fn key(&self, case: &Case, target: &Target) -> String {
         let mut sum = Sha256::new();
         let error =
@@ -122,10 +122,10 @@ impl Kept {
         Some(self.folder.as_ref()?.join(format!("{key}.json")))
     }
 
-    /// What is kept, where trials were at least as long, and where it comes from. A file that was measured on another host is as good as none.
+    /// Returns the cached measurements of trials at least as long, with their origin. Measurements of another host are ignored.
     ///
     /// # Errors
-    /// [`KeptError`] if it is there and cannot be read, or is damaged.
+    /// [`KeptError`] if the file exists and cannot be read, or is damaged.
     pub(crate) fn recall(
         &self,
         case: &Case,
@@ -148,10 +148,10 @@ impl Kept {
         Ok(Some((file.findings, origin)))
     }
 
-    /// What is kept of the scene that is most alike, whatever quantity it was asked for, and where it comes from; none where there is none.
+    /// Returns the cached measurements of the most similar scene, of any quantity, with their origin; none where no scene is similar.
     ///
     /// # Errors
-    /// [`KeptError`] if what is kept cannot be read.
+    /// [`KeptError`] if the cache cannot be read.
     pub(super) fn alike(&self, case: &Case) -> Result<Option<(Findings, String)>, KeptError> {
         let own = Alike::of(case);
         let near = |path: PathBuf| {
@@ -167,10 +167,10 @@ impl Kept {
         }))
     }
 
-    /// The journal of trials of a scene, which goes on with those that were interrupted; one that forgets, where the user has no folder.
+    /// Opens the journal of the trials of a scene, which resumes interrupted ones. Without a cache folder nothing is recorded.
     ///
     /// # Errors
-    /// [`KeptError`] if it cannot be read or begun.
+    /// [`KeptError`] if it cannot be read or created.
     pub(super) fn journal(&self, case: &Case, target: &Target, seconds: f64) -> Result<Journal, KeptError> {
         let Some(folder) = self.begun(case, target, seconds) else { return Ok(Journal::none()) };
         fs::create_dir_all(&folder).map_err(FileError::at(&folder, "creating the folder"))?;
@@ -179,7 +179,7 @@ impl Kept {
         Ok(Journal::open(&folder, &identity, None)?)
     }
 
-    /// Removes the journal: all that it knows is kept.
+    /// Removes the journal once its measurements are cached.
     ///
     /// # Errors
     /// [`KeptError`] if it cannot be removed.
@@ -188,13 +188,13 @@ impl Kept {
         folder.map_or(Ok(()), |it| Ok(fs::remove_dir_all(&it).map_err(FileError::at(&it, "removing"))?))
     }
 
-    /// The folder of the journal of trials of some seconds.
+    /// Folder of the journal of trials of some seconds.
     fn begun(&self, case: &Case, target: &Target, seconds: f64) -> Option<PathBuf> {
         let name = format!("{}{BEGUN}{seconds}", self.key(case, target));
         Some(self.folder.as_ref()?.join(name))
     }
 
-    /// Keeps what was measured with the seconds of trials that were asked for and that they took.
+    /// Writes measurements to the cache, with the trial time that was requested and used.
     ///
     /// # Errors
     /// [`KeptError`] if it cannot be written.
@@ -220,17 +220,17 @@ impl Kept {
         }
         let text = serde_json::to_vec_pretty(&file);
         let text = text.map_err(|error| FileError::at(&path, "writing")(error.into()))?;
-        // In one step, so that two at a time do not mix.
+        // Replaced in one step, so that two processes do not mix their data.
         replace(&path, |out| out.write_all(&text))?;
         Ok(())
     }
 
-    /// Where measurements of just now come from, which took some seconds.
+    /// Describes the origin of new measurements that took some seconds.
     pub(crate) fn origin(&self, taken: f64) -> String {
         format!("{} s of trials on {}", significant(taken, 2), self.host)
     }
 
-    /// Removes all that is kept, of whatever version, journals among it, and says how many that were. Files of others in the folder stay.
+    /// Removes all cached files and journals, of every version, and returns their number. Other files in the folder stay.
     ///
     /// # Errors
     /// [`KeptError`] if one cannot be removed.
@@ -244,7 +244,7 @@ impl Kept {
         Ok(files.len() + journals.len())
     }
 
-    /// All files with the name of a key, in order.
+    /// Lists all files named like a key, in order.
     fn files(&self) -> Result<Vec<PathBuf>, KeptError> {
         self.entries(is_key)
     }
@@ -256,13 +256,14 @@ impl Kept {
     }
 }
 
-/// The folder below one that a variable names; none where that is empty or relative, which is to be ignored by the specification of these variables.
+/// Returns the cache folder below the one that a variable names. None where that is empty or relative: the specification requires such values to be
+/// ignored.
 fn place(variable: &OsStr, below: &str) -> Option<PathBuf> {
     let folder = Path::new(variable);
     folder.is_absolute().then(|| folder.join(below).join("explain"))
 }
 
-/// Whether a file is called as kept ones are.
+/// True if a file is named like a cached file.
 fn is_key(name: &str) -> bool {
     name.strip_suffix(".json").is_some_and(is_key_of)
 }
@@ -271,7 +272,7 @@ fn is_key_of(key: &str) -> bool {
     key.len() == KEY && key.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'))
 }
 
-/// Whether a file says that this program kept it, of whatever version: it holds its own name as its key. Links are not followed.
+/// True if a file was written by this cache, of any version: it contains its own name as its key. Links are not followed.
 fn is_marked(file: &Path) -> bool {
     #[derive(Deserialize)]
     struct Mark {

@@ -1,4 +1,4 @@
-//! What scenes may be modelled without: the change of a mean, and the time saved.
+//! Simpler models of every scene: the change of a mean, and the time saved.
 
 use super::Target;
 use super::decisions::left_out;
@@ -13,7 +13,7 @@ use std::sync::atomic::AtomicBool;
 use stripmine_physics::method::METHODS;
 use stripmine_physics::number::significant;
 
-/// The largest change, in parts of the mean, at which something may be left out.
+/// Largest change, in parts of the mean, at which a part may be left out.
 const MOST: f64 = 0.1;
 
 /// Scenes of the gallery, by name and text.
@@ -38,7 +38,7 @@ const GALLERY: &[(&str, &str)] = gallery![
     "spinodal"
 ];
 
-/// A scene without something.
+/// A simpler model of a scene.
 struct Row {
     scene: &'static str,
     quantity: &'static str,
@@ -53,16 +53,16 @@ struct Without {
     why: String,
 }
 
-/// Every preset and every scene of the gallery, by name and text.
+/// Lists every preset and every scene of the gallery, by name and text.
 fn scenes() -> Vec<(&'static str, &'static str)> {
     let presets = METHODS.iter().flat_map(|entry| entry.vocabulary.presets);
     presets.map(|preset| (preset.name, preset.text)).chain(GALLERY.iter().copied()).collect()
 }
 
-/// Compares every scene, or those of some names, with what it may be modelled without, in trials of some seconds each.
+/// Compares every scene, or the named ones, with its simpler models, in trials of some seconds each.
 ///
 /// # Errors
-/// [`StudyError`] if a scene is bad.
+/// [`StudyError`] if a scene is invalid.
 pub(crate) fn compared(
     only: Option<&[&str]>,
     seconds: f64,
@@ -80,7 +80,7 @@ pub(crate) fn compared(
         let of = |why: String| Without { scene, quantity, why };
         let trial = Trial { watch: &watch, stop: &stop };
         match has_simpler(&case, quantity).then(|| seen_with_twins(&case, &target, seconds, trial)) {
-            None => without.push(of("it has nothing of the kind".to_owned())),
+            None => without.push(of("it has no simpler model".to_owned())),
             Some(Ok(found)) => {
                 let mean = found.mean.mean;
                 let twins = left_out(&found, MOST * mean.abs(), mean);
@@ -94,7 +94,7 @@ pub(crate) fn compared(
 }
 
 impl Row {
-    /// The most that the mean changes with a probability of 95 %, in parts of it.
+    /// Upper bound of the change of the mean with 95 % confidence, in parts of it.
     fn most(&self) -> Option<f64> {
         self.twin.change.map(|[change, bar]| (change.abs() + bar) / self.mean.abs())
     }
@@ -124,7 +124,7 @@ fn table(rows: &[Row]) -> Frame {
         .number("± (95 %) of that", 1, |it| share(it, 1))
         .number("time saved (%)", 0, |it| Some(100.0 * (1.0 - it.twin.cost?)))
         .text("verdict", |it| it.verdict())
-        .frame("left-out", "What scenes may be modelled without")
+        .frame("left-out", "Effect of simpler models")
 }
 
 fn not_compared(without: &[Without]) -> Frame {
@@ -132,7 +132,7 @@ fn not_compared(without: &[Without]) -> Frame {
         .text("scene", |it| it.scene)
         .text("quantity", |it| it.quantity)
         .text("because", |it| it.why.clone())
-        .frame("not-compared", "Scenes that are compared with nothing")
+        .frame("not-compared", "Scenes without a comparison")
 }
 
 fn summary(rows: &[Row], without: &[Without], seconds: f64) -> Frame {
@@ -148,7 +148,7 @@ fn summary(rows: &[Row], without: &[Without], seconds: f64) -> Frame {
         .count("undecided", |()| count("undecided"))
         .number("trials of a scene (s)", 1, |()| seconds)
         .number("largest change at which something may be left out (%)", 0, |()| 100.0 * MOST)
-        .frame("summary", "Twins in numbers")
+        .frame("summary", "Simpler models in numbers")
 }
 
 #[cfg(test)]
@@ -158,7 +158,7 @@ mod tests {
     use std::fs;
     use std::path::Path;
 
-    /// By hand, for a mean of −2: the most is (|change| + bar)/2.
+    /// By hand, for a mean of −2: the upper bound is (|change| + bar)/2.
     #[test]
     fn a_verdict_follows_from_change_and_bar() {
         for (change, verdict) in [

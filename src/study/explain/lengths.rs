@@ -1,4 +1,4 @@
-//! Which step of a way and which time reach an error most cheaply, and over how many runs that time is spread.
+//! Cheapest step and run time of a configuration for an error, and the number of runs that share this time.
 
 use super::bias::Off;
 use super::findings::{Findings, Way};
@@ -10,16 +10,16 @@ use stripmine_physics::averages::LIKELY_ENOUGH;
 use stripmine_physics::method::Every;
 use stripmine_physics::number::significant;
 
-/// Independent samples that a run has at least: enough that it is likely to know the error of its own mean.
+/// Fewest independent samples of a run: enough to estimate its own error with high probability.
 pub(super) const SAMPLES: f64 = LIKELY_ENOUGH;
 
-/// A way with what it takes for the error.
+/// A configuration with its cheapest step and time for the error.
 pub(super) struct Weighed<'w> {
     pub(super) way: &'w Way,
     pub(super) optimum: Optimum,
 }
 
-/// The cheapest step and time of a way; a way that was not compared has the bias of none, and is not weighed where others were.
+/// Cheapest step and time of a configuration. Without a time step its bias is zero; with a step and no measured bias it is skipped.
 pub(super) fn weigh(way: &Way, findings: &Findings, chance: &Chance, wanted: f64) -> Option<Optimum> {
     let terms = Terms {
         cost: way.cost?,
@@ -37,12 +37,12 @@ pub(super) fn weigh(way: &Way, findings: &Findings, chance: &Chance, wanted: f64
     }
 }
 
-/// What chance leaves of an error, by the time of all runs together.
+/// Statistical error as a function of the total time of all runs.
 pub(super) struct Chance {
     bars: Bars,
-    /// Square of the bar of a mean over one unit of time.
+    /// Square of the error bar of a mean over one unit of time.
     square: f64,
-    /// Time of a whole run, where these are averaged over (time).
+    /// Time of a whole run, where the mean is taken over whole runs (time).
     whole: Option<f64>,
 }
 
@@ -52,26 +52,26 @@ impl Findings {
         self.row * self.mean.rows_in(time)
     }
 
-    /// What chance leaves by the time.
+    /// Statistical error as a function of time.
     pub(super) fn chance(&self) -> Chance {
         Chance::of(&self.mean, self.whole)
     }
 }
 
 impl Chance {
-    /// By a mean, and the time of a whole run where these are averaged over (time).
+    /// Statistical error of a mean; `whole` is the time of a whole run, where the mean is taken over whole runs (time).
     pub(super) fn of(mean: &Known, whole: Option<f64>) -> Chance {
         Chance { bars: mean.bars(), square: mean.square, whole }
     }
 
-    /// The time of all runs together that leaves no more than this to chance (time).
+    /// Total time of all runs after which the statistical error is at most `bar` (time).
     pub(super) fn time_for(&self, bar: f64) -> f64 {
         let alone = self.square / (bar * bar);
-        // A whole run that is enough has no bar of its own: its error is that which other starts show.
+        // If one whole run is enough, its error is the scatter between starts: it has no error bar of its own.
         if self.whole.is_some_and(|time| alone <= time) { alone } else { self.bars.time_for(bar) }
     }
 
-    /// What chance leaves at most in runs of that time together (time): as [`time_for`](Self::time_for).
+    /// Upper bound of the statistical error of runs of a total time (time), consistent with [`time_for`](Self::time_for).
     pub(super) fn over(&self, time: f64) -> f64 {
         match self.whole {
             Some(whole) if time <= whole => (self.square / time).sqrt(),
@@ -80,18 +80,20 @@ impl Chance {
     }
 }
 
-/// How the time is spread over runs.
+/// Distribution of the total time over runs.
 pub(super) struct Length {
-    /// Time that is averaged over, of all runs (time).
+    /// Total time averaged over, of all runs (time).
     pub(super) time: f64,
     pub(super) seeds: u64,
-    /// Wall seconds of all.
+    /// Wall seconds of all runs.
     pub(super) seconds: f64,
     pub(super) why: String,
 }
 
+/// Run length and number of seeds of a plan.
+///
 /// # Errors
-/// The bar of one run, where more of them are needed and there is one start only.
+/// Error of a single run, where more are needed and the scene has only one start.
 pub(super) fn length(case: &Case, best: &Weighed<'_>, findings: &Findings) -> Result<Length, f64> {
     if let Some(time) = findings.whole {
         return whole_runs(case, best, findings, time);
@@ -99,7 +101,7 @@ pub(super) fn length(case: &Case, best: &Weighed<'_>, findings: &Findings) -> Re
     Ok(length_of_stretches(case, best, findings))
 }
 
-/// Whole runs, as many as the error asks for.
+/// As many whole runs as the error requires.
 fn whole_runs(case: &Case, best: &Weighed<'_>, findings: &Findings, time: f64) -> Result<Length, f64> {
     let seeds = (best.optimum.time / time).ceil().max(1.0);
     let chance = (findings.mean.square / time).sqrt();
@@ -114,16 +116,13 @@ fn whole_runs(case: &Case, best: &Weighed<'_>, findings: &Findings, time: f64) -
         time: seeds * time,
         seeds: seeds as u64,
         seconds: rounds * (findings.start + findings.of_rows(time) + cost * one_thread * time),
-        why: format!(
-            "whole runs from starts that differ have means ± {} of each other",
-            significant(chance, 2)
-        ),
+        why: format!("means of whole runs from different starts scatter by ± {}", significant(chance, 2)),
     })
 }
 
 fn length_of_stretches(case: &Case, best: &Weighed<'_>, findings: &Findings) -> Length {
     let transient = findings.mean.transient;
-    // So that each run has a mean of its own, with a bar; what does not vary is seen in a run of the scene's own time, or in some rows.
+    // Each run needs an error bar of its own. A constant quantity needs the scene's own run time, or some rows.
     let first = match case.prepared.schedule.rows {
         Every::Time(time) => SAMPLES * time,
         _ => 1.0,
@@ -139,7 +138,7 @@ fn length_of_stretches(case: &Case, best: &Weighed<'_>, findings: &Findings) -> 
     let threads = findings.threads as f64;
     if let Some(difference) = findings.starts_differ {
         let why = format!(
-            "another start has a mean {} off: what a start keeps, such as its energy, does not average out in a run, and the plan is for this one",
+            "the mean from another start differs by {}: a conserved quantity, such as the energy, does not average out, so the plan applies to this start",
             significant(difference, 2)
         );
         return Length { time, seeds: 1, seconds: together, why };
@@ -151,7 +150,7 @@ fn length_of_stretches(case: &Case, best: &Weighed<'_>, findings: &Findings) -> 
             seeds: findings.threads as u64,
             seconds: apart,
             why: format!(
-                "one on each core: one thread takes {} times what {} take, and the transient ({}) is made again by each",
+                "one run per core: one thread takes {} times as long as {} threads, and each run repeats the transient ({})",
                 significant(findings.one_thread, 2),
                 findings.threads,
                 significant(transient, 2)
@@ -159,9 +158,9 @@ fn length_of_stretches(case: &Case, best: &Weighed<'_>, findings: &Findings) -> 
         };
     }
     let why = if findings.threads == 1 {
-        "there is one thread".to_owned()
+        "only one thread is available".to_owned()
     } else {
-        format!("the transient ({}) would be made again by each of several", significant(transient, 2))
+        format!("several runs would each repeat the transient ({})", significant(transient, 2))
     };
     Length { time, seeds: 1, seconds: together, why }
 }

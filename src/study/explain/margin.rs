@@ -1,25 +1,25 @@
-//! How long a run has to be so that its bar comes out as small as planned: the variance that a plan is made of is itself an estimate, and that of the run is
-//! another one.
+//! Run length for a planned error bar. The variance that a plan uses is itself an estimate, and so is that of the run, so lengths contain a margin.
 
 use crate::study::trial::Known;
 use stripmine_physics::averages::{MOST_WAVES, variance_ratio};
 
-/// The probability with which a bar comes out as small as planned; that of bars themselves.
+/// Probability that an error bar is at most as large as planned; equal to the confidence of error bars themselves.
 const SURE: f64 = 0.95;
-/// Independent samples from which a bar is assumed to use all its waves: 1.5 times the 64 that the rule of waves asks for, as samples are counted with noise.
+/// Independent samples from which an error bar is assumed to use all its waves: 1.5 times the 64 that the rule of waves requires, as samples are
+/// counted with noise.
 const FULL: f64 = 96.0;
-/// Factor on the length of a run: its average cuts off a part as a transient and takes the larger of two errors. Calibrated on the correlated series of the test
-/// below, which therefore does not confirm it; item `plans` does or does not.
+/// Factor on the length of a run: its average cuts off a part as a transient and takes the larger of two errors. Calibrated on the correlated series
+/// of the test below, which therefore does not confirm it; item `plans` tests it.
 const CUT_OFF: f64 = 1.15;
-/// Times are longer by so much that a bar computed from one is not larger by rounding.
+/// Relative rounding margin of a time, so that the error bar computed from it is not too large.
 const ROUNDED_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
 
-/// The bars of runs of any length, as far as trials tell them.
+/// Error bars of runs of any length, predicted from trials.
 pub(crate) struct Bars {
-    /// Square of the bar of a mean over one unit of time.
+    /// Square of the error bar of a mean over one unit of time.
     square: f64,
-    /// For each number of waves that a bar may be made of: the time from which it is (time), and how many times larger the square of the bar may come out than that
-    /// which follows from the trials.
+    /// For each possible number of waves of an error bar: the time from which it applies (time), and the factor by which the square of the error bar
+    /// may exceed the prediction of the trials.
     levels: Vec<WaveLevel>,
 }
 
@@ -30,10 +30,10 @@ struct WaveLevel {
 }
 
 impl Known {
-    /// The bars of runs of any length.
+    /// Error bars of runs of any length.
     ///
-    /// The square of a bar is t² s² over the time, with t of Student's distribution. Its two values of s², that of the trials and that of the run, each a χ² over its
-    /// degrees of freedom, have a ratio that follows the F distribution.
+    /// The square of an error bar is t² s² over the time, with t of Student's distribution. The variance s² of the trials and that of the run, each a
+    /// χ² over its degrees of freedom, have a ratio that follows the F distribution.
     pub(crate) fn bars(&self) -> Bars {
         let all = |margin| Bars { square: self.square, levels: vec![WaveLevel { from: 0.0, margin }] };
         if self.square == 0.0 || !self.freedoms.is_finite() {
@@ -42,7 +42,7 @@ impl Known {
         let seen = self.freedoms.max(1.0);
         let t_squared = |freedoms: f64| variance_ratio(SURE, 1.0, freedoms);
         let of_trials = t_squared(seen);
-        // Of whole runs nothing is cut off.
+        // Whole runs have no transient to cut off.
         let longer = if self.apart > 0.0 { CUT_OFF } else { 1.0 };
         let level = |waves: usize| WaveLevel {
             from: self.from(waves as f64),
@@ -51,23 +51,23 @@ impl Known {
         Bars { square: self.square, levels: (1..=MOST_WAVES).map(level).collect() }
     }
 
-    /// The time from which a bar is made of some waves (time).
+    /// Time from which an error bar consists of some waves (time).
     fn from(&self, waves: f64) -> f64 {
         let most = MOST_WAVES as f64;
         match self.waves {
             _ if waves <= 1.0 => 0.0,
-            // Noise of independent samples has as many as there may be, and fewer in proportion to its length.
+            // Noise of independent samples has the largest number of waves; shorter runs have proportionally fewer.
             seen if seen >= most && self.apart > 0.0 => self.span.min(FULL * self.apart) * waves / most,
-            // They are a whole number, and grow at least with the root of the time.
+            // The number is whole, and grows at least with the square root of the time.
             seen => self.span * (waves / seen.max(1.0)).powi(2),
         }
     }
 }
 
 impl Bars {
-    /// The bar that a mean over some time has at most with a probability of 95 %.
+    /// Upper bound, with 95 % confidence, of the error bar of a mean over some time.
     pub(crate) fn over(&self, time: f64) -> f64 {
-        // What does not vary is known from any time.
+        // A constant is known from any time.
         if self.square == 0.0 {
             return 0.0;
         }
@@ -75,9 +75,9 @@ impl Bars {
         (self.square * reached.map_or(f64::INFINITY, |level| level.margin) / time).sqrt()
     }
 
-    /// The shortest time over which a mean has a bar of at most `bar` with a probability of 95 % (time).
+    /// Shortest time over which the error bar of a mean is at most `bar`, with 95 % confidence (time).
     ///
-    /// [`over`](Self::over) falls with the time, by steps where there is one wave more, so that every longer time has as small a bar.
+    /// [`over`](Self::over) falls with the time, in steps where one more wave is available, so every longer time has an error bar at most as large.
     pub(crate) fn time_for(&self, bar: f64) -> f64 {
         let least = self.square / (bar * bar) * ROUNDED_UP;
         let next = self.levels.iter().skip(1).map(|level| level.from).chain([f64::INFINITY]);
@@ -95,8 +95,9 @@ mod tests {
     use std::f64::consts::PI;
     use stripmine_physics::averages::{LIKELY_ENOUGH, Outcome, estimated, student};
 
-    /// Bars as averages have them, of independent normal values with a variance of 1: by 1.2 √n of their waves, at most 16, whose squares are independent. The plan is
-    /// made of some values, and the bar of another run of the planned length is to be as small as asked. Of 2000 plans each.
+    /// Error bars of independent normal values with a variance of 1, computed as in averages: from 1.2 √n waves, at most 16, whose squares are
+    /// independent. A plan is made from some values, and the error bar of another run of the planned length should be as small as requested. Each
+    /// case has 2000 plans.
     #[test]
     fn bars_come_out_as_small_as_planned() {
         let mut state = 7_u64;
@@ -105,7 +106,7 @@ mod tests {
             ((state >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
         };
         let waves = |count: usize| ((1.2 * (count as f64).sqrt()) as usize).clamp(1, 16);
-        // The bar of a mean of so many values.
+        // Error bar of the mean of so many values.
         let mut bar = |count: usize| {
             let square = |_| -2.0 * libm::log(uniform()) * libm::cos(2.0 * PI * uniform()).powi(2);
             let mean_square = (0..waves(count)).map(square).sum::<f64>() / waves(count) as f64;
@@ -126,9 +127,9 @@ mod tests {
         }
     }
 
-    /// Correlated values, as runs have them: a plan is made of the estimate of a series of some independent samples, and the bar of another series of the planned length
-    /// is as small as asked, in 400 plans each. The length was calibrated on the first memory alone, and the second confirms it. The third is half noise: there 88 % to
-    /// 95 % of the bars were as small, and its limit of 86 % was set after that.
+    /// Correlated values, as in runs: a plan is made from the estimate of a series of some independent samples, and the error bar of another series
+    /// of the planned length should be as small as requested, in 400 plans per case. The length was calibrated on the first memory alone, and the
+    /// second confirms it. The third is half noise: there 88 % to 95 % of the error bars were small enough, and its limit of 86 % was set after that.
     #[test]
     fn bars_of_correlated_series_come_out_as_small_as_planned() {
         let mut state = 11_u64;
@@ -136,7 +137,8 @@ mod tests {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             ((state >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
         };
-        // Parts of a value that the next one remembers, the mean of some such series with a variance of 1; (1 + m)/(1 − m) values are one independent sample.
+        // Correlation of successive values; the series is the mean of several with a variance of 1; (1 + m)/(1 − m) values are one independent
+        // sample.
         for (memories, cases, least) in [(&[0.5][..], 5, 0.93), (&[0.9], 3, 0.93), (&[0.8, 0.0], 3, 0.86)] {
             let each = memories.iter().map(|memory| (1.0 + memory) / (1.0 - memory)).sum::<f64>()
                 / memories.len() as f64;
@@ -165,7 +167,7 @@ mod tests {
                 let (mut planned, mut kept) = (0, 0);
                 for _ in 0..400 {
                     let Some(first) = estimate(seen, 1) else { continue };
-                    // Plans take at least this many samples.
+                    // Plans use at least this many samples.
                     let time = first.bars().time_for(asked).max(each * LIKELY_ENOUGH);
                     let Some(run) = estimate(time / each, first.every as usize) else { continue };
                     planned += 1;
@@ -182,7 +184,7 @@ mod tests {
         Known { bar, square, span, waves: freedoms, freedoms, ..Known::exactly(0.0) }
     }
 
-    /// The time for a bar has that bar, hardly more than that, and any longer one as well; margins are factors above 1 that fall with the time.
+    /// The time for an error bar reaches it with little excess, and so does any longer time; margins are factors above 1 that fall with the time.
     #[test]
     fn the_time_for_a_bar_has_a_bar_as_small() {
         for square in [1e-20, 3e-3, 1.0, 7e5] {

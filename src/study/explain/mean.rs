@@ -1,4 +1,4 @@
-//! The mean of a scene and what chance makes of it, by the cheapest configuration at the longest step that nothing speaks against.
+//! Measurement of the mean and its statistical error, by the cheapest configuration at the longest usable step.
 
 use super::ExplainError;
 use super::findings::{HALVINGS, SHARES, Way, Work};
@@ -8,30 +8,30 @@ use stripmine_physics::averages::Outcome;
 use stripmine_physics::method::Decides;
 use stripmine_physics::particles::Particles;
 
-/// States from which runs are compared, at least.
+/// Fewest states from which runs are compared.
 pub(super) const FEWEST: usize = 4;
-/// How often a run that is too short is made again, twice as long each time.
+/// Most attempts for a run that is too short, each twice as long as the last.
 const ATTEMPTS: usize = 4;
-/// The first run is this part of the time: it is made again for as long as steps are shortened.
+/// Share of the time of the first run, which is repeated for as long as steps are shortened.
 const SCOUT: f64 = 0.15;
-/// Another attempt is made where it may be this many times as long as the one before, at least.
+/// Smallest ratio of the lengths of two attempts: a smaller gain is not worth a repetition.
 pub(super) const LONGER: f64 = 1.5;
-/// A run that breaks at so many halves of a step breaks whatever the step.
+/// A run that fails at so many halvings of the step fails at any step.
 const ALIKE: u32 = 2;
-/// A sample that is to come to the end of a run is given this many times the seconds that the run should take.
+/// Factor on the predicted time of a run that should reach the end of the scene.
 const BEYOND: f64 = 1.1;
-/// A mean whose bar is more than this part of it is hardly known.
+/// A mean with a relative error bar above this is hardly known.
 const ROUGH: f64 = 0.5;
-/// The check of a run that says that positions have too few digits.
+/// Name of the check that detects positions with too little precision.
 const ROUNDING: &str = "rounding";
-/// Remainder of a quantity that has died out, in parts of its largest value.
+/// Value below which a quantity has died out, in parts of its largest value.
 const DEAD: f64 = 1e-3;
 
 /// The mean, as measured.
 #[derive(Serialize, Deserialize)]
 pub(super) struct Mean {
     pub(super) known: Known,
-    /// The label of the configuration.
+    /// Label of the configuration.
     pub(super) way: String,
     /// Wall seconds until the first step, and of a row.
     pub(super) start: f64,
@@ -40,21 +40,21 @@ pub(super) struct Mean {
     pub(super) cost: f64,
     /// The step (time); none where the method takes none.
     pub(super) step: Option<f64>,
-    /// Wall seconds of a step; not a number where the method takes none.
+    /// Wall seconds of a step; NaN where the method has no time step.
     #[serde(with = "any_number")]
     pub(super) step_cost: f64,
-    /// Transients of all samples: the start is the same, or alike, and they differ by the noise of their detection.
+    /// Transients of all samples: starts are equal or similar, so these differ by the noise of their detection alone.
     pub(super) transients: Vec<f64>,
     /// States along the run after the transient.
     #[serde(skip)]
     pub(super) states: Vec<Particles>,
-    /// Rows of the run, of all quantities.
+    /// Rows of the run, with all quantities.
     #[serde(skip)]
     pub(super) rows: Vec<Vec<f64>>,
 }
 
 impl Work<'_> {
-    /// Runs the cheapest configuration for the mean. Configurations that break, or are warned of, get shorter steps or are dropped.
+    /// Measures the mean with the cheapest configuration. Configurations that fail or raise warnings get shorter steps, or are dropped.
     pub(super) fn mean(&mut self, ways: &mut [Way]) -> Result<Mean, ExplainError> {
         let mut seconds = self.shares[1] * self.seconds;
         let kept_back = self.shares[2] * self.seconds;
@@ -62,7 +62,7 @@ impl Work<'_> {
         self.as_it_stands = self.run_as_it_stands(ways);
         let (mut attempt, mut halvings, mut is_scout) = (0, 0, true);
         let as_timed = ways.to_vec();
-        // Nothing is known of a scene beyond the window that is asked for; or beyond its own end, where longer runs break whatever the step.
+        // The scene is undefined beyond a requested window, and beyond its own end where longer runs fail at any step.
         let mut end = self.target.window.map(|[_, end]| end);
         loop {
             super::findings::sort(ways);
@@ -92,9 +92,9 @@ impl Work<'_> {
                 Err(failure) => return Err(self.no_mean(failure, enough)),
             };
             if !sample.warnings.is_empty() && halvings < HALVINGS && self.left() > kept_back {
-                let warned = format!("warned of: {}", sample.warned());
+                let warned = format!("warning: {}", sample.warned());
                 match sample.warnings.iter().any(|warning| warning.check == ROUNDING) {
-                    // A shorter step loses more of it.
+                    // A shorter step loses more of the motion.
                     true => self.drop_digits(ways, &best, &warned),
                     false => self.shorten(ways, &best, &warned),
                 }
@@ -128,12 +128,12 @@ impl Work<'_> {
         }
     }
 
-    /// True if a run of some seconds goes beyond the end of the scene's own.
+    /// True if a run of some seconds extends beyond the end of the scene's own run.
     fn goes_beyond(&self, way: &Way, seconds: f64) -> bool {
         self.case.duration().zip(way.cost).is_some_and(|(time, cost)| cost * time < seconds)
     }
 
-    /// Seconds of a sample: where one of so many nearly comes to the end of the scene's own run, as many as take it there.
+    /// Seconds of a sample, extended to the end of the scene's own run where that is near.
     fn to_end(&self, way: &Way, seconds: f64) -> f64 {
         let whole = self.case.duration().zip(way.cost).map(|(time, cost)| BEYOND * cost * time);
         whole.filter(|&whole| seconds < whole && whole <= LONGER * seconds).unwrap_or(seconds)
@@ -144,7 +144,7 @@ impl Work<'_> {
         ExplainError::NoMean { quantity: self.target.quantity.name, why, enough, run }
     }
 
-    /// The mean over whole runs, with states along the sample that showed that the quantity changes.
+    /// Measures the mean over whole runs, with states along the sample that showed the quantity changing.
     fn over_whole_runs(
         &self,
         way: &Way,
@@ -158,7 +158,7 @@ impl Work<'_> {
         Ok(Mean { cost, ..found(way, sample, known) })
     }
 
-    /// Halves the step of every configuration with the integrator of one that broke or was warned of.
+    /// Halves the step of every configuration with the integrator of one that failed or raised a warning.
     pub(super) fn shorten(&self, ways: &mut [Way], of: &Way, why: &str) {
         let choice = self.choice(of);
         let alike =
@@ -176,7 +176,7 @@ impl Work<'_> {
         }
     }
 
-    /// Drops every configuration with the digits and the integrator of one that loses motion.
+    /// Drops every configuration with the precision and integrator of one in which particles stop moving.
     fn drop_digits(&self, ways: &mut [Way], of: &Way, why: &str) {
         let choice = self.choice(of);
         for way in ways.iter_mut() {
@@ -187,7 +187,7 @@ impl Work<'_> {
         }
     }
 
-    /// A run costs more, or less, than its first stretches; so does every other configuration.
+    /// Rescales all costs by that of a run, which differs from the cost of its first stretches.
     fn slow_down(&self, ways: &mut [Way], best: &Way, sample: &Sample) {
         let slower = sample.cost / best.cost.unwrap_or(sample.cost);
         for way in ways.iter_mut() {
@@ -199,23 +199,23 @@ impl Work<'_> {
         }
     }
 
-    /// Wall seconds of the scene as it stands; none where that is not known.
+    /// Wall seconds of the scene as it stands, if known.
     pub(super) fn run_as_it_stands(&self, ways: &[Way]) -> Option<f64> {
         let way = ways.iter().find(|way| way.label == self.case.own.label())?;
         let longer = way.step.zip(self.case.step()).map_or(1.0, |(longest, own)| longest / own);
         Some(way.cost? * longer * self.case.duration()?)
     }
 
-    /// Seconds of trials in which a run is as long as the scene's own; none where its end is no time, or nothing is known of the cost.
+    /// Trial time in which a run is as long as the scene's own (s); none where its end is not a time, or its cost is unknown.
     fn for_whole_run(&self, way: &Way) -> Option<f64> {
         Some(trials_for(self.case.duration()? * way.cost?))
     }
 
-    /// Seconds of trials that are long enough for a mean, by a sample that was too short.
+    /// Trial time that is long enough for a mean (s), estimated from a sample that was too short.
     fn enough(&self, sample: &Sample) -> Option<f64> {
         let time = match sample.outcome {
             Outcome::TooShort { enough_at, .. } => enough_at,
-            // The end of the change is not known before the end of the scene's own run.
+            // The end of the change is unknown before the end of the scene's own run.
             Outcome::Changing { .. } if !sample.comes_beyond_end => {
                 self.case.duration()?.max(LONGER * sample.time)
             }
@@ -224,14 +224,14 @@ impl Work<'_> {
             Outcome::Changing { .. } => super::whole::RUNS[0] as f64 * self.case.duration()?,
             _ => return None,
         };
-        // These were not enough, whatever a unit of time cost in them.
+        // The present trials were too short, whatever their cost per unit of time.
         Some(trials_for(sample.cost * time).max(LONGER * self.seconds))
     }
 }
 
 fn found(way: &Way, sample: Sample, known: Known) -> Mean {
     let after = |states: &&(f64, Particles)| states.0 >= known.transient;
-    // Where hardly any state is after the transient, those before it are better than none.
+    // If hardly any state is after the transient, states before it are used too.
     let first = match sample.states.iter().filter(after).count() {
         0..FEWEST => 0,
         count => sample.states.len() - count,
@@ -250,7 +250,7 @@ fn found(way: &Way, sample: Sample, known: Known) -> Mean {
     }
 }
 
-/// True if a mean is hardly known: the run may still be on its way from the start.
+/// True if the mean is hardly known: the run may still be in its transient.
 fn is_hardly_known(sample: &Sample) -> bool {
     match sample.outcome {
         Outcome::TooShort { estimate, .. } => {
@@ -260,18 +260,18 @@ fn is_hardly_known(sample: &Sample) -> bool {
     }
 }
 
-/// Seconds of trials in which the run for the mean, doubled once, is as long as this (s).
+/// Trial time in which the run for the mean, doubled once, takes `seconds` (s).
 fn trials_for(seconds: f64) -> f64 {
     seconds / (2.0 * SHARES[1])
 }
 
-/// True if a quantity still changes beyond the end of the scene's own run, or has died out by then: a later mean is another one.
+/// True if a quantity still changes beyond the end of the scene's own run, or has died out by then: a later mean would differ.
 fn changes(sample: &Sample) -> bool {
     if !sample.comes_beyond_end {
         return false;
     }
     let largest = sample.series.iter().fold(0.0_f64, |largest, [_, value]| largest.max(value.abs()));
-    // Too little of a quantity that has died out may be left for a mean.
+    // A quantity that has died out may leave too little for a mean.
     let last = &sample.series[sample.series.len() * 3 / 4..];
     let has_died_out = !last.is_empty() && last.iter().all(|[_, value]| value.abs() < DEAD * largest);
     match sample.outcome {

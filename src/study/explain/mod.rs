@@ -1,8 +1,8 @@
-//! Which way to run a scene, with which step and for how long, for an error that can be borne at the least cost.
+//! The planner: finds the configuration, step and run length that reach a target error at the least cost.
 //!
-//! Trial runs of some seconds say what each way costs (`findings`), how long its step may be before theory, a check or a failure speaks against it, how a
-//! mean scatters, and how far a long step takes it off (`bias`). From these follow the step and the run length that reach an error most cheaply
-//! (`optimum`), and with them a plan (`plan`). Nothing here is fitted: what trials could not see is counted as error, with its bar.
+//! Short trial runs measure the cost of each configuration (`findings`), the longest step before a theoretical limit, a check or a failure, the
+//! scatter of the mean, and its bias at a long step (`bias`). From these follow the cheapest step and run length (`optimum`), and with them a plan
+//! (`plan`). Nothing here is fitted: what the trials could not resolve counts as error, with its error bar.
 
 pub(crate) mod accuracy;
 mod alike;
@@ -55,124 +55,117 @@ use stripmine_physics::number::significant;
 use stripmine_physics::reported::{Class, Reported};
 use stripmine_physics::scene::Width;
 
-/// Seconds of trials at most, where nothing else is asked for, and where one is patient.
+/// Longest total time of the trials (s): by default, and with `--patient`.
 pub(crate) const SECONDS: [f64; 2] = [10.0, 60.0];
 
-/// The most wall seconds that a plan may take by default.
+/// Longest wall time of a plan by default (s).
 pub(crate) const LIMIT: f64 = 3600.0;
 
-/// What is asked for.
+/// Quantity and error that a plan is asked for.
 #[derive(Clone, Debug)]
 pub(crate) struct Target {
     pub quantity: Quantity,
-    /// Its place among those observed.
+    /// Index among the observed quantities.
     pub place: usize,
-    /// The error of its mean that can be borne; none where the scene's own values are to be judged.
+    /// Target error of the mean; none where the scene's own values are to be judged.
     pub error: Option<Width>,
-    /// Wall seconds in which the least error is to be had, in the place of an error.
+    /// Wall seconds within which the error is to be minimised, instead of a target error.
     pub within: Option<f64>,
-    /// The most wall seconds that a plan may take.
+    /// Longest wall time of a plan (s).
     pub limit: f64,
-    /// From when to when each run is averaged over (time); none for the steady state, or the whole run of a scene that changes all along.
+    /// Window that each run is averaged over (time); none for the steady state, or for the whole run of a scene that never becomes stationary.
     pub window: Option<[f64; 2]>,
 }
 
-/// Why there is no plan.
+/// Failures to make a plan.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum ExplainError {
-    /// The scene observes nothing of that name.
-    #[error("`{name}` is nothing that this scene observes\n  help: one of {}", known.join(", "))]
-    NoSuchQuantity {
-        /// What was asked for.
-        name: String,
-        /// What it observes.
-        known: Vec<&'static str>,
-    },
-    /// The scene breaks, however it is run.
+    /// The scene does not observe the named quantity.
+    #[error("this scene does not observe `{name}`\n  help: use one of {}", known.join(", "))]
+    NoSuchQuantity { name: String, known: Vec<&'static str> },
+    /// Every configuration of the scene fails.
     #[error(
-        "every trial of the scene breaks; tried were:{}\n  help: lower integrator.dt, or mend what the failures name",
+        "every trial of the scene fails; tried:{}\n  help: lower integrator.dt, or fix what the failures name",
         .0.iter().map(|(what, why)| format!("\n  {what}: {why}")).collect::<String>()
     )]
     EveryWayFails(Vec<(String, String)>),
-    /// The quantity comes to no mean.
+    /// The quantity does not become stationary.
     #[error(
         "{quantity} did not become stationary during the trials: {why}\n  help: {}; or choose another quantity with --of",
         longer_trials(*enough, *run)
     )]
     NoMean {
         quantity: &'static str,
-        /// What was seen.
         why: String,
-        /// Seconds of trials that would be enough, as far as these tell.
+        /// Trial time that would suffice (s), estimated from these trials.
         enough: Option<f64>,
-        /// Wall seconds of a run of the scene as it stands.
+        /// Wall time of a run of the scene as it stands (s).
         run: Option<f64>,
     },
-    /// No way comes to the error.
+    /// No configuration reaches the error.
     #[error(
-        "no plan reaches an error of {} of {quantity}: {unreached}\n  help: accept a larger error, or {}",
+        "no configuration tried reaches an error of {} of {quantity}: {unreached}\n  help: accept a larger error, or {}",
         significant(unreached.wanted, 3),
         unreached.advice()
     )]
     OutOfReach {
         quantity: &'static str,
-        /// What was asked for, and what is known.
+        /// Requested error, and the errors found.
         unreached: Unreached,
     },
-    /// No plan is as quick.
+    /// No plan is fast enough.
     #[error(
-        "no run tells a mean of {quantity} in {} s: the shortest takes about {} s\n  help: give it more with --time",
+        "{quantity} cannot be estimated within {} s: the shortest run takes about {} s\n  help: raise --time",
         significant(*within, 3),
         significant(*least, 2)
     )]
     TooQuick {
         quantity: &'static str,
-        /// Wall seconds that were given.
         within: f64,
-        /// Wall seconds of the quickest plan.
+        /// Wall seconds of the fastest plan.
         least: f64,
     },
-    /// A window that is none.
+    /// The window does not end after it begins.
     #[error(
-        "{0:?} is no window\n  help: give the time from which and to which a run is averaged over, such as --window 2 8"
+        "{0:?} is not a time window: expected its start before its end\n  help: give two times to average between, such as --window 2 8"
     )]
     NoWindow(Vec<f64>),
-    /// Nothing was kept of the scene.
+    /// The cache has no measurements of the scene.
     #[error(
-        "nothing is known here of this scene\n  help: run it without --estimate once; what is measured is kept"
+        "no cached measurements for this scene on this machine\n  help: run once without --estimate; its measurements are cached"
     )]
     NothingKept,
     #[error(transparent)]
     Kept(#[from] KeptError),
-    /// The journal of trials.
+    /// The journal of trials failed.
     #[error(transparent)]
     Journal(#[from] JournalError),
-    /// The user stopped it.
-    #[error("the trials were stopped\n  help: the same command goes on with those that are finished")]
+    /// The user interrupted the trials.
+    #[error("the trials were stopped\n  help: the same command resumes after the finished trials")]
     Stopped,
 }
 
-/// The longest that trials may be asked to take (s).
+/// Longest trial time that can be requested (s).
 const LONGEST: f64 = 3600.0;
 
-/// Advice that makes trials long enough, or spares them where the scene itself takes less time.
+/// Returns the advice for trials that were too short: longer ones, or a run of the scene itself where that takes less time.
 fn longer_trials(enough: Option<f64>, run: Option<f64>) -> String {
     match enough.map(f64::ceil) {
         Some(enough) if run.is_some_and(|run| run < enough) => format!(
-            "trials of about {} s would be enough, and a run of the scene as it stands takes about {}: run it instead, and average",
+            "trials would need about {} s, but a run of the scene itself takes about {}: run and average it instead",
             significant(enough, 2),
             seconds(run.unwrap_or(enough))
         ),
         Some(seconds) if seconds <= LONGEST => {
-            format!("trials of about {seconds:.0} s should be enough: --seconds {seconds:.0}")
+            format!("longer trials should be enough: --seconds {seconds:.0}")
         }
         Some(seconds) => {
             format!(
-                "trials of about {} s should be enough, more than {LONGEST:.0} s",
+                "trials would need about {} s, above the maximum of {LONGEST:.0} s",
                 significant(seconds, 2)
             )
         }
-        None => "--patient looks longer, and where some whole runs take less than that, at these".to_owned(),
+        None => "use --patient for longer trials, which cover whole runs where these fit".to_owned(),
     }
 }
 
@@ -196,7 +189,7 @@ impl Reported for ExplainError {
 }
 
 impl Target {
-    /// Of a quantity, or the first that the method has a mean of.
+    /// Returns the target for a named quantity, or for the first one with a mean.
     ///
     /// # Errors
     /// [`ExplainError::NoSuchQuantity`]
@@ -215,7 +208,7 @@ impl Target {
         Ok(Target { quantity: quantities[place], place, error, within: None, limit: LIMIT, window: None })
     }
 
-    /// The same over a window, from one time to another, where one is given.
+    /// Restricts the target to a time window, if one is given.
     ///
     /// # Errors
     /// [`ExplainError::NoWindow`] if it does not end after it begins.
@@ -229,14 +222,14 @@ impl Target {
         }
     }
 
-    /// Whether it should keep its value: its error is then how far it goes from the first.
+    /// True if the quantity should be conserved: its error is then the largest deviation from its first value.
     pub(crate) fn is_kept(&self) -> bool {
         self.quantity.kind == Kind::Kept
     }
 }
 
-/// What is recommended: by what is kept of the scene from trials at least as long, or by trials of some seconds, which are kept. Of no seconds at
-/// all nothing is run. What cannot be kept, or recalled, is no reason not to plan: `notice` is told.
+/// Makes a plan from cached measurements of trials at least as long, or from new trials, which are then cached. With zero seconds nothing is run.
+/// Failures of the cache do not prevent a plan: they are passed to `notice`.
 ///
 /// # Errors
 /// [`ExplainError`]
@@ -279,15 +272,15 @@ pub(crate) fn explain(
         .map_err(|it| ExplainError::OutOfReach { quantity, unreached: Unreached { trials: seconds, ..it } })
 }
 
-/// Errors are asked for within this factor of the least that can be had in a time.
+/// Relative accuracy of the smallest error found by bisection.
 const NEAR: f64 = 1.02;
-/// From the least to the largest error that is weighed against a time, in parts of the mean.
+/// Smallest and largest error of the bisection, in parts of the mean.
 const WEIGHED: [f64; 2] = [1e-12, 10.0];
 
-/// The plan of the least error that is expected to take no more than some wall seconds.
+/// Returns the plan with the smallest error that is expected to take at most `within` wall seconds.
 ///
 /// # Errors
-/// [`ExplainError::TooQuick`], where no plan is as quick.
+/// [`ExplainError::TooQuick`], where no plan is fast enough.
 fn within_seconds(
     case: &Case,
     target: &Target,

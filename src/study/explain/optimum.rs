@@ -1,48 +1,48 @@
-//! The step and the run length that reach an error at the least cost.
+//! Cheapest step and run length for a target error.
 
 use super::bias::Off;
 
-/// A way to run a scene, as far as its cost and error go.
+/// Costs of a configuration.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Terms {
     /// Wall seconds of a unit of time at the longest step.
     pub(crate) cost: f64,
     /// Wall seconds of the rows of a unit of time.
     pub rows: f64,
-    /// Time that does not count (time).
+    /// Transient, which is not averaged over (time).
     pub(crate) transient: f64,
 }
 
-/// A run length has settled that grows by no more than this factor.
+/// Largest relative growth at which a run length counts as converged.
 const SETTLED: f64 = 1.0 + 1e-6;
-/// Repeats of a run length after which it has settled, or never does.
+/// Most iterations of a run length.
 const REPEATS: usize = 64;
 
-/// What reaches an error.
+/// Cheapest step and time for an error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Optimum {
-    /// The step in parts of the longest.
+    /// The step, in parts of the longest.
     pub part: f64,
-    /// What the step takes the mean off by.
+    /// Bias at the step.
     pub(crate) bias: Off,
-    /// Time that is averaged over (time).
+    /// Time averaged over (time).
     pub time: f64,
     /// Wall seconds.
     pub seconds: f64,
 }
 
-/// Steps that are weighed: so many between a step and half of it.
+/// Steps tried per halving.
 const BETWEEN: i32 = 4;
-/// The shortest that is weighed, in parts of the longest.
+/// Shortest step tried, in parts of the longest.
 pub(super) const SHORTEST: f64 = 1.0 / 256.0;
-/// The shortest that is weighed where no bias is significant: the uncertainty of a bias is not bought off with smaller steps.
+/// Shortest step tried where no bias is significant: smaller steps do not reduce the uncertainty of a bias.
 pub(super) const UNBIASED: f64 = 0.25;
 
-/// The cheapest step and time for an error of at most `error`, of which `bias` (of the step in parts of the longest, and the time of the run) is one part and
-/// chance the other, for which a run takes `time_for` it; none where bias alone is more.
+/// Returns the cheapest step and time whose total error is at most `error`: `bias` (a function of the step in parts of the longest and of the run
+/// time) plus a statistical error that a run reaches after `time_for` it. None where bias alone exceeds the error.
 ///
-/// A shorter step costs more for a unit of time and has less bias, which leaves more of the error to chance and so asks for a shorter time. A bias that grows
-/// with the time asks for a longer one, which is found by repetition from below.
+/// A shorter step costs more per unit of time and has less bias, which leaves more of the error to statistics and so needs less time. A bias that
+/// grows with the time needs a longer run, which is found by iteration from below.
 pub(crate) fn optimum(
     terms: Terms,
     (error, shortest): (f64, f64),
@@ -80,7 +80,7 @@ mod tests {
         optimum(terms, (0.1, SHORTEST), |part, _| bias(part), |chance| 4.0 / (chance * chance))
     }
 
-    /// By hand: with a bias of 2e-5 of each unit of time, 4/(0.1 − 2e-5 t)² = t has its first root at t = 492.10; with 1e-4 it has none, as the
+    /// By hand: with a bias of 2e-5 per unit of time, 4/(0.1 − 2e-5 t)² = t has its first root at t = 492.10; with 1e-4 it has none, as the
     /// largest t (0.1 − 1e-4 t)² is 1000/3 · 0.00444 = 1.48, less than 4.
     #[test]
     fn a_bias_that_grows_with_the_time_is_met_by_a_shorter_step_or_not_at_all() {
@@ -94,16 +94,16 @@ mod tests {
         assert!(of(1e-4, SHORTEST).unwrap().part < 1.0);
     }
 
-    /// Without bias the longest step; with b·part the cost 1/(part (e − b part)²) is least at part = e/(3 b): a third of the error.
+    /// Without bias the longest step is best; with b·part the cost 1/(part (e − b part)²) is least at part = e/(3 b): a third of the error.
     #[test]
     fn a_third_of_the_error_is_bias_where_it_falls_with_the_step() {
         let free = best(TERMS, |_| Off::default()).unwrap();
         assert!(free.part == 1.0 && (free.time - 400.0).abs() < 1e-9 && (free.seconds - 800.0).abs() < 1e-9);
         let bound = best(TERMS, |part| Off::exactly(0.3 * part)).unwrap();
         assert!((bound.bias.shift / 0.1 - 1.0 / 3.0).abs() < 0.05, "{bound:?}");
-        // What is not seen to fall is not reached at any step.
+        // A bias that does not fall with the step is never reached.
         assert_eq!(best(TERMS, |_| Off::exactly(0.1)), None);
-        // A transient that is long asks for a longer step.
+        // A long transient favours a longer step.
         let long = Terms { transient: 1e5, ..TERMS };
         assert!(best(long, |part| Off::exactly(0.3 * part)).unwrap().part > bound.part);
     }

@@ -1,4 +1,4 @@
-//! From what was measured to what is recommended.
+//! Choice of the plan from the measurements.
 
 use super::Target;
 use super::bias::Off;
@@ -13,15 +13,15 @@ use crate::study::{Case, Choice, TIE, rounded};
 use stripmine_physics::method::Every;
 use stripmine_physics::scene::{Overrides, STEPS, THERMO_EVERY, TIME, Width};
 
-/// A time is foreseen within this factor: other programs come and go.
+/// Factor of uncertainty of predicted times: other programs share the machine.
 pub(super) const TIME_WITHIN: f64 = 1.5;
-/// Rows that a mean is taken of, at least.
+/// Fewest rows of a mean.
 const FEWEST_ROWS: f64 = 100.0;
 
-/// What is recommended for an error in the quantity's unit.
+/// Returns the cheapest plan for the target error.
 ///
 /// # Errors
-/// [`Unreached`], where no way comes to what is asked for.
+/// [`Unreached`], where no configuration reaches the target.
 pub(crate) fn plan(
     case: &Case,
     target: &Target,
@@ -32,7 +32,7 @@ pub(crate) fn plan(
     let own_way = findings.ways.iter().find(|way| way.label == case.own.label());
     let own = own_way.and_then(|way| own(case, way, findings));
     let error = target.error.map(|width| in_unit(width, mean.mean));
-    // Without an error: as good as the scene's own values.
+    // Without a target error the plan matches the error of the scene's own values.
     let of_own = own.as_ref().map(|own| own.error.most).filter(|most| most.is_finite() && *most > 0.0);
     let wanted = error.or(of_own).unwrap_or(0.01 * mean.mean.abs());
     let usable = |way: &&Way| way.cost.is_some() && way.dropped.is_none();
@@ -46,7 +46,7 @@ pub(crate) fn plan(
     weighed.sort_by(|a, b| a.optimum.seconds.total_cmp(&b.optimum.seconds));
     prefer(&mut weighed, case);
     let Some(best) = weighed.first() else {
-        // The bias at the shortest step that is weighed is all that is left.
+        // Only the bias at the shortest step considered is left.
         let least = |way: &Way| Some(way.bias?.at(SHORTEST * way.step?).shift);
         let least = findings.ways.iter().filter(usable).filter_map(least).fold(f64::INFINITY, f64::min);
         return Err(Unreached { known: mean.bar, ..Unreached::of(wanted, least) });
@@ -54,7 +54,7 @@ pub(crate) fn plan(
     let unreached = |least: f64| Unreached { known: mean.bar, ..Unreached::of(wanted, least) };
     let length = length(case, best, findings).map_err(unreached)?;
     if length.seconds > target.limit {
-        // Chance falls with the root of the time.
+        // The statistical error falls with the square root of the time.
         let left = target.limit * (length.time / length.seconds);
         let least = best.optimum.bias.with(chance.over(left));
         return Err(Unreached { takes: Some([length.seconds, target.limit]), ..unreached(least) });
@@ -90,8 +90,8 @@ pub(crate) fn plan(
     })
 }
 
-/// Puts first, of all that are as cheap within what can be timed, the scene's own configuration, or the first by the order of the settings: more trials then
-/// lead to the same one.
+/// Puts first, among configurations as cheap within timing accuracy, the scene's own, or else the first in the order of the settings: longer trials
+/// then lead to the same plan.
 pub(super) fn prefer(weighed: &mut [Weighed<'_>], case: &Case) {
     let Some(cheapest) = weighed.first().map(|it| it.optimum.seconds) else { return };
     let own = case.own.label();
@@ -112,7 +112,7 @@ pub(super) fn phases(best: &Weighed<'_>, time: f64) -> Vec<(String, f64)> {
     best.way.phases.iter().map(scaled).collect()
 }
 
-/// The overrides that make a plan of a scene: the step, the time of a run, and that between its rows (time; 0 where it does not matter).
+/// Returns the overrides of a plan: its step, run time and time between rows (time; 0 where that does not matter).
 pub(super) fn overrides(
     case: &Case,
     way: &Way,
@@ -120,19 +120,19 @@ pub(super) fn overrides(
     (time, every): (Option<f64>, f64),
 ) -> Overrides {
     let mut overrides = way.overrides.clone();
-    // The run takes the step that is printed.
+    // The run uses the step as printed.
     let step = step.map(|step| rounded(step, 4));
     if let (Some(trials), Some(step)) = (case.entry.trials, step) {
         overrides = overrides.set(trials.step, step);
     }
     let time = time.or(case.duration());
-    // The length of a run is given as the scene has it, in steps or as a time.
+    // The run length is given as the scene gives it: in steps or as a time.
     let Some(time) = time else { return overrides };
     overrides = match (case.values.gives(&STEPS), step) {
         (true, Some(step)) => overrides.set(&STEPS, (time / step).ceil() as u64),
         _ => overrides.set(&TIME, no_shorter(time)),
     };
-    // Its own rows, where these are enough for a mean with a bar and none were planned.
+    // The scene's own rows are used where they are enough for a mean with an error bar and none were planned.
     let between = match every {
         0.0 if time >= FEWEST_ROWS * own_rows(case, step) => return overrides,
         0.0 => time / ROWS,
@@ -144,7 +144,7 @@ pub(super) fn overrides(
     }
 }
 
-/// Time between the rows of a scene with a step (time); infinite where it has none.
+/// Time between the rows of a scene at a step (time); infinite where it writes none.
 pub(super) fn own_rows(case: &Case, step: Option<f64>) -> f64 {
     match case.prepared.schedule.rows {
         Every::Steps(steps) => step.map_or(f64::INFINITY, |step| steps as f64 * step),
@@ -153,13 +153,13 @@ pub(super) fn own_rows(case: &Case, step: Option<f64>) -> f64 {
     }
 }
 
-/// A time in six digits, or one more in the last of them where it would be shorter.
+/// Rounds a time to six digits, never down.
 fn no_shorter(time: f64) -> f64 {
     let nearest = rounded(time, 6);
     if nearest < time { rounded(time * (1.0 + 5.1e-6), 6) } else { nearest }
 }
 
-/// An error in the quantity's unit.
+/// Converts an error to the quantity's unit.
 pub(crate) fn in_unit(width: Width, mean: f64) -> f64 {
     match width {
         Width::Percent(percent) => 0.01 * percent * mean.abs(),
@@ -170,7 +170,7 @@ pub(crate) fn in_unit(width: Width, mean: f64) -> f64 {
 fn own(case: &Case, way: &Way, findings: &Findings) -> Option<Own> {
     let (time, step) = (case.duration()?, case.step());
     let cost = way.cost? * way.step.zip(step).map_or(1.0, |(longest, own)| longest / own);
-    // Of the scene's own integrator, in whatever digits it was compared.
+    // The bias is that of the scene's own integrator, in any precision that was measured.
     let is_alike = |it: &&Way| {
         it.settings.iter().any(|(name, setting)| {
             name == "integrator" && way.settings.contains(&(name.clone(), setting.clone()))

@@ -1,10 +1,10 @@
-//! What a plan says.
+//! Contents of a plan.
 
 use super::bias::Off;
 use serde::Serialize;
 use stripmine_physics::scene::Overrides;
 
-/// A number with the least and the most that it may be.
+/// A number with its bounds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct Interval {
     pub least: f64,
@@ -13,100 +13,97 @@ pub(crate) struct Interval {
 }
 
 impl Interval {
-    /// About a likely value, within a factor.
+    /// Interval within a factor of a likely value.
     pub(super) fn within(likely: f64, factor: f64) -> Interval {
         Interval { least: likely / factor, likely, most: likely * factor }
     }
 }
 
-/// Something that was chosen, and what stands beside it.
+/// A decision with its alternatives.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Decision {
-    /// What about.
+    /// Subject of the decision.
     pub what: String,
-    /// What is recommended.
     pub(crate) chosen: String,
     pub(crate) why: String,
-    /// The others.
     pub(crate) beside: Vec<Beside>,
 }
 
-/// Something else that may be chosen.
+/// An alternative that is not recommended.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Beside {
     pub name: String,
-    /// Wall time over that of what is recommended, for the same error; none where it does not come to it.
+    /// Wall time over that of the recommendation, for the same error; none where the error is not reached.
     pub(crate) cost: Option<f64>,
-    /// Why it is not recommended.
+    /// Reason why it is not recommended.
     pub(crate) why: String,
 }
 
-/// What a plan asks for and is expected to give.
+/// Command, expected result and reasons of a plan.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Plan {
-    /// The scene, as it is named on a command line.
+    /// The scene, as named on a command line.
     pub scene: String,
     pub method: &'static str,
-    /// The configuration by which it is run: its settings.
+    /// Label of the configuration: its settings.
     pub way: String,
     pub quantity: &'static str,
-    /// Its unit, empty for a pure number.
+    /// Unit of the quantity, empty for a pure number.
     pub unit: &'static str,
-    /// Its mean, and half the width of its interval of 95 %; none of what should keep its value.
+    /// Mean, and half the width of its 95 % interval; none for a conserved quantity.
     pub mean: Option<[f64; 2]>,
-    /// The error that is asked for, in the quantity's unit.
+    /// Requested error, in the quantity's unit.
     pub error: Option<f64>,
-    /// What is recommended, one after the other.
     pub(crate) decisions: Vec<Decision>,
-    /// The error that is expected, in the quantity's unit.
+    /// Expected error, in the quantity's unit.
     pub expected: Expected,
     /// Wall seconds.
     pub seconds: Interval,
-    /// Bytes of a run.
+    /// Memory of the runs (bytes).
     pub memory: u64,
     /// Wall seconds of a run in each phase, by name.
     pub phases: Vec<(String, f64)>,
     /// The step (time); none where the method takes none.
     pub step: Option<f64>,
-    /// Time of each run, the transient in it (time).
+    /// Time of each run, including the transient (time).
     pub time: f64,
     /// Rows of each run.
     pub rows: f64,
-    /// Whether the mean is that over whole runs: the quantity changes all along.
+    /// True if the mean is taken over whole runs, because the quantity never becomes stationary.
     pub(crate) is_whole: bool,
-    /// Time of the transient (time).
+    /// Length of the transient (time).
     pub(crate) transient: f64,
-    /// Runs with seeds of their own.
+    /// Number of runs, each with its own seed.
     pub seeds: u64,
-    /// By how much the mean of another start differs, where that was seen.
+    /// Difference of the mean from another start, where significant.
     pub(crate) starts_differ: Option<f64>,
-    /// The overrides that make the plan of the scene.
+    /// Overrides that turn the scene into the plan.
     pub overrides: Overrides,
-    /// What the scene's own values cost and reach.
+    /// Cost and error of the scene's own values.
     pub own: Option<Own>,
-    /// What the scene may be modelled without.
+    /// Simpler models of the scene.
     pub left_out: Vec<LeftOut>,
-    /// Where the figures come from.
+    /// Origin of the measurements.
     pub origin: String,
 }
 
-/// What the scene's own values cost and reach.
+/// Cost and error of the scene's own values.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Own {
     /// Wall seconds.
     pub seconds: f64,
-    /// The error that is expected of them, in the quantity's unit.
+    /// Expected error, in the quantity's unit.
     pub error: Expected,
 }
 
-/// What an error is made of.
+/// Parts of an error.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub(crate) struct Expected {
-    /// What the step takes the mean off by.
+    /// Bias from the step.
     pub(crate) bias: Off,
-    /// Half the width of the interval of 95 % of a mean of this length.
+    /// Half the width of the 95 % interval of a mean of this length.
     pub(crate) chance: f64,
-    /// The most that both are together with a probability of 95 %.
+    /// Upper bound of the total error, with 95 % confidence.
     pub most: f64,
 }
 
@@ -116,30 +113,29 @@ impl Expected {
     }
 }
 
-/// What the scene may be modelled without.
+/// A simpler model of the scene.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct LeftOut {
     pub name: String,
-    /// What it changes of the mean, and its bar; none where it was not seen.
+    /// Change of the mean, and its error bar; none where it was not measured.
     pub change: Option<[f64; 2]>,
-    /// Cost over that with it.
+    /// Cost over the cost of the scene.
     pub(crate) cost: Option<f64>,
-    /// Whether the scene needs it for the error.
+    /// Verdict for the target error.
     pub(crate) need: Need,
-    /// The same in words.
     pub says: String,
 }
 
-/// Whether a scene needs something for an error.
+/// Verdict on a simpler model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Need {
-    /// Without it the mean is off by more.
+    /// Without the part the mean changes by more than the error.
     Yes,
-    /// Without it the mean is off by less.
+    /// Without the part the mean changes by less than the error.
     No,
-    /// Bars are too wide to tell.
+    /// Error bars are too wide to decide.
     Undecided,
-    /// There is nothing to compare.
+    /// Nothing could be compared.
     NotCompared,
 }

@@ -1,4 +1,4 @@
-//! Rules of plans, on findings that are made up.
+//! Rules of plans, tested on synthetic findings.
 
 use super::as_it_stands::AS_IT_STANDS;
 use super::bias::{Bias, Seen};
@@ -14,7 +14,7 @@ use std::sync::atomic::AtomicBool;
 use stripmine_physics::method::{METHODS, Purpose};
 use stripmine_physics::scene::{DT, Overrides, SEED, Width};
 
-/// Wall seconds of a unit of time, and the bias.
+/// A configuration, wall seconds of a unit of time, and the bias.
 type Made<'m> = (&'m Choice, f64, Option<Bias>);
 
 fn gas() -> Case {
@@ -71,7 +71,7 @@ fn biased(case: &Case, shift: f64, bar: f64) -> Option<Bias> {
     Some(Bias { shift, bar, part: 1.0, pairs: Some([shift, bar]), ..Bias::unknown(step, 2.0) })
 }
 
-/// The scene's own configuration, which was not compared, reaches its error in less time than another: then the scene is left as it stands. Where the
+/// The scene's own configuration, whose bias is unknown, reaches its error in less time than another: then the scene is left as it stands. Where the
 /// other takes less time, it is the plan.
 #[test]
 fn a_plan_that_is_worse_than_the_scene_is_not_printed() {
@@ -80,7 +80,7 @@ fn a_plan_that_is_worse_than_the_scene_is_not_printed() {
     let order = |choice: &&Choice| choice.scheme().map(|it| it.name) == case.own.scheme().map(|it| it.name);
     let other = all.iter().filter(order).find(|choice| **choice != case.own).unwrap();
     let time = case.duration().unwrap();
-    // By chance alone the scene itself reaches an error of this.
+    // Statistical error alone of the scene itself.
     let known = known(1e-4 * time, 16.0);
     let error = known.bars().over(time);
     for (cost, is_better) in [(3.0, false), (1.01, false), (0.5, true)] {
@@ -94,14 +94,14 @@ fn a_plan_that_is_worse_than_the_scene_is_not_printed() {
         assert!(plan.expected.most <= error * (1.0 + 1e-12), "{page}");
         assert_eq!(plan.overrides.is_empty(), !is_better, "{page}");
         assert_eq!(plan.decisions[0].what == AS_IT_STANDS, !is_better, "{page}");
-        // A time for each phase, of either.
+        // Each phase has a time, in either plan.
         let [(phase, spent)] = plan.phases.as_slice() else { panic!("{page}") };
         assert!(phase == "forces" && (spent / (0.5 * seconds) - 1.0).abs() < 1e-6, "{spent}");
     }
 }
 
 /// LAN17's scheme as printed heats free particles to kT/(1 − γ dt/2m): at steps of 0.2 and 0.1 (γ, m and kT are 1) by 0.1111 and 0.0526, which a line
-/// through the reference fits with 0.1099 at the longer one. Short windows say the same as long ones.
+/// through the reference fits with 0.1099 at the longer one. Short and long windows agree.
 #[test]
 fn pairs_find_the_heat_of_the_printed_scheme() {
     let sets = ["particles.count=4000", "domain.sides=[100.0, 50.0]"].map(str::to_owned);
@@ -119,7 +119,7 @@ fn pairs_find_the_heat_of_the_printed_scheme() {
     let trial = Trial { watch: &watch, stop: &stop };
     let paired = pairs(&trial, &compared, (case.entry.quantities, place), 0.1).unwrap();
     assert!(paired.windows.len() > 3, "{:?}", paired.windows);
-    // Temperatures forget with the rate 2 γ/m.
+    // Temperatures decorrelate at the rate 2 γ/m.
     const MEMORY: f64 = 0.5;
     for both in paired.windows.windows(2) {
         let seen =
@@ -132,10 +132,10 @@ fn pairs_find_the_heat_of_the_printed_scheme() {
     }
 }
 
-/// Trials whose time is made of work are the same whenever they are made: steps, biases and plans do not depend on how fast the machine is.
+/// Trials on a synthetic clock are reproducible: steps, biases and plans do not depend on the speed of the machine.
 #[test]
 fn trials_by_a_made_time_come_out_the_same() {
-    // Nanoseconds for each particle and step.
+    // Nanoseconds per particle and step.
     for (preset, sets, quantity, each) in [
         ("pipe-small", &["domain.sides=[0.81, 0.088]", "run.time=0.5"][..], "flow", 400.0),
         ("langevin-dense", &["particles.count=64", "domain.sides=[12.0, 9.0]"], "potential", 2000.0),
@@ -158,8 +158,8 @@ fn trials_by_a_made_time_come_out_the_same() {
     }
 }
 
-/// By hand: the square of a bar is 16 in a unit of time and known well, so that an error of 0.01 takes 160 000 units of time at 1 s each; the error in the limit of
-/// an hour is 4/√3600 = 0.0667.
+/// By hand: the square of an error bar is 16 in a unit of time and well known, so an error of 0.01 takes 160 000 units of time at 1 s each; the error
+/// within the limit of an hour is 4/√3600 = 0.0667.
 #[test]
 fn a_plan_above_the_limit_says_what_the_limit_gives() {
     let case = gas();
@@ -170,12 +170,12 @@ fn a_plan_above_the_limit_says_what_the_limit_gives() {
     assert!((refused.least - 4.0 / 60.0).abs() < 1e-6, "{refused:?}");
     let said = ExplainError::OutOfReach { quantity: "pressure", unreached: refused }.to_string();
     assert!(said.contains("44 h") && said.contains("60 min") && said.contains("0.067"), "{said}");
-    // A limit that is long enough.
+    // A sufficient limit.
     let patient = Target { limit: 200_000.0, ..asking(&case, 0.01) };
     assert!(plan(&case, &patient, &found, "trials").is_ok());
 }
 
-/// A bias that is not significant keeps the step within a quarter of the longest, however large its bar; a significant one does not.
+/// An insignificant bias keeps the step within a quarter of the longest, however large its error bar; a significant one does not.
 #[test]
 fn the_uncertainty_of_a_bias_is_not_bought_off() {
     let case = gas();
@@ -184,7 +184,7 @@ fn the_uncertainty_of_a_bias_is_not_bought_off() {
         let found = findings(&case, &[(&case.own, 1e-9, biased(&case, shift, bar))], known(1e-6, 16.0));
         let made = plan(&case, &asking(&case, 0.01), &found, "trials");
         let step = made.unwrap().step.unwrap();
-        // Significant: with the power 2 a fifth of the error is bias, at √(0.01/(5·0.3)) of the step.
+        // Significant bias: with power 2 a fifth of the error is bias, at √(0.01/(5·0.3)) of the step.
         assert!(
             step > 0.99 * part * own && step < 1.01 * f64::max(part, 0.18) * own,
             "{part}: {step} of {own}"
@@ -192,8 +192,8 @@ fn the_uncertainty_of_a_bias_is_not_bought_off() {
     }
 }
 
-/// However the mean scatters: what a plan expects is no more than what was asked for, and the run that is printed is no shorter than planned; in stretches,
-/// and in whole runs.
+/// For any scatter of the mean, the expected error is at most the requested one, and the printed run is no shorter than planned; in stretches and
+/// in whole runs.
 #[test]
 fn a_plan_expects_no_more_than_the_error_asked_for() {
     let case = gas();

@@ -1,4 +1,4 @@
-//! The trials of a scene one after the other, and the plan that follows.
+//! Trials of a scene in order, and the plan that follows from them.
 
 use super::findings::{Findings, HALVINGS, SHARES, Way, Work};
 use super::keeping::keeping;
@@ -14,15 +14,15 @@ use crate::study::trial::Trial;
 use serde::{Deserialize, Serialize};
 use stripmine_physics::method::StepLimit;
 
-/// Parts of the time where what the scene may be modelled without is asked for.
+/// Shares of the trial time where simpler models are the goal.
 const OF_TWINS: [f64; 5] = [0.1, 0.25, 0.12, 0.48, 0.05];
-/// Steps of a plan are printed with so many digits that they exceed a limit by this part of it.
+/// Printed steps are rounded, and may exceed a limit by this part.
 const ROUNDING: f64 = 1e-3;
 
 /// Measures a scene.
 ///
 /// # Errors
-/// [`ExplainError`] if every trial breaks, or the quantity comes to no mean.
+/// [`ExplainError`] if every trial fails, or the quantity does not become stationary.
 fn findings(work: &mut Work<'_>, progress: &dyn Fn(f64)) -> Result<Findings, ExplainError> {
     let begun = work.trial.watch.now();
     let tell = |work: &Work<'_>| progress(((work.trial.watch.now() - begun) / work.seconds).min(1.0));
@@ -42,7 +42,7 @@ fn findings(work: &mut Work<'_>, progress: &dyn Fn(f64)) -> Result<Findings, Exp
     let best = &ways[0];
     let one_thread = work.one_thread(best);
     let starts_differ = work.starts_differ(best, &mut mean);
-    // The end of a transient is found a part of the run too late, mostly.
+    // Transients are mostly detected too late, by a part of the run.
     mean.known.transient = mean.transients.iter().copied().fold(f64::INFINITY, f64::min);
     let without = work.without(best, &mean);
     work.unless_stopped(Findings {
@@ -71,12 +71,12 @@ impl Work<'_> {
     fn compared(&mut self, mut ways: Vec<Way>, tell: &dyn Fn(&Self)) -> Result<Compared, ExplainError> {
         let mean = self.mean(&mut ways)?;
         tell(self);
-        // Trials of the bias are as long as they get: those that follow keep their part. Whole runs have no time to spare.
+        // The trials of the bias may use all remaining time, except the shares of those that follow. Whole runs have no time to spare.
         let kept_back = match self.whole {
             Some(_) => 0.0,
             None => {
                 let [.., of_twins, of_start] = self.shares.map(|share| share * self.seconds);
-                // The biases have their own part before twins have theirs: timing and the mean may have taken longer.
+                // The biases have priority over simpler models: timing and the mean may have taken longer than their shares.
                 let spare = self.left() - self.shares[2] * self.seconds;
                 spare.clamp(0.0, of_twins) + of_start + 2.0 * OF_ONE_THREAD * self.seconds
             }
@@ -88,17 +88,17 @@ impl Work<'_> {
     }
 }
 
-/// Overrides are not kept: settings and skins say them.
+/// Restores overrides, which are not cached, from settings and skins.
 pub(super) fn restore(ways: &mut [Way], case: &Case) {
     for way in ways {
         way.overrides = way.overrides_in(case);
     }
 }
 
-/// Measurements of a scene in trials of some seconds. Those that a journal knows are not made again.
+/// Measures a scene in trials of some seconds. Trials in the journal are not repeated.
 ///
 /// # Errors
-/// [`ExplainError`] if every trial breaks, or the quantity has no mean.
+/// [`ExplainError`] if every trial fails, or the quantity has no mean.
 pub(crate) fn seen(
     case: &Case,
     target: &Target,
@@ -136,10 +136,10 @@ fn seen_by(
     findings(work, progress)
 }
 
-/// A plan from what was measured: the scene as it stands, where that is as good and no plan is quicker.
+/// Makes a plan from measurements, or returns the scene as it stands where that is as good and no plan is faster.
 ///
 /// # Errors
-/// [`Unreached`], where no way comes to what is asked for.
+/// [`Unreached`], where no configuration reaches the target.
 pub(crate) fn planned(
     case: &Case,
     target: &Target,
@@ -151,7 +151,7 @@ pub(crate) fn planned(
     }
     let mut findings = findings.clone();
     let mut made = plan(case, target, &findings, origin)?;
-    // A run that is longer than the scene's own has harder collisions, and with a shorter step it is longer still.
+    // A run longer than the scene's own has harder collisions, which shorten the step, and with a shorter step it takes longer still.
     for _ in 0..HALVINGS {
         let Some(limit) = limit_of(case, &made) else { break };
         findings.limit_steps(&limit);
@@ -160,7 +160,7 @@ pub(crate) fn planned(
     Ok(made.or_as_it_stands(case, &findings))
 }
 
-/// The limit of theory on the step of a plan's run, where the plan is beyond it.
+/// Returns the theoretical limit on the step of a plan's run, if the plan exceeds it.
 fn limit_of(case: &Case, plan: &Plan) -> Option<StepLimit> {
     let limits = case.prepared_with(&plan.overrides).ok()?.step_limits;
     let limit = limits.into_iter().min_by(|a, b| a.step.total_cmp(&b.step))?;
@@ -168,7 +168,7 @@ fn limit_of(case: &Case, plan: &Plan) -> Option<StepLimit> {
 }
 
 impl Findings {
-    /// Shortens the longest steps to a limit of theory.
+    /// Shortens the longest steps to a theoretical limit.
     fn limit_steps(&mut self, limit: &StepLimit) {
         let longest = OF_LIMIT * limit.step;
         for way in &mut self.ways {

@@ -1,8 +1,8 @@
-//! Bias of the step of an integrator that keeps a shadow energy, from a single run.
+//! Bias of a step from a single run, for integrators that conserve a shadow energy.
 //!
-//! Such an integrator keeps H + h² H₂ up to higher powers of the step h, so that the energy H of a run without friction and driving fluctuates as −h² H₂.
-//! To leading order a mean of A at the step is that of short steps less β h² Cov(A, H₂), which is β Cov(A, H) along the run (Bond and Leimkuhler, Acta
-//! Numerica 16, 2007). The statistical error falls with h² as the bias does.
+//! Such an integrator conserves H + h² H₂ up to higher powers of the step h, so the energy H of a run without friction and drive fluctuates as −h²
+//! H₂. To leading order a mean of A at the step is that of short steps less β h² Cov(A, H₂), which is β Cov(A, H) along the run (Bond and Leimkuhler,
+//! Acta Numerica 16, 2007). The statistical error falls with h², as the bias does.
 
 use super::findings::{Way, Work};
 use super::mean::Mean;
@@ -10,14 +10,14 @@ use stripmine_physics::averages::of_independent;
 use stripmine_physics::method::Trials;
 use stripmine_physics::method::observed::find;
 
-/// Stretches of a run over which covariances are taken, each about its own means: a slow drift by rounding is no fluctuation.
+/// Stretches of a run over which covariances are taken, each about its own means: slow drift by rounding is no fluctuation.
 const STRETCHES: usize = 16;
-/// Rows of a stretch at least.
+/// Fewest rows of a stretch.
 const FEWEST: usize = 8;
 
 impl Work<'_> {
-    /// The bias of the configuration and step that the mean was measured with, and half the width of its interval of 95 % (the quantity's unit); none where
-    /// its integrator keeps no shadow energy, or energy comes or goes.
+    /// Bias of the configuration and step that the mean was measured with, and half the width of its 95 % interval (the quantity's unit). None where
+    /// the integrator conserves no shadow energy, or energy enters or leaves.
     pub(super) fn of_shadow(&self, way: &Way, mean: &Mean) -> Option<[f64; 2]> {
         let trials = self.case.entry.trials?;
         let keeps = trials.shadow?.integrators.contains(&self.choice(way).scheme()?.name);
@@ -37,7 +37,7 @@ impl Work<'_> {
     }
 }
 
-/// Covariance of two series and half the width of its interval of 95 %.
+/// Covariance of two series, and half the width of its 95 % interval.
 fn covariance(values: &[f64], others: &[f64]) -> Option<[f64; 2]> {
     let length = values.len() / STRETCHES;
     if length < FEWEST {

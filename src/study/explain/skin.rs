@@ -1,24 +1,24 @@
-//! How wide the skin of lists is to be: by trials, as no constant knows how discs move.
+//! Skin of neighbour lists, chosen by trials: no constant predicts how discs move.
 
 use super::findings::{Way, Work, sort};
 use crate::study::Case;
 use crate::study::rounded;
 use stripmine_physics::scene::Overrides;
 
-/// Skins that are tried, in parts of the scene's own.
+/// Skins tried, in parts of the scene's own.
 const TRIED: [f64; 3] = [0.4, 0.65, 1.5];
-/// A skin is changed where that saves this part of the time at least: less cannot be timed.
+/// Smallest saving, in parts of the time, for which a skin is changed: less is within timing noise.
 const WORTH: f64 = 0.04;
 
 impl Work<'_> {
-    /// Where lists are the cheapest search, their skin is the cheapest of some, for all ways by lists.
+    /// Tunes the skin of all configurations with neighbour lists, where lists are the cheapest search.
     pub(super) fn tune_skin(&self, ways: &mut [Way], seconds: f64) {
         let by_lists = |way: &Way| way.settings.iter().any(|(axis, name)| axis == "search" && name == LISTS);
         let Some(best) = ways.first().filter(|way| by_lists(way) && self.left() > seconds).cloned() else {
             return;
         };
         let Ok(prepared) = self.prepared(&best.overrides, best.step) else { return };
-        // A resolved scene spells its skin out.
+        // A resolved scene states its skin.
         let resolved = prepared.scene.parse::<toml::Table>().ok();
         let own = resolved.and_then(|scene| scene.get("search")?.get("skin")?.as_float());
         let Some(own) = own else { return };
@@ -27,7 +27,7 @@ impl Work<'_> {
             let overrides = with_skin(best.overrides.clone(), self.case, skin);
             self.trial.timed(&self.prepared(&overrides, best.step).ok()?, each).ok().map(|it| it.seconds)
         };
-        // Its own is timed again beside them.
+        // Its own skin is timed again beside the others.
         let Some(of_own) = cost(own) else { return };
         let others = TRIED.iter().filter_map(|part| Some((part * own, cost(part * own)?)));
         let Some((skin, least)) = others.min_by(|a, b| a.1.total_cmp(&b.1)) else { return };
@@ -43,10 +43,10 @@ impl Work<'_> {
     }
 }
 
-/// The setting of the search that has a skin.
+/// Name of the search that has a skin.
 const LISTS: &str = "neighbor-list";
 
-/// Overrides with a skin, to as many digits as are printed.
+/// Sets the skin, rounded to the printed precision.
 fn with_skin(overrides: Overrides, case: &Case, skin: f64) -> Overrides {
     match case.entry.vocabulary.keys.key("search", "skin") {
         Some(key) => overrides.set(key, rounded(skin, 3)),
@@ -55,7 +55,7 @@ fn with_skin(overrides: Overrides, case: &Case, skin: f64) -> Overrides {
 }
 
 impl Way {
-    /// The overrides by which a scene is run in this way.
+    /// Overrides that select this configuration.
     pub(super) fn overrides_in(&self, case: &Case) -> Overrides {
         let overrides = self.choice(case).overrides();
         match self.skin {

@@ -1,4 +1,4 @@
-//! What each way to run a scene costs, at the longest step that nothing speaks against.
+//! Cost of each configuration of a scene, at its longest usable step.
 
 use super::ExplainError;
 use super::findings::{HALVINGS, NO_TIME, Way, Work, sort};
@@ -7,34 +7,34 @@ use rayon::ThreadPoolBuilder;
 use stripmine_physics::method::{Decides, StepLimit};
 use stripmine_physics::number::significant;
 
-/// The longest step that is tried, in parts of the shortest limit of theory: what lies at the limit itself fails for the fastest disc.
+/// Longest step tried, in parts of the smallest theoretical limit: at the limit itself the fastest disc fails.
 pub(super) const OF_LIMIT: f64 = 0.9;
-/// Where theory has no limit, the longest step is that many times the scene's own.
+/// Longest step where theory has no limit, in steps of the scene.
 const TIMES_OWN: f64 = 4.0;
-/// A way that costs this many times the best is followed no further.
+/// Cost, relative to the cheapest, above which a configuration is dropped.
 const DEAR: f64 = 5.0;
-/// Rounds of a race at most, and those from which on bars tell a tie.
+/// Most rounds of a race, and the first round in which times may tie.
 const ROUNDS: usize = 5;
 const TIE_FROM: usize = 3;
-/// A race is over when the best leads by this factor.
+/// Factor by which the best must lead to end a race.
 const LEAD: f64 = 1.25;
-/// Part of the time in which one thread is timed, and all of them.
+/// Share of the trial time for timing one thread, and all threads.
 pub(super) const OF_ONE_THREAD: f64 = 0.02;
-/// Preparing and starting may take as long as the timing itself, and what is left after that is not timed.
+/// Factor for preparing and starting, which may take as long as the timing itself; nothing is timed beyond it.
 const OVERHEAD: f64 = 2.0;
 
 impl Work<'_> {
-    /// Every way with its cost at its longest step, the cheapest first.
+    /// Times every configuration at its longest step, and sorts them by cost.
     ///
-    /// Which search or engine is the cheapest is measured with the scene's own integrator and digits, for results are the same; then the integrators
-    /// and digits with that.
+    /// The cheapest search or engine is determined with the scene's own integrator and precision, as results are the same; then integrators and
+    /// precisions are timed with it.
     pub(super) fn timed_ways(&self) -> Result<Vec<Way>, ExplainError> {
         let all = Choice::all(self.case.entry.axes);
         let own = &self.case.own;
         let of_own_arithmetic =
             |choice: &&Choice| choice.agrees(own, Decides::Order) && choice.agrees(own, Decides::Digits);
         let mut searches: Vec<&Choice> = all.iter().filter(of_own_arithmetic).collect();
-        // The scene's own is timed whatever that takes.
+        // The scene's own is timed first, whatever it costs.
         searches.sort_by_key(|choice| *choice != own);
         let each = self.shares[0] * self.seconds / 2.0;
         let end = |share: f64| self.end.min(self.trial.watch.now() + OVERHEAD * share);
@@ -56,10 +56,10 @@ impl Work<'_> {
         Ok(ways)
     }
 
-    /// Configurations with their costs, the cheapest first, by a race: all are timed, then the better half again for twice as long each, and so on until the
-    /// best leads or their bars overlap. None but the scene's own is begun after the end.
+    /// Times configurations in a race: all are timed, then the better half again for twice as long each, and so on until the best leads or their
+    /// times overlap. After the deadline none but the scene's own is begun.
     ///
-    /// Other programs come and go: of several times the least counts.
+    /// The smallest of several times counts, as other programs disturb the others.
     fn timed(&self, choices: &[&Choice], seconds: f64, end: f64) -> Vec<Way> {
         let mut each = seconds / (2 * choices.len().max(1)) as f64;
         let is_over = || self.trial.watch.now() >= end;
@@ -91,7 +91,7 @@ impl Work<'_> {
         ways
     }
 
-    /// A way at the longest step that theory has nothing against and at which it runs.
+    /// Times a configuration at the longest step that theory allows and at which it runs.
     fn at_longest(&self, choice: &Choice, seconds: f64) -> Way {
         let mut way = untimed(choice);
         let own_step = self.case.step();
@@ -126,7 +126,7 @@ impl Work<'_> {
         way
     }
 
-    /// What one thread takes over what all of them take.
+    /// Ratio of the cost with one thread to that with all threads.
     pub(super) fn one_thread(&self, way: &Way) -> f64 {
         let threads = rayon::current_num_threads();
         let seconds = OF_ONE_THREAD * self.seconds;
@@ -139,13 +139,13 @@ impl Work<'_> {
             let pool = ThreadPoolBuilder::new().num_threads(1).build().ok()?;
             Some(pool.install(|| self.trial.timed(&prepared, seconds)).ok()?.seconds / all)
         };
-        // Where that is not known, several runs side by side are no gain.
+        // If unknown, several runs side by side are assumed to gain nothing.
         let unknown = threads as f64;
         if threads == 1 { 1.0 } else { measured().unwrap_or(unknown) }
     }
 }
 
-/// Configurations that race, by their places, each with its times.
+/// Configurations in a race, by index, each with its times.
 struct Race {
     racing: Vec<(usize, Vec<f64>)>,
 }
@@ -156,7 +156,7 @@ impl Race {
         Race { racing: timed.collect() }
     }
 
-    /// Leaves the better half, and all others that the best does not lead.
+    /// Keeps the faster half, and all others within the lead of the best.
     fn halve(&mut self) {
         self.racing.sort_by(|a, b| least(&a.1).total_cmp(&least(&b.1)));
         let half = self.racing.len().div_ceil(2);
@@ -168,7 +168,7 @@ impl Race {
         });
     }
 
-    /// True if the best leads, or the second is as good within the range of the best's two least times.
+    /// True if the best leads, or the second is as good within the range of the best's two smallest times.
     fn is_decided(&self) -> bool {
         let [(_, best), (_, second), ..] = self.racing.as_slice() else { return true };
         let is_tie = || {
@@ -183,7 +183,7 @@ fn least(times: &[f64]) -> f64 {
     times.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
-/// A way of which nothing is known.
+/// A configuration without measurements.
 fn untimed(choice: &Choice) -> Way {
     Way {
         label: choice.label(),
@@ -200,7 +200,7 @@ fn untimed(choice: &Choice) -> Way {
     }
 }
 
-/// Gives up those dearer than `DEAR` times the best: their results are the same.
+/// Drops configurations that cost more than `DEAR` times the cheapest: their results are the same.
 fn give_up(ways: &mut [Way]) {
     let costs: Vec<f64> = ways.iter().filter_map(|way| way.cost).collect();
     let cheapest = least(&costs);
@@ -212,7 +212,7 @@ fn give_up(ways: &mut [Way]) {
     sort(ways);
 }
 
-/// A limit in words.
+/// Describes a limit in words.
 pub(super) fn bounded(limit: &StepLimit) -> String {
     format!("{}: {}", limit.name, limit.why)
 }
@@ -225,7 +225,8 @@ mod tests {
         Race { racing: times.iter().map(|times| times.to_vec()).enumerate().collect() }
     }
 
-    /// By hand: of 1, 1.2, 2 and 4 the half is 1 and 1.2; of 1, 1.2, 1.24, 1.3 and 4 three are the half, and none beyond is within a quarter of the best.
+    /// By hand: of 1, 1.2, 2 and 4 the faster half is 1 and 1.2; of 1, 1.2, 1.24, 1.3 and 4 three are kept, and no other is within a quarter of the
+    /// best.
     #[test]
     fn the_better_half_races_on() {
         let places = |mut race: Race| {
@@ -237,7 +238,7 @@ mod tests {
         assert_eq!(places(race(&[&[1.0], &[1.1], &[1.2], &[1.24]])), [0, 1, 2, 3]);
     }
 
-    /// Decided by a lead of a quarter, or, from three times on, where the second is no slower than the best was at its second-best.
+    /// Decided by a lead of a quarter, or, from three times on, where the second is no slower than the best's second-best time.
     #[test]
     fn a_race_ends_by_a_lead_or_a_tie() {
         for (times, is_decided) in [

@@ -1,30 +1,30 @@
-//! What `auto` of a scene becomes by what was measured on this host: of the scene itself, or of one that is alike.
+//! Values for `auto` settings of a scene, from cached measurements of it or of a similar scene on this host.
 
 use super::kept::{Kept, KeptError};
 use crate::study::Case;
 use stripmine_physics::method::Decides;
 use stripmine_physics::scene::{Key, Overrides, Value};
 
-/// What `auto` becomes.
+/// Values for the `auto` settings of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Tuned {
-    /// The overrides that say so.
+    /// Overrides with these values.
     pub overrides: Overrides,
-    /// Where it comes from.
+    /// Origin of the measurements.
     pub origin: String,
 }
 
-/// What is `auto` in a scene, by the cheapest way that was measured with the scene's own integrator and digits; none where nothing is kept of it or
-/// of one that is alike, or nothing is open. Nothing that a scene states is changed.
+/// Returns values for the `auto` settings of a scene, from the cheapest cached configuration with the scene's own integrator and precision. None
+/// where nothing is cached of it or of a similar scene, or no setting is `auto`. Explicit settings of a scene are never changed.
 ///
 /// # Errors
-/// [`KeptError`] if what is kept cannot be read.
+/// [`KeptError`] if the cache cannot be read.
 pub(crate) fn tuned(case: &Case, kept: &Kept) -> Result<Option<Tuned>, KeptError> {
     let Some((findings, origin)) = kept.alike(case)? else { return Ok(None) };
     let is_open = |key: &Key| case.values.choice(key).as_deref() == Some("auto");
     let holds =
         |key: &Key, value: &Value| case.values.choice(key).is_none_or(|now| Value::Word(now) == *value);
-    // Those that were timed come with the cheapest first.
+    // Timed configurations are sorted by cost.
     for way in findings.ways.iter().filter(|way| way.cost.is_some()) {
         let choice = way.choice(case);
         let is_own = [Decides::Order, Decides::Digits].iter().all(|&it| choice.agrees(&case.own, it));

@@ -1,4 +1,4 @@
-//! What a scene may be modelled without, and what that changes and saves.
+//! Simpler models of a scene: their effect on the mean, and the time they save.
 
 use super::Target;
 use super::findings::{NO_TIME, Way, Without, Work};
@@ -9,7 +9,7 @@ use crate::study::{Case, first_line};
 use stripmine_physics::method::{Becomes, Prepared, Rewritten};
 use stripmine_physics::scene::{Overrides, SceneErrors};
 
-/// Simpler models of a scene, by what they lack, for a quantity.
+/// Lists the simpler models of a scene for a quantity, by the part they omit.
 fn simpler(case: &Case, quantity: &str) -> Vec<(&'static str, Simpler)> {
     let of = |becomes: &Becomes| {
         Some(match becomes {
@@ -20,13 +20,13 @@ fn simpler(case: &Case, quantity: &str) -> Vec<(&'static str, Simpler)> {
     case.entry.twins.iter().filter_map(|twin| Some((twin.name, of(&twin.becomes)?))).collect()
 }
 
-/// Reports if a scene has simpler models to compare.
+/// True if a scene has simpler models to compare.
 pub(super) fn has_simpler(case: &Case, quantity: &str) -> bool {
     !simpler(case, quantity).is_empty()
 }
 
 impl Work<'_> {
-    /// The scene without each of what it may be modelled without.
+    /// Measures every simpler model of the scene.
     pub(super) fn without(&self, way: &Way, mean: &Mean) -> Vec<Without> {
         let reference = &mean.known;
         let twins = simpler(self.case, self.target.quantity.name);
@@ -57,13 +57,13 @@ impl Work<'_> {
         twins.into_iter().map(measured).collect()
     }
 
-    /// By the same method.
+    /// Measures a model with the same method.
     fn overridden(&self, way: &Way, overrides: &Overrides, seconds: f64) -> Result<Measured, String> {
         let shortest =
             |prepared: &Prepared| prepared.step_limits.iter().map(|limit| limit.step).reduce(f64::min);
         let of_scene = self.prepared(&way.overrides, None).ok().as_ref().and_then(shortest);
         let more = way.overrides.clone().and(overrides);
-        // As far below its own limit as the way is below that of the scene.
+        // The step is as far below its own limit as in the scene.
         let longer = shortest(&self.prepared(&more, None)?)
             .zip(of_scene)
             .map_or(1.0, |(own, of_scene)| own / of_scene);
@@ -71,7 +71,7 @@ impl Work<'_> {
         self.measured(&twin, way.step.map(|step| step * longer), seconds)
     }
 
-    /// By another method, in its own cheapest way.
+    /// Measures a model with another method, in its own cheapest configuration.
     fn rewritten(&self, scene: Rewritten, seconds: f64) -> Result<Measured, String> {
         let errors =
             |errors: SceneErrors| errors.0.first().map_or(String::new(), |error| first_line(&error.message));
@@ -95,7 +95,7 @@ impl Work<'_> {
     }
 }
 
-/// A scene without something.
+/// A simpler model of a scene.
 enum Simpler {
     Overridden(Overrides),
     Rewritten(Rewritten),

@@ -1,5 +1,5 @@
-//! Means over whole runs, of what changes all along: a hopper that empties, a gas that cools. Runs from starts that differ by next to nothing tell
-//! how far chance takes such a mean.
+//! Means over whole runs, for quantities that never become stationary: a hopper that empties, a gas that cools. Runs from slightly displaced
+//! starts give the statistical error of such a mean.
 
 use super::findings::{NO_TIME, NoRun, Way, Work};
 use crate::results::side_by_side;
@@ -12,10 +12,10 @@ use stripmine_physics::number::significant;
 use stripmine_physics::particles::Particles;
 use stripmine_physics::scene::{Overrides, SEED};
 
-/// Runs of which a mean and its scatter are, at least and at most.
+/// Fewest and most whole runs.
 pub(super) const RUNS: [usize; 2] = [3, 16];
-/// Where nothing of a start is random, particles are displaced by as much (parts of the largest radius, or of the box where they have none): far
-/// more than rounding, and far less than matters before collisions have multiplied it.
+/// Displacement of particles where a start has nothing random (in parts of the largest radius, or of the box for points): far
+/// above rounding, and far too small to matter before collisions have amplified it.
 const DISPLACED: f64 = 1e-7;
 
 /// A mean with its cost.
@@ -26,7 +26,7 @@ pub(super) struct Measured {
     pub(super) cost: f64,
 }
 
-/// A whole run: its mean, and the wall seconds of a unit of time.
+/// Mean of a whole run, and wall seconds of a unit of time.
 #[derive(Clone, Copy, Serialize, Deserialize)]
 struct WholeRun {
     #[serde(with = "any_number")]
@@ -35,12 +35,12 @@ struct WholeRun {
 }
 
 impl Work<'_> {
-    /// The time of a whole run: to the end of the window that is asked for, or the scene's own (time).
+    /// Time of a whole run: to the end of the requested window, or the scene's own (time).
     pub(super) fn whole_time(&self) -> Option<f64> {
         self.target.window.map(|[_, end]| end).or_else(|| self.case.duration())
     }
 
-    /// That time, where enough whole runs beside a sample can be had in some seconds and a unit of time costs as much as in the sample.
+    /// Returns the time of a whole run if enough whole runs, besides the sample, fit into `seconds` at the sample's cost.
     pub(super) fn whole_in(&self, sample: &Sample, seconds: f64) -> Option<f64> {
         self.whole_time().filter(|&time| {
             let more = RUNS[0] - usize::from(sample.cut_off(time).is_none());
@@ -48,18 +48,18 @@ impl Work<'_> {
         })
     }
 
-    /// Time that whole runs take, where these are too many seconds.
+    /// Describes the whole runs that did not fit into the trial time.
     pub(super) fn too_dear(&self, cost: f64) -> String {
         self.whole_time().map_or(String::new(), |time| {
             format!(
-                "; a mean over the whole run takes {} runs of about {} s",
+                "; a mean over the whole run needs {} runs of about {} s",
                 RUNS[0],
                 significant(cost * time, 2)
             )
         })
     }
 
-    /// The mean over a part of a run that has left its start behind, or over whole runs; with the cost of a unit of time.
+    /// Measures the mean after the transient, or over whole runs, and the cost of a unit of time.
     pub(super) fn measured(&self, way: &Way, step: Option<f64>, seconds: f64) -> Result<Measured, String> {
         match self.whole {
             Some(time) => self.whole_runs(&way.overrides, step, (time, None), seconds),
@@ -70,8 +70,8 @@ impl Work<'_> {
         }
     }
 
-    /// Runs of the whole time from several starts, as many at once as there are threads, for about some seconds. A sample of the same configuration from the
-    /// scene's own start is the first, where it is long enough.
+    /// Measures whole runs from several starts, as many at once as there are threads, for about `seconds`. A sample of the same configuration from
+    /// the scene's own start is the first, if it is long enough.
     pub(super) fn whole_runs(
         &self,
         overrides: &Overrides,
@@ -125,12 +125,12 @@ impl Work<'_> {
         let means: Vec<f64> = samples.iter().map(|it| it.mean).collect();
         let count = means.len() as f64;
         Ok(Measured {
-            known: Known::of_whole_runs(&means, time).ok_or_else(|| "there is a single run".to_owned()),
+            known: Known::of_whole_runs(&means, time).ok_or_else(|| "only one run finished".to_owned()),
             cost: samples.iter().map(|sample| sample.cost).sum::<f64>() / count,
         })
     }
 
-    /// The scene from a start of another number, the first its own.
+    /// Prepares the scene from a numbered start; number 0 is its own.
     pub(super) fn another_start(
         &self,
         overrides: &Overrides,
@@ -148,12 +148,12 @@ impl Work<'_> {
     }
 }
 
-/// The particles of a start of a number, grains displaced by next to nothing.
+/// Particles of a numbered start, each displaced slightly.
 pub(super) fn displaced_start(prepared: &Prepared, number: u64) -> Particles {
     let largest = prepared.particles().radii().map_or(0.0, |[_, largest]| largest);
     let scale = if largest > 0.0 { largest } else { prepared.domain.length(0) };
     displaced(prepared.particles(), &prepared.domain, |place, _| {
-        // Directions without a pattern, others for each start.
+        // Irregular directions, different for each start.
         let angle = 2.399_963_229_728_653 * ((place + 1) as f64 * number as f64);
         [libm::cos(angle), libm::sin(angle)].map(|part| DISPLACED * scale * part)
     })
@@ -164,7 +164,7 @@ mod tests {
     use super::*;
     use stripmine_physics::method::{METHODS, load};
 
-    /// Every grain by 10⁻⁷ of the largest radius, walls not at all, and each start in its own way.
+    /// Every grain moves by 10⁻⁷ of the largest radius, walls do not move, and each start differs.
     #[test]
     fn starts_differ_by_next_to_nothing() {
         let (prepared, _) = load("shaken-box", &[], METHODS).unwrap();

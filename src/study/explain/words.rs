@@ -1,36 +1,38 @@
-//! A plan as a page that is read in a minute.
+//! The plan as a page of text.
 
 use super::recommended::{Beside, Decision, Expected, Interval, LeftOut, Plan};
 use stripmine_physics::memory::in_words;
 use stripmine_physics::number::{significant, with_bar};
 
-/// A number with its unit.
+/// Formats a number with its unit.
 pub(crate) fn with_unit(value: &str, unit: &str) -> String {
     if unit.is_empty() { value.to_owned() } else { format!("{value} {unit}") }
 }
 
-/// The page: what is recommended and what it gives, then every choice with its reason and what stands beside it.
+/// Returns the page: command and expected result, then every choice with its reason and the alternatives.
 pub(crate) fn page(plan: &Plan) -> String {
     let mut page = vec![answer(plan), expected(plan)];
     page.extend(plan.own.as_ref().map(|own| {
         let takes = seconds(own.seconds);
-        // A step that is dearer than the plan was not tried.
+        // The scene's own step is not tried where it costs more than the plan.
         match own.error.most.is_nan() && plan.mean.is_none() {
-            true => format!("as it stands: {takes}, for an error that was not tried"),
-            false => format!("as it stands: {takes} for an error of at most {}", parts(plan, own.error)),
+            true => format!("scene as it stands: {takes}; its error was not measured"),
+            false => {
+                format!("scene as it stands: {takes} for an error of at most {}", parts(plan, own.error))
+            }
         }
     }));
     page.push(String::new());
     page.extend(plan.decisions.iter().flat_map(decision));
     if !plan.left_out.is_empty() {
-        page.push("what the scene may do without:".to_owned());
+        page.push("simpler models:".to_owned());
         page.extend(plan.left_out.iter().map(left_out));
     }
-    page.push(format!("from: {}", plan.origin));
+    page.push(format!("based on: {}", plan.origin));
     page.join("\n") + "\n"
 }
 
-/// Overrides that say the same as the scene itself are no news, but none is left out: the plan is the same where the scene changes.
+/// Overrides equal to the scene's own values are printed too: the plan then stays the same if the scene changes.
 fn answer(plan: &Plan) -> String {
     let set: String = plan.overrides.texts().iter().map(|text| format!(" \\\n    --set {text}")).collect();
     let seeds = if plan.seeds > 1 { format!(" --seeds {}", plan.seeds) } else { String::new() };
@@ -54,15 +56,15 @@ fn expected(plan: &Plan) -> String {
     )
 }
 
-/// An error with its parts, in parts of the mean where there is one.
+/// Formats an error and its parts, relative to the mean where there is one.
 fn parts(plan: &Plan, error: Expected) -> String {
     let Expected { bias, chance, most } = error;
     match plan.mean {
         Some(_) if bias.below.is_infinite() => {
-            format!("{} by chance; the bias of the step is not known", share(plan, chance))
+            format!("{} of statistical error; the step bias is unknown", share(plan, chance))
         }
         Some(_) => format!(
-            "{} (by the step {}, known to be below {}; by chance {})",
+            "{} (step bias {}, at most {}; statistical error {})",
             share(plan, most),
             share(plan, bias.shift),
             share(plan, bias.below),
@@ -76,14 +78,14 @@ fn share(plan: &Plan, error: f64) -> String {
     if !error.is_finite() {
         return "unknown".to_owned();
     }
-    // A part of a mean means nothing where that is about zero.
+    // A relative error is meaningless for a mean consistent with zero.
     match plan.mean {
         Some([mean, bar]) if mean.abs() > bar => format!("{} %", significant(100.0 * error / mean.abs(), 2)),
         _ => with_unit(&significant(error, 2), plan.unit),
     }
 }
 
-/// A wall time.
+/// Formats a wall time.
 pub(crate) fn seconds(seconds: f64) -> String {
     match seconds {
         _ if seconds < 120.0 => format!("{} s", significant(seconds, 2)),

@@ -1,6 +1,6 @@
-//! Other programs beside ours on the same scenes and the same core.
+//! Comparison with other programs, on the same scenes and the same core.
 //!
-//! They cannot be had everywhere, so scripts in `tests/rivals/` measure them; what the scripts wrote last is shipped in
+//! These programs are not available everywhere, so scripts in `tests/rivals/` measure them. Their latest results are shipped in
 //! `measured/`, with date, host and commit.
 
 use crate::console::Failure;
@@ -10,7 +10,7 @@ use crate::results::{Lab, Made, Size};
 use crate::statistics::median;
 use serde::Deserialize;
 
-/// What the scripts wrote: a name, the contests, and where they come from.
+/// Results of the scripts: script, contests, and their provenance.
 const MEASURED: [(&str, &str, &str); 4] = [
     (
         "lammps.py",
@@ -36,31 +36,31 @@ struct Rival {
     rival: String,
     version: String,
     build: String,
-    /// Instructions that ours used.
+    /// Instruction set of our build.
     instruction_set: String,
     unit: String,
     contests: Vec<Contest>,
-    /// Quantities in which both must agree.
+    /// Quantities that must agree between both programs.
     same: Vec<Same>,
-    /// The most memory that both programs had at once, where it was measured.
+    /// Peak memory of both programs, where it was measured.
     #[serde(default)]
     memory: Vec<Memory>,
-    /// Beside the contests in a file of its own.
+    /// Provenance, stored in a file of its own.
     #[serde(skip)]
     source: Measurement,
 }
 
-/// A system, ours and theirs in turns.
+/// Timings of one system, ours and theirs in alternation.
 #[derive(Clone, Debug, Deserialize)]
 struct Contest {
     system: String,
     particles: u64,
     /// Search, precision and integrator of ours.
     way: String,
-    /// Rates, a number for each round.
+    /// Rates of each round.
     ours: Vec<f64>,
     theirs: Vec<f64>,
-    /// Ours over theirs in each round.
+    /// Ratios of our rate to theirs in each round.
     ratios: Vec<f64>,
 }
 
@@ -73,7 +73,7 @@ struct Same {
     within: f64,
 }
 
-/// The most memory that both programs had at once, in bytes.
+/// Peak memory of both programs, in bytes.
 #[derive(Clone, Debug, Deserialize)]
 struct Memory {
     system: String,
@@ -100,7 +100,7 @@ impl Contest {
     }
 }
 
-/// All contests.
+/// Reads all contests.
 fn rivals() -> Result<Vec<Rival>, Failure> {
     let read = |(script, contests, source): &(&str, &str, &str)| {
         let wrong =
@@ -111,10 +111,10 @@ fn rivals() -> Result<Vec<Rival>, Failure> {
     MEASURED.iter().map(read).collect()
 }
 
-/// The contests as the scripts measured them.
+/// Returns the contests as the scripts measured them.
 ///
 /// # Errors
-/// If a shipped file is not what the scripts write.
+/// Fails if a shipped file is not in the format of the scripts.
 pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let all = rivals()?;
     let repeated = all.iter().map(|rival| rival.source.clone()).collect();
@@ -139,7 +139,7 @@ fn contests(all: &[Rival]) -> Frame {
         .frame("contests", "Rates of both, medians over the rounds")
 }
 
-/// The fastest of our configurations in each precision, one for each system and size.
+/// Our fastest configuration in each precision, for each system and size.
 fn fastest(all: &[Rival]) -> Frame {
     let mut best: Vec<(&Rival, &str, &Contest)> = vec![];
     for rival in all {
@@ -168,7 +168,7 @@ fn fastest(all: &[Rival]) -> Frame {
         .number("ratio", 2, |(.., it)| it.ratio())
         .number("lowest", 2, |(.., it)| it.lowest())
         .number("highest", 2, |(.., it)| it.highest())
-        .frame("fastest", "Our rate over theirs, by the fastest of our configurations")
+        .frame("fastest", "Our rate over theirs, for our fastest configuration")
 }
 
 fn same(all: &[Rival]) -> Frame {
@@ -188,7 +188,7 @@ fn memory(all: &[Rival]) -> Frame {
         .count("particles", |(_, it)| it.particles)
         .number("ours (MB)", 0, |(_, it)| 1e-6 * it.ours as f64)
         .number("theirs (MB)", 0, |(_, it)| 1e-6 * it.theirs as f64)
-        .frame("memory", "The most memory that both programs had at once")
+        .frame("memory", "Peak memory of both programs")
 }
 
 fn summary(all: &[Rival]) -> Frame {
@@ -196,7 +196,7 @@ fn summary(all: &[Rival]) -> Frame {
     let differ = same.filter(|it| (it.ours - it.theirs).abs() > it.within).count();
     Rows::of([differ])
         .count("quantities that differ", |differ| *differ)
-        .frame("summary", "Quantities in which both programs must agree and do not")
+        .frame("summary", "Quantities that should agree between both programs but do not")
 }
 
 fn programs(all: &[Rival]) -> Frame {

@@ -1,4 +1,4 @@
-//! Hits and false alarms of every limit and check over a map.
+//! Correct warnings and false alarms of every limit and check over a map.
 
 use super::dataset::Stability;
 use super::outcome::Cell;
@@ -8,18 +8,18 @@ use crate::study::alarm::{Alarm, Finding};
 /// Record of a limit or check over a map.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Record {
-    /// Runs that are right, and that are wrong and come to their end, of which it warns.
+    /// Numbers of right runs, and of wrong runs that finish, with its warning.
     right: usize,
     wrong: usize,
-    /// Wrong runs of which nothing else warns.
+    /// Wrong runs with no other warning.
     alone: usize,
-    /// The largest value over the limit among right runs; a limit above it gives no false alarm.
+    /// Largest value over the limit among right runs; a higher limit gives no false alarm.
     largest_right: Option<f64>,
-    /// The smallest value over the limit among wrong runs of which nothing else warns; a limit above it misses one.
+    /// Smallest value over the limit among wrong runs with no other warning; a higher limit misses one.
     smallest_alone: Option<f64>,
 }
 
-/// Limits and checks in the order in which they are met; those of a run apart from those before it.
+/// Limits and checks in order of first occurrence; checks during a run are listed apart from those before it.
 fn checks<'c>(cells: impl Iterator<Item = &'c Cell>) -> Vec<(String, bool)> {
     let mut all = vec![];
     for alarm in cells.flat_map(|cell| &cell.alarms) {
@@ -77,7 +77,7 @@ pub(crate) fn alarms(maps: &[(String, Stability)]) -> Frame {
         .count("wrong, by nothing else", |(.., record)| record.alone)
         .number("largest value over limit, right", 3, |(.., record)| record.largest_right)
         .number("smallest value over limit, wrong by nothing else", 3, |(.., record)| record.smallest_alone)
-        .frame("alarms", "Hits and false alarms of every limit of theory and every check")
+        .frame("alarms", "Correct warnings and false alarms of every limit and check")
 }
 
 #[cfg(test)]
@@ -102,7 +102,7 @@ mod tests {
         let cells = [
             cell(Class::Works, true, &[("a", Within, 0.5)]),
             cell(Class::Works, true, &[("a", Warned, 1.5), ("b", WarnedByRun, 2.0)]),
-            // Neither right nor wrong for certain.
+            // Neither right nor wrong with certainty.
             cell(Class::Works, false, &[("a", Warned, 9.0)]),
             cell(Class::Silent, true, &[("a", Refused, 4.0), ("b", WarnedByRun, 3.0)]),
             cell(Class::EnergyGrowth, true, &[("a", Warned, 3.0), ("c", Within, 0.9)]),

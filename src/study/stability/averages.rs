@@ -1,4 +1,4 @@
-//! Means over the second half of a run: of the quantities that a method states, and of the density along each side.
+//! Means over the second half of a run: of the quantities in the trials of a method, and of the density along each side.
 
 use crate::study::Subject;
 use crate::study::state::State;
@@ -6,17 +6,17 @@ use std::collections::BTreeMap;
 use stripmine_physics::domain::Domain;
 use stripmine_physics::method::Simulation;
 
-/// Looks of a run after the first, which comes before its first step.
+/// Samples of a run after the first, which is taken before its first step.
 pub(crate) const LOOKS: u64 = 64;
 /// Bins of the density profile along each side.
 const BINS: usize = 8;
 /// Name of the density profile among the means.
 const PROFILE: &str = "density profile";
 
-/// Means over time of a run: a value for each observable, and the profile.
+/// Means of a run over time: a value for each observable, and the profile.
 pub(crate) type Means = BTreeMap<String, Vec<f64>>;
 
-/// Means in the making.
+/// Running averages of a run.
 pub(crate) struct Averages<'s> {
     subject: &'s Subject,
     domain: Domain,
@@ -27,12 +27,12 @@ pub(crate) struct Averages<'s> {
 }
 
 impl<'s> Averages<'s> {
-    /// Begins a run in a box.
+    /// Starts the averages of a run in a box.
     pub(super) fn new(subject: &'s Subject, domain: Domain) -> Self {
         Averages { subject, domain, looks: 0, means: Means::new(), speed: 0.0 }
     }
 
-    /// Takes a look, at which `values` were observed; those of the first half do not count.
+    /// Takes a sample with observed `values`; samples of the first half do not count.
     pub(super) fn look(&mut self, simulation: &dyn Simulation, values: &[f64]) {
         self.looks += 1;
         if self.looks <= LOOKS / 2 {
@@ -51,7 +51,7 @@ impl<'s> Averages<'s> {
     }
 }
 
-/// True if these may be means of a run of the scene: all of them, each with as many values as it has, all of them finite.
+/// True if these can be means of a run of the scene: the right names, each with the right number of values, all finite.
 pub(crate) fn are_of(subject: &Subject, means: &Means) -> bool {
     let expected: BTreeMap<&str, usize> =
         subject.watched().map(|watched| (watched.name, 1)).chain([(PROFILE, 2 * BINS)]).collect();
@@ -59,7 +59,7 @@ pub(crate) fn are_of(subject: &Subject, means: &Means) -> bool {
         && means.values().flatten().all(|value| value.is_finite())
 }
 
-/// Share of the particles in each bin, along one side of the box and then the other, times the bins: 1 where they are even.
+/// Density profile: share of the particles in each bin, along one side of the box and then the other, times the number of bins; 1 where uniform.
 fn profile(state: &State, domain: &Domain) -> Vec<f64> {
     let mut bins = vec![0.0; 2 * BINS];
     for position in state.positions() {

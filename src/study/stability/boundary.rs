@@ -1,17 +1,17 @@
-//! Where a method ceases to work: by bisection between steps of a ladder.
+//! Stability boundary of a method along the step, by bisection between steps of a ladder.
 
-/// The edge of what works along the step.
+/// Stability boundary along the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Edge {
-    /// Not even the smallest step works.
+    /// Even the smallest step fails.
     Below,
-    /// The largest step that was found to work and the smallest that was not (time), as far apart as the tolerance lets them.
+    /// Largest working step and smallest failing step found (time), within the tolerance of each other.
     Between([f64; 2]),
     Above,
 }
 
 impl Edge {
-    /// The middle of the two steps (time).
+    /// Geometric mean of the two steps (time).
     pub(crate) fn step(self) -> Option<f64> {
         match self {
             Edge::Between([works, fails]) => Some((works * fails).sqrt()),
@@ -20,8 +20,8 @@ impl Edge {
     }
 }
 
-/// Finds the edge between rising steps, beginning at the place `guess` of the first that fails, until it lies within a part
-/// `tolerance` of the step.
+/// Finds the boundary between rising steps to within a part `tolerance` of the step. The search begins at index `guess`, the expected first
+/// failing step.
 pub(crate) fn edge<E>(
     steps: &[f64],
     guess: usize,

@@ -1,20 +1,21 @@
-//! Size of a map and length of its runs: as much as fits into the time that is given.
+//! Size of a map and length of its runs, limited by the available time.
 
 use super::STEPS;
 use super::reference;
 use crate::study::StudyError;
 
-/// Steps of the scene's own that a run lasts where the map may be made smaller for it: eight of the largest.
+/// Length of a run (in steps of the scene's own) below which the map is made smaller: eight of the largest steps.
 const LEAST: f64 = 1024.0;
-/// Steps of the scene's own that a run lasts in the smallest map: one of the largest.
+/// Length of a run in the smallest map: one of the largest steps.
 const SHORTEST: f64 = 128.0;
-/// The smallest map.
+/// Size of the smallest map.
 const SMALLEST: usize = 3;
-/// Runs that an edge takes about, and what these cost: each is as long as one with four own steps.
+/// Approximate number of runs per boundary, and their cost: each is as long as one with four own steps.
 const EDGE: [f64; 2] = [8.0, 8.0 / 4.0];
-/// The part of the time that is planned: measured, not derived. The rest is for what is not known before: looks at the runs, means that are off and are confirmed from
-/// another seed, edges below the scene's own step. Maps of four scenes took 1.7 to 2.6 times the seconds that [`Costs::of_map`] states, and 1/2.6 is 0.38; which scenes
-/// these were is not recorded. A test holds what is planned (`no_map_takes_more_than_its_time`); none holds what a map takes by the clock.
+/// Share of the time that is planned: measured, not derived. The rest covers costs unknown in advance: samples of runs, biased means that are
+/// repeated with another seed, boundaries below the scene's own step. Maps of four scenes took 1.7 to 2.6 times the seconds of [`Costs::of_map`], and
+/// 1/2.6 is 0.38; which scenes these were is not recorded. A test checks the planned time (`no_map_takes_more_than_its_time`); none checks the actual
+/// time.
 const PLANNED: f64 = 0.38;
 
 /// Costs of runs.
@@ -24,29 +25,29 @@ pub(crate) struct Costs {
     pub(crate) each: f64,
     /// Seconds before the first step of a run.
     pub start: f64,
-    /// Integrators whose edges are found at the scene's own value.
+    /// Number of integrators whose boundaries are found at the scene's own value.
     pub(crate) schemes: usize,
 }
 
-/// The extent of a map.
+/// Size of a map and length of its runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Extent {
-    /// Values of the parameter, and steps.
+    /// Number of values of the parameter, and of steps.
     pub size: usize,
-    /// Seeds of the edges.
+    /// Number of seeds of the boundaries.
     pub seeds: u64,
-    /// Steps of the scene's own that each run lasts.
+    /// Length of each run, in steps of the scene's own.
     pub(crate) own_steps: f64,
     pub seconds: f64,
 }
 
-/// Steps from the shortest to the longest in parts of the scene's own.
+/// Steps from the shortest to the longest, in parts of the scene's own.
 fn parts(size: usize) -> Vec<f64> {
     super::ladder(STEPS, size, true)
 }
 
 impl Costs {
-    /// Seconds of a map: for each step of the scene's own that runs last, and of the starts of all runs.
+    /// Seconds of a map: per own step of a run's length, and for the starts of all runs.
     fn of_map(&self, size: usize, seeds: u64) -> [f64; 2] {
         let parts = parts(size);
         let (count, seeds, schemes) = (size as f64, seeds as f64, self.schemes as f64);
@@ -58,7 +59,8 @@ impl Costs {
         [self.each * steps, self.start * runs]
     }
 
-    /// The largest map up to one that is asked for that some seconds allow: fewer seeds first, then fewer values and steps, shorter runs last.
+    /// Returns the largest map that fits into `budget`, up to the requested one: seeds are reduced first, then values and steps, and run lengths
+    /// last.
     ///
     /// # Errors
     /// [`StudyError::TooLittleTime`] where the smallest map takes longer.
@@ -83,14 +85,14 @@ impl Costs {
 }
 
 impl Extent {
-    /// Parts left out for want of time, in words; none where nothing is.
+    /// Describes the parts omitted to save time; none where the map is complete.
     pub(crate) fn left_out(&self, (size, seeds): (usize, u64), scene: f64) -> Option<String> {
         let mut all = vec![];
         if self.size < size {
-            all.push(format!("{size} values and steps: {} of each are tried", self.size));
+            all.push(format!("values and steps beyond {} of {size}", self.size));
         }
         if self.seeds < seeds {
-            all.push(format!("{seeds} seeds of the edges: there are {}", self.seeds));
+            all.push(format!("seeds of the boundaries beyond {} of {seeds}", self.seeds));
         }
         if self.own_steps < 0.99 * scene {
             all.push(format!("the time after {:.0} of the scene's {scene:.0} steps", self.own_steps));
@@ -105,7 +107,7 @@ mod tests {
 
     const ASKED: (usize, u64) = (24, 3);
 
-    /// No map is planned for more than the time, however dear its steps and starts; what is left out is said.
+    /// No map is planned beyond the time, however expensive its steps and starts; omissions are reported.
     #[test]
     fn no_map_takes_more_than_its_time() {
         let mut last = 0;
@@ -129,7 +131,7 @@ mod tests {
                         Err(error) => {
                             let StudyError::TooLittleTime { needed, .. } = error else { panic!("{error}") };
                             assert!(needed > budget, "{needed} {budget}");
-                            // What is named is enough.
+                            // The reported time is enough.
                             assert!(costs.extent(1.001 * needed, ASKED, 50_000.0).is_ok());
                         }
                     }
@@ -144,8 +146,8 @@ mod tests {
         assert_eq!(last, 24);
     }
 
-    /// By hand: a map of 3 values and steps (0.5, 8 and 128 of the own) from one seed with one integrator. Steps: 3 (2 + 1/8 + 1/128 + 16 + 2) + 16 + 2, starts:
-    /// 3 (3 + 8 + 8) + 8 + 8.
+    /// By hand: a map of 3 values and steps (0.5, 8 and 128 of the own) from one seed with one integrator. Steps: 3 (2 + 1/8 + 1/128 + 16 + 2) + 16 +
+    /// 2, starts: 3 (3 + 8 + 8) + 8 + 8.
     #[test]
     fn a_map_costs_its_steps_and_starts() {
         let [steps, starts] = Costs { each: 1.0, start: 1.0, schemes: 1 }.of_map(3, 1);

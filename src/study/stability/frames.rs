@@ -1,4 +1,4 @@
-//! Maps as frames.
+//! Frames of stability maps.
 
 use super::alarms::alarms;
 use super::boundary::Edge;
@@ -11,10 +11,10 @@ use crate::study::alarm::{Alarm, Finding};
 
 type Maps = [(String, Stability)];
 
-/// Edges over seeds that are farther apart than this many tolerances differ.
+/// Boundaries of different seeds disagree if they are more than this many tolerances apart.
 const APART: f64 = 2.0;
 
-/// The frames of maps, each with a name for its rows.
+/// Returns the frames of maps, each with a name for its rows.
 pub(crate) fn made(maps: &Maps) -> Made {
     let seeds = maps.first().map_or(vec![], |(_, data)| data.seeds.clone());
     let frames = [
@@ -32,7 +32,7 @@ pub(crate) fn made(maps: &Maps) -> Made {
     Made::of(frames).with_seeds(seeds)
 }
 
-/// The edge of what works over the step beyond which theory says that errors grow: middle, lowest and highest over the values.
+/// Ratio of the stability boundary to the step beyond which theory predicts growing errors: median, lowest and highest over the values.
 fn of_theory(data: &Stability) -> Option<[f64; 3]> {
     let at = data.values.iter().zip(&data.boundaries);
     let ratio = |(&value, boundary): (&f64, &Boundary)| {
@@ -43,7 +43,7 @@ fn of_theory(data: &Stability) -> Option<[f64; 3]> {
     Some([median(ratios.iter().copied()), *ratios.first()?, *ratios.last()?])
 }
 
-/// A row for each map: its axes, how many places there are of which kind, and how edges compare with theory and over seeds.
+/// A row for each map: its axes, numbers of runs by kind, and boundaries compared with theory and over seeds.
 fn of_maps(maps: &Maps) -> Frame {
     let count = |of: fn(&Stability) -> usize| move |(_, data): &&(String, Stability)| of(data);
     let theory =
@@ -111,16 +111,16 @@ fn of_maps(maps: &Maps) -> Frame {
         })
         .number("spread over seeds", 3, |(_, data)| median(spreads(data).into_iter()))
         .text("left out", |(_, data)| data.left_out.clone().unwrap_or_default())
-        .frame("maps", "Maps: axes, places by kind, and edges beside theory")
+        .frame("maps", "Maps: axes, runs by kind, and boundaries compared with theory")
 }
 
-/// Edges as multiples of the scene's own step: the middle, the lowest and the highest over the seeds.
+/// Boundaries in multiples of the scene's own step: median, lowest and highest over the seeds.
 fn multiples(data: &Stability, edges: &[Edge]) -> [Cell; 3] {
     let numbers = over_seeds(edges).map(|steps| steps.map(|step| Cell::Number(step / data.step, 2)));
     numbers.unwrap_or([const { Cell::Nothing }; 3])
 }
 
-/// Position of an edge that no seed has within the map.
+/// Position of a boundary that lies outside the map.
 fn beyond(edges: &[Edge]) -> Option<&'static str> {
     match edges {
         _ if over_seeds(edges).is_some() => None,
@@ -162,10 +162,10 @@ fn said(maps: &Maps) -> Frame {
         .number("warned of before", 0, |(.., said)| said.warned_before as f64)
         .number("warned of by the run", 0, |(.., said)| said.warned_by_run as f64)
         .number("nothing said", 0, |(_, class, said)| class.ends().then_some(said.unsaid as f64))
-        .frame("said", "What the program says of it")
+        .frame("said", "Warnings by outcome of a run")
 }
 
-/// Every place of every map.
+/// All runs of all maps.
 fn cells(maps: &Maps) -> Frame {
     let cells = maps.iter().flat_map(|(name, data)| {
         let rows = data.values.iter().zip(&data.map);
@@ -189,10 +189,10 @@ fn cells(maps: &Maps) -> Frame {
         .text("warned_by_run", |(.., cell)| cell.warned_by_run().join(", "))
         .text("findings", |(.., cell)| cell.alarms.iter().map(Alarm::words).collect::<Vec<_>>().join(", "))
         .text("what", |(.., cell)| &cell.what)
-        .frame("cells", "Every place")
+        .frame("cells", "Every run")
 }
 
-/// Every edge of every seed.
+/// Boundaries of all seeds.
 fn boundaries(maps: &Maps) -> Frame {
     let edges = maps.iter().flat_map(|(name, data)| {
         let boundaries = data.values.iter().zip(&data.boundaries);
@@ -221,10 +221,10 @@ fn boundaries(maps: &Maps) -> Frame {
         .number("seed", 0, |(.., seed, _)| **seed as f64)
         .number("largest_step_that_does", 6, |(_, data, .., edge)| does(data, edge))
         .number("smallest_step_that_does_not", 6, |(_, data, .., edge)| does_not(data, edge))
-        .frame("edges", "Every edge")
+        .frame("edges", "Every boundary")
 }
 
-/// The longest step of each integrator that works over the step beyond which theory says that its errors grow, at the scene's own
+/// Ratio of each integrator's longest working step to the step beyond which theory predicts growing errors, at the scene's own
 /// values.
 fn pairs(maps: &Maps) -> Frame {
     let pairs = maps.iter().flat_map(|(name, data)| {
@@ -235,10 +235,10 @@ fn pairs(maps: &Maps) -> Frame {
         .text("scene", |(name, ..)| *name)
         .text("integrator", |(_, scheme, _)| *scheme)
         .number("edge over theory", 3, |(.., ratio)| *ratio)
-        .frame("pairs", "Longest step that works over the step beyond which theory says that errors grow")
+        .frame("pairs", "Longest working step over the step beyond which theory predicts growing errors")
 }
 
-/// The edge of what works over the seeds, and the step of theory, at every value.
+/// Stability boundary over the seeds, and the theoretical step, at every value.
 fn edges(maps: &Maps) -> Frame {
     let at = maps.iter().flat_map(|(name, data)| {
         data.values.iter().zip(&data.boundaries).map(move |(value, boundary)| {
@@ -255,10 +255,10 @@ fn edges(maps: &Maps) -> Frame {
         .number("highest seed", 6, |(.., edge, _)| edge.map(|edge| edge[2]))
         .number("theory", 6, |(.., theory)| theory.map(|(step, _)| step))
         .text("by", |(.., theory)| theory.map_or("", |(_, name)| name))
-        .frame("edges-over-seeds", "The edge of what works over the seeds, and the step of theory")
+        .frame("edges-over-seeds", "Stability boundary over the seeds, and theoretical step")
 }
 
-/// Straight lines of the maps, by their ends: the scene's own step, and values of the parameter that theory names.
+/// Straight lines of the maps, by their ends: the scene's own step, and parameter values with a theoretical meaning.
 fn lines(maps: &Maps) -> Frame {
     let ends = |(name, data): &(String, Stability)| {
         let [low, high] = [data.steps[0], data.steps[data.steps.len() - 1]];
@@ -276,15 +276,15 @@ fn lines(maps: &Maps) -> Frame {
         .text("line", |(_, line, ..)| line.clone())
         .number("value", 6, |(.., value, _)| *value)
         .number("step", 6, |(.., step)| *step)
-        .frame("lines", "The scene's own step, and values that theory names")
+        .frame("lines", "The scene's own step, and values with a theoretical meaning")
 }
 
-/// Values at which nothing is known of what is right.
+/// Values without a reference.
 fn unjudged(maps: &Maps) -> Frame {
     let all = maps.iter().flat_map(|(name, data)| data.unjudged.iter().map(move |it| (name, it)));
     Rows::of(all)
         .text("scene", |(name, _)| *name)
         .number("value", 6, |(_, (value, _))| *value)
         .text("reason", |(_, (_, why))| why)
-        .frame("unjudged", "Values at which the runs with the smallest step break, too")
+        .frame("unjudged", "Values without a reference: runs at the smallest step fail, too")
 }

@@ -1,8 +1,8 @@
-//! Map of the steps with which a scene works, over a second parameter.
+//! Stability maps: the steps at which a scene works, over a second parameter.
 //!
-//! Every place of a grid is run and judged: by the failure that stops it, by energy from nowhere, and by means over time beside
-//! those of runs with a fine step. The edges between classes are found by bisection, from several seeds. Limits of the step by
-//! theory, and warnings before and during a run, are compared with the class of each place.
+//! Every point of a grid is run and judged: by the failure that stops it, by an error of the energy balance, and by comparing means over time
+//! with those of runs at a short step. The boundaries between classes are found by bisection, from several seeds. Theoretical limits of the step
+//! and warnings before and during a run are compared with the class of each point.
 
 mod alarms;
 mod averages;
@@ -32,23 +32,23 @@ use stripmine_physics::method::{Decides, Parameter, Purpose};
 use stripmine_physics::number::significant;
 use survey::{Survey, Variant};
 
-/// Steps go from this part of the scene's own to this multiple.
+/// Shortest and longest step, in steps of the scene.
 const STEPS: [f64; 2] = [0.5, 128.0];
-/// Seconds of a step and before the first, where none could be timed.
+/// Seconds of a step, and before the first, where neither could be timed.
 const SLOW: [f64; 2] = [1e-3, 1e-2];
-/// Failures that an error names at most.
+/// Most failures listed in an error.
 const TRIED: usize = 8;
 
 /// Extent and accuracy of a map.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Effort {
-    /// Processor seconds that it may take.
+    /// Available processor seconds.
     pub budget: f64,
-    /// Values of the parameter, and steps, at most.
+    /// Most values of the parameter, and most steps.
     pub size: usize,
-    /// Seeds of the edges, at most.
+    /// Most seeds of the boundaries.
     pub seeds: u64,
-    /// Largest distance of the two ends of an edge, in parts of the step.
+    /// Tolerance of a boundary, in parts of the step.
     pub(crate) tolerance: f64,
 }
 
@@ -60,10 +60,10 @@ pub(crate) struct Over {
 }
 
 impl Over {
-    /// Parameter of a name, or the first that the scene has a value of; over a range that is asked for, or about the scene's own value.
+    /// Selects a parameter by name, or the first that the scene sets; its range is the requested one, or lies around the scene's own value.
     ///
     /// # Errors
-    /// [`StudyError`] if it has nothing of that name, or the range is none.
+    /// [`StudyError`] if the parameter does not exist, or the range is invalid.
     pub(crate) fn of(
         subject: &Subject,
         name: Option<&str>,
@@ -104,16 +104,16 @@ fn ladder([low, high]: [f64; 2], count: usize, is_logarithmic: bool) -> Vec<f64>
     let at = |i: usize| {
         let part = i as f64 / last;
         let value = if is_logarithmic { low * (high / low).powf(part) } else { low + (high - low) * part };
-        // Values are read again as they are written; few digits are enough.
+        // Values are parsed from text again, so few digits are used.
         format!("{value:.5e}").parse().unwrap_or(value)
     };
     (0..count).map(at).collect()
 }
 
-/// Surveys a scene. Runs that are finished are kept in the journal.
+/// Surveys a scene. Finished runs are recorded in the journal.
 ///
 /// # Errors
-/// [`StudyError`] if nothing works anywhere, the user asks for the end, or finished runs cannot be kept.
+/// [`StudyError`] if no run works, the user interrupts, or finished runs cannot be recorded.
 pub(crate) fn stability(
     subject: &Subject,
     Over { parameter, range }: Over,
@@ -187,7 +187,7 @@ fn schemes(subject: &Subject) -> Vec<Choice> {
         .collect()
 }
 
-/// Seconds of a step, and those before the first: the middle over the ends and the middle of the range.
+/// Seconds of a step, and before the first: medians over the ends and the middle of the range.
 fn probe(runs: &Runs<'_>, parameter: &Parameter, range: [f64; 2]) -> Result<[f64; 2], StudyError> {
     let (subject, watch) = (runs.subject, runs.trial.watch);
     let of = |value: f64| -> Result<[f64; 2], RunFailure> {
@@ -211,7 +211,7 @@ fn probe(runs: &Runs<'_>, parameter: &Parameter, range: [f64; 2]) -> Result<[f64
     Ok([0, 1].map(|place| median(found.iter().map(|it| it[place]))))
 }
 
-/// Limits of the step by theory, over the values.
+/// Theoretical limits of the step, over the values.
 fn limits<'v>(survey: &Survey<'_>, values: &[f64], own: impl Fn(f64) -> Variant<'v>) -> Vec<Limit> {
     let mut limits: Vec<Limit> = vec![];
     for &value in values {
@@ -226,7 +226,7 @@ fn limits<'v>(survey: &Survey<'_>, values: &[f64], own: impl Fn(f64) -> Variant<
     limits
 }
 
-/// Failures to name, one run a value.
+/// Failures to list in an error, one per value.
 fn tried(values: &[f64], steps: &[f64], map: &[Vec<Cell>], parameter: &Parameter) -> Vec<(String, String)> {
     let every = values.len().div_ceil(TRIED).max(1);
     let first = |(value, cells): (&f64, &Vec<Cell>)| {

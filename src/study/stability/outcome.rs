@@ -1,4 +1,4 @@
-//! Outcome of a run, and the class of its failure.
+//! Outcome of a run, and its class.
 
 use super::averages::Means;
 use super::reference::Expected;
@@ -6,26 +6,26 @@ use crate::study::alarm::{Alarm, Finding};
 use crate::study::trial::{Cause, RunFailure};
 use serde::{Deserialize, Serialize};
 
-/// The energy is wrong where its balance is off by more than this part of the energy that passed through.
+/// Largest error of the energy balance, in parts of the energy that passed through.
 pub(crate) const DRIFT: f64 = 0.1;
 
 /// Class of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Class {
-    /// Ends, with the means of the reference.
+    /// Finishes with the means of the reference.
     Works,
-    /// Ends with wrong means, and nothing stops it.
+    /// Finishes with wrong means and no other sign of failure.
     Silent,
-    /// Ends with less energy than there should be.
+    /// Finishes with too little energy.
     EnergyLoss,
-    /// Ends with more energy than there should be.
+    /// Finishes with too much energy.
     EnergyGrowth,
-    /// Does not end.
+    /// Does not finish.
     Failed(Cause),
 }
 
 impl Class {
-    /// Every class of a run that is begun, from `Works` on.
+    /// Every class of a run that was started, from `Works` on.
     pub(crate) const BEGUN: [Class; 10] = [
         Class::Works,
         Class::Silent,
@@ -39,7 +39,6 @@ impl Class {
         Class::Failed(Cause::Other),
     ];
 
-    /// Name for a reader.
     pub(crate) const fn name(self) -> &'static str {
         match self {
             Class::Works => "works",
@@ -50,71 +49,71 @@ impl Class {
         }
     }
 
-    /// True if the run comes to its end.
+    /// True if the run finishes.
     pub(crate) const fn ends(self) -> bool {
         !matches!(self, Class::Failed(_))
     }
 
-    /// True if the run comes to its end and is wrong: a user may take it for a result.
+    /// True if the run finishes and is wrong: a user may mistake it for a result.
     pub(crate) const fn is_unseen(self) -> bool {
         self.ends() && !matches!(self, Class::Works)
     }
 }
 
-/// A run.
+/// A run, or its failure.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Ran {
-    /// Findings of the scene before the run.
+    /// Warnings before the run.
     pub(crate) foreseen: Vec<Alarm>,
     pub end: Result<Whole, RunFailure>,
 }
 
-/// A run that came to its end.
+/// Results of a run that finished.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Whole {
     /// Means over its second half.
     pub(crate) means: Means,
     /// Root mean square speed over it (length/time).
     pub speed: f64,
-    /// Error of its energy over the energy that passed through; none where that is not followed.
+    /// Error of its energy balance over the energy that passed through; none where the method has no balance.
     pub energy: Option<f64>,
-    /// Warnings of the run.
+    /// Warnings during the run.
     pub(crate) warned: Vec<Alarm>,
 }
 
-/// A place of a map.
+/// A point of a map.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Cell {
     pub(crate) class: Class,
     /// Reason for the class, in a line.
     pub what: String,
-    /// True if the class is certain: means of a run that works might have told it from a wrong one.
+    /// True if the class is certain: for a run that works, its means could have revealed an error.
     pub(crate) is_decided: bool,
-    /// Findings of every limit and check.
+    /// Results of every limit and check.
     pub(crate) alarms: Vec<Alarm>,
 }
 
 impl Cell {
-    /// The gravest finding before the run.
+    /// Most severe warning before the run.
     pub(crate) fn foreseen(&self) -> Finding {
         let before = self.alarms.iter().map(|alarm| alarm.finding).filter(|it| *it != Finding::WarnedByRun);
         before.max().unwrap_or(Finding::Within)
     }
 
-    /// Names of the checks that warned along the run.
+    /// Names of the checks that warned during the run.
     pub(crate) fn warned_by_run(&self) -> Vec<&str> {
         let warned = self.alarms.iter().filter(|alarm| alarm.finding == Finding::WarnedByRun);
         warned.map(|alarm| alarm.check.as_str()).collect()
     }
 
-    /// True if the run works for certain.
+    /// True if the run works with certainty.
     pub(crate) fn is_right(&self) -> bool {
         self.class == Class::Works && self.is_decided
     }
 }
 
 impl Ran {
-    /// Compares the run with the means that are expected of it.
+    /// Judges the run by comparison with the expected means.
     pub(crate) fn judged(&self, expected: Option<&Expected>) -> Cell {
         let (class, what) = match &self.end {
             Err(failure) => (Class::Failed(failure.cause), failure.why.clone()),
@@ -135,7 +134,13 @@ impl Whole {
         let drift = self.energy.unwrap_or(0.0);
         if drift.abs() > DRIFT || drift.is_nan() {
             let class = if drift < 0.0 { Class::EnergyLoss } else { Class::EnergyGrowth };
-            return (class, format!("the energy is off by {:.0} % of what passed through", 100.0 * drift));
+            return (
+                class,
+                format!(
+                    "the energy balance has an error of {:.0} % of the energy that passed through",
+                    100.0 * drift
+                ),
+            );
         }
         match expected.and_then(|expected| expected.worst(&self.means)) {
             Some(off) => (Class::Silent, off),

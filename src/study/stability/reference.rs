@@ -1,25 +1,25 @@
-//! Means that are expected of a run that is right, by runs with a fine step, over seeds.
+//! Expected means of a right run, from runs at a short step over several seeds.
 
 use super::averages::Means;
 use crate::statistics::{Spread, student};
 
-/// Runs that the expectation is made of, each from a seed of its own.
+/// Number of reference runs, each from its own seed.
 pub(crate) const SEEDS: u64 = 8;
-/// Share of the runs that are right and lie within the interval.
+/// Share of right runs within the interval.
 const WITHIN: f64 = 0.999;
-/// A mean that is off by less than this part of itself is not called wrong.
+/// Relative error below which a mean counts as right.
 pub(crate) const TOLERANCE: f64 = 0.05;
-/// A mean that is not known to this part of itself tells nothing.
+/// Largest relative error of a usable reference mean.
 const KNOWN: f64 = 0.1;
-/// Means that may all be off by more than this part of themselves by chance do not tell a right run from a wrong one.
+/// Relative width above which an interval cannot distinguish right from wrong runs.
 const DECISIVE: f64 = 5.0 * TOLERANCE;
 
-/// Interval in which the mean of a single run lies, in all but one of a thousand.
+/// Interval that contains the mean of a single run, in all but one of a thousand.
 #[derive(Clone, Debug, PartialEq)]
 struct Interval {
     observable: String,
     middle: Vec<f64>,
-    /// Largest distance from the middle: of a single value, or the root of the mean square of several.
+    /// Largest distance from the middle: of a single value, or the root mean square of several.
     reach: f64,
     scale: f64,
 }
@@ -43,31 +43,32 @@ fn middle<'m>(runs: impl Iterator<Item = &'m Vec<f64>>) -> Vec<f64> {
 }
 
 impl Expected {
-    /// By the means of several runs; none of fewer than three. A mean is compared with itself, or with `at_least` where that is larger.
+    /// Computes intervals from the means of several runs; none from fewer than three. Errors are relative to a mean, or to `at_least` where that is
+    /// larger.
     pub(super) fn of(runs: &[Means], at_least: impl Fn(&str) -> f64) -> Option<Expected> {
         let first = runs.first().filter(|_| runs.len() > 2)?;
         let interval = |name: &String| Interval::of(name, runs, at_least(name));
         Some(Expected(first.keys().filter_map(interval).collect()))
     }
 
-    /// True if a wrong mean would be seen: one of them at least is known well enough.
+    /// True if a wrong mean would be detected: at least one is known well enough.
     pub(crate) fn decides(&self) -> bool {
         self.0.iter().any(|interval| interval.reach <= DECISIVE * interval.scale)
     }
 
-    /// The mean that is farthest off by more than it may be, in words; none if none is.
+    /// Describes the mean with the largest excess over its interval; none if all are inside.
     pub(crate) fn worst(&self, means: &Means) -> Option<String> {
         let off = self.0.iter().filter_map(|interval| {
             let value = means.get(&interval.observable)?;
             let off = distance(value, &interval.middle);
-            // NaN is off, too.
+            // NaN is outside, too.
             let is_inside = off <= interval.reach.max(TOLERANCE * interval.scale);
             (!is_inside).then_some((interval, off))
         });
         let parts = |(interval, off): &(&Interval, f64)| off / interval.scale;
         let (interval, off) = off.max_by(|a, b| parts(a).total_cmp(&parts(b)))?;
         Some(format!(
-            "the mean {} is off by {:.0} %, and may be by {:.0} %",
+            "the mean {} has an error of {:.0} %, above the allowed {:.0} %",
             interval.observable,
             100.0 * off / interval.scale,
             100.0 * (interval.reach / interval.scale).max(TOLERANCE)
@@ -81,7 +82,7 @@ impl Interval {
         let all = middle(values.iter().copied());
         let scale = rms(all.iter().copied()).max(at_least);
         let count = values.len() as f64;
-        // Of one run beside the mean of the others, in standard errors of that mean.
+        // Reach of one run from the mean of the others, in standard errors of that mean.
         let reach_of_one = student(WITHIN, values.len() - 1) * count.sqrt() * (1.0 + 1.0 / count).sqrt();
         let reach = if all.len() == 1 {
             let spread = Spread::of(&values.iter().map(|value| value[0]).collect::<Vec<_>>());
@@ -115,15 +116,15 @@ mod tests {
         runs(std::array::from_fn(|run| [middle + off[run % 2], middle - off[run % 2]]))
     }
 
-    /// By hand: ±1 eight times has the standard deviation 1.069, so that a run may be off by 5.408 · 1.069 · 1.061 = 6.13.
+    /// By hand: ±1 eight times has the standard deviation 1.069, so a run may differ by 5.408 · 1.069 · 1.061 = 6.13.
     #[test]
     fn a_mean_is_wrong_beyond_what_chance_makes_and_beyond_the_tolerance() {
         let expected = Expected::of(&around([1.0, -1.0], 100.0), |_| 0.0).unwrap();
         let off = |a: f64| expected.worst(&Means::from([("a".to_owned(), vec![a])]));
         assert_eq!([off(106.1), off(93.9)], [None, None]);
-        assert_eq!(off(106.2).unwrap(), "the mean a is off by 6 %, and may be by 6 %");
+        assert_eq!(off(106.2).unwrap(), "the mean a has an error of 6 %, above the allowed 6 %");
         assert!(off(f64::NAN).is_some());
-        // ±4 and ±4.2 alone: 24.5 and 25.8 of 100.
+        // Only ±4 and ±4.2: 24.5 and 25.8 of 100.
         let decides = |apart: f64| {
             let alone = (0..8).map(|run| vec![if run % 2 == 0 { 100.0 + apart } else { 100.0 - apart }]);
             let runs: Vec<Means> = alone.map(|value| Means::from([("a".to_owned(), value)])).collect();
@@ -133,7 +134,7 @@ mod tests {
         let certain = Expected::of(&runs([[100.0, 50.0]; 8]), |_| 0.0).unwrap();
         let off = |a: f64| certain.worst(&Means::from([("a".to_owned(), vec![a])]));
         assert!(off(104.9).is_none() && off(105.1).is_some());
-        // A mean that is about zero by chance alone tells nothing, but beside a larger value that it is compared with.
+        // A mean consistent with zero is uninformative, unless it is compared with a larger value.
         let off = |at_least: f64| {
             let expected = Expected::of(&around([1.0, -1.0], 0.0), |_| at_least).unwrap();
             expected.worst(&Means::from([("a".to_owned(), vec![50.0])])).is_some()

@@ -1,4 +1,4 @@
-//! Runs of a map.
+//! Runs of a stability map.
 
 use super::averages::{self, Averages, LOOKS, Means};
 use super::boundary::{Edge, edge};
@@ -16,22 +16,22 @@ use crate::study::trial::{Course, RunFailure};
 use stripmine_physics::method::{Beyond, Decides, Parameter, Prepared, Purpose, Simulation, StepLimit};
 use stripmine_physics::scene::{Overrides, SEED, SceneErrors};
 
-/// Distance from a seed to the one that confirms it.
+/// Offset from a seed to the one that confirms it.
 const ANOTHER: u64 = 1000;
 
-/// A map under way.
+/// State of a map.
 pub(crate) struct Survey<'s> {
     pub runs: &'s Runs<'s>,
     pub(crate) parameter: &'static Parameter,
-    /// The steps, rising (time).
+    /// Steps, rising (time).
     pub steps: &'s [f64],
-    /// Time of each run (time).
+    /// Duration of each run (time).
     pub duration: f64,
-    /// Seconds that a step is expected to take.
+    /// Expected seconds of a step.
     pub(crate) each: f64,
-    /// Seeds of the edges.
+    /// Seeds of the boundaries.
     pub seeds: &'s [u64],
-    /// Largest distance of the two ends of an edge, in parts of the step.
+    /// Tolerance of a boundary, in parts of the step.
     pub(crate) tolerance: f64,
 }
 
@@ -42,11 +42,11 @@ pub(crate) struct Variant<'v> {
     pub value: Option<f64>,
 }
 
-/// Means that are expected of the runs of a variant, or the reason why there are none.
+/// Expected means of a variant, or the reason why there are none.
 pub(crate) type Known = Result<Expected, String>;
 
 impl Survey<'_> {
-    /// Reference of a value: the most accurate configuration with the smallest step, over seeds.
+    /// Measures the reference of a value: the most accurate configuration at the smallest step, over seeds.
     pub(crate) fn known(&self, value: Option<f64>) -> Result<Known, StudyError> {
         let subject = self.runs.subject;
         let mut why = String::new();
@@ -70,8 +70,8 @@ impl Survey<'_> {
         Ok(Err(why))
     }
 
-    /// Place of a variant and a step. Means that are off in one run alone may be so by chance: they count if those of another seed are
-    /// off, too.
+    /// Runs a variant at a step. Wrong means in a single run may be statistical: they only count if another seed confirms
+    /// them.
     pub(super) fn cell(
         &self,
         variant: Variant<'_>,
@@ -89,7 +89,7 @@ impl Survey<'_> {
         Ok(if is_chance { Cell { class: Class::Works, what: String::new(), ..cell } } else { cell })
     }
 
-    /// Edges of a variant over seeds; `guesses` are the places of the first step that does not work, and that does not end.
+    /// Boundaries of a variant over seeds; `guesses` are the indices of the first step that does not work, and that does not finish.
     pub(crate) fn boundary(
         &self,
         variant: Variant<'_>,
@@ -110,7 +110,7 @@ impl Survey<'_> {
         })
     }
 
-    /// Edges of an integrator at the scene's own value.
+    /// Boundaries of an integrator at the scene's own value.
     pub(super) fn scheme(&self, choice: &Choice, known: &Known) -> Result<SchemeLimit, StudyError> {
         let variant = Variant { choice, value: None };
         let edges = self.boundary(variant, known, [self.steps.len() / 2; 2])?;
@@ -130,13 +130,13 @@ impl Survey<'_> {
         })
     }
 
-    /// Limits of the step of a variant by theory.
+    /// Theoretical limits of the step of a variant.
     pub(crate) fn limits(&self, variant: Variant<'_>) -> Vec<StepLimit> {
         let scene = self.prepared(variant, self.runs.subject.step, 1);
         scene.map_or(vec![], |scene| scene.step_limits)
     }
 
-    /// Scene of a variant, even where theory refuses the step.
+    /// Prepares the scene of a variant, even where theory forbids the step.
     fn prepared(&self, variant: Variant<'_>, step: f64, seed: u64) -> Result<Prepared, SceneErrors> {
         let subject = self.runs.subject;
         let varied = |value| (self.parameter.overrides)(&subject.values, value);
@@ -145,7 +145,7 @@ impl Survey<'_> {
             return subject.prepared_at_any_step(variant.choice, step, &overrides.set(&SEED, seed));
         }
         let scene = subject.prepared_at_any_step(variant.choice, step, &overrides)?;
-        // A start without a seed is varied by the part of a step at which contacts begin.
+        // A start without a seed is varied by the phase of the step at which contacts begin.
         let phase = (seed - 1) as f64 / (SEEDS as f64 + 0.5);
         Ok(delayed(&scene, phase * step))
     }

@@ -1,4 +1,4 @@
-//! Maps by a made clock: no extent depends on how fast the machine is.
+//! Stability maps on a synthetic clock: no extent depends on the speed of the machine.
 
 use super::{Effort, Over, made, stability};
 use crate::results::{Identity, Journal};
@@ -15,7 +15,7 @@ fn subject(scene: &str, sets: &[&str]) -> Subject {
     Subject::load(scene, &sets, METHODS).unwrap()
 }
 
-/// Map by a clock that takes some nanoseconds for each particle and step.
+/// Computes a map on a clock with some nanoseconds per particle and step.
 fn mapped(
     subject: &Subject,
     nanoseconds: f64,
@@ -34,8 +34,8 @@ fn whole(subject: &Subject, nanoseconds: f64) -> Result<Value, StudyError> {
     mapped(subject, nanoseconds, &Journal::none(), &AtomicBool::new(false), &|_| {})
 }
 
-/// By hand: steps of 0.5, 8 and 128 own steps cost 3 (2 + 1/8 + 1/128 + 16 + 2) + 16 own steps, and 2 with each of four integrators; these are 128 own steps of
-/// two discs at 0.5 s each, of which 38 % are planned.
+/// By hand: steps of 0.5, 8 and 128 own steps cost 3 (2 + 1/8 + 1/128 + 16 + 2) + 16 own steps, and 2 with each of four integrators; these are 128
+/// own steps of two discs at 0.5 s each, of which 38 % are planned.
 #[test]
 fn a_map_for_which_there_is_too_little_time_is_refused() {
     let error = whole(&subject("two-discs", &["run.time=3.2"]), 0.5e9).err().unwrap();
@@ -44,7 +44,7 @@ fn a_map_for_which_there_is_too_little_time_is_refused() {
     assert!((needed / (own_steps * 128.0 / 0.38) - 1.0).abs() < 1e-6 && budget == 600.0, "{needed}");
 }
 
-/// A map that is interrupted keeps its finished runs, and comes out the same when it is resumed.
+/// An interrupted map keeps its finished runs, and gives the same result when resumed.
 #[test]
 fn an_interrupted_map_resumes() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,8 +1,8 @@
-//! Numbers of a kept file. JSON has neither infinities nor NaN: these are written as words, so that a file with them is found again.
+//! Serialisation of numbers to JSON, which has neither infinities nor NaN: these are written as words.
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// A number as JSON can hold it.
+/// A number as JSON can store it.
 #[derive(Serialize, Deserialize)]
 #[serde(untagged)]
 pub(crate) enum Held {
@@ -10,14 +10,14 @@ pub(crate) enum Held {
     Word(String),
 }
 
-/// Values made of numbers, and how a file holds them.
+/// Values made of numbers, and their form in a file.
 pub(crate) trait OfNumbers: Sized {
-    /// The same with each number as a file holds it.
+    /// Form of the value in a file, with each number as stored.
     type Held: Serialize + for<'de> Deserialize<'de>;
 
     fn held(&self) -> Self::Held;
 
-    /// None where a word is no number.
+    /// Reads a stored value; none where a word is not a number.
     fn of(held: Self::Held) -> Option<Self>;
 }
 
@@ -84,7 +84,7 @@ mod tests {
         two: Option<[f64; 2]>,
     }
 
-    /// Bits, not values: NaN equals nothing.
+    /// Compares bits, as NaN is unequal to itself.
     #[test]
     fn every_number_is_read_as_it_was_written() {
         for one in [0.1, -0.0, 5e-324, f64::MAX, f64::INFINITY, f64::NEG_INFINITY, f64::NAN] {

@@ -1,31 +1,30 @@
-//! Failures of runs, by kind.
+//! Failures of runs, by cause.
 
 use crate::study::first_line;
 use serde::{Deserialize, Serialize};
 use stripmine_physics::method::{Failure, FailureKind};
 use stripmine_physics::scene::SceneErrors;
 
-/// Kind of a failure.
+/// Cause of a failure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Cause {
     Penetration,
-    /// A particle moves so far in a step that contacts pass unseen.
+    /// A particle moves so far in a step that contacts are missed.
     MaskOutrun,
-    /// Two particles are where one may be.
+    /// Two particles share a cell for one.
     SharedCell,
     ParticleLost,
     NonFinite,
     Other,
-    /// The scene cannot be run so, whatever the step.
+    /// The scene is refused at any step.
     Refused,
-    /// The user asked for the end: no result of the run, which is kept nowhere.
+    /// The user interrupted the run: it has no result, and is never recorded.
     #[serde(skip)]
     Interrupted,
 }
 
 impl Cause {
-    /// Name for a reader.
     pub(crate) const fn name(self) -> &'static str {
         match self {
             Cause::Penetration => "penetration",
@@ -40,7 +39,7 @@ impl Cause {
     }
 }
 
-/// Reason why a run has no result.
+/// Failure of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct RunFailure {
     pub(crate) cause: Cause,
@@ -49,12 +48,11 @@ pub(crate) struct RunFailure {
 }
 
 impl RunFailure {
-    /// The user asked for the end.
     pub(super) fn interrupted() -> RunFailure {
         RunFailure { cause: Cause::Interrupted, why: String::new() }
     }
 
-    /// True if the user asked for the end.
+    /// True if the user interrupted the run.
     pub(crate) fn is_interruption(&self) -> bool {
         self.cause == Cause::Interrupted
     }

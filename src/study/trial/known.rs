@@ -1,42 +1,42 @@
-//! The mean of a run with its error, and the spacing of rows that reaches an error at the least cost: a row takes time, and values between rows are lost.
+//! Mean of a run with its error, and the spacing of rows that reaches an error most cheaply: each row costs time, and values between rows are lost.
 
 use super::any_number;
 use serde::{Deserialize, Serialize};
 use stripmine_physics::averages::{Estimate, foreseeing, of_independent};
 
-/// Rows of a run whose time is known, where nothing asks for more.
+/// Fewest rows of a run of known time.
 pub(crate) const ROWS: f64 = 250.0;
 /// Spacings of rows that are compared, in spacings of the sample; the widest first.
 const EVERY: [usize; 4] = [8, 4, 2, 1];
-/// Values that are left of a series at least.
+/// Fewest values of a thinned series.
 const FEWEST: usize = 100;
-/// A closer spacing is taken if it lowers the cost to less than this part: fewer rows make smaller files.
+/// Largest ratio of costs at which a closer spacing is preferred: fewer rows make smaller files.
 const WORTH: f64 = 0.8;
 
-/// A mean as a run knows it.
+/// Estimated mean of a run.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Known {
     #[serde(with = "any_number")]
     pub mean: f64,
-    /// Half the width of its interval of 95 %.
+    /// Half the width of its 95 % confidence interval (the error bar).
     #[serde(with = "any_number")]
     pub bar: f64,
-    /// Time that the mean is over (time).
+    /// Time averaged over (time).
     #[serde(with = "any_number")]
     pub(crate) span: f64,
-    /// Waves of the bar: its degrees of freedom.
+    /// Waves of the error bar: its degrees of freedom.
     #[serde(with = "any_number")]
     pub waves: f64,
-    /// Square of the bar of a mean over one unit of time, by rows [`every`](Self::every) so often.
+    /// Square of the error bar of a mean over one unit of time, with rows spaced by [`every`](Self::every).
     #[serde(with = "any_number")]
     pub square: f64,
     /// Time between rows (time); 0 where it does not matter.
     #[serde(with = "any_number")]
     pub every: f64,
-    /// Square of the bar of a single value; 0 where rows miss nothing.
+    /// Square of the error bar of a single value; 0 where rows lose nothing.
     #[serde(with = "any_number")]
     pub single: f64,
-    /// Time that does not count (time).
+    /// Length of the transient (time).
     #[serde(with = "any_number")]
     pub(crate) transient: f64,
     /// Time between independent samples (time).
@@ -47,17 +47,17 @@ pub(crate) struct Known {
     pub(crate) freedoms: f64,
 }
 
-/// Cost of the time and of the rows of a run whose rows have values of moments, and nothing of those between.
+/// Costs of a run whose rows are instantaneous values, so that values between rows are lost.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pace {
-    /// Wall seconds of a unit of time, rows apart.
+    /// Wall seconds of a unit of time, without rows.
     pub(crate) cost: f64,
     /// Wall seconds of a row.
     pub row: f64,
 }
 
 impl Known {
-    /// A mean that chance does not touch.
+    /// A mean without statistical error.
     pub(crate) fn exactly(mean: f64) -> Known {
         Known {
             mean,
@@ -73,7 +73,7 @@ impl Known {
         }
     }
 
-    /// Of the means of whole runs of a time (time); none of fewer than two.
+    /// Estimates the mean from the means of whole runs of a time (time); none from fewer than two.
     pub(crate) fn of_whole_runs(means: &[f64], time: f64) -> Option<Known> {
         let count = means.len() as f64;
         let [mean, bar] = of_independent(means)?;
@@ -81,7 +81,7 @@ impl Known {
         Some(Known { bar, square: bar * bar * span, span, waves, freedoms: waves, ..Known::exactly(mean) })
     }
 
-    /// Of an estimate, and the values that it is of, each with its time (time). With a pace rows are as far apart as is cheapest for the error.
+    /// Estimates the mean from an average and its values, each with its time (time). With a pace, the spacing of rows is optimised.
     pub(crate) fn of(it: Estimate, values: &[[f64; 2]], pace: Option<Pace>) -> Known {
         let kept: Vec<f64> =
             values.iter().filter(|[time, _]| *time > it.equilibrated_at).map(|[_, value]| *value).collect();
@@ -101,7 +101,7 @@ impl Known {
         pace.and_then(|pace| all.by_rows(&kept, pace)).unwrap_or(all)
     }
 
-    /// Returns the mean with the spacing of rows that reaches an error at the least cost; none if there are too few values.
+    /// Optimises the spacing of rows for the cost of an error; none if there are too few values.
     fn by_rows(self, values: &[f64], pace: Pace) -> Option<Known> {
         let count = values.len() as f64;
         let spacing = self.span / count;
@@ -122,10 +122,10 @@ impl Known {
         best.map(|(_, known)| known)
     }
 
-    /// Returns the mean with the variance that rows of this spacing give (time).
+    /// Returns the mean with its variance at another spacing of rows (time).
     ///
-    /// The variance of a mean over rows Δ apart is that of values whose memory fades exponentially, v Δ coth(v Δ/s), with v that of a single value and s that of
-    /// close rows in a unit of time: s where rows are close, and v Δ where each is independent of the next.
+    /// The variance of a mean over rows Δ apart is that of values with exponentially decaying correlation, v Δ coth(v Δ/s). Here v is the variance of
+    /// a single value and s that of close rows in a unit of time: the limits are s for close rows, and v Δ for independent rows.
     #[must_use]
     pub(crate) fn looked_at(&self, every: f64) -> Known {
         if self.single == 0.0 || every <= self.every {
@@ -143,12 +143,12 @@ impl Known {
         Known { square, every, ..*self }
     }
 
-    /// Rows of a run of some time.
+    /// Number of rows of a run of some time.
     pub(crate) fn rows_in(&self, time: f64) -> f64 {
         if self.every > 0.0 { (time / self.every).max(ROWS) } else { ROWS }
     }
 
-    /// Rows of a unit of time in long runs.
+    /// Number of rows per unit of time in long runs.
     pub(crate) fn rows(&self) -> f64 {
         if self.every > 0.0 { 1.0 / self.every } else { 0.0 }
     }
@@ -161,7 +161,7 @@ mod tests {
 
     const FREE: Pace = Pace { cost: 1.0, row: 0.0 };
 
-    /// Values a unit of time apart that remember a part of the one before.
+    /// Values a unit of time apart, correlated with the one before.
     fn known(memory: f64, pace: Option<Pace>) -> Known {
         let (mut state, mut value) = (5_u64, 0.0);
         let mut next = |end: u32| {
@@ -180,9 +180,9 @@ mod tests {
         }
     }
 
-    /// By hand, for a variance of 1 and a bar of two standard errors: rows Δ apart of values that keep a part m in a unit of time have 4 Δ (1 + m^Δ)/(1 − m^Δ). With
-    /// m = 0.9 that is 76 for every value and 79 for every eighth: the eighth is enough. With m = 0 it is 4 and 32: every value counts, unless a row costs as much as
-    /// eight units of time.
+    /// By hand, for a variance of 1 and an error bar of two standard errors: rows Δ apart of values that keep a part m in a unit of time have 4 Δ (1
+    /// + m^Δ)/(1 − m^Δ). With m = 0.9 that is 76 for every value and 79 for every eighth: the eighth is enough. With m = 0 it is 4 and 32: every
+    /// value counts, unless a row costs as much as eight units of time.
     #[test]
     fn rows_are_as_close_as_pays() {
         let near = |found: f64, exact: f64| (found / exact - 1.0).abs() < 0.25;
@@ -195,10 +195,10 @@ mod tests {
         assert!(quick.every == 1.0 && near(quick.square, 4.0) && near(quick.single, 4.0), "{quick:?}");
         let dear = known(0.0, Some(Pace { row: 80.0, ..FREE }));
         assert!(dear.every == 8.0 && near(dear.square, 32.0), "{dear:?}");
-        // Rows that miss nothing do not matter.
+        // Rows that lose nothing may have any spacing.
         let means = known(0.0, None);
         assert!(means.every == 0.0 && near(means.square, 4.0) && means.single == 0.0, "{means:?}");
-        // By rows farther apart, by the same formula.
+        // A wider spacing follows the same formula.
         let later = known(0.5, Some(FREE)).looked_at(4.0);
         assert!(
             near(later.square, 16.0 * (1.0 + 0.0625) / (1.0 - 0.0625)) && later.every == 4.0,

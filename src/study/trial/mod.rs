@@ -1,4 +1,4 @@
-//! Trials: runs of a scene that a study makes, observed on the way.
+//! Trials: runs of a scene made by a study, observed on the way.
 
 pub(super) mod any_number;
 mod failure;
@@ -17,35 +17,34 @@ use crate::results::Meter;
 use std::sync::atomic::{AtomicBool, Ordering};
 use stripmine_physics::method::{Prepared, Purpose, Simulation, Until};
 
-/// Seconds of a probe at least.
+/// Shortest timing of a step (s).
 const PROBE: f64 = 2e-3;
-/// Seconds that the repeats of a short run take together at least.
+/// Shortest total time of the repeats of a short run (s).
 const TOGETHER_AT_LEAST: f64 = 1e-3;
 
-/// Clock of trials, and the flag that ends them before their time.
+/// Clock of trials, and the flag that interrupts them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Trial<'t> {
-    /// Seconds that they take.
     pub watch: &'t Stopwatch,
-    /// Set where a user asks for the end.
+    /// Set when the user interrupts.
     pub stop: &'t AtomicBool,
 }
 
-/// Length of a run, and the moments at which it is observed.
+/// Length of a run, and its samples.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Course {
     pub steps: u64,
-    /// Looks, evenly spread, the last one at the end.
+    /// Number of samples, evenly spaced, the last one at the end.
     pub looks: u64,
-    /// Seconds that a step is expected to take.
+    /// Expected seconds of a step.
     pub(crate) each: f64,
 }
 
 impl Trial<'_> {
-    /// Runs a scene and returns its end. `look` sees it at every look, and before the first step.
+    /// Runs a scene and returns its final state. `look` is called at every sample, and before the first step.
     ///
     /// # Errors
-    /// [`RunFailure`] if it breaks, or the user asks for the end.
+    /// [`RunFailure`] if it fails, or the user interrupts it.
     pub(crate) fn follow(
         &self,
         prepared: &Prepared,
@@ -69,7 +68,7 @@ impl Trial<'_> {
     /// Advances a simulation to a step, counted from its start.
     ///
     /// # Errors
-    /// [`RunFailure`] if it breaks, or the user asks for the end.
+    /// [`RunFailure`] if it fails, or the user interrupts it.
     pub(crate) fn advance_to_step(
         &self,
         simulation: &mut dyn Simulation,
@@ -79,10 +78,10 @@ impl Trial<'_> {
         if self.stop.load(Ordering::Relaxed) { Err(RunFailure::interrupted()) } else { Ok(()) }
     }
 
-    /// Seconds of a step, over the first steps of a run, `most` at most.
+    /// Measures the seconds of a step over the first steps of a run, at most `most`.
     ///
     /// # Errors
-    /// [`RunFailure`] if it breaks, or the user asks for the end.
+    /// [`RunFailure`] if it fails, or the user interrupts it.
     pub(crate) fn seconds_of_a_step(&self, prepared: &Prepared, most: u64) -> Result<f64, RunFailure> {
         let mut simulation = prepared.start(Purpose::Measurement)?;
         let begun = self.watch.now();
@@ -97,10 +96,10 @@ impl Trial<'_> {
         }
     }
 
-    /// Seconds of a run of some steps without its start; short runs are repeated.
+    /// Measures the seconds of a run of some steps, without its start; short runs are repeated.
     ///
     /// # Errors
-    /// [`RunFailure`] if it breaks, or the user asks for the end.
+    /// [`RunFailure`] if it fails, or the user interrupts it.
     pub(crate) fn seconds_of_a_run(&self, prepared: &Prepared, steps: u64) -> Result<f64, RunFailure> {
         let (mut spent, mut runs) = (0.0, 0);
         while spent < TOGETHER_AT_LEAST {

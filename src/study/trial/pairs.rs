@@ -1,9 +1,9 @@
-//! Pairs of runs: several configurations from common states, compared.
+//! Paired runs: several configurations compared from common states.
 //!
-//! Two runs from one state stay together for some Lyapunov times, so that the difference of their means over a short window scatters far less than
-//! the difference of two independent means. The change of the configuration moves a quantity at once by a, which it forgets with its memory τ, and in the
-//! course of that to its bias b in the steady state: d(t) = b (1 − exp(−t/τ)) + a exp(−t/τ). The mean over the second half of a window w is
-//! b g + a (1 − g) with g = 1 − (2τ/w)(exp(−w/2τ) − exp(−w/τ)), so that two windows tell both a and b.
+//! Two runs from one state stay together for some Lyapunov times, so the difference of their means over a short window scatters far less than
+//! the difference of two independent means. Changing the configuration shifts a quantity at once by a, which decays with its memory τ, while
+//! the bias b of the steady state builds up: d(t) = b (1 − exp(−t/τ)) + a exp(−t/τ). The mean over the second half of a window w is
+//! b g + a (1 − g) with g = 1 − (2τ/w)(exp(−w/2τ) − exp(−w/τ)), so two windows determine both a and b.
 
 use super::Trial;
 use crate::study::first_line;
@@ -11,68 +11,68 @@ use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelI
 use std::sync::atomic::Ordering;
 use stripmine_physics::method::{Failure, Kind, Quantity, RunWarning, Simulation, Until};
 
-/// Windows at least: two tell a bias.
+/// Fewest windows: two determine a bias.
 const FEWEST: usize = 2;
-/// Runs end where they take this many times as long as they should.
+/// Factor on the allotted time after which runs are stopped.
 const LATE: f64 = 3.0;
-/// A window that shows a bias but for this part shows it whole.
+/// A window that shows all but this part of a bias counts as showing it whole.
 const ALL: f64 = 1e-3;
-/// Runs stay together where differences scatter by no more than this part of those of independent runs.
+/// Largest scatter of differences, relative to independent runs, at which runs count as staying together.
 pub(crate) const TOGETHER: f64 = 0.2;
 
-/// Configurations that are compared, the first of them the reference, and the states that each starts from.
+/// Configurations to compare, the reference first, and the states that each starts from.
 pub(crate) struct Compared<'c> {
-    /// For each configuration its steps between two rows.
+    /// Steps between two rows, for each configuration.
     pub steps: &'c [u64],
     /// Rows of the first half of the first window. Each next window is twice as long.
     pub first: u64,
-    /// How many states there are.
+    /// Number of states.
     pub starts: usize,
-    /// Begins a configuration from a state, by their numbers.
+    /// Starts a configuration from a state, by their numbers.
     pub begin: &'c (dyn Fn(usize, usize) -> Result<Box<dyn Simulation>, String> + Sync),
 }
 
 /// Differences from the reference over the second half of a window.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Window {
-    /// Its length (time).
+    /// Length of the window (time).
     pub time: f64,
-    /// For each configuration after the reference and each start the mean less that of the reference.
+    /// Mean less that of the reference, for each configuration after the reference and each start.
     pub(crate) differences: Vec<Vec<f64>>,
-    /// The largest scatter of these over that of independent runs.
+    /// Largest scatter of these, relative to independent runs.
     pub(crate) scatter: f64,
 }
 
 /// Means over windows from the same states.
 #[derive(Clone, Debug)]
 pub(crate) struct Paired {
-    /// States.
+    /// Number of states.
     pub starts: usize,
     /// Windows, each twice as long as the one before.
     pub(crate) windows: Vec<Window>,
-    /// For each configuration, the first of them the reference: what checks warned of in any of its runs.
+    /// Warnings in any run of each configuration, the reference first.
     pub warnings: Vec<Vec<RunWarning>>,
 }
 
-/// A configuration that broke.
+/// Failure of a configuration.
 #[derive(Debug)]
 pub(crate) struct Broken {
-    /// Its place among those compared.
+    /// Index among the compared configurations.
     pub at: usize,
     pub(crate) why: String,
 }
 
-/// A run with what it knows of a quantity at the end of a window, and at its middle.
+/// A run with the state of its average at the end and in the middle of a window.
 struct Course {
     simulation: Box<dyn Simulation>,
     rows: u64,
-    /// The time, and the sum of all rows, or the last value of a quantity that is counted.
+    /// The time, and the sum of all rows, or the last value of a quantity that grows.
     end: [f64; 2],
     middle: [f64; 2],
 }
 
 impl Course {
-    /// Goes on to a row, which ends a window; the end of the one before is its middle.
+    /// Advances to a row, which ends a window; the end of the previous window becomes its middle.
     fn advance(
         &mut self,
         (trial, is_over): (&Trial<'_>, &(dyn Fn() -> bool + Sync)),
@@ -91,18 +91,18 @@ impl Course {
         Ok(())
     }
 
-    /// The mean over the second half of the window.
+    /// Mean over the second half of the window.
     fn mean(&self, kind: Kind) -> f64 {
         let [time, sum] = [0, 1].map(|at| self.end[at] - self.middle[at]);
         if kind.grows() { sum / time } else { sum / (self.rows / 2) as f64 }
     }
 }
 
-/// Runs configurations from the same states over at least two windows that grow until the next would end after some seconds: those in which runs
-/// stay together, and, where time is left, those of independent runs.
+/// Runs configurations from the same states over at least two windows, each twice as long, until the next would exceed `seconds`. Runs stay together
+/// in the first windows; where time is left, the last are those of independent runs.
 ///
 /// # Errors
-/// [`Broken`] names the configuration that broke.
+/// [`Broken`] names the configuration that failed.
 pub(crate) fn pairs(
     trial: &Trial<'_>,
     compared: &Compared<'_>,
@@ -133,7 +133,7 @@ pub(crate) fn pairs(
     };
     let (mut windows, mut rows) = (vec![], compared.first);
     advance(rows)?;
-    // The next takes as long as all so far.
+    // The next window takes as long as all before.
     while windows.len() < FEWEST || 2.0 * (trial.watch.now() - begun) <= seconds {
         rows *= 2;
         let window = advance(rows)?;
@@ -160,7 +160,7 @@ fn variance(values: &[f64]) -> f64 {
 }
 
 impl Window {
-    /// Of means for each configuration, the reference first, and each start.
+    /// Differences of means, for each configuration with the reference first, and each start.
     fn of(time: f64, means: &[Vec<f64>]) -> Window {
         let reference = &means[0];
         let less = |own: &Vec<f64>| own.iter().zip(reference).map(|(own, other)| own - other).collect();
@@ -173,10 +173,10 @@ impl Window {
     }
 }
 
-/// The part of the bias of a steady state that the mean over the second half of a window (time) has, for a quantity with a memory (time).
+/// Part of the steady-state bias in the mean over the second half of a window (time), for a quantity with a memory (time).
 pub(crate) fn part(window: f64, memory: f64) -> f64 {
     let ratio = window / memory;
-    // The expansion for short windows, whose terms cancel.
+    // Expansion for short windows, where the terms cancel.
     match ratio {
         _ if ratio < 1e-4 => 0.75 * ratio,
         _ if ratio.is_infinite() => 1.0,
@@ -184,10 +184,10 @@ pub(crate) fn part(window: f64, memory: f64) -> f64 {
     }
 }
 
-/// The bias in the steady state and the change at once, by differences over a window and over the one before, of which each shows a part: `[b, a]`.
+/// Steady-state bias and immediate change `[b, a]`, from the differences over a window and the one before, each of which shows a part.
 pub(crate) fn steady([difference, before]: [f64; 2], [part, part_before]: [f64; 2]) -> [f64; 2] {
     let more = part - part_before;
-    // A quantity without a memory shows all at once.
+    // A quantity without memory shows all of it at once.
     if 1.0 - part < ALL {
         return [difference, 0.0];
     }
@@ -201,7 +201,7 @@ pub(crate) fn steady([difference, before]: [f64; 2], [part, part_before]: [f64; 
 mod tests {
     use super::*;
 
-    /// By hand: 1 − (e^{−1} − e^{−2}) = 0.767456; three quarters of the ratio for a window that is short; all of it for one that is long.
+    /// By hand: 1 − (e^{−1} − e^{−2}) = 0.767456; three quarters of the ratio for a short window; everything for a long one.
     #[test]
     fn a_window_has_a_part_of_the_difference() {
         assert!((part(2.0, 1.0) - 0.767_455_842_1).abs() < 1e-9);

@@ -1,4 +1,4 @@
-//! A run of some seconds: what a unit of time costs, and what it says of a mean.
+//! A trial run of some seconds: the cost of a unit of time, and an estimate of a mean.
 
 use super::Trial;
 use super::known::{Known, Pace, ROWS};
@@ -10,27 +10,27 @@ use stripmine_physics::method::{
 use stripmine_physics::number::significant;
 use stripmine_physics::particles::Particles;
 
-/// Rows of a sample of some seconds: as many as a correlation needs, and more where values between them are lost.
+/// Numbers of rows of a sample of some seconds: enough for its correlations, and more where values between rows are lost.
 const FEWEST_ROWS: f64 = 1000.0;
 const MOST_ROWS: f64 = 8000.0;
-/// Least number of steps between rows, unless so many steps take too long: a row costs as much as about three steps.
+/// Fewest steps between rows, unless they take too long: a row costs about as much as three steps.
 const STEPS: u64 = 8;
-/// The cost of a row follows from longer stretches: their part of the time, how often their length is doubled, and how many there must be.
+/// Settings of longer stretches, which give the cost of a row: their share of the time, the doublings of their length, and their fewest number.
 const OF_FAR: f64 = 0.1;
 const FARTHER: i32 = 3;
 const FEW: f64 = 4.0;
-/// Looks at a quantity that should keep its value.
+/// Samples of a conserved quantity.
 const LOOKS: f64 = 2000.0;
-/// The first stretches, whose memory is cold and whose threads have not begun, are no part of the cost: this share of the time.
+/// Share of the time that does not count for the cost: caches are cold and threads have not started.
 const COLD: f64 = 0.1;
-/// States that a sample keeps at most, and particles of all of them together.
+/// Most states kept by a sample, and most particles in all of them together.
 const STATES: usize = 32;
 const KEPT: usize = 2_000_000;
 
-/// A run of some seconds.
+/// A trial run of some seconds.
 #[derive(Clone, Debug)]
 pub(crate) struct Sample {
-    /// Wall seconds of a unit of time, rows apart.
+    /// Wall seconds of a unit of time, without rows.
     pub(crate) cost: f64,
     /// Wall seconds of a row.
     pub row: f64,
@@ -38,30 +38,29 @@ pub(crate) struct Sample {
     pub start: f64,
     /// Wall seconds from the beginning to the end.
     pub seconds: f64,
-    /// Time that it came to (time).
+    /// Time reached (time).
     pub time: f64,
-    /// Its mean of the quantity, or why there is none.
+    /// Mean of the quantity, or the reason why there is none.
     pub outcome: Outcome,
-    /// Set if it came beyond the end of the scene's own run.
+    /// Set if it went beyond the end of the scene's own run.
     pub(crate) comes_beyond_end: bool,
-    /// Warnings of its checks.
     pub warnings: Vec<RunWarning>,
-    /// The quantity from stretch to stretch: when each ends (time), and its value there.
+    /// Time series of the quantity: end of each stretch (time), and its value.
     pub(crate) series: Vec<[f64; 2]>,
     /// Wall seconds of a unit of time in each phase, by name.
     pub phases: Vec<(String, f64)>,
-    /// States along the run, evenly spread, each with its time (time).
+    /// States along the run, evenly spaced, each with its time (time).
     pub states: Vec<(f64, Particles)>,
-    /// Its rows, of all quantities, the time first.
+    /// Rows with all quantities, the time first.
     pub rows: Vec<Vec<f64>>,
-    /// The kind of the quantity, and its place in a row.
+    /// Kind of the quantity, and its index in a row.
     pub observed: (Kind, usize),
-    /// Set where values between rows are lost, and closer rows tell more: those of moments, but for what a driving repeats.
+    /// Set where values between rows are lost, so that closer rows give more information: instantaneous values, unless a periodic drive repeats them.
     pub(crate) loses: bool,
 }
 
 impl Sample {
-    /// The mean, where there is one, however roughly known.
+    /// Estimated mean, if there is one, however rough.
     pub(crate) fn known(&self) -> Option<Known> {
         match self.outcome {
             Outcome::Mean(estimate) | Outcome::TooShort { estimate: Some(estimate), .. } => {
@@ -78,22 +77,22 @@ impl Sample {
 }
 
 impl Sample {
-    /// Cost of its time and of its rows, where values between rows are lost.
+    /// Costs of time and rows, where values between rows are lost.
     pub(crate) fn pace(&self) -> Option<Pace> {
         self.loses.then_some(Pace { cost: self.cost, row: self.row })
     }
 
-    /// Warnings of its checks, in words.
+    /// Warnings of its checks, joined.
     pub(crate) fn warned(&self) -> String {
         self.warnings.iter().map(|warning| warning.message.as_str()).collect::<Vec<_>>().join("; ")
     }
 
-    /// That it ended before a time, in words; none where it did not.
+    /// Describes that the run ended before a time; none if it did not.
     pub(crate) fn cut_off(&self, time: f64) -> Option<String> {
-        // The last stretch may end by rounding before.
+        // The last stretch may end early by rounding.
         (self.time < time * (1.0 - 1e-9)).then(|| {
             format!(
-                "cut off at a time of {} of {}, after {} s",
+                "stopped at a time of {} of {}, after {} s",
                 significant(self.time, 3),
                 significant(time, 3),
                 significant(self.seconds, 3)
@@ -101,7 +100,7 @@ impl Sample {
         })
     }
 
-    /// Why it has no mean.
+    /// Describes why it has no mean.
     pub(crate) fn without_mean(&self) -> String {
         let time = significant(self.time, 3);
         match self.outcome {
@@ -111,15 +110,15 @@ impl Sample {
                 significant(last, 3)
             ),
             Outcome::TooShort { enough_at, .. } => {
-                format!("a time of {time} is too short, {} would do", significant(enough_at, 2))
+                format!("a time of {time} is too short, {} would be enough", significant(enough_at, 2))
             }
-            _ => format!("there is none up to a time of {time}"),
+            _ => format!("no mean up to a time of {time}"),
         }
     }
 
-    /// The mean from one time to another, or to the end of the run.
+    /// Mean from one time to another, or to the end of the run.
     ///
-    /// Values of moments lie on straight lines between rows: of a quantity that changes, a sum of rows would lag by half of their spacing.
+    /// Instantaneous values are interpolated linearly between rows: for a changing quantity, a sum of rows would lag by half of their spacing.
     pub(crate) fn mean_over(&self, [from, to]: [f64; 2]) -> f64 {
         let (kind, place) = self.observed;
         let of = |rows: &[Vec<f64>]| {
@@ -145,7 +144,7 @@ impl Sample {
     }
 }
 
-/// Values of a quantity with their times: those of all rows but the first where others are lost, else the ends of stretches with their means.
+/// Values of a quantity with their times: those of all rows but the first where others are lost, otherwise the ends of stretches with their means.
 pub(crate) fn values(rows: &[Vec<f64>], place: usize, series: &[[f64; 2]], loses: bool) -> Vec<[f64; 2]> {
     match loses {
         true => rows.iter().skip(1).map(|row| [row[0], row[place]]).collect(),
@@ -153,19 +152,19 @@ pub(crate) fn values(rows: &[Vec<f64>], place: usize, series: &[[f64; 2]], loses
     }
 }
 
-/// How long a sample is.
+/// Length of a sample.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Span {
     /// About so many wall seconds.
     Seconds(f64),
-    /// A time (time), but no more wall seconds than these where they are given.
+    /// A time (time), but at most so many wall seconds where these are given.
     Time(f64, Option<f64>),
     /// As `Time`, with the scene's own spacing of rows.
     Planned(f64, Option<f64>),
 }
 
 impl Span {
-    /// The same in no more than some wall seconds.
+    /// Limits the span to some wall seconds.
     #[must_use]
     pub(crate) fn within(self, left: f64) -> Span {
         match self {
@@ -179,10 +178,10 @@ impl Span {
 }
 
 impl Trial<'_> {
-    /// Runs a scene, observing a quantity.
+    /// Runs a scene and observes a quantity.
     ///
     /// # Errors
-    /// [`Failure`] if it breaks.
+    /// [`Failure`] if it fails.
     pub(crate) fn sample(
         &self,
         prepared: &Prepared,
@@ -211,7 +210,7 @@ impl Trial<'_> {
             }
             (_, Some(own)) => own,
             (Span::Time(time, _) | Span::Planned(time, _), None) => {
-                // How far a quantity goes is seen only where it is looked at.
+                // The deviation of a quantity is only seen at samples.
                 let rows = if quantities[place].kind == Kind::Kept { LOOKS } else { ROWS };
                 self.advance(simulation, first(prepared))?;
                 let Clock { steps, time: gone, .. } = simulation.clock();
@@ -225,10 +224,10 @@ impl Trial<'_> {
         all_rows.push(simulation.row());
         rows.add(&all_rows[1]);
         let running = self.watch.now();
-        // The start is a part of the time.
+        // The start is included in the time.
         let limit = seconds.map_or(f64::INFINITY, |all| all - (running - begun) - of_stretch.unwrap_or(0.0));
         let mut states = States::new(prepared);
-        // Of the stretches once it is warm, and of all.
+        // Time and cost of the stretches after warm-up, and of all.
         let (mut warm, mut all) = ((0.0, 0.0), (0.0, 0.0));
         while self.watch.now() - running < limit
             && simulation.clock().time < most
@@ -279,19 +278,19 @@ impl Trial<'_> {
         })
     }
 
-    /// Goes on for a stretch.
+    /// Advances by one stretch.
     fn advance(&self, simulation: &mut dyn Simulation, stretch: Until) -> Result<(), Failure> {
         let end = stretch.after(&simulation.clock());
         self.advance_to(simulation, &[end])
     }
 
-    /// Goes on to the first of some moments.
+    /// Advances to the first of some moments.
     fn advance_to(&self, simulation: &mut dyn Simulation, moments: &[Until]) -> Result<(), Failure> {
         self.watch.during(simulation, |it| it.advance(moments, self.stop))
     }
 
-    /// Wall seconds of a unit of time by itself, and of a row: stretches that are longer take less for each unit by the share of a row, which is more than
-    /// the look at the end of it.
+    /// Wall seconds of a unit of time without rows, and of a row. Longer stretches cost less per unit of time by their share of a row, which takes
+    /// more than its observation.
     fn costs(
         &self,
         simulation: &mut dyn Simulation,
@@ -311,14 +310,14 @@ impl Trial<'_> {
             return Ok([near, of_look]);
         }
         let far = (self.watch.now() - begun) / gone;
-        // By hand, of c and r in stretches of L and F L: near = c + r/L, far = c + r/(F L).
+        // By hand, for costs c and r in stretches of L and F L: near = c + r/L, far = c + r/(F L).
         let factor = 2f64.powi(FARTHER);
         let each = gone / stretches / factor;
         let of_stretch = ((near - far) * each / (1.0 - 1.0 / factor)).max(0.0);
         Ok([far.min(near) - of_stretch / (factor * each), of_look + of_stretch])
     }
 
-    /// Wall seconds of a row, the least of some.
+    /// Wall seconds of a row, the least of several.
     fn timed_row(&self, simulation: &dyn Simulation) -> f64 {
         let once = |_| {
             let begun = self.watch.now();
@@ -328,8 +327,8 @@ impl Trial<'_> {
         (0..3).map(once).fold(f64::INFINITY, f64::min)
     }
 
-    /// A stretch that takes about some seconds, from least to most: steps, fewer than [`STEPS`] only where more would take the most, or for a method
-    /// without any a part of the time between rows.
+    /// Stretch that takes between `least` and `most` seconds. It consists of steps, fewer than [`STEPS`] only where more would exceed `most`, or, for
+    /// a method without steps, of a part of the time between rows.
     fn stride(
         &self,
         simulation: &mut dyn Simulation,
@@ -349,10 +348,10 @@ impl Trial<'_> {
         }
     }
 
-    /// Runs a scene without rows to time it.
+    /// Times a scene without rows.
     ///
     /// # Errors
-    /// [`Failure`] if it breaks.
+    /// [`Failure`] if it fails.
     pub(crate) fn timed(&self, prepared: &Prepared, seconds: f64) -> Result<UnitCost, Failure> {
         const STRETCHES: u32 = 4;
         let mut simulation = prepared.start(Purpose::Run)?;
@@ -368,8 +367,8 @@ impl Trial<'_> {
     }
 }
 
-/// States along a run whose length is not known: once there are too many, every other one goes, and half as many come. Where forces depend on
-/// time, they are taken at whole periods: a run from such a state begins at time 0, when forces are those of the state.
+/// States along a run of unknown length: once there are too many, every other one is dropped and the spacing doubles. Where forces depend on
+/// time, states are taken at whole periods: a run from such a state begins at time 0 with the right forces.
 struct States {
     period: Option<f64>,
     most: usize,
@@ -384,12 +383,12 @@ impl States {
         States { period: prepared.model.period(), most, every: 1, seen: 0, kept: vec![] }
     }
 
-    /// The moment of the next state (time): now, or the end of the period that runs.
+    /// Time of the next state (time): now, or the end of the current period.
     fn next(&self, now: f64) -> f64 {
         self.period.map_or(now, |period| period * (now / period).floor() + period)
     }
 
-    /// Takes the state, if the run has come to the moment.
+    /// Records the state, if the run has reached the moment.
     fn look(&mut self, simulation: &dyn Simulation, moment: f64) {
         if simulation.clock().time < moment {
             return;
@@ -410,7 +409,7 @@ impl States {
     }
 }
 
-/// The stretch between rows of the scene; none where it asks for none.
+/// Stretch between rows of the scene; none where it writes no rows.
 fn own_rows(prepared: &Prepared) -> Option<Until> {
     match prepared.schedule.rows {
         Every::Steps(steps) => Some(Until::Steps(steps)),
@@ -419,7 +418,7 @@ fn own_rows(prepared: &Prepared) -> Option<Until> {
     }
 }
 
-/// The shortest stretch: a step, or for a method without any a part of the time between rows.
+/// Shortest stretch: a step, or, for a method without steps, a part of the time between rows.
 fn first(prepared: &Prepared) -> Until {
     match (prepared.schedule.until, prepared.schedule.rows) {
         (Until::Steps(_), _) => Until::Steps(1),
@@ -432,7 +431,7 @@ fn first(prepared: &Prepared) -> Until {
 /// Cost of a unit of time.
 #[derive(Clone, Debug)]
 pub(crate) struct UnitCost {
-    /// Wall seconds, by the fastest of some stretches.
+    /// Wall seconds in the fastest of some stretches.
     pub seconds: f64,
     /// Wall seconds in each phase, by name, over all stretches.
     pub phases: Vec<(String, f64)>,

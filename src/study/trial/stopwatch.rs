@@ -1,4 +1,4 @@
-//! Time as trials see it: that of the wall, of the processor, or, in tests, one that is made of the work done.
+//! Clock of trials: wall time, processor time, or, in tests, synthetic time derived from the work done.
 
 use cpu_time::ProcessTime;
 #[cfg(test)]
@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 use stripmine_physics::method::Simulation;
 
-/// Seconds that trials take. A test makes them of work, so that a plan does not depend on how fast the machine is at that moment.
+/// Clock of trials. Tests derive its time from work, so that a plan does not depend on the speed of the machine.
 #[derive(Debug)]
 pub(crate) struct Stopwatch(Kind);
 
@@ -14,29 +14,29 @@ pub(crate) struct Stopwatch(Kind);
 enum Kind {
     Wall(Instant),
     Processor(ProcessTime),
-    /// Nanoseconds so far, and those of a unit of work.
+    /// Nanoseconds so far, and per unit of work.
     #[cfg(test)]
     Made(AtomicU64, f64),
 }
 
 impl Stopwatch {
-    /// Of the wall; begins now.
+    /// Starts a wall clock.
     pub(crate) fn wall() -> Stopwatch {
         Stopwatch(Kind::Wall(Instant::now()))
     }
 
-    /// Of the processor, over all threads of this process; begins now.
+    /// Starts a processor clock, over all threads of this process.
     pub(crate) fn processor() -> Stopwatch {
         Stopwatch(Kind::Processor(ProcessTime::now()))
     }
 
-    /// Made of work: each unit of [`Simulation::work`] takes so many nanoseconds.
+    /// Starts a synthetic clock: each unit of [`Simulation::work`] takes so many nanoseconds.
     #[cfg(test)]
     pub(crate) fn made(nanoseconds: f64) -> Stopwatch {
         Stopwatch(Kind::Made(AtomicU64::new(0), nanoseconds))
     }
 
-    /// Seconds since it began.
+    /// Seconds since the start.
     pub(crate) fn now(&self) -> f64 {
         match &self.0 {
             Kind::Wall(begun) => begun.elapsed().as_secs_f64(),
@@ -46,7 +46,7 @@ impl Stopwatch {
         }
     }
 
-    /// Lets a simulation do something, and counts its work.
+    /// Runs an action on a simulation, and counts its work.
     pub(crate) fn during<R>(
         &self,
         simulation: &mut dyn Simulation,

@@ -1,8 +1,8 @@
-//! One collision of two discs: errors of its outcomes, over the step and over the part of a step at which the contact begins.
+//! Collision of two discs: errors of its outcomes as functions of the step and of the phase of a step at which the contact begins.
 //!
-//! A step that holds the beginning or the end of a contact makes an error that depends on where in the step it falls: for a
-//! force that sets in as ξ^s it is dt^(s+1) ζ(−s, phase), Hurwitz's zeta function, whose mean over all phases is zero. A
-//! single run therefore lies on no line over the step; the root of the mean square over the phases does, and so does the
+//! A step that contains the beginning or the end of a contact makes an error that depends on its phase within the step: for a
+//! force that starts as ξ^s it is dt^(s+1) ζ(−s, phase), Hurwitz's zeta function, whose mean over all phases is zero. Errors of
+//! single runs therefore do not fall on a line over the step. The root mean square over the phases does, and so does the
 //! mean, which falls faster.
 
 use super::orders::{Fitted, fit};
@@ -14,44 +14,44 @@ use crate::study::{StudyError, Subject};
 use stripmine_physics::method::{Decides, Purpose};
 use stripmine_physics::scene::Overrides;
 
-/// Outcomes of a collision: relative speed after it over that before, and the angle by which the relative velocity turns (radian).
+/// Outcomes of a collision: ratio of the relative speeds after and before, and the angle by which the relative velocity turns (radian).
 const OUTCOMES: [&str; 2] = ["restitution", "deflection"];
-/// Step of the reference, in the smallest of the steps that are tried.
+/// Step of the reference, in parts of the smallest step tried.
 const REFERENCE: f64 = 0.125;
-/// Larger errors are not those of convergence.
+/// Errors above this are outside the range of convergence.
 const LARGE: f64 = 0.1;
 
 /// Errors of a collision.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Collision {
-    /// Starts of each step, each a part of a step later than the one before.
+    /// Starts of each step, each a fraction of a step later than the last.
     pub phases: u32,
     /// Errors by scheme and step.
     pub(crate) errors: Vec<OutcomeError>,
-    /// Orders fitted through them.
+    /// Orders fitted to them.
     pub orders: Vec<OutcomeOrder>,
 }
 
-/// Error of the outcomes of a scheme with a step.
+/// Error of the outcomes of a scheme at a step.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct OutcomeError {
     pub(crate) choice: String,
     /// The step (time).
     pub step: f64,
-    /// Root of the mean square over the phases, for each outcome.
+    /// Root mean square over the phases, for each outcome.
     pub spread: [f64; 2],
     /// Magnitude of the mean over the phases.
     pub mean: [f64; 2],
 }
 
-/// Power of the step with which the errors of a scheme fall.
+/// Order of convergence of a scheme.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct OutcomeOrder {
     pub(crate) choice: String,
     pub outcome: &'static str,
-    /// Of the root of the mean square over the phases.
+    /// Order of the root mean square over the phases.
     pub spread: Option<Fitted>,
-    /// Of the mean over the phases.
+    /// Order of the mean over the phases.
     pub mean: Option<Fitted>,
 }
 
@@ -61,11 +61,11 @@ fn is_collision(subject: &Subject) -> bool {
     subject.trials.has_contacts && particles.grain_count() == 2 && particles.len() == 2
 }
 
-/// Collides by every scheme with some steps (time, rising), each from as many starts as there are phases. None unless the scene is a collision of two
-/// discs that part within its time.
+/// Runs the collision with every scheme at some steps (time, rising), each from as many starts as there are phases. None unless the scene is a
+/// collision of two discs that separate within its time.
 ///
 /// # Errors
-/// [`StudyError`] as of [`Runs::recall`].
+/// [`StudyError`] as for [`Runs::recall`].
 pub(crate) fn collision(
     runs: &Runs<'_>,
     steps: &[f64],
@@ -122,7 +122,7 @@ fn mean(values: &[[f64; 2]]) -> [f64; 2] {
     [0, 1].map(|i| values.iter().map(|value| value[i]).sum::<f64>() / values.len().max(1) as f64)
 }
 
-/// Outcomes of a collision before which the discs fly for a time longer; none where they do not touch and part.
+/// Outcomes of a collision delayed by a time; none where the discs do not touch and separate.
 fn outcome(runs: &Runs<'_>, choice: &Choice, step: f64, late: f64) -> Result<Option<[f64; 2]>, RunFailure> {
     let scene = delayed(&runs.subject.prepared_as(choice, step, &Overrides::new())?, late);
     let domain = scene.domain;

@@ -4,19 +4,19 @@ use super::dataset::{Run, WorkPrecision};
 use super::measures::Measure;
 use crate::study::TIE;
 
-/// Errors of positions that are asked for (the method's length).
+/// Target errors of positions (the method's length).
 pub(crate) const WISHES: [f64; 5] = [3e-2, 1e-2, 1e-3, 1e-4, 1e-6];
 
 /// The cheapest run for an error.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cheapest<'d> {
     pub run: &'d Run,
-    /// Its cost over that of the scene's own configuration with its own step; none where that one breaks.
+    /// Cost relative to the scene's own configuration at its own step; none where that one fails.
     pub(crate) of_own: Option<f64>,
 }
 
-/// The cheapest of some runs with an error of positions of at most `error`; of those that tie the scene's own configuration, or the first by the order of the
-/// settings.
+/// Returns the cheapest run with an error of positions of at most `error`. Among ties it is the scene's own configuration, or the first in the order
+/// of the settings.
 fn cheapest(data: &WorkPrecision, error: f64, is_meant: fn(&Run) -> bool) -> Option<Cheapest<'_>> {
     let serves = |run: &&Run| is_meant(run) && run.error(Measure::Position).is_some_and(|it| it <= error);
     let timed: Vec<(&Run, f64)> =
@@ -29,8 +29,8 @@ fn cheapest(data: &WorkPrecision, error: f64, is_meant: fn(&Run) -> bool) -> Opt
     Some(Cheapest { run, of_own: own.map(|own| cost / own) })
 }
 
-/// Each error that is above the reference's own and that some run reaches, with the cheapest run without an objection; or the reason why no run is
-/// recommended.
+/// For each target error that is above the reference's own and reached by a run, returns the cheapest run without a warning, or the reason why no run
+/// is recommended.
 pub(crate) fn wishes(data: &WorkPrecision) -> Vec<(f64, Result<Cheapest<'_>, String>)> {
     let floor = data.reference.floor.get(&Measure::Position).copied().unwrap_or(0.0);
     let answer = |wish: f64| {
@@ -40,19 +40,19 @@ pub(crate) fn wishes(data: &WorkPrecision) -> Vec<(f64, Result<Cheapest<'_>, Str
         }
         let denied = || {
             let (label, step) = (&data.of(first).label, multiple(first.power));
-            format!("every run has an objection; {label} at {step}: {}", first.objections())
+            format!("every run has a warning; {label} at {step}: {}", first.objections())
         };
         Some((wish, cheapest(data, wish, Run::is_sound).ok_or_else(denied)))
     };
     WISHES.into_iter().filter(|wish| *wish > floor).filter_map(answer).collect()
 }
 
-/// The scene's own configuration with its own step.
+/// The scene's own configuration at its own step.
 pub(crate) fn own_run(data: &WorkPrecision) -> Option<&Run> {
     data.runs.iter().find(|run| run.power == 0 && data.of(run).label == data.own)
 }
 
-/// A step as a multiple of the scene's own.
+/// Describes a step as a multiple of the scene's own.
 fn multiple(power: i32) -> String {
     match power {
         0 => "its own step".to_owned(),
@@ -61,7 +61,7 @@ fn multiple(power: i32) -> String {
     }
 }
 
-/// The cheapest run without an objection that is as accurate as the scene's own configuration; none where nothing is decided, or that one breaks
+/// Returns the cheapest run without a warning that is as accurate as the scene's own configuration; none where nothing is decided, or that one failed
 /// or was not timed.
 pub(crate) fn as_good(data: &WorkPrecision) -> Option<Cheapest<'_>> {
     let error = own_run(data).filter(|_| data.undecided.is_none())?.error(Measure::Position)?;

@@ -10,10 +10,10 @@ use crate::statistics::median;
 use crate::study::trial::RunFailure;
 use serde::{Deserialize, Serialize};
 
-/// Error over cost of a scene, for its configurations and steps.
+/// Error against cost of a scene, for its configurations and steps.
 #[derive(Clone, Debug)]
 pub(crate) struct WorkPrecision {
-    /// Particles that move.
+    /// Number of moving particles.
     pub particles: usize,
     /// Unit of distances.
     pub unit: String,
@@ -24,19 +24,18 @@ pub(crate) struct WorkPrecision {
     pub own: String,
     pub(crate) growth: Growth,
     pub(crate) plan: Plan,
-    /// The time that is compared (time).
     pub duration: f64,
-    /// Events of a particle in that time.
+    /// Events per particle in that time.
     pub(crate) encounters: Encounters,
-    /// Reason why no configuration is recommended: too little happens in the time that is compared; none where enough does.
+    /// Reason why no configuration is recommended: too few events in the compared time; none where there are enough.
     pub(crate) undecided: Option<String>,
     pub(crate) reference: Reference,
     pub(crate) configurations: Vec<Configuration>,
     pub runs: Vec<Run>,
     pub orders: Vec<Order>,
-    /// Outcomes of the collision, where the scene is one of two discs.
+    /// Outcomes of the collision, for a scene of two discs.
     pub collision: Option<Collision>,
-    /// Machine of the clock periods.
+    /// Machine whose clock periods are computed.
     pub machine: Option<String>,
 }
 
@@ -54,25 +53,25 @@ impl WorkPrecision {
     }
 }
 
-/// Runs that the others are compared with.
+/// Reference that all runs are compared with.
 #[derive(Clone, Debug)]
 pub(crate) struct Reference {
     /// Labels of its configuration, and of the second one.
     pub(crate) configurations: [String; 2],
     /// Its step (time).
     pub step: f64,
-    /// Difference to a run with twice the step.
+    /// Difference from a run at twice the step.
     pub(crate) halving: Errors,
-    /// Difference to the second configuration.
+    /// Difference from the second configuration.
     pub second: Errors,
-    /// Its own error: the larger of the two, and its own error of the balance.
+    /// Error of the reference: the larger of the two differences, and its own error of the energy balance.
     pub(crate) floor: Errors,
 }
 
 /// A setting for each axis of the method.
 #[derive(Clone, Debug)]
 pub(crate) struct Configuration {
-    /// All settings.
+    /// Label of all settings.
     pub label: String,
     /// Settings that decide the order.
     pub scheme: String,
@@ -84,35 +83,35 @@ pub(crate) struct Configuration {
     pub(crate) is_primary: bool,
     /// True if integrator and precision are the scene's own.
     pub(crate) is_own_arithmetic: bool,
-    /// Seconds of a step, by its first steps, or the reason why the scene cannot be run so.
+    /// Seconds of a step, from its first steps, or the reason why the scene cannot be run.
     pub(crate) each: Result<f64, RunFailure>,
 }
 
 #[derive(Clone, Debug)]
 pub(crate) struct Run {
-    /// Place of its configuration.
+    /// Index of its configuration.
     pub(crate) configuration: usize,
     /// The step (time).
     pub step: f64,
-    /// The step is the scene's own times two to this power.
+    /// Power of two by which the step differs from the scene's own.
     pub(crate) power: i32,
     pub outcome: Result<Finished, RunFailure>,
-    /// Processor seconds for a unit of time in each repeat.
+    /// Processor seconds per unit of time in each repeat.
     pub(crate) costs: Vec<f64>,
 }
 
-/// Findings of a run that came to its end.
+/// Results of a run that finished.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Finished {
     pub(crate) errors: Errors,
-    /// Objections to it: a limit of the step by theory, a check, a warning of the run.
+    /// Warnings: an exceeded theoretical limit, a check before the run, or one during it.
     pub(crate) objections: Vec<String>,
-    /// Clock periods for a unit of time; none where no operations are counted.
+    /// Clock periods per unit of time; none where no operations are counted.
     pub clocks: Option<f64>,
 }
 
 impl Run {
-    /// Processor seconds for a unit of time: the median.
+    /// Processor seconds per unit of time: the median.
     pub(crate) fn cost(&self) -> Option<f64> {
         (!self.costs.is_empty()).then(|| median(self.costs.iter().copied()))
     }
@@ -121,30 +120,30 @@ impl Run {
         self.outcome.as_ref().ok()?.errors.get(&measure).copied()
     }
 
-    /// Objections to it, in words; empty where there are none.
+    /// Warnings joined in words; empty where there are none.
     pub(crate) fn objections(&self) -> String {
         self.outcome.as_ref().map_or(String::new(), |finished| finished.objections.join("; "))
     }
 
-    /// True if it came to its end and there is no objection.
+    /// True if it finished without a warning.
     pub(crate) fn is_sound(&self) -> bool {
         self.outcome.as_ref().is_ok_and(|finished| finished.objections.is_empty())
     }
 
-    /// True if its trajectories have parted from the reference's.
+    /// True if its trajectories have diverged from the reference's.
     pub(crate) fn is_lost(&self) -> bool {
         self.error(Measure::Position).is_some_and(|error| error > COMPARABLE)
     }
 }
 
-/// Power of the step with which an error falls.
+/// Order of convergence of an error.
 #[derive(Clone, Debug)]
 pub(crate) struct Order {
-    /// Place of the configuration.
+    /// Index of the configuration.
     pub(crate) configuration: usize,
     pub(crate) measure: Measure,
-    /// Through the measured errors; none through too few points.
+    /// Order of the measured errors; none for too few points.
     pub(crate) fitted: Option<Fitted>,
-    /// By theory, with the reason.
+    /// Theoretical order, with the reason.
     pub theory: Option<(f64, &'static str)>,
 }

@@ -1,5 +1,5 @@
-//! Events of a particle in a time: contacts that begin, or, where nothing touches, turns of the motion. A comparison over a time
-//! in which hardly anything happens says nothing of a scene.
+//! Events per particle in a time: contacts that begin, or, without contacts, turns of the velocity. A comparison over a time with hardly any
+//! events says nothing about a scene.
 
 use super::growth::own_in_full_digits;
 use crate::study::StudyError;
@@ -14,29 +14,29 @@ use stripmine_physics::near::Near;
 use stripmine_physics::particles::Particles;
 use stripmine_physics::scene::Overrides;
 
-/// Looks at a run at most: contacts that begin and end between two looks are not seen.
+/// Most samples of a run: contacts that begin and end between two samples are missed.
 const LOOKS: u64 = 1024;
 
-/// Events of a particle, in the mean.
+/// Mean number of events per particle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Encounters {
-    /// True if contacts are counted, or turns of the motion.
+    /// True if contacts are counted, false for turns of the velocity.
     pub(crate) of_contacts: bool,
-    /// Contacts of a particle that begin, those of the start among them; or whole turns of its velocity.
+    /// Contacts that begin, including those of the start; or full turns of the velocity.
     pub(crate) each: f64,
 }
 
 impl Encounters {
-    /// Name of the events.
     pub(crate) fn name(&self) -> &'static str {
         if self.of_contacts { "contacts" } else { "turns of the velocity" }
     }
 }
 
-/// Counts along a run of the scene's own configuration with some step (time), over `duration` (time). Of a run that breaks, the time before counts.
+/// Counts events along a run of the scene's own configuration at some step (time), over `duration` (time). If the run fails, events before the
+/// failure count.
 ///
 /// # Errors
-/// [`StudyError`] as of [`Runs::recall`].
+/// [`StudyError`] as for [`Runs::recall`].
 pub(crate) fn encounters(
     runs: &Runs<'_>,
     step: f64,
@@ -66,11 +66,11 @@ pub(crate) fn encounters(
     Ok(counted.unwrap_or(Encounters { of_contacts, each: 0.0 }))
 }
 
-/// Contacts as they begin.
+/// Counter of contacts that begin.
 struct Contacts {
     domain: Domain,
     standing: HashSet<[u32; 2]>,
-    /// Begun so far: one between two grains is one of each.
+    /// Number so far: a contact between two grains counts for each.
     begun: u64,
 }
 
@@ -101,11 +101,11 @@ impl Contacts {
     }
 }
 
-/// Turns of velocities.
+/// Counter of turns of the velocity.
 #[derive(Default)]
 struct Turns {
     directions: HashMap<u32, f64>,
-    /// Turned so far, added up over the particles (radian).
+    /// Total angle so far, summed over the particles (radian).
     angle: f64,
 }
 

@@ -18,23 +18,23 @@ use stripmine_physics::method::{Decides, Purpose, Simulation};
 use stripmine_physics::number::significant;
 use stripmine_physics::scene::Overrides;
 
-/// Looks at the energy in a run.
+/// Samples of the energy in a run.
 const LOOKS: u64 = 16;
-/// An error below this many times the reference's own is not distinguished from it.
+/// Multiple of the reference's own error below which an error is not resolved.
 const ABOVE_FLOOR: f64 = 3.0;
-/// Most repeats, in those that are asked for, and the share of the time within which more are made.
+/// Most repeats, as a multiple of the requested number, and the share of the time within which more are made.
 const MORE: usize = 3;
 const SPARE: f64 = 0.7;
 
-/// True if something takes a time.
+/// True for a positive finite time.
 fn is_time(seconds: &f64) -> bool {
     seconds.is_finite() && *seconds > 0.0
 }
 
-/// Configurations with the seconds of a step of each, by its first steps.
+/// Times a step of each configuration, over its first steps.
 ///
 /// # Errors
-/// [`StudyError`] as of [`Runs::recall`].
+/// [`StudyError`] as for [`Runs::recall`].
 pub(crate) fn configurations(runs: &Runs<'_>, choices: &[Choice]) -> Result<Vec<Configuration>, StudyError> {
     let subject = runs.subject;
     let of = |choice: &Choice| {
@@ -55,25 +55,25 @@ pub(crate) fn configurations(runs: &Runs<'_>, choices: &[Choice]) -> Result<Vec<
     choices.iter().map(of).collect()
 }
 
-/// Runs of a diagram that were planned.
+/// Planned runs of a diagram.
 pub(crate) struct Planned<'p> {
     pub runs: &'p Runs<'p>,
     pub(crate) effort: &'p Effort,
     pub choices: &'p [Choice],
-    /// Seconds of a step, by place of the choice.
+    /// Seconds of a step, by index of the choice.
     pub rates: &'p [Option<f64>],
     pub(crate) plan: &'p Plan,
 }
 
-/// Findings at the end of a run.
+/// Results at the end of a run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Ended {
     state: State,
-    /// Error of the balance of energy (energy that moves).
+    /// Error of the energy balance (moving energy).
     balance: Option<f64>,
-    /// Clock periods a step.
+    /// Clock periods per step.
     clocks: Option<f64>,
-    /// Objections to the configuration and the step.
+    /// Warnings about the configuration and the step.
     objections: Vec<String>,
 }
 
@@ -82,12 +82,12 @@ impl Planned<'_> {
         self.runs.subject
     }
 
-    /// The time that is compared (time).
+    /// Compared time (time).
     pub(super) fn duration(&self) -> f64 {
         self.plan.own_steps as f64 * self.subject().step
     }
 
-    /// Steps of the whole time with the step that is the scene's own times two to a power.
+    /// Steps of the compared time, at the scene's own step times two to a power.
     fn steps(&self, power: i32) -> u64 {
         (self.plan.own_steps as f64 * 0.5f64.powi(power)).round() as u64
     }
@@ -132,11 +132,11 @@ impl Planned<'_> {
         errors
     }
 
-    /// The reference and its end: a run with a fraction of the smallest step that is tried, compared with one with twice that step and one
-    /// by another scheme.
+    /// Runs the reference and returns it with its final state. It has a fraction of the smallest step tried, and is compared with a run at twice that
+    /// step and one with another scheme.
     ///
     /// # Errors
-    /// [`StudyError::EveryRunFails`] if one of the three breaks.
+    /// [`StudyError::EveryRunFails`] if one of the three fails.
     pub(crate) fn reference(&self, each: f64) -> Result<(Reference, State), StudyError> {
         let choices = [0, 1].map(|number| self.subject().reference(number));
         let [first, second] = &choices;
@@ -170,14 +170,14 @@ impl Planned<'_> {
     /// Every run, without its cost.
     ///
     /// # Errors
-    /// [`StudyError`] as of [`Runs::recall`].
+    /// [`StudyError`] as for [`Runs::recall`].
     pub(super) fn all(&self, reference: &Reference, state: &State) -> Result<Vec<Run>, StudyError> {
         let floor = ABOVE_FLOOR * reference.floor.get(&Measure::Position).copied().unwrap_or(0.0);
         let runs: Vec<Vec<Run>> = self.runs.journal.over(&self.plan.choices, |&configuration| {
             let mut runs: Vec<Run> = vec![];
             for power in (-self.plan.finest..=0).rev() {
                 runs.push(self.run(configuration, power, state)?);
-                // One error alone may be small by chance.
+                // A single error may be small by coincidence.
                 let is_fine = |run: &Run| run.error(Measure::Position).is_some_and(|error| error < floor);
                 if matches!(runs.as_slice(), [.., before, last] if is_fine(before) && is_fine(last)) {
                     break;
@@ -185,7 +185,7 @@ impl Planned<'_> {
             }
             let mut last_ended = runs[0].outcome.is_ok();
             for power in 1..=COARSEST {
-                // A step that is too large stays so when doubled.
+                // A step that is too large remains so when doubled.
                 if !last_ended {
                     break;
                 }
@@ -216,11 +216,11 @@ impl Planned<'_> {
         Ok(Run { configuration, step: self.step(power), power, outcome, costs: vec![] })
     }
 
-    /// Times the runs that came to their end, on the first of several processes, in alternating repeats: as many as are asked for, and more while there
-    /// is time, for short runs are easily disturbed. The study began at a moment of its watch (s).
+    /// Times the runs that finished, on the first of several processes, in alternating repeats: as many as requested, and more while there
+    /// is time, as short runs are easily disturbed. `begun` is the start of the study on its watch (s).
     ///
     /// # Errors
-    /// [`StudyError`] as of [`Runs::recall`].
+    /// [`StudyError`] as for [`Runs::recall`].
     pub(super) fn time(&self, runs: &mut [Run], begun: f64) -> Result<(), StudyError> {
         let watch = self.runs.trial.watch;
         let repeats = if self.runs.journal.is_first() { MORE * self.effort.repeats } else { 0 };
@@ -247,7 +247,7 @@ impl Planned<'_> {
         Ok(())
     }
 
-    /// Convergence of positions and energy, for every scheme in the digits of the reference.
+    /// Orders of convergence of positions and energy, for every scheme in the precision of the reference.
     pub(crate) fn orders(&self, runs: &[Run], reference: &Reference) -> Vec<Order> {
         let first = self.subject().reference(0);
         let is_fitted = |choice: &Choice| {
@@ -274,7 +274,7 @@ impl Planned<'_> {
     }
 }
 
-/// Clock periods of the last step by the clock of the source; none where operations are not counted.
+/// Clock periods of the last step by the paper's clock; none where operations are not counted.
 fn clock_periods(machine: &MachineModel, simulation: &dyn Simulation) -> Option<f64> {
     let operations = simulation.operations();
     let is_counted = !operations.is_empty();

@@ -1,4 +1,4 @@
-//! Diagrams as frames.
+//! Frames of diagrams.
 
 use super::conclusions::{as_good, own_run, wishes as wishes_of};
 use super::dataset::{Configuration, Run, Scenes, WorkPrecision};
@@ -11,7 +11,7 @@ use crate::results::Made;
 use crate::statistics::median;
 use crate::study::trial::RunFailure;
 
-/// Frames of diagrams, each with a name for its rows.
+/// Returns the frames of diagrams, each with a name for its rows.
 pub(crate) fn made(scenes: &Scenes) -> Made {
     Made::of([
         of_scenes(scenes),
@@ -28,7 +28,7 @@ pub(crate) fn made(scenes: &Scenes) -> Made {
     ])
 }
 
-/// A row for each scene: its own configuration beside the cheapest that is as accurate, and the limits of the comparison.
+/// A row for each scene: its own configuration, the cheapest that is as accurate, and the limits of the comparison.
 fn of_scenes(scenes: &Scenes) -> Frame {
     Rows::of(scenes)
         .text("scene", |(name, _)| name)
@@ -54,20 +54,20 @@ fn of_scenes(scenes: &Scenes) -> Frame {
         .count("starts of the collision", |(_, data)| data.collision.as_ref().map_or(0, |it| it.phases))
         .text("machine", |(_, data)| data.machine.clone().unwrap_or_default())
         .number("difference of repeats (%)", 0, |(_, data)| 100.0 * spread(data))
-        .frame("scenes", "Scenes: the own configuration, and the limits of the comparison")
+        .frame("scenes", "Scenes: their own configurations, and the limits of the comparison")
 }
 
-/// Step in steps of the scene's own.
+/// Step in multiples of the scene's own.
 fn in_own_steps(run: &Run) -> f64 {
     libm::exp2(f64::from(run.power))
 }
 
-/// Reason of the failure of a run; empty where it came to its end.
+/// Reason of the failure of a run; empty where it finished.
 fn why(run: &Run) -> &str {
     run.outcome.as_ref().err().map_or("", |failure| &failure.why)
 }
 
-/// Difference of the repeats of a run, in parts of the shortest: the median over the runs.
+/// Relative difference of the repeats of a run: the median over the runs.
 fn spread(data: &WorkPrecision) -> f64 {
     let of = |run: &Run| {
         let [least, most] = [f64::min, f64::max].map(|end| run.costs.iter().copied().reduce(end));
@@ -117,7 +117,7 @@ fn orders(scenes: &Scenes) -> Frame {
         .cells(STEPS_OF, |(.., order)| steps_of(order.fitted))
         .number("theory", 1, |(.., order)| order.theory.map(|(order, _)| order))
         .cell("what decides it", |(.., order)| order.theory.map(|(_, why)| why))
-        .frame("orders", "Orders of convergence, measured and by theory")
+        .frame("orders", "Orders of convergence, measured and theoretical")
 }
 
 fn of_collisions(scenes: &Scenes) -> Frame {
@@ -132,10 +132,10 @@ fn of_collisions(scenes: &Scenes) -> Frame {
         .number("order of the RMS", 2, |(.., order)| order.spread.map(|it| it.order))
         .number("order of the mean", 2, |(.., order)| order.mean.map(|it| it.order))
         .cells(STEPS_OF, |(.., order)| steps_of(order.spread))
-        .frame("collision", "One collision: how the error of what comes out falls")
+        .frame("collision", "Single collision: order of the error of its outcomes")
 }
 
-/// Every error with the scene's own step.
+/// All errors at the scene's own step.
 fn errors(scenes: &Scenes) -> Frame {
     let own = scenes.iter().flat_map(|(name, data)| {
         let own = data.runs.iter().filter(|run| run.power == 0 && data.of(run).is_primary);
@@ -152,12 +152,12 @@ fn errors(scenes: &Scenes) -> Frame {
         .into_iter()
         .fold(rows, with_errors)
         .number("cost of a unit of time (ms)", 3, |(.., run)| run.cost().map(|cost| 1e3 * cost))
-        .frame("errors", "Every error with the scene's own step")
+        .frame("errors", "All errors at the scene's own step")
 }
 
 fn references(scenes: &Scenes) -> Frame {
     let ended_by = |ended_by: &EndedBy| match ended_by {
-        EndedBy::Growth => "the error of four times the step comes to a tenth of a radius",
+        EndedBy::Growth => "the error at four times the step reaches a tenth of a radius",
         EndedBy::Scene => "the scene ends",
         EndedBy::Budget => "more would take too long",
     };
@@ -178,7 +178,7 @@ fn references(scenes: &Scenes) -> Frame {
             [] => "nothing".to_owned(),
             left_out => left_out.join("; "),
         })
-        .frame("references", "The time that is compared, and the error of the reference")
+        .frame("references", "Compared time, and error of the reference")
 }
 
 fn failed(scenes: &Scenes) -> Frame {
@@ -196,7 +196,7 @@ fn failed(scenes: &Scenes) -> Frame {
         .frame("failed", "Failures and their reasons")
 }
 
-/// Configurations in which the scene is refused, and why; those that are refused in every scheme and precision as one.
+/// Configurations in which the scene is refused, with the reason; those refused in every scheme and precision are merged.
 fn refused(data: &WorkPrecision) -> Vec<(String, &RunFailure)> {
     let mut all: Vec<(String, &RunFailure)> = vec![];
     for it in &data.configurations {
@@ -212,7 +212,7 @@ fn refused(data: &WorkPrecision) -> Vec<(String, &RunFailure)> {
     all
 }
 
-/// Runs that broke, their step, and why; those of one scheme that broke alike as one.
+/// Runs that failed, with step and reason; runs of one scheme with the same failure are merged.
 fn broken(data: &WorkPrecision) -> Vec<(String, f64, &RunFailure)> {
     let mut all: Vec<(String, f64, &RunFailure)> = vec![];
     for run in &data.runs {
@@ -220,7 +220,7 @@ fn broken(data: &WorkPrecision) -> Vec<(String, f64, &RunFailure)> {
         let scheme = &data.of(run).scheme;
         let mut alike = data.runs.iter().filter(|it| it.step == run.step && data.of(it).scheme == *scheme);
         let what = match alike.all(|other| other.outcome.as_ref().err() == Some(failure)) {
-            true => format!("{scheme}, in every configuration that was run"),
+            true => format!("{scheme}, in every configuration tried"),
             false => data.of(run).label.clone(),
         };
         if !all.iter().any(|(known, step, _)| *known == what && *step == run.step) {

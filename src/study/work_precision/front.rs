@@ -1,6 +1,6 @@
-//! The Pareto front: runs than which no other is both cheaper and more accurate.
+//! Pareto front: runs for which no other is both cheaper and more accurate.
 
-/// The places of the points (cost, error) that lie on the front, by rising cost.
+/// Indices of the points (cost, error) on the front, by rising cost.
 pub(crate) fn front(points: &[(f64, f64)]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..points.len()).collect();
     order.sort_by(|&a, &b| {

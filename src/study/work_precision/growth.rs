@@ -1,4 +1,4 @@
-//! Growth of a small disturbance, and the time up to which trajectories are therefore comparable.
+//! Growth of a small disturbance, and the time over which trajectories are comparable.
 
 use crate::statistics::slope;
 use crate::study::choice::Choice;
@@ -11,15 +11,15 @@ use stripmine_physics::method::{Decides, Prepared, Purpose};
 use stripmine_physics::number::significant;
 use stripmine_physics::scene::Overrides;
 
-/// Distance by which the particles of the disturbed run are moved at the start (the method's length).
+/// Initial displacement of the particles of the disturbed run (the method's length).
 pub(crate) const DISTURBANCE: f64 = 1e-9;
-/// Trajectories are comparable while the error is below this (the method's length).
+/// Largest error at which trajectories are comparable (the method's length).
 pub(crate) const COMPARABLE: f64 = 0.1;
-/// Multiple of the scene's own step up to which trajectories are to be comparable.
+/// Largest step, in steps of the scene, at which trajectories should be comparable.
 const COARSER: f64 = 4.0;
-/// Looks at the runs.
+/// Samples of the runs.
 const LOOKS: u64 = 64;
-/// A window that ends after fewer looks is looked at again, more closely.
+/// Fewest samples of a window; with fewer it is sampled again, more closely.
 const FEW: usize = 8;
 /// Number of halvings where the scene's own step fails.
 const HALVINGS: i32 = 3;
@@ -29,11 +29,11 @@ const HALVINGS: i32 = 3;
 pub(crate) struct Growth {
     /// Step of the runs (time).
     pub step: f64,
-    /// Times of the looks (time).
+    /// Times of the samples (time).
     pub times: Vec<f64>,
     /// Root mean square distance of the disturbed run (the method's length).
     pub(crate) separation: Vec<f64>,
-    /// Root mean square distance of a run with half the step (the method's length).
+    /// Root mean square distance of a run at half the step (the method's length).
     pub error: Vec<f64>,
     /// Rate of the exponential growth (1/time); none where nothing grows.
     pub rate: Option<f64>,
@@ -42,7 +42,7 @@ pub(crate) struct Growth {
     pub(crate) ended_by: EndedBy,
 }
 
-/// End of the window in which trajectories are comparable.
+/// Reason for the end of the window in which trajectories are comparable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum EndedBy {
     Growth,
@@ -51,7 +51,7 @@ pub(crate) enum EndedBy {
 }
 
 impl Growth {
-    /// True if it may come from runs of the scene: as many distances as times, within the time of the scene.
+    /// True if it can come from runs of the scene: as many distances as times, within the duration of the scene.
     fn is_of(&self, subject: &Subject) -> bool {
         let Growth { step, times, separation, error, rate, window, .. } = self;
         let whole = subject.duration() * (1.0 + 1e-9);
@@ -65,8 +65,8 @@ impl Growth {
     }
 }
 
-/// Follows the scene's own configuration beside a disturbed start and half the step, for at most `most` own steps, each of which takes `each` seconds.
-/// A step that fails is halved. Where the error of the step alone may end the window, the configuration of the reference is followed, too.
+/// Runs the scene's own configuration, with a disturbed start and at half the step, for at most `most` own steps of `each` seconds.
+/// A step that fails is halved. Where the error of the step alone may end the window, the configuration of the reference is run, too.
 ///
 /// # Errors
 /// [`StudyError::EveryRunFails`] if no step works.
@@ -99,7 +99,7 @@ fn longer_by_reference(
     Ok(second.filter(|second| second.window > first.window).unwrap_or(first))
 }
 
-/// Growth with the scene's own step, halved some times, over a number of own steps.
+/// Growth at the scene's own step, halved some times, over a number of own steps.
 fn of_step(
     runs: &Runs<'_>,
     choice: &Choice,
@@ -121,7 +121,7 @@ fn of_step(
     })
 }
 
-/// The scene's own configuration with the digits of the reference: a small disturbance must not be lost in rounding.
+/// The scene's own configuration in the precision of the reference: a small disturbance must not be lost in rounding.
 pub(crate) fn own_in_full_digits(subject: &Subject) -> Choice {
     let is_of_digits = |name: &str| {
         subject.entry.axes.iter().any(|axis| axis.name == name && axis.decides == Decides::Digits)
@@ -142,7 +142,7 @@ fn observed(
     let domain = base.domain;
     let length = (subject.trials.length.of)(base.particles());
     let disturbed = base.model.started_from(displaced(base.particles(), &domain, |place, _| {
-        // Directions without a pattern, equal on every machine.
+        // Irregular directions, equal on every machine.
         let angle = 2.399_963_229_728_653 * (place as f64 + 1.0);
         [libm::cos(angle), libm::sin(angle)].map(|part| DISTURBANCE * length * part)
     }));
@@ -180,7 +180,7 @@ fn observed(
     Ok(growth)
 }
 
-/// Rate of exponential growth between the disturbance itself and loss; none where nothing grows.
+/// Rate of exponential growth between the initial disturbance and divergence; none where nothing grows.
 fn rate(times: &[f64], separation: &[f64]) -> Option<f64> {
     const GROWN: f64 = 3.0 * DISTURBANCE;
     const LOST: f64 = 0.01;

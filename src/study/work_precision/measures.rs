@@ -1,10 +1,10 @@
-//! Errors of a run.
+//! Error measures of a run.
 
 use crate::study::state::State;
 use serde::{Deserialize, Serialize};
 use stripmine_physics::domain::Domain;
 
-/// An error of a run.
+/// Error measure of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Measure {
@@ -12,7 +12,7 @@ pub(crate) enum Measure {
     Position,
     /// The largest such distance (the method's length).
     LargestPosition,
-    /// Largest error of the balance of energy over the looks (energy that moves).
+    /// Largest error of the energy balance over the samples (moving energy).
     Energy,
     /// Difference of the momentum from the reference's (sum of its magnitudes).
     Momentum,
@@ -21,7 +21,6 @@ pub(crate) enum Measure {
 }
 
 impl Measure {
-    /// Every measure.
     pub(crate) const ALL: [Measure; 5] = [
         Measure::Position,
         Measure::LargestPosition,
@@ -42,10 +41,10 @@ impl Measure {
     }
 }
 
-/// Errors of a run by measure, without those that the scene does not have.
+/// Errors of a run by measure, without those undefined in the scene.
 pub(crate) type Errors = std::collections::BTreeMap<Measure, f64>;
 
-/// Errors of a state that follow from the reference's; distances are given in a `length`.
+/// Errors of a state compared with the reference's; distances are given in units of `length`.
 pub(crate) fn errors(
     state: &State,
     reference: &State,

@@ -1,8 +1,8 @@
-//! Speed against accuracy: the error of positions and energy of a scene over its cost, for every configuration and every step.
+//! Speed against accuracy: error of positions and energy of a scene over its cost, for every configuration and step.
 //!
-//! The growth of a small disturbance gives the time up to which trajectories are comparable. A reference with a fraction of the
-//! step, compared with one by another integrator, has a known error. Then every configuration is run with the scene's own step, with
-//! smaller ones down to the reference's error and with larger ones until it breaks, and timed in alternating repeats.
+//! The growth of a small disturbance gives the time over which trajectories are comparable. A reference at a fraction of the
+//! step, compared with one by another integrator, has a known error. Then every configuration is run at the scene's own step, at
+//! smaller ones down to the reference's error and at larger ones until it fails, and timed in alternating repeats.
 
 mod collision;
 mod conclusions;
@@ -36,35 +36,35 @@ use growth::{EndedBy, Growth, growth};
 use plan::{COARSEST, plan};
 use stripmine_physics::number::significant;
 
-/// Share of the time that the growth takes at most.
+/// Largest share of the time for the growth.
 const GROWTH_SHARE: f64 = 0.1;
-/// Contacts, or turns of its motion, that a particle has at least in a time from which a configuration is recommended.
+/// Fewest contacts, or turns of the velocity, per particle in a time that allows a recommendation.
 const FEW: f64 = 3.0;
-/// Part of the time of a scene for which its trajectories are comparable at least, lest they part at once.
+/// Smallest part of the duration of a scene over which trajectories must be comparable.
 const USEFUL: f64 = 0.1;
-/// Steps of a collision go up to this power of two times the scene's own.
+/// Largest step of a collision: this power of two times the scene's own.
 const COARSEST_COLLISION: i32 = 2;
-/// Failures that an error names at most.
+/// Most failures listed in an error.
 const TRIED: usize = 8;
 
 /// Extent of a diagram.
 #[derive(Clone, Debug)]
 pub(crate) struct Effort {
-    /// Seconds that it may take about.
+    /// Available seconds, approximately.
     pub budget: f64,
-    /// Timed runs of each.
+    /// Timed runs of each configuration and step.
     pub(crate) repeats: usize,
     /// Starts of each step of a collision.
     pub phases: u32,
-    /// Machine whose clock periods are asked for.
+    /// Machine whose clock periods are computed.
     pub machine: Option<MachineModel>,
 }
 
-/// Measures a scene. Runs that are finished are kept in the journal.
+/// Measures a scene. Finished runs are recorded in the journal.
 ///
 /// # Errors
-/// [`StudyError`] if trajectories cannot be compared, no run of the scene comes to its end, the user asks for the end, or finished runs cannot be
-/// kept.
+/// [`StudyError`] if trajectories cannot be compared, every run of the scene fails, the user interrupts, or finished runs cannot be
+/// recorded.
 pub(crate) fn work_precision(
     subject: &Subject,
     effort: &Effort,
@@ -73,7 +73,10 @@ pub(crate) fn work_precision(
     progress: Progress<'_>,
 ) -> Result<WorkPrecision, StudyError> {
     if !subject.trials.has_trajectories {
-        return Err(parted(subject, "noise moves the particles, by other paths for each step".to_owned()));
+        return Err(parted(
+            subject,
+            "noise moves the particles along a different path at each step".to_owned(),
+        ));
     }
     let begun = trial.watch.now();
     let meter = Meter::new(effort.budget, progress);
@@ -137,10 +140,10 @@ fn parted(subject: &Subject, why: String) -> StudyError {
     StudyError::NoTrajectories { scene: subject.arguments(), why, quantity }
 }
 
-/// Reason why nothing is decided, where hardly anything happens in the time that is compared.
+/// Reason why nothing is decided, where too little happens in the compared time.
 ///
 /// # Errors
-/// [`StudyError::NoTrajectories`] where more time would not help, because trajectories part at once.
+/// [`StudyError::NoTrajectories`] where more time would not help, because trajectories diverge at once.
 fn undecided(
     subject: &Subject,
     growth: &Growth,
@@ -148,20 +151,20 @@ fn undecided(
     duration: f64,
 ) -> Result<Option<String>, StudyError> {
     let whole = subject.duration();
-    // A scene that is compared as a whole has to show something, no more.
+    // A scene compared over its whole duration needs a single event.
     let least = if duration > 0.95 * whole { 1.0 } else { FEW };
     let is_little = encounters.each < least;
     let is_cut_by_growth = growth.ended_by == EndedBy::Growth;
     let is_all_of_window = duration > 0.9 * growth.window;
     if is_cut_by_growth && (growth.window < USEFUL * whole || is_little && is_all_of_window) {
         let [window, whole] = [growth.window, whole].map(|time| significant(time, 3));
-        return Err(parted(subject, format!("trajectories part after a time of {window} of {whole}")));
+        return Err(parted(subject, format!("trajectories diverge after a time of {window} of {whole}")));
     }
     let [time, whole] = [duration, whole].map(|time| significant(time, 3));
     let [each, events] = [&significant(encounters.each, 2), encounters.name()];
     let little = || {
         format!(
-            "in the time that is compared, {time} of {whole}, a particle has {each} {events} in the mean, fewer than {least}"
+            "in the compared time of {time} of {whole}, a particle has {each} {events} on average, fewer than {least}"
         )
     };
     Ok(is_little.then(little))

@@ -2,25 +2,25 @@
 
 use crate::statistics::slope;
 
-/// Relative errors below this may be of rounding, added up over the steps of a run in double precision.
+/// Relative errors below this may be accumulated rounding of double precision.
 const ROUNDING: f64 = 1e-11;
-/// Points that a fit takes at most, the smallest steps first.
+/// Most points of a fit, the smallest steps first.
 const MOST: usize = 5;
-/// Points that it needs.
+/// Fewest points of a fit.
 const LEAST: usize = 3;
 
-/// Power of the step with which an error falls.
+/// Fitted order of convergence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Fitted {
     pub order: f64,
-    /// The smallest and the largest step of the fit (time).
+    /// Smallest and largest step of the fit (time).
     pub range: [f64; 2],
-    /// Points of the fit.
+    /// Number of points.
     pub(crate) points: usize,
 }
 
-/// Fits a power law through errors over steps, by rising step: those above `floor`, up to which the error is that of the
-/// reference, and below `ceiling`, from which on it is none of convergence. None through fewer than three points.
+/// Fits a power law to errors over steps, by rising step. Errors below `floor` belong to the reference, and errors above `ceiling` are outside the
+/// range of convergence; both are ignored. None for fewer than three points.
 pub(crate) fn fit(errors: &[(f64, f64)], floor: f64, ceiling: f64) -> Option<Fitted> {
     let in_range = errors.iter().filter(|(_, error)| *error > floor.max(ROUNDING) && *error < ceiling);
     let used: Vec<(f64, f64)> = in_range.copied().take(MOST).collect();
@@ -47,12 +47,12 @@ mod tests {
         let fitted = fit(&errors, 3e-7, 0.9e-3).unwrap();
         assert!((fitted.order - 3.0).abs() < 0.05, "{fitted:?}");
         assert_eq!((fitted.range, fitted.points), ([0.008, 0.064], 4));
-        // With the floor in it the order would be wrong: it is found out.
+        // Including points below the floor would give a wrong order.
         assert!(fit(&errors, 0.0, 1.0).unwrap().order < 2.5);
         assert_eq!(fit(&errors[..2], 0.0, 1.0), None);
     }
 
-    /// Large steps are of no convergence: the smallest alone are taken.
+    /// Large steps are outside the range of convergence: only the smallest are used.
     #[test]
     fn a_fit_takes_the_smallest_steps() {
         let steps = (0..9).map(|k| f64::from(1 << k));

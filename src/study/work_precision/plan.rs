@@ -1,11 +1,11 @@
-//! Runs of a diagram that fit into the time that is given.
+//! Selection of the runs of a diagram that fit into the available time.
 
 use crate::study::choice::Choice;
 use stripmine_physics::method::Decides;
 
-/// Steps go up to this power of two times the scene's own.
+/// Largest step: this power of two times the scene's own.
 pub(crate) const COARSEST: i32 = 4;
-/// The reference's step is this power of two below the smallest that is tried.
+/// Step of the reference: this power of two below the smallest step tried.
 pub(crate) const BELOW: i32 = 3;
 /// Share of the time for the runs of the ladder and their references; the rest is for the growth of a disturbance and for collisions.
 const SHARE: f64 = 0.6;
@@ -17,11 +17,11 @@ struct Scope {
     every_cost: bool,
     /// True if every scheme is run in every precision.
     every_precision: bool,
-    /// The smallest step is this power of two below the scene's own.
+    /// Smallest step: this power of two below the scene's own.
     finest: i32,
 }
 
-/// From the largest to the smallest.
+/// Scopes from the largest to the smallest.
 const SCOPES: [Scope; 6] = [
     Scope { every_cost: true, every_precision: true, finest: 4 },
     Scope { every_cost: false, every_precision: true, finest: 4 },
@@ -35,20 +35,20 @@ const SMALLEST: Scope = Scope { every_cost: false, every_precision: false, fines
 /// Runs of a diagram.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Plan {
-    /// Steps of the scene's own that the runs last; divided by the coarsest step.
+    /// Length of the runs in steps of the scene's own, a multiple of the coarsest step.
     pub(crate) own_steps: u64,
-    /// The smallest step is this power of two below the scene's own.
+    /// Smallest step: this power of two below the scene's own.
     pub(crate) finest: i32,
-    /// Places of the configurations that are run, among all.
+    /// Indices of the configurations that are run.
     pub choices: Vec<usize>,
-    /// Seconds that it takes about.
+    /// Approximate total seconds.
     pub seconds: f64,
-    /// Parts that are left out, in words.
+    /// Omitted parts, in words.
     pub left_out: Vec<String>,
 }
 
-/// Plans the runs: `rates` are seconds of a step by place of the choice, none where it is refused; `own_steps` the steps of the
-/// scene's own for which trajectories are comparable; `repeats` the timed runs of each.
+/// Plans the runs: `rates` are seconds of a step by index of the choice, none where it is refused; `own_steps` is the number of steps of the
+/// scene's own for which trajectories are comparable; `repeats` is the number of timed runs of each.
 pub(crate) fn plan(
     choices: &[Choice],
     rates: &[Option<f64>],
@@ -100,7 +100,7 @@ fn is_run(choice: &Choice, own: &Choice, scope: Scope) -> bool {
     match scope {
         Scope { every_cost: true, .. } => true,
         Scope { every_precision: true, .. } => cost || order && digits,
-        // One thing differs at most.
+        // At most one setting differs.
         _ => [order, digits, cost].into_iter().filter(|same| !same).count() < 2,
     }
 }

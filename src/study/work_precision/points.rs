@@ -7,9 +7,9 @@ use super::measures::Measure;
 use crate::frame::{Frame, Rows};
 use crate::statistics::median;
 
-/// Height of runs that broke, over the largest error that is drawn.
+/// Height of failed runs, relative to the largest error drawn.
 const ABOVE: f64 = 10.0;
-/// Configurations with a name of their own in a chart; all others are drawn alike.
+/// Configurations with their own name in a chart; all others share one style.
 const NAMED: usize = 4;
 /// A point of a chart of error over cost: chart, kind of series, name of the series, cost and error.
 type Drawn = (&'static str, &'static str, String, f64, f64);
@@ -31,7 +31,7 @@ pub(super) fn drawn(scenes: &Scenes) -> Frame {
             let points = points_of(own(), Measure::Position, |run| run.outcome.as_ref().ok()?.clocks);
             clocks.extend(points.map(|it| (configuration.label.clone(), it)));
         }
-        // A single search has nothing to be compared with.
+        // A single search has nothing to compare with.
         if searches.iter().all(|(search, _)| *search == searches[0].0) {
             searches.clear();
         }
@@ -52,7 +52,7 @@ pub(super) fn drawn(scenes: &Scenes) -> Frame {
         .frame("drawn", "Points of the charts: processor time, or clock periods, for a unit of time")
 }
 
-/// Cost and error of runs that came to their end, by rising cost.
+/// Cost and error of runs that finished, by rising cost.
 fn points_of<'d>(
     runs: impl Iterator<Item = &'d Run>,
     measure: Measure,
@@ -64,8 +64,8 @@ fn points_of<'d>(
     points.into_iter()
 }
 
-/// Error over cost of every scheme and precision with the scene's own search and execution. Below the error of the reference nothing is
-/// known. The scene's own configuration has a name, then those of the front, then the most accurate.
+/// Error over cost of every scheme and precision with the scene's own search and execution. Errors below that of the reference are omitted.
+/// The scene's own configuration has a name, then those of the front, then the most accurate.
 fn diagram(data: &WorkPrecision, chart: &'static str, measure: Measure) -> Vec<Drawn> {
     let floor = data.reference.floor.get(&measure).copied().unwrap_or(0.0);
     let shown = || data.runs.iter().filter(|run| data.of(run).is_primary);
@@ -116,7 +116,7 @@ fn diagram(data: &WorkPrecision, chart: &'static str, measure: Measure) -> Vec<D
     drawn
 }
 
-/// Distance of a disturbed start, and of half the step, over time.
+/// Distances of a disturbed start and of half the step over time.
 pub(super) fn growth(scenes: &Scenes) -> Frame {
     let all = scenes.iter().flat_map(|(name, data)| {
         let disturbed = format!("start disturbed by 1e-9 {}", data.unit);
@@ -134,7 +134,7 @@ pub(super) fn growth(scenes: &Scenes) -> Frame {
         .frame("growth", "Distance of trajectories over time, RMS")
 }
 
-/// Errors of the outcomes of a collision by step, and the processor time that a step of the configuration takes.
+/// Errors of the outcomes of a collision by step, with the processor time of a step.
 pub(super) fn outcomes(scenes: &Scenes) -> Frame {
     let of_a_step = |data: &WorkPrecision, label: &str| {
         let own = data.runs.iter().filter(|run| data.of(run).label == label);
@@ -156,7 +156,7 @@ pub(super) fn outcomes(scenes: &Scenes) -> Frame {
         .frame("outcomes", "Errors of the outcomes of a collision")
 }
 
-/// A number that a logarithmic axis can show.
+/// Returns a positive value, as logarithmic axes show no other.
 fn above_zero(value: f64) -> Option<f64> {
     Some(value).filter(|value| *value > 0.0)
 }

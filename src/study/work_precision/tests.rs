@@ -1,4 +1,4 @@
-//! Diagrams by a made clock: no result depends on how fast the machine is.
+//! Diagrams on a synthetic clock: no result depends on the speed of the machine.
 
 use super::{Effort, made, work_precision};
 use crate::model::machines;
@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use stripmine_physics::method::METHODS;
 use stripmine_physics::reported::{Class, Reported};
 
-/// Nanoseconds for each particle and step.
+/// Nanoseconds per particle and step.
 const NANOSECONDS: f64 = 20_000.0;
 
 fn subject(scene: &str, sets: &[&str]) -> Subject {
@@ -20,7 +20,7 @@ fn subject(scene: &str, sets: &[&str]) -> Subject {
     Subject::load(scene, &sets, METHODS).unwrap()
 }
 
-/// Scene of a text, with overrides.
+/// Loads a scene from its text, with overrides.
 fn written(text: &str, sets: &[&str]) -> Subject {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.toml");
@@ -32,7 +32,7 @@ fn effort(budget: f64) -> Effort {
     Effort { budget, repeats: 1, phases: 16, machine: None }
 }
 
-/// Frames by name.
+/// Measured frames by name.
 fn measured(subject: &Subject, effort: &Effort) -> Result<Value, StudyError> {
     let (watch, stop) = (Stopwatch::made(NANOSECONDS), AtomicBool::new(false));
     let trial = Trial { watch: &watch, stop: &stop };
@@ -44,11 +44,11 @@ fn rows<'d>(data: &'d Value, frame: &str) -> &'d Vec<Value> {
     data[frame].as_array().unwrap()
 }
 
-/// Two discs that are pressed together for the whole time: forces without a kink.
+/// Two discs pressed together for the whole time: forces without a kink.
 const PRESSED: &str = include_str!("../../../tests/pressed.toml");
 
-/// Positions converge as theory says; velocity Verlet by its own order, Gear's schemes as their start allows. Energy of discs that
-/// begin at rest converges with the orders of the schemes.
+/// Positions converge with the theoretical order: that of velocity Verlet itself, and that of Gear's schemes as their start allows. Energy of discs
+/// that start at rest converges with the orders of the schemes.
 #[test]
 fn orders_in_smooth_forces_are_those_of_theory() {
     let orders = |sets: &[&str], measure: &str| -> Vec<(String, f64, Option<f64>)> {
@@ -84,7 +84,7 @@ fn a_collision_errs_by_the_phase_of_its_step() {
     };
     let damped = orders(&[]);
     assert!(damped.len() == 4 && damped.iter().all(|spread| (spread - 1.0).abs() < 0.2), "{damped:?}");
-    // The first is velocity Verlet, which keeps an energy; Gear's schemes lose some of it in a smooth contact, too.
+    // The first is velocity Verlet, which conserves an energy; Gear's schemes lose some of it even in a smooth contact.
     let elastic = orders(&["law.normal_damping=0"]);
     assert!((elastic[0] - 2.5).abs() < 0.2, "{elastic:?}");
 }
@@ -106,7 +106,7 @@ fn clock_periods_are_those_of_programs() {
     assert!(rows(&data, "drawn").iter().any(|point| point["chart"] == "clocks"));
 }
 
-/// Discs that fall for a hundredth of a scene in which they lie on a floor at last: in the time that is compared nothing touches.
+/// Discs that fall for the first hundredth of a scene in which they finally rest on a floor: nothing touches in the compared time.
 const FALLING: &str = r#"format = 2
 units = "reduced"
 [method]
@@ -133,13 +133,13 @@ dt = 2e-4
 time = 200.0
 "#;
 
-/// A scene of which the compared time shows nothing gets no recommendation, neither for an error nor beside its own configuration.
+/// A scene with too few events in the compared time gets no recommendation, neither for an error nor relative to its own configuration.
 #[test]
 fn where_hardly_anything_happens_nothing_is_decided() {
     let data = measured(&written(FALLING, &[]), &effort(2.0)).unwrap();
     let scene = &data["scenes"][0];
     let why = scene["why_nothing_is_decided"].as_str().unwrap();
-    assert!(why.contains("contacts in the mean, fewer than 3"), "{why}");
+    assert!(why.contains("contacts on average, fewer than 3"), "{why}");
     assert!(data["references"][0]["in_that_time_a_particle_has"].as_f64().unwrap() < 3.0);
     assert!(scene["compared"].as_f64().unwrap() < 0.1 * 200.0);
     assert!(scene["as_accurate"] == "" && scene["its_cost_over_the_own_cost"].is_null(), "{scene}");
@@ -147,16 +147,16 @@ fn where_hardly_anything_happens_nothing_is_decided() {
     assert!(!wishes.is_empty());
     for wish in wishes {
         let said = wish["cheapest_configuration"].as_str().unwrap();
-        assert!(said.starts_with("not decided: in the time that is compared"), "{wish}");
+        assert!(said.starts_with("not decided: in the compared time"), "{wish}");
         assert!(wish["step"].is_null(), "{wish}");
     }
 }
 
-/// Trajectories of shaken grains part within a fiftieth of the scene, and those in a bath at once: both errors name a chart that answers.
+/// Trajectories of shaken grains diverge within a fiftieth of the scene, and those in a heat bath at once: both errors name a chart to use instead.
 #[test]
 fn scenes_whose_trajectories_part_at_once_are_refused() {
     for (scene, why) in
-        [("shaken-box", "part after a time of"), ("langevin-dense", "noise moves the particles")]
+        [("shaken-box", "diverge after a time of"), ("langevin-dense", "noise moves the particles")]
     {
         let error = measured(&subject(scene, &[]), &effort(2000.0)).err().unwrap();
         let said = error.to_string();
@@ -170,10 +170,10 @@ fn scenes_whose_trajectories_part_at_once_are_refused() {
     }
 }
 
-/// Runs that theory, a check or a warning speaks against are cheaper, and none of them is recommended or on a front.
+/// Runs with a warning are cheaper, and none of them is recommended or on a front.
 #[test]
 fn no_run_with_an_objection_is_recommended() {
-    // Near enough to meet at once, and so damped that every integrator errs by more than is warned of at sixteen times the step.
+    // Close enough to collide at once, and so damped that every integrator gives a warning at sixteen times the step.
     let near = ["particles.positions=[[3.0, 4.0], [4.05, 4.25]]", "run.time=0.3", "law.normal_damping=20"];
     let data = measured(&subject("two-discs", &near), &effort(6.0)).unwrap();
     assert_eq!(data["scenes"][0]["why_nothing_is_decided"], "");
@@ -189,7 +189,7 @@ fn no_run_with_an_objection_is_recommended() {
     let coarse: Vec<&Value> = runs.iter().filter(is_coarse).collect();
     assert!(coarse.iter().any(|run| run["position_rms"].as_f64().unwrap() < 3e-2), "{coarse:?}");
     assert!(coarse.iter().all(|run| !objection(run).is_empty()), "{coarse:?}");
-    assert!(runs.iter().any(|run| objection(run).contains("of theory")));
+    assert!(runs.iter().any(|run| objection(run).contains("theoretical limit")));
     let named: Vec<&Value> = rows(&data, "wishes").iter().filter(|wish| wish["step"].is_number()).collect();
     assert!(!named.is_empty(), "{data}");
     for wish in named {
@@ -209,8 +209,8 @@ fn no_run_with_an_objection_is_recommended() {
     }
 }
 
-/// Of runs that cost the same but for a tenth the scene's own configuration is named, or the first by the order of the settings: by a clock that has a step of every
-/// configuration take the same time, all of them tie.
+/// Among runs whose costs agree within a tenth the scene's own configuration is named, or the first in the order of the settings. On a clock in which
+/// a step of every configuration takes the same time, all of them tie.
 #[test]
 fn ties_go_to_the_scene_s_own_configuration() {
     let data = measured(&written(PRESSED, &[]), &effort(4.0)).unwrap();
@@ -234,7 +234,7 @@ fn ties_go_to_the_scene_s_own_configuration() {
     assert!(ties > 0);
 }
 
-/// A study that is interrupted keeps its finished runs, and comes out the same when it is resumed.
+/// An interrupted study keeps its finished runs, and gives the same result when resumed.
 #[test]
 fn an_interrupted_study_resumes() {
     let folder = tempfile::tempdir().unwrap();
@@ -255,7 +255,7 @@ fn an_interrupted_study_resumes() {
     let (all, again) = run(&AtomicBool::new(false), 2.0);
     assert!(all > kept, "{kept} of {all}");
     let all = [measured(&subject, &effort(2.0)), resumed, again].map(Result::unwrap);
-    // Recalled runs leave more of the made time for repeats, so that costs differ.
+    // Recalled runs leave more synthetic time for repeats, so costs differ.
     for frame in ["orders", "references", "errors", "growth"] {
         let [whole, resumed, again] = all.each_ref().map(|data| {
             let mut rows = rows(data, frame).clone();

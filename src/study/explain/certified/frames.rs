@@ -1,4 +1,4 @@
-//! Judged plans as frames.
+//! Frames of judged plans.
 
 use super::grid::Costs;
 use super::scenes::Class;
@@ -8,14 +8,14 @@ use crate::frame::{Cell, Frame, Rows};
 use crate::results::Made;
 use crate::statistics::{quantile, wilson};
 
-/// Factor within which time is to be foreseen.
+/// Largest factor between predicted and actual time that counts as correct.
 const TIME: f64 = 1.5;
-/// Configurations that plans are compared with, in the order of the baselines.
+/// Names of the baselines that plans are compared with, in order.
 const BASELINES: [&str; 3] = ["the scene's own values", "always lists", "f64 at the limit of stability"];
-/// Number of points of a curve, and the largest error drawn (in parts of the error asked for).
+/// Number of points of a curve, and the largest error drawn (in parts of the target error).
 const PARTS: (u32, f64) = (40, 2.0);
 
-/// The frames of judged plans.
+/// Returns the frames of judged plans.
 pub(crate) fn made(certified: &Certified) -> Made {
     let plans = &certified.plans;
     let frames =
@@ -28,7 +28,7 @@ impl Judged {
         self.outcome.as_ref().ok()
     }
 
-    /// The verdict, where there is one.
+    /// The verdict, if it is decided.
     fn decided(&self) -> Option<&Verdict> {
         self.carried()?.verdict.as_ref().filter(|verdict| verdict.is_decided)
     }
@@ -43,7 +43,7 @@ impl Judged {
     }
 }
 
-/// Runs of the plans of a class, or of all.
+/// Judged plans of one class, or of all.
 struct Of<'j> {
     name: &'static str,
     plans: Vec<&'j Judged>,
@@ -58,7 +58,7 @@ impl Of<'_> {
         self.plans.iter().filter_map(|it| it.decided()).map(count).sum()
     }
 
-    /// The share of the runs that are within the error, and its interval; none without runs.
+    /// Share of the runs within the error, with its interval; none without runs.
     fn share(&self) -> Option<[f64; 3]> {
         let runs = self.runs(|it| it.runs);
         let within = self.runs(|it| it.within);
@@ -67,7 +67,7 @@ impl Of<'_> {
     }
 }
 
-/// Runs within the error, and the causes of misses, of each class and of all.
+/// Runs within the error, and causes of misses, for each class and for all.
 fn within(plans: &[Judged]) -> Frame {
     let all = Of { name: "all", plans: plans.iter().collect() };
     let of_class = |class: Class| Of {
@@ -89,15 +89,15 @@ fn within(plans: &[Judged]) -> Frame {
         .count("missed by bias", |of| of.runs(|it| it.missed_by(Cause::Bias)))
         .count("missed by statistics", |of| of.runs(|it| it.missed_by(Cause::Statistics)))
         .count("broken", |of| of.runs(|it| it.broken))
-        .frame("within", "Runs within the error that was asked for")
+        .frame("within", "Runs within the target error")
 }
 
-/// The reason why a plan was refused or is undecided; else the cause of its misses.
+/// Reason why a plan was refused or is undecided; otherwise the cause of its misses.
 fn because(it: &Judged) -> String {
     match (&it.outcome, it.decided()) {
         (Err(why), _) => why.clone(),
         (Ok(Carried { reference: Err(why), .. }), _) => format!("no reference: {why}"),
-        (Ok(_), None) => "the bar of the reference is more than a third of the error".to_owned(),
+        (Ok(_), None) => "the error bar of the reference exceeds a third of the error".to_owned(),
         (Ok(_), Some(verdict)) if verdict.within + verdict.broken < verdict.runs => {
             verdict.cause.word().to_owned()
         }
@@ -134,10 +134,10 @@ fn table(plans: &[Judged]) -> Frame {
         .short("taken (s)", seconds(1))
         .number("trials (s)", 1, |it| it.trials)
         .text("plan", |it| it.carried().map_or(String::new(), |it| it.plan.clone()))
-        .frame("plans", "Plans, carried out")
+        .frame("plans", "Plans that were carried out")
 }
 
-/// A plan with its costs over the best of a grid.
+/// A plan with its costs relative to the best of a grid.
 type Compared<'j> = (&'j Judged, &'j Carried, &'j Costs);
 
 fn compared(plans: &[Judged]) -> Vec<Compared<'_>> {
@@ -167,7 +167,7 @@ fn costs(plans: &[Judged]) -> Frame {
         .frame("costs", "Wall time over that of the best of the grid, for the same error")
 }
 
-/// Share of runs whose error is at most a part of the one asked for.
+/// Share of runs whose error is at most a given part of the target.
 fn errors(plans: &[Judged]) -> Frame {
     let of_class = |class: Class| {
         let decided = plans.iter().filter(|it| it.class == class).filter_map(Judged::decided);
@@ -185,7 +185,7 @@ fn errors(plans: &[Judged]) -> Frame {
         .text("class", |(class, ..)| *class)
         .number("error over the one asked for", 3, |(_, part, _)| *part)
         .number("runs with at most that (%)", 2, |(.., share)| *share)
-        .frame("errors", "Errors of runs over those that were asked for")
+        .frame("errors", "Errors of runs relative to the target error")
 }
 
 /// Returns the share of plans over their largest cost relative to the best. A curve ends below 100 % where some plans do not reach the error.

@@ -1,4 +1,4 @@
-//! Wall time of a plan over that of the best of a grid: every integrator and precision, at the longest step and shorter ones, with the cheapest search.
+//! Wall time of a plan relative to the best of a grid: every integrator and precision, at several steps, with the cheapest search.
 
 use super::super::lengths::{Chance, SAMPLES};
 use super::super::recommended::Plan;
@@ -14,40 +14,40 @@ use stripmine_physics::method::{Decides, Prepared};
 use stripmine_physics::number::significant;
 use stripmine_physics::scene::Overrides;
 
-/// Steps in parts of the longest.
+/// Steps, in parts of the longest.
 const STEPS: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
-/// Longest step in multiples of the scene's own, where theory has no limit.
+/// Longest step where theory has no limit, in steps of the scene.
 const TIMES_OWN: f64 = 4.0;
-/// Part of the time in which searches are timed.
+/// Share of the time for timing the searches.
 const SEARCHES: f64 = 0.1;
-/// Factor on its share of the time after which a run of a kept quantity is given up.
+/// Factor on its share of the time after which a run of a conserved quantity is stopped.
 const LATE: f64 = 5.0;
-/// The first number of its starts.
+/// Number of the first start of the grid.
 const STARTS: usize = 20_000;
 
-/// A configuration at a step, as measured in one thread.
+/// A configuration at a step, as measured with one thread.
 #[derive(Clone, Debug)]
 struct Point {
     choice: Choice,
     step: Option<f64>,
-    /// Wall seconds of a unit of time, of a row, and of a run beside these.
+    /// Wall seconds of a unit of time, of a row, and of a run apart from these.
     cost: f64,
     row: f64,
     start: f64,
-    /// The mean less the reference, and the bar of both; or how far it went from what should be kept.
+    /// Difference from the reference mean and its error bar, or deviation of a conserved quantity.
     off: [f64; 2],
 }
 
-/// Wall times over that of the best of the grid.
+/// Wall times relative to the best of the grid.
 #[derive(Clone, Debug)]
 pub(crate) struct Costs {
     pub(crate) plan: f64,
-    /// Of its configuration and step, were they run for as long as the reference says; none where their bias is more than the error.
+    /// Cost of the plan's configuration and step, run for as long as the reference requires; none where their bias exceeds the error.
     pub(crate) choice: Option<f64>,
-    /// Of the scene's own values, of lists always, and of the scene's own integrator in f64 at its longest step; none where the error is not reached,
-    /// or the method has none.
+    /// Costs of the scene's own values, of neighbour lists always, and of the scene's own integrator in f64 at its longest step; none where the error
+    /// is not reached, or the method has no such configuration.
     pub(crate) baselines: [Option<f64>; 3],
-    /// The best of the grid, and its wall seconds.
+    /// Best configuration of the grid, and its wall seconds.
     pub(crate) best: String,
     pub seconds: f64,
 }
@@ -58,18 +58,18 @@ pub(crate) struct Grid<'g> {
     reference: Reference,
     chance: Chance,
     points: Vec<Point>,
-    /// Measured as the points of the grid are, in the order of the plans; none where the run broke.
+    /// Measurements of the plans, in their order; none where the run failed.
     plans: Vec<Option<Point>>,
-    /// The longest step of the scene's own integrator in f64 (time).
+    /// Longest step of the scene's own integrator in f64 (time).
     limit: Option<f64>,
-    /// Time by lists over time by the cheapest search; none without lists.
+    /// Time with neighbour lists relative to the cheapest search; none without lists.
     lists: Option<f64>,
-    /// Time in one thread over time in all of them.
+    /// Time with one thread relative to all threads.
     speedup: f64,
 }
 
 impl<'g> Grid<'g> {
-    /// Measures the grid, and plans, in about some wall seconds.
+    /// Measures the grid and the plans, in about `seconds` of wall time.
     pub(super) fn of(
         of: &'g Ensemble<'g>,
         reference: Reference,
@@ -118,7 +118,7 @@ impl<'g> Grid<'g> {
         })
     }
 
-    /// Costs of a plan of a number, by its runs, for an error; none where nothing reaches it or the plan was not measured.
+    /// Costs of a numbered plan for an error, with the bias of its runs; none where nothing reaches the error or the plan was not measured.
     pub(crate) fn costs(&self, number: usize, plan: &Plan, verdict: &Verdict, error: f64) -> Option<Costs> {
         let all: Vec<(&Point, f64)> = (self.points.iter())
             .filter_map(|point| Some((point, self.seconds(point, bias(point.off), error)?)))
@@ -146,7 +146,7 @@ impl<'g> Grid<'g> {
                 && is_near(point, self.limit)
         });
         let planned = self.plans[number].as_ref()?;
-        // Bias by the runs of the plan: they know it better than one of a share of the grid's time.
+        // The runs of the plan know the bias better than a run within a share of the grid's time.
         let known = match self.of.target.is_kept() {
             true => bias(planned.off),
             false => bias([verdict.bias.value * error, verdict.bias.bar * error]),
@@ -162,7 +162,7 @@ impl<'g> Grid<'g> {
         })
     }
 
-    /// Wall seconds of a plan as it is.
+    /// Wall seconds of a plan as stated.
     fn as_planned(&self, point: &Point, plan: &Plan) -> f64 {
         let rows = point.start + point.row * plan.rows;
         match plan.seeds {
@@ -174,7 +174,7 @@ impl<'g> Grid<'g> {
         }
     }
 
-    /// Wall seconds in which a configuration reaches an error, by the rules of plans; none where its bias is more.
+    /// Wall seconds in which a configuration reaches an error, by the rules of plans; none where its bias exceeds the error.
     fn seconds(&self, point: &Point, bias: f64, error: f64) -> Option<f64> {
         let left = Some(error - bias).filter(|left| *left > 0.0)?;
         let cores = rayon::current_num_threads() as f64;
@@ -206,14 +206,14 @@ fn bias([off, bar]: [f64; 2]) -> f64 {
     if off.abs() > bar { off.abs() } else { (off * off - 0.25 * bar * bar).max(0.0).sqrt() }
 }
 
-/// The configuration and its step.
+/// Label of the configuration and its step.
 fn in_words(point: &Point) -> String {
     let step = point.step.map(|step| format!(", dt {}", significant(step, 2)));
     point.choice.label() + &step.unwrap_or_default()
 }
 
 impl Ensemble<'_> {
-    /// A configuration with a step (time).
+    /// Overrides of a configuration with a step (time).
     fn at(&self, overrides: &Overrides, step: Option<f64>) -> Overrides {
         match self.case.entry.trials.zip(step) {
             Some((trials, step)) => overrides.clone().set(trials.step, step),
@@ -221,7 +221,7 @@ impl Ensemble<'_> {
         }
     }
 
-    /// The longest step of a configuration that theory allows (time).
+    /// Longest step of a configuration that theory allows (time).
     fn longest(&self, choice: &Choice) -> Option<f64> {
         let own = self.case.step()?;
         let prepared = self.case.prepared_with(&choice.overrides()).ok()?;
@@ -229,7 +229,7 @@ impl Ensemble<'_> {
         Some(limit.map_or(TIMES_OWN * own, |limit| OF_LIMIT * limit))
     }
 
-    /// Wall seconds of a unit of time in one thread.
+    /// Wall seconds of a unit of time with one thread.
     fn timed(&self, prepared: &Prepared, seconds: f64) -> Result<f64, String> {
         let pool = ThreadPoolBuilder::new().num_threads(1).build().map_err(|error| error.to_string())?;
         pool.install(|| self.trial.timed(prepared, seconds))
@@ -237,7 +237,7 @@ impl Ensemble<'_> {
             .map_err(|it| it.to_string())
     }
 
-    /// The cheapest search by the scene's own integrator, precision and step, and the time by lists over the time by it.
+    /// Returns the cheapest search with the scene's own integrator, precision and step, and the time with neighbour lists relative to it.
     fn cheapest_search(&self, all: &[Choice], seconds: f64) -> Result<(Choice, Option<f64>), String> {
         let own = &self.case.own;
         let is_alike = |it: &&Choice| it.agrees(own, Decides::Order) && it.agrees(own, Decides::Digits);
@@ -251,20 +251,20 @@ impl Ensemble<'_> {
             })
             .collect();
         timed.sort_by(|a, b| a.1.total_cmp(&b.1));
-        let (best, least) = timed.first().ok_or("no search runs the scene")?;
+        let (best, least) = timed.first().ok_or("no neighbour search can run the scene")?;
         let by_lists = |it: &&(&Choice, f64)| it.0.settings().any(|it| it == ("search", "neighbor-list"));
         let lists = timed.iter().find(by_lists).map(|(_, cost)| cost / least);
         Ok(((*best).clone(), lists))
     }
 
-    /// Time in one thread over time in all of them.
+    /// Time with one thread relative to all threads.
     fn speedup(&self, choice: &Choice, seconds: f64) -> Result<f64, String> {
         let prepared = self.case.prepared_with(&choice.overrides()).map_err(|errors| errors.to_string())?;
         let all = self.trial.timed(&prepared, 0.5 * seconds).map_err(|failure| failure.to_string())?;
         Ok(self.timed(&prepared, 0.5 * seconds)? / all.seconds)
     }
 
-    /// Measures a configuration in about some seconds.
+    /// Measures a configuration in about `seconds`.
     fn point(
         &self,
         choice: &Choice,
@@ -276,7 +276,9 @@ impl Ensemble<'_> {
     ) -> Result<Point, String> {
         let prepared = self.start(overrides, number)?;
         let span = match (self.target.is_kept(), self.asking.whole) {
-            (true, _) => Span::Time(self.case.duration().ok_or("it has no end")?, Some(LATE * seconds)),
+            (true, _) => {
+                Span::Time(self.case.duration().ok_or("the scene states no run time")?, Some(LATE * seconds))
+            }
             (_, Some(time)) => Span::Time(time, None),
             _ => Span::Seconds(seconds),
         };
@@ -297,7 +299,7 @@ impl Ensemble<'_> {
                     let next = self.start(overrides, number + STARTS * means.len())?;
                     means.push(self.sample(&next, span)?.mean_over(WHOLE));
                 }
-                let [mean, bar] = of_independent(&means).ok_or("there is one run")?;
+                let [mean, bar] = of_independent(&means).ok_or("only one run finished")?;
                 [mean - reference.known.mean, bar.hypot(reference.known.bar)]
             }
         };
@@ -322,8 +324,8 @@ mod tests {
         assert!((bias([0.3, 0.4]) - (0.09f64 - 0.04).sqrt()).abs() < 1e-15);
     }
 
-    /// By hand. The square of a bar is 16 in a unit of time, known exactly; the transient is 3, so that an error of 0.5 without bias takes 64 + 3, with a
-    /// bias of 0.1 100 + 3. A hundred threads' worth of speed leaves no plan of several runs cheaper.
+    /// By hand. The square of an error bar is 16 in a unit of time, known exactly; the transient is 3, so an error of 0.5 without bias takes 64 + 3,
+    /// with a bias of 0.1 100 + 3. The speed of a hundred threads makes no plan of several runs cheaper.
     #[test]
     fn costs_are_over_the_cheapest_that_reaches_the_error() {
         let case = Case::load("dense-gas", &["particles.count=100".to_owned()], METHODS).unwrap();
@@ -358,7 +360,7 @@ mod tests {
         let points = vec![
             point(&own, step, 0.1, [0.0, 0.0]),
             point(&own, 2.0 * step, 0.05, [0.1, 0.01]),
-            // Cheaper, and off by more than the error.
+            // Cheaper, with a bias above the error.
             point(&other, 4.0 * step, 0.01, [0.6, 0.1]),
         ];
         let [of_own, best] = [1.0 + 0.1 * 67.0, 1.0 + 0.05 * 103.0];
@@ -369,11 +371,11 @@ mod tests {
         };
         let found = costs(0.08, 0.0);
         assert!((found.seconds - best).abs() < 1e-12 && found.best.contains("dt"), "{found:?}");
-        // As planned for a time of 100, more than the 67 that it takes.
+        // Planned for a time of 100, more than the 67 that are needed.
         assert!((found.plan - 9.0 / best).abs() < 1e-12, "{found:?}");
         let [by_own, lists, at_limit] = found.baselines.map(Option::unwrap);
         assert!((by_own - of_own / best).abs() < 1e-12 && (at_limit - 1.0).abs() < 1e-12 && lists == 1.5);
-        // A bias of 0.2 asks for a time of 16/0.09 = 177.8, more than was planned.
+        // A bias of 0.2 needs a time of 16/0.09 = 177.8, more than was planned.
         let biased = costs(0.08, 0.2);
         assert!((biased.plan - (1.0 + 0.08 * (16.0 / 0.09 + 3.0)) / best).abs() < 1e-9, "{biased:?}");
         // Nothing reaches an error below every bias.

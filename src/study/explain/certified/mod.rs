@@ -1,4 +1,4 @@
-//! Plans, carried out from many starts and judged: by the error that was asked for, the time foreseen, and the cost of the best of a grid.
+//! Tests of plans by carrying them out from many starts. Each is judged by the target error, the predicted time, and the cost of the best of a grid.
 
 mod frames;
 mod grid;
@@ -27,38 +27,38 @@ use stripmine_physics::number::significant;
 use stripmine_physics::scene::Width;
 use verdict::Verdict;
 
-/// Effort of a judgement, in wall seconds but for the runs.
+/// Effort of a test: wall seconds, and the number of runs.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Effort {
-    /// Trials of a plan; and where these give none, for scenes whose trials may be made again.
+    /// Time of the trials of a plan; and of repeated ones where these give no plan, for scenes that allow it.
     pub trials: [f64; 2],
-    /// The most that a plan may take: a longer one is refused.
+    /// Limit of a plan: longer ones are refused.
     pub limit: f64,
-    /// Estimates by each plan, from starts of their own.
+    /// Number of estimates by each plan, each from its own start.
     pub(crate) estimates: usize,
-    /// The most that a reference takes.
+    /// Longest time of a reference.
     pub(crate) reference: f64,
     pub grid: f64,
 }
 
-/// Plans, judged.
+/// Judged plans.
 #[derive(Clone, Debug)]
 pub(crate) struct Certified {
     plans: Vec<Judged>,
     effort: Effort,
 }
 
-/// A plan, judged.
+/// A judged plan.
 #[derive(Clone, Debug)]
 struct Judged {
     class: Class,
     scene: String,
     quantity: &'static str,
-    /// The error as it was asked for.
+    /// Target error, as requested.
     asked: &'static str,
     /// Wall seconds of its trials.
     trials: f64,
-    /// The plan's runs, or the reason why there is no plan.
+    /// Runs of the plan, or the reason why there is no plan.
     outcome: Result<Carried, String>,
 }
 
@@ -67,14 +67,14 @@ struct Judged {
 struct Carried {
     /// The plan in a line.
     plan: String,
-    /// The error that was asked for, in the quantity's unit.
+    /// Target error, in the quantity's unit.
     error: f64,
     reference: Result<Reference, String>,
     /// Comparison with the reference; none without one.
     verdict: Option<Verdict>,
-    /// Wall seconds: foreseen, and taken by the first estimate.
+    /// Wall seconds: predicted, and taken by the first estimate.
     seconds: [f64; 2],
-    /// Costs over the best of the grid; none where the plan was not compared.
+    /// Costs relative to the best of the grid; none where the plan was not compared.
     costs: Option<Costs>,
 }
 
@@ -90,7 +90,7 @@ struct Planned {
 /// Judges plans for some scenes.
 ///
 /// # Errors
-/// [`StudyError`] if a scene is bad, or there are no threads.
+/// [`StudyError`] if a scene is invalid, or threads cannot be started.
 pub(crate) fn certified(
     asked: &[Asked],
     effort: Effort,
@@ -162,7 +162,7 @@ fn judged(
     Ok(all.collect())
 }
 
-/// A plan by trials of some seconds.
+/// Makes a plan from trials of some seconds.
 fn by_trials(case: &Case, target: &Target, seconds: f64, trial: Trial<'_>) -> Result<Plan, String> {
     let found = seen(case, target, seconds, trial, (&|_| {}, &Journal::none()))
         .map_err(|error| first_line(&error.to_string()))?;
@@ -202,7 +202,7 @@ fn carried_out(
     }
     let (true, Ok(reference)) = (is_compared, reference) else { return Ok(all) };
     let only: Vec<&Plan> = plans.iter().map(|(.., plan)| *plan).collect();
-    // A scene that breaks at its own step has no grid.
+    // A scene that fails at its own step has no grid.
     if let Ok(grid) = Grid::of(ensemble, reference, &only, effort.grid) {
         for (number, ((_, carried), plan)) in all.iter_mut().zip(only).enumerate() {
             let verdict = carried.verdict.as_ref();

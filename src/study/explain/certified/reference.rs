@@ -1,43 +1,43 @@
-//! The true mean of a scene, by runs of its reference configuration at a short step: nothing of the planner is in it.
+//! Reference mean of a scene, by runs of its reference configuration at a short step, independent of the planner.
 
 use super::super::in_unit;
 use super::runs::{Ensemble, WHOLE, side_by_side};
 use crate::study::trial::{Known, Sample, Span};
 use stripmine_physics::scene::{Overrides, Width};
 
-/// The step in parts of the scene's own.
+/// Step of the reference, in parts of the scene's own.
 const STEP: f64 = 0.25;
-/// A reference that breaks or is warned of is made again with half of the step, so often.
+/// Most halvings of the step of a reference that fails or raises a warning.
 const HALVINGS: usize = 2;
-/// The bar that is enough, in parts of the error.
+/// Largest error bar of a reference, in parts of the target error.
 const ENOUGH: f64 = 1.0 / 3.0;
-/// Part of the time after which the rest is foreseen.
+/// Share of the time after which the rest is predicted.
 const SCOUT: f64 = 0.2;
-/// Runs are longer by so much than foreseen: bars are known roughly.
+/// Factor on the predicted length of runs: error bars are known roughly.
 const LONGER: f64 = 1.3;
-/// Whole runs at least.
+/// Fewest whole runs.
 const FEWEST: usize = 4;
-/// The first number of its starts: estimates have those before.
+/// Number of the first start of the reference: estimates use those before.
 const STARTS: usize = 10_000;
 
-/// The true mean.
+/// The reference mean.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reference {
-    /// The mean of all its runs; exactly 0 for the change of what should be kept.
+    /// Mean of all its runs; exactly 0 for the deviation of a conserved quantity.
     pub known: Known,
     /// Its step (time); none where the method takes none.
     pub step: Option<f64>,
 }
 
 impl Reference {
-    /// The mean, and half the width of its interval of 95 %.
+    /// The mean, and half the width of its 95 % interval.
     pub(super) fn mean(&self) -> [f64; 2] {
         [self.known.mean, self.known.bar]
     }
 }
 
 impl Ensemble<'_> {
-    /// The true mean, to a third of an error where some wall seconds are enough for that.
+    /// Measures the reference mean to a third of an error, or as well as `seconds` of wall time allow.
     pub(crate) fn reference(&self, error: Width, seconds: f64) -> Result<Reference, String> {
         if self.target.is_kept() {
             return Ok(Reference { known: Known::exactly(0.0), step: None });
@@ -46,7 +46,7 @@ impl Ensemble<'_> {
         let mut halvings = if step.is_some() { HALVINGS } else { 0 };
         loop {
             let overrides = self.reference_at(step);
-            // The last one is as it is, warnings and all.
+            // The last attempt is accepted, warnings included.
             match self.mean_by(&overrides, error, seconds, halvings == 0) {
                 Ok(known) => return Ok(Reference { known, step }),
                 Err(why) if halvings == 0 => return Err(why),
@@ -55,7 +55,7 @@ impl Ensemble<'_> {
         }
     }
 
-    /// The overrides of the reference at a step (time).
+    /// Overrides of the reference at a step (time).
     fn reference_at(&self, step: Option<f64>) -> Overrides {
         let Some((trials, step)) = self.case.entry.trials.zip(step) else { return Overrides::new() };
         self.case.own.with(trials.references[0]).overrides().set(trials.step, step)
@@ -83,7 +83,7 @@ impl Ensemble<'_> {
             for sample in more.map_err(|error| error.to_string())? {
                 let sample = sample?;
                 if !bears_warnings && !sample.warnings.is_empty() {
-                    return Err(format!("warned of: {}", sample.warned()));
+                    return Err(format!("warning: {}", sample.warned()));
                 }
                 samples.push(sample);
             }
@@ -96,7 +96,7 @@ impl Ensemble<'_> {
                 None => joined(&samples.iter().filter_map(Sample::known).collect::<Vec<_>>()),
             };
             let excess = |known: &Known| (known.bar / (ENOUGH * in_unit(error, known.mean))).powi(2);
-            // The square of the bar falls with the time.
+            // The square of the error bar is inversely proportional to the time.
             let needed = known.as_ref().map_or(spent, |known| (LONGER * excess(known) - 1.0) * spent);
             span = needed.min(seconds - spent);
             let is_whole_enough = self.asking.whole.is_none() || samples.len() >= FEWEST;
@@ -109,8 +109,8 @@ impl Ensemble<'_> {
     }
 }
 
-/// The mean over independent runs, each with the weight of the time that it is over. Where they scatter by more than their bars, the bar is larger
-/// by Birge's ratio.
+/// Mean over independent runs, each weighted by its time. Where they scatter by more than their error bars, the error bar is enlarged by Birge's
+/// ratio.
 pub(super) fn joined(runs: &[Known]) -> Option<Known> {
     let first = runs.first()?;
     if runs.iter().any(|run| run.bar == 0.0) {
@@ -120,7 +120,7 @@ pub(super) fn joined(runs: &[Known]) -> Option<Known> {
     let sum = |of: &dyn Fn(&Known, f64) -> f64| runs.iter().map(|run| of(run, run.span / all)).sum::<f64>();
     let mean = sum(&|run, weight| weight * run.mean);
     let bar = sum(&|run, weight| (weight * run.bar).powi(2)).sqrt();
-    // Bars are about two standard errors.
+    // Error bars are about two standard errors.
     let chi_square = sum(&|run, _| (2.0 * (run.mean - mean) / run.bar).powi(2));
     let ratio = (chi_square / (runs.len() as f64 - 1.0).max(1.0)).sqrt().max(1.0);
     Some(Known {
@@ -155,7 +155,7 @@ mod tests {
         }
     }
 
-    /// By hand: weights 1/4 and 3/4, bar √(0.25² 0.4² + 0.75² 0.2²) = 0.18028; runs two bars apart have χ² = 4 of one degree of freedom.
+    /// By hand: weights 1/4 and 3/4, error bar √(0.25² 0.4² + 0.75² 0.2²) = 0.18028; runs two error bars apart have χ² = 4 of one degree of freedom.
     #[test]
     fn runs_are_joined_by_their_time() {
         let known = joined(&[run(1.0, 0.4, 10.0), run(1.2, 0.2, 30.0)]).unwrap();
@@ -165,7 +165,7 @@ mod tests {
         assert_eq!((known.transient, known.freedoms, known.span), (10.0, 10.0, 40.0));
         let apart = joined(&[run(0.0, 0.1, 1.0), run(0.2, 0.1, 1.0)]).unwrap();
         assert!((apart.mean - 0.1).abs() < 1e-12);
-        // Each is one bar, two standard errors, from the mean: χ² = 8.
+        // Each is one error bar, two standard errors, from the mean: χ² = 8.
         assert!((apart.bar - 0.1 / 2f64.sqrt() * 8f64.sqrt()).abs() < 1e-12, "{apart:?}");
         assert!(joined(&[]).is_none());
     }

@@ -1,4 +1,4 @@
-//! Runs of a scene from starts of their own: side by side, one thread each.
+//! Runs of a scene from independent starts: side by side, with one thread each.
 
 use super::super::Target;
 use super::super::recommended::Plan;
@@ -13,19 +13,19 @@ use stripmine_physics::averages::Outcome;
 use stripmine_physics::method::Prepared;
 use stripmine_physics::scene::{Overrides, SEED};
 
-/// A run is ended where it takes this many times as long as a plan may.
+/// Factor on the limit of a plan after which a run is stopped.
 const LATE: f64 = 5.0;
-/// A whole run, from one time to another (time).
+/// Window of a whole run, from one time to another (time).
 pub(crate) const WHOLE: [f64; 2] = [0.0, f64::INFINITY];
-/// Seeds from the scene's own on that trials may have used.
+/// Number of seeds, from the scene's own on, that trials may have used.
 const OF_TRIALS: u64 = 1000;
 
 /// Mean that a plan estimates: its runs, and the part of each run that is averaged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Asking {
-    /// The scene's own time, where the mean is that over whole runs (time).
+    /// Time of a whole run, where the mean is taken over whole runs (time).
     pub whole: Option<f64>,
-    /// Set where the mean is that of the scene's own start: another seed has another mean.
+    /// Set where the mean depends on the scene's own start: another seed has another mean.
     pub(crate) is_of_own_start: bool,
 }
 
@@ -44,7 +44,7 @@ pub(crate) struct Ensemble<'e> {
 }
 
 impl Ensemble<'_> {
-    /// The scene from a start of a number: another seed, or, without seeds, particles displaced by next to nothing.
+    /// Prepares the scene from a numbered start: another seed, or, without seeds, slightly displaced particles.
     pub(super) fn start(&self, overrides: &Overrides, number: usize) -> Result<Prepared, String> {
         let prepared = |overrides: &Overrides| {
             self.case.prepared_with(overrides).map_err(|errors| first_line(&errors.to_string()))
@@ -61,7 +61,7 @@ impl Ensemble<'_> {
         }
     }
 
-    /// A run that comes to the end of its span.
+    /// Runs to the end of a span and returns the sample.
     pub(crate) fn sample(&self, prepared: &Prepared, span: Span) -> Result<Sample, String> {
         let observed = (self.case.entry.quantities, self.target.place);
         let sample = self.trial.sample(prepared, observed, span);
@@ -72,7 +72,7 @@ impl Ensemble<'_> {
         }
     }
 
-    /// The result of a run: its mean, or how far it went from the first value of what should be kept.
+    /// Result of a run: its mean, or the deviation of a conserved quantity.
     pub(super) fn value(&self, sample: &Sample) -> Result<f64, String> {
         match sample.outcome {
             Outcome::Kept { farthest, .. } => Ok(farthest),
@@ -81,14 +81,14 @@ impl Ensemble<'_> {
         }
     }
 
-    /// A plan carried out from starts that no other number has, seeds side by side where it is alone, one after the other where it is not: the mean
-    /// of all seeds, and wall seconds.
+    /// Carries out a plan from starts that no other number uses, and returns the mean of all seeds and the wall seconds. The seeds run side by side
+    /// if the plan is alone, otherwise one after the other.
     fn carried_out(&self, plan: &Plan, number: usize, is_alone: bool) -> Result<[f64; 2], String> {
         let seeds = plan.seeds as usize;
         let starts = (0..seeds).map(|seed| self.start(&plan.overrides, number * seeds + seed));
         let starts: Vec<Prepared> = starts.collect::<Result<_, _>>()?;
         let most = LATE * self.target.limit;
-        // Of what is kept every look counts.
+        // Every sample of a conserved quantity counts.
         let span = if self.target.is_kept() { Span::Time } else { Span::Planned };
         let one = |at: usize| self.value(&self.sample(&starts[at], span(plan.time, Some(most)))?);
         let begun = self.trial.watch.now();
@@ -101,10 +101,11 @@ impl Ensemble<'_> {
         Ok([values.iter().sum::<f64>() / seeds as f64, seconds])
     }
 
-    /// Estimates by a plan, each with starts of its own: values, and the wall seconds of the first, which is alone and has all threads.
+    /// Makes estimates with a plan, each from its own starts. Returns the values, and the wall seconds of the first, which runs alone with all
+    /// threads.
     ///
     /// # Errors
-    /// [`ThreadPoolBuildError`] if there are no threads.
+    /// [`ThreadPoolBuildError`] if threads cannot be started.
     pub(crate) fn estimates(
         &self,
         plan: &Plan,
@@ -118,7 +119,7 @@ impl Ensemble<'_> {
     }
 }
 
-/// Does some work for each number, on all cores, one thread each: results in order.
+/// Computes a result for each number, on all cores with one thread each, and returns them in order.
 pub(crate) fn side_by_side<T: Send>(
     count: usize,
     work: impl Fn(usize) -> T + Sync,

@@ -1,4 +1,4 @@
-//! Scenes that plans are judged by. No constant of the planner was fitted on them.
+//! Scenes that plans are tested with. No constant of the planner was fitted to them.
 
 use crate::study::{Case, StudyError};
 use stripmine_physics::method::METHODS;
@@ -6,23 +6,21 @@ use stripmine_physics::method::METHODS;
 /// Kind of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Class {
-    /// Grains that gravity or a wall drives.
+    /// Grains driven by gravity or a wall.
     Driven,
-    /// Soft discs without a drive, elastic and not.
+    /// Soft discs without a drive, elastic or not.
     Granular,
     HardDiscs,
-    /// Particles in a bath.
+    /// Particles in a heat bath.
     Bath,
     /// Bodies that attract each other.
     Bodies,
 }
 
 impl Class {
-    /// Every class.
     pub(crate) const ALL: [Class; 5] =
         [Class::Driven, Class::Granular, Class::HardDiscs, Class::Bath, Class::Bodies];
 
-    /// The class for a reader.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Class::Driven => "driven granular",
@@ -34,30 +32,28 @@ impl Class {
     }
 }
 
-/// A scene, a quantity and the errors that are asked for, each of them a plan.
+/// A scene, a quantity and the target errors, each of which is a plan.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Asked {
-    /// Kind of the scene.
     pub(crate) class: Class,
-    /// The preset; or the name of a scene with its text.
+    /// Name of the preset, or of a scene with its text.
     preset: &'static str,
     text: Option<&'static str>,
-    /// Differences from it.
     overrides: &'static [&'static str],
     pub quantity: &'static str,
-    /// Errors of its mean, or of its value where it should be kept.
+    /// Target errors of the mean, or of the value of a conserved quantity.
     pub(crate) errors: &'static [&'static str],
     /// Set where plans are compared with the best of a grid.
     pub(crate) is_compared: bool,
-    /// Set where trials are made again for longer if they give no plan.
+    /// Set where trials are repeated for longer if they give no plan.
     pub(crate) is_patient: bool,
 }
 
 impl Asked {
-    /// The scene.
+    /// Loads the scene.
     ///
     /// # Errors
-    /// [`StudyError`] if it is bad.
+    /// [`StudyError`] if it is invalid.
     pub(crate) fn load(&self) -> Result<Case, StudyError> {
         let overrides: Vec<String> = self.overrides.iter().map(|&text| text.to_owned()).collect();
         Ok(match self.text {
@@ -91,7 +87,7 @@ const fn ask(
 
 use Class::{Bath, Bodies, Driven, Granular, HardDiscs};
 
-/// Grains that fall through a funnel, out at the lower end of the box and in again at its upper one: the gallery's hopper with few grains.
+/// Grains that fall through a funnel, leave at the lower end of the box and return at its upper one: the gallery's hopper with few grains.
 const HOPPER: &str = include_str!("hopper.toml");
 /// The gallery's chute.
 const CHUTE: &str = include_str!("../../../../docs/gallery/chute.toml");
@@ -107,7 +103,7 @@ const THIN_PIPE: &[&str] = &["domain.sides=[0.405, 0.088]"];
 /// Without density waves.
 const CALM_PIPE: &[&str] = &["domain.sides=[0.405, 0.088]", "law.normal_damping=100.0"];
 const SHAKEN: &[&str] = &["domain.sides=[0.25, 0.8]", "particles.count=50"];
-/// Layers on a floor that vibrates fast and not far.
+/// Layers on a floor that vibrates fast with a small amplitude.
 const LAYERS: &[&str] = &[
     "domain.sides=[0.25, 0.8]",
     "particles.count=50",
@@ -115,7 +111,7 @@ const LAYERS: &[&str] = &[
     "particles.wall_spacing=0.019",
     "particles.wall_frequency=20.0",
 ];
-/// Layers that a floor shears to and fro.
+/// Layers sheared by an oscillating floor.
 const SHEARED: &[&str] =
     &["domain.sides=[0.25, 0.8]", "particles.count=50", "particles.wall_amplitude=[0.0075, 0.0]"];
 
@@ -147,7 +143,7 @@ pub(crate) const SCENES: &[Asked] = &[
     ask(Granular, "dense-gas", &["particles.temperature=0.0025"], "contacts", &["2%"]),
     ask(Granular, "dense-gas", &[], "balance_error", &["1e-4"]),
     ask(Granular, "dense-gas", &["particles.count=100"], "balance_error", &["1e-6"]),
-    // A gas that cools: its mean is that over the whole run.
+    // A cooling gas: its mean is taken over the whole run.
     ask(
         Granular,
         "dense-gas",
@@ -239,7 +235,7 @@ pub(crate) const SCENES: &[Asked] = &[
     ask(Bodies, "two-clusters", &[], "balance_error", &["1e-3"]),
 ];
 
-/// Scenes that take hardly any time.
+/// Scenes that take little time.
 pub(crate) const QUICK: &[Asked] = &[
     ask(Driven, "shaken-box", SHAKEN, "gravitational", &["20%"]).compared(),
     ask(Bath, "langevin-free", &["particles.count=100"], "temperature", &["5%"]),

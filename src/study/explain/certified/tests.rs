@@ -1,4 +1,4 @@
-//! Judged plans, made up and carried out.
+//! Judged plans, synthetic and carried out.
 
 use super::grid::Costs;
 use super::runs::side_by_side;
@@ -69,7 +69,7 @@ fn runs_and_plans_are_counted_once() {
     }
 }
 
-/// Free particles in a bath have its temperature, 1, at any step of BAOAB. Time is made of work.
+/// Free particles in a heat bath have its temperature, 1, at any step of BAOAB. Time is synthetic.
 #[test]
 fn runs_and_reference_have_the_temperature_of_the_bath() {
     let sets = ["particles.count=200".to_owned()];
@@ -88,7 +88,7 @@ fn runs_and_reference_have_the_temperature_of_the_bath() {
     let verdict = Verdict::of(&runs, reference.mean(), 0.06);
     assert!(verdict.is_decided && verdict.within >= 10 && verdict.broken == 0, "{runs:?}");
     assert!(seconds > 0.0);
-    // Each has a start of its own, and the first is none of the trials'.
+    // Each estimate has its own start, and the first is not one of the trials'.
     let mut values: Vec<f64> = runs.into_iter().flatten().collect();
     values.sort_by(f64::total_cmp);
     assert!(values.windows(2).all(|pair| pair[0] < pair[1]), "{values:?}");

@@ -1,23 +1,21 @@
-//! Runs of a plan held against the error that was asked for, and the cause of each miss.
+//! Comparison of the runs of a plan with the target error, and the cause of each miss.
 
 use crate::statistics::{Mean, Spread};
 
-/// A reference whose bar is more than this part of the error decides nothing.
+/// Largest error bar of a reference, in parts of the target error, that allows a decision.
 const DECIDES: f64 = 1.0 / 3.0;
-/// Misses are due to bias where the mean of all runs is off by more than this part of the error, else to statistics.
+/// Mean error of all runs, in parts of the target error, above which misses are due to bias; otherwise they are due to statistics.
 const BIASED: f64 = 0.5;
 
-/// The cause of the misses of a plan.
+/// Cause of the misses of a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Cause {
-    /// The mean of all runs is off.
+    /// The mean of all runs is biased.
     Bias,
-    /// Runs scatter.
     Statistics,
 }
 
 impl Cause {
-    /// The cause in a word.
     pub(super) fn word(self) -> &'static str {
         match self {
             Cause::Bias => "bias",
@@ -26,28 +24,28 @@ impl Cause {
     }
 }
 
-/// Runs of a plan, judged.
+/// Judged runs of a plan.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Verdict {
     /// False where the reference is not known well enough.
     pub(crate) is_decided: bool,
     pub runs: usize,
-    /// Errors of those that have a mean, over the error asked for.
+    /// Errors of the runs that have a mean, in parts of the target error.
     pub(crate) errors: Vec<f64>,
-    /// Runs within the error.
+    /// Number of runs within the error.
     pub within: usize,
-    /// Those that broke or have no mean; they are misses.
+    /// Number of runs that failed or have no mean; they are misses.
     pub(crate) broken: usize,
-    /// The cause of the other misses.
+    /// Cause of the other misses.
     pub(crate) cause: Cause,
-    /// The mean of the runs less the reference, with the bar of both, over the error.
+    /// Mean of the runs less the reference, with the combined error bar, in parts of the target error.
     pub(crate) bias: Mean,
-    /// Standard deviation of the runs over the error; none of fewer than two.
+    /// Standard deviation of the runs in parts of the target error; none for fewer than two.
     pub(crate) scatter: Option<f64>,
 }
 
 impl Verdict {
-    /// Judges runs by a reference and its bar, and an error, all in one unit.
+    /// Judges runs by a reference and its error bar, and a target error, all in one unit.
     pub(super) fn of(runs: &[Result<f64, String>], [reference, bar]: [f64; 2], error: f64) -> Verdict {
         let off: Vec<f64> = runs.iter().flatten().map(|value| (value - reference) / error).collect();
         let mean = Mean::of(&off);
@@ -64,7 +62,7 @@ impl Verdict {
         }
     }
 
-    /// Runs that are off by more than the error, for a cause.
+    /// Number of runs outside the error, for a cause.
     pub(crate) fn missed_by(&self, cause: Cause) -> usize {
         if cause == self.cause { self.runs - self.broken - self.within } else { 0 }
     }
@@ -74,20 +72,20 @@ impl Verdict {
 mod tests {
     use super::*;
 
-    /// By hand, for a reference of 10 and an error of 2: runs, bar of the reference, and the number within, missed by bias, missed by statistics, broken;
-    /// none where nothing is decided.
+    /// By hand, for a reference of 10 and an error of 2: runs, error bar of the reference, and the number within, missed by bias, missed by
+    /// statistics, failed; none where nothing is decided.
     type Case = (&'static [f64], usize, f64, Option<[usize; 4]>);
 
     #[test]
     fn misses_have_a_cause() {
         let cases: [Case; 7] = [
             (&[10.0, 11.9, 8.1, 12.0], 0, 0.5, Some([4, 0, 0, 0])),
-            // The mean is off by 1.25, more than half of the error.
+            // The bias is 1.25, more than half of the error.
             (&[12.5, 11.0, 10.5, 11.0], 0, 0.5, Some([3, 1, 0, 0])),
             (&[12.5, 7.5, 10.0, 10.0], 0, 0.5, Some([2, 0, 2, 0])),
             (&[7.0, 7.0, 7.0], 0, 0.0, Some([0, 3, 0, 0])),
             (&[10.0, 12.5], 2, 0.5, Some([1, 1, 0, 2])),
-            // Bars of a third of the error, and beyond.
+            // Error bars of a third of the error, and above.
             (&[10.0, 10.0], 0, 2.0 / 3.0, Some([2, 0, 0, 0])),
             (&[10.0, 10.0], 0, 0.7, None),
         ];
@@ -102,7 +100,8 @@ mod tests {
         }
     }
 
-    /// By hand: 12 and 14 are 1 and 2 errors off; their standard deviation is 1/√2 of an error, the bar of their mean t(1) = 12.706 halves of one.
+    /// By hand: 12 and 14 have errors of 1 and 2 targets; their standard deviation is 1/√2 of a target, the error bar of their mean t(1) = 12.706
+    /// halves of one.
     #[test]
     fn bias_and_scatter_are_parts_of_the_error() {
         let verdict = Verdict::of(&[Ok(12.0), Ok(14.0)], [10.0, 0.4], 2.0);
