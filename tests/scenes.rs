@@ -505,7 +505,7 @@ fn open_sides_that_hold_nothing_back_are_warned_of() {
         let said = String::from_utf8_lossy(&output.stderr);
         assert!(output.status.success(), "{arguments:?}: {said}");
         assert_eq!(
-            said.contains("domain.periodic: sides that are not periodic hold nothing back"),
+            said.contains("domain.periodic: sides that are not periodic do not confine discs"),
             is_warned,
             "{said}"
         );
