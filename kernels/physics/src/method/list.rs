@@ -87,9 +87,7 @@ fn not_there(prepared: &Prepared) -> Option<String> {
             && prepared.domain.periodic() != [false; 2]
             && !prepared.model.follows_crossings() =>
         {
-            Some(
-                "needs discs tracked across periodic sides: this method does not count their crossings",
-            )
+            Some("needs discs tracked across periodic sides: this method does not count their crossings")
         }
         _ => None,
     };

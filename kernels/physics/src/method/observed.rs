@@ -75,9 +75,7 @@ const fn is_same(one: &str, other: &str) -> bool {
 /// # Errors
 /// [`UnknownName`] if no quantity has this name.
 pub fn find(quantities: &[Quantity], name: &str) -> Result<usize, UnknownName> {
-    let unknown = || {
-        UnknownName::new("quantity", name, quantities.iter().map(|quantity| quantity.name))
-    };
+    let unknown = || UnknownName::new("quantity", name, quantities.iter().map(|quantity| quantity.name));
     quantities.iter().position(|quantity| quantity.name == name).ok_or_else(unknown)
 }
 

@@ -94,9 +94,7 @@ impl Clock {
         let Clock { steps, time, events } = *self;
         let expected = steps as f64 * dt;
         if steps > MOST || time != expected {
-            return Err(format!(
-                "the time after {steps} steps of {dt:?} is {time:?}, not {expected:?}"
-            ));
+            return Err(format!("the time after {steps} steps of {dt:?} is {time:?}, not {expected:?}"));
         }
         if events > 0 {
             return Err(format!("it counts {events} events, but this method has none"));

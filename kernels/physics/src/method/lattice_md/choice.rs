@@ -84,7 +84,9 @@ pub(super) fn searches(scene: &Scene, domain: &Domain, particles: &Particles) ->
     let (packing_fraction, discs) = (area / (domain.area()), particles.len());
     let crossing = crossing(scene.machine.precision, discs);
     let on_lattice = choice(By::Lattice, {
-        format!("the packing fraction {packing_fraction:.3} is above {crossing:.3}, where lists are equally fast")
+        format!(
+            "the packing fraction {packing_fraction:.3} is above {crossing:.3}, where lists are equally fast"
+        )
     });
     let by_lists = choice(By::NeighborList, {
         format!(

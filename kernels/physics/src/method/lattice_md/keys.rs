@@ -209,8 +209,7 @@ fn search_and_engine(values: &Values) -> Option<SceneError> {
             );
         }
         if is(&ON_CONFLICT, "resolve") {
-            let message =
-                "BP93's programs hold one disc a cell: only the fast engine resolves conflicts";
+            let message = "BP93's programs hold one disc a cell: only the fast engine resolves conflicts";
             return Some(
                 refused(&ON_CONFLICT, message).expecting("engine = \"fast\", and no key of programs"),
             );

@@ -188,7 +188,8 @@ fn numbered(document: &Document, particles: &Particles) -> Option<SceneError> {
     let Scene { search, machine, .. } = &document.scene;
     let listed = machine.is_fast() && search.by != By::Lattice;
     (listed && particles.len() > MOST).then(|| {
-        let message = format!("{} discs are too many: sectors and fast lists can number {MOST}", particles.len());
+        let message =
+            format!("{} discs are too many: sectors and fast lists can number {MOST}", particles.len());
         document
             .values
             .spot(&SEARCH)

@@ -295,8 +295,7 @@ pub(super) fn warnings(
     depth_warnings(scene, domain, particles, estimates, &mut warn);
     let [gx, gy] = scene.domain.gravity;
     if (gx != 0.0 || gy != 0.0) && particles.grain_count() == particles.len() {
-        let why =
-            "there is gravity but there are no walls: discs fall forever, or out of the box".to_owned();
+        let why = "there is gravity but there are no walls: discs fall forever, or out of the box".to_owned();
         warn(
             "no walls",
             f64::INFINITY,

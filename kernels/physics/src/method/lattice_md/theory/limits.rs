@@ -91,7 +91,9 @@ fn friction(checked: &Checked) -> Option<StepLimit> {
     let rate = law.contact.shear_damping * (1.0 + 1.0 / law.inertia.factor());
     let step = largest_step(checked.scene.integrator.scheme, 0.0, rate).filter(|_| law.has_friction())?;
     let per_time = significant(rate, 4);
-    let why = format!("largest eigenvalue of the step matrix on the drag of friction between two surfaces, {per_time} a unit of time");
+    let why = format!(
+        "largest eigenvalue of the step matrix on the drag of friction between two surfaces, {per_time} a unit of time"
+    );
     Some(StepLimit {
         name: "drag of friction",
         step,
