@@ -49,7 +49,7 @@ impl FailureKind {
     pub const CONFLICT: FailureKind = FailureKind("conflict");
     /// A contact deeper than the scene allows.
     pub const TOO_DEEP: FailureKind = FailureKind("too-deep");
-    /// A particle that moved so far in a step that it may have passed through another unseen.
+    /// A particle that moved so far in a step that it may have passed through another undetected.
     pub const LONG_STEP: FailureKind = FailureKind("long-step");
     /// Sums over all particles that overflow.
     pub const OVERFLOW: FailureKind = FailureKind("overflow");
@@ -208,7 +208,7 @@ impl Reported for Failure {
 
 impl From<GridError> for Failure {
     fn from(error: GridError) -> Failure {
-        let remedy = "take more discs, a smaller search.skin, or search.by = \"lattice\"";
+        let remedy = "use more discs, a smaller search.skin, or search.by = \"lattice\"";
         Failure::new(FailureKind::NO_SECTORS, error.to_string(), remedy)
     }
 }

@@ -66,9 +66,9 @@ impl Way {
 pub struct Balance {
     /// Energy dissipated in contacts: summed contact by contact, step by step.
     pub dissipated: f64,
-    /// What gravity has put in.
+    /// Work of gravity.
     pub(crate) gravity_work: f64,
-    /// What moving walls have put in.
+    /// Work of moving walls.
     pub wall_work: f64,
     /// Actual minus expected energy: the error of integration, steps and rounding.
     pub(crate) balance_error: f64,

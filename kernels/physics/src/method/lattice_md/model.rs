@@ -103,7 +103,7 @@ define_words! {
     pub(crate) enum OnLongStep {
         /// The run stops.
         Stop = "stop",
-        /// It is counted.
+        /// The disc is counted.
         Count = "count",
     }
 }

@@ -60,7 +60,7 @@ define_words! {
     pub enum ProgramText {
         /// Ours: only what a scene needs, positions relative to the cell, checks among the equations.
         Ours = "ours",
-        /// Those printed in BP93: Index, Test and contact_i, unscaled Gear derivatives.
+        /// Printed in BP93: Index, Test and contact_i, unscaled Gear derivatives.
         Printed = "printed",
     }
 }

@@ -84,7 +84,7 @@ pub(crate) struct System {
 /// Frequency of sorting discs by cell. No sum depends on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Sort {
-    /// When a quarter of them has changed cells.
+    /// As soon as a quarter of the discs has changed cells.
     WhenNeeded,
     /// At every step, as in LAN17.
     EveryStep,

@@ -1,4 +1,4 @@
-//! First rank: the simulation that everyone else uses.
+//! First rank: the simulation that all other code uses.
 
 use super::wire::{Crossed, Do, ForcesReport, Order, Record, StepReport, What, column_like, put_own};
 use super::worker::{Begun, Part};
@@ -28,7 +28,7 @@ pub(super) struct Ranked {
     shared_cells: usize,
     /// Discs reported by a step or its forces, grains first, from any rank.
     named: Vec<Record>,
-    /// Reason why the other ranks were told to end: the first loss detected by a step or a sample. Samples since then lack a rank; every later step
+    /// Reason why the other ranks were ended: the first loss detected by a step or a sample. Samples since then lack a rank; every later step
     /// and
     /// check fails with this reason.
     stopped: OnceCell<Failure>,
@@ -54,14 +54,14 @@ impl Ranked {
             Ok(worker) => worker,
             Err((ranks, failure)) => {
                 // The others have started, or failed as well.
-                #[expect(clippy::let_underscore_must_use, reason = "a rank that has ended needs not be told")]
+                #[expect(clippy::let_underscore_must_use, reason = "a rank that has ended needs no message")]
                 let _ = ranks.gather_messages(None::<Failure>);
-                #[expect(clippy::let_underscore_must_use, reason = "a rank that has ended needs not be told")]
+                #[expect(clippy::let_underscore_must_use, reason = "a rank that has ended needs no message")]
                 let _ = ranks.tell_message(Some(None::<Order>));
                 return Err(failure);
             }
         };
-        // Dropped if a rank has failed, which tells the others.
+        // Dropped if a rank has failed, which ends the others.
         let ranked = Ranked {
             worker,
             _threads: threads,
@@ -122,7 +122,7 @@ impl Ranked {
     /// Makes the other ranks end for a reason; returns the first reason.
     fn stop(&self, told: &Parcel, why: impl FnOnce() -> Failure) -> Failure {
         let stop = || {
-            #[expect(clippy::let_underscore_must_use, reason = "a rank that has ended needs not be told")]
+            #[expect(clippy::let_underscore_must_use, reason = "a rank that has ended needs no message")]
             let _ = self.worker.ranks().tell(Some(told.clone()));
             why()
         };
@@ -291,7 +291,7 @@ impl Stepping for Ranked {
     }
 
     fn end(&mut self) {
-        let what = "the first rank has already ended this simulation";
+        let what = "this simulation has already been ended on all ranks";
         let why = || Failure::new(FailureKind::MACHINE, what, "report this with the scene");
         self.stop(&Parcel::of(&None::<Order>), why);
     }

@@ -1,7 +1,7 @@
 //! Several ranks step the discs of one scene, each owning some bands of rows.
 //!
 //! ```text
-//! the first rank    is the simulation that everyone else uses; broadcasts orders and adds up in the order of bands
+//! the first rank    is the simulation that all other code uses; broadcasts orders and adds up in the order of bands
 //! the others        execute orders until the simulation ends
 //!
 //! a step:  advance | halo: neighbours' discs | cells or lists | report | forces of the own bands | report

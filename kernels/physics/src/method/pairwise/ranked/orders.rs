@@ -20,7 +20,7 @@ pub(super) fn serve(mut part: Box<dyn Part>) -> Result<(), RankError> {
             Err(lost) => {
                 #[expect(
                     clippy::let_underscore_must_use,
-                    reason = "this rank ends with what it has lost, heard or not"
+                    reason = "this rank ends with its loss, received or not"
                 )]
                 let _ = part.ranks().gather(Parcel::lost(lost));
                 return Err(lost);

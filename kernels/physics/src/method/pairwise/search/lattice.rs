@@ -16,7 +16,7 @@ define_words! {
     pub enum OnConflict {
         /// The run stops.
         Stop = "stop",
-        /// It is kept in a list beside the lattice, and every such disc and step is counted.
+        /// The disc is kept in a list beside the lattice, and every such disc and step is counted.
         Resolve = "resolve",
     }
 }
