@@ -75,7 +75,7 @@ define_keys! {
         "Version of the programs: ours, or those printed in BP93, with its vectors Index, Test and contact_i, products instead of branches, and unscaled Gear derivatives.";
     EXECUTION = "machine" "execution", Choice(&["chained", "eager", "strip:N"]), "", Is("\"chained\""), PROGRAMS,
         "Execution of programs: chained in registers, one whole-lattice pass for each instruction, or in strips of N; all give the same bits.";
-    COORDINATES = "machine" "coordinates", Choice(Coordinates::WORDS), "", Otherwise("cell-relative; absolute for the printed text"), PROGRAMS,
+    COORDINATES = "machine" "coordinates", Choice(Coordinates::WORDS), "", Otherwise("cell-relative; absolute with text = \"printed\""), PROGRAMS,
         "Origin of the positions on the lattice in programs.";
 }
 

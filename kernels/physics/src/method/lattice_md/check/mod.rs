@@ -206,7 +206,7 @@ fn not_modelled(scene: &Scene, particles: &Particles, alike: bool) -> Vec<String
         (!rubs, "friction, spin and torque: law.friction is 0"),
         (rubs && contact.shear_damping == 0.0, "friction, spin and torque: law.shear_damping is 0"),
         (contact.normal_damping == 0.0, "normal damping: law.normal_damping is 0"),
-        (alike, "radius and mass of each disc: all are alike, so they are numbers, not vectors"),
+        (alike, "radius and mass of each disc: all discs are equal, so these are numbers, not vectors"),
         (scene.domain.gravity == [0.0; 2], "gravity: domain.gravity is 0"),
         (particles.grain_count() == particles.len(), "walls: there are no wall discs"),
         (scene.domain.periodic == [false; 2], "periodic images: both sides are open"),

@@ -3,8 +3,8 @@
 use std::ops::Range;
 use stripmine_kernels::sweep::fast::{Rows, Share};
 
-/// Number of rows that a disc may move before discs are redistributed. No bit depends on it. Pairs found beside rows reach as far as partners are searched
-/// ahead.
+/// Number of rows that a disc may move before discs are redistributed. No bit depends on it. Pairs found beside rows reach as far as partners are
+/// searched ahead.
 pub(super) fn margin(rows: Rows) -> usize {
     rows.ahead.max(2)
 }
