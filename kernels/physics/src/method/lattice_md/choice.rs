@@ -63,7 +63,7 @@ pub(super) fn engine(scene: &mut Scene) -> Option<String> {
     let (engine, reason) = match of_programs {
         true => (EngineChoice::Programs, "a key that only programs have is given"),
         false => {
-            (EngineChoice::Fast, "exact, and several times faster than programs wherever both were measured")
+            (EngineChoice::Fast, "exact, and several times as fast as programs wherever both were measured")
         }
     };
     scene.machine.engine = engine;

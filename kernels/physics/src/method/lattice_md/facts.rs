@@ -32,7 +32,7 @@ pub(super) fn facts(checked: &Checked) -> Vec<Fact> {
         Fact::data("dt", scene.integrator.dt),
         Fact::new("steps", scene.run.steps, "steps", {
             let [dt, duration] = [scene.integrator.dt, scene.duration()].map(|time| significant(time, 7));
-            format!("{} of {dt} are {duration}", scene.run.steps)
+            format!("{} of {dt}, {duration} in total", scene.run.steps)
         }),
         Fact::data("duration", scene.duration()),
         Fact::new("estimates", json!(e), "approach speed", significant(e.approach_speed, 5)),
