@@ -15,8 +15,8 @@ pub struct Clock {
 }
 
 impl Clock {
-    /// Number of rows and frames: steps, or events where a method takes no steps. Moments between which nothing happens share a number; their
-    /// times differ.
+    /// Number of rows and frames: steps, or events where a method takes no steps. Moments between which nothing happens share a number; their times
+    /// differ.
     pub fn number(&self) -> u64 {
         if self.steps > 0 { self.steps } else { self.events }
     }

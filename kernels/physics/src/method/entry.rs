@@ -340,9 +340,8 @@ pub trait Startable: Send + Sync {
     /// Returns this scene started from other positions and velocities of the same particles in the same order.
     fn started_from(&self, particles: Particles) -> Prepared;
 
-    /// Returns this scene with another noise seed, where each step uses the noise of `parts` shorter steps. A run with steps of h and p parts
-    /// follows the Brownian path of one with steps of h/p and one part. The scheme decides how increments of the path add up. No checkpoint and no
-    /// scene
+    /// Returns this scene with another noise seed, where each step uses the noise of `parts` shorter steps. A run with steps of h and p parts follows
+    /// the Brownian path of one with steps of h/p and one part. The scheme decides how increments of the path add up. No checkpoint and no scene
     /// stores the parts. None where there is no noise.
     fn with_noise(&self, _seed: u64, _parts: u32) -> Option<Prepared> {
         None

@@ -1,5 +1,4 @@
-//! Validation of checkpoints before they are restored. A forged or foreign one is rejected with the name of the bad entry and never
-//! computed with.
+//! Validation of checkpoints before they are restored. A forged or foreign one is rejected with the name of the bad entry and never computed with.
 
 use super::Clock;
 use crate::io::checkpoint::{Column, Counter};

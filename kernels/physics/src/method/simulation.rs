@@ -100,8 +100,7 @@ pub trait Simulation: Send {
 
     /// Operations of the event queue since the start or restart, by kind: predictions, searches and moves. They are the terms of the method's cost
     /// formula, as [`operations`](Self::operations) are those of a step. A restarted run predicts some events again, so the counts belong to a
-    /// session
-    /// and no run writes them. Empty where there are no events.
+    /// session and no run writes them. Empty where there are no events.
     fn event_operations(&self) -> Vec<(&'static str, u64)> {
         vec![]
     }

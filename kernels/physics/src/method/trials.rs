@@ -199,8 +199,7 @@ mod tests {
     use crate::scene::{COUNT, DT, SEED, STEPS};
 
     /// Presets with overrides typed by a user. Some of these deactivate values of the file: the six values of a Gear scheme, how programs are
-    /// executed,
-    /// a number of steps.
+    /// executed, a number of steps.
     const SCENES: &[(&str, &[&str])] = &[
         ("two-discs", &["run.time=3.2"]),
         ("dense-gas", &["particles.count=100", "integrator.kind=velocity-verlet"]),

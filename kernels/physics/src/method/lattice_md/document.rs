@@ -62,8 +62,7 @@ impl Scene {
     }
 
     /// Returns the scene with some values replaced, each given as `section.key=value`. An override replaces keys that exclude it, and keys that
-    /// another
-    /// choice makes meaningless.
+    /// another choice makes meaningless.
     ///
     /// # Errors
     /// [`SceneErrors`]: every mistake of the overrides.

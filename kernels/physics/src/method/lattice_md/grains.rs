@@ -109,8 +109,8 @@ impl Grains {
         self.stepping.particles()
     }
 
-    /// Particles as the state stores them: the last correction may have moved a position beyond a periodic side, and no
-    /// [crossing](Self::crossings) is counted before the next step.
+    /// Particles as the state stores them: the last correction may have moved a position beyond a periodic side, and no [crossing](Self::crossings)
+    /// is counted before the next step.
     pub(crate) fn unwrapped(&self) -> Particles {
         self.stepping.unwrapped()
     }

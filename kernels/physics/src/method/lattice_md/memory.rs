@@ -2,8 +2,7 @@
 //!
 //! Formulas follow the allocations term by term. Permanent data: `method/lattice_md/{arrays,neighbor_list}`, `method/pairwise/{state,search}` and the
 //! sweeps below them. Temporary data: `method/pairwise/{observing,saved}`, `observe` and `io/checkpoint`. Everything independent of the numbers of
-//! discs
-//! and cells is one constant.
+//! discs and cells is one constant.
 
 use super::assemble::{contacts, model_following_energy};
 use super::check::Checked;
@@ -47,8 +46,7 @@ pub fn foreseen(checked: &Checked) -> Foreseen {
     };
     let columns = columns + of.followed();
     // Only one of the temporary allocations exists at a time. While discs are observed or their columns written, a frame of them is written. A
-    // resumed
-    // run has read one column more than it has restored, and its cells are searched; the system does not reclaim a frame's size at once.
+    // resumed run has read one column more than it has restored, and its cells are searched; the system does not reclaim a frame's size at once.
     let frame = DISC * of.discs;
     let resumed = columns + frame + (8.0 + 40.0) * of.discs + of.lists_resumed(contacts(checked));
     // Particle copies are built one degree of freedom after the other.

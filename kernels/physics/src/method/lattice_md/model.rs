@@ -118,8 +118,7 @@ impl Watch {
     }
 
     /// Penetration (length) below which no pair exceeds the fraction `max_penetration`. Programs search with it, so that only what they find is
-    /// compared
-    /// with the pair's own radii.
+    /// compared with the pair's own radii.
     pub fn depth(&self) -> f64 {
         // Reduced by more than single precision rounds.
         2.0 * self.max_penetration * self.smallest_radius * (1.0 - 1e-6)

@@ -19,8 +19,7 @@ use stripmine_kernels::sweep::fast::{Met, Passed};
 use stripmine_kernels::{alone_if, keep_awake, over_parts, put_in_order};
 
 /// Number of discs below which one thread does all the work, because a step is over before other threads start. Measured on two cores: 2000 discs
-/// took
-/// twice as long on two threads, 4000 as long as on one, 8000 were faster by a fifth.
+/// took twice as long on two threads, 4000 as long as on one, 8000 were faster by a fifth.
 const FEW: usize = 5000;
 
 /// Dynamics, system, and the instruction set of their loops.
@@ -145,8 +144,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
     }
 
     /// Sorts the discs by cell, so that neighbours are close in memory, and rebuilds the lists; returns the previous index of each disc. No sum
-    /// depends on
-    /// the order.
+    /// depends on the order.
     pub(super) fn put_in_order(&mut self) -> Vec<u32> {
         let (moving, grains) = (self.state.moving(), self.state.grains());
         let mut order = self.search.cells().order();

@@ -39,8 +39,7 @@ impl Members {
 }
 
 /// Columns with an entry for each disc, grains first, followed by two sentinels that touch nothing. They start at different cache lines in large
-/// pages:
-/// a pass over a million discs takes a fifth less time than over vectors, which all start at page borders.
+/// pages: a pass over a million discs takes a fifth less time than over vectors, which all start at page borders.
 #[derive(Clone, Debug)]
 pub(crate) struct State<S> {
     /// Carried derivatives of each degree of freedom, scaled by the scheme.

@@ -82,8 +82,7 @@ pub(crate) trait Stepping: Named + PerParticle + Send {
     fn restore(&mut self, steps: u64, columns: &[(String, Column)]) -> Result<(), String>;
 
     /// Sums over the grains and their contacts at the end of the step. `work` returns the work of gravity on a grain (by its number in the scene) at
-    /// a
-    /// position (length) that is consistent with the counted periods; it is called only with gravity.
+    /// a position (length) that is consistent with the counted periods; it is called only with gravity.
     fn sums(&self, scenery: &Scenery, work: &Work<'_>) -> Sums {
         Sums::over_parts(&self.unwrapped(), scenery, work)
     }

@@ -5,8 +5,7 @@ use crate::particles::{Particles, in_space};
 use stripmine_kernels::in_pieces;
 
 /// Returns the particles of `start` in a given state: each disc has its number in the scene and, for each degree of freedom (x, y, angle), its value
-/// and
-/// rate. Discs that no force moves get the velocity `walls` (length/time).
+/// and rate. Discs that no force moves get the velocity `walls` (length/time).
 ///
 /// Positions are those of the state: the last correction may have moved one beyond a periodic side without a counted crossing.
 pub(crate) fn unwrapped(

@@ -43,8 +43,8 @@ const SLACK: f64 = 1.0 + 1e-12;
 /// Number of counts tried for each axis on either side of the wanted one.
 const WINDOW: f64 = 64.0;
 
-/// Widest cells in which contacts are found, in largest diameters. The search compares squared distances in single precision with a margin of
-/// 2e-5, measured from the centres of cells up to three and a half cells away.
+/// Widest cells in which contacts are found, in largest diameters. The search compares squared distances in single precision with a margin of 2e-5,
+/// measured from the centres of cells up to three and a half cells away.
 const WIDEST: f64 = 8.0;
 
 /// Bounds of a cell's size.

@@ -59,8 +59,8 @@ pub(in crate::method::lattice_md) const NETWORK: f64 = 3.0;
 /// Recommended number of steps in a contact: `pipe` has 17, and half its dt changes no statistics.
 pub(in crate::method::lattice_md) const LEAST_STEPS: f64 = 15.0;
 
-/// Minimum number of steps in a contact. With fewer, a collision changes the energy by tens of percent. At this number the change is 15 (Gear of
-/// 4 values), 18 (5), 9 (6) and 1 % (velocity Verlet).
+/// Minimum number of steps in a contact. With fewer, a collision changes the energy by tens of percent. At this number the change is 15 (Gear of 4
+/// values), 18 (5), 9 (6) and 1 % (velocity Verlet).
 pub(in crate::method::lattice_md) const FEWEST_STEPS: f64 = 3.0;
 
 /// Speed of the fastest approach over the typical one.
@@ -225,8 +225,8 @@ pub(super) fn long_steps(
 /// Largest ratio of rounding to step: beyond it scenes are rejected, because most discs would not move.
 const MOST_LOST: f64 = 1.0;
 
-/// Ratio of rounding to step beyond which users are warned. Errors of up to ± r of a displacement of mean square s²/2 along an axis add a part
-/// 2 r²/(3 s²) to its mean square: 6 % here.
+/// Ratio of rounding to step beyond which users are warned. Errors of up to ± r of a displacement of mean square s²/2 along an axis add a
+/// fraction 2 r²/(3 s²) to its mean square: 6 % here.
 pub(in crate::method::lattice_md) const MUCH_LOST: f64 = 0.3;
 
 /// True if the state's positions are measured from the origin.

@@ -28,8 +28,7 @@ pub(super) struct Ranked {
     shared_cells: usize,
     /// Discs reported by a step or its forces, grains first, from any rank.
     named: Vec<Record>,
-    /// Reason why the other ranks were ended: the first loss detected by a step or a sample. Samples since then lack a rank; every later step
-    /// and
+    /// Reason why the other ranks were ended: the first loss detected by a step or a sample. Samples since then lack a rank; every later step and
     /// check fails with this reason.
     stopped: OnceCell<Failure>,
 }

@@ -8,8 +8,8 @@
 //! ```
 //!
 //! Results equal those of one rank to the bit. Bands are a function of the scene, and each is swept whole by the rank that owns it. Forces on its
-//! discs
-//! from the band below are computed again by that rank, pair by pair, instead of being received as a sum. The assignment of bands changes no bit.
+//! discs from the band below are computed again by that rank, pair by pair, instead of being received as a sum. The assignment of bands changes no
+//! bit.
 
 mod dealing;
 mod dealt;

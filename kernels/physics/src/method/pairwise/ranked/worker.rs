@@ -5,10 +5,8 @@
 //! ```
 //!
 //! The discs stay the same between two *migrations*. Owned discs may meanwhile move some rows beyond the rank's own ([`Layout`]); the sweep allows
-//! for
-//! that, and when one has moved farther, all ranks redistribute their discs. Neighbours' discs receive positions and velocities from their own rank
-//! at
-//! every step, and then change cells as they do there.
+//! for that, and when one has moved farther, all ranks redistribute their discs. Neighbours' discs receive positions and velocities from their own
+//! rank at every step, and then change cells as they do there.
 
 use super::layout::Layout;
 use super::wire::{Columns, Crossed, ForcesReport, Order, Record, StepReport, What, entries};

@@ -33,8 +33,7 @@ pub(crate) struct Listed<S> {
 
 impl<S: Precision, P: Precision> ListSearch<S, P> {
     /// Creates a search without lists, for `discs` discs whose pairs act up to a distance `reach` (length). Listed pairs may be farther apart by
-    /// `skin`
-    /// (length); sectors are wide enough for both.
+    /// `skin` (length); sectors are wide enough for both.
     pub(crate) fn new(grid: Grid, discs: usize, reach: f64, skin: f64) -> Self {
         let sectors = Sectors::new(grid, discs, reach);
         let sweep = Sweep::new(rows::<S, P, _>(&sectors));

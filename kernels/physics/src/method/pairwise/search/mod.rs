@@ -99,8 +99,7 @@ pub(crate) trait Search<S: Precision, P: Precision>: Send + Sync {
     ) -> Result<Met, ProgramError>;
 
     /// Computes energy, virial, number and depth of the contacts in the current cells or lists, at positions up to `moved` (length) from those of the
-    /// last
-    /// [`sweep`](Self::sweep). Nothing is changed.
+    /// last [`sweep`](Self::sweep). Nothing is changed.
     ///
     /// # Errors
     /// As [`sweep`](Self::sweep).
