@@ -277,7 +277,7 @@ fn wide_sizes_are_for_sectors_and_lists() {
         assert!(off[0] < 1e-9 && off[1] < 1e-8, "{kind}: {off:?}");
     }
     let refused = load(&["search.by=lattice"]).unwrap_err().to_string();
-    assert!(refused.contains("or let search.by = \"sectors\""), "{refused}");
+    assert!(refused.contains("or set search.by = \"sectors\""), "{refused}");
 }
 
 #[test]

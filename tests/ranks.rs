@@ -453,7 +453,7 @@ fn a_lost_rank_ends_the_run_and_is_named() {
                 let what = format!("{scene:?}: rank {lost}: {name}");
                 let error = carried_out(&faults, &name, Existing::Refuse).map(drop).unwrap_err().to_string();
                 assert!(
-                    error.contains(&format!("rank {named} {words}\n  help: see what it said")),
+                    error.contains(&format!("rank {named} {words}\n  help: see its last message")),
                     "{what}: {error}"
                 );
                 let out = folder.path().join(&name);

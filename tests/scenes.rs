@@ -422,7 +422,7 @@ fn the_verbs_print_presets_keys_and_checks() {
     assert_eq!((found["grains"].as_u64(), found["rows"].as_u64()), (Some(238), Some(8)));
     let warned = stripmine(&["scene", "check", "pipe-as-printed"]);
     assert!(warned.status.success());
-    assert!(String::from_utf8_lossy(&warned.stderr).contains("sinks 0.1"));
+    assert!(String::from_utf8_lossy(&warned.stderr).contains("presses it 0.1"));
     assert!(stripmine(&["scene", "check", "pipe-as-printed", "--quiet"]).stderr.is_empty());
     // 1.36 times the limit of a dense packing: a single contact at the typical speed bears √3 times it.
     let borne = stripmine(&["scene", "check", "pipe-small", "--set", "integrator.dt=2e-4"]);
@@ -505,7 +505,7 @@ fn open_sides_that_hold_nothing_back_are_warned_of() {
         let said = String::from_utf8_lossy(&output.stderr);
         assert!(output.status.success(), "{arguments:?}: {said}");
         assert_eq!(
-            said.contains("domain.periodic: sides that are not periodic hold nothing back"),
+            said.contains("domain.periodic: sides that are not periodic do not confine discs"),
             is_warned,
             "{said}"
         );

@@ -96,7 +96,7 @@ class Lists(unittest.TestCase):
         self.assertEqual(names, ["lattice-md", "hard-disks", "langevin", "nbody"])
         for name in names:
             self.assertIn("count", [key["key"] for key in stripmine.keys(name)])
-        with self.assertRaisesRegex(ValueError, "is no method"):
+        with self.assertRaisesRegex(ValueError, "unknown method"):
             stripmine.keys("hard-discs")
 
     @unittest.skipUnless(scenes.command(), "there is no command `stripmine`: set STRIPMINE, or the path")

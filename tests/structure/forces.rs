@@ -220,7 +220,7 @@ fn a_run_has_its_stress_in_files_and_pictures() {
     }
     let refused = stripmine(folder, &["run", "hard-disks", "--out", "b", "--set", &asked]);
     let said = String::from_utf8_lossy(&refused.stderr).into_owned();
-    assert!(refused.status.code() == Some(3) && said.contains("needs forces between discs"), "{said}");
+    assert!(refused.status.code() == Some(3) && said.contains("needs pair forces"), "{said}");
     stripmine(folder, &["run", "hard-disks", "--out", "b", "--set", "run.time=1.0"]);
     let refused = plot("b", &[]);
     let said = String::from_utf8_lossy(&refused.stderr).into_owned();

@@ -1,9 +1,9 @@
-//! How far a simulation has come, and when something is due.
+//! Clock of a simulation, and the schedule of what a run writes.
 
 use crate::scene::Run;
 use std::fmt;
 
-/// How far a simulation has come.
+/// Progress of a simulation: steps, time and events.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Clock {
     /// Steps done; 0 where a method takes none.
@@ -15,18 +15,18 @@ pub struct Clock {
 }
 
 impl Clock {
-    /// What rows and frames are numbered by: steps, or events where a method takes no steps. Moments between which nothing
-    /// happens have the same number; their times differ.
+    /// Number of rows and frames: steps, or events where a method takes no steps. Moments between which nothing happens share a number; their times
+    /// differ.
     pub fn number(&self) -> u64 {
         if self.steps > 0 { self.steps } else { self.events }
     }
 
-    /// How much has been done, in words.
+    /// Progress in words.
     pub fn done(&self) -> String {
         if self.takes_steps() { format!("{} steps", self.steps) } else { format!("{} events", self.events) }
     }
 
-    /// Whether steps have been done, or nothing at all.
+    /// True if steps have been done, or nothing at all.
     fn takes_steps(&self) -> bool {
         self.steps > 0 || self.events == 0 && self.time == 0.0
     }
@@ -43,7 +43,7 @@ impl fmt::Display for Clock {
     }
 }
 
-/// A moment that a simulation comes to.
+/// Moment that a run advances to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Until {
     /// After this many steps.
@@ -55,7 +55,7 @@ pub enum Until {
 }
 
 impl Until {
-    /// Whether the moment has come.
+    /// True once the moment is reached.
     pub fn has_come(self, clock: &Clock) -> bool {
         match self {
             Until::Steps(steps) => clock.steps >= steps,
@@ -64,7 +64,7 @@ impl Until {
         }
     }
 
-    /// Whether it lies behind.
+    /// True once the moment is exceeded.
     pub(crate) fn has_passed(self, clock: &Clock) -> bool {
         match self {
             Until::Steps(steps) => clock.steps > steps,
@@ -73,7 +73,7 @@ impl Until {
         }
     }
 
-    /// The moment after that many of its units more than the clock shows.
+    /// Moment as many units after the clock's.
     pub fn after(self, clock: &Clock) -> Until {
         match self {
             Until::Steps(steps) => Until::Steps(clock.steps + steps),
@@ -82,7 +82,7 @@ impl Until {
         }
     }
 
-    /// The moment after twice as many of its units.
+    /// Moment at twice the count or time.
     pub fn doubled(self) -> Until {
         match self {
             Until::Steps(steps) => Until::Steps(steps.saturating_mul(2)),
@@ -91,7 +91,7 @@ impl Until {
         }
     }
 
-    /// How much of the way is done, and how long it is, in its unit; a time in parts of a million.
+    /// Progress towards the moment and its total, in its unit; times in millionths.
     pub fn progress(self, clock: &Clock) -> (u64, u64) {
         const PARTS: f64 = 1e6;
         match self {
@@ -113,7 +113,7 @@ impl fmt::Display for Until {
     }
 }
 
-/// The first step, of length `dt`, at whose end a time is over. A time that is a number of steps but for rounding takes no step more.
+/// Number of steps of length `dt` that cover a time. A time that is a whole number of steps up to rounding takes no extra step.
 pub fn steps_over(time: f64, dt: f64) -> u64 {
     /// Rounding of times that were summed or divided (relative).
     const ROUNDING: f64 = 1e-12;
@@ -123,39 +123,39 @@ pub fn steps_over(time: f64, dt: f64) -> u64 {
     (if is_whole { whole } else { steps.ceil() }) as u64
 }
 
-/// What comes again and again.
+/// Interval between repeated outputs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Every {
-    /// Nothing does.
+    /// No output.
     Never,
-    /// After as many steps.
+    /// Number of steps.
     Steps(u64),
-    /// After as long a time (time).
+    /// Duration (time).
     Time(f64),
-    /// After a number of seconds of the wall clock: at no moment that the simulation knows.
+    /// Seconds of wall time. The simulation knows no such moment in advance.
     Seconds(f64),
 }
 
-/// Checkpoints are this far apart on the wall clock (s) where a scene says nothing else: what they take is little beside that.
+/// Wall time between checkpoints (s) if the scene sets none: long compared with writing one.
 const BETWEEN_CHECKPOINTS: f64 = 10.0;
 
 impl Every {
-    /// As many steps; never for 0.
+    /// Interval of this many steps; never for 0.
     pub fn steps(steps: u64) -> Every {
         if steps == 0 { Every::Never } else { Every::Steps(steps) }
     }
 
-    /// As long a time (time); never for 0.
+    /// Interval of this duration (time); never for 0.
     pub fn time(time: f64) -> Every {
         if time > 0.0 { Every::Time(time) } else { Every::Never }
     }
 
-    /// Checkpoints: as a scene says, or by the wall clock, for no result depends on them.
+    /// Interval of checkpoints: the scene's, or one of wall time, because no result depends on them.
     pub fn checkpoints(given: Option<Every>) -> Every {
         given.unwrap_or(Every::Seconds(BETWEEN_CHECKPOINTS))
     }
 
-    /// How often it comes up to an end, and whether the last time is the end itself; none where the end is in other units.
+    /// Number of repetitions up to an end, and true if the last falls on the end; none if the end has other units.
     fn times(self, until: Until) -> Option<(u64, bool)> {
         match (self, until) {
             (Every::Never, _) => Some((0, false)),
@@ -170,7 +170,7 @@ impl Every {
         }
     }
 
-    /// The next moment after the one that the clock shows.
+    /// Next moment after the clock's.
     pub fn next(self, clock: &Clock) -> Option<Until> {
         match self {
             Every::Never | Every::Seconds(_) => None,
@@ -185,7 +185,7 @@ impl Every {
     }
 }
 
-/// How long a run takes, and how often something is written.
+/// Length of a run and intervals of its output.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Schedule {
     /// The end.
@@ -199,7 +199,7 @@ pub struct Schedule {
 }
 
 impl Schedule {
-    /// Of a scene that counts in steps.
+    /// Schedule of a scene that counts steps.
     pub fn of_steps(run: &Run) -> Schedule {
         Schedule {
             until: Until::Steps(run.steps),
@@ -209,12 +209,12 @@ impl Schedule {
         }
     }
 
-    /// Rows of observables of the whole run, that of the start among them; none where it is not known beforehand.
+    /// Number of rows of observables in the whole run, including the start; none if it is not known in advance.
     pub fn row_count(&self) -> Option<u64> {
         self.rows.times(self.until).map(|(times, _)| times.saturating_add(1))
     }
 
-    /// Snapshots of the whole run: the start, those that are due, and the end.
+    /// Number of snapshots in the whole run: the start, those that are due, and the end.
     pub fn snapshot_count(&self) -> Option<u64> {
         let (times, ends) = self.snapshots.times(self.until)?;
         let is_over = self.until.has_come(&Clock::default());
@@ -272,7 +272,7 @@ mod tests {
         assert_eq!(counts(Until::Steps(60), Every::Never), (Some(1), Some(2)));
         assert_eq!(counts(Until::Steps(0), Every::Never), (Some(1), Some(1)));
         assert_eq!(counts(Until::Events(9), Every::Time(1.0)), (None, None));
-        // Against the moments one by one.
+        // Compared with counting moment by moment.
         for (until, every) in
             [(0.3, 0.1), (0.7, 0.1), (20.0, 1.0), (4.95, 0.05), (1.0, 0.3), (0.1, 0.3), (5e6, 0.7)]
         {
@@ -291,7 +291,7 @@ mod tests {
         }
     }
 
-    /// What a user reads of a moment: never a step where a method takes none.
+    /// Messages never name steps where a method takes none.
     #[test]
     fn moments_are_named_by_what_the_method_counts() {
         let at = |steps, time, events| Clock { steps, time, events };

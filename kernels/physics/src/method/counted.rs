@@ -1,30 +1,30 @@
-//! What the vector programs of a scene execute in a step, section by section.
+//! Operation counts of a scene's vector programs, section by section.
 
 use super::entry::VectorProgram;
 use serde::Serialize;
 use stripmine_kernels::isa::{OpClass, OpCounts};
 
-/// What a section of a program executes in a step.
+/// Operation counts of one program section in a step.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Counted {
     /// The part of the step.
     pub part: &'static str,
     /// The section of the program.
     pub section: &'static str,
-    /// What vectors are as long as.
+    /// Symbol of the vector length.
     pub length: &'static str,
-    /// How long that is.
+    /// Vector length.
     pub n: usize,
-    /// Operations of a step: NOP.
+    /// Operations a step (NOP).
     pub operations: u64,
-    /// Of them those that compute.
+    /// Arithmetic operations among them.
     pub computing: u64,
-    /// Of them divisions and square roots.
+    /// Divisions and square roots among them.
     pub divisions_and_roots: u64,
 }
 
 impl Counted {
-    /// The sections of some programs in their order; those of one name and length are one.
+    /// Returns the sections of some programs in order; sections of the same name and length are merged.
     pub fn of(programs: &[VectorProgram]) -> Vec<Counted> {
         let mut counted: Vec<Counted> = vec![];
         for it in programs {

@@ -1,4 +1,4 @@
-//! What a method states of itself: its entry in the list of methods, and what its scenes become.
+//! Descriptions of methods: their entries in the list of methods, and prepared scenes.
 
 use super::clock::{Schedule, Until};
 use super::failure::Failure;
@@ -14,71 +14,70 @@ use serde_json::{Map, Value};
 use std::path::PathBuf;
 use stripmine_kernels::Runnable;
 
-/// A method, as everything else knows it.
+/// Description of a method for the rest of the program.
 #[derive(Debug)]
 pub struct Entry {
     /// Name, keys and presets of its scenes.
     pub vocabulary: &'static Vocabulary,
-    /// Where it comes from.
+    /// Publication that it reproduces.
     pub source: &'static str,
-    /// What it simulates, in a line.
+    /// One-line description.
     pub doc: &'static str,
-    /// What it observes: the columns of thermo.csv after the step.
+    /// Observed quantities: the columns of thermo.csv after the step.
     pub quantities: &'static [Quantity],
-    /// Holds a scene against every precondition and makes its particles; every mistake at once.
+    /// Checks a scene against every precondition and generates its particles; reports all mistakes at once.
     pub prepare: fn(Values) -> Result<Prepared, SceneErrors>,
     /// Measurements of its throughput.
     pub benches: &'static [Bench],
-    /// What may be chosen without changing what is simulated; every combination that its check accepts is a way to run a scene.
+    /// Choices that do not change the physics; each combination that the check accepts is a configuration of the scene.
     pub axes: &'static [Axis],
-    /// What a scene may be modelled without.
+    /// Simpler models of its scenes.
     pub twins: &'static [Twin],
-    /// How its scenes may be tried; none where nothing of them may be varied.
+    /// Trials of its scenes; none where nothing can be varied.
     pub trials: Option<&'static Trials>,
 }
 
-/// Something observed.
+/// Observed quantity: a column of thermo.csv.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quantity {
     /// The name of its column.
     pub name: &'static str,
     /// The unit, empty for pure numbers.
     pub unit: &'static str,
-    /// What of it is averaged over a run.
+    /// Kind of number, which decides how it is averaged.
     pub kind: Kind,
-    /// What it is.
+    /// Description.
     pub doc: &'static str,
 }
 
-/// Whether a value of a quantity is one of a run that has not broken: a finite number, or none of a temperature, which does not exist
-/// without a degree of freedom.
+/// True if a quantity may have this value in an intact run: finite, or NaN for a temperature, which is undefined without a degree of freedom.
 pub(crate) fn is_sound(quantity: &str, value: f64) -> bool {
     value.is_finite() || value.is_nan() && quantity == "temperature"
 }
 
-/// What kind of number a quantity is, which decides what of it is averaged.
+/// Kind of number that a quantity is. It decides how the quantity is averaged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
     /// The time of the row.
     Time,
-    /// A value of the moment: values are averaged.
+    /// Instantaneous value: averaged over rows.
     Instant,
-    /// A count or a sum since the start: it has a rate.
+    /// Count or sum since the start: it has a rate.
     Counter,
-    /// A mean over the time since the row before, of sums that every event adds to: values are averaged, but for the first, of no time.
+    /// Mean over the time since the previous row, of sums that every event adds to. Averaged without the first row, which covers no time.
     Interval,
-    /// What the equations keep or balance, but for what acts from outside: it shows errors, and is not averaged.
+    /// Quantity that the equations conserve or balance, except for external action. It shows errors and is not averaged.
     Kept,
 }
 
 impl Kind {
-    /// Whether it sums up since the start.
+    /// True if it accumulates since the start.
     pub fn grows(self) -> bool {
         self == Kind::Counter
     }
 }
 
-/// A quantity, and how it is read off what a method has seen of a moment.
+/// Quantity with the function that evaluates it.
 #[derive(Clone, Copy)]
 pub struct Observable<S: 'static> {
     /// Name, unit and meaning.
@@ -87,7 +86,7 @@ pub struct Observable<S: 'static> {
     pub of: fn(&S) -> f64,
 }
 
-/// What is observed, without the values: the columns of a table of them.
+/// Quantities of a list of observables: the columns of their table.
 pub(crate) const fn quantities<S: 'static, const COUNT: usize>(
     observables: &[Observable<S>; COUNT],
 ) -> [Quantity; COUNT] {
@@ -100,47 +99,47 @@ pub(crate) const fn quantities<S: 'static, const COUNT: usize>(
     quantities
 }
 
-/// A measurement of throughput.
+/// Benchmark of throughput.
 #[derive(Debug)]
 pub struct Bench {
     /// Its name.
     pub name: &'static str,
-    /// What is measured.
+    /// Description of what is measured.
     pub doc: &'static str,
     /// The scene.
     pub preset: &'static str,
     /// The name of the rate, such as `particle_steps_per_second`.
     pub rate: &'static str,
-    /// Moments of a repeat, of a number of steps or events.
+    /// End of a repeat of this many steps or events.
     pub until: fn(u64) -> Until,
-    /// How many steps or events make about a second, for a number of particles.
+    /// Number of steps or events that take about a second, by number of particles.
     pub amount: fn(u64) -> u64,
     /// Values of options that are not given.
     pub defaults: &'static [(&'static str, &'static str)],
-    /// What may be chosen of its scene by a short name, each with the overrides that a value makes.
+    /// Choices with a short name, each with the overrides of a value.
     pub options: &'static [BenchOption],
     /// Overrides that make the bench.
     pub overrides: &'static [&'static str],
-    /// What the method observes.
+    /// Observed quantities.
     pub quantities: &'static [Quantity],
-    /// Quantities that are said as they were at the start and at the end of the measurement.
+    /// Quantities reported at the start and at the end of the measurement.
     pub compared: &'static [&'static str],
-    /// Quantities that are said as they were at the end.
+    /// Quantities reported at the end.
     pub at_end: &'static [&'static str],
 }
 
-/// Something of the scene of a bench that has a short name.
+/// Option of a benchmark: a short name for a part of its scene.
 #[derive(Debug)]
 pub struct BenchOption {
     /// The name.
     pub name: &'static str,
-    /// The values that it may have; none where the scene judges them.
+    /// Allowed values; none where the scene checks them.
     pub values: &'static [&'static str],
-    /// The overrides that a value makes.
+    /// Overrides of a value.
     pub overrides: fn(&str) -> Vec<String>,
 }
 
-/// The options of a bench: name, values where they are named here, and the overrides that a value makes.
+/// Builds the options of a benchmark: name, values if they are listed here, and the overrides of a value.
 macro_rules! bench_options {
     ($($name:literal $values:expr, $overrides:expr;)*) => {
         &[$($crate::method::BenchOption { name: $name, values: &$values, overrides: $overrides }),*]
@@ -148,27 +147,27 @@ macro_rules! bench_options {
 }
 pub(super) use bench_options;
 
-/// Something to be said of a scene.
+/// Reported property of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fact {
     /// Name and value, as data.
     pub data: Option<(&'static str, Value)>,
-    /// Label and value in words, where a person is to read it.
+    /// Label and value in words, for people.
     pub words: Option<(&'static str, String)>,
 }
 
 impl Fact {
-    /// For programs only.
+    /// Fact for programs only.
     pub fn data(name: &'static str, value: impl Into<Value>) -> Fact {
         Fact { data: Some((name, value.into())), words: None }
     }
 
-    /// For people only.
+    /// Fact for people only.
     pub fn words(label: &'static str, words: impl Into<String>) -> Fact {
         Fact { data: None, words: Some((label, words.into())) }
     }
 
-    /// For programs and, in words, for people.
+    /// Fact for programs and, in words, for people.
     pub fn new(
         name: &'static str,
         value: impl Into<Value>,
@@ -179,105 +178,105 @@ impl Fact {
     }
 }
 
-/// A step that theory says not to pass.
+/// Theoretical limit of the step.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StepLimit {
-    /// What it is called.
+    /// Name.
     pub name: &'static str,
     /// The step (time).
     pub step: f64,
-    /// The scene's own step in parts of it.
+    /// Step of the scene divided by the limit.
     pub share: f64,
-    /// The share beyond which the user is warned; infinite where the limit is for information.
+    /// Share above which the user is warned; infinite where the limit is informative.
     pub(crate) warned_beyond: f64,
-    /// What becomes of longer ones.
+    /// Consequence of longer steps.
     pub beyond: Beyond,
-    /// Where it comes from, with its numbers.
+    /// Derivation, with its numbers.
     pub why: String,
 }
 
 impl StepLimit {
-    /// Whether the step is so far beyond the limit that the user is warned.
+    /// True if the step exceeds the limit by enough to warn the user.
     pub fn is_passed(&self) -> bool {
         self.share > self.warned_beyond
     }
 }
 
-/// What becomes of a step beyond a limit.
+/// Consequence of a step beyond a limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Beyond {
     /// Errors grow from step to step.
     Unstable,
-    /// Motion is followed badly.
+    /// Motion is inaccurate.
     Inaccurate,
-    /// Particles pass each other unseen.
+    /// Particles pass through each other undetected.
     Unseen,
 }
 
-/// What a simulation is started for.
+/// Purpose of a simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
-    /// A run, which is observed: whatever observation needs is followed.
+    /// Run with observations: everything that they need is tracked.
     Run,
-    /// A measurement of speed: nothing is followed that the motion does not need.
+    /// Measurement of speed: only what the motion needs is tracked.
     Measurement,
 }
 
-/// What a scene has no need of, each with the reason: those that are so.
+/// Returns the reasons that apply for leaving something out of a run.
 pub(super) fn left_out(reasons: &[(bool, &str)]) -> Vec<String> {
     reasons.iter().filter(|(is_so, _)| *is_so).map(|(_, reason)| (*reason).to_owned()).collect()
 }
 
-/// A program of whole-array operations, as often as a step executes it.
+/// Program of whole-array operations, with its executions per step.
 pub struct VectorProgram {
     /// The part of the step.
     pub part: &'static str,
-    /// What its vectors are as long as, in a symbol.
+    /// Symbol of its vector length.
     pub length: &'static str,
-    /// The number that stands for.
+    /// Vector length.
     pub n: usize,
-    /// How often a step executes it.
+    /// Executions per step.
     pub times: u64,
     /// The program.
     pub program: Box<dyn Runnable>,
 }
 
-/// A scene that may run: its particles are made, and every precondition holds.
+/// Scene that is ready to run: its particles exist and every precondition holds.
 pub struct Prepared {
-    /// The scene as TOML, every value spelled out and every choice made.
+    /// Scene as TOML, with every value and every choice written out.
     pub scene: String,
-    /// How long it runs, and how often something is written.
+    /// Length of the run and intervals of its output.
     pub schedule: Schedule,
-    /// The mean that ends it before, when it is known well enough.
+    /// Target error of a mean that ends the run early.
     pub target: Option<Target>,
-    /// Which files are written.
+    /// Files to write.
     pub output: Output,
     /// The box.
     pub domain: Domain,
-    /// Seed of the random numbers that made the start; none where it was read or listed.
+    /// Seed of the generated start; none where it was read or listed.
     pub seed: Option<u64>,
-    /// The file that the start was read from.
+    /// File that the start was read from.
     pub start_file: Option<PathBuf>,
-    /// What there is to be said of the scene.
+    /// Reported properties of the scene.
     pub facts: Vec<Fact>,
-    /// What seldom ends well.
+    /// Warnings about settings that seldom work.
     pub warnings: Vec<Warning>,
-    /// What the scene left open and has been chosen, with the reason.
+    /// Choices that the scene left open, with reasons.
     pub choices: Vec<String>,
-    /// What the scene has no need of, with the reason.
+    /// Parts that the scene does not need, with reasons.
     pub left_out: Vec<String>,
-    /// What bounds the step, by theory; none where there is no step, or theory says nothing.
+    /// Theoretical limits of the step; none where there is no step or no theory.
     pub step_limits: Vec<StepLimit>,
-    /// How wrong a run is expected to be, and by what measure; none where nothing is known of it.
+    /// Expected error of a run and its measure; none where nothing is known.
     pub expected_error: Option<Fact>,
-    /// The memory that a run takes.
+    /// Memory requirement of a run.
     pub memory: Foreseen,
-    /// How it is run: precision, integrator and the like, by name.
+    /// Settings of the run by name: precision, integrator and so on.
     pub settings: Map<String, Value>,
-    /// The names of the columns of `events.csv`, where the scene asks for a row for each event.
+    /// Column names of `events.csv`, if the scene asks for a row for each event.
     pub event_columns: Option<&'static str>,
-    /// What simulations of it are made from.
+    /// Model that simulations are started from.
     pub model: Box<dyn Startable>,
 }
 
@@ -287,69 +286,68 @@ impl Prepared {
         self.model.particles()
     }
 
-    /// Begins.
+    /// Starts a simulation.
     ///
     /// # Errors
-    /// [`Failure`] if the start breaks a precondition, or the processor lacks what is asked for.
+    /// [`Failure`] if the start violates a precondition, or the processor lacks the requested instruction set.
     pub fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure> {
         self.model.start(purpose)
     }
 }
 
-/// A method's checked scene, with its particles: what simulations are made from.
+/// Checked scene of a method with its particles: starts simulations.
 pub trait Startable: Send + Sync {
     /// The particles at the start.
     fn particles(&self) -> &Particles;
 
-    /// The vector programs that a step of the scene, or its forces, consists of: what is counted, listed and charged by clocks; none
-    /// where a method has no such.
+    /// Vector programs of a step or its forces, which are counted, listed and timed by models; none where a method has no vector programs.
     fn programs(&self) -> Vec<VectorProgram> {
         vec![]
     }
 
-    /// What there is to be said of the vector programs beside their counts: that the scene itself is run otherwise.
+    /// Note on the vector programs beside their counts: the scene itself runs another engine.
     fn programs_note(&self) -> Option<String> {
         None
     }
 
-    /// What a disc takes in a step, or in a unit of time where there are no steps: nanoseconds by a count of its pairs or events at
-    /// the start, on no machine in particular. How often the structure is looked at goes by it: at every row and snapshot where it is 0.
+    /// Work of one particle in a step, or in a unit of time where there are no steps: nanoseconds estimated from the count of pairs or events at the
+    /// start, on no particular machine. It decides how often the structure is sampled: at every row and snapshot where it is 0.
     fn work(&self) -> f64 {
         0.0
     }
 
-    /// What two particles do to each other at any moment; none where there are no forces between pairs of discs.
+    /// Forces between a pair at any moment; none where the method has no pair forces.
     fn pair_forces(&self) -> Option<PairForces> {
         None
     }
 
-    /// Whether discs may be above the upper end of the second side of the box: nothing bounds their height.
+    /// True if particles may rise above the upper end of the second side of the box: their height is unbounded.
     fn has_open_top(&self) -> bool {
         false
     }
 
-    /// Reports whether a run counts the periods that each disc crosses (`Simulation::images`) where the scene asks for displacements.
+    /// True if a run counts the periods that each particle crosses (`Simulation::images`) where the scene asks for displacements.
     fn follows_crossings(&self) -> bool {
         false
     }
 
-    /// Begins.
+    /// Starts a simulation.
     ///
     /// # Errors
-    /// [`Failure`] if the start breaks a precondition, or the processor lacks what is asked for.
+    /// [`Failure`] if the start violates a precondition, or the processor lacks the requested instruction set.
     fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure>;
 
-    /// The same scene with other positions and velocities at the start: of the same particles in the same order.
+    /// Returns this scene started from other positions and velocities of the same particles in the same order.
     fn started_from(&self, particles: Particles) -> Prepared;
 
-    /// The same scene whose noise has a seed, and in each step is made of that of `parts` shorter steps: a run with steps of h and p parts
-    /// follows the Brownian path of one with steps of h/p and one part. The method's scheme decides how increments of the path add up. No
-    /// checkpoint and no scene holds the parts. None where there is no noise.
+    /// Returns this scene with another noise seed, where each step uses the noise of `parts` shorter steps. A run with steps of h and p parts follows
+    /// the Brownian path of one with steps of h/p and one part. The scheme decides how increments of the path add up. No checkpoint and no scene
+    /// stores the parts. None where there is no noise.
     fn with_noise(&self, _seed: u64, _parts: u32) -> Option<Prepared> {
         None
     }
 
-    /// Period of the forces that depend on time (time): of walls or a floor that move. None where no force does.
+    /// Period of time-dependent forces (time), such as moving walls or a moving floor. None where no force depends on time.
     fn period(&self) -> Option<f64> {
         None
     }

@@ -1,5 +1,4 @@
-//! What stops a method: what broke, when, which particles, and what to do. A method makes its failures beside the physics
-//! that they are of.
+//! Failures of a method: what broke, when, which particles, and what to do. A method defines its failures beside the physics they concern.
 
 use super::clock::Clock;
 use crate::number::significant;
@@ -13,15 +12,15 @@ use std::sync::{Mutex, PoisonError};
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::sweep::fast::GridError;
 
-/// What broke, by its name in JSON. Here are the kinds that several methods have; a method names its own beside the physics that they
-/// are of.
+/// Kind of a failure, by its name in JSON. Kinds shared by several methods are defined here; a method defines its own beside the physics they
+/// concern.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FailureKind(#[serde(deserialize_with = "interned")] Name);
 
-/// A name in a failure.
+/// Interned name in a failure.
 type Name = &'static str;
 
-/// Reads a name that another rank has sent. Each is kept once, for as long as this program runs.
+/// Reads a name sent by another rank. Each name is leaked once and kept for the life of the process.
 fn interned<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Name, D::Error> {
     static NAMES: Mutex<BTreeSet<Name>> = Mutex::new(BTreeSet::new());
     let name = String::deserialize(deserializer)?;
@@ -42,50 +41,50 @@ fn interned_values<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<(Na
 }
 
 impl FailureKind {
-    /// Positions or forces that are no numbers.
+    /// Positions or forces that are not finite.
     pub const NOT_FINITE: FailureKind = FailureKind("not-finite");
     /// Particles outside a closed side, or more than a period outside a periodic one.
     pub const OUT_OF_BOX: FailureKind = FailureKind("out-of-box");
-    /// Two particles where one may be.
+    /// Two particles in a cell that holds one.
     pub const CONFLICT: FailureKind = FailureKind("conflict");
     /// A contact deeper than the scene allows.
     pub const TOO_DEEP: FailureKind = FailureKind("too-deep");
-    /// A particle that moved so far in a step that it may have passed through another unseen.
+    /// A particle that moved so far in a step that it may have passed through another undetected.
     pub const LONG_STEP: FailureKind = FailureKind("long-step");
-    /// Sums over all particles that no number holds.
+    /// Sums over all particles that overflow.
     pub const OVERFLOW: FailureKind = FailureKind("overflow");
     /// Sectors do not fit the box.
     pub(crate) const NO_SECTORS: FailureKind = FailureKind("no-sectors");
-    /// The machine refused a program.
+    /// The vector machine rejected a program.
     pub(crate) const MACHINE: FailureKind = FailureKind("machine");
 
-    /// A method's own kind.
+    /// Defines a kind of a method.
     pub const fn new(name: &'static str) -> FailureKind {
         FailureKind(name)
     }
 
-    /// The name in JSON.
+    /// Name in JSON.
     pub fn name(self) -> &'static str {
         self.0
     }
 }
 
-/// A particle that a failure names.
+/// Particle named by a failure.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Culprit {
-    /// What its method calls it.
+    /// Word for a particle in its method.
     #[serde(deserialize_with = "interned")]
     pub(crate) called: Name,
     /// Its id.
     pub id: u32,
-    /// Where it is (length).
+    /// Position (length).
     pub position: [f64; 3],
-    /// How fast (length/time).
+    /// Velocity (length/time).
     pub velocity: [f64; 3],
 }
 
 impl Culprit {
-    /// One that moves in a plane.
+    /// Particle that moves in a plane.
     pub(crate) fn in_plane(called: &'static str, id: u32, [x, y]: [f64; 2], [u, v]: [f64; 2]) -> Culprit {
         Culprit { called, id, position: [x, y, 0.0], velocity: [u, v, 0.0] }
     }
@@ -102,54 +101,54 @@ impl fmt::Display for Culprit {
     }
 }
 
-/// The physics broke a precondition of the method. Found in the step in which it happens.
+/// Violation of a method's precondition by the physics, detected in the step in which it occurs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Failure {
-    /// What broke.
+    /// Kind.
     pub kind: FailureKind,
-    /// When; none if there was no simulation yet, or time has nothing to do with it.
+    /// Time of the failure; none if no simulation existed or time is irrelevant.
     pub at: Option<Clock>,
-    /// The particles named: the first, or the two of a pair.
+    /// Named particles: the first affected, or the two of a pair.
     pub culprits: Vec<Culprit>,
-    /// How many particles it is true of.
+    /// Number of affected particles.
     pub count: u64,
-    /// What was found and what it was held against, by name.
+    /// Measured values and limits, by name.
     #[serde(deserialize_with = "interned_values")]
     pub values: Vec<(Name, f64)>,
-    /// What broke, in a sentence that names the particles, without the moment.
+    /// Sentence that says what broke and names the particles, without the moment.
     pub message: String,
-    /// What to do about it.
+    /// Remedy.
     pub remedy: String,
 }
 
 impl Failure {
-    /// A failure that no particle and no moment is named of.
+    /// Failure that names no particle and no moment.
     pub fn new(kind: FailureKind, message: impl Into<String>, remedy: impl Into<String>) -> Failure {
         let (message, remedy) = (message.into(), remedy.into());
         Failure { kind, at: None, culprits: vec![], count: 0, values: vec![], message, remedy }
     }
 
-    /// The same, at a moment.
+    /// Adds the moment.
     pub fn at(self, clock: Clock) -> Failure {
         Failure { at: Some(clock), ..self }
     }
 
-    /// The same, true of `count` particles, of which some are named.
+    /// Adds the number of affected particles and those to name.
     pub fn of(self, count: u64, culprits: impl Into<Vec<Culprit>>) -> Failure {
         Failure { count, culprits: culprits.into(), ..self }
     }
 
-    /// The same, with what was found and what it was held against.
+    /// Adds measured values and limits.
     pub fn with(self, values: impl Into<Vec<(&'static str, f64)>>) -> Failure {
         Failure { values: values.into(), ..self }
     }
 
-    /// What was found, or what it was held against, by its name.
+    /// Measured value or limit of a name.
     pub fn value(&self, name: &str) -> Option<f64> {
         self.values.iter().find(|(known, _)| *known == name).map(|&(_, value)| value)
     }
 
-    /// When it was, what broke, and which particles.
+    /// Moment, problem and particles in a sentence.
     pub fn what(&self) -> String {
         match self.at {
             Some(clock) => format!("{clock}: {}", self.message),
@@ -157,7 +156,7 @@ impl Failure {
         }
     }
 
-    /// All but the sentences, as data. What is no finite number is null.
+    /// Data of the failure without its sentences. Numbers that are not finite become null.
     fn data(&self) -> Map<String, Value> {
         let values: Map<String, Value> =
             self.values.iter().map(|&(name, value)| (name.to_owned(), json!(value))).collect();
@@ -171,7 +170,7 @@ impl Failure {
         entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
     }
 
-    /// A failure, or none, as JSON has it.
+    /// Serializes a failure, or none.
     pub(crate) fn in_json<S: Serializer>(
         failure: &Option<Failure>,
         serializer: S,
@@ -209,7 +208,7 @@ impl Reported for Failure {
 
 impl From<GridError> for Failure {
     fn from(error: GridError) -> Failure {
-        let remedy = "take more discs, a smaller search.skin, or search.by = \"lattice\"";
+        let remedy = "use more discs, a smaller search.skin, or search.by = \"lattice\"";
         Failure::new(FailureKind::NO_SECTORS, error.to_string(), remedy)
     }
 }

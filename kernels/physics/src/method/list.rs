@@ -1,4 +1,4 @@
-//! The methods. Each is a folder beside this file and a line of this list.
+//! List of methods. Each is a folder beside this file and a line of this list.
 
 use super::entry::{Entry, Kind, Prepared, Quantity};
 use super::start_temperature::{asked_temperature, start_temperature};
@@ -11,30 +11,30 @@ use crate::words::nearest;
 /// Methods that scenes may name.
 pub type Methods = &'static [&'static Entry];
 
-/// Every method of this program.
+/// All methods of this program.
 pub static METHODS: Methods = &[&lattice_md::ENTRY, &hard_disks::ENTRY, &langevin::ENTRY, &nbody::ENTRY];
 
-/// What the scenes of some methods may say.
+/// Vocabularies of the scenes of some methods.
 pub fn vocabularies(methods: Methods) -> Vec<&'static Vocabulary> {
     methods.iter().map(|method| method.vocabulary).collect()
 }
 
-/// The method of a name.
+/// Returns the method of a name.
 pub fn method(methods: Methods, name: &str) -> Option<&'static Entry> {
     methods.iter().copied().find(|method| method.vocabulary.keys.method == name)
 }
 
-/// The method that observes just some columns, in their order, after the step.
+/// Returns the method that observes exactly these columns, in order, after the step.
 pub fn observer(methods: Methods, columns: &[String]) -> Option<&'static Entry> {
     let names = |method: &Entry| method.quantities.iter().map(|quantity| quantity.name);
     let is_its = |method: &&'static Entry| names(method).eq(columns.iter().skip(1).map(String::as_str));
     methods.iter().copied().find(is_its)
 }
 
-/// The scene that is a preset's name or a file's path, with overrides `section.key=value`, ready to run; and its method.
+/// Loads and prepares a scene, given as a preset's name or a file's path, with overrides `section.key=value`; also returns its method.
 ///
 /// # Errors
-/// [`SceneErrors`]: every mistake of the text, or every precondition that does not hold.
+/// [`SceneErrors`]: every mistake of the file, or every violated precondition.
 pub fn load(
     what: &str,
     overrides: &[String],
@@ -43,12 +43,12 @@ pub fn load(
     prepare(Values::load(what, overrides, &vocabularies(methods))?, methods)
 }
 
-/// A scene that was read, ready to run; and its method.
+/// Prepares a scene that was read; also returns its method.
 ///
 /// # Errors
-/// [`SceneErrors`]: every precondition that does not hold.
+/// [`SceneErrors`]: every violated precondition.
 pub fn prepare(values: Values, methods: Methods) -> Result<(Prepared, &'static Entry), SceneErrors> {
-    // A scene is read as one of a method of the list.
+    // Reading has already restricted the method to those of the list.
     let unlisted = || values.spot(&METHOD).error(Reason::Unknown, "there is no such method");
     let entry = method(methods, values.method()).ok_or_else(unlisted)?;
     let wrong = wrong_target(&values, entry);
@@ -68,28 +68,26 @@ pub fn prepare(values: Values, methods: Methods) -> Result<(Prepared, &'static E
     }
 }
 
-/// Bytes that looking at the structure takes.
+/// Memory that sampling the structure takes (bytes).
 fn memory_of_looks(prepared: &Prepared) -> u64 {
     let asked: Vec<_> = prepared.output.structure.iter().filter_map(|name| observable(name)).collect();
     structure::bytes(&asked, prepared.particles().grain_count(), prepared.schedule.row_count())
 }
 
-/// Why something of the structure cannot be summed up.
+/// Reason why a requested structure quantity cannot be computed.
 fn not_there(prepared: &Prepared) -> Option<String> {
     let why = |observable: &Observable| match observable.seen {
         Seen::Once { asks: Asks::Waves, .. } if prepared.domain.periodic() == [false; 2] => {
-            Some("needs a periodic side: its waves run along one")
+            Some("needs a periodic side for its waves")
         }
         Seen::Once { asks: Asks::Forces, .. } if prepared.model.pair_forces().is_none() => {
-            Some("needs forces between discs that act at any moment: this method has none")
+            Some("needs pair forces that act at any moment: this method has none")
         }
         _ if observable.follows_motion()
             && prepared.domain.periodic() != [false; 2]
             && !prepared.model.follows_crossings() =>
         {
-            Some(
-                "needs discs that are followed across periodic sides: this method does not count what they cross",
-            )
+            Some("needs discs tracked across periodic sides: this method does not count their crossings")
         }
         _ => None,
     };
@@ -99,7 +97,7 @@ fn not_there(prepared: &Prepared) -> Option<String> {
     Some(format!("\"{name}\" of `{}` {why}", STRUCTURE.path()))
 }
 
-/// That the run is to end by a quantity that has no mean.
+/// Error if the run is to end by a quantity that has no mean.
 fn wrong_target(values: &Values, entry: &Entry) -> Option<SceneError> {
     let Some(Value::Target(target)) = values.value(&TARGET) else { return None };
     let has_mean = |quantity: &&Quantity| !matches!(quantity.kind, Kind::Time | Kind::Kept);
@@ -120,7 +118,7 @@ fn wrong_target(values: &Values, entry: &Entry) -> Option<SceneError> {
 mod tests {
     use super::*;
 
-    /// Of all presets two have moving walls: a box shaken ten times a second, and a floor with 1.5 vibrations in a unit of time.
+    /// Two presets have moving walls: a box shaken ten times a second, and a floor with 1.5 vibrations in a unit of time.
     #[test]
     fn periods_are_those_of_moving_walls() {
         let presets = METHODS.iter().flat_map(|method| method.vocabulary.presets).map(|preset| preset.name);

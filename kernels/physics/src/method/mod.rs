@@ -1,4 +1,4 @@
-//! The methods: one folder a source, and one line in the [list](METHODS).
+//! Simulation methods: one folder for each publication, and one line in the [list](METHODS).
 
 mod clock;
 mod counted;

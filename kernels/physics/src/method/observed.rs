@@ -1,23 +1,23 @@
-//! What is observed, by its name: the one place where names of quantities are looked up.
+//! Look-up of observed quantities by name.
 
 use super::entry::{Observable, Quantity};
 use crate::reported::{Class, Reported};
 use serde_json::{Map, Value};
 
-/// A name that does not occur.
+/// Unknown name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("`{name}` is no {what}\n  help: one of {}", known.join(", "))]
+#[error("unknown {what} `{name}`\n  help: use one of {}", known.join(", "))]
 pub struct UnknownName {
-    /// What was looked for.
+    /// Kind of thing that was looked up.
     pub what: &'static str,
     /// Its name.
     pub name: String,
-    /// The names that there are.
+    /// Known names.
     pub known: Vec<String>,
 }
 
 impl UnknownName {
-    /// Of a kind of thing, beside those that there are.
+    /// Error of a name of a kind of thing, with the known names.
     pub fn new<'n>(what: &'static str, name: &str, known: impl IntoIterator<Item = &'n str>) -> Self {
         UnknownName { what, name: name.to_owned(), known: known.into_iter().map(str::to_owned).collect() }
     }
@@ -29,7 +29,7 @@ impl Reported for UnknownName {
     }
 }
 
-/// A list of what is observed: name, unit, kind, how it is read off what a method has seen, and meaning, in one row.
+/// Builds a list of observables; each row has name, unit, kind, function that evaluates it, and description.
 macro_rules! observables {
     ($($name:literal, $unit:literal, $kind:expr, $of:expr, $doc:literal;)*) => {
         [$($crate::method::Observable {
@@ -40,15 +40,15 @@ macro_rules! observables {
 }
 pub(super) use observables;
 
-/// The values of observables, in their order.
+/// Values of observables in order.
 pub(super) fn values<S>(observables: &[Observable<S>], seen: &S) -> Vec<f64> {
     observables.iter().map(|observable| (observable.of)(seen)).collect()
 }
 
-/// The place of a quantity among those observed, as a constant: a name that is misspelt does not compile.
+/// Returns the index of a quantity at compile time: a misspelt name does not compile.
 ///
 /// # Panics
-/// If there is none of that name.
+/// If no quantity has this name.
 #[expect(clippy::panic, reason = "a constant: a name that is misspelt does not compile")]
 pub(crate) const fn place(quantities: &[Quantity], name: &str) -> usize {
     let mut at = 0;
@@ -70,21 +70,19 @@ const fn is_same(one: &str, other: &str) -> bool {
     at == one.len() && at == other.len()
 }
 
-/// The place of a quantity among those observed.
+/// Returns the index of an observed quantity.
 ///
 /// # Errors
-/// [`UnknownName`] if there is none of that name.
+/// [`UnknownName`] if no quantity has this name.
 pub fn find(quantities: &[Quantity], name: &str) -> Result<usize, UnknownName> {
-    let unknown = || {
-        UnknownName::new("quantity that is observed", name, quantities.iter().map(|quantity| quantity.name))
-    };
+    let unknown = || UnknownName::new("quantity", name, quantities.iter().map(|quantity| quantity.name));
     quantities.iter().position(|quantity| quantity.name == name).ok_or_else(unknown)
 }
 
-/// Values of quantities, by their names, among `values`, one for each of the quantities.
+/// Returns values of quantities by name from `values`, which has one for each quantity.
 ///
 /// # Errors
-/// [`UnknownName`] if one is not observed.
+/// [`UnknownName`] if a name is not observed.
 pub fn observed<const N: usize>(
     quantities: &[Quantity],
     values: &[f64],
@@ -97,10 +95,10 @@ pub fn observed<const N: usize>(
     Ok(found)
 }
 
-/// A number of a summary.
+/// Returns a number of a summary.
 ///
 /// # Errors
-/// [`UnknownName`] if it has no number of that name.
+/// [`UnknownName`] if the summary has no number of this name.
 pub fn summed_up(summary: &Map<String, Value>, name: &str) -> Result<f64, UnknownName> {
     let numbers = summary.iter().filter(|(_, value)| value.is_number()).map(|(name, _)| name.as_str());
     let unknown = || UnknownName::new("number of the summary", name, numbers);
@@ -121,7 +119,7 @@ mod tests {
     fn a_misspelt_quantity_is_an_error_that_names_those_there_are() {
         assert_eq!(observed(QUANTITIES, &[1.0, 2.0], ["flow", "time"]), Ok([2.0, 1.0]));
         let said = observed(QUANTITIES, &[1.0, 2.0], ["flwo"]).unwrap_err().to_string();
-        assert_eq!(said, "`flwo` is no quantity that is observed\n  help: one of time, flow");
+        assert_eq!(said, "unknown quantity `flwo`\n  help: use one of time, flow");
         assert_eq!(place(QUANTITIES, "flow"), 1);
         assert!(std::panic::catch_unwind(|| place(QUANTITIES, "flo")).is_err());
         let summary: Map<String, Value> = serde_json::from_str(r#"{"remaps": 3, "mask": "min"}"#).unwrap();
@@ -138,7 +136,7 @@ mod tests {
         }
     }
 
-    /// Every name that a method states of its benches occurs among what it observes.
+    /// Benchmarks name observed quantities only.
     #[test]
     fn names_of_benches_are_observed() {
         for method in METHODS {

@@ -1,18 +1,17 @@
-//! What a checkpoint says, before a simulation takes it up: a forged or foreign one is refused here, with the name of what is
-//! wrong, and never computed with.
+//! Validation of checkpoints before they are restored. A forged or foreign one is rejected with the name of the bad entry and never computed with.
 
 use super::Clock;
 use crate::io::checkpoint::{Column, Counter};
 use std::collections::BTreeMap;
 use stripmine_kernels::isa::{Element, Storage};
 
-/// Above it not every whole number is a double; nothing is counted that far.
+/// Largest count: above it not every whole number is exact as a double. No count comes near it.
 pub(super) const MOST: u64 = 1 << 53;
 
-/// The finite entries of the column of a name, if it has the precision `T` and that length.
+/// Returns the named column if it has precision `T`, this length and finite entries only.
 ///
 /// # Errors
-/// A sentence that says what is missing or wrong.
+/// Says what is missing or wrong.
 pub(crate) fn find_column<T: Element>(
     columns: &[(String, Column)],
     name: &str,
@@ -27,11 +26,11 @@ pub(crate) fn find_column<T: Element>(
     };
     match values.iter().position(|value| !value.to_f64().is_finite()) {
         None => Ok(values),
-        Some(at) => Err(format!("entry {at} of the column {name} is no finite number")),
+        Some(at) => Err(format!("entry {at} of the column {name} is not finite")),
     }
 }
 
-/// The counts of the column of a name, as many as `length` and none above `most`.
+/// Returns the named column of counts if it has this length and no count above `most`.
 ///
 /// # Errors
 /// As [`find_column`].
@@ -61,19 +60,19 @@ fn find<'c>(columns: &'c [(String, Column)], name: &str, length: usize) -> Resul
     }
 }
 
-/// The finite sum of a name.
+/// Returns the named sum if it is finite.
 ///
 /// # Errors
-/// A sentence that says what is missing or wrong.
+/// Says what is missing or wrong.
 pub(crate) fn find_sum(counters: &BTreeMap<String, Counter>, name: &str) -> Result<f64, String> {
     match counters.get(name) {
         Some(Counter::Sum(sum)) if sum.is_finite() => Ok(*sum),
-        Some(Counter::Sum(sum)) => Err(format!("the sum {name} is {sum}, no finite number")),
+        Some(Counter::Sum(sum)) => Err(format!("the sum {name} is {sum}, not a finite number")),
         _ => Err(format!("the sum {name} is missing")),
     }
 }
 
-/// The count of a name, at most `most`.
+/// Returns the named count if it is at most `most`.
 ///
 /// # Errors
 /// As [`find_sum`].
@@ -86,35 +85,33 @@ pub(crate) fn find_count(counters: &BTreeMap<String, Counter>, name: &str, most:
 }
 
 impl Clock {
-    /// That it is the clock of a method of steps of `dt` (time).
+    /// Checks that this is the clock of a method with steps of `dt` (time).
     ///
     /// # Errors
-    /// A sentence, if it is not.
+    /// Says what is wrong.
     pub fn of_steps(&self, dt: f64) -> Result<(), String> {
         let Clock { steps, time, events } = *self;
         let expected = steps as f64 * dt;
         if steps > MOST || time != expected {
-            return Err(format!(
-                "it says that {steps} steps of {dt:?} came to time {time:?}, not {expected:?}"
-            ));
+            return Err(format!("the time after {steps} steps of {dt:?} is {time:?}, not {expected:?}"));
         }
         if events > 0 {
-            return Err(format!("it counts {events} events, of which this method has none"));
+            return Err(format!("it counts {events} events, but this method has none"));
         }
         Ok(())
     }
 
-    /// That it is the clock of a method of events.
+    /// Checks that this is the clock of an event-driven method.
     ///
     /// # Errors
-    /// A sentence, if it is not.
+    /// Says what is wrong.
     pub(crate) fn of_events(&self) -> Result<(), String> {
         let Clock { steps, time, events } = *self;
         if steps > 0 {
-            return Err(format!("it counts {steps} steps, of which this method has none"));
+            return Err(format!("it counts {steps} steps, but this method has none"));
         }
         if events > MOST || !(time.is_finite() && time >= 0.0) {
-            return Err(format!("it says that {events} events came to time {time:?}"));
+            return Err(format!("it counts {events} events up to time {time:?}, which no run reaches"));
         }
         Ok(())
     }

@@ -1,16 +1,16 @@
-//! What a method says where several ranks are asked for.
+//! Failures of runs on several ranks.
 
 use super::{Clock, Failure, FailureKind};
 use crate::ranks::{self, RankError};
 
-/// Why a simulation cannot be carried out by several ranks.
+/// A simulation that runs on one rank only.
 const ONE_RANK: FailureKind = FailureKind::new("one-rank");
 /// A rank is lost.
 pub const RANK_ENDED: FailureKind = FailureKind::new("rank-ended");
-/// What a process ends its part with that is not the first rank: nothing is wrong.
+/// End of a process other than the first rank when nothing is wrong.
 pub const DISMISSED: FailureKind = FailureKind::new("dismissed");
 
-/// Refuses several ranks, for a reason.
+/// Rejects several ranks for a reason.
 ///
 /// # Errors
 /// [`Failure`] if there are several.
@@ -18,16 +18,16 @@ pub(crate) fn refuse_several_ranks(why: &str) -> Result<(), Failure> {
     match ranks::crew().count() {
         1 => Ok(()),
         count => {
-            let what = format!("{count} ranks were asked for, but {why}");
-            let remedy = "take one rank, or several seeds: run --seeds";
+            let what = format!("cannot run on {count} ranks: {why}");
+            let remedy = "use one rank, or several seeds: run --seeds";
             Err(Failure::new(ONE_RANK, what, remedy))
         }
     }
 }
 
-/// The failure of the other ranks where one is lost.
+/// Failure of the remaining ranks after one is lost.
 pub(crate) fn ended(lost: RankError, at: Clock) -> Failure {
     let remedy =
-        "see what it said last; the last checkpoint is whole: go on with --resume, on any number of ranks";
+        "see its last message; the last checkpoint is complete: resume with --resume, on any number of ranks";
     Failure::new(RANK_ENDED, lost.to_string(), remedy).at(at)
 }

@@ -1,10 +1,10 @@
-//! Everything that the future of a simulation depends on, as a checkpoint keeps it.
+//! State of a simulation as a checkpoint stores it.
 
 use super::restored::{MOST, find_count, find_counts, find_sum};
 use crate::io::checkpoint::{Column, Counter};
 use std::collections::BTreeMap;
 
-/// Everything that the future of a simulation depends on, and everything that it counts from the start on.
+/// Everything that the future of a simulation depends on, and everything counted since the start.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Snapshot {
     /// Counts and sums, by name.
@@ -18,7 +18,7 @@ impl Snapshot {
         self.counters.insert(name.to_owned(), Counter::Count(count));
     }
 
-    /// Adds a sum, of which all bits are kept.
+    /// Adds a sum, stored to the last bit.
     pub(crate) fn add_sum(&mut self, name: &str, sum: f64) {
         self.counters.insert(name.to_owned(), Counter::Sum(sum));
     }
@@ -27,90 +27,90 @@ impl Snapshot {
         self.columns.push((name.to_owned(), column));
     }
 
-    /// The count of a name.
+    /// Returns the named count.
     ///
     /// # Errors
-    /// A sentence, if it is missing.
+    /// Says that it is missing.
     pub fn count(&self, name: &str) -> Result<u64, String> {
         self.count_at_most(name, MOST)
     }
 
-    /// The count of a name, at most `most`.
+    /// Returns the named count if it is at most `most`.
     ///
     /// # Errors
-    /// A sentence, if it is missing or larger.
+    /// Says that it is missing or larger.
     pub(crate) fn count_at_most(&self, name: &str, most: u64) -> Result<u64, String> {
         find_count(&self.counters, name, most)
     }
 
-    /// The sum of a name.
+    /// Returns the named sum.
     ///
     /// # Errors
-    /// A sentence, if it is missing or no finite number.
+    /// Says that it is missing or not finite.
     pub fn sum(&self, name: &str) -> Result<f64, String> {
         find_sum(&self.counters, name)
     }
 
-    /// A time of a name, which may be without end.
+    /// Returns the named time, which may be infinite.
     ///
     /// # Errors
-    /// A sentence, if it is missing or no number.
+    /// Says that it is missing or not a number.
     pub fn time(&self, name: &str) -> Result<f64, String> {
         match self.counters.get(name) {
             Some(Counter::Sum(time)) if !time.is_nan() => Ok(*time),
-            _ => Err(format!("the time {name} is missing, or no number")),
+            _ => Err(format!("the time {name} is missing or not a number")),
         }
     }
 
-    /// A column of times, which may be without end, if it has that number of them.
+    /// Returns the named column of times, which may be infinite, if it has this length.
     ///
     /// # Errors
-    /// A sentence, if it is missing or one is no number.
+    /// Says that it is missing, or holds what is not a number.
     pub fn times(&self, name: &str, length: usize) -> Result<&[f64], String> {
         match self.column(name) {
             Some(Column::F64(times)) if times.len() == length && !times.iter().any(|time| time.is_nan()) => {
                 Ok(times)
             }
-            _ => Err(format!("the column {name} is missing, or not of {length} times")),
+            _ => Err(format!("the column {name} is missing or does not hold {length} times")),
         }
     }
 
-    /// The column of a name, of finite numbers in double precision, if it has that number of them.
+    /// Returns the named column of finite doubles if it has this length.
     ///
     /// # Errors
-    /// A sentence, if it is missing or one is not finite.
+    /// Says that it is missing, or which entry is not finite.
     pub fn numbers(&self, name: &str, length: usize) -> Result<&[f64], String> {
         match self.column(name) {
             Some(Column::F64(values)) if values.len() == length => {
                 match values.iter().position(|value| !value.is_finite()) {
                     None => Ok(values),
-                    Some(at) => Err(format!("entry {at} of the column {name} is no finite number")),
+                    Some(at) => Err(format!("entry {at} of the column {name} is not finite")),
                 }
             }
-            _ => Err(format!("the column {name} is missing, or not of {length} numbers")),
+            _ => Err(format!("the column {name} is missing or does not hold {length} numbers")),
         }
     }
 
-    /// The column of a name, of whole numbers of 64 bits, if it has that number of them.
+    /// Returns the named column of 64-bit counts if it has this length.
     ///
     /// # Errors
-    /// A sentence, if it is missing.
+    /// Says that it is missing.
     pub fn counts(&self, name: &str, length: usize) -> Result<&[u64], String> {
         self.counts_at_most(name, length, u64::MAX)
     }
 
-    /// The same, with none of them above `most`.
+    /// Returns the named column of 64-bit counts if it has this length and no count above `most`.
     ///
     /// # Errors
-    /// A sentence, if it is missing or one is larger.
+    /// Says that it is missing, or which count is larger.
     pub(crate) fn counts_at_most(&self, name: &str, length: usize, most: u64) -> Result<&[u64], String> {
         find_counts(&self.columns, name, length, most)
     }
 
-    /// The column of a name, of whole numbers of 32 bits, if it has that number of them.
+    /// Returns the named column of 32-bit codes if it has this length.
     ///
     /// # Errors
-    /// A sentence, if it is missing.
+    /// Says that it is missing.
     pub(crate) fn codes(&self, name: &str, length: usize) -> Result<&[u32], String> {
         match self.column(name) {
             Some(Column::U32(values)) if values.len() == length => Ok(values),

@@ -1,4 +1,4 @@
-//! Temperature of a start beside the one that the scene asks for.
+//! Temperature of a generated start compared with the one that the scene asks for.
 
 use super::{Fact, Prepared};
 use crate::number::significant;
@@ -7,20 +7,20 @@ use crate::particles::{Particle, Particles};
 use crate::scene::{KeySet, TEMPERATURE, Values};
 use serde_json::json;
 
-/// A difference that is worth a word, as a part of what was asked for.
+/// Relative difference worth reporting.
 const WORTH_A_WORD: f64 = 0.01;
 
 /// The name of the fact.
 pub(crate) const START_TEMPERATURE: &str = "start_temperature";
 
-/// The temperature that a generated start is asked to have; none where a bath or a wall brings it to its own.
+/// Temperature requested for a generated start; none where a bath or a wall sets the temperature.
 pub(super) fn asked_temperature(values: &Values, keys: &KeySet) -> Option<f64> {
     let is_kept = keys.keys().any(|key| key.name.ends_with("_temperature") && values.is_used(key));
     let is_asked = !is_kept && values.gives(&TEMPERATURE) && values.is_used(&TEMPERATURE);
     values.number(&TEMPERATURE).filter(|asked| is_asked && *asked > 0.0)
 }
 
-/// Says where the start's temperature is not the one that was asked for: velocities are drawn, and nothing brings them there later.
+/// Reports a start whose temperature differs from the requested one: velocities are drawn, and nothing corrects them later.
 pub(super) fn start_temperature(asked: f64, prepared: &Prepared) -> Option<Fact> {
     let found = temperature_of(prepared.particles(), conserved_axes(&prepared.domain));
     if !found.is_finite() || (found / asked - 1.0).abs() <= WORTH_A_WORD {
@@ -28,7 +28,7 @@ pub(super) fn start_temperature(asked: f64, prepared: &Prepared) -> Option<Fact>
     }
     let needed = if found > 0.0 { asked * (asked / found) } else { f64::NAN };
     let words = format!(
-        "{}, where `{}` = {asked} was asked for: velocities are drawn at random, and no bath brings them there",
+        "{}, not the requested `{}` = {asked}: velocities are drawn at random, and no bath corrects them",
         significant(found, 4),
         TEMPERATURE.path()
     );
@@ -41,7 +41,7 @@ pub(super) fn start_temperature(asked: f64, prepared: &Prepared) -> Option<Fact>
     Some(Fact::new(START_TEMPERATURE, data, "temperature of the start", words + &remedy))
 }
 
-/// Temperature of the grains, about their mean motion along axes that conserve it.
+/// Temperature of the grains about their mean motion along axes that conserve momentum.
 fn temperature_of(particles: &Particles, conserved: [bool; 2]) -> f64 {
     let grains = particles.grains();
     let sum = |of: &dyn Fn(&Particle) -> f64| grains.iter().map(of).sum::<f64>();
@@ -56,7 +56,7 @@ fn temperature_of(particles: &Particles, conserved: [bool; 2]) -> f64 {
 mod tests {
     use crate::method::{METHODS, load};
 
-    /// What is said to start with a temperature does: the same draws, scaled. Where a bath is, or the difference is small, nothing is said.
+    /// The suggested setting starts with the requested temperature: the same draws, scaled. With a bath, or a small difference, there is no report.
     #[test]
     fn a_start_that_is_colder_than_asked_is_said_to_be() {
         let said = |scene: &str, sets: &[&str]| {
@@ -76,10 +76,10 @@ mod tests {
             ]
             .concat();
             let words = said(scene, &sets).unwrap();
-            assert!(words.contains("= 0.1 was asked for"), "{words}");
+            assert!(words.contains("not the requested `particles.temperature` = 0.1"), "{words}");
             let remedy = words.rsplit("; ").next().unwrap().split(" starts").next().unwrap().replace(' ', "");
             let scaled = said(scene, &[&sets[..], &[&remedy]].concat()).unwrap();
-            assert!(scaled.starts_with("0.1, where"), "{words}: {scaled}");
+            assert!(scaled.starts_with("0.1, not the requested"), "{words}: {scaled}");
         }
         assert_eq!(said("langevin-free", &["particles.count=10"]), None);
         assert_eq!(said("hard-disks", &["particles.count=200000"]), None);

@@ -1,10 +1,10 @@
-//! Methods with a time step: one simulation for all of them.
+//! Simulation loop shared by all methods with a time step.
 //!
 //! ```text
 //! a run      holds a dyn Simulation
 //! Stepped    the loop over steps, the clock, checkpoints: once, here
-//! Stepwise   what a method gives: how a step is done, what is seen of it, what is said at the end
-//! state      what a step changes: discs found in pairs (pairwise), discs on a lattice (lattice_md), bodies (nbody)
+//! Stepwise   interface of a method: how to step, what to observe, what to report at the end
+//! state      data that a step changes: discs visited in pairs (pairwise), discs on a lattice (lattice_md), bodies (nbody)
 //! ```
 
 use super::clock::{Clock, Until};
@@ -21,7 +21,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 use stripmine_kernels::isa::OpCounts;
 
-/// What steps change.
+/// State that steps change.
 pub trait SteppedState: Send {
     /// Steps, periods and seconds so far.
     fn elapsed(&self) -> &Elapsed;
@@ -29,7 +29,7 @@ pub trait SteppedState: Send {
     /// Its particles.
     fn per_particle(&self) -> &dyn PerParticle;
 
-    /// Checks that no rank is lost, where there are several: looks since then lack its particles.
+    /// Checks that no rank is lost: samples taken since then lack its particles.
     ///
     /// # Errors
     /// [`Failure`] that names the first rank that was lost.
@@ -41,25 +41,25 @@ pub trait SteppedState: Send {
     fn columns(&self) -> Vec<(String, Column)>;
 }
 
-/// A method with a time step. Its functions are given the whole simulation: the state and what the method keeps beside it.
+/// Method with a time step. Its functions take the whole simulation: the state and what the method stores beside it.
 pub trait Stepwise: Send + Sized {
-    /// What its steps change.
+    /// State that steps change.
     type State: SteppedState;
-    /// What there is to be seen of a moment.
+    /// Observation of a moment.
     type Seen: 'static;
-    /// How each quantity is read off that.
+    /// Evaluation of each quantity from the observation.
     const OBSERVABLES: &'static [Observable<Self::Seen>];
 
-    /// One step on. Gives whether it was made: one that is interrupted leaves the state of before.
+    /// Makes one step. Returns true if it was made: an interrupted step leaves the previous state.
     ///
     /// # Errors
     /// As [`Simulation::advance`].
     fn step(run: &mut Stepped<Self>, interrupted: &AtomicBool) -> Result<bool, Failure>;
 
-    /// Does something with all that there is to be seen of this moment.
+    /// Applies a function to the observation of this moment.
     fn with_seen<R>(run: &Stepped<Self>, work: impl FnOnce(&Self::Seen) -> R) -> R;
 
-    /// As [`Simulation::per_particle`], where it is more than the state knows.
+    /// As [`Simulation::per_particle`], where the method has more data than the state.
     fn per_particle(run: &Stepped<Self>) -> &dyn PerParticle {
         run.state.per_particle()
     }
@@ -72,10 +72,10 @@ pub trait Stepwise: Send + Sized {
         Ok(())
     }
 
-    /// Adds to the columns of the state what else the future depends on, and what has been counted.
+    /// Adds to the columns of the state what else the future depends on, and all counts.
     fn keep(run: &Stepped<Self>, kept: &mut Snapshot);
 
-    /// As [`Simulation::restore`]; the clock is one of steps.
+    /// As [`Simulation::restore`], after the clock has been checked to count steps.
     ///
     /// # Errors
     /// As there.
@@ -86,7 +86,7 @@ pub trait Stepwise: Send + Sized {
         BTreeMap::from([("steps", run.seconds)])
     }
 
-    /// Forgets what [`phases`](Self::phases) gives, but for [`Stepped::seconds`].
+    /// Resets the times of [`phases`](Self::phases), except [`Stepped::seconds`].
     fn reset_phases(_run: &mut Stepped<Self>) {}
 
     /// As [`Simulation::work`].
@@ -114,23 +114,23 @@ pub trait Stepwise: Send + Sized {
     fn in_words(run: &Stepped<Self>) -> String;
 }
 
-/// A simulation of a method with a time step.
+/// Simulation of a method with a time step.
 pub struct Stepped<M: Stepwise> {
-    /// What steps change.
+    /// State that steps change.
     pub state: M::State,
-    /// What the method keeps beside it.
+    /// Data of the method beside the state.
     pub method: M,
     /// Seconds spent on steps.
     pub seconds: f64,
 }
 
 impl<M: Stepwise> Stepped<M> {
-    /// Of a state as it stands.
+    /// Simulation of a state.
     pub fn new(state: M::State, method: M) -> Self {
         Stepped { state, method, seconds: 0.0 }
     }
 
-    /// How far it has come.
+    /// Progress so far.
     pub fn clock(&self) -> Clock {
         self.state.elapsed().clock()
     }
@@ -144,7 +144,7 @@ impl<M: Stepwise> Stepped<M> {
         Ok(())
     }
 
-    /// Passes on a look; none where a rank is lost.
+    /// Returns a sample, or none where a rank is lost.
     fn of_all_ranks<T>(&self, seen: T) -> Option<T> {
         self.state.check_ranks().ok().map(|()| seen)
     }
@@ -158,7 +158,7 @@ impl<M: Stepwise> Simulation for Stepped<M> {
         match (self.state.check_ranks(), done) {
             // The state was ended to continue with fewer particles, and that failed.
             (Err(ended), Err(failure)) if ended.kind != RANK_ENDED => Err(failure),
-            // A step may fail by what it sees without the particles of a rank: the loss is named first.
+            // A step may fail because the particles of a rank are missing: report the loss first.
             (ranks, done) => ranks.and(done),
         }
     }

@@ -1,4 +1,4 @@
-//! How fast is a method? Moving particles, timed.
+//! Throughput of a method: timed runs of moving particles.
 
 use crate::memory;
 use crate::method::observed::{UnknownName, find};
@@ -14,13 +14,13 @@ use std::time::Instant;
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::sweep::lattice::ShapeError;
 
-/// What is measured.
+/// Request for a measurement.
 pub struct Measurement {
-    /// The bench: what a repeat and the rate are.
+    /// Benchmark: defines a repeat and the rate.
     pub bench: &'static Bench,
     /// The scene.
     pub prepared: Prepared,
-    /// Steps or events before the clock starts; a start on a lattice is kinder than a gas.
+    /// Steps or events before timing starts; a start on a lattice costs less than a gas.
     pub equilibration: u64,
     /// Steps or events of each repeat.
     pub steps: u64,
@@ -28,37 +28,37 @@ pub struct Measurement {
     pub repeats: usize,
 }
 
-/// Why there is no measurement.
+/// Reason for a failed measurement.
 #[derive(Debug, thiserror::Error)]
 pub enum MeasurementError {
-    /// The scene.
+    /// The scene is invalid.
     #[error(transparent)]
     Scene(#[from] SceneErrors),
-    /// The physics.
+    /// The physics fails.
     #[error(transparent)]
     Physics(#[from] Failure),
-    /// A quantity that the bench is to say and the method does not observe.
+    /// The method does not observe a quantity that the benchmark reports.
     #[error(transparent)]
     Unknown(#[from] UnknownName),
-    /// A vector program that cannot be run.
+    /// A vector program cannot be run.
     #[error(transparent)]
     Program(#[from] ProgramError),
-    /// A lattice that cannot be.
+    /// The lattice is impossible.
     #[error(transparent)]
     Shape(#[from] ShapeError),
-    /// No thread to measure on.
-    #[error("no thread to measure on: {0}")]
+    /// There is no thread to measure on.
+    #[error("cannot start threads for the measurement: {0}")]
     Threads(rayon::ThreadPoolBuildError),
 }
 
-/// The result.
+/// Result of a measurement.
 #[derive(Clone, Debug)]
 pub struct Throughput {
-    /// What was measured.
+    /// Name of the benchmark.
     pub what: &'static str,
-    /// Particles that move.
+    /// Number of moving particles.
     pub particles: usize,
-    /// How: precision, integrator and the like.
+    /// Settings: precision, integrator and so on.
     pub settings: Map<String, Value>,
     /// Threads.
     pub threads: usize,
@@ -70,25 +70,25 @@ pub struct Throughput {
     pub seconds: f64,
     /// Processor seconds of the best repeat, over all threads.
     pub(crate) cpu_seconds: f64,
-    /// Most memory the process ever held; none where the platform does not say.
+    /// Peak memory of the process; none where the platform does not report it.
     pub(crate) peak_memory_bytes: Option<u64>,
     /// CRC-32 of the bits of the final state, by id.
     pub checksum: String,
     /// The name of the rate.
     pub rate_name: &'static str,
-    /// The rate: the best repeat.
+    /// Rate of the best repeat.
     pub rate: f64,
-    /// The rate: the median repeat.
+    /// Rate of the median repeat.
     pub median_rate: f64,
     /// Seconds of the best repeat in each phase.
     pub phases: BTreeMap<&'static str, f64>,
-    /// Quantities at the start and at the end of the measurement, where the bench compares them.
+    /// Quantities at the start and at the end of the measurement, if the benchmark compares them.
     pub compared: Vec<(&'static str, [f64; 2])>,
     /// Quantities at the end.
     pub at_end: Vec<(&'static str, f64)>,
 }
 
-/// With the names that outside programs rely on.
+/// Uses the names that outside programs rely on.
 impl Serialize for Throughput {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut data = Map::new();
@@ -112,22 +112,22 @@ impl Serialize for Throughput {
     }
 }
 
-/// Measures; `progress` gets the share that is done, between repeats.
+/// Measures the throughput; `progress` receives the completed fraction between repeats.
 ///
 /// # Errors
-/// [`MeasurementError`] if the scene is bad or breaks while running.
+/// [`MeasurementError`] if the scene is invalid or fails while running.
 pub fn throughput(measurement: Measurement, progress: impl Fn(f64)) -> Result<Throughput, MeasurementError> {
     let Measurement { bench, prepared, equilibration, steps, repeats } = measurement;
     let mut running = TimedRun::begin(bench, prepared, equilibration, steps)?;
     for repeat in 0..repeats {
-        // What comes before takes as long as a tenth of a repeat.
+        // Preparation takes about as long as a tenth of a repeat.
         progress((0.1 + repeat as f64) / (0.1 + repeats as f64));
         running.repeat()?;
     }
     Ok(running.measured()?)
 }
 
-/// Wall seconds, processor seconds, work, and seconds in each phase of a repeat.
+/// Times and work of a repeat (wall and processor seconds, seconds in each phase).
 struct Repeat {
     wall: f64,
     cpu: f64,
@@ -135,7 +135,7 @@ struct Repeat {
     phases: BTreeMap<&'static str, f64>,
 }
 
-/// A scene that runs, and is timed again and again.
+/// Running scene that is timed repeatedly.
 pub struct TimedRun {
     bench: &'static Bench,
     prepared: Prepared,
@@ -144,17 +144,17 @@ pub struct TimedRun {
     start: f64,
     steps: u64,
     before: Vec<f64>,
-    /// Names and places of what is said at the start and at the end, and at the end alone.
+    /// Names and indices of quantities reported at the start and at the end, and at the end alone.
     compared: Vec<(&'static str, usize)>,
     at_end: Vec<(&'static str, usize)>,
     repeats: Vec<Repeat>,
 }
 
 impl TimedRun {
-    /// Lets the scene run for `equilibration` steps or events. Repeats have `steps`.
+    /// Starts the scene and runs it for `equilibration` steps or events. Repeats have `steps`.
     ///
     /// # Errors
-    /// [`MeasurementError`] if the scene is bad or breaks while running.
+    /// [`MeasurementError`] if the scene is invalid or fails while running.
     pub fn begin(
         bench: &'static Bench,
         prepared: Prepared,
@@ -184,7 +184,7 @@ impl TimedRun {
     /// Times the steps of a repeat.
     ///
     /// # Errors
-    /// [`MeasurementError::Physics`] if the scene breaks.
+    /// [`MeasurementError::Physics`] if the scene fails.
     pub fn repeat(&mut self) -> Result<(), MeasurementError> {
         self.simulation.reset_phases();
         let done = self.simulation.work();
@@ -196,7 +196,7 @@ impl TimedRun {
         Ok(())
     }
 
-    /// Wall seconds of what is done beside steps: the start, a row of observables, all particles as they stand, and what a checkpoint keeps.
+    /// Wall seconds of work beside the steps: the start, a row of observables, a copy of all particles, and a snapshot.
     pub fn beside(&self) -> [f64; 4] {
         let least = |work: &dyn Fn()| {
             let once = |_| {
@@ -207,7 +207,7 @@ impl TimedRun {
             (0..3).map(once).fold(f64::INFINITY, f64::min)
         };
         let simulation = &self.simulation;
-        // Once: what is observed of a moment may be kept.
+        // Timed once: observations of a moment may be cached.
         let begun = Instant::now();
         drop(simulation.observe());
         let row = begun.elapsed().as_secs_f64();
@@ -221,7 +221,7 @@ impl TimedRun {
         self.simulation.advance(&[moment], &AtomicBool::new(false))
     }
 
-    /// What came out.
+    /// Result of all repeats.
     ///
     /// # Errors
     /// [`Failure`] if a rank was lost.

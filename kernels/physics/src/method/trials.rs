@@ -1,51 +1,50 @@
-//! What a method states of its trials: what may be varied of a scene without changing what is simulated, and what theory
-//! says of it. Studies of speed, accuracy and stability know a method by this alone.
+//! Description of a method for studies: what may be varied without changing the physics, and what theory predicts. Studies of speed, accuracy and
+//! stability use a method through this description alone.
 
 use super::entry::Prepared;
 use crate::particles::Particles;
 use crate::scene::{Key, Overrides, SceneErrors, Values};
 
-/// How the scenes of a method may be run, and what is measured of them.
+/// Variations of a method's scenes and quantities to measure.
 #[derive(Clone, Debug)]
 pub struct Trials {
     /// The key of the step (time).
     pub step: &'static Key,
-    /// The settings of the reference, one for each axis it names, the most accurate there is; and of a second one with
-    /// another integrator, against which it is held.
+    /// Settings of the reference, one for each axis it names, the most accurate available; and of a second reference with another integrator that it
+    /// is compared with.
     pub references: [&'static [(&'static str, &'static str)]; 2],
-    /// The balance of energy, where the method observes one.
+    /// Energy balance, if the method observes one.
     pub balance: Option<Balance>,
-    /// Integrators that keep a shadow energy, where the method has such; none elsewhere.
+    /// Integrators that conserve a shadow energy; none where the method has none.
     pub shadow: Option<Shadow>,
-    /// Two particles as a scene has them, whose encounters say what a step changes in each; none where they do not touch.
+    /// Scene of an encounter of two particles, which shows the effect of the step on each contact; none where particles do not touch.
     pub encounter: fn(&Prepared, Encounter) -> Option<String>,
-    /// Whether a run with another step follows the same trajectories; where noise moves particles it does not, and only means can be
-    /// compared.
+    /// True if runs with different steps follow the same trajectories. With noise they do not, and only means can be compared.
     pub has_trajectories: bool,
-    /// What distances between states are measured in.
+    /// Unit of distances between states.
     pub length: Length,
-    /// Whether particles touch and part, so that two of them alone are a collision.
+    /// True if particles touch and separate, so that two particles alone make a collision.
     pub has_contacts: bool,
-    /// Quantities that have a mean in a run: what is left of a comparison once trajectories have parted.
+    /// Quantities that have a mean in a run: what remains comparable after trajectories diverge.
     pub observables: &'static [&'static str],
-    /// Those of them that come and go with single contacts: looks at them have a mean only over independent seeds.
+    /// Observables that come and go with single contacts: their samples have a mean only over independent seeds.
     pub fluctuating: &'static [&'static str],
-    /// Whether particles rotate, and their moment of inertia over m R² if so.
+    /// Moment of inertia over m R², if particles rotate.
     pub inertia: fn(&Values) -> Option<f64>,
-    /// The order of convergence of positions that theory gives for a setting of the axis that decides it.
+    /// Theoretical order of convergence of positions for a setting of the axis that decides it.
     pub theory: fn(&Values, &Prepared, &Setting) -> Option<Theory>,
-    /// What a map of stability may vary beside the step.
+    /// Parameters that a map of stability may vary beside the step.
     pub parameters: &'static [Parameter],
-    /// As the entry's `prepare`, but whatever the step is: what theory foresees of it refuses nothing.
+    /// As the entry's `prepare` at any step: theoretical limits of the step reject nothing.
     pub at_any_step: fn(Values) -> Result<Prepared, SceneErrors>,
 }
 
-/// What distances between states are measured in.
+/// Unit of distances between states.
 #[derive(Clone, Copy, Debug)]
 pub struct Length {
-    /// What it is called, as a unit.
+    /// Name of the unit.
     pub unit: &'static str,
-    /// How long it is (length).
+    /// Value of the unit (length).
     pub of: fn(&Particles) -> f64,
 }
 
@@ -53,107 +52,107 @@ pub struct Length {
 pub const SMALLEST_RADIUS: Length =
     Length { unit: "radii", of: |particles| particles.radii().map_or(1.0, |[smallest, _]| smallest) };
 
-/// The balance of energy, by names of quantities.
+/// Energy balance by names of quantities.
 #[derive(Clone, Copy, Debug)]
 pub struct Balance {
-    /// Its error: the energy that there is, less what there should be.
+    /// Balance error: actual minus expected energy.
     pub error: &'static str,
-    /// Energies whose magnitudes add up to what moves.
+    /// Energies whose magnitudes add up to the energy of motion.
     pub energies: &'static [&'static str],
-    /// Work since the start, whose magnitudes add up to what has come from outside.
+    /// Work since the start, whose magnitudes add up to the external input.
     pub inputs: &'static [&'static str],
 }
 
-/// Integrators that keep an energy that differs from the true one by a power of the step (Bond and Leimkuhler, Acta Numerica 16, 2007): without friction
-/// and driving the true one then fluctuates about it.
+/// Integrators that conserve a shadow energy, which differs from the true one by a power of the step (Bond and Leimkuhler, Acta Numerica 16, 2007).
+/// Without friction and driving, the true energy then fluctuates about it.
 #[derive(Clone, Copy, Debug)]
 pub struct Shadow {
-    /// The settings of the axis that decides the order.
+    /// Settings of the axis that decides the order.
     pub integrators: &'static [&'static str],
-    /// The quantity that is the mean energy of a degree of freedom, twice.
+    /// Name of the quantity that is twice the mean energy of a degree of freedom.
     pub temperature: &'static str,
 }
 
-/// How two particles meet.
+/// Geometry of an encounter of two particles.
 #[derive(Clone, Copy, Debug)]
 pub struct Encounter {
     /// Speed of approach (length/time).
     pub speed: f64,
-    /// Distance of the line of flight from the other's centre, in sums of the radii: 0 head on, 1 past each other.
+    /// Distance of the line of flight from the other's centre, in sums of the radii: 0 is head on, 1 is grazing.
     pub offset: f64,
 }
 
-/// Something of a scene that a map of stability varies beside the step.
+/// Parameter of a scene that a map of stability varies beside the step.
 #[derive(Debug)]
 pub struct Parameter {
     /// Its name.
     pub name: &'static str,
-    /// What it is, for an axis.
+    /// Label for an axis.
     pub label: &'static str,
     /// Its dimension, such as `1/time`, empty for pure numbers.
     pub unit: &'static str,
-    /// The least and the largest value that it may have.
+    /// Smallest and largest allowed value.
     pub bounds: [f64; 2],
-    /// Whether equal ratios lie at equal distances on an axis.
+    /// True if the axis is logarithmic.
     pub is_logarithmic: bool,
-    /// From where to where a map goes if nothing else is asked for; none where the scene has nothing of the kind.
+    /// Default range of a map; none where the scene lacks the parameter.
     pub range: fn(&Values) -> Option<[f64; 2]>,
-    /// The overrides by which a scene comes to have a value.
+    /// Overrides that set a value in a scene.
     pub overrides: fn(&Values, f64) -> Overrides,
-    /// Values that theory names, with what they are.
+    /// Special values named by theory, with their descriptions.
     pub marks: fn(&Values) -> Vec<(f64, String)>,
 }
 
-/// A simpler model of a scene, beside which its results show what it needs.
+/// Simpler model of a scene, used to show which parts the scene needs.
 #[derive(Debug)]
 pub struct Twin {
-    /// What it lacks.
+    /// Name of the missing part.
     pub name: &'static str,
-    /// What it is.
+    /// Simplified scene.
     pub becomes: Becomes,
 }
 
-/// What a scene becomes in a simpler model; none where it has nothing of the kind.
+/// Simplification of a scene; none where the scene lacks the part.
 #[derive(Debug)]
 pub enum Becomes {
-    /// The same with overrides.
+    /// Scene with overrides.
     Overridden(fn(&Values) -> Option<Overrides>),
-    /// The scene of another method, for a quantity that is asked for.
+    /// Scene of another method, for a requested quantity.
     Rewritten(fn(&Values, &Prepared, &str) -> Option<Rewritten>),
 }
 
-/// A scene as another method has it.
+/// Scene translated to another method.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rewritten {
-    /// Its text.
+    /// Scene as TOML.
     pub text: String,
-    /// The quantity there that stands for the one here.
+    /// Quantity there that corresponds to the one here.
     pub quantity: &'static str,
-    /// What a value of it is here, over that there.
+    /// Factor from a value there to a value here.
     pub unit: f64,
 }
 
-/// Something that may be chosen.
+/// Choice between settings that leave the physics unchanged.
 #[derive(Debug)]
 pub struct Axis {
     /// Its name.
     pub name: &'static str,
-    /// What the choice decides.
+    /// Effect of the choice.
     pub decides: Decides,
     /// The settings.
     pub settings: &'static [Setting],
-    /// The setting of a scene as it was prepared; none if it is not among these.
+    /// Setting of a prepared scene; none if it is not among these.
     pub own: fn(&Prepared) -> Option<String>,
 }
 
-/// What a choice decides.
+/// Effect of a choice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Decides {
     /// The order of convergence.
     Order,
-    /// The digits.
+    /// The precision.
     Digits,
-    /// The cost; results are equal but for rounding.
+    /// The cost; results agree up to rounding.
     Cost,
 }
 
@@ -162,11 +161,11 @@ pub enum Decides {
 pub struct Setting {
     /// Its name.
     pub name: &'static str,
-    /// The overrides that it makes in a scene.
+    /// Overrides of the setting.
     pub overrides: fn() -> Overrides,
 }
 
-/// The settings of an axis, each with the values that it gives to keys.
+/// Builds the settings of an axis, each with the values of its keys.
 macro_rules! settings {
     ($($name:literal [$($key:ident = $value:expr),*],)*) => {
         &[$($crate::method::Setting {
@@ -177,17 +176,17 @@ macro_rules! settings {
 }
 pub(super) use settings;
 
-/// What theory says of the error of positions at the end of a short run.
+/// Theoretical error of positions at the end of a short run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Theory {
-    /// The power of the step with which the error falls.
+    /// Power of the step with which the error falls.
     pub order: f64,
-    /// What decides it.
+    /// Reason.
     pub why: &'static str,
 }
 
 impl Axis {
-    /// The setting of a name.
+    /// Returns the setting of a name.
     pub fn setting(&self, name: &str) -> Option<&'static Setting> {
         self.settings.iter().find(|setting| setting.name == name)
     }
@@ -199,8 +198,8 @@ mod tests {
     use crate::method::{METHODS, method, prepare, vocabularies};
     use crate::scene::{COUNT, DT, SEED, STEPS};
 
-    /// Presets with overrides that a user typed. Some of these put values of the text aside: the six values of a Gear scheme, how
-    /// programs are executed, a number of steps.
+    /// Presets with overrides typed by a user. Some of these deactivate values of the file: the six values of a Gear scheme, how programs are
+    /// executed, a number of steps.
     const SCENES: &[(&str, &[&str])] = &[
         ("two-discs", &["run.time=3.2"]),
         ("dense-gas", &["particles.count=100", "integrator.kind=velocity-verlet"]),
@@ -213,7 +212,7 @@ mod tests {
         ("plummer", &["particles.count=64"]),
     ];
 
-    /// All overrides of studies, and some that a scene refuses or that no method has.
+    /// All overrides of studies, and some that a scene rejects or that no method has.
     fn all_overrides(values: &Values) -> Vec<Overrides> {
         let entry = method(METHODS, values.method()).unwrap();
         let settings = entry.axes.iter().flat_map(|axis| axis.settings);
@@ -236,7 +235,7 @@ mod tests {
             one().set(&DT, -1.0).set(&COUNT, 3_u64),
             one().set(&DT, f64::INFINITY),
             one().set(entry.vocabulary.keys.key("machine", "engine").unwrap_or(&DT), "reverse"),
-            // Gear's scheme again, with the values that the text gives it.
+            // Gear's scheme again, with the values of the file.
             one().set(entry.vocabulary.keys.key("integrator", "kind").unwrap_or(&DT), "gear"),
         ]);
         all
@@ -264,7 +263,7 @@ mod tests {
         assert!(refused > 30 && compared - refused > 100, "{refused} of {compared}");
     }
 
-    /// The values that overrides put aside come back by further ones: two-discs gives five values of Gear's scheme.
+    /// Further overrides reactivate values that earlier ones deactivated: two-discs gives five values of Gear's scheme.
     #[test]
     fn values_put_aside_come_back() {
         let known = vocabularies(METHODS);

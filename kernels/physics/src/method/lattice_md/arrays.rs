@@ -1,4 +1,4 @@
-//! The arrays a step works on.
+//! Arrays of a step.
 
 use super::options::ProgramText;
 use super::programs::scales;
@@ -12,14 +12,14 @@ use stripmine_kernels::ledger::Length;
 use stripmine_kernels::printed;
 use stripmine_kernels::sweep::lattice::Coordinates;
 
-/// How long the vectors of a step are for a scene.
+/// Vector lengths of a step for a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Lengths {
     /// NP: discs that move.
     pub grains: usize,
-    /// Discs with those of the walls.
+    /// Number of discs including wall discs.
     pub discs: usize,
-    /// LMAX: cells that discs may live in.
+    /// LMAX: cells that discs may occupy.
     pub cells: usize,
     swept: Range<usize>,
     padded: usize,
@@ -27,7 +27,7 @@ pub struct Lengths {
 }
 
 impl Lengths {
-    /// For `grains` and wall discs, `discs` together, on a model's lattice.
+    /// Lengths for `grains`, and `discs` with wall discs, on a model's lattice.
     pub fn new(model: &Model, grains: usize, discs: usize) -> Self {
         let shape = &model.shape;
         Lengths {
@@ -40,7 +40,7 @@ impl Lengths {
         }
     }
 
-    /// The elements that a program of this length runs over.
+    /// Element range of programs of this length.
     pub fn range(&self, length: Length) -> Range<usize> {
         match length {
             Length::Grains => 0..self.grains,
@@ -48,14 +48,14 @@ impl Lengths {
             Length::SweptCells => self.swept.clone(),
             Length::PaddedCells => 0..self.padded,
             Length::HaloCells => 0..self.halo,
-            // Known only when the lists are walked.
+            // Known only when the lists are traversed.
             Length::Candidates | Length::Pairs => 0..0,
         }
     }
 }
 
-/// Discs and lattice vectors of a model, state in precision `S`, lattice in precision `P`. What the model leaves out
-/// has no array.
+/// Discs and lattice vectors of a model, with the state in precision `S` and the lattice in precision `P`. Parts that the model leaves out have no
+/// array.
 #[derive(Clone, Debug)]
 pub struct Arrays<S, P> {
     lengths: Lengths,
@@ -63,27 +63,27 @@ pub struct Arrays<S, P> {
     state: Columns<S>,
     /// Columns in force precision that programs write.
     lattice: Columns<P>,
-    /// Columns in force precision that stay as they are.
+    /// Columns in force precision that never change.
     constant: Columns<P>,
     cell: AlignedColumn<u32>,
-    /// Where the forces of every disc stand where that is not its cell: numbered from 1.
+    /// Index of each disc's forces if it differs from its cell: numbered from 1.
     force_at: Option<AlignedColumn<u32>>,
     index: AlignedColumn<u32>,
     halo_cell: AlignedColumn<u32>,
     halo_source: AlignedColumn<u32>,
 }
 
-/// Columns, each for one array of the machine.
+/// Columns of the machine's arrays.
 type Columns<T> = Vec<(Array, AlignedColumn<T>)>;
 
-/// State and lattice columns, bound to their slots.
+/// Binds state and lattice columns to their slots.
 fn bound<'a, S: Precision, P: Precision>(
     state: &'a mut Columns<S>,
     lattice: &'a mut Columns<P>,
     constant: &'a Columns<P>,
 ) -> Memory<'a> {
     let mut memory = Memory::new();
-    // Constants first: where state and lattice have one precision, the state's copy of a quantity takes its place.
+    // Constants first: if state and lattice have one precision, the state's copy of a quantity replaces them.
     for (array, column) in constant {
         memory.bind_read(Slot::new(*array), column);
     }
@@ -96,18 +96,18 @@ fn bound<'a, S: Precision, P: Precision>(
     memory
 }
 
-/// An array's elements, at lines of its own.
+/// Stores an array's elements in cache lines of their own.
 fn laid_out<X: Copy>(array: Array, values: impl IntoIterator<Item = X>) -> AlignedColumn<X> {
     AlignedColumn::new(array as usize, values)
 }
 
 impl<S: Precision, P: Precision> Arrays<S, P> {
-    /// Lays out `particles`; derivatives above the velocity start at zero. Forces stand cell by cell.
+    /// Stores `particles`; derivatives above the velocity start at zero. Forces are stored by cell.
     pub fn new(model: &Model, particles: &Particles) -> Self {
         Arrays::lay_out(model, particles, false)
     }
 
-    /// The same with forces disc by disc: for searches that let discs share a cell.
+    /// Stores `particles` with forces by disc: for searches that let discs share a cell.
     pub(crate) fn with_forces_by_disc(model: &Model, particles: &Particles) -> Self {
         Arrays::lay_out(model, particles, true)
     }
@@ -221,7 +221,7 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
         if asked.energy {
             columns(&[Array::Energy, Array::Virial], padded);
         }
-        // The predictor hands on the grains' velocities; a wall's stay until the wall is moved.
+        // The predictor passes on the grains' velocities; those of a wall stay until the wall is moved.
         let velocity = |disc: &Particle| [disc.velocity[0], disc.velocity[1], disc.omega];
         for (component, array) in [Array::DiscVx, Array::DiscVy, Array::DiscOmega].into_iter().enumerate() {
             if let Some((_, column)) = lattice.iter_mut().find(|(name, _)| *name == array) {
@@ -246,12 +246,12 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
         }
     }
 
-    /// How long the vectors are.
+    /// Vector lengths.
     pub fn lengths(&self) -> &Lengths {
         &self.lengths
     }
 
-    /// All arrays, bound to their slots, with the lengths of the vectors.
+    /// Binds all arrays to their slots; also returns the vector lengths.
     pub fn memory(&mut self) -> (Memory<'_>, &Lengths) {
         let Arrays { lengths, state, lattice, constant, cell, index, halo_cell, halo_source, .. } = self;
         let mut memory = bound(state, lattice, constant);
@@ -262,7 +262,7 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
         (memory, lengths)
     }
 
-    /// The arrays as the corrector sees them: what it takes for a disc's cell is where the disc's forces stand.
+    /// Binds the arrays for the corrector: its cell of a disc is the index of the disc's forces.
     pub(crate) fn memory_of_corrector(&mut self) -> (Memory<'_>, &Lengths) {
         let Arrays { lengths, state, lattice, constant, cell, force_at, .. } = self;
         let mut memory = bound(state, lattice, constant);
@@ -270,53 +270,53 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
         (memory, lengths)
     }
 
-    /// Where the forces of a disc stand in their columns.
+    /// Returns the index of a disc's forces in their columns.
     pub(crate) fn force_at(&self, disc: usize) -> Option<usize> {
         let number = self.force_at.as_deref().unwrap_or(&self.cell)[disc];
         (number as usize).checked_sub(1)
     }
 
-    /// A column in state precision.
+    /// Returns a column in state precision.
     pub fn state(&self, array: Array) -> Option<&[S]> {
         self.state.iter().find(|(name, _)| *name == array).map(|(_, column)| &**column)
     }
 
-    /// A column in state precision, to be changed.
+    /// Returns a column in state precision to modify.
     pub(crate) fn state_mut(&mut self, array: Array) -> Option<&mut [S]> {
         self.state.iter_mut().find(|(name, _)| *name == array).map(|(_, column)| &mut **column)
     }
 
-    /// All columns in state precision.
+    /// Returns all columns in state precision.
     pub fn states(&self) -> impl Iterator<Item = (Array, &[S])> {
         self.state.iter().map(|(array, column)| (*array, &**column))
     }
 
-    /// A column in force precision, to be changed.
+    /// Returns a column in force precision to modify.
     pub(crate) fn lattice_mut(&mut self, array: Array) -> Option<&mut [P]> {
         self.lattice.iter_mut().find(|(name, _)| *name == array).map(|(_, column)| &mut **column)
     }
 
-    /// A column in force precision that stays as it is.
+    /// Returns a column in force precision that never changes.
     pub(crate) fn constant(&self, array: Array) -> Option<&[P]> {
         self.constant.iter().find(|(name, _)| *name == array).map(|(_, column)| &**column)
     }
 
-    /// The cell of every disc, numbered from 1; 0 is none.
+    /// Returns the cell of every disc, numbered from 1; 0 means none.
     pub fn cell(&self) -> &[u32] {
         &self.cell
     }
 
-    /// The cell of every disc, to be changed.
+    /// Returns the cell of every disc to modify.
     pub(crate) fn cell_mut(&mut self) -> &mut [u32] {
         &mut self.cell
     }
 
-    /// The disc in every cell, numbered from 1; 0 is none.
+    /// Returns the disc in every cell, numbered from 1; 0 means none.
     pub fn index(&self) -> &[u32] {
         &self.index
     }
 
-    /// A column in force precision.
+    /// Returns a column in force precision.
     pub fn lattice(&self, array: Array) -> Option<&[P]> {
         self.lattice.iter().find(|(name, _)| *name == array).map(|(_, column)| &**column)
     }

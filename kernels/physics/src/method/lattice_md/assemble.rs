@@ -1,4 +1,4 @@
-//! From a checked scene to discs that are stepped.
+//! Assembly of a checked scene into a model and its discs.
 
 use super::check::Checked;
 use super::model::sides_of;
@@ -8,7 +8,7 @@ use crate::method::Failure;
 use crate::method::refuse_several_ranks;
 use stripmine_kernels::law::granular::Disc;
 
-/// What a checked scene models: no more than it needs.
+/// Returns the model of a checked scene, without the parts that it does not need.
 pub fn model(checked: &Checked) -> Model {
     let Checked { scene, domain, particles, alike, geometry, .. } = checked;
     let factor = scene.law.inertia.factor();
@@ -45,7 +45,7 @@ pub fn model(checked: &Checked) -> Model {
     }
 }
 
-/// How a checked scene has its contacts found.
+/// Returns the contact search of a checked scene.
 pub(super) fn contacts(checked: &Checked) -> Contacts {
     let Checked { scene, geometry, .. } = checked;
     let (search, skin) = (&scene.search, geometry.skin);
@@ -60,16 +60,16 @@ pub(super) fn contacts(checked: &Checked) -> Contacts {
     }
 }
 
-/// The discs of a checked scene, at the start.
+/// Builds the discs of a checked scene at the start.
 ///
 /// # Errors
-/// [`Failure`] if the start breaks a precondition, or the processor lacks the instruction set asked for.
+/// [`Failure`] if the start violates a precondition, or the processor lacks the requested instruction set.
 pub fn assemble(checked: &Checked) -> Result<Grains, Failure> {
     start_of(checked, model(checked))
 }
 
-/// The same, with energy followed: what contacts dissipate, what walls put in, periods that discs cross along gravity; and along every
-/// axis, where the scene asks for displacements.
+/// Builds the discs of a checked scene and tracks energy: dissipation, wall work, and periods crossed along gravity; and along every axis if the
+/// scene asks for displacements.
 ///
 /// # Errors
 /// As [`assemble`].
@@ -77,7 +77,7 @@ pub fn assemble_following_energy(checked: &Checked) -> Result<Grains, Failure> {
     start_of(checked, model_following_energy(checked))
 }
 
-/// What a checked scene models where energy is followed.
+/// Returns the model of a checked scene that tracks energy.
 pub(super) fn model_following_energy(checked: &Checked) -> Model {
     let mut model = model(checked);
     let motion = checked.scene.output.follows_motion();
@@ -89,7 +89,7 @@ fn start_of(checked: &Checked, model: Model) -> Result<Grains, Failure> {
     let Checked { scene, particles, .. } = checked;
     if !scene.machine.is_fast() {
         refuse_several_ranks(
-            "the source's programs are of whole arrays: machine.engine = \"fast\" has bands",
+            "BP93's programs act on whole arrays; only machine.engine = \"fast\" has bands",
         )?;
     }
     let contacts = contacts(checked);

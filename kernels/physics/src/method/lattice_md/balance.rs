@@ -1,12 +1,11 @@
-//! The balance of energy along a run.
+//! Energy balance along a run.
 
 use super::Totals;
 use crate::domain::Domain;
 use crate::observe::{Observation, Scenery, Sums};
 use crate::particles::{Particle, Particles};
 
-/// What the energy of the grains is held against: what was there at the start, what gravity and walls have put in, and what
-/// contacts have taken out.
+/// Terms that the energy of the grains is compared with: the start energy, the work of gravity and walls, and the dissipation in contacts.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Work {
     way: Way,
@@ -14,17 +13,17 @@ pub(super) struct Work {
     start: f64,
 }
 
-/// What gravity does to grains on their way from where they were at the start.
+/// Work of gravity on grains along their displacement since the start.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Way {
     domain: Domain,
     gravity: [f64; 2],
-    /// Grains at the start, as if there were no sides (length); none where nothing pulls.
+    /// Unwrapped positions of grains at the start (length); empty without gravity.
     from: Vec<[f64; 2]>,
 }
 
 impl Way {
-    /// From where grains stand, who have crossed so many periods; they are asked for only where something pulls.
+    /// Starts from the grains' positions and crossed periods; the positions are computed only with gravity.
     pub(super) fn begin(
         scenery: &Scenery,
         crossings: &[[f64; 2]],
@@ -40,14 +39,14 @@ impl Way {
         way
     }
 
-    /// A position (length), as the state has it, with the periods that the grain has crossed.
+    /// Unwraps a position (length) with the periods that the grain has crossed.
     fn unfolded(&self, number: usize, position: [f64; 2], crossings: &[[f64; 2]]) -> [f64; 2] {
         let periods = crossings.get(number).copied().unwrap_or_default();
-        // Along an axis that is not periodic nothing is crossed.
+        // Crossings are zero along an axis that is not periodic.
         [0, 1].map(|axis| position[axis] + periods[axis] * self.domain.length(axis))
     }
 
-    /// What gravity has done to a grain that is now at a position (energy).
+    /// Work of gravity on a grain since the start (energy).
     pub(super) fn work(
         &self,
         number: usize,
@@ -56,7 +55,7 @@ impl Way {
         crossings: &[[f64; 2]],
     ) -> f64 {
         let (from, now) = (self.from[number], self.unfolded(number, position, crossings));
-        // Where nothing pulls, nothing is followed, and the way may be an image's.
+        // Without gravity along an axis its crossings are not tracked, and the displacement may be that of an image.
         let pulling = (0..2).filter(|&axis| self.gravity[axis] != 0.0);
         grain.mass * pulling.map(|axis| self.gravity[axis] * (now[axis] - from[axis])).sum::<f64>()
     }
@@ -65,33 +64,33 @@ impl Way {
 /// Energies since the start (mass · length²/time²).
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Balance {
-    /// What contacts have turned into heat: summed up contact by contact, step by step.
+    /// Energy dissipated in contacts: summed contact by contact, step by step.
     pub dissipated: f64,
-    /// What gravity has put in.
+    /// Work of gravity.
     pub(crate) gravity_work: f64,
-    /// What moving walls have put in.
+    /// Work of moving walls.
     pub wall_work: f64,
-    /// The energy that there is, less what there should be: the error of the integration, of the steps and of rounding.
+    /// Actual minus expected energy: the error of integration, steps and rounding.
     pub(crate) balance_error: f64,
 }
 
 impl Work {
-    /// From the first observation on.
+    /// Starts at the first observation.
     pub(super) fn begin(way: Way, first: &Observation) -> Work {
         Work { way, start: inner(first) }
     }
 
-    /// The way of the grains.
+    /// Returns the displacements of the grains.
     pub(super) fn way(&self) -> &Way {
         &self.way
     }
 
-    /// The energy that there was at the start, and what gravity and walls have put in or taken out since.
+    /// Scale of the balance: energy at the start plus the magnitudes of gravity work and wall work since.
     pub(super) fn passed(&self, balance: &Balance) -> f64 {
         self.start + balance.gravity_work.abs() + balance.wall_work.abs()
     }
 
-    /// The balance of a moment.
+    /// Returns the balance of a moment.
     pub(super) fn balance(&self, now: &Observation, sums: &Sums, totals: &Totals) -> Balance {
         let Totals { dissipated, wall_work, .. } = *totals;
         let gravity_work = sums.grains.gravity_work;

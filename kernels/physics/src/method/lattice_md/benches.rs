@@ -1,15 +1,15 @@
-//! What is measured of granular discs.
+//! Benchmarks of granular discs.
 
 use super::quantities::QUANTITIES;
 use crate::method::entry::bench_options;
 use crate::method::{Bench, BenchOption, Until};
 
-/// One for each way of finding contacts, by its name.
+/// One benchmark for each contact search, by its name.
 pub(super) const BENCHES: &[Bench] = &[
     Bench { name: "lattice", doc: "BP93's lattice method", overrides: &["search.by=lattice"], ..GRANULAR },
     Bench {
         name: "neighbor-list",
-        doc: "Neighbour lists: the source's rival of it",
+        doc: "Neighbour lists: BP93's alternative to the lattice",
         overrides: &["search.by=neighbor-list"],
         ..GRANULAR
     },
@@ -21,7 +21,7 @@ pub(super) const BENCHES: &[Bench] = &[
     },
 ];
 
-/// The granular benchmark, whatever finds the contacts.
+/// Benchmark shared by all contact searches.
 const GRANULAR: Bench = Bench {
     name: "",
     doc: "",
@@ -38,7 +38,7 @@ const GRANULAR: Bench = Bench {
     at_end: &["contacts"],
 };
 
-/// The options of them all.
+/// Options shared by all of them.
 const OPTIONS: &[BenchOption] = bench_options! {
     "particles" [], |count| vec![format!("particles.count={count}")];
     "packing-fraction" [], |fraction| vec![format!("particles.packing_fraction={fraction}")];
@@ -48,7 +48,7 @@ const OPTIONS: &[BenchOption] = bench_options! {
         None => vec![format!("integrator.kind={name}")],
     };
     "engine" ["auto", "fast", "programs"], |engine| vec![format!("machine.engine={engine}")];
-    // The source has no clamp.
+    // BP93 has no clamp.
     "text" ["ours", "printed"], |text| {
         let clamped = format!("law.cohesionless={}", text != "printed");
         vec!["machine.engine=programs".to_owned(), format!("machine.text={text}"), clamped]

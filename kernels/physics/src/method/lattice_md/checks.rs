@@ -1,15 +1,15 @@
-//! What a run is warned of: what its counts and its energy say that seldom means well.
+//! Warnings of a run about its counts and its energy.
 
 use super::Totals;
 use super::balance::Balance;
 use crate::method::RunWarning;
 use crate::number::significant;
 
-/// The balance of energy may be off by this part of what passed through. An error that grows evenly to it is 5 % in the mean over the
-/// second half of a run, three quarters of what it is at the end.
+/// Tolerated balance error relative to the energy that passed through. An error that grows evenly to it is 5 % in the mean over the second half of a
+/// run, three quarters of its final value.
 const BALANCED: f64 = 0.05 / 0.75;
 
-/// Warnings of counts. Contacts deeper than `law.max_penetration` are counted alone: every search finds them, and the run stops at
+/// Returns warnings about counts. Contacts deeper than `law.max_penetration` are only counted: every search finds them, and the run stops at
 /// `law.stop_penetration`.
 pub(super) fn counted(totals: &Totals) -> Vec<RunWarning> {
     let mut warnings = Vec::new();
@@ -18,7 +18,7 @@ pub(super) fn counted(totals: &Totals) -> Vec<RunWarning> {
     };
     if totals.long_steps > 0 {
         let message = format!(
-            "{} times a disc moved so far in a step that contacts deeper than law.max_penetration may have passed unseen: \
+            "{} times a disc moved so far in a step that contacts deeper than law.max_penetration may have been missed: \
              lower dt, or slow the discs",
             totals.long_steps
         );
@@ -26,8 +26,8 @@ pub(super) fn counted(totals: &Totals) -> Vec<RunWarning> {
     }
     if totals.shared_cells > 0 {
         let message = format!(
-            "{} times a disc was in a lattice cell that was another's, and was kept beside the lattice: exact, but \
-             slower the more there are",
+            "{} times a disc was in an occupied lattice cell and was kept beside the lattice: exact, but \
+             slower with every such disc",
             totals.shared_cells
         );
         warn("shared-cells", totals.shared_cells as f64, 0.0, message);
@@ -35,13 +35,13 @@ pub(super) fn counted(totals: &Totals) -> Vec<RunWarning> {
     warnings
 }
 
-/// An energy that the integration has made or lost, where `passed` is what there was and what has come from outside.
+/// Warns of energy created or lost by the integration; `passed` is the start energy plus the input from outside.
 pub(super) fn energy(balance: &Balance, passed: f64) -> Option<RunWarning> {
     let off = balance.balance_error / passed;
-    // An energy that is no number is off, too.
+    // NaN counts as unbalanced.
     let is_balanced = balance.balance_error == 0.0 || off.abs() <= BALANCED;
     (!is_balanced).then(|| {
-        let [has, is_wrong] = if off < 0.0 { ["lost", "too little"] } else { ["made", "too much"] };
+        let [has, is_wrong] = if off < 0.0 { ["lost", "too little"] } else { ["created", "too much"] };
         let message = format!(
             "the integration has {has} {:.2} % of the energy that passed through, {} {is_wrong}: lower dt, or choose another \
              integrator",
@@ -62,7 +62,7 @@ mod tests {
         };
         assert_eq!(off(0.099), None);
         let (value, message) = off(0.25).unwrap();
-        assert!(value == 0.125 && message.contains("has made 12.50 %"), "{message}");
+        assert!(value == 0.125 && message.contains("has created 12.50 %"), "{message}");
         assert!(off(-0.25).unwrap().1.contains("has lost 12.50 %"));
         assert!(off(f64::NAN).is_some());
         assert_eq!(energy(&Balance::default(), 0.0), None);

@@ -1,6 +1,6 @@
-//! What `auto` becomes: the fastest way of finding contacts that a scene allows, by what was measured.
+//! Choice of engine and search for `auto`: the fastest contact search that a scene allows, by measured timings.
 //!
-//! The choice depends on the scene alone, never on the machine or its threads, so that a run is the same everywhere.
+//! The choice depends on the scene alone, never on the machine or its threads, so that a run is reproducible everywhere.
 
 use super::OnConflict;
 use super::scene::{By, EngineChoice, ProgramText, Scene};
@@ -11,10 +11,10 @@ use crate::words::Words;
 use stripmine_kernels::Execution;
 use stripmine_kernels::sweep::lattice::Coordinates;
 
-/// Where the lattice and the lists were equally fast, with what was measured and where.
+/// Measured packing fractions at which the lattice and the lists are equally fast, with their provenance.
 const MEASURED: &str = include_str!("choice.csv");
 
-/// A measured crossing.
+/// Measured crossing of the timings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Crossing {
     precision: Precision,
@@ -22,7 +22,7 @@ struct Crossing {
     packing_fraction: f64,
 }
 
-/// The rows of the table; lines that begin with # say where it comes from.
+/// Returns the rows of the table; lines that begin with # state their provenance.
 fn crossings() -> Vec<Crossing> {
     let rows = MEASURED.lines().filter(|line| !line.starts_with('#')).skip(1);
     let row = |line: &str| {
@@ -36,21 +36,21 @@ fn crossings() -> Vec<Crossing> {
     rows.filter_map(row).collect()
 }
 
-/// The packing fraction above which the lattice is the faster: that of the measured number of discs nearest by its logarithm.
+/// Packing fraction above which the lattice is faster: that of the measured number of discs closest in its logarithm.
 fn crossing(precision: Precision, discs: usize) -> f64 {
     let away = |crossing: &Crossing| (crossing.discs / discs.max(1) as f64).ln().abs();
     let of_precision = crossings().into_iter().filter(|crossing| crossing.precision == precision);
     of_precision.min_by(|a, b| away(a).total_cmp(&away(b))).map_or(1.0, |crossing| crossing.packing_fraction)
 }
 
-/// A way of finding contacts, with the reason for it.
+/// Contact search with the reason for it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Choice {
     pub(super) by: By,
     pub(super) reason: String,
 }
 
-/// Decides which engine steps the discs, where the scene leaves it open; gives the reason.
+/// Chooses the engine if the scene leaves it open; returns the reason.
 pub(super) fn engine(scene: &mut Scene) -> Option<String> {
     if scene.machine.engine != EngineChoice::Auto {
         return None;
@@ -70,11 +70,11 @@ pub(super) fn engine(scene: &mut Scene) -> Option<String> {
     Some(format!("machine.engine = \"{}\": {reason}", engine.word()))
 }
 
-/// The ways of finding contacts to be tried for a scene, the fastest first.
+/// Returns the contact searches to try for a scene, the fastest first.
 pub(super) fn searches(scene: &Scene, domain: &Domain, particles: &Particles) -> Vec<Choice> {
     let choice = |by: By, reason: String| Choice { by, reason };
     if !scene.machine.is_fast() {
-        return vec![choice(By::Lattice, "the source's programs run on it".to_owned())];
+        return vec![choice(By::Lattice, "BP93's programs need it".to_owned())];
     }
     let search = &scene.search;
     if search.cell_edge.is_some() || search.mask.is_some() || search.on_conflict == OnConflict::Resolve {
@@ -84,17 +84,19 @@ pub(super) fn searches(scene: &Scene, domain: &Domain, particles: &Particles) ->
     let (packing_fraction, discs) = (area / (domain.area()), particles.len());
     let crossing = crossing(scene.machine.precision, discs);
     let on_lattice = choice(By::Lattice, {
-        format!("the packing fraction {packing_fraction:.3} is above {crossing:.3}, where lists are as fast")
+        format!(
+            "the packing fraction {packing_fraction:.3} is above {crossing:.3}, where lists are equally fast"
+        )
     });
     let by_lists = choice(By::NeighborList, {
         format!(
-            "the packing fraction {packing_fraction:.3} is not above {crossing:.3}, where the lattice is as fast"
+            "the packing fraction {packing_fraction:.3} is at most {crossing:.3}, where the lattice is equally fast"
         )
     });
     let in_sectors =
-        choice(By::Sectors, "neither the lattice nor lists serve these discs in this box".to_owned());
-    let lists_instead = choice(By::NeighborList, "no lattice serves these discs in this box".to_owned());
-    let lattice_instead = choice(By::Lattice, "the box has no room for lists".to_owned());
+        choice(By::Sectors, "neither the lattice nor lists suit these discs in this box".to_owned());
+    let lists_instead = choice(By::NeighborList, "no lattice suits these discs in this box".to_owned());
+    let lattice_instead = choice(By::Lattice, "the box is too small for lists".to_owned());
     if packing_fraction > crossing {
         vec![on_lattice, lists_instead, in_sectors]
     } else {

@@ -7,11 +7,11 @@ use stripmine_kernels::{Execution, InstructionSet};
 /// Search for contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Contacts {
-    /// On the lattice: the method of the source.
+    /// On the lattice: the method of BP93.
     Lattice,
-    /// Each pair once and the law for contacts only; the machine's execution does not matter.
+    /// Visits each pair once and evaluates the law for contacts only; the machine's execution does not matter.
     Fast(FastSearch),
-    /// By neighbour lists: its rival.
+    /// By neighbour lists: BP93's alternative.
     Lists(ListOptions),
 }
 
@@ -20,6 +20,6 @@ pub enum Contacts {
 pub struct Machine {
     /// Eager, strip-mined or chained.
     pub execution: Execution,
-    /// The instructions.
+    /// Instruction set.
     pub set: InstructionSet,
 }

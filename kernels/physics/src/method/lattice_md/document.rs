@@ -1,10 +1,10 @@
-//! A scene of this method with the places of its values, as the check needs it.
+//! Scene of this method with the locations of its values, as input of the check.
 
 use super::keys::{VOCABULARY, asks_for_programs};
 use super::scene::{EngineChoice, Scene};
 use crate::scene::{Read, SceneErrors, Values};
 
-/// A scene with the text it comes from, so that what the check finds has a place.
+/// Scene with the text it comes from, so that findings of the check have a location.
 #[derive(Clone, Debug)]
 pub struct Document {
     /// The scene.
@@ -13,26 +13,26 @@ pub struct Document {
 }
 
 impl Document {
-    /// Reads a scene from its text, with overrides `section.key=value`; `file` is the name that errors give it.
+    /// Reads a scene from TOML, with overrides `section.key=value`; `file` is its name in errors.
     ///
     /// # Errors
-    /// [`SceneErrors`]: every mistake of text and overrides.
+    /// [`SceneErrors`]: every mistake of the TOML and the overrides.
     pub fn parse(file: &str, text: &str, overrides: &[String]) -> Result<Document, SceneErrors> {
         Document::read(Values::parse(file, text, overrides, &[&VOCABULARY])?)
     }
 
-    /// Reads the scene that is a preset's name or a file's path, with overrides.
+    /// Reads a scene, given as a preset's name or a file's path, with overrides.
     ///
     /// # Errors
-    /// [`SceneErrors`]: neither preset nor readable file, or every mistake of the text.
+    /// [`SceneErrors`]: neither preset nor readable file, or every mistake in it.
     pub fn load(what: &str, overrides: &[String]) -> Result<Document, SceneErrors> {
         Document::read(Values::load(what, overrides, &[&VOCABULARY])?)
     }
 
-    /// The scene of values that have passed their rules.
+    /// Builds the scene from values that satisfy their rules.
     ///
     /// # Errors
-    /// [`SceneErrors`]: what is missing.
+    /// [`SceneErrors`]: missing values.
     pub(super) fn read(values: Values) -> Result<Document, SceneErrors> {
         let (mut scene, mut read) = (Scene::default(), Read::new(&values));
         scene.bind(&mut read);
@@ -45,24 +45,24 @@ impl Document {
 }
 
 impl Scene {
-    /// Reads a scene from its text; `file` is the name that errors give it, and start files are looked for beside it.
+    /// Reads a scene from TOML; `file` is its name in errors, and start files are searched beside it.
     ///
     /// # Errors
-    /// [`SceneErrors`]: every mistake of the text.
+    /// [`SceneErrors`]: every mistake of the TOML.
     pub fn parse(file: &str, text: &str) -> Result<Scene, SceneErrors> {
         Document::parse(file, text, &[]).map(|document| document.scene)
     }
 
-    /// Reads the scene that is a preset's name or a file's path.
+    /// Reads a scene, given as a preset's name or a file's path.
     ///
     /// # Errors
-    /// [`SceneErrors`]: neither preset nor readable file, or every mistake of the text.
+    /// [`SceneErrors`]: neither preset nor readable file, or every mistake in it.
     pub fn load(what: &str) -> Result<Scene, SceneErrors> {
         Document::load(what, &[]).map(|document| document.scene)
     }
 
-    /// The scene with some values replaced, each given as `section.key=value`. An override takes the place of keys that
-    /// exclude it, and of keys that another choice leaves without meaning.
+    /// Returns the scene with some values replaced, each given as `section.key=value`. An override replaces keys that exclude it, and keys that
+    /// another choice makes meaningless.
     ///
     /// # Errors
     /// [`SceneErrors`]: every mistake of the overrides.

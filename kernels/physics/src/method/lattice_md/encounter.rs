@@ -1,18 +1,18 @@
-//! Two discs as a scene has them, alone in a box: an encounter at a speed, as a scene of its own.
+//! Collision of two discs of a scene, alone in a box, as a scene of its own.
 
 use crate::method::{Encounter, Prepared};
 use toml::{Table, Value};
 
-/// Tables of a scene that an encounter shares with it. Gravity and walls that move are not among them.
+/// Tables of a scene that an encounter copies; gravity and moving walls are not among them.
 const SHARED: [&str; 6] = ["format", "units", "method", "law", "integrator", "machine"];
 /// Distance of the surfaces at the start, in sums of the radii.
 const GAP: f64 = 0.1;
-/// Side of the box, and the place of the disc at rest, in sums of the radii.
+/// Side of the box, and centre of the disc at rest, in sums of the radii.
 const SIDE: f64 = 40.0;
-/// Duration, in flights of one disc over the sum of the radii: the discs have parted by then.
+/// Duration, in flight times across the sum of the radii: the discs have separated by then.
 const FLIGHT: f64 = 3.0;
 
-/// The scene of an encounter of two discs of mean radius and mass; none where nothing moves.
+/// Returns the scene of an encounter of two discs of mean radius and mass; none where nothing moves.
 pub(super) fn encounter(prepared: &Prepared, Encounter { speed, offset }: Encounter) -> Option<String> {
     let grains = prepared.particles().grains();
     let count = grains.len() as f64;
@@ -59,7 +59,7 @@ mod tests {
     use std::sync::atomic::AtomicBool;
     use stripmine_kernels::law::spring::Spring;
 
-    /// Speeds before and after of an encounter in a scene with a damping, followed with a step.
+    /// Relative velocities before and after an encounter in a scene with a damping, integrated with a step.
     fn speeds(damping: f64, encounter: Encounter, step: f64) -> [[f64; 2]; 2] {
         let known = vocabularies(METHODS);
         let overrides = ["particles.count=100".to_owned(), format!("law.normal_damping={damping}")];
@@ -76,7 +76,8 @@ mod tests {
         })
     }
 
-    /// Head on the discs part with the restitution of the law, which another solver has; past each other they fly on; an elastic encounter keeps the speed.
+    /// Head-on discs separate with the restitution of the law, checked by another solver; beyond contact they fly on; an elastic encounter conserves
+    /// the speed.
     #[test]
     fn two_discs_meet_as_the_law_says() {
         let known = vocabularies(METHODS);

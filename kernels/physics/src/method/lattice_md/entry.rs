@@ -1,4 +1,4 @@
-//! The entry of lattice molecular dynamics in the list of methods.
+//! Entry of lattice molecular dynamics in the list of methods.
 
 use super::benches::BENCHES;
 use super::document::Document;

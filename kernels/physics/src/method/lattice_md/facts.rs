@@ -1,4 +1,4 @@
-//! What there is to be said of a scene.
+//! Reported properties of a scene.
 
 use super::check::Checked;
 use super::theory::limits;
@@ -8,7 +8,7 @@ use crate::number::significant;
 use crate::words::Words;
 use serde_json::json;
 
-/// Every fact of a scene.
+/// Returns all facts of a scene.
 pub(super) fn facts(checked: &Checked) -> Vec<Fact> {
     let Checked { scene, domain, particles, alike, geometry, estimates: e, .. } = checked;
     let or_none = |value: Option<f64>, words: fn(f64) -> String| value.map_or("nothing moves".into(), words);
@@ -32,7 +32,7 @@ pub(super) fn facts(checked: &Checked) -> Vec<Fact> {
         Fact::data("dt", scene.integrator.dt),
         Fact::new("steps", scene.run.steps, "steps", {
             let [dt, duration] = [scene.integrator.dt, scene.duration()].map(|time| significant(time, 7));
-            format!("{} of {dt} are {duration}", scene.run.steps)
+            format!("{} of {dt}, {duration} in total", scene.run.steps)
         }),
         Fact::data("duration", scene.duration()),
         Fact::new("estimates", json!(e), "approach speed", significant(e.approach_speed, 5)),
@@ -45,17 +45,17 @@ pub(super) fn facts(checked: &Checked) -> Vec<Fact> {
     facts
 }
 
-/// Two lengths, in whatever unit.
+/// Formats two lengths of any unit.
 fn sides(sides: [f64; 2]) -> String {
     sides.map(|side| significant(side, 7)).join(" × ")
 }
 
-/// From one length to another.
+/// Formats a range of lengths.
 fn range(ends: [f64; 2]) -> String {
     ends.map(|end| significant(end, 7)).join(" to ")
 }
 
-/// What there is to be said of the lattice of a scene that needs one.
+/// Returns the facts about the lattice of a scene that needs one.
 fn lattice_facts(checked: &Checked) -> Vec<Fact> {
     let geometry = &checked.geometry;
     let [columns, rows] = [geometry.shape.columns(), geometry.shape.rows()];
@@ -73,7 +73,7 @@ fn lattice_facts(checked: &Checked) -> Vec<Fact> {
     ]
 }
 
-/// By how much a contact at the typical speed is followed wrongly; none where nothing moves.
+/// Energy error of a contact at the typical speed; none where nothing moves.
 pub(super) fn expected_error(checked: &Checked) -> Option<Fact> {
     let Checked { scene, estimates, .. } = checked;
     let (contact, integrator) = (limits::contact(checked, 1.0), &scene.integrator);

@@ -1,6 +1,6 @@
-//! Granular discs in the pairwise engine: the same physics as the programs, each pair met once, the law asked about contacts
-//! only, corrector and next predictor in one pass. Equal to the programs but for rounding. Beside the lattice stand its
-//! rivals, sectors and Verlet lists: the same state, law and integrator, and another way of finding contacts.
+//! Granular discs in the pairwise engine. The physics equals that of the programs up to rounding, but each pair is visited once, the law is evaluated
+//! for contacts only, and corrector and next predictor share one pass. Alternatives to the lattice are sectors and Verlet lists, with the same state,
+//! law and integrator.
 
 use super::Model;
 use super::programs::{with_law, with_scheme};
@@ -16,24 +16,24 @@ use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::Storage;
 use stripmine_kernels::noise::NoiseSource;
 
-/// How the fast engine finds contacts.
+/// Contact search of the fast engine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FastSearch {
     /// On the lattice with at most one disc a cell.
     Lattice(OnConflict),
     /// In sectors, which hold any number of discs.
     Sectors,
-    /// In lists of near partners, made again whenever a disc has moved half the skin.
+    /// In lists of near partners, rebuilt whenever a disc has moved half the skin.
     Lists {
-        /// How much farther than contact a listed pair may be (length).
+        /// Largest gap of a listed pair (length).
         skin: f64,
     },
 }
 
-/// Lays out discs with state of precision `S` and forces of precision `P`. Which search they have is decided here, once.
+/// Places discs with state of precision `S` and forces of precision `P`, and chooses the search once.
 ///
 /// # Errors
-/// [`Failure`] if the start breaks a precondition already, or the box is none for sectors.
+/// [`Failure`] if the start violates a precondition, or the box does not suit sectors.
 pub(super) fn stepping<S: Precision, P: Precision>(
     model: &Model,
     search: FastSearch,
@@ -61,12 +61,12 @@ pub(super) fn stepping<S: Precision, P: Precision>(
     }
 }
 
-/// How far apart two discs may be and touch (length).
+/// Largest distance of two touching discs (length).
 pub(super) fn reach(particles: &Particles) -> f64 {
     2.0 * particles.radii().map_or(1.0, |[_, largest]| largest)
 }
 
-/// The contact law and the integrator of a model, and the motion of its walls.
+/// Contact law and integrator of a model, and motion of its walls.
 #[derive(Clone)]
 struct Granular {
     model: Model,
@@ -87,7 +87,7 @@ impl Dynamics for Granular {
     }
 }
 
-/// The same with a search.
+/// Places the discs with a given search.
 fn by<S: Precision, P: Precision, Q: Search<S, P> + 'static>(
     model: &Model,
     search: Q,

@@ -1,4 +1,4 @@
-//! Granular discs that are stepped, one step after the other: what a step is judged and accounted by, whatever steps the discs.
+//! Granular discs that are stepped: checks and accounting of a step, independent of the engine.
 
 use super::balance::Way;
 use super::contacts::{Contacts, Machine};
@@ -16,21 +16,21 @@ use crate::particles::Particles;
 use crate::scene::{Precision, WallMotion};
 use stripmine_kernels::ledger::{Ledger, Length};
 
-/// Granular discs that are stepped. It never prints and never writes a file.
+/// Granular discs that are stepped. They never print and never write a file.
 pub struct Grains {
     stepping: Box<dyn Stepping>,
     model: Model,
     walls: WallMotion,
     totals: Totals,
-    /// Pairs met in the last step.
+    /// Pairs visited in the last step.
     met: u64,
 }
 
 impl Grains {
-    /// Lays out `particles` and finds their first forces, in the precision asked for.
+    /// Places `particles` and computes their first forces, in the requested precision.
     ///
     /// # Errors
-    /// [`Failure`] if the start breaks a precondition already, or the box is none for sectors.
+    /// [`Failure`] if the start violates a precondition, or the box does not suit sectors.
     pub fn start(
         precision: Precision,
         model: Model,
@@ -70,7 +70,7 @@ impl Grains {
     /// Advances by one time step.
     ///
     /// # Errors
-    /// [`Failure`] says what broke, which particles, where, and what to do; the state is that of the failing step.
+    /// [`Failure`] says what broke, which particles, where, and what to do. The state is that of the failing step.
     pub fn step(&mut self) -> Result<(), Failure> {
         let far = self.stepping.advance()?;
         judge_steps(self.stepping.as_ref(), &far, self.model.watch, &mut self.totals)?;
@@ -80,7 +80,7 @@ impl Grains {
         self.stepping.finish()
     }
 
-    /// All forces of the positions as they stand; gives what contacts dissipate (energy/time).
+    /// Computes all forces at the current positions; returns the power that contacts dissipate (energy/time).
     fn compute_forces(&mut self) -> Result<f64, Failure> {
         let met = self.stepping.compute_forces(self.model.asked())?;
         self.met = met.pairs;
@@ -104,31 +104,30 @@ impl Grains {
         self.elapsed().time()
     }
 
-    /// The particles as they stand, positions inside the box.
+    /// Particles now, positions inside the box.
     pub fn particles(&self) -> Particles {
         self.stepping.particles()
     }
 
-    /// The same as the state has them: the last correction may have taken a position beyond a periodic side, and no
-    /// [crossing](Self::crossings) is counted before the next step.
+    /// Particles as the state stores them: the last correction may have moved a position beyond a periodic side, and no [crossing](Self::crossings)
+    /// is counted before the next step.
     pub(crate) fn unwrapped(&self) -> Particles {
         self.stepping.unwrapped()
     }
 
-    /// Periods that each particle has moved along x and y since the start, in the order of
-    /// [`particles`](Self::particles); empty where that is not followed.
+    /// Periods that each particle has crossed along x and y since the start, in the order of [`particles`](Self::particles); empty where they are not
+    /// counted.
     pub fn crossings(&self) -> &[[f64; 2]] {
         self.elapsed().crossings.counts()
     }
 
-    /// Sums over the discs and their contacts as they stand, with what gravity has done on their way. Summed in an order that
-    /// depends on the scene alone.
+    /// Sums over the discs and their contacts now, with the work of gravity since the start. The order of summation depends on the scene alone.
     pub fn sums(&self, scenery: &Scenery, way: &Way) -> Sums {
         let crossings = self.crossings();
         self.stepping.sums(scenery, &|number, grain, position| way.work(number, grain, position, crossings))
     }
 
-    /// Force along x and y and torque on every particle, as of the last step.
+    /// Force along x and y and torque on every particle in the last step.
     pub fn forces(&self) -> Vec<[f64; 3]> {
         self.stepping.forces()
     }
@@ -138,10 +137,10 @@ impl Grains {
         self.totals
     }
 
-    /// Takes columns of a state up again.
+    /// Restores columns of a state.
     ///
     /// # Errors
-    /// A sentence, if the columns are not those of these discs.
+    /// Says why, if the columns are not those of these discs.
     pub fn restore(
         &mut self,
         steps: u64,
@@ -158,7 +157,7 @@ impl Grains {
         self.stepping.ledger()
     }
 
-    /// Elements of vectors of a symbolic length, as of the last step.
+    /// Length of vectors of a symbolic length in the last step.
     pub fn length(&self, length: Length) -> u64 {
         match (self.stepping.length(length), length) {
             (Some(own), _) => own,
@@ -170,7 +169,7 @@ impl Grains {
         }
     }
 
-    /// Entries of the neighbour lists, and how often they were made again; none where there are no lists.
+    /// Entries of the neighbour lists and the number of rebuilds; none where there are no lists.
     pub fn lists(&self) -> Option<(usize, u64)> {
         self.stepping.lists()
     }
@@ -180,7 +179,7 @@ impl Grains {
         &self.elapsed().timings
     }
 
-    /// Forgets the seconds spent so far.
+    /// Resets the seconds spent so far.
     pub fn reset_timings(&mut self) {
         self.stepping.elapsed_mut().timings = Timings::default();
     }

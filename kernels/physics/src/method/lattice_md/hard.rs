@@ -1,4 +1,4 @@
-//! A scene of soft discs as one of hard discs, where it has nothing that these lack: the limit of stiff contacts.
+//! Hard-disc twin of a scene of soft discs: the limit of stiff contacts, for scenes that hard discs can represent.
 
 use super::keys::{COHESIONLESS, FRICTION, LAW, NORMAL_DAMPING, SHEAR_DAMPING, STIFFNESS};
 use crate::method::hard_disks::keys::RESTITUTION;
@@ -10,14 +10,15 @@ use std::f64::consts::PI;
 use stripmine_kernels::law::spring::Spring;
 use toml::{Table, Value as Toml};
 
-/// Tables of a scene that mean the same to both.
+/// Tables with the same meaning in both methods.
 const SHARED: [&str; 4] = ["format", "units", "domain", "particles"];
-/// Rows in a run.
+/// Rows of a run.
 const ROWS: f64 = 100.0;
 
-/// The scene of hard discs; none where walls stand, sides are closed or discs rub, where a single disc has no temperature, or where nothing of it is the quantity.
+/// Returns the scene of hard discs. None if there are walls, closed sides or friction, if a single disc has no temperature, or if the quantity has no
+/// counterpart.
 ///
-/// The restitution is that of an impact at the mean speed of collisions at the temperature of the start.
+/// The restitution is that of an impact at the mean collision speed at the temperature of the start.
 pub(super) fn hard(values: &Values, prepared: &Prepared, quantity: &str) -> Option<Rewritten> {
     let particles = prepared.particles();
     let (discs, grains) = (particles.grain_count(), particles.grains());
@@ -32,7 +33,7 @@ pub(super) fn hard(values: &Values, prepared: &Prepared, quantity: &str) -> Opti
         twice_kinetic: grains.iter().map(|it| it.mass * it.velocity[axis].powi(2)).sum(),
         momentum: grains.iter().map(|it| it.mass * it.velocity[axis]).sum(),
     });
-    // A common drift is no heat: it changes nothing between discs.
+    // A common drift is not heat: it changes nothing between discs.
     let temperature = temperature(motion, conserved_axes(&prepared.domain), all_mass, discs as f64);
     if temperature.is_nan() {
         return None;
@@ -48,7 +49,7 @@ pub(super) fn hard(values: &Values, prepared: &Prepared, quantity: &str) -> Opti
     };
     let (quantity, unit) = match quantity {
         "temperature" | "kinetic" => (if quantity == "kinetic" { "kinetic" } else { "temperature" }, 1.0),
-        // p = Z N kT/A, where the temperature stays.
+        // p = Z N kT/A, while the temperature is constant.
         "pressure" if damping == 0.0 => {
             ("compressibility", discs as f64 * temperature / prepared.domain.area())
         }
@@ -96,8 +97,8 @@ mod tests {
         (soft.particles().clone(), twin)
     }
 
-    /// The temperature of the twin by hand, Σ m |v − v̄|² over 2 N − 2 degrees of freedom: a common drift changes neither the unit of the pressure, N kT/A, nor the
-    /// restitution.
+    /// Checks the twin's temperature against Σ m |v − v̄|² over 2 N − 2 degrees of freedom: a common drift changes neither the unit of the pressure,
+    /// N kT/A, nor the restitution.
     #[test]
     fn a_common_drift_does_not_change_the_twin() {
         let twin = |drift: [f64; 2], law: &[&str], quantity: &str| {
@@ -132,7 +133,7 @@ mod tests {
         }
     }
 
-    /// The same discs, with the restitution of their law; what hard discs lack has no twin.
+    /// The twin has the same discs and the restitution of their law; what hard discs lack has no twin.
     #[test]
     fn the_twin_has_the_same_discs() {
         let (soft, twin) = both(&["particles.count=100"], "pressure");

@@ -1,11 +1,11 @@
-//! What a step of granular discs is judged by: contacts that are too deep, discs that are too fast.
+//! Checks of a step of granular discs: contacts that are too deep, discs that are too fast.
 
 use super::{OnLongStep, Totals, Watch};
 use crate::method::pairwise::Named;
 use crate::method::{Clock, Culprit, Failure, FailureKind};
 use crate::number::significant;
 
-/// Counts discs that are so fast that contacts may pass unseen in a step, and stops if there must be none.
+/// Counts discs so fast that a step may miss their contacts, and stops if none are allowed.
 pub(super) fn judge_steps(
     discs: &(impl Named + ?Sized),
     far: &[u32],
@@ -17,7 +17,7 @@ pub(super) fn judge_steps(
         let [x, y] = discs.velocity(disc);
         x.hypot(y)
     };
-    // What is no number is found with the cells.
+    // NaN is detected with the cells.
     let far: Vec<usize> =
         far.iter().map(|&disc| disc as usize).filter(|&disc| !speed(disc).is_nan()).collect();
     let count = far.len() as u64;
@@ -33,7 +33,7 @@ pub(super) fn judge_steps(
     }
 }
 
-/// Counts grains in contacts that are too deep, and stops at what must not be. A pair may be given once or from both sides.
+/// Counts grains in contacts that are too deep, and stops above the limit. A pair may be listed once or from both sides.
 pub(super) fn judge_depth(
     discs: &(impl Named + ?Sized),
     pairs: &[[u32; 2]],
@@ -64,11 +64,11 @@ pub(super) fn judge_depth(
     Ok(())
 }
 
-/// The failure of discs that moved farther than `limit` (length) in a step; the first would not in a step of `dt` (time).
+/// Failure of discs that moved farther than `limit` (length) in a step; a step of `dt` (time) is short enough for the first.
 fn long_step(at: Clock, count: u64, first: Culprit, limit: f64, dt: f64) -> Failure {
     let what = format!(
         "{count} discs moved farther than {} in the step, first {first}; contacts deeper than law.max_penetration \
-         could pass unseen between two steps",
+         could be missed between two steps",
         significant(limit, 7)
     );
     let remedy = format!(
@@ -79,7 +79,7 @@ fn long_step(at: Clock, count: u64, first: Culprit, limit: f64, dt: f64) -> Fail
     failure.with([("limit", limit), ("dt", dt)])
 }
 
-/// The failure of a contact of penetration ξ/(R_i + R_j) beyond the limit.
+/// Failure of a contact of penetration ξ/(R_i + R_j) beyond the limit.
 fn too_deep(at: Clock, [first, second]: [Culprit; 2], penetration: f64, limit: f64) -> Failure {
     let what = format!(
         "{first} and {second} overlap by {} of the sum of their radii, more than law.stop_penetration = {limit}",

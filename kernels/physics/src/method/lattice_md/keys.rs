@@ -1,4 +1,4 @@
-//! The keys that are this method's own: law, search, integrator, machine; and what they demand of each other.
+//! Keys of this method: law, search, integrator, machine; and the rules between them.
 
 use super::model::OnLongStep;
 use super::neighbor_list::Rebuild;
@@ -39,47 +39,47 @@ define_keys! {
     FRICTION = "law" "friction", Number(NonNegative), "", Is("0.0"), ALWAYS,
         "Coulomb friction coefficient μ.";
     COHESIONLESS = "law" "cohesionless", Switch, "", Is("true"), ALWAYS,
-        "Whether the normal force is never negative, so that separating discs do not pull; false leaves the damping as the source has it, which pulls at the end of a contact.";
+        "True if the normal force is never negative, so that separating discs do not attract; false keeps the damping of BP93, which attracts at the end of a contact.";
     INERTIA = "law" "inertia", Choice(Inertia::WORDS), "", Is("\"disc\""), ALWAYS,
         "Moment of inertia: disc ½ m R², sphere ⅖ m R².";
     CONTACT_ARM = "law" "contact_arm", Choice(ContactArm::WORDS), "", Is("\"radius\""), ALWAYS,
-        "Where the tangential force acts, seen from a centre: at R, as the source has it; at R − ξ/2, which shortens both the torque and the velocity of the surface; or, as in LAMMPS, the torque at R − ξ/2 and the velocity at R.";
+        "Distance of the tangential force from a centre: R, as in BP93; R − ξ/2, which reduces both the torque and the velocity of the surface; or, as in LAMMPS, R − ξ/2 for the torque and R for the velocity.";
     MAX_PENETRATION = "law" "max_penetration", Number(Within(0.5)), "", Is("0.1"), ALWAYS,
         "Penetration, as a fraction of the sum of the radii, up to which the lattice is exact; deeper contacts are counted.";
     STOP_PENETRATION = "law" "stop_penetration", Number(Within(1.0)), "", Is("0.3"), ALWAYS,
         "Penetration that stops the run.";
 
     SEARCH = "search" "by", Choice(By::WORDS), "", Is("\"auto\""), ALWAYS,
-        "How contacts are found: on the exclusive lattice of BP93, in sectors that hold any number of discs (by the fast engine only), or by lists of neighbours; auto takes the fastest that the scene allows.";
+        "Search for contacts: on the exclusive lattice of BP93, in sectors that hold any number of discs (fast engine only), or by neighbour lists; auto uses the fastest that the scene allows.";
     CELL_EDGE = "search" "cell_edge", Number(Positive), "length", Otherwise("the fewest cells"), ON_CELLS,
-        "Side d of a lattice cell; fitted to periodic sides. The source has d = R_max.";
-    MASK = "search" "mask", OneOf(&[5, 7]), "", Otherwise("the smallest that serves"), ON_CELLS,
+        "Side d of a lattice cell; fitted to periodic sides. BP93 has d = R_max.";
+    MASK = "search" "mask", OneOf(&[5, 7]), "", Otherwise("the smallest that works"), ON_CELLS,
         "Width of the neighbourhood in cells: 5×5 or 7×7.";
     ON_CONFLICT = "search" "on_conflict", Choice(OnConflict::WORDS), "", Is("\"stop\""), ON_LATTICE,
-        "What becomes of a disc whose lattice cell is another's: the run stops, or the disc is kept in a list beside the lattice and counted (by the fast engine only; a cell_edge may then be too large for one disc a cell).";
+        "Action for a disc in an occupied lattice cell: the run stops, or the disc is kept in a list beside the lattice and counted (fast engine only; a cell_edge may then be too large for one disc a cell).";
     REBUILD = "search" "rebuild", Choice(Rebuild::WORDS), "", Is("\"cells\""), LISTS,
-        "How neighbour lists are made: by cells, or by all pairs as in the source (by programs only).";
+        "Construction of neighbour lists: by cells, or by all pairs as in BP93 (programs only).";
     SKIN = "search" "skin", Number(Positive), "length", Otherwise("0.3 R_max; for the fast engine half of the mean gap, from there to R_max"), LISTS,
-        "Listed pairs are up to this far from contact.";
+        "Largest gap between the discs of a listed pair.";
 
     INTEGRATOR = "integrator" "kind", Choice(IntegratorKind::WORDS), "", Is("\"gear\""), ALWAYS,
-        "Gear's predictor-corrector, or velocity Verlet, whose velocity-dependent forces are those after half a kick.";
+        "Gear's predictor-corrector, or velocity Verlet, whose velocity-dependent forces use the velocity after half a kick.";
     VALUES = "integrator" "values", OneOf(&[4, 5, 6]), "", Is("4"), GEAR,
-        "Derivatives carried, from the position on; fewer are stabler with damping, more are more accurate without.";
+        "Number of derivatives, including the position; fewer are more stable with damping, more are more accurate without.";
     ON_LONG_STEP = "integrator" "on_long_step", Choice(OnLongStep::WORDS), "", Is("\"stop\""), ALWAYS,
-        "What becomes of a disc that moves so far in a step that a contact deeper than law.max_penetration may pass unseen: the run stops, or the disc is counted.";
+        "Action for a disc that moves so far in a step that a contact deeper than law.max_penetration may be missed: the run stops, or the disc is counted.";
 
     ENGINE = "machine" "engine", Choice(EngineChoice::WORDS), "", Is("\"auto\""), ALWAYS,
-        "What steps the discs: fast, each pair once and the law for contacts only; or the source's vector programs over the whole lattice, equal but for rounding. auto is fast, unless a key of the programs is given.";
+        "Engine: fast visits each pair once and evaluates the law for contacts only; programs are BP93's vector programs over the whole lattice, equal up to rounding. auto is fast, unless a key of the programs is given.";
     TEXT = "machine" "text", Choice(ProgramText::WORDS), "", Is("\"ours\""), PROGRAMS,
-        "Whose programs: ours, or the source's own as printed, with its vectors Index, Test and contact_i, products in place of branches and Gear's derivatives as they are.";
+        "Version of the programs: ours, or those printed in BP93, with its vectors Index, Test and contact_i, products instead of branches, and unscaled Gear derivatives.";
     EXECUTION = "machine" "execution", Choice(&["chained", "eager", "strip:N"]), "", Is("\"chained\""), PROGRAMS,
-        "How programs are executed: instructions register by register, one whole-lattice pass each, or by strips of N, all to the same bits.";
-    COORDINATES = "machine" "coordinates", Choice(Coordinates::WORDS), "", Otherwise("cell-relative; absolute for the printed text"), PROGRAMS,
-        "What positions on the lattice are measured from by programs.";
+        "Execution of programs: chained in registers, one whole-lattice pass for each instruction, or in strips of N; all give the same bits.";
+    COORDINATES = "machine" "coordinates", Choice(Coordinates::WORDS), "", Otherwise("cell-relative; absolute with text = \"printed\""), PROGRAMS,
+        "Origin of the positions on the lattice in programs.";
 }
 
-/// What the scenes of this method may say.
+/// Vocabulary of this method's scenes.
 pub(super) static VOCABULARY: Vocabulary = Vocabulary {
     keys: KeySet {
         method: "lattice-md",
@@ -114,7 +114,7 @@ macro_rules! renamed {
     };
 }
 
-/// The keys of format 1 that are others now.
+/// Keys of format 1 that have been renamed.
 const RENAMED: &[Renamed] = renamed! {
     "method.kind" => "[search] by = \"lattice\", \"sectors\" or \"neighbor-list\", whichever it was; [method] kind = \"lattice-md\"",
     "method.cell_edge" => "the same in [search]",
@@ -137,7 +137,7 @@ fn own_rules(values: &Values) -> Vec<SceneError> {
     {
         let later = if values.gives(low) { low } else { high };
         let message = format!(
-            "`{}` = {a} is above `{}` = {b}, but a run warns before it stops",
+            "`{}` = {a} is above `{}` = {b}; a run must warn before it stops",
             low.path(),
             high.path()
         );
@@ -150,10 +150,10 @@ fn own_rules(values: &Values) -> Vec<SceneError> {
     errors
 }
 
-/// What the source's own text has no equation for.
+/// Rejects what the paper has no equation for.
 fn beyond_the_print(values: &Values) -> Vec<SceneError> {
     let demands: [(&Key, &str, &str); 6] = [
-        (&PRECISION, "\"f64\"", "the source has one precision, that of a CRAY's words of 64 bits"),
+        (&PRECISION, "\"f64\"", "BP93 has one precision, that of a CRAY's 64-bit words"),
         (&COORDINATES, "\"absolute\"", "(5) and (6) subtract the positions themselves"),
         (&INTEGRATOR, "\"gear\"", "appendix A is Gear's predictor-corrector"),
         (&LAW, "\"granular\"", "(14) has the force of Hertz"),
@@ -169,14 +169,14 @@ fn beyond_the_print(values: &Values) -> Vec<SceneError> {
     refused
         .map(|(key, demanded, why)| {
             let by = if values.gives(key) { key } else { &TEXT };
-            let message = format!("the source's own text does not have it: {why}");
+            let message = format!("BP93's printed program does not support this: {why}");
             let error = values.spot(by).error(Reason::Contradiction, message);
             error.expecting(format!("{} = {demanded}, or text = \"ours\"", key.path()))
         })
         .collect()
 }
 
-/// Whether a scene asks for programs: by name, or by a key that only they have.
+/// True if a scene requests programs: by name, or by a key that only they have.
 pub(super) fn asks_for_programs(values: &Values) -> bool {
     let is = |key: &Key, word: &str| values.choice(key).as_deref() == Some(word);
     is(&ENGINE, "programs")
@@ -187,7 +187,7 @@ pub(super) fn asks_for_programs(values: &Values) -> bool {
                 || is(&REBUILD, "all-pairs"))
 }
 
-/// Pairs that one of the engines cannot find as asked.
+/// Error of an engine and a search that do not work together.
 fn search_and_engine(values: &Values) -> Option<SceneError> {
     let is = |key: &Key, word: &str| values.choice(key).as_deref() == Some(word);
     if values.is_faulty(&ENGINE) || values.is_faulty(&SEARCH) {
@@ -198,27 +198,26 @@ fn search_and_engine(values: &Values) -> Option<SceneError> {
     if asks_for_programs(values) {
         let by = given(&[&ENGINE, &TEXT, &EXECUTION, &COORDINATES, &REBUILD]).unwrap_or(&ENGINE);
         if is(&SEARCH, "sectors") {
-            let message = "sectors have no vector programs: only the fast engine searches them";
+            let message = "sectors have no vector programs: only the fast engine supports them";
             return Some(refused(by, message).expecting("engine = \"fast\", and no key of programs"));
         }
         let is_chained = values.choice(&EXECUTION).is_none_or(|execution| execution == "chained");
         if is(&SEARCH, "neighbor-list") && !is_chained {
-            let message = "lists are walked pair by pair, which no vector of a whole array can do";
+            let message = "lists are traversed pair by pair, not as whole arrays";
             return Some(
                 refused(&EXECUTION, message).expecting("execution = \"chained\", or search.by = \"lattice\""),
             );
         }
         if is(&ON_CONFLICT, "resolve") {
-            let message =
-                "the source's programs know one disc a cell: only the fast engine resolves conflicts";
+            let message = "BP93's programs hold one disc a cell: only the fast engine resolves conflicts";
             return Some(
                 refused(&ON_CONFLICT, message).expecting("engine = \"fast\", and no key of programs"),
             );
         }
         None
     } else if is(&REBUILD, "all-pairs") {
-        let error = refused(&REBUILD, "the fast engine makes its lists by cells");
-        Some(error.advising("leave it out, or choose engine = \"programs\""))
+        let error = refused(&REBUILD, "the fast engine builds its lists by cells");
+        Some(error.advising("leave it out, or set engine = \"programs\""))
     } else {
         None
     }

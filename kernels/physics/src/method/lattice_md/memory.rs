@@ -1,8 +1,8 @@
-//! The memory that a run needs, before it is taken.
+//! Memory estimate of a run, made before allocation.
 //!
-//! Formulas follow the allocations, term by term: `method/lattice_md/{arrays,neighbor_list}`,
-//! `method/pairwise/{state,search}` and the sweeps below them for what a method keeps, `method/pairwise/{observing,saved}`, `observe`
-//! and `io/checkpoint` for what comes and goes. What does not grow with the discs or the cells is one number.
+//! Formulas follow the allocations term by term. Permanent data: `method/lattice_md/{arrays,neighbor_list}`, `method/pairwise/{state,search}` and the
+//! sweeps below them. Temporary data: `method/pairwise/{observing,saved}`, `observe` and `io/checkpoint`. Everything independent of the numbers of
+//! discs and cells is one constant.
 
 use super::assemble::{contacts, model_following_energy};
 use super::check::Checked;
@@ -19,10 +19,10 @@ use stripmine_kernels::sweep::lattice::Coordinates;
 
 /// Bytes of the programs themselves, and of the large page that their short arrays share.
 const SHARED: f64 = 3.5e6;
-/// Bytes of a scene's disc.
+/// Bytes of a disc in a scene.
 const DISC: f64 = size_of::<Particle>() as f64;
 
-/// The memory that a run of a checked scene takes at most.
+/// Returns the peak memory of a run of a checked scene.
 pub fn foreseen(checked: &Checked) -> Foreseen {
     let of = Sizes::of(checked);
     let from = if of.model.gravity == [0.0; 2] { 0.0 } else { 16.0 * of.grains };
@@ -45,37 +45,36 @@ pub fn foreseen(checked: &Checked) -> Foreseen {
         }
     };
     let columns = columns + of.followed();
-    // One of them is gone before the next comes. While discs are observed or their columns written, a frame of them is written.
-    // A run that is gone on with has read one column more than it has taken up, and its cells are looked up; of what it gives back
-    // the system does not have a frame's size at once.
+    // Only one of the temporary allocations exists at a time. While discs are observed or their columns written, a frame of them is written. A
+    // resumed run has read one column more than it has restored, and its cells are searched; the system does not reclaim a frame's size at once.
     let frame = DISC * of.discs;
     let resumed = columns + frame + (8.0 + 40.0) * of.discs + of.lists_resumed(contacts(checked));
-    // Particles as they stand are made one degree of freedom after the other.
+    // Particle copies are built one degree of freedom after the other.
     let standing = 2.0 * frame + (2.0 * 8.0 + 4.0) * of.discs;
     let moments = [standing, frame + observed, frame + columns, resumed];
     Foreseen {
         needed: (kept + engine + moments.into_iter().fold(0.0, f64::max)) as u64,
         available: available(),
         what: format!("{} discs in {} cells", checked.particles.len(), checked.geometry.shape.cells()),
-        remedy: "take fewer discs, a smaller box or machine.precision = \"f32\"; where most cells are empty, search.by = \
-                 \"sectors\" has no lattice",
+        remedy: "use fewer discs, a smaller box or machine.precision = \"f32\"; where most cells are empty, search.by = \
+                 \"sectors\" needs no lattice",
         ranks: OfRanks::in_bands(of.discs, cells, [rows, of.state * of.discs]),
     }
 }
 
-/// What the formulas are of.
+/// Sizes that the formulas use.
 struct Sizes {
     model: Model,
     sides: [f64; 2],
-    /// Sides of a sector, where there are some (length).
+    /// Sides of a sector, if any (length).
     widest_cell: [f64; 2],
     /// Largest distance of two discs in contact (length).
     reach: f64,
-    /// Whether radii differ.
+    /// True if radii differ.
     vary: bool,
     discs: f64,
     grains: f64,
-    /// Bytes of a number of the state, and of one of the forces.
+    /// Bytes of a number of the state, and of a number of the forces.
     state: f64,
     force: f64,
 }
@@ -110,7 +109,7 @@ impl Sizes {
         f64::from(u8::from(self.model.discs == Discs::Varying))
     }
 
-    /// Bytes of the periods that discs cross, where these are followed.
+    /// Bytes of the crossed periods, if they are counted.
     fn followed(&self) -> f64 {
         if self.model.counts_crossings().contains(&true) { 16.0 * self.discs } else { 0.0 }
     }
@@ -119,30 +118,30 @@ impl Sizes {
         f64::from(u8::from(self.model.friction))
     }
 
-    /// Others within a distance of a disc, were the discs spread evenly.
+    /// Mean number of discs within a distance of a disc at uniform density.
     fn neighbours(&self, distance: f64) -> f64 {
         let density = self.discs / (self.sides[0] * self.sides[1]);
         (density * std::f64::consts::PI * distance * distance).min(self.discs)
     }
 
-    /// Bytes that the fast engine takes while discs are observed.
+    /// Bytes that the fast engine allocates while discs are observed.
     fn observed(&self) -> f64 {
         let corrected = 2.0 * self.freedoms();
         (8.0 * (corrected + 3.0 + 2.0 * self.varying()) + 4.0) * self.discs
     }
 
-    /// Bytes beside the lists that the fast engine makes once more where a run goes on: their parts before these are joined.
+    /// Bytes of the temporary parts of the lists that the fast engine rebuilds when a run resumes.
     fn lists_resumed(&self, contacts: Contacts) -> f64 {
         let Contacts::Fast(FastSearch::Lists { skin }) = contacts else { return 0.0 };
         let pairs = 0.5 * self.neighbours(self.reach + skin);
         8.0 * pairs * self.discs
     }
 
-    /// Bytes that a fast method keeps beside its cells, and of the columns of its checkpoints.
+    /// Bytes of a fast method beside its cells, and of the columns of its checkpoints.
     fn fast(&self, search: FastSearch) -> [f64; 2] {
         let derivatives = self.freedoms() * self.carried();
         let [of_state, of_forces] = [self.state, self.force].map(|bytes| row(bytes * self.discs));
-        // One of each kind is room for putting discs in order.
+        // One column of each kind is scratch space for sorting discs.
         let columns =
             (derivatives + 3.0 * self.varying() + 1.0) * of_state + 8.0 * self.discs + 4.0 * of_forces;
         let mut written = self.state * derivatives + 3.0 * self.force + 2.0 * 8.0;
@@ -158,13 +157,13 @@ impl Sizes {
         [columns + found, written * self.discs]
     }
 
-    /// Rows of the discs that a fast method keeps: the state, the sums, one more of each, and places at which lists were made.
+    /// Rows of the discs in a fast method: the state, the sums, one scratch row of each, and the positions at which lists were built.
     fn rows(&self, search: FastSearch) -> f64 {
         let lists = if let FastSearch::Lists { .. } = search { 2.0 } else { 0.0 };
         self.freedoms() * self.carried() + 3.0 * self.varying() + 1.0 + 4.0 + lists
     }
 
-    /// Derivatives that are carried from step to step.
+    /// Number of derivatives carried from step to step.
     fn carried(&self) -> f64 {
         match self.model.scheme {
             Scheme::Gear(values) => values.count() as f64,
@@ -172,7 +171,7 @@ impl Sizes {
         }
     }
 
-    /// Bytes of what a search of the fast engine keeps of its cells.
+    /// Bytes of the cells of a fast search.
     fn cells(&self, search: FastSearch) -> f64 {
         if let FastSearch::Lattice(_) = search {
             let shape = &self.model.shape;
@@ -194,14 +193,14 @@ impl Sizes {
         let watched = f64::from(u8::from(model.watch.is_some()));
         let absolute = f64::from(u8::from(model.coordinates == Coordinates::Absolute));
         let power = f64::from(u8::from(model.counts_dissipation()));
-        // The printed text has R and M beside the state, and the lattice vector Test.
+        // The printed programs have R and M beside the state, and the lattice vector Test.
         let printed = model.text == ProgramText::Printed;
         let test = f64::from(u8::from(printed));
-        // Lists keep forces disc by disc, with the numbers of the discs in place of the cells'.
+        // Lists store forces by disc, with the numbers of the discs instead of those of the cells.
         let (forces, numbers) = if lists { (*discs, 2.0) } else { (padded, 1.0) };
         let of_state = derivatives + varying * (1.0 + friction);
         let kinds = [
-            // How many columns of how many elements of how many bytes.
+            // Columns, elements of each, bytes of each element.
             (of_state, *discs, *state),
             (if printed { 2.0 } else { 4.0 + friction + 2.0 * varying }, *discs, *force),
             (
@@ -215,7 +214,7 @@ impl Sizes {
         ];
         let arrays: f64 =
             kinds.iter().map(|(columns, elements, bytes)| columns * row(elements * bytes)).sum();
-        // The cells as they were, where they are asked for.
+        // Previous cells, if they are needed.
         let before = if self.state == 4.0 || self.followed() > 0.0 { 4.0 * discs } else { 0.0 };
         let cells = if self.state == 4.0 || self.followed() > 0.0 { 8.0 } else { 0.0 };
         [SHARED + arrays + before + 4.0 * discs, (of_state * state + cells) * discs]
@@ -228,16 +227,16 @@ impl Sizes {
     }
 }
 
-/// Bytes of the vector registers of an execution that writes every result down.
+/// Bytes of the vector registers of an execution that stores every result.
 fn registers(checked: &Checked, model: &Model) -> f64 {
     let (machine, particles) = (&checked.scene.machine, &checked.particles);
     let lengths = Lengths::new(model, particles.grain_count(), particles.len());
     let programs = programs(model, machine.precision);
-    // Programs of one precision share their registers, which are as many and as long as the largest asks for.
+    // Programs of one precision share their registers, whose number and length are the largest required.
     let mut largest: BTreeMap<&str, [usize; 3]> = BTreeMap::new();
     for step in programs {
         let range = lengths.range(step.length);
-        // A set that the processor lacks is refused when the run starts.
+        // Instruction sets missing on this processor are rejected when the run starts.
         let bytes = step.program.register_bytes(&range, machine.execution, machine.instructions());
         if let Ok((precision, bytes)) = bytes {
             let files = largest.entry(precision).or_default();

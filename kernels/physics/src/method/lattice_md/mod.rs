@@ -1,6 +1,5 @@
-//! Lattice molecular dynamics of granular discs, BP93: every step is a sequence of vector programs over the discs and
-//! over a lattice with at most one disc a cell. Beside it, on the same state and with the same law, the rival that the
-//! source compares with: scalar neighbour lists.
+//! Lattice molecular dynamics of granular discs, BP93: every step is a sequence of vector programs over the discs and over a lattice with at most one
+//! disc a cell. The alternative that BP93 compares with, scalar neighbour lists, uses the same state and the same law.
 //!
 //! Step discs one by one:
 //!

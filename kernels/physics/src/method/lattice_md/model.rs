@@ -1,4 +1,4 @@
-//! What is modelled: no more than a scene needs.
+//! Model of a scene: only the parts that the scene needs.
 
 use super::options::ProgramText;
 use crate::domain::Domain;
@@ -13,7 +13,7 @@ use stripmine_kernels::law::granular::{Contact, Disc};
 use stripmine_kernels::mask::Mask;
 use stripmine_kernels::sweep::lattice::{Coordinates, Frame, LatticeShape};
 
-/// How many derivatives Gear's scheme carries.
+/// Number of derivatives in Gear's scheme.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum GearValues {
     /// Third order; the most stable with damping.
@@ -28,7 +28,7 @@ impl GearValues {
     /// All schemes.
     pub const ALL: [GearValues; 3] = [GearValues::Four, GearValues::Five, GearValues::Six];
 
-    /// The number of values.
+    /// Number of values.
     pub const fn count(self) -> usize {
         match self {
             GearValues::Four => 4,
@@ -38,7 +38,7 @@ impl GearValues {
     }
 }
 
-/// How motion follows from forces.
+/// Integration scheme.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scheme {
     /// Gear's predictor–corrector.
@@ -48,7 +48,7 @@ pub enum Scheme {
 }
 
 impl Scheme {
-    /// The name in reports: `gear4`, `gear5`, `gear6` or `velocity-verlet`.
+    /// Name in reports: `gear4`, `gear5`, `gear6` or `velocity-verlet`.
     pub fn name(self) -> &'static str {
         match self {
             Scheme::Gear(GearValues::Four) => "gear4",
@@ -58,7 +58,7 @@ impl Scheme {
         }
     }
 
-    /// Scaled derivatives of a degree of freedom: position, velocity, acceleration and what is carried beyond.
+    /// Number of scaled derivatives of a degree of freedom: position, velocity, acceleration and higher ones.
     pub const fn values(self) -> usize {
         match self {
             Scheme::Gear(values) => values.count(),
@@ -67,102 +67,101 @@ impl Scheme {
     }
 }
 
-/// Whether discs differ.
+/// Equal or different discs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Discs {
-    /// All alike: radius, mass and inertia are numbers, not vectors.
+    /// All equal: radius, mass and inertia are numbers, not vectors.
     Equal {
         /// Radius and inverse mass.
         disc: Disc,
         /// Inverse moment of inertia.
         inverse_inertia: f64,
     },
-    /// Each its own. Wall discs are always others than grains: nothing moves them.
+    /// Individual radii and masses. Scenes with wall discs always vary, because walls are immobile.
     Varying,
 }
 
-/// Which contacts are too deep; penetrations are fractions of the sum of the radii.
+/// Limits of contact depths and step lengths; penetrations are fractions of the sum of the radii.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Watch {
-    /// Deeper ones are counted.
+    /// Deeper contacts are counted.
     pub max_penetration: f64,
-    /// Deeper ones stop the run.
+    /// Deeper contacts stop the run.
     pub stop_penetration: f64,
-    /// The smallest radius (length), of walls too.
+    /// Smallest radius (length), including walls.
     pub(crate) smallest_radius: f64,
-    /// What becomes of a disc that moves so far in a step that a contact may pass unseen.
+    /// Action for a disc that moves so far in a step that a contact may be missed.
     pub(crate) on_long_step: OnLongStep,
-    /// Whether energy is followed: what contacts dissipate, what moving walls put in, periods that discs cross along
-    /// gravity.
+    /// True if energy is tracked: dissipation in contacts, work of moving walls, periods that discs cross along gravity.
     pub energy: bool,
-    /// Whether the periods that discs cross are counted along every axis.
+    /// True if crossed periods are counted along every axis.
     pub motion: bool,
 }
 
 define_words! {
-    /// What becomes of a disc that moves farther in a step than contacts can be seen.
+    /// Action for a disc that moves so far in a step that contacts may be missed.
     pub(crate) enum OnLongStep {
         /// The run stops.
         Stop = "stop",
-        /// It is counted.
+        /// The disc is counted.
         Count = "count",
     }
 }
 
 impl Watch {
-    /// Looks for contacts that are too deep (fractions of the sum of the radii) and stops at discs that are too fast, if no
-    /// radius is below `smallest_radius` (length); follows neither energy nor motion.
+    /// Detects contacts that are too deep (fractions of the sum of the radii) and stops at discs that are too fast, if no radius is below
+    /// `smallest_radius` (length). Tracks neither energy nor motion.
     pub fn new(max_penetration: f64, stop_penetration: f64, smallest_radius: f64) -> Watch {
         let on_long_step = OnLongStep::Stop;
         let [energy, motion] = [false; 2];
         Watch { max_penetration, stop_penetration, smallest_radius, on_long_step, energy, motion }
     }
 
-    /// Penetration (length) that no pair passes whose fraction is at most `max_penetration`: what programs look for, so
-    /// that only what they find need be held against the pair's own radii.
+    /// Penetration (length) below which no pair exceeds the fraction `max_penetration`. Programs search with it, so that only what they find is
+    /// compared with the pair's own radii.
     pub fn depth(&self) -> f64 {
-        // Less by more than single precision rounds.
+        // Reduced by more than single precision rounds.
         2.0 * self.max_penetration * self.smallest_radius * (1.0 - 1e-6)
     }
 
-    /// How far a disc may move in a step (length).
+    /// Longest displacement of a disc in a step (length).
     pub(crate) fn longest_step(&self) -> f64 {
         longest_step(self.smallest_radius, self.max_penetration)
     }
 }
 
-/// Sides of what a lattice fills (length).
+/// Sides of the area that a lattice fills (length).
 pub(crate) fn filled(shape: &LatticeShape, frame: &Frame) -> [f64; 2] {
     let counts = [shape.columns(), shape.rows()];
     [0, 1].map(|axis| counts[axis] as f64 * frame.edge[axis])
 }
 
-/// Sides of a box (length) as steps see them: along periodic sides exactly what the lattice fills.
+/// Sides of a box (length) in steps: along periodic sides exactly the area that the lattice fills.
 pub(crate) fn sides_of(domain: &Domain, shape: &LatticeShape, frame: &Frame) -> [f64; 2] {
     let filled = filled(shape, frame);
     [0, 1].map(|axis| if domain.is_periodic(axis) { filled[axis] } else { domain.length(axis) })
 }
 
-/// What is modelled, on which lattice.
+/// Model and its lattice.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Model {
-    /// Whose programs step it. The source's own have friction, different discs and absolute positions, whatever a scene needs.
+    /// Version of the programs. Those of BP93 have friction, different discs and absolute positions, even where a scene needs none.
     pub text: ProgramText,
     /// The lattice.
     pub shape: LatticeShape,
-    /// Where it lies.
+    /// Origin and cell sides of the lattice.
     pub frame: Frame,
-    /// Sides of the box (length). The lattice fills periodic ones, and may reach beyond closed ones.
+    /// Sides of the box (length). The lattice fills periodic sides exactly and may extend beyond closed ones.
     pub sides: [f64; 2],
-    /// The neighbourhood, met from both sides.
+    /// Neighbourhood, visited from both sides.
     pub mask: Mask,
-    /// What positions on the lattice are measured from.
+    /// Origin of positions on the lattice.
     pub coordinates: Coordinates,
     /// The contact law's parameters.
     pub contact: Contact,
-    /// Whether there is friction, and with it rotation, torque and spin.
+    /// True with friction, and with it rotation, torque and spin.
     pub friction: bool,
-    /// Whether discs differ.
+    /// Equal or different discs.
     pub discs: Discs,
     /// Moment of inertia of a disc of mass and radius 1: ½ for a disc, ⅖ for a sphere.
     pub inertia_factor: f64,
@@ -172,7 +171,7 @@ pub struct Model {
     pub dt: f64,
     /// Acceleration of gravity (length/time²).
     pub gravity: [f64; 2],
-    /// The checks of a run; without, the programs are those of the source.
+    /// Checks of a run; without them the programs are those of BP93.
     pub watch: Option<Watch>,
 }
 
@@ -182,7 +181,7 @@ impl Model {
         if self.friction { 3 } else { 2 }
     }
 
-    /// The radius of every disc (length), where they are alike.
+    /// Radius of every disc (length), if all are equal.
     pub fn radius(&self) -> Option<f64> {
         match self.discs {
             Discs::Equal { disc, .. } => Some(disc.radius),
@@ -190,21 +189,21 @@ impl Model {
         }
     }
 
-    /// Whether a damping makes the accelerations depend on velocities.
+    /// Dependence of accelerations on velocities: with damping they depend on them.
     pub fn acceleration(&self) -> Acceleration {
         let Contact { normal_damping, shear_damping, .. } = self.contact;
         let damped = normal_damping != 0.0 || (self.friction && shear_damping != 0.0);
         if damped { Acceleration::OfVelocities } else { Acceleration::OfPositions }
     }
 
-    /// Whether state positions of precision `S` are measured from the cells' centres: from the origin single precision would
-    /// lose motion in large boxes.
+    /// True if state positions of precision `S` are measured from the cells' centres: measured from the origin, single precision would lose motion in
+    /// large boxes.
     pub(crate) fn is_anchored<S: Storage>(&self) -> bool {
         S::NAME == f32::NAME && self.coordinates == Coordinates::CellRelative
     }
 
-    /// The cell of a position (length), numbered from 1 in the padded lattice, and the position from its centre; for a position
-    /// beyond a closed side the cell at that side.
+    /// Returns the cell of a position (length), numbered from 1 in the padded lattice, and the position relative to its centre. A position beyond a
+    /// closed side belongs to the cell at that side.
     pub fn anchored(&self, position: [f64; 2]) -> (u32, [f64; 2]) {
         let position = self.domain().wrapped(position);
         let counts = [self.shape.columns(), self.shape.rows()];
@@ -220,7 +219,7 @@ impl Model {
         (self.shape.position(cell[0], cell[1]) as u32 + 1, place)
     }
 
-    /// The position (length) of what lies at a place seen from the centre of a cell numbered from 1.
+    /// Returns the position (length) of a point given relative to the centre of a cell numbered from 1.
     pub fn position(&self, cell: u32, place: [f64; 2]) -> [f64; 2] {
         let at = self.shape.column_and_row((cell as usize).saturating_sub(1));
         [0, 1].map(|axis| {
@@ -233,18 +232,18 @@ impl Model {
         Domain::planar(self.frame.origin, self.sides, self.shape.periodic())
     }
 
-    /// Whether a disc may be outside the box and yet on the lattice.
+    /// True if a disc may be outside the box and yet on the lattice.
     pub(crate) fn reaches_beyond_box(&self) -> bool {
         let [x, y] = filled(&self.shape, &self.frame);
         x > self.sides[0] * (1.0 + 1e-12) || y > self.sides[1] * (1.0 + 1e-12)
     }
 
-    /// Whether contacts turn energy into heat, and that is followed.
+    /// True if contacts dissipate energy and energy is tracked.
     pub(crate) fn counts_dissipation(&self) -> bool {
         self.follows_energy() && self.acceleration() == Acceleration::OfVelocities
     }
 
-    /// What is looked at while contacts are at hand.
+    /// Quantities to evaluate with the contacts.
     pub fn asked(&self) -> Asked {
         Asked {
             watched: self.watch.map(|watch| watch.depth()),
@@ -253,14 +252,14 @@ impl Model {
         }
     }
 
-    /// Along which axes it is followed how many periods discs cross: gravity works along them, or displacements are asked for.
+    /// True for the axes along which crossed periods are counted: where gravity does work, or displacements are requested.
     pub(crate) fn counts_crossings(&self) -> [bool; 2] {
         let periodic = self.shape.periodic();
         let motion = self.watch.is_some_and(|watch| watch.motion);
         [0, 1].map(|axis| periodic[axis] && (motion || self.does_gravity_work_along(axis)))
     }
 
-    /// Whether crossings are counted for displacements alone: a run that was begun without these has no counts.
+    /// True if crossings are counted for displacements alone: a run started without displacements has no counts.
     pub(crate) fn counts_crossings_for_motion_alone(&self) -> bool {
         let periodic = self.shape.periodic();
         (0..2).all(|axis| !(periodic[axis] && self.does_gravity_work_along(axis)))
@@ -270,12 +269,12 @@ impl Model {
         self.follows_energy() && self.gravity[axis] != 0.0
     }
 
-    /// Whether energy is followed.
+    /// True if energy is tracked.
     pub(crate) fn follows_energy(&self) -> bool {
         self.watch.is_some_and(|watch| watch.energy)
     }
 
-    /// What forces and torques are divided by.
+    /// Mass and inertia that forces and torques are divided by.
     pub fn inertia(&self) -> Inertia {
         match self.discs {
             Discs::Equal { disc, inverse_inertia } => {
@@ -287,7 +286,7 @@ impl Model {
 }
 
 impl Scenery {
-    /// Of a model.
+    /// Scenery of a model.
     pub fn of(model: &Model) -> Scenery {
         Scenery {
             domain: model.domain(),

@@ -1,4 +1,4 @@
-//! The rival: scalar neighbour lists on the lattice method's state.
+//! Scalar neighbour lists on the lattice method's state: the alternative in BP93.
 
 use super::options::ProgramText;
 use super::programs::with_law_of_text;
@@ -14,31 +14,31 @@ use stripmine_kernels::sweep::lattice::Coordinates;
 use stripmine_kernels::sweep::neighbor_list::{self, CellOffsets, Lists, Met, walk};
 
 define_words! {
-    /// How neighbour lists are made.
+    /// Construction of neighbour lists.
     pub enum Rebuild {
-        /// By looking into the cells around each disc.
+        /// By searching the cells around each disc.
         Cells = "cells",
-        /// By trying every pair, as in the source.
+        /// By trying every pair, as in BP93.
         AllPairs = "all-pairs",
     }
 }
 
-/// The choices of the rival.
+/// Options of the neighbour lists.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ListOptions {
-    /// How lists are made again.
+    /// Construction of the lists.
     pub rebuild: Rebuild,
-    /// How much farther than contact a listed pair may be (length).
+    /// Largest gap of a listed pair (length).
     pub skin: f64,
 }
 
-/// The lists, and when they were made.
+/// Neighbour lists and the positions at which they were built.
 #[derive(Clone, Debug)]
 pub(super) struct Rival<P> {
     options: ListOptions,
     cell_offsets: CellOffsets,
     lists: Lists,
-    /// Positions when the lists were made.
+    /// Positions when the lists were built.
     made_at: Vec<[f64; 2]>,
     /// Largest sum of radii.
     reach: f64,
@@ -62,18 +62,17 @@ impl<P: Precision> Rival<P> {
         }
     }
 
-    /// Candidates that a step looks at.
+    /// Number of candidates that a step checks.
     pub(super) fn candidates(&self) -> usize {
         self.lists.entries()
     }
 
-    /// Where the discs were when the lists were made (length), along each axis.
+    /// Coordinates of the discs when the lists were built (length), along each axis.
     pub(super) fn made_at(&self) -> [Vec<f64>; 2] {
         [0, 1].map(|axis| self.made_at.iter().map(|position| position[axis]).collect())
     }
 
-    /// Takes up lists that were made where the discs were at `made_at`, after `rebuilds` makings, and met `pairs` pairs in
-    /// the last step.
+    /// Restores lists that were built with the discs at `made_at`, after `rebuilds` builds, and visited `pairs` pairs in the last step.
     pub(super) fn take_up(&mut self, model: &Model, made_at: [Vec<f64>; 2], rebuilds: u64, pairs: u64) {
         let [x, y] = made_at;
         self.make(model, x.into_iter().zip(y).map(|(x, y)| [x, y]).collect());
@@ -81,7 +80,7 @@ impl<P: Precision> Rival<P> {
         self.met.pairs = pairs;
     }
 
-    /// Makes the lists again if a pair that is not listed could have come into contact.
+    /// Rebuilds the lists if a pair that is not listed could have come into contact.
     pub(super) fn keep<S: Precision>(&mut self, model: &Model, arrays: &Arrays<S, P>) {
         let (Some(x), Some(y)) = (arrays.state(Array::X0), arrays.state(Array::Y0)) else { return };
         let moved_too_far = 0.25 * self.options.skin * self.options.skin;
@@ -99,12 +98,12 @@ impl<P: Precision> Rival<P> {
         }
     }
 
-    /// Makes the lists for discs at these places (length).
+    /// Builds the lists for discs at these positions (length).
     fn make(&mut self, model: &Model, made_at: Vec<[f64; 2]>) {
         let domain = model.domain();
         let discs = made_at.len();
         let limit = self.reach + self.options.skin;
-        // Not beside the new ones: they are as large.
+        // Free the old lists first: they are as large as the new ones.
         self.lists = Lists::default();
         let near = |i: usize, j: usize| square(&domain, made_at[i], made_at[j]) < limit * limit;
         self.lists = match self.options.rebuild {
@@ -122,7 +121,7 @@ impl<P: Precision> Rival<P> {
         self.rebuilds += 1;
     }
 
-    /// Forces of all grains, written where the corrector looks for them.
+    /// Computes the forces of all grains and stores them where the corrector reads them.
     pub(super) fn forces<S: Precision>(&mut self, model: &Model, arrays: &mut Arrays<S, P>) {
         if self.radius.is_empty()
             && let Some(radius) = arrays.constant(Array::DiscRadius)
@@ -142,13 +141,13 @@ impl<P: Precision> Rival<P> {
     }
 }
 
-/// Square of the distance between two places (length²).
+/// Squared distance of two positions (length²).
 fn square(domain: &Domain, from: [f64; 2], to: [f64; 2]) -> f64 {
     let [dx, dy] = domain.displacement(from, to);
     dx * dx + dy * dy
 }
 
-/// A walk through the lists with the law of the model.
+/// Traversal of the lists with the law of the model.
 struct Walk<'a, S, P> {
     rival: &'a Rival<P>,
     model: &'a Model,
@@ -161,7 +160,7 @@ impl<S: Precision, P: Precision> WithLaw for Walk<'_, S, P> {
 
     fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> Met {
         let constant = |array| self.arrays.constant(array).unwrap_or(&[]);
-        // Of the printed text positions and velocities are the state itself.
+        // In the printed programs, positions and velocities are the state itself.
         let of_state = |array| -> Vec<P> {
             let column = self.arrays.state(array).unwrap_or(&[]).iter();
             column.map(|value| P::from_f64(value.to_f64())).collect()
@@ -185,7 +184,7 @@ impl<S: Precision, P: Precision> WithLaw for Walk<'_, S, P> {
         };
         debug_assert!(self.model.discs != Discs::Varying || discs.radius.len() == discs.cell.len());
         let asked = self.model.asked();
-        // A rounding error more than contact, so that the law decides on every contact.
+        // Contact distance plus a rounding error, so that the law decides on every contact.
         let reach = self.rival.reach * (1.0 + 1e-6);
         let grains = self.arrays.lengths().grains;
         let Rival { lists, cell_offsets, .. } = self.rival;

@@ -1,4 +1,4 @@
-//! The words of this method's keys.
+//! Words of this method's keys.
 
 use crate::words::{define_words, words_for};
 use stripmine_kernels::law::granular::ContactArm;
@@ -10,11 +10,11 @@ words_for!(ContactArm { Radius = "radius", Overlap = "overlap", Lammps = "lammps
 words_for!(Coordinates { CellRelative = "cell-relative", Absolute = "absolute", });
 
 define_words! {
-    /// How mass is distributed in a disc.
+    /// Distribution of mass in a disc.
     pub enum Inertia {
-        /// Evenly over the area: ½ m R².
+        /// Uniform over the area: ½ m R².
         Disc = "disc",
-        /// As in a sphere: ⅖ m R².
+        /// Sphere: ⅖ m R².
         Sphere = "sphere",
     }
 }
@@ -30,9 +30,9 @@ impl Inertia {
 }
 
 define_words! {
-    /// How contacts are found.
+    /// Search for contacts.
     pub enum By {
-        /// As is fastest.
+        /// The fastest.
         Auto = "auto",
         /// On the exclusive lattice.
         Lattice = "lattice",
@@ -44,29 +44,29 @@ define_words! {
 }
 
 define_words! {
-    /// What steps the discs.
+    /// Engine that steps the discs.
     pub enum EngineChoice {
-        /// As is fastest.
+        /// The fastest.
         Auto = "auto",
-        /// Each pair once, the law for contacts only.
+        /// Visits each pair once and evaluates the law for contacts only.
         Fast = "fast",
-        /// Vector programs over the whole lattice, as the source has it.
+        /// Vector programs over the whole lattice, as in BP93.
         Programs = "programs",
     }
 }
 
 define_words! {
-    /// Whose programs are run.
+    /// Version of the programs.
     pub enum ProgramText {
-        /// Ours: no more than a scene needs, positions relative to the cell, checks among the equations.
+        /// Ours: only what a scene needs, positions relative to the cell, checks among the equations.
         Ours = "ours",
-        /// The source's own, as printed: Index, Test and contact_i, Gear's derivatives as they are.
+        /// Printed in BP93: Index, Test and contact_i, unscaled Gear derivatives.
         Printed = "printed",
     }
 }
 
 define_words! {
-    /// A kind of integrator.
+    /// Integrator.
     pub enum IntegratorKind {
         /// Gear's predictor–corrector.
         Gear = "gear",

@@ -1,4 +1,4 @@
-//! A checked scene and its simulation, as every method offers them.
+//! Checked scene and its simulation behind the interfaces shared by all methods.
 
 use super::check::{Checked, Estimates};
 use super::document::Document;
@@ -18,7 +18,7 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 impl Document {
-    /// Makes the discs and holds the scene against what the method demands, as every method does.
+    /// Generates the discs and checks the scene against the method's preconditions, as every method does.
     ///
     /// # Errors
     /// As [`check`](Self::check).
@@ -26,7 +26,7 @@ impl Document {
         Ok(self.check()?.prepared())
     }
 
-    /// The same, but whatever the step is: what is foreseen of it refuses nothing.
+    /// Prepares the scene at any step: predictions for the step reject nothing.
     ///
     /// # Errors
     /// As [`check`](Self::check).
@@ -36,7 +36,7 @@ impl Document {
 }
 
 impl Checked {
-    /// What is offered.
+    /// Prepared scene.
     fn prepared(self) -> Prepared {
         let scene = &self.scene;
         Prepared {
@@ -84,14 +84,14 @@ impl Startable for Checked {
     }
 
     fn work(&self) -> f64 {
-        // To move them and find the pairs, and the contacts, of which there are more the denser they lie.
+        // Cost of moving them and finding the pairs, plus the contacts, whose number grows with density.
         let discs = self.particles.all().iter();
         let fraction = discs.map(|disc| PI * disc.radius * disc.radius).sum::<f64>() / self.domain.area();
         2.5 + 16.0 * fraction.min(1.0)
     }
 
     fn programs(&self) -> Vec<VectorProgram> {
-        // Lists and sectors have no vector programs: those of the lattice are counted.
+        // Lists and sectors have no vector programs: count those of the lattice.
         let on_lattice = match self.scene.needs_lattice() {
             true => None,
             false => match self.on_lattice() {

@@ -1,10 +1,10 @@
-//! Scenes to start from.
+//! Preset scenes.
 
 use crate::scene::Preset;
 
 macro_rules! define_presets {
     ($($name:literal),* $(,)?) => {
-        /// Every preset of this method.
+        /// All presets of this method.
         pub(super) const PRESETS: &[Preset] =
             &[$(Preset { name: $name, text: include_str!(concat!("presets/", $name, ".toml")) }),*];
     };

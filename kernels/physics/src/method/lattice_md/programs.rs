@@ -1,4 +1,4 @@
-//! The programs of a step, compiled for what a model needs.
+//! Programs of a step, compiled for the parts that a model needs.
 
 use super::options::ProgramText;
 use super::{Discs, GearValues, Lengths, Model, Scheme};
@@ -22,23 +22,22 @@ use stripmine_kernels::{Execution, InstructionSet, Program, Runnable};
 
 macro_rules! define_parts {
     ($(($variant:ident, $name:literal, $doc:literal)),* $(,)?) => {
-        /// A part of the step, as the source divides it (section 3); [`Part::Lattice`] is one the source does not
-        /// count.
+        /// Part of the step, as BP93 divides it (section 3); [`Part::Lattice`] is not counted there.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Part {
             $(#[doc = $doc] $variant,)*
         }
 
         impl Part {
-            /// Every part, in the order of the step.
+            /// All parts, in the order of the step.
             pub const ALL: &'static [Part] = &[$(Part::$variant),*];
 
-            /// The name in tables and on the command line.
+            /// Name in tables and on the command line.
             pub const fn name(self) -> &'static str {
                 match self { $(Part::$variant => $name),* }
             }
 
-            /// What the part does.
+            /// Description of the part.
             pub const fn meaning(self) -> &'static str {
                 match self { $(Part::$variant => $doc),* }
             }
@@ -48,30 +47,30 @@ macro_rules! define_parts {
 
 define_parts! {
     (Predictor, "predictor", "Gear's prediction of all derivatives"),
-    (Box, "box", "positions brought back into a periodic box: of the printed text, which has no equation for it"),
+    (Box, "box", "positions wrapped into a periodic box: printed programs only, as the paper has no equation for it"),
     (Index, "index", "the cell of every disc, the scatter into the Index, the check that no disc was lost"),
-    (Halo, "halo", "images in the halo, the check that no disc was lost: of the printed text, which has no equation for it"),
+    (Halo, "halo", "images in the halo, the check that no disc was lost: printed programs only, as the paper has no equation for it"),
     (Lattice, "lattice", "the discs' quantities as lattice vectors"),
-    (Forces, "forces", "the contact law at every place of the mask"),
+    (Forces, "forces", "the contact law at every offset of the mask"),
     (Corrector, "corrector", "forces gathered back, and Gear's correction of all derivatives"),
 }
 
 impl Part {
-    /// What a step does before the forces once positions are predicted and lie in the box.
+    /// Parts between prediction and forces, once positions are in the box.
     pub(super) const CELLS: &'static [Part] = &[Part::Index, Part::Halo];
 }
 
-/// One program of the step.
+/// Program of the step.
 pub struct StepProgram {
-    /// The part it belongs to.
+    /// Part that it belongs to.
     pub part: Part,
-    /// What its vectors are as long as.
+    /// Symbolic vector length.
     pub length: Length,
     /// The program.
     pub program: Box<dyn Runnable>,
 }
 
-/// The programs of a step of `model`, in their order. They are compiled here, once.
+/// Compiles the programs of a step of `model`, in order.
 pub fn programs(model: &Model, precision: scene::Precision) -> Vec<StepProgram> {
     match precision {
         scene::Precision::F64 => programs_of::<f64, f64>(model),
@@ -80,7 +79,7 @@ pub fn programs(model: &Model, precision: scene::Precision) -> Vec<StepProgram> 
     }
 }
 
-/// With state of precision `S` and forces of precision `P`.
+/// Compiles the programs with state of precision `S` and forces of precision `P`.
 pub(super) fn programs_of<S: Precision, P: Precision>(model: &Model) -> Vec<StepProgram> {
     match model.text {
         ProgramText::Ours => ours::<S, P>(model),
@@ -92,7 +91,7 @@ fn step(part: Part, length: Length, program: Box<dyn Runnable>) -> StepProgram {
     StepProgram { part, length, program }
 }
 
-/// The source's own, which have one precision.
+/// Programs printed in BP93, which have one precision.
 fn printed_programs(model: &Model) -> Vec<StepProgram> {
     let Model { shape, frame, ref mask, contact, coordinates, .. } = *model;
     let law = printed::Printed { contact };
@@ -133,7 +132,7 @@ fn printed_predictor(model: &Model) -> Box<dyn Runnable> {
         Scheme::Gear(GearValues::Six) => {
             Box::new(Program::new(printed::Predictor::<f64, 6, 3>::new(model.dt)))
         }
-        // No other scheme is the source's: a scene with one is refused.
+        // BP93 has no other scheme: scenes with one are rejected.
         _ => Box::new(Program::new(printed::Predictor::<f64, 4, 3>::new(model.dt))),
     }
 }
@@ -179,7 +178,7 @@ fn enter<S: Precision, P: Precision>(model: &Model) -> Enter<S, P> {
     }
 }
 
-/// What a step of the programs executes.
+/// Returns the operations of a step of the programs.
 pub fn ledger(programs: &[StepProgram]) -> Ledger {
     let mut ledger = Ledger::default();
     for step in programs {
@@ -188,13 +187,13 @@ pub fn ledger(programs: &[StepProgram]) -> Ledger {
     ledger
 }
 
-/// What a step of the neighbour-list rival executes, element by element: the programs it shares with the lattice, and
-/// the law as its own text counts it, asked for its distance by every candidate and for the rest by every pair; in double precision.
+/// Returns the operations of a step of BP93's neighbour lists, element by element and in double precision. They are the programs shared with the
+/// lattice, and the law: its distance section for every candidate, the rest for every pair.
 pub fn rival_ledger(model: &Model) -> Ledger {
     rival_ledger_of::<f64, f64>(model)
 }
 
-/// With state of precision `S` and forces of precision `P`.
+/// Returns these operations with state of precision `S` and forces of precision `P`.
 pub(super) fn rival_ledger_of<S: Precision, P: Precision>(model: &Model) -> Ledger {
     let one_place = Model { mask: Mask::one_place(), ..model.clone() };
     let (law, _) = with_law_of_text(&one_place, LatticeSweep::<P>(&one_place, PhantomData));
@@ -224,7 +223,7 @@ pub(super) fn rival_ledger_of<S: Precision, P: Precision>(model: &Model) -> Ledg
     ledger
 }
 
-/// The law of the programs' text.
+/// Applies a task to the law of the programs' version.
 pub(super) fn with_law_of_text<W: WithLaw>(model: &Model, task: W) -> W::Output {
     match model.text {
         ProgramText::Ours => with_law(model, task),
@@ -232,10 +231,10 @@ pub(super) fn with_law_of_text<W: WithLaw>(model: &Model, task: W) -> W::Output 
     }
 }
 
-/// The list of the law's compiled variants.
+/// Applies a task to the compiled variant of the law.
 pub(super) fn with_law<W: WithLaw>(model: &Model, task: W) -> W::Output {
     let contact = model.contact;
-    // Not read where discs vary.
+    // Not read if discs vary.
     let any = Disc { radius: f64::NAN, inverse_mass: f64::NAN };
     match (model.friction, model.discs) {
         (true, Discs::Varying) => task.with(Granular::<true, false> { contact, disc: any }),
@@ -245,7 +244,7 @@ pub(super) fn with_law<W: WithLaw>(model: &Model, task: W) -> W::Output {
     }
 }
 
-/// The list of the integrators.
+/// Applies a task to the integrator.
 pub(super) fn with_scheme<W: WithScheme>(model: &Model, work: W) -> W::Output {
     let acceleration = model.acceleration();
     match model.scheme {
@@ -256,7 +255,7 @@ pub(super) fn with_scheme<W: WithScheme>(model: &Model, work: W) -> W::Output {
     }
 }
 
-/// What the derivatives are multiplied by in the state that the programs carry.
+/// Scale factors of the derivatives in the state of the programs.
 pub(super) fn scales(model: &Model) -> [f64; DERIVATIVES] {
     if model.text == ProgramText::Printed {
         return [1.0; DERIVATIVES];
@@ -264,7 +263,7 @@ pub(super) fn scales(model: &Model) -> [f64; DERIVATIVES] {
     with_scheme(model, CarriedBy { dt: model.dt }).scales
 }
 
-/// The lattice sweep of a law, and the quantities it asks for.
+/// Lattice sweep of a law, and the quantities it needs.
 struct LatticeSweep<'m, P>(&'m Model, PhantomData<P>);
 
 impl<P: Precision> WithLaw for LatticeSweep<'_, P> {
@@ -277,7 +276,7 @@ impl<P: Precision> WithLaw for LatticeSweep<'_, P> {
     }
 }
 
-/// Calls the generic `$function::<S, P, VALUES, FREEDOMS>` that a model needs.
+/// Calls the instance of `$function::<S, P, VALUES, FREEDOMS>` that a model needs.
 macro_rules! for_scheme {
     ($model:expr, $values:expr, $function:ident) => {
         match ($values, $model.friction) {
@@ -324,10 +323,10 @@ fn corrector<S: Precision, P: Precision>(model: &Model) -> Box<dyn Runnable> {
     }
 }
 
-/// Runs the programs of some parts, in their order, on bound arrays.
+/// Runs the programs of some parts, in order, on bound arrays.
 ///
 /// # Errors
-/// [`ProgramError`] if the memory does not suit a program; nothing of that program was executed.
+/// [`ProgramError`] if the memory does not suit a program; nothing of that program has been executed.
 pub fn execute(
     programs: &[StepProgram],
     parts: &[Part],

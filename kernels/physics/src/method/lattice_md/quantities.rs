@@ -1,4 +1,4 @@
-//! What is observed of granular discs: one list of quantities, each with how it is read off what was seen.
+//! Observed quantities of granular discs, each with the function that evaluates it.
 
 use super::Totals;
 use super::balance::Balance;
@@ -7,30 +7,30 @@ use crate::method::observed::observables;
 use crate::method::{Observable, Quantity, quantities};
 use crate::observe::Observation;
 
-/// All that is seen of a moment, once: rows, warnings, summary and closing words read the same.
+/// Observation of a moment, made once: rows, warnings, summary and closing words read the same data.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Seen {
-    /// What the discs and their contacts sum up to.
+    /// Sums over the discs and their contacts.
     pub(super) now: Observation,
-    /// Where energy has come from and gone to.
+    /// Energy balance.
     pub(super) balance: Balance,
-    /// What has been counted and summed up since the start.
+    /// Counts and sums since the start.
     pub(super) totals: Totals,
 }
 
-/// What is observed, in the order of the columns.
+/// Observables, in the order of the columns.
 pub(super) const OBSERVABLES: [Observable<Seen>; 18] = observables! {
     "time", "time", Time, |seen| seen.now.time, "The time.";
     "kinetic", "energy", Instant, |seen| seen.now.kinetic, "Kinetic energy of the grains' translation.";
     "rotational", "energy", Instant, |seen| seen.now.rotational, "Kinetic energy of their rotation.";
-    "elastic", "energy", Instant, |seen| seen.now.elastic, "Energy that contacts store.";
+    "elastic", "energy", Instant, |seen| seen.now.elastic, "Elastic energy of the contacts.";
     "gravitational", "energy", Instant, |seen| seen.now.gravitational,
         "Potential energy in gravity, from the box's corner; jumps where a grain crosses a periodic side along gravity.";
-    "dissipated", "energy", Counter, |seen| seen.balance.dissipated, "What contacts have turned into heat since the start.";
-    "gravity_work", "energy", Counter, |seen| seen.balance.gravity_work, "What gravity has put in since the start.";
-    "wall_work", "energy", Counter, |seen| seen.balance.wall_work, "What moving walls have put in since the start.";
+    "dissipated", "energy", Counter, |seen| seen.balance.dissipated, "Energy dissipated in contacts since the start.";
+    "gravity_work", "energy", Counter, |seen| seen.balance.gravity_work, "Work of gravity since the start.";
+    "wall_work", "energy", Counter, |seen| seen.balance.wall_work, "Work of moving walls since the start.";
     "balance_error", "energy", Kept, |seen| seen.balance.balance_error,
-        "The energy that there is, less what there should be.";
+        "Balance error: actual minus expected energy.";
     "momentum_x", "mass·length/time", Kept, |seen| seen.now.momentum_x, "Momentum of the grains along x.";
     "momentum_y", "mass·length/time", Kept, |seen| seen.now.momentum_y, "Momentum of the grains along y.";
     "temperature", "energy", Instant, |seen| seen.now.temperature,
@@ -45,8 +45,8 @@ pub(super) const OBSERVABLES: [Observable<Seen>; 18] = observables! {
     "deep_disc_steps", "", Counter, |seen| seen.totals.deep_disc_steps as f64,
         "Grains in contacts deeper than law.max_penetration, summed over the steps.";
     "long_steps", "", Counter, |seen| seen.totals.long_steps as f64,
-        "Discs that moved farther in a step than contacts can be seen, summed over the steps.";
+        "Discs that moved so far in a step that contacts may be missed, summed over the steps.";
 };
 
-/// Their names, units and meanings.
+/// Names, units and meanings of the observables.
 pub(super) const QUANTITIES: &[Quantity] = &quantities(&OBSERVABLES);

@@ -1,4 +1,4 @@
-//! A run of granular discs: what is seen of them, the balance of their energy, what is said of it at the end.
+//! Runs of granular discs: observations, energy balance, summary.
 
 use super::assemble::model_following_energy;
 use super::balance::{Way, Work};
@@ -25,32 +25,32 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 use stripmine_kernels::isa::OpCounts;
 
-/// The phase in which discs are observed.
+/// Name of the phase in which discs are observed.
 const OBSERVING: &str = "observe";
 
-/// What a run keeps beside its discs.
+/// Data of a run beside its discs.
 pub(super) struct Granular {
     model: Model,
     scenery: Scenery,
-    /// The balance of energy since the start.
+    /// Energy balance since the start.
     work: Work,
-    /// What is seen of this moment, once somebody has asked.
+    /// Observation of this moment, if already requested.
     seen: OnceCell<Seen>,
-    /// Seconds that this has taken: a phase that belongs to no step.
+    /// Seconds spent on observations: a phase outside the steps.
     observing: Cell<f64>,
-    /// Columns and rows of the lattice, where the scene needs one, and discs for each cell.
+    /// Columns and rows of the lattice, if the scene needs one, and discs for each cell.
     lattice: Option<([usize; 2], f64)>,
     discs: [usize; 2],
-    /// What is looked at now and then, in a run.
+    /// Periodic check, if this is a run.
     run_monitor: Option<RunMonitor>,
-    /// Whether a checkpoint may have no counts of the periods that discs cross.
+    /// True if a checkpoint may lack the counts of crossed periods.
     counts_for_motion_alone: bool,
 }
 
-/// The discs of a checked scene, at the start.
+/// Starts the discs of a checked scene.
 ///
 /// # Errors
-/// [`Failure`] if the start breaks a precondition, or the processor lacks the instruction set asked for.
+/// [`Failure`] if the start violates a precondition, or the processor lacks the requested instruction set.
 pub(super) fn begin(checked: &Checked, purpose: Purpose) -> Result<Stepped<Granular>, Failure> {
     let grains = match purpose {
         Purpose::Run => assemble_following_energy(checked)?,
@@ -84,7 +84,7 @@ pub(super) fn begin(checked: &Checked, purpose: Purpose) -> Result<Stepped<Granu
 }
 
 impl Stepped<Granular> {
-    /// What is to be seen of this moment: looked at once, however many ask.
+    /// Observation of this moment, computed once.
     fn seen(&self) -> &Seen {
         self.method.seen.get_or_init(|| {
             let (grains, sums) = (&self.state, self.sums());
@@ -94,7 +94,7 @@ impl Stepped<Granular> {
         })
     }
 
-    /// Sums over the discs and their contacts as they stand, with the time that they take.
+    /// Sums over the discs and their contacts now; the time is recorded.
     fn sums(&self) -> Sums {
         let start = Instant::now();
         let Granular { scenery, work, observing, .. } = &self.method;
@@ -103,8 +103,7 @@ impl Stepped<Granular> {
         sums
     }
 
-    /// What leaving out saves: the programs as they are against those of the fullest model, on the same lattice; none where
-    /// a step is no fixed program.
+    /// Work of the programs relative to the fullest model on the same lattice; none where a step is not a fixed program.
     fn relative_work(&self) -> Option<f64> {
         if self.state.ledger().parts().is_empty() {
             return None;
@@ -121,7 +120,7 @@ impl Stepped<Granular> {
     }
 }
 
-/// Part of a step.
+/// Row of the summary's ledger: a part of a step.
 #[derive(Serialize)]
 struct LedgerRow {
     part: &'static str,

@@ -1,4 +1,4 @@
-//! What a scene of this method says, as plain data.
+//! Scene of this method as plain data.
 
 use super::keys::*;
 use super::model::{GearValues, OnLongStep, Scheme};
@@ -15,7 +15,7 @@ use stripmine_kernels::law::spring::Spring;
 use stripmine_kernels::sweep::lattice::Coordinates;
 use stripmine_kernels::{Execution, InstructionSet};
 
-/// What is simulated. Units are the scene's own; `units` names them.
+/// Simulated scene. Units are the scene's own; `units` names them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scene {
     /// The unit system: a label.
@@ -24,19 +24,19 @@ pub struct Scene {
     pub domain: Domain,
     /// The discs at the start.
     pub start: Start,
-    /// The motion of wall discs.
+    /// Motion of wall discs.
     pub walls: WallMotion,
-    /// What discs in contact do to each other.
+    /// Contact law.
     pub law: Law,
-    /// How contacts are found.
+    /// Search for contacts.
     pub search: Search,
-    /// How motion follows from forces.
+    /// Integrator.
     pub integrator: Integrator,
-    /// How the arithmetic is done.
+    /// Engine, precision and instruction set.
     pub machine: Machine,
-    /// How long, and how often something is written.
+    /// Length of the run and intervals of its output.
     pub run: Run,
-    /// Which files are written.
+    /// Files to write.
     pub output: Output,
 }
 
@@ -45,7 +45,7 @@ pub struct Scene {
 pub struct Law {
     /// Spring, dampings, friction, clamp and arm.
     pub contact: Contact,
-    /// How mass is distributed in a disc.
+    /// Distribution of mass in a disc.
     pub inertia: Inertia,
     /// Penetration, as a fraction of the sum of the radii, up to which the lattice is exact.
     pub max_penetration: f64,
@@ -69,7 +69,7 @@ impl Default for Law {
 }
 
 impl Law {
-    /// Whether there is a tangential force, and with it rotation.
+    /// True with a tangential force, and with it rotation.
     pub(crate) fn has_friction(&self) -> bool {
         self.contact.friction > 0.0 && self.contact.shear_damping > 0.0
     }
@@ -88,20 +88,20 @@ impl Law {
     }
 }
 
-/// How contacts are found.
+/// Search for contacts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Search {
-    /// Lattice or a rival.
+    /// Lattice, sectors or lists.
     pub by: By,
-    /// Side of a lattice cell (length); none: the fewest cells.
+    /// Side of a lattice cell (length); none for the fewest cells.
     pub(crate) cell_edge: Option<f64>,
-    /// Width of the mask in cells, 5 or 7; none: the smallest that serves.
+    /// Width of the mask in cells, 5 or 7; none for the smallest that works.
     pub mask: Option<u64>,
-    /// What becomes of a disc whose lattice cell is another's.
+    /// Action for a disc in an occupied lattice cell.
     pub(crate) on_conflict: OnConflict,
-    /// How lists are made.
+    /// Construction of the lists.
     pub rebuild: Rebuild,
-    /// Listed pairs are up to this far from contact (length); none: as the engine finds best.
+    /// Largest gap of a listed pair (length); none for the engine's best choice.
     pub skin: Option<f64>,
 }
 
@@ -122,20 +122,20 @@ impl Search {
     }
 }
 
-/// How the arithmetic is done.
+/// Engine, precision and instruction set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Machine {
-    /// What steps the discs.
+    /// Engine that steps the discs.
     pub engine: EngineChoice,
-    /// Whose programs are run.
+    /// Version of the programs.
     pub text: ProgramText,
-    /// How programs are executed.
+    /// Execution of the programs.
     pub execution: Execution,
-    /// What positions are measured from by programs.
+    /// Origin of positions in programs.
     pub coordinates: Coordinates,
     /// Precision of state and forces.
     pub precision: Precision,
-    /// The SIMD instructions; none: the widest there are.
+    /// SIMD instructions; none for the widest available.
     pub instruction_set: Option<InstructionSet>,
 }
 
@@ -153,24 +153,24 @@ impl Default for Machine {
 }
 
 impl Machine {
-    /// Whether the fast engine steps the discs.
+    /// True if the fast engine steps the discs.
     pub(crate) fn is_fast(&self) -> bool {
         self.engine != EngineChoice::Programs
     }
 
-    /// What executes a step, in a word: `fast`, or how programs are executed.
+    /// Name of the executing engine: `fast`, or the execution of the programs.
     pub(crate) fn execution_name(&self) -> String {
         if self.is_fast() { EngineChoice::Fast.word().to_owned() } else { execution_name(self.execution) }
     }
 
-    /// The instructions that are used.
+    /// Instruction set in use.
     pub fn instructions(&self) -> InstructionSet {
         self.instruction_set.unwrap_or_else(InstructionSet::best)
     }
 
     fn bind(&mut self, binding: &mut dyn Binding) {
         binding.choice(&ENGINE, &mut self.engine);
-        // What auto becomes has no such keys, unless one of them is given.
+        // The engine that auto selects lacks these keys, unless one of them is given.
         let is_open = self.engine == EngineChoice::Auto && binding.reads();
         if self.engine == EngineChoice::Programs || is_open {
             binding.choice(&TEXT, &mut self.text);
@@ -187,11 +187,11 @@ impl Machine {
 /// The integrator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Integrator {
-    /// How motion follows from forces.
+    /// Integration scheme.
     pub scheme: Scheme,
     /// Time step (time).
     pub dt: f64,
-    /// What becomes of a disc that moves farther in a step than contacts can be seen.
+    /// Action for a disc that moves so far in a step that contacts may be missed.
     pub(crate) on_long_step: OnLongStep,
 }
 
@@ -224,7 +224,7 @@ impl Integrator {
 }
 
 impl Scene {
-    /// Meets every key of the method.
+    /// Binds every key of the method.
     pub(super) fn bind(&mut self, binding: &mut dyn Binding) {
         bind_heading(binding, &mut self.units, VOCABULARY.keys.method);
         self.domain.bind(binding);
@@ -238,14 +238,14 @@ impl Scene {
         self.output.bind(binding);
     }
 
-    /// The whole scene as TOML, defaults written out. Parsing it gives an equal scene.
+    /// Writes the whole scene as TOML, including defaults. Parsing it gives an equal scene.
     pub fn to_toml(&self) -> String {
         let mut write = Write::default();
         self.clone().bind(&mut write);
         write.to_toml(&VOCABULARY.keys)
     }
 
-    /// Whether discs must have a cell of the exclusive lattice to themselves, or be seen through its mask.
+    /// True if discs need exclusive lattice cells, or are found through the mask.
     pub fn needs_lattice(&self) -> bool {
         match self.search.by {
             By::Auto | By::Lattice => true,
@@ -254,7 +254,7 @@ impl Scene {
         }
     }
 
-    /// The simulated time (time).
+    /// Simulated time (time).
     pub fn duration(&self) -> f64 {
         self.run.steps as f64 * self.integrator.dt
     }

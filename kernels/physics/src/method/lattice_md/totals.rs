@@ -1,50 +1,48 @@
-//! What a simulation counts and sums up from its start on.
+//! Counts and sums of a simulation since its start.
 
 /// Counts and sums since the start of a scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Totals {
-    /// Grains in a contact deeper than the scene calls reasonable, summed over the steps.
+    /// Grains in a contact deeper than `law.max_penetration`, summed over the steps.
     pub deep_disc_steps: u64,
-    /// The deepest penetration of such a contact (a fraction of the sum of the radii).
+    /// Deepest penetration of such a contact (a fraction of the sum of the radii).
     pub deepest: f64,
     pub(crate) deepest_step: u64,
-    /// Discs in a lattice cell that was another disc's, summed over the steps; more than none only where such conflicts
-    /// are resolved.
+    /// Discs in an occupied lattice cell, summed over the steps; zero unless such conflicts are resolved.
     pub shared_cells: u64,
-    /// Discs that moved farther in a step than contacts can be seen, summed over the steps; more than none only where
-    /// the scene lets them.
+    /// Discs that moved so far in a step that contacts may be missed, summed over the steps; zero unless the scene allows them.
     pub long_steps: u64,
-    /// Energy that contacts have turned into heat.
+    /// Energy dissipated in contacts.
     pub dissipated: f64,
-    /// Energy that moving walls have put in.
+    /// Work of moving walls.
     pub wall_work: f64,
-    /// What contacts dissipate at this moment (energy/time).
+    /// Power dissipated in contacts now (energy/time).
     power: f64,
-    /// What moving walls put in at this moment (energy/time).
+    /// Power of moving walls now (energy/time).
     wall_power: f64,
 }
 
-/// A count or a sum.
+/// Count or sum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Total {
-    /// How many.
+    /// Number of occurrences.
     Count(u64),
-    /// How much.
+    /// Accumulated amount.
     Sum(f64),
 }
 
 macro_rules! define_entries {
     ($($name:literal $kind:ident $field:ident,)*) => {
         impl Totals {
-            /// All of them by name, for a checkpoint.
+            /// Returns all entries by name, for a checkpoint.
             pub fn entries(&self) -> Vec<(&'static str, Total)> {
                 vec![$(($name, Total::$kind(self.$field))),*]
             }
 
-            /// From what [`entries`](Self::entries) gave.
+            /// Restores totals from what [`entries`](Self::entries) returned.
             ///
             /// # Errors
-            /// The name of one that is missing, or is no count but a sum or the other way round.
+            /// Returns the name of an entry that is missing or has the wrong kind.
             pub(crate) fn from_entries(find: impl Fn(&str) -> Option<Total>) -> Result<Totals, &'static str> {
                 Ok(Totals {
                     $($field: match find($name) {
@@ -70,12 +68,12 @@ define_entries! {
 }
 
 impl Totals {
-    /// That a number of steps of a number of discs can have come to them.
+    /// Checks that these totals are possible after a number of steps of a number of discs.
     ///
     /// # Errors
-    /// A sentence that names the first that cannot be.
+    /// Names the first impossible entry.
     pub(super) fn are_of(&self, steps: u64, discs: u64) -> Result<(), String> {
-        // The start is looked at too.
+        // The start is counted too.
         let most = (steps + 1).saturating_mul(discs);
         let is_right = |total: Total| match total {
             Total::Count(count) => count <= most,
@@ -84,24 +82,24 @@ impl Totals {
         match self.entries().into_iter().find(|(_, total)| !is_right(*total)) {
             None => Ok(()),
             Some((name, total)) => Err(format!(
-                "the total {name} is {total:?}, which {steps} steps of {discs} discs do not come to"
+                "the total {name} is {total:?}, which {steps} steps of {discs} discs cannot reach"
             )),
         }
     }
 
-    /// At the start, where contacts and walls have these powers (energy/time).
+    /// Totals at the start, where contacts and walls have these powers (energy/time).
     pub(super) fn starting_with(power: f64, wall_power: f64) -> Totals {
         Totals { power, wall_power, ..Totals::default() }
     }
 
-    /// A step of `dt` (time), at whose end contacts and walls have these powers (energy/time): by the trapezoidal rule.
+    /// Adds the work of a step of `dt` (time) by the trapezoidal rule; the powers are those at its end (energy/time).
     pub(super) fn add_work(&mut self, dt: f64, power: f64, wall_power: f64) {
         self.dissipated += 0.5 * dt * (self.power + power);
         self.wall_work += 0.5 * dt * (self.wall_power + wall_power);
         (self.power, self.wall_power) = (power, wall_power);
     }
 
-    /// Deep contacts of a step: how many grains are in one, and the deepest penetration.
+    /// Adds the deep contacts of a step: the number of grains in them and the deepest penetration.
     pub(super) fn add_deep(&mut self, step: u64, grains: u64, penetration: f64) {
         self.deep_disc_steps += grains;
         if penetration > self.deepest {

@@ -1,4 +1,4 @@
-//! How granular discs may be run, and what theory says of the error.
+//! Trials of granular discs: choices, parameters, twins and the theoretical order of the error.
 
 use super::document::Document;
 use super::encounter::encounter;
@@ -23,7 +23,7 @@ use crate::words::Words;
 use stripmine_kernels::law::spring::Spring;
 use stripmine_kernels::sweep::lattice::Coordinates;
 
-/// Every way to run a scene of granular discs.
+/// Configurations of granular discs and their measures.
 pub(super) static TRIALS: Trials = Trials {
     step: &DT,
     references: [
@@ -48,7 +48,7 @@ pub(super) static TRIALS: Trials = Trials {
     at_any_step: |values| Document::read(values)?.prepare_at_any_step(),
 };
 
-/// What a map may vary. A value that a scene cannot have is refused by its check, and stands so in the map.
+/// Parameters that a map may vary. A value that a scene cannot have is rejected by its check and marked in the map.
 const PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "stiffness",
@@ -102,7 +102,7 @@ const PARAMETERS: &[Parameter] = &[
     },
     Parameter {
         name: "speed",
-        label: "speed of the start, in multiples of the scene's own",
+        label: "initial speed relative to that of the scene",
         unit: "",
         bounds: [0.0, 1e12],
         is_logarithmic: true,
@@ -140,22 +140,21 @@ const PARAMETERS: &[Parameter] = &[
     },
 ];
 
-/// The ratio of radii beyond which cells that hold no two of the smallest discs are smaller than the largest radius, which the
-/// source takes for the side of a cell: √2 (1 − max_penetration). BP93.
+/// Ratio of radii up to which a cell for one smallest disc can have the side of BP93, the largest radius: √2 (1 − max_penetration).
 fn largest_ratio(values: &Values) -> Vec<(f64, String)> {
     let ratio = values.number(&MAX_PENETRATION).map(|depth| std::f64::consts::SQRT_2 * (1.0 - depth));
     ratio
-        .map(|ratio| (ratio, format!("{ratio:.4}: what the lattice of 5 × 5 cells bears")))
+        .map(|ratio| (ratio, format!("{ratio:.4}: limit of the lattice with 5 × 5 cells")))
         .into_iter()
         .collect()
 }
 
-/// From a part of a value to a multiple of it.
+/// Returns the range from a fraction of a value to a multiple.
 fn around(value: f64, factor: f64) -> Option<[f64; 2]> {
     (value > 0.0).then_some([value / factor, value * factor])
 }
 
-/// The overrides that make the discs of the start faster by a factor.
+/// Returns overrides that multiply the initial speeds by a factor.
 fn faster(values: &Values, factor: f64) -> Overrides {
     let mut overrides = Overrides::new();
     for (key, power) in [(&TEMPERATURE, 2), (&SPEED, 1)] {
@@ -172,7 +171,7 @@ fn faster(values: &Values, factor: f64) -> Overrides {
     }
 }
 
-/// What a scene may be modelled without, or less of.
+/// Simpler models of a scene.
 pub(super) const TWINS: &[Twin] = &[
     Twin {
         name: "friction and spin",
@@ -258,7 +257,7 @@ fn inertia(values: &Values) -> Option<f64> {
     has_friction.then(|| inertia.factor())
 }
 
-/// The order of positions after contacts: that of the scheme, or what the law, or the start, leaves of it.
+/// Returns the order of positions after contacts: that of the scheme, unless the law or the start reduces it.
 fn theory(values: &Values, prepared: &Prepared, integrator: &Setting) -> Option<Theory> {
     let is_damped = values.number(&NORMAL_DAMPING)? > 0.0;
     let scheme = match integrator.name {
@@ -272,17 +271,17 @@ fn theory(values: &Values, prepared: &Prepared, integrator: &Setting) -> Option<
     let spring = values.choice(&LAW).and_then(|word| Spring::parse(&word))?;
     let kink = (spring.exponent() + 1.0, spring.kink());
     let touching =
-        (2.0, "moving discs touch at the start, and Gear's scheme begins without the third derivatives");
+        (2.0, "moving discs touch at the start, and Gear's scheme starts without third derivatives");
     let is_gear = integrator.name != "velocity-verlet";
     let start = (is_gear && touches(prepared)).then_some(touching);
     let law = if is_damped { jump } else { kink };
-    // Earlier ones are named where several are equal.
+    // Of several equal orders the first is named.
     let least =
         [Some(law), start, Some(scheme)].into_iter().flatten().reduce(|a, b| if b.0 < a.0 { b } else { a });
     least.map(|(order, why)| Theory { order, why })
 }
 
-/// Whether discs touch at the start while they move; where all are at rest the third derivatives are zero.
+/// True if moving discs touch at the start; with all discs at rest the third derivatives are zero.
 fn touches(prepared: &Prepared) -> bool {
     let moves = prepared.particles().grains().iter().any(|disc| disc.velocity != [0.0; 3]);
     const CONTACTS: usize = place(QUANTITIES, "contacts");

@@ -1,16 +1,16 @@
-//! The prescribed motion of walls.
+//! Prescribed motion of walls.
 
 use super::Model;
 use crate::method::pairwise::Prescribed;
 use crate::scene::WallMotion;
 
-/// All wall discs at a time.
+/// Motion of all wall discs at a time.
 pub(super) fn walls_at(motion: WallMotion, time: f64) -> Prescribed {
     match motion {
         WallMotion::Fixed => Prescribed::default(),
         WallMotion::Oscillating { amplitude, frequency } => {
             let rate = std::f64::consts::TAU * frequency;
-            // The portable sine and cosine: the same bits on every platform.
+            // Portable sine and cosine give the same bits on every platform.
             let (sine, cosine) = (libm::sin(rate * time), libm::cos(rate * time));
             Prescribed {
                 displacement: amplitude.map(|a| a * sine),
@@ -20,8 +20,8 @@ pub(super) fn walls_at(motion: WallMotion, time: f64) -> Prescribed {
     }
 }
 
-/// What moving walls put in (energy/time), where that is followed: all walls have one velocity, and what they do to the
-/// grains is the sum of the grains' forces, for those of two grains cancel. Forces are in the scene's order, grains first.
+/// Power of moving walls (energy/time), if energy is tracked. All walls have one velocity, and their force on the grains is the sum of the grains'
+/// forces, because those between grains cancel. Forces are in the scene's order, grains first.
 pub(super) fn wall_power(
     model: &Model,
     motion: WallMotion,

@@ -1,18 +1,18 @@
-//! In which form an integrator carries the state: asked for here, and nowhere assumed.
+//! Form in which an integrator carries the state: queried here, assumed nowhere.
 
 use super::WithScheme;
 use stripmine_kernels::integrator::{DERIVATIVES, Scheme};
 
-/// In which form an integrator carries the state from step to step.
+/// Form in which an integrator carries the state from step to step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Carried {
-    /// How many derivatives of a degree of freedom, the position among them.
+    /// Number of derivatives of a degree of freedom, including the position.
     pub derivatives: usize,
-    /// What each is multiplied by, as [`Scheme::scales`] has it.
+    /// Scale factor of each derivative, as in [`Scheme::scales`].
     pub(crate) scales: [f64; DERIVATIVES],
 }
 
-/// Asks an integrator for its [`Carried`], for steps of `dt` (time).
+/// Queries an integrator for its [`Carried`] form, for steps of `dt` (time).
 pub(crate) struct CarriedBy {
     /// The step (time).
     pub dt: f64,

@@ -1,4 +1,4 @@
-//! The cells of the discs: who changes them, and when lists are made again.
+//! Cells of the discs: which discs change them, and when lists are rebuilt.
 
 use super::search::{Cells, Search};
 use super::state::Move;
@@ -10,56 +10,55 @@ use stripmine_kernels::over_pieces;
 use stripmine_kernels::sweep::fast::lattice::Taken;
 use stripmine_kernels::sweep::fast::{DisplacementLimit, Grid};
 
-/// What was found when discs were looked for: changes of cells, and discs that belong to no cell.
+/// Result of a search for cells: changes of cells, and discs that belong to no cell.
 #[derive(Default)]
 pub(super) struct Looked {
     moves: Vec<Move>,
     strays: Vec<Move>,
 }
 
-/// A disc that is no other rank's and has changed its cell.
+/// Change of cell of a disc owned by this rank.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Moved {
-    /// Which of the scene's discs it is.
+    /// Number of the disc in the scene.
     pub(super) number: u32,
-    /// From row to row.
+    /// Old and new row.
     pub(super) rows: [usize; 2],
-    /// The periods that it has crossed.
+    /// Periods that it has crossed.
     pub(super) periods: [f64; 2],
 }
 
 impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
-    /// A position (length), from the place in a cell.
+    /// Returns a position (length) from one relative to a cell's centre.
     fn position_in_cell(&self, cell: [usize; 2], place: [f64; 2]) -> [f64; 2] {
         let frame = self.search.cells().grid().frame;
         [0, 1].map(|axis| frame.origin[axis] + (cell[axis] as f64 + 0.5) * frame.edge[axis] + place[axis])
     }
 
-    /// Where a disc is (length) when it is at `place` in its cell.
+    /// Returns the position (length) of a disc at `place` relative to its cell.
     pub(super) fn seen_from_origin(&self, disc: usize, place: [f64; 2]) -> [f64; 2] {
         self.position_in_cell(self.search.cells().cell(disc).unwrap_or_default(), place)
     }
 
-    /// The cell of a disc at a position (length), and its place there.
+    /// Returns the cell of a disc at a position (length), and the position relative to its centre.
     pub(super) fn locate(&self, disc: usize, position: [f64; 2]) -> Result<Move, Failure> {
         let from = self.seen_from_first_cell(disc, position);
         self.in_its_cell(from).ok_or_else(|| self.stray(from, 1))
     }
 
-    /// The row of a position (length); none where there is no cell.
+    /// Returns the row of a position (length); none outside all cells.
     pub(super) fn row_at(&self, position: [f64; 2]) -> Option<usize> {
         Some(self.in_its_cell(self.seen_from_first_cell(0, position))?.cell[1])
     }
 
-    /// A disc at a position (length), seen from the first cell.
+    /// Returns a disc at a position (length), relative to the first cell.
     fn seen_from_first_cell(&self, disc: usize, position: [f64; 2]) -> Move {
         let frame = self.search.cells().grid().frame;
         let place = [0, 1].map(|axis| position[axis] - (frame.origin[axis] + 0.5 * frame.edge[axis]));
         Move { disc, cell: [0, 0], place, periods: [0.0; 2] }
     }
 
-    /// The cell and place of a disc at a place that may be outside the cell it is seen from; none if it belongs to no
-    /// cell.
+    /// Returns a disc relative to the cell that contains it, from a position that may be outside the given cell; none if no cell contains it.
     fn in_its_cell(&self, from: Move) -> Option<Move> {
         let Move { cell, place, .. } = from;
         let Grid { frame, counts, periodic } = self.search.cells().grid();
@@ -78,7 +77,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
                 to.periods[axis] = (there - inside) / count;
                 there = inside;
             } else if there == count && to.place[axis] <= -0.5 * edge {
-                // On the far side: that is the last cell's.
+                // On the far boundary, which belongs to the last cell.
                 there -= 1.0;
                 to.place[axis] += edge;
             }
@@ -90,7 +89,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         Some(to)
     }
 
-    /// Brings the cells up to date after a pass: walls, the discs beyond their limit, the halo, the lists.
+    /// Updates the cells after a pass: walls, discs beyond their limit, halo, lists.
     pub(super) fn keep_cells(&mut self, left: &[u32]) -> Result<(), Failure> {
         if self.search.lists().is_some() {
             if self.is_stale(left)? {
@@ -101,7 +100,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         self.keep_in_cells(left).map(drop)
     }
 
-    /// The walls where they are now, where they move.
+    /// Returns the current positions of moving walls.
     fn walls_now(&mut self) -> Result<Vec<Move>, Failure> {
         let Some(prescribed) = self.prescribed() else { return Ok(vec![]) };
         self.give_walls_their_velocity();
@@ -113,7 +112,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         (self.state.grains()..self.state.len()).map(now).collect()
     }
 
-    /// Brings the cells up to date where there are no lists.
+    /// Updates the cells where there are no lists.
     pub(super) fn keep_in_cells(&mut self, left: &[u32]) -> Result<Vec<Moved>, Failure> {
         let walls = self.walls_now()?;
         let left = left.iter().map(|&disc| disc as usize);
@@ -128,7 +127,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         }
     }
 
-    /// The grains that another rank moves.
+    /// Grains of neighbouring ranks.
     pub(super) fn neighbours(&self) -> Range<usize> {
         self.state.moving()..self.state.grains()
     }
@@ -140,19 +139,19 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         (0..2).all(|axis| place[axis].abs() <= S::from_f64(0.5 * edge[axis]).to_f64())
     }
 
-    /// Whether a disc may be outside the box and yet in a cell.
+    /// True if a disc may be outside the box and yet in a cell.
     fn reaches_beyond_box(&self) -> bool {
         let Grid { frame, counts, .. } = self.search.cells().grid();
         let filled = |axis: usize| counts[axis] as f64 * frame.edge[axis];
         (0..2).any(|axis| filled(axis) > self.system.domain.length(axis) * (1.0 + 1e-12))
     }
 
-    /// A disc at a place that no cell takes.
+    /// Failure of a disc outside all cells.
     fn stray(&self, at: Move, count: u64) -> Failure {
         outside(self.clock(), count, self.culprit_at(&at))
     }
 
-    /// A disc where it would be.
+    /// Disc at a prospective position.
     fn culprit_at(&self, at: &Move) -> Culprit {
         let disc = at.disc;
         Culprit::in_plane(
@@ -163,7 +162,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         )
     }
 
-    /// Looks for the cells that the places of some discs lie in.
+    /// Searches the cells that contain some discs.
     pub(super) fn look(&self, discs: impl Iterator<Item = usize>) -> Looked {
         let mut looked = Looked::default();
         for disc in discs {
@@ -172,7 +171,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
             match self.in_its_cell(from) {
                 Some(to) if to == from => {}
                 Some(to) => looked.moves.push(to),
-                // Its own rank will say so.
+                // Its own rank reports it.
                 None if self.neighbours().contains(&disc) => {}
                 None => looked.strays.push(from),
             }
@@ -180,7 +179,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         looked
     }
 
-    /// The changes of cells that were found; a failure if a disc belongs to no cell.
+    /// Returns the changes of cells, or a failure if a disc belongs to no cell.
     pub(super) fn changes_of(&self, looked: Vec<Looked>) -> Result<Vec<Move>, Failure> {
         let strays = || looked.iter().flat_map(|looked| &looked.strays);
         match strays().min_by_key(|from| self.state.number(from.disc)) {
@@ -189,7 +188,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         }
     }
 
-    /// Moves walls within the cells in which they are listed, and tells whether lists are to be made again because a disc has gone too far.
+    /// Moves walls within the cells in which they are listed; returns true if a disc has gone so far that lists must be rebuilt.
     pub(super) fn is_stale(&mut self, left: &[u32]) -> Result<bool, Failure> {
         let walls = self.walls_now()?;
         let edge = self.search.cells().grid().frame.edge;
@@ -218,7 +217,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         Ok(stale)
     }
 
-    /// Makes the lists again.
+    /// Rebuilds the lists.
     pub(super) fn list_again(&mut self) -> Result<Vec<Moved>, Failure> {
         let looked = over_pieces(0..self.state.len(), |discs| self.look(discs));
         let moves = self.changes_of(looked)?;
@@ -227,13 +226,13 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         Ok(moved)
     }
 
-    /// The discs that may leave through an open side before lists are made again.
+    /// Returns the discs that may leave through an open side before lists are rebuilt.
     pub(super) fn discs_near_open_sides(&self) -> Vec<u32> {
         let domain = &self.system.domain;
         let Some(lists) = self.search.lists().filter(|_| domain.periodic() != [true; 2]) else {
             return vec![];
         };
-        // A little more than the lists last: rounding must hide no disc.
+        // Slightly more than the range of the lists, so that rounding hides no disc.
         let reach = 0.5 * lists.skin() * (1.0 + 1e-6);
         let near = |disc: usize| {
             let position = self.position(disc);
@@ -250,14 +249,14 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         over_pieces(0..self.state.len(), near).concat()
     }
 
-    /// Whether a disc is beyond an open side.
+    /// True if a disc is beyond an open side.
     pub(super) fn is_outside(&self, disc: usize) -> bool {
         let cell = self.search.cells().cell(disc).unwrap_or_default();
         let from = Move { disc, cell, place: self.state.place(disc), periods: [0.0; 2] };
         self.in_its_cell(from).is_none()
     }
 
-    /// Moves discs into their new cells; if two want one that must be one disc's, none is moved. Gives those of them that are no other rank's.
+    /// Moves discs into their new cells and returns the changes of this rank's discs. If two discs want an exclusive cell, none is moved.
     pub(super) fn change_cells(&mut self, moves: &[Move]) -> Result<Vec<Moved>, Failure> {
         if self.search.cells().is_exclusive() {
             self.refuse_conflicts(moves)?;
@@ -277,7 +276,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
             }
             self.state.put(to.disc, to.place);
             if let Err(Taken(owner)) = self.search.cells_mut().enter(to, &self.state) {
-                // Refused above: a disc that is in no cell would meet nobody, without a word.
+                // Conflicts are rejected above: a disc without a cell would silently interact with nothing.
                 let culprits = [self.culprit(owner), self.culprit_at(to)];
                 return Err(conflict(self.clock(), self.system.domain, culprits));
             }
@@ -286,7 +285,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         Ok(moved)
     }
 
-    /// Finds two discs that want one cell.
+    /// Fails if two discs want one cell.
     fn refuse_conflicts(&self, moves: &[Move]) -> Result<(), Failure> {
         let mut targets: Vec<([usize; 2], usize)> = moves.iter().map(|to| (to.cell, to.disc)).collect();
         targets.sort_unstable();

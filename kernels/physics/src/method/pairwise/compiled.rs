@@ -1,5 +1,5 @@
-//! The loops that are compiled for each law and each scheme of a method. The engine calls them through one trait, so that all else of it is
-//! compiled once for its precisions and its search.
+//! Loops compiled for each law and each scheme of a method. The engine calls them through one trait, so that the rest of it is compiled only once for
+//! each precision and search.
 
 use super::search::Search;
 use super::state::State;
@@ -15,13 +15,13 @@ use stripmine_kernels::sweep::fast::{Advance, Discs, Met, Motion, Passed};
 
 /// [`Dynamics`] of any method, for an engine with state of precision `S`, forces of precision `P` and search `Q`.
 pub(super) trait Compiled<S, P, Q>: Send + Sync {
-    /// In which form the scheme carries the state, for steps of `dt` (time).
+    /// Returns the form in which the scheme carries the state, for steps of `dt` (time).
     fn carried(&self, dt: f64) -> Carried;
 
     /// As [`Dynamics::prescribed`].
     fn prescribed(&self, time: f64) -> Option<Prescribed>;
 
-    /// Moves some discs one step on.
+    /// Advances some discs by one step.
     fn pass(&self, pass: Passing<'_, S, P, Q>) -> Result<Passed, ProgramError>;
 
     /// Corrects a degree of freedom of some discs.
@@ -60,13 +60,13 @@ impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Compiled<S, P, Q>
     }
 }
 
-/// How discs move by a scheme.
+/// Motion of discs in a scheme.
 fn motion<C: Scheme>(system: &System, scheme: C) -> Motion<C> {
     let System { dt, inertia, gravity, noise, .. } = *system;
     Motion { scheme, dt, inertia, gravity, noise }
 }
 
-/// A pass over some discs.
+/// Arguments of a pass over some discs.
 pub(super) struct Passing<'a, S, P, Q> {
     pub(super) discs: Range<usize>,
     pub(super) system: &'a System,
@@ -102,7 +102,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> WithScheme for Passing<'_, S, 
     }
 }
 
-/// A degree of freedom of discs at the end of the step, from the rows that the pass left.
+/// Arguments of the correction of a degree of freedom at the end of the step, from the rows left by the pass.
 pub(super) struct Correcting<'a, S, P> {
     pub(super) system: &'a System,
     pub(super) state: &'a State<S>,
@@ -129,7 +129,7 @@ impl<S: Precision, P: Precision> WithScheme for Correcting<'_, S, P> {
     }
 }
 
-/// A sweep with the law.
+/// Arguments of a force sweep.
 pub(super) struct Sweeping<'a, S, P, Q> {
     pub(super) system: &'a System,
     pub(super) state: &'a State<S>,
@@ -148,7 +148,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> WithLaw for Sweeping<'_, S, P,
     }
 }
 
-/// A sweep that observes.
+/// Arguments of an observing sweep.
 pub(super) struct Observing<'a, S, P, Q> {
     pub(super) search: &'a Q,
     pub(super) discs: &'a Discs<'a, f64>,

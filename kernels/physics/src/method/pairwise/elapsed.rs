@@ -1,4 +1,4 @@
-//! What every simulation of steps keeps on its way.
+//! Progress data of every simulation with steps.
 
 use super::{Crossings, Timings};
 use crate::method::Clock;
@@ -17,12 +17,12 @@ pub struct Elapsed {
 }
 
 impl Elapsed {
-    /// At the start.
+    /// Progress at the start.
     pub fn new(dt: f64, crossings: Crossings) -> Self {
         Elapsed { dt, steps: 0, crossings, timings: Timings::default() }
     }
 
-    /// The same of particles whose periods are not followed.
+    /// Progress at the start of particles whose periods are not counted.
     pub fn of_steps(dt: f64) -> Self {
         Elapsed::new(dt, Crossings::default())
     }
@@ -32,7 +32,7 @@ impl Elapsed {
         self.steps as f64 * self.dt
     }
 
-    /// How far that is.
+    /// Progress as a clock.
     pub fn clock(&self) -> Clock {
         Clock { steps: self.steps, time: self.time(), events: 0 }
     }

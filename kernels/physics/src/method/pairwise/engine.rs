@@ -1,4 +1,4 @@
-//! The engine: all forces, then corrector and next predictor in one pass.
+//! Pairwise engine: computes all forces, then corrects and predicts in one pass.
 
 use super::compiled::{Compiled, Correcting, Passing, Sweeping};
 use super::search::{Cells, Search};
@@ -18,14 +18,14 @@ use stripmine_kernels::law::Asked;
 use stripmine_kernels::sweep::fast::{Met, Passed};
 use stripmine_kernels::{alone_if, keep_awake, over_parts, put_in_order};
 
-/// Fewer discs are one thread's: a step of them is over before others have begun. Measured on two cores: 2000 discs took twice as
-/// long on two threads, 4000 as long as on one, 8000 were faster by a fifth.
+/// Number of discs below which one thread does all the work, because a step is over before other threads start. Measured on two cores: 2000 discs
+/// took twice as long on two threads, 4000 as long as on one, 8000 were faster by a fifth.
 const FEW: usize = 5000;
 
 /// Dynamics, system, and the instruction set of their loops.
 pub(super) type Ingredients<S, P, Q> = (Arc<dyn Compiled<S, P, Q>>, System, InstructionSet);
 
-/// Columns of the state have smaller numbers than the sums.
+/// First alignment number of the sums; columns of the state have smaller ones.
 const SUMS_FROM: usize = 24;
 
 /// Discs with state of precision `S`, forces of precision `P` and search `Q`.
@@ -38,25 +38,25 @@ pub(crate) struct Engine<S, P, Q> {
     pub(super) state: State<S>,
     /// Force along x, along y, torque.
     pub(super) sums: [AlignedColumn<P>; 3],
-    /// Becomes one of the sums when discs are put in order.
+    /// Scratch column, swapped with one of the sums when discs are sorted.
     spare: AlignedColumn<P>,
     pub(super) search: Q,
-    /// Changes of cells since the discs were put in order.
+    /// Changes of cells since the discs were sorted.
     pub(super) changes: usize,
-    /// How often the discs were put in order.
+    /// Number of sorts.
     pub(super) orders: u64,
-    /// Whether the state is predicted and its forces are not yet known.
+    /// True if the state is predicted and its forces are not yet computed.
     pub(super) awaits_forces: bool,
-    /// Discs that are so near to an open side that they may leave through it before lists are made again.
+    /// Discs so near to an open side that they may leave through it before lists are rebuilt.
     pub(super) boundary_candidates: Vec<u32>,
     pub(super) elapsed: Elapsed,
 }
 
 impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
-    /// Lays out `particles`. Their forces are not yet known: [`compute_forces`](super::Stepping::compute_forces) finds them.
+    /// Places `particles`. Their forces are unknown until [`compute_forces`](super::Stepping::compute_forces).
     ///
     /// # Errors
-    /// [`Failure`] if a disc is outside the box, or in another's cell.
+    /// [`Failure`] if a disc is outside the box, or in an occupied cell.
     pub(super) fn new(
         dynamics: Arc<dyn Compiled<S, P, Q>>,
         system: System,
@@ -72,7 +72,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         Ok(engine)
     }
 
-    /// Some of the particles of a scene, in no cells yet.
+    /// Builds an engine of some of the particles of a scene, not yet in cells.
     pub(super) fn of(
         (dynamics, system, set): Ingredients<S, P, Q>,
         search: Q,
@@ -101,7 +101,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         engine
     }
 
-    /// Has other members from now on, in no cells yet and all of them at the start.
+    /// Replaces the members; the new ones are at the start and not yet in cells.
     pub(super) fn hold(&mut self, members: Members, search: Q) {
         let carried = self.dynamics.carried(self.system.dt);
         [self.sums[0], self.sums[1], self.sums[2], self.spare] = sums_of(members.numbers.len());
@@ -113,7 +113,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         self.give_walls_their_velocity();
     }
 
-    /// Puts all discs into the cells of their places at the start.
+    /// Places all discs in the cells of their start positions.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -128,12 +128,12 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         Ok(())
     }
 
-    /// Whether the discs are so few that one thread does all the work.
+    /// True if one thread does all the work for so few discs.
     pub(super) fn is_small(&self) -> bool {
         self.state.len() < FEW
     }
 
-    /// How the discs that no force moves stand, where they move at all.
+    /// Returns the prescribed motion of discs that no force moves, if they move.
     pub(super) fn prescribed(&self) -> Option<Prescribed> {
         self.dynamics.prescribed(self.elapsed.time())
     }
@@ -143,13 +143,13 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         self.state.set_wall_velocity(velocity);
     }
 
-    /// Numbers the discs in the order of their cells, so that neighbours are near in memory, and makes lists again where
-    /// there are such; gives what each disc was before. No sum depends on the numbers.
+    /// Sorts the discs by cell, so that neighbours are close in memory, and rebuilds the lists; returns the previous index of each disc. No sum
+    /// depends on the order.
     pub(super) fn put_in_order(&mut self) -> Vec<u32> {
         let (moving, grains) = (self.state.moving(), self.state.grains());
         let mut order = self.search.cells().order();
         if moving < order.len() {
-            // Those that are moved here stay the first ones, and all grains before the others.
+            // Owned grains stay first, and all grains before the walls.
             let kind = |disc: usize| (disc >= moving, disc >= grains);
             order.sort_by_key(|&disc| kind(disc as usize));
         }
@@ -177,7 +177,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         Ok(passed.far)
     }
 
-    /// Puts the discs in order, where many have changed cells since that was done last.
+    /// Sorts the discs if many have changed cells since the last sort.
     pub(super) fn put_in_order_if_due(&mut self) {
         if self.system.sort == Sort::EveryStep || self.changes > self.state.grains() / 4 {
             let mut timings = self.elapsed.timings;
@@ -186,7 +186,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         }
     }
 
-    /// Moves some discs one step on; their cells are yet to be brought up to date.
+    /// Advances some discs by one step; their cells are updated later.
     pub(super) fn pass(&mut self, discs: Range<usize>) -> Result<Passed, ProgramError> {
         let begun = Instant::now();
         let Engine { dynamics, system, state, sums, search, set, elapsed, .. } = self;
@@ -196,7 +196,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         passed
     }
 
-    /// All discs have been moved one step on.
+    /// Records that all discs have been advanced by one step.
     pub(super) fn has_passed(&mut self) {
         self.elapsed.steps += 1;
         self.awaits_forces = true;
@@ -204,19 +204,19 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
 
     pub(super) fn add_forces(&mut self, asked: Asked) -> Result<Met, ProgramError> {
         let Engine { dynamics, system, state, sums, search, set, .. } = self;
-        // Those of discs that are moved are zero already.
+        // Sums of owned discs are zero already.
         sums.iter_mut().for_each(|sum| sum[state.moving()..].fill(P::default()));
         dynamics.sweep(Sweeping { system, state, sums, search, asked, set: *set })
     }
 
-    /// Stops at pairs of a grain whose force is no finite number.
+    /// Fails at pairs with a grain whose force is not finite.
     pub(super) fn refuse_not_finite(&self, met: &Met) -> Result<(), Failure> {
         let grains = self.state.grains();
         let pairs = met.not_finite.iter().map(|pair| pair.map(|disc| disc as usize));
-        // Two fixed discs have no effective mass: what they do to each other means nothing.
+        // Two fixed discs have no effective mass: their force is meaningless.
         let of_grains = pairs.filter(|pair| pair.iter().any(|&disc| disc < grains));
         let lost: BTreeSet<usize> = of_grains.flatten().collect();
-        // A disc that is lost itself is named before one that only touches it.
+        // A disc that is lost itself is named before a disc that only touches it.
         let is_lost = |disc: usize| {
             (0..self.system.freedoms).any(|freedom| !self.state.row(freedom, disc)[1].to_f64().is_finite())
         };
@@ -226,12 +226,12 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         }
     }
 
-    /// Force along x and y and torque on a disc.
+    /// Returns the force along x and y and the torque on a disc.
     pub(super) fn force_on(&self, disc: usize) -> [f64; 3] {
         [0, 1, 2].map(|sum| self.sums[sum][disc].to_f64())
     }
 
-    /// A degree of freedom of some discs from `first` on at the end of the step, and its rates of change. The state stays as it is.
+    /// Computes a degree of freedom and its rate for discs from `first` on at the end of the step. The state is not changed.
     pub(super) fn correct(&self, freedom: usize, first: usize, [values, rates]: [&mut [f64]; 2]) {
         let Engine { system, state, sums, .. } = self;
         let steps = self.elapsed.steps;
@@ -289,7 +289,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Named for Engine<S, P, Q> {
     }
 }
 
-/// Sums of as many discs, and room for them when they are put in order; behind the columns of the state.
+/// Sums and their scratch column for a number of discs, aligned after the columns of the state.
 fn sums_of<P: Precision>(discs: usize) -> [AlignedColumn<P>; 4] {
     [0, 1, 2, 3].map(|number| AlignedColumn::zeros(SUMS_FROM + number, discs))
 }

@@ -1,4 +1,4 @@
-//! The law of the pairs for what looks at them from outside, in double precision.
+//! Pair forces of a law in double precision, for structure analysis.
 
 use super::WithLaw;
 use crate::structure::PairForces;
@@ -6,7 +6,7 @@ use std::sync::Arc;
 use stripmine_kernels::law::Law;
 use stripmine_kernels::sweep::pair::Pair;
 
-/// Makes pair forces of a law, up to a distance (length).
+/// Builds pair forces of a law up to a distance (length).
 pub(crate) struct ToReach(pub f64);
 
 impl WithLaw for ToReach {

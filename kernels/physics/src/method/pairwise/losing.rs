@@ -1,4 +1,4 @@
-//! What lets a method go on without particles that were thrown out of the box.
+//! Continuation of a run after particles were thrown out of the box.
 
 use super::Engine;
 use super::cells::Moved;
@@ -7,7 +7,7 @@ use crate::method::Failure;
 use stripmine_kernels::backend::Precision;
 
 impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
-    /// The particles, by their places in the scene and rising, that belong to no cell or of which a number is not finite.
+    /// Returns the particles, by their numbers in the scene and rising, that belong to no cell or have a value that is not finite.
     pub(super) fn unfit_discs(&self) -> Vec<usize> {
         let is_finite = |disc: usize| {
             let state =
@@ -21,7 +21,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         unfit
     }
 
-    /// Brings all cells up to date from the places as they were predicted, whose forces are not yet known.
+    /// Updates all cells from the predicted positions, before their forces are computed.
     ///
     /// # Errors
     /// [`Failure`] if a particle belongs to no cell.

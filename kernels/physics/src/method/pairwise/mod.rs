@@ -1,16 +1,16 @@
-//! Discs that act in pairs and move step by step, as fast as it goes: law × search × integrator.
+//! Fast engine for discs that interact in pairs and move step by step: law × search × integrator.
 //!
-//! A method gives a [`System`], which says what moves and where, [`Dynamics`], which name the pair law and the scheme, and a
+//! A method provides a [`System`], which defines what moves and where; [`Dynamics`], which choose the pair law and the scheme; and a
 //! [`Search`](search::Search). Its step is then
 //!
 //! ```text
-//! advance    correct the step before and predict the next one, in one pass over the discs     engine.rs
-//!            bring cells or lists up to date: only discs beyond a limit are looked at         cells.rs
-//! meet       the forces of all pairs, each pair met once                                      engine.rs, search/
+//! advance    correct the previous step and predict the next one, in one pass over the discs    engine.rs
+//!            update cells or lists: only discs beyond a limit are checked                      cells.rs
+//! forces     the forces of all pairs, each pair visited once                                  engine.rs, search/
 //! ```
 //!
-//! and whatever the method itself counts and judges after each of the two. Positions are seen from the centres of cells, so
-//! that single precision holds in large boxes. No sum depends on the numbers of threads or the order of the discs in memory.
+//! followed by whatever the method itself counts and checks after each of the two. Positions are relative to the centres of cells, so that single
+//! precision suffices in large boxes. No sum depends on the number of threads or the order of the discs in memory.
 
 mod carried;
 mod cells;
@@ -50,7 +50,7 @@ use stripmine_kernels::integrator::{Inertia, Scheme};
 use stripmine_kernels::law::Law;
 use stripmine_kernels::noise::NoiseSource;
 
-/// What moves, and where.
+/// System of discs: what moves, and where.
 #[derive(Clone, Debug)]
 pub(crate) struct System {
     /// The box.
@@ -59,46 +59,46 @@ pub(crate) struct System {
     pub dt: f64,
     /// Acceleration of gravity (length/time²).
     pub gravity: [f64; 2],
-    /// Degrees of freedom of a disc: 2, or 3 where discs turn.
+    /// Degrees of freedom of a disc: 2, or 3 if discs rotate.
     pub freedoms: usize,
-    /// What forces and torques are divided by.
+    /// Mass and inertia that forces and torques are divided by.
     pub inertia: Inertia,
     /// Moment of inertia of a disc of mass and radius 1.
     pub inertia_factor: f64,
-    /// The radius of every disc (length), where discs are alike.
+    /// Radius of every disc (length), if all are equal.
     pub radius: Option<f64>,
     /// Farthest distance (length) at which a pair acts.
     pub reach: f64,
-    /// Discs that move farther in a step (length) are listed.
+    /// Longest displacement in a step (length); discs that move farther are reported.
     pub longest_step: f64,
-    /// Whether discs may cross any number of periods in a step; else one that goes farther than a period is outside.
+    /// True if discs may cross any number of periods in a step; otherwise a disc that moves farther than a period is outside.
     pub(crate) crosses_any: bool,
-    /// Along which axes it is followed how many periods discs cross.
+    /// True for the axes along which crossed periods are counted.
     pub(crate) followed: [bool; 2],
-    /// The random numbers, for a scheme that draws some.
+    /// Random numbers, for a scheme that draws some.
     pub noise: NoiseSource,
-    /// When discs are put in the order of their cells.
+    /// Frequency of sorting.
     pub sort: Sort,
 }
 
-/// When discs are put in the order of their cells. No sum depends on it.
+/// Frequency of sorting discs by cell. No sum depends on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Sort {
-    /// As soon as a quarter of them has changed cells.
+    /// As soon as a quarter of the discs has changed cells.
     WhenNeeded,
-    /// At every step, as the source of 2017 does.
+    /// At every step, as in LAN17.
     EveryStep,
 }
 
-/// By what discs move.
+/// Law and integrator that move discs.
 pub(crate) trait Dynamics: Send + Sync {
-    /// Does something with the pair law.
+    /// Applies a task to the pair law.
     fn with_law<W: WithLaw>(&self, work: W) -> W::Output;
 
-    /// Does something with the integrator.
+    /// Applies a task to the integrator.
     fn with_scheme<W: WithScheme>(&self, work: W) -> W::Output;
 
-    /// How the discs that no force moves stand at a time; none where they rest at their places.
+    /// Returns the prescribed motion of discs that no force moves at a time; none if they are at rest.
     fn prescribed(&self, _time: f64) -> Option<Prescribed> {
         None
     }
@@ -107,24 +107,24 @@ pub(crate) trait Dynamics: Send + Sync {
 /// Prescribed motion, the same for all discs that no force moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Prescribed {
-    /// From their places at the start (length).
+    /// Displacement from the start (length).
     pub(crate) displacement: [f64; 2],
     /// Velocity (length/time).
     pub velocity: [f64; 2],
 }
 
-/// Something done with a law, whichever of its compiled variants that is.
+/// Task for a law, generic over its compiled variants.
 pub(crate) trait WithLaw {
-    /// What comes of it.
+    /// Result.
     type Output;
-    /// Does it.
+    /// Runs the task.
     fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> Self::Output;
 }
 
-/// Something done with an integrator, whichever that is.
+/// Task for an integrator.
 pub(crate) trait WithScheme {
-    /// What comes of it.
+    /// Result.
     type Output;
-    /// Does it.
+    /// Runs the task.
     fn with<C: Scheme>(self, scheme: C) -> Self::Output;
 }

@@ -1,4 +1,4 @@
-//! Discs as failures name them.
+//! Discs as failures name them, and the failures that several searches share.
 
 use crate::domain::Domain;
 use crate::method::{Clock, Culprit, Failure, FailureKind};
@@ -6,32 +6,32 @@ use crate::number::significant;
 use crate::particles::in_plane;
 use std::ops::Range;
 
-/// Discs that can be named, by their numbers in memory.
+/// Discs that failures can name, by their index in memory.
 pub(crate) trait Named {
-    /// How far the simulation has come.
+    /// Progress of the simulation.
     fn clock(&self) -> Clock;
 
     /// The box.
     fn domain(&self) -> Domain;
 
-    /// The discs that forces move.
+    /// Indices of the discs that forces move.
     fn grains(&self) -> Range<usize>;
 
-    /// Which of the scene's discs a disc is.
+    /// Number of a disc in the scene.
     fn number(&self, disc: usize) -> usize;
 
     fn id(&self, disc: usize) -> u32;
 
-    /// Where a disc is (length).
+    /// Position of a disc (length).
     fn position(&self, disc: usize) -> [f64; 2];
 
-    /// How fast a disc is (length/time).
+    /// Velocity of a disc (length/time).
     fn velocity(&self, disc: usize) -> [f64; 2];
 
     /// The radius of a disc (length).
     fn radius(&self, disc: usize) -> f64;
 
-    /// A disc, where it is.
+    /// Description of a disc for a failure.
     fn culprit(&self, disc: usize) -> Culprit {
         Culprit::in_plane("disc", self.id(disc), self.position(disc), self.velocity(disc))
     }
@@ -42,7 +42,7 @@ pub(crate) trait Named {
         1.0 - dx.hypot(dy) / (self.radius(first) + self.radius(second))
     }
 
-    /// The failure of grains outside the box, if there are such.
+    /// Failure of grains outside the box, if any.
     fn beyond_box(&self) -> Option<Failure> {
         let domain = self.domain();
         let beyond = || self.grains().filter(|&disc| !domain.contains(self.position(disc)));
@@ -51,7 +51,7 @@ pub(crate) trait Named {
     }
 }
 
-/// The failure of discs that no cell takes: outside the box, or at no finite place.
+/// Failure of discs outside all cells: outside the box, or at a position that is not finite.
 pub(crate) fn outside(at: Clock, count: u64, first: Culprit) -> Failure {
     match first.position.iter().all(|along| along.is_finite()) {
         true => out_of_box(at, count, first),
@@ -59,23 +59,23 @@ pub(crate) fn outside(at: Clock, count: u64, first: Culprit) -> Failure {
     }
 }
 
-/// The failure of discs that left the box.
+/// Failure of discs that left the box.
 fn out_of_box(at: Clock, count: u64, first: Culprit) -> Failure {
     let what = format!("{count} discs left the box, first {first}");
-    let remedy = "a wall was passed or the time step is too large: use larger or stiffer wall discs, slower grains, or a \
+    let remedy = "a disc passed a wall or the time step is too large: use larger or stiffer wall discs, slower grains, or a \
                   smaller dt";
     Failure::new(FailureKind::OUT_OF_BOX, what, remedy).at(at).of(count, [first])
 }
 
-/// The failure of discs that are nowhere, or that no finite force acts on.
+/// Failure of discs whose position or force is not finite.
 pub(crate) fn not_finite(at: Clock, count: u64, first: Culprit) -> Failure {
-    let what = format!("{count} discs have a position or force that is no finite number, first {first}");
+    let what = format!("{count} discs have a position or force that is not finite, first {first}");
     let remedy =
         "the time step is too large for the stiffness or the damping: halve dt, or use fewer Gear values";
     Failure::new(FailureKind::NOT_FINITE, what, remedy).at(at).of(count, [first])
 }
 
-/// The failure of two discs in one cell: the exclusive lattice would lose one.
+/// Failure of two discs in one cell: the exclusive lattice would lose one.
 pub(crate) fn conflict(at: Clock, domain: Domain, [first, second]: [Culprit; 2]) -> Failure {
     let [first_place, second_place] = [first, second].map(|disc| in_plane(disc.position));
     let [dx, dy] = domain.displacement(first_place, second_place);

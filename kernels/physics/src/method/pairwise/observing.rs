@@ -1,13 +1,13 @@
-//! The discs as they stand at the end of a step, for what observes them. Nothing of the engine is changed.
+//! Observation of the discs at the end of a step. The engine is not changed.
 //!
 //! ```text
 //! corrected      columns in double precision, in the order in memory     in parts of them, on all threads
 //! grains         sums over the grains, in the scene's order              in parts of the scene, on all threads
-//! contacts       a sweep of the search over the corrected places         in bands, on all threads
+//! contacts       a sweep of the search over the corrected positions      in bands, on all threads
 //! ```
 //!
-//! Places are those of the cells or lists as they are: a correction may take a disc a little beyond its cell, by far less than cells
-//! leave room for. No sum depends on the numbers of threads, the order in memory, or how the run came here.
+//! Positions are relative to the current cells or lists: a correction may move a disc slightly beyond its cell, by far less than the margin of the
+//! cells. No sum depends on the number of threads, the order in memory, or the history of the run.
 
 use super::compiled::Observing;
 use super::search::Search;
@@ -21,18 +21,18 @@ use stripmine_kernels::integrator::Inertia;
 use stripmine_kernels::sweep::fast::{Discs, Met, SENTINELS};
 use stripmine_kernels::{alone_if, in_parts, in_pieces, over_parts};
 
-/// All discs at the end of a step, an entry a disc in the order in memory and sentinels behind.
+/// All discs at the end of a step, one entry for each disc in memory order, followed by sentinels.
 pub(super) struct Corrected {
     pub(super) place: [Vec<f64>; 2],
     pub(super) velocity: [Vec<f64>; 2],
-    /// Empty where discs do not turn.
+    /// Empty if discs do not rotate.
     pub(super) omega: Vec<f64>,
-    /// The farthest that the correction moved a disc (length).
+    /// Largest displacement by the correction (length).
     moved: f64,
 }
 
 impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
-    /// The discs at the end of the step.
+    /// Computes the discs at the end of the step.
     pub(super) fn corrected_discs(&self) -> Corrected {
         alone_if(self.is_small(), || {
             let mut moved = [0.0; 2];
@@ -43,7 +43,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
                     let ways = value.iter().zip(before).map(|(now, before)| (now - before.to_f64()).abs());
                     moved[freedom] = ways.fold(0.0, f64::max);
                 }
-                // The sentinels stand farther apart than any pair acts.
+                // The sentinels are farther apart than any pair acts.
                 let far = if freedom == 0 { 4.0 * self.system.reach } else { 0.0 };
                 value.extend([far, 0.0]);
                 rate.extend([0.0; SENTINELS]);
@@ -55,22 +55,22 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         })
     }
 
-    /// Which disc in memory each of the scene's is.
+    /// Returns the index in memory of each of the scene's discs.
     pub(super) fn disc_of_each(&self) -> Vec<u32> {
         let mut disc = vec![0; self.start.len()];
         self.state.numbers().iter().zip(0..).for_each(|(&number, at)| disc[number as usize] = at);
         disc
     }
 
-    /// A degree of freedom of every disc in memory at the end of the step, and its rate of change, on all threads.
+    /// Computes a degree of freedom and its rate for all discs in memory at the end of the step, on all threads.
     pub(super) fn corrected_column(&self, freedom: usize) -> [Vec<f64>; 2] {
         let [mut value, mut rate] = [0, 1].map(|_| vec![0.0; self.state.len()]);
         in_parts([&mut value, &mut rate], |first, columns| self.correct(freedom, first, columns));
         [value, rate]
     }
 
-    /// The particles in the scene's order at the end of the step, on all threads. One degree of freedom after the other, so that few columns are in
-    /// memory at a time.
+    /// Computes the particles in the scene's order at the end of the step, on all threads. Handles one degree of freedom after the other, so that few
+    /// columns are in memory at a time.
     pub(super) fn standing(&self) -> Particles {
         let (grains, discs) = (self.start.grain_count(), self.disc_of_each());
         let walls = in_space(self.prescribed().unwrap_or_default().velocity);
@@ -103,8 +103,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         particles
     }
 
-    /// Positions alone, inside the box and in single precision, in the scene's order: computed in the order in memory on all threads,
-    /// and then put in order.
+    /// Computes positions alone, inside the box and in single precision, in the scene's order: first in memory order on all threads, then sorted.
     pub(super) fn standing_places(&self) -> Vec<[f32; 3]> {
         let mut standing = vec![[0.0; 2]; self.state.len()];
         alone_if(self.is_small(), || {
@@ -122,8 +121,8 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         places
     }
 
-    /// How many periods each disc has moved along x and y since the start, as of its image inside the box, in the scene's order; empty
-    /// where a periodic side is not followed.
+    /// Returns the periods each disc has crossed along x and y since the start relative to its image inside the box, in the scene's order; empty if a
+    /// periodic side is not counted.
     pub(super) fn standing_images(&self) -> Vec<[i32; 2]> {
         let (domain, crossings) = (&self.system.domain, &self.elapsed.crossings);
         if !crossings.follows(domain) {
@@ -137,7 +136,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         images
     }
 
-    /// Each disc of a range in memory, where it is (length), and its velocity (length/time), without columns of them.
+    /// Passes each disc of a range in memory, its position (length) and velocity (length/time), without storing columns of them.
     pub(super) fn each_standing(&self, discs: Range<usize>, mut to: impl FnMut(usize, [f64; 2], [f64; 2])) {
         const AT_A_TIME: usize = 128;
         for first in discs.clone().step_by(AT_A_TIME) {
@@ -153,7 +152,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         }
     }
 
-    /// Sums over the grains.
+    /// Computes the sums over the grains.
     pub(super) fn grain_sums(&self, corrected: &Corrected, scenery: &Scenery, work: &Work<'_>) -> GrainSums {
         let discs = self.disc_of_each();
         alone_if(self.is_small(), || {
@@ -163,7 +162,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         })
     }
 
-    /// A disc at the end of the step.
+    /// Returns a disc at the end of the step.
     pub(super) fn standing_disc(&self, corrected: &Corrected, disc: usize) -> Standing {
         let [place, velocity] = [&corrected.place, &corrected.velocity]
             .map(|columns| columns.each_ref().map(|along| along[disc]));
@@ -171,13 +170,13 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         Standing { position: self.seen_from_origin(disc, place), velocity, omega }
     }
 
-    /// Sums over the contacts.
+    /// Computes the sums over the contacts.
     pub(super) fn contact_sums(&self, corrected: &Corrected) -> ContactSums {
         let met = self.contacts_met(corrected);
         contact_sums(&met)
     }
 
-    /// What a sweep meets at the end of the step.
+    /// Sweeps all pairs at the end of the step.
     pub(super) fn contacts_met(&self, corrected: &Corrected) -> Met {
         alone_if(self.is_small(), || {
             let (mut radius, mut inverse_mass) = (vec![], vec![]);
@@ -209,19 +208,19 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
                 precisions: PhantomData,
             };
             let met = self.dynamics.observe(observing);
-            // The machine has had this law and this instruction set in every step.
+            // Unreachable error: this law and this instruction set have run in every step.
             met.unwrap_or_else(|_| Met { energy: [f64::NAN; 2], ..Met::default() })
         })
     }
 }
 
-/// Sums over the contacts that a sweep has met.
+/// Sums over the contacts of a sweep.
 pub(super) fn contact_sums(met: &Met) -> ContactSums {
     let &Met { energy: [elastic, virial], contacts: count, deepest, .. } = met;
     ContactSums { count, elastic, virial, deepest }
 }
 
-/// A disc at the end of a step, its position consistent with the periods that are counted as crossed (length).
+/// Disc at the end of a step, its position consistent with the counted periods (length).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Standing {
     pub(super) position: [f64; 2],
@@ -229,7 +228,7 @@ pub(super) struct Standing {
     pub(super) omega: f64,
 }
 
-/// Sums over grains, in the scene's order.
+/// Sums over grains in the scene's order.
 pub(super) fn sums_of_grains(
     grains: &[Particle],
     (scenery, work): (&Scenery, &Work<'_>),

@@ -1,4 +1,4 @@
-//! The state as columns, for checkpoints: in the order of the scene's discs.
+//! Engine state as columns for checkpoints, in the order of the scene's discs.
 
 use super::search::{Cells, Search};
 use super::state::Move;
@@ -13,10 +13,10 @@ use stripmine_kernels::{alone_if, in_pieces};
 const SUMS: [&str; 3] = ["Fx", "Fy", "torque"];
 pub(super) const CELL: [&str; 2] = ["cell.column", "cell.row"];
 const MADE_AT: [&str; 2] = ["listed.x", "listed.y"];
-/// How often lists were made: one entry, whatever the discs.
+/// Number of list builds: one entry, whatever the number of discs.
 const LISTS_MADE: &str = "listed.made";
 
-/// Where a column of the discs comes from.
+/// Origin of a column of the discs.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Source {
     /// A derivative of a degree of freedom.
@@ -25,7 +25,7 @@ pub(super) enum Source {
     Sum(usize),
     /// Column or row of the cell.
     Cell(usize),
-    /// Where the disc was along an axis when lists were made.
+    /// Position of the disc along an axis when the lists were built.
     MadeAt(usize),
 }
 
@@ -41,7 +41,7 @@ impl Source {
 }
 
 impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
-    /// A column with an entry for each of some discs.
+    /// Builds a column with an entry for each of some discs.
     fn column<T: Element>(&self, discs: &[u32], value: impl Fn(usize) -> T + Sync) -> Column {
         let mut column = vec![T::default(); discs.len()];
         alone_if(self.is_small(), || {
@@ -59,13 +59,13 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         columns
     }
 
-    /// What is no one disc's: how often lists were made, and the periods that were crossed.
+    /// Columns shared by all discs: the number of list builds, and the crossed periods.
     pub(super) fn columns_of_all(&self) -> impl Iterator<Item = (String, Column)> {
         let made = self.search.lists().map(|lists| (LISTS_MADE.to_owned(), Column::U64(vec![lists.made()])));
         made.into_iter().chain(self.elapsed.crossings.columns())
     }
 
-    /// Of the same what is a disc's own, with an entry for each of some discs.
+    /// Columns of values of each disc, with an entry for each of some discs.
     pub(super) fn columns_of(&self, discs: &[u32]) -> Vec<(String, Column)> {
         self.sources()
             .into_iter()
@@ -73,7 +73,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
             .collect()
     }
 
-    /// Where the columns of the discs come from, in their order.
+    /// Origins of the columns of the discs, in order.
     pub(super) fn sources(&self) -> Vec<Source> {
         let state = self.state.columns.iter().enumerate();
         let state = state.flat_map(|(freedom, rows)| (0..rows.len()).map(move |k| Source::State(freedom, k)));
@@ -82,7 +82,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         state.chain(others).chain(lists.iter().map(|&axis| Source::MadeAt(axis))).collect()
     }
 
-    /// One of the columns.
+    /// Column of one origin.
     pub(super) fn column_of(&self, source: Source, discs: &[u32]) -> Column {
         match source {
             Source::State(freedom, k) => {
@@ -101,17 +101,16 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         }
     }
 
-    /// Takes up columns that [`columns`](Self::columns) gave after `steps` steps. Where they are not those of these discs, nothing can
-    /// be done with the engine any more.
+    /// Restores columns that [`columns`](Self::columns) returned after `steps` steps. After an error the engine is unusable.
     ///
     /// # Errors
-    /// A sentence, if the columns are not those of these discs.
+    /// Says why, if the columns are not those of these discs.
     pub(super) fn take_up(&mut self, steps: u64, columns: &[(String, Column)]) -> Result<(), String> {
         let numbers = self.state.numbers().to_vec();
         let made = match (self.search.lists(), columns.iter().find(|(name, _)| name == LISTS_MADE)) {
             (None, _) => 0,
             (Some(_), Some((_, Column::U64(made)))) if made.len() == 1 && made[0] < 1 << 53 => made[0],
-            _ => return Err(format!("the column {LISTS_MADE} is missing, or no count")),
+            _ => return Err(format!("the column {LISTS_MADE} is missing or not a count")),
         };
         self.elapsed.crossings.take_up(columns)?;
         self.take_up_discs(columns, numbers, self.start.len())?;
@@ -121,7 +120,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         Ok(())
     }
 
-    /// Takes up what [`columns_of`](Self::columns_of) gave; `entries` tells the entry of each disc in memory, of `length` in all.
+    /// Restores what [`columns_of`](Self::columns_of) returned; `entries` maps each disc in memory to its entry, of `length` in all.
     ///
     /// # Errors
     /// As [`take_up`](Self::take_up).
@@ -135,7 +134,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         for (names, rows) in STATE.iter().zip(&mut self.state.columns) {
             for (name, column) in names.iter().zip(rows) {
                 let values = in_order.of::<S>(name.label())?;
-                // The sentinels stay.
+                // The sentinels are kept.
                 column[..values.len()].copy_from_slice(&values);
             }
         }
@@ -147,7 +146,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         let inside =
             |axis: usize, &cell: &f64| (0.0..counts[axis] as f64).contains(&cell) && cell.fract() == 0.0;
         if (0..2).any(|axis| !cells[axis].iter().all(|cell| inside(axis, cell))) {
-            return Err("a cell lies outside the lattice".to_owned());
+            return Err("a cell is outside the lattice".to_owned());
         }
         let made_at = match self.search.lists() {
             Some(_) => Some([in_order.of::<S>(MADE_AT[0])?, in_order.of::<S>(MADE_AT[1])?]),
@@ -161,9 +160,9 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
             entered.map_err(|_| "two discs are in one cell".to_owned())?;
         }
         self.search.cells_mut().arrange(&self.state);
-        // Lists are made of the places at which they were made before, so that they are the same.
+        // Rebuild the lists at the positions of their original build, so that they are the same.
         let now: Vec<[f64; 2]> = (0..self.state.len()).map(|disc| self.state.place(disc)).collect();
-        // What is taken up is not kept beside the lists.
+        // Free the columns before building the lists.
         drop((cells, in_order));
         if let Some(made_at) = made_at {
             for (axis, places) in made_at.into_iter().enumerate() {
@@ -178,7 +177,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
     }
 }
 
-/// Columns, and which entry of theirs is that of each disc in memory.
+/// Columns, with the entry of each disc in memory.
 struct Entries<'c> {
     columns: &'c [(String, Column)],
     entries: Vec<u32>,
@@ -186,7 +185,7 @@ struct Entries<'c> {
 }
 
 impl Entries<'_> {
-    /// The column of a name, in the order of the discs in memory.
+    /// Returns the named column in the order of the discs in memory.
     fn of<T: Element>(&self, name: &str) -> Result<Vec<T>, String> {
         let values = find_column::<T>(self.columns, name, self.length)?;
         Ok(self.entries.iter().map(|&entry| values[entry as usize]).collect())

@@ -1,4 +1,4 @@
-//! The discs: columns in the order of their cells, positions seen from the cells' centres.
+//! State of the discs: columns in the order of their cells, positions relative to the cells' centres.
 
 use super::{Carried, System};
 use crate::particles::{Kind, Particle, Particles};
@@ -10,7 +10,7 @@ use stripmine_kernels::isa::AlignedColumn;
 use stripmine_kernels::sweep::fast::{self, SENTINELS};
 use stripmine_kernels::{in_pieces, put_in_order, reordered};
 
-/// A disc with the cell it goes to, its place there, seen from the cell's centre (length), and the periods that it crosses.
+/// Change of cell of a disc, its position relative to the new centre (length), and the periods that it crosses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Move {
     pub disc: usize,
@@ -19,60 +19,60 @@ pub(crate) struct Move {
     pub periods: [f64; 2],
 }
 
-/// Which of the scene's discs there are: those that are moved here, grains that another rank moves, and discs that no force moves.
+/// Discs of an engine: owned grains, grains of other ranks, and discs that no force moves.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Members {
-    /// Their numbers in the scene, in that order.
+    /// Numbers in the scene, in that order.
     pub numbers: Vec<u32>,
-    /// How many are moved here.
+    /// Number of owned grains.
     pub moving: usize,
-    /// How many are grains.
+    /// Number of grains.
     pub grains: usize,
 }
 
 impl Members {
-    /// All of a scene's.
+    /// All discs of a scene.
     pub(crate) fn all(particles: &Particles) -> Members {
         let grains = particles.grain_count();
         Members { numbers: (0..particles.len() as u32).collect(), moving: grains, grains }
     }
 }
 
-/// Columns with an entry a disc, grains first, and two discs behind them that never touch. They begin at lines of their own in large pages: a pass over a
-/// million discs takes a fifth less than over vectors, which all begin at a page's border.
+/// Columns with an entry for each disc, grains first, followed by two sentinels that touch nothing. They start at different cache lines in large
+/// pages: a pass over a million discs takes a fifth less time than over vectors, which all start at page borders.
 #[derive(Clone, Debug)]
 pub(crate) struct State<S> {
-    /// For each degree of freedom the derivatives that are carried from step to step, as the scheme scales them.
+    /// Carried derivatives of each degree of freedom, scaled by the scheme.
     pub(super) columns: Vec<Vec<AlignedColumn<S>>>,
-    /// What velocities are multiplied by in the columns.
+    /// Scale factor of velocities in the columns.
     velocity_scale: f64,
-    /// The radius of every disc (length), where they are alike.
+    /// Radius of every disc (length), if all are equal.
     alike: Option<f64>,
-    /// Radii, and inverse masses and moments of inertia, where discs vary.
+    /// Radii if discs vary; `inverse` then holds inverse masses and moments of inertia.
     radius: AlignedColumn<S>,
-    /// Becomes one of the columns when these are put in order.
+    /// Scratch column, swapped with a column when discs are sorted.
     spare: AlignedColumn<S>,
     inverse: [AlignedColumn<S>; 2],
-    /// Which of the scene's discs each is.
+    /// Number of each disc in the scene.
     numbers: Vec<u32>,
-    /// The ids of the discs, by which they draw random numbers.
+    /// Ids of the discs, which select their random numbers.
     ids: Vec<u32>,
     moving: usize,
     grains: usize,
 }
 
-/// What a pass moves: columns, inverse masses and moments of inertia, and ids.
+/// Arguments of a pass: columns, inverse masses and moments of inertia, and ids.
 type Moved<'a, S> = (&'a mut [Vec<AlignedColumn<S>>], [&'a [S]; 2], &'a [u32]);
 
-/// Which derivatives of each degree of freedom a sweep reads.
+/// Derivatives of each degree of freedom that a sweep reads.
 const SWEPT: [Range<usize>; 3] = [0..2, 0..2, 1..2];
 
 impl<S: Precision> State<S> {
-    /// Of those of `particles` that are members, in the form in which the scheme carries them from step to step.
+    /// State of the members of `particles`, in the form that the scheme carries from step to step.
     pub(crate) fn new(system: &System, carried: &Carried, particles: &Particles, members: Members) -> Self {
         let velocity_scale = carried.scales[1];
         let Members { numbers: discs, moving, grains } = members;
-        // The thread that fills a piece is the first to touch its memory.
+        // The thread that fills a piece touches its memory first.
         let numbers = Cell::new(0);
         let zeros = || AlignedColumn::zeros(numbers.replace(numbers.get() + 1), discs.len() + SENTINELS);
         let column = |value: &(dyn Fn(&Particle) -> f64 + Sync), sentinel: f64| -> AlignedColumn<S> {
@@ -95,7 +95,7 @@ impl<S: Precision> State<S> {
         let mut columns: Vec<Vec<AlignedColumn<S>>> = (0..system.freedoms)
             .map(|freedom| (0..carried.derivatives).map(|k| derivative(freedom, k)).collect())
             .collect();
-        // The sentinels stand farther apart than any pair acts.
+        // The sentinels are farther apart than any pair acts.
         columns[0][0][discs.len()] = S::from_f64(4.0 * system.reach);
         let (mut radius, mut inverse) =
             (AlignedColumn::default(), [(); 2].map(|()| AlignedColumn::default()));
@@ -121,70 +121,70 @@ impl<S: Precision> State<S> {
         }
     }
 
-    /// How many discs there are here.
+    /// Number of discs.
     pub(crate) fn len(&self) -> usize {
         self.numbers.len()
     }
 
-    /// How many of them are moved here: the first ones.
+    /// Number of owned grains: the first discs.
     pub(crate) fn moving(&self) -> usize {
         self.moving
     }
 
-    /// How many of them are grains: those that are moved here, and those that another rank moves behind them.
+    /// Number of grains: owned ones, followed by those of other ranks.
     pub(crate) fn grains(&self) -> usize {
         self.grains
     }
 
-    /// Which of the scene's discs a disc is.
+    /// Number of a disc in the scene.
     pub(crate) fn number(&self, disc: usize) -> usize {
         self.numbers[disc] as usize
     }
 
-    /// The carried derivatives of a disc, the others zero.
+    /// Carried derivatives of a disc; the others are zero.
     pub(crate) fn row(&self, freedom: usize, disc: usize) -> [S; DERIVATIVES] {
         let mut row = [S::default(); DERIVATIVES];
         row.iter_mut().zip(&self.columns[freedom]).for_each(|(q, column)| *q = column[disc]);
         row
     }
 
-    /// The rate of change (of a position, of the angle) that a row has in the scene's units.
+    /// Rate of change (of a position or the angle) of a row, in the scene's units.
     pub(crate) fn rate(&self, row: &[S; DERIVATIVES]) -> f64 {
         row[1].to_f64() / self.velocity_scale
     }
 
-    /// The first entry of a row (a position, the angle) and its rate of change, in the scene's units.
+    /// Value (a position or the angle) and rate of change of a row, in the scene's units.
     pub(crate) fn value_and_rate(&self, row: &[S; DERIVATIVES]) -> [f64; 2] {
         [row[0].to_f64(), self.rate(row)]
     }
 
-    /// The place of a disc, seen from the centre of its cell (length).
+    /// Position of a disc relative to the centre of its cell (length).
     pub(crate) fn place(&self, disc: usize) -> [f64; 2] {
         [self.columns[0][0][disc].to_f64(), self.columns[1][0][disc].to_f64()]
     }
 
-    /// The places of all discs and sentinels.
+    /// Positions of all discs and sentinels.
     pub(crate) fn places(&self) -> [&[S]; 2] {
         [&self.columns[0][0], &self.columns[1][0]]
     }
 
-    /// Places and velocities of the discs, as the columns have them, and their spins where discs turn: all that a sweep reads of them and that changes.
+    /// Columns that a sweep reads and that change: positions, velocities, and spins if discs rotate.
     pub(crate) fn swept(&self) -> impl Iterator<Item = &[S]> {
         self.columns.iter().zip(SWEPT).flat_map(|(columns, swept)| &columns[swept]).map(|column| &**column)
     }
 
-    /// The same, to be changed.
+    /// Mutable access to these columns.
     pub(crate) fn swept_mut(&mut self) -> impl Iterator<Item = &mut [S]> {
         let columns = self.columns.iter_mut().zip(SWEPT);
         columns.flat_map(|(columns, swept)| &mut columns[swept]).map(|column| &mut **column)
     }
 
-    /// Puts a disc at a place.
+    /// Sets the position of a disc.
     pub(crate) fn put(&mut self, disc: usize, place: [f64; 2]) {
         (0..2).for_each(|axis| self.columns[axis][0][disc] = S::from_f64(place[axis]));
     }
 
-    /// Gives all wall discs a velocity (length/time).
+    /// Sets the velocity of all wall discs (length/time).
     pub(crate) fn set_wall_velocity(&mut self, velocity: [f64; 2]) {
         let (discs, scale) = (self.numbers.len(), self.velocity_scale);
         (0..2).for_each(|axis| {
@@ -197,7 +197,7 @@ impl<S: Precision> State<S> {
         self.alike.unwrap_or_else(|| self.radius[disc].to_f64())
     }
 
-    /// Inverse masses or moments of inertia, for a degree of freedom.
+    /// Inverse masses or moments of inertia for a degree of freedom.
     pub(crate) fn inverse(&self, freedom: usize) -> &[S] {
         &self.inverse[freedom / 2]
     }
@@ -206,17 +206,17 @@ impl<S: Precision> State<S> {
         self.ids[disc]
     }
 
-    /// Which of the scene's discs each is.
+    /// Numbers of the discs in the scene.
     pub(crate) fn numbers(&self) -> &[u32] {
         &self.numbers
     }
 
-    /// What a pass moves.
+    /// Returns the arguments of a pass.
     pub(crate) fn for_advance(&mut self) -> Moved<'_, S> {
         (&mut self.columns, [&self.inverse[0], &self.inverse[1]], &self.ids)
     }
 
-    /// The discs as a sweep reads them.
+    /// Discs as a sweep reads them.
     pub(crate) fn discs(&self, system: &System) -> fast::Discs<'_, S> {
         let omega = if system.freedoms == 3 { &*self.columns[2][1] } else { &[] };
         fast::Discs {
@@ -229,7 +229,7 @@ impl<S: Precision> State<S> {
         }
     }
 
-    /// Disc `n` is from now on what disc `order[n]` was.
+    /// Renumbers: disc `n` becomes what disc `order[n]` was.
     pub(crate) fn renumber(&mut self, order: &[u32]) {
         let discs = order.len() as u32;
         let with_sentinels: Vec<u32> = order.iter().copied().chain(discs..discs + SENTINELS as u32).collect();

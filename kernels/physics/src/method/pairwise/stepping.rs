@@ -1,4 +1,4 @@
-//! What a method sees of discs that are stepped, whatever steps them: the engine alone, several ranks of it, or vector programs.
+//! Interface of stepped discs for methods, whether one engine, several ranks or vector programs step them.
 
 use super::search::{Cells, Search};
 use super::{Elapsed, Engine, Named, Phase, wrapped};
@@ -12,28 +12,28 @@ use stripmine_kernels::law::Asked;
 use stripmine_kernels::ledger::{Ledger, Length};
 use stripmine_kernels::sweep::fast::Met;
 
-/// What gravity has done to a grain, by its number in the scene, that is at a position.
+/// Work of gravity on a grain, given its number in the scene and its position.
 pub(crate) type Work<'w> = dyn Fn(usize, &Particle, [f64; 2]) -> f64 + Sync + 'w;
 
 /// Discs that are stepped.
 pub(crate) trait Stepping: Named + PerParticle + Send {
-    /// Predicts the next step, after the last one was corrected, and finds the cells of the discs. Gives the discs that moved farther
-    /// than contacts can be seen, or whose speed is no number.
+    /// Predicts the next step, after the correction of the last one, and updates the cells. Returns the discs that moved so far that contacts may be
+    /// missed, or whose speed is not a number.
     ///
     /// # Errors
-    /// [`Failure`] if a disc left the box, or came into another's cell.
+    /// [`Failure`] if a disc left the box or entered an occupied cell.
     fn advance(&mut self) -> Result<Vec<u32>, Failure>;
 
-    /// All forces of the positions as they stand.
+    /// Computes all forces at the current positions.
     ///
     /// # Errors
-    /// [`Failure`] if a force is no finite number, or the machine refuses the law.
+    /// [`Failure`] if a force is not finite, or the machine rejects the law.
     fn compute_forces(&mut self, asked: Asked) -> Result<Met, Failure>;
 
-    /// The rest of the step, once its forces are found and judged: where the corrector waits for it.
+    /// Completes the step after its forces are checked, if the corrector waits for it.
     ///
     /// # Errors
-    /// [`Failure`] if a correction is no finite number.
+    /// [`Failure`] if a correction is not finite.
     fn finish(&mut self) -> Result<(), Failure> {
         Ok(())
     }
@@ -41,21 +41,21 @@ pub(crate) trait Stepping: Named + PerParticle + Send {
     /// Steps, periods and seconds so far.
     fn elapsed(&self) -> &Elapsed;
 
-    /// The same, to be changed.
+    /// Mutable access to steps, periods and seconds.
     fn elapsed_mut(&mut self) -> &mut Elapsed;
 
-    /// The discs at the start.
+    /// Discs at the start.
     fn start(&self) -> &Particles;
 
-    /// How many discs are in cells that are another disc's.
+    /// Number of discs in occupied cells.
     fn shared_cells(&self) -> usize {
         0
     }
 
-    /// Entries of the lists, and how often they were made; none where there are no lists.
+    /// Entries of the lists and number of builds; none where there are no lists.
     fn lists(&self) -> Option<(usize, u64)>;
 
-    /// The particles as they stand; positions are consistent with the periods that are counted as crossed.
+    /// Particles now; positions are consistent with the counted periods.
     fn unwrapped(&self) -> Particles;
 
     /// Force along x and y and torque on every particle, in the scene's order.
@@ -69,52 +69,50 @@ pub(crate) trait Stepping: Named + PerParticle + Send {
         Ok(())
     }
 
-    /// Ends the simulation on the other ranks, where there are some: processes carry out one after the other. Nothing can be asked of it
-    /// afterwards.
+    /// Ends the simulation on the other ranks, if any: processes run one simulation after the other. It is unusable afterwards.
     fn end(&mut self) {}
 
     /// Everything that the next step depends on, by name.
     fn columns(&self) -> Vec<(String, Column)>;
 
-    /// Takes columns up, of a moment after a number of steps.
+    /// Restores columns of a moment after a number of steps.
     ///
     /// # Errors
-    /// A sentence, if they are not those of this engine and scene.
+    /// Says why, if they are not those of this engine and scene.
     fn restore(&mut self, steps: u64, columns: &[(String, Column)]) -> Result<(), String>;
 
-    /// Sums over the grains and their contacts at the end of the step. `work` gives what gravity has done to a grain (by its number in
-    /// the scene) that is at a position (length), which is consistent with the periods that are counted as crossed; it is asked only
-    /// where there is gravity.
+    /// Sums over the grains and their contacts at the end of the step. `work` returns the work of gravity on a grain (by its number in the scene) at
+    /// a position (length) that is consistent with the counted periods; it is called only with gravity.
     fn sums(&self, scenery: &Scenery, work: &Work<'_>) -> Sums {
         Sums::over_parts(&self.unwrapped(), scenery, work)
     }
 
-    /// What a step executes; nothing where its work depends on the data, contact by contact.
+    /// Operations of a step; empty if its work depends on the data, contact by contact.
     fn ledger(&self) -> Ledger {
         Ledger::default()
     }
 
-    /// How long vectors of a symbolic length are, or were in the last step, where the discs and the lattice do not say it.
+    /// Vector length of a symbolic length in the last step, unless it follows from the discs and the lattice.
     fn length(&self, _length: Length) -> Option<u64> {
         None
     }
 }
 
-/// Discs of which some may be taken away.
+/// Discs that can be removed during a run.
 pub(crate) trait Losing: Stepping {
-    /// Velocities as the last predictor left them (length/time), in the scene's order; at the start those of the start.
+    /// Velocities left by the last predictor (length/time), in the scene's order; at the start the initial ones.
     fn predicted_velocities(&self) -> Vec<[f64; 2]>;
 
-    /// Takes the forces as found where no pair acts: there are none.
+    /// Skips the forces of a step in which no pair acts.
     ///
     /// # Errors
-    /// [`Failure`] if particles cannot be distributed to their ranks again.
+    /// [`Failure`] if particles cannot be redistributed to their ranks.
     fn skip_forces(&mut self) -> Result<(), Failure>;
 
-    /// The particles, by their places in the scene and rising, that belong to no cell or of which a number is not finite.
+    /// Returns the particles, by their numbers in the scene and rising, that belong to no cell or have a value that is not finite.
     fn unfit(&self) -> Vec<usize>;
 
-    /// Brings all cells up to date from the places as they were predicted, whose forces are not yet known.
+    /// Updates all cells from the predicted positions, before their forces are computed.
     ///
     /// # Errors
     /// [`Failure`] if a particle belongs to no cell.

@@ -1,20 +1,20 @@
-//! Where the time of a step goes.
+//! Wall time of the phases of a step.
 
 use serde::Serialize;
 
 macro_rules! define_phases {
     ($(($variant:ident, $name:literal, $doc:literal)),* $(,)?) => {
-        /// A phase of a step, as `bench` reports it.
+        /// Phase of a step, as `bench` reports it.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum Phase {
             $(#[doc = $doc] $variant,)*
         }
 
         impl Phase {
-            /// Every phase, in the order of the step.
+            /// All phases, in the order of the step.
             pub const ALL: &'static [Phase] = &[$(Phase::$variant),*];
 
-            /// The name in reports.
+            /// Name in reports.
             pub const fn name(self) -> &'static str {
                 match self { $(Phase::$variant => $name),* }
             }
@@ -25,30 +25,30 @@ macro_rules! define_phases {
 define_phases! {
     (Predict, "predict", "prediction of the state"),
     (CorrectPredict, "correct_predict", "correction of one step and prediction of the next in one pass"),
-    (Halo, "halo", "discs near those of other ranks: told and heard of"),
-    (Index, "index", "cells, Index, lattice vectors, or the upkeep of the lists"),
+    (Halo, "halo", "exchange of discs near those of other ranks"),
+    (Index, "index", "cells, Index, lattice vectors, or the update of the lists"),
     (Forces, "forces", "the law over all pairs"),
     (Correct, "correct", "correction of the state"),
 }
 
-/// Seconds of wall time spent in each phase, and what was told to other ranks meanwhile.
+/// Seconds of wall time spent in each phase, and the traffic to other ranks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Timings {
     seconds: [f64; Phase::ALL.len()],
     halo: Halo,
 }
 
-/// What a rank tells of the discs near others.
+/// Traffic that a rank sends about discs near other ranks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Halo {
-    /// Messages.
+    /// Number of messages.
     pub messages: u64,
-    /// Bytes of all of them.
+    /// Total size in bytes.
     pub bytes: u64,
 }
 
 impl Timings {
-    /// Runs `work` and adds what it took.
+    /// Runs `work` and adds its duration.
     pub fn time<R>(&mut self, phase: Phase, work: impl FnOnce() -> R) -> R {
         let start = std::time::Instant::now();
         let result = work();
@@ -61,12 +61,12 @@ impl Timings {
         self.seconds[phase as usize] += seconds;
     }
 
-    /// What was told to other ranks.
+    /// Traffic to other ranks.
     pub fn halo(&self) -> Halo {
         self.halo
     }
 
-    /// A message was sent to another rank, of some bytes.
+    /// Counts a message of some bytes to another rank.
     pub(crate) fn sent(&mut self, bytes: u64) {
         self.halo.messages += 1;
         self.halo.bytes += bytes;
@@ -77,7 +77,7 @@ impl Timings {
         self.seconds[phase as usize]
     }
 
-    /// The phases there were, by name.
+    /// Seconds of the phases that occurred, by name.
     pub fn named(&self) -> std::collections::BTreeMap<&'static str, f64> {
         let there = Phase::ALL.iter().filter(|&&phase| self.seconds(phase) > 0.0);
         there.map(|&phase| (phase.name(), self.seconds(phase))).collect()

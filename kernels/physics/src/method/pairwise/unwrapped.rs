@@ -1,14 +1,13 @@
-//! The discs of a state as particles of the scene.
+//! Conversion of a state's discs to particles of the scene.
 
 use crate::domain::Domain;
 use crate::particles::{Particles, in_space};
 use stripmine_kernels::in_pieces;
 
-/// The particles of `start` as a state has them: each disc with its number in the scene and, for each degree of freedom (x, y,
-/// angle), its value and its rate of change. Discs that no force moves have the velocity `walls` (length/time).
+/// Returns the particles of `start` in a given state: each disc has its number in the scene and, for each degree of freedom (x, y, angle), its value
+/// and rate. Discs that no force moves get the velocity `walls` (length/time).
 ///
-/// Positions are those of the state: the last correction may have taken one beyond a periodic side, where no crossing is
-/// counted yet.
+/// Positions are those of the state: the last correction may have moved one beyond a periodic side without a counted crossing.
 pub(crate) fn unwrapped(
     start: &Particles,
     walls: [f64; 2],
@@ -30,7 +29,7 @@ pub(crate) fn unwrapped(
     particles
 }
 
-/// The same particles, with positions inside the box.
+/// Wraps the positions of particles into the box.
 pub(crate) fn wrapped(mut particles: Particles, domain: &Domain) -> Particles {
     in_pieces(particles.all_mut(), |_, piece| {
         piece.iter_mut().for_each(|particle| particle.position = domain.wrapped(particle.position));

@@ -1,4 +1,4 @@
-//! The lattice that serves the discs: at most one centre a cell, and no contact beyond the mask.
+//! Lattice that suits the discs: at most one centre a cell, and no contact beyond the mask.
 
 use crate::domain::Domain;
 use crate::grid::sectors_of;
@@ -27,28 +27,27 @@ pub struct Geometry {
     pub mask: Mask,
     /// Smallest and largest radius, walls included (length).
     pub radii: [f64; 2],
-    /// What the side of a square cell may be at this mask (length): 2 R_max/h and d_min/√2.
+    /// Allowed sides of a square cell at this mask (length): 2 R_max/h and d_min/√2.
     pub(crate) edge_bounds: [f64; 2],
     /// Discs for each cell.
     pub occupancy: f64,
-    /// Listed pairs are up to this far from contact (length), where there are lists.
+    /// Largest gap of listed pairs (length), where there are lists.
     pub skin: f64,
-    /// Sides of the cells or sectors from whose centres positions are measured, where they are not measured from the origin
-    /// (length).
+    /// Sides of the cells or sectors that positions are measured in (length), if they are not measured from the origin.
     pub(crate) widest_cell: [f64; 2],
 }
 
-/// Rounding must not forbid what the bounds just allow.
+/// Relative slack: rounding must not forbid what the bounds just allow.
 const SLACK: f64 = 1.0 + 1e-12;
 
-/// Counts on either side of the wanted one that are tried for each axis.
+/// Number of counts tried for each axis on either side of the wanted one.
 const WINDOW: f64 = 64.0;
 
-/// Widest cells, in largest diameters, in which contacts are found: the search compares squares of distances in single
-/// precision, with a margin of 2e-5, seen from the centres of cells up to three and a half cells away.
+/// Widest cells in which contacts are found, in largest diameters. The search compares squared distances in single precision with a margin of 2e-5,
+/// measured from the centres of cells up to three and a half cells away.
 const WIDEST: f64 = 8.0;
 
-/// What bounds the cells.
+/// Bounds of a cell's size.
 #[derive(Clone, Copy)]
 struct Bounds {
     half_width: u32,
@@ -72,20 +71,20 @@ impl Bounds {
         self.diagonal / std::f64::consts::SQRT_2
     }
 
-    /// The longest side of a cell whose other side is as short as may be.
+    /// Longest side of a cell whose other side is the shortest allowed.
     fn longest(&self) -> f64 {
         (self.diagonal * self.diagonal - self.least * self.least).max(0.0).sqrt()
     }
 }
 
-/// How many cells cover an axis, and how long they are.
+/// Number and length of the cells along an axis.
 #[derive(Clone, Copy)]
 struct Cut {
     count: f64,
     edge: f64,
 }
 
-/// The cuts of an axis near the wanted edge that keep the bounds.
+/// Cuts of an axis near the wanted edge that satisfy the bounds.
 fn cuts(side: f64, periodic: bool, bounds: &Bounds, wanted: f64) -> Vec<Cut> {
     let fewest = (side / (bounds.longest() * SLACK)).ceil().max(1.0);
     let (fewest, most) = if periodic {
@@ -99,7 +98,7 @@ fn cuts(side: f64, periodic: bool, bounds: &Bounds, wanted: f64) -> Vec<Cut> {
     let counts = std::iter::successors(Some(from), |count| Some(count + 1.0)).take_while(move |n| *n <= to);
     counts
         .map(|count| {
-            // On an open side cells may reach beyond the box.
+            // Along an open side cells may extend beyond the box.
             let edge = if periodic { side / count } else { (side / count).max(bounds.least) };
             Cut { count, edge }
         })
@@ -109,7 +108,7 @@ fn cuts(side: f64, periodic: bool, bounds: &Bounds, wanted: f64) -> Vec<Cut> {
 /// Finds the lattice of a scene.
 ///
 /// # Errors
-/// Every reason why there is none.
+/// Lists every reason why there is no such lattice.
 pub(super) fn fit(
     document: &Document,
     domain: &Domain,
@@ -119,7 +118,7 @@ pub(super) fn fit(
     let scene = &document.scene;
     let bounds = |half_width| {
         let exclusive = Bounds::new(half_width, radii, scene.law.max_penetration);
-        // Where no disc must have a cell to itself, any cell will do.
+        // If discs may share a cell, any cell will do.
         let shared = scene.search.on_conflict == OnConflict::Resolve && scene.search.cell_edge.is_some();
         let exclusively = scene.needs_lattice() && !shared;
         let diagonal = if exclusively { exclusive.diagonal } else { f64::INFINITY };
@@ -147,7 +146,7 @@ pub(super) fn fit(
                     .map_err(|error| vec![error])?;
                 return Ok(Geometry { shape, frame, mask, radii, edge_bounds, occupancy, skin, widest_cell });
             }
-            // The smaller mask's reason is the plainer one, but a wrong edge is wrong for the larger one too.
+            // The smaller mask gives the simpler reason, but a wrong edge is wrong for the larger one too.
             Err(more) if errors.is_empty() || scene.search.cell_edge.is_some() => errors = more,
             Err(_) => {}
         }
@@ -158,8 +157,7 @@ pub(super) fn fit(
 /// Skin of neighbour lists where the scene gives none, in largest radii.
 const LEAST_SKIN: f64 = 0.3;
 
-/// The skin of lists, and the sides of the cells from which positions are measured (length), in the scene's box and in
-/// the box as steps see it.
+/// Returns the skin of lists and the sides of the cells that positions are measured in (length), for the scene's box and the box that steps use.
 fn search(
     document: &Document,
     [domain, seen]: [&Domain; 2],
@@ -191,14 +189,14 @@ fn search(
     }
 }
 
-/// Skin of the fast lists (length) where the scene gives none: half of the gap between the discs, were they spread evenly,
-/// within bounds, and not more than the box has room for. The wider the skin, the longer the lists, and the longer they last.
+/// Default skin of the fast lists (length): half of the gap between evenly spread discs, within bounds, and no more than the box allows. Wider skins
+/// make longer lists that last longer.
 fn roomy_skin(domain: &Domain, largest: f64, discs: usize) -> f64 {
     let area = domain.area() / discs.max(1) as f64;
-    // Neighbours on a hexagonal lattice are so far apart.
+    // Spacing of neighbours on a hexagonal lattice.
     let spacing = (area * 2.0 / 3f64.sqrt()).sqrt();
     let wanted = (0.5 * (spacing - 2.0 * largest)).clamp(LEAST_SKIN * largest, largest);
-    // Three sectors fill a periodic side.
+    // A periodic side needs three sectors.
     let periodic = (0..2).filter(|&axis| domain.is_periodic(axis));
     let room = periodic.map(|axis| domain.length(axis) / 3.0 - 2.0 * largest).fold(f64::INFINITY, f64::min);
     if room > 0.0 { wanted.min(room * (1.0 - 1e-12)) } else { wanted }
@@ -214,8 +212,8 @@ fn lattice(
     let widest = WIDEST * f64::from(bounds.half_width) * bounds.least;
     if let Some(edge) = asked.filter(|&edge| edge > widest) {
         let message = format!(
-            "`search.cell_edge` = {edge} is too large: contacts are looked for in single precision from the centres of the \
-             cells, and would be missed in cells wider than {WIDEST} of the largest diameter"
+            "`search.cell_edge` = {edge} is too large: contacts are searched in single precision from the centres of the \
+             cells and would be missed in cells wider than {WIDEST} of the largest diameter"
         );
         let error = document.values.spot(&CELL_EDGE).error(Reason::Geometry, message);
         return Err(vec![error.expecting(format!("an edge of at most {} (length)", readable(widest)))]);
@@ -225,8 +223,8 @@ fn lattice(
         let (message, why) = if wanted < bounds.least {
             let reach = readable(f64::from(bounds.half_width) * wanted);
             (
-                format!("`search.cell_edge` = {wanted} is too small: a {width}×{width} mask sees to {reach}"),
-                format!("but contacts reach to {}", readable(f64::from(bounds.half_width) * bounds.least)),
+                format!("`search.cell_edge` = {wanted} is too small: a {width}×{width} mask reaches {reach}"),
+                format!("but contacts reach {}", readable(f64::from(bounds.half_width) * bounds.least)),
             )
         } else {
             (
@@ -242,12 +240,12 @@ fn lattice(
             format!("an edge from {} to {} (length)", readable(bounds.least), readable(bounds.most()));
         return Err(vec![error.expecting(range)]);
     }
-    // No index numbers that many, and beyond 2^53 counting stops.
+    // Indices are 32-bit, and beyond 2^53 counting stops.
     if let Some(axis) = (0..2)
         .find(|&axis| domain.length(axis) / bounds.least >= 2f64.powi(32) || !domain.length(axis).is_finite())
     {
         let message = format!(
-            "the side along {}, {} long, takes more cells of {} than the 2^32 − 1 that an index numbers",
+            "the side along {}, {} long, needs more cells of {} than the 2^32 − 1 that an index can number",
             ["x", "y"][axis],
             significant(domain.length(axis), 6),
             significant(bounds.most(), 6)
@@ -263,7 +261,7 @@ fn lattice(
     if !short.is_empty() {
         return Err(short);
     }
-    // The fewest cells, or those nearest to the wanted edge; then the squarest.
+    // Prefer the fewest cells, or those nearest to the wanted edge; then the squarest.
     let cost = |x: &Cut, y: &Cut| match asked {
         None => (x.count * y.count, (x.edge - y.edge).abs()),
         Some(_) => ((x.edge - wanted).abs() + (y.edge - wanted).abs(), x.count * y.count),
@@ -291,7 +289,7 @@ fn lattice(
     Ok((shape, Frame { origin: domain.corner(), edge: [x.edge, y.edge] }, mask))
 }
 
-/// What decides how large the box is.
+/// Location of the key that decides the size of the box.
 fn box_spot(document: &Document) -> Spot {
     match document.scene.start {
         Start::Hexagonal { .. } => document.values.spot(&COUNT),
@@ -305,8 +303,8 @@ fn short_side(document: &Document, domain: &Domain, axis: usize, bounds: &Bounds
     let fit = (side / bounds.least * SLACK).floor();
     let error = if domain.is_periodic(axis) && fit < f64::from(needed) {
         let message = format!(
-            "the periodic side along {name} is {side} long and takes {fit} cells of at least {}; a {needed}×{needed} \
-             mask needs {needed} of them, or a pair would be met twice",
+            "the periodic side along {name} is {side} long and fits {fit} cells of at least {}; a {needed}×{needed} \
+             mask needs {needed} of them, or pairs would be visited twice",
             readable(bounds.least)
         );
         let least = readable(f64::from(needed) * bounds.least);
@@ -322,7 +320,7 @@ fn short_side(document: &Document, domain: &Domain, axis: usize, bounds: &Bounds
     error.advising("make the box larger, or the discs smaller")
 }
 
-/// The radii differ too much for the masks there are, or for the one asked for.
+/// Error of radii that differ too much for every mask, or for the requested one.
 fn ratio_error(document: &Document, radii: [f64; 2]) -> SceneError {
     let scene = &document.scene;
     let [smallest, largest] = radii.map(readable);
@@ -344,7 +342,7 @@ fn ratio_error(document: &Document, radii: [f64; 2]) -> SceneError {
             format!("{said}; at law.max_penetration = {penetration} a 5×5 mask allows {five:.4}"),
         ),
     };
-    let instead = "let search.by = \"sectors\" or \"neighbor-list\" find the contacts";
+    let instead = "set search.by = \"sectors\" or \"neighbor-list\"";
     let help = if scene.search.mask == Some(5) && ratio <= seven {
         format!("use mask = 7, which allows {seven:.4}")
     } else if ratio <= limit(3.0) / (1.0 - penetration) {

@@ -1,4 +1,4 @@
-//! What a scene must hold before it runs, with the numbers.
+//! Preconditions of a scene, checked with their numbers before it runs.
 
 mod geometry;
 mod motion;
@@ -20,7 +20,7 @@ use crate::scene::{RADIUS, Reason, SceneError, SceneErrors, Values, Warning};
 use crate::start::{self, Made, Stated};
 use crate::words::Words;
 
-/// A scene that may run: its discs, its lattice, and what is to be said about it.
+/// Checked scene: its discs, its lattice, and reported properties.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Checked {
     /// The scene.
@@ -29,40 +29,40 @@ pub struct Checked {
     pub domain: Domain,
     /// The discs at the start, inside the box.
     pub particles: Particles,
-    /// Whether all discs have one radius and one mass, and there are no walls.
+    /// True if all discs have one radius and one mass, and there are no walls.
     pub alike: bool,
     /// The lattice.
     pub geometry: Geometry,
-    /// What is to be expected of the motion.
+    /// Estimates of the motion.
     pub estimates: Estimates,
-    /// What was left open and has been chosen, with the reason.
+    /// Choices that the scene left open, with reasons.
     pub choices: Vec<String>,
-    /// What the scene has no need of, with the reason.
+    /// Parts that the scene does not need, with reasons.
     pub left_out: Vec<String>,
-    /// What seldom ends well.
+    /// Warnings about settings that seldom work.
     pub warnings: Vec<Warning>,
 }
 
 impl Document {
-    /// Makes the discs and holds the scene against what the method demands.
+    /// Generates the discs and checks the scene against the method's preconditions.
     ///
     /// # Errors
-    /// [`SceneErrors`]: every precondition that does not hold.
+    /// [`SceneErrors`]: every violated precondition.
     pub fn check(self) -> Result<Checked, SceneErrors> {
         check(self, Steps::Foreseen)
     }
 
-    /// The same at any step: reasons to refuse the step are warnings, so that what theory foresees can be tried.
+    /// Checks the scene at any step: reasons to reject the step become warnings, so that predictions of theory can be tested.
     ///
     /// # Errors
-    /// [`SceneErrors`]: every precondition that does not hold.
+    /// [`SceneErrors`]: every violated precondition.
     pub(super) fn check_at_any_step(self) -> Result<Checked, SceneErrors> {
         check(self, Steps::Any)
     }
 }
 
 impl Checked {
-    /// The same scene with contacts found on the lattice, whatever finds them in a run; none where its discs fit no lattice.
+    /// Returns the same scene with the lattice search, whatever search its runs use; none where its discs fit no lattice.
     pub(super) fn on_lattice(&self) -> Option<Checked> {
         let mut scene = self.scene.clone();
         scene.search.by = By::Lattice;
@@ -73,26 +73,26 @@ impl Checked {
     }
 }
 
-/// Which steps pass.
+/// Accepted steps.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Steps {
-    /// Those that the integrator is foreseen to bear.
+    /// Steps that theory predicts to be stable.
     Foreseen,
-    /// All.
+    /// All steps.
     Any,
 }
 
 impl Scene {
-    /// Makes the discs and holds the scene against what the method demands.
+    /// Generates the discs and checks the scene against the method's preconditions.
     ///
     /// # Errors
-    /// [`SceneErrors`]: every precondition that does not hold.
+    /// [`SceneErrors`]: every violated precondition.
     pub fn check(&self) -> Result<Checked, SceneErrors> {
         check(Document { scene: self.clone(), values: Values::of_no_text(&VOCABULARY) }, Steps::Foreseen)
     }
 }
 
-/// Makes the discs of a scene and holds it against every precondition.
+/// Generates the discs of a scene and checks it against every precondition.
 fn check(mut document: Document, steps: Steps) -> Result<Checked, SceneErrors> {
     let mut errors = Vec::new();
     let mut choices: Vec<String> = choice::engine(&mut document.scene).into_iter().collect();
@@ -137,7 +137,7 @@ fn check(mut document: Document, steps: Steps) -> Result<Checked, SceneErrors> {
     }
     SceneErrors::none_of(errors)?;
     let (Some(Made { domain, particles, mut warnings }), Some(geometry)) = (made, geometry) else {
-        // Whatever is not there has left an error above.
+        // A missing part has already reported an error above.
         let error = document.values.spot(&RADIUS).error(Reason::Geometry, "there is nothing to simulate");
         return Err(error.into());
     };
@@ -150,7 +150,7 @@ fn check(mut document: Document, steps: Steps) -> Result<Checked, SceneErrors> {
     Ok(Checked { scene, domain, particles, alike, geometry, estimates, choices, left_out, warnings })
 }
 
-/// The geometry of a scene; where it leaves open how contacts are found, of the fastest way for which there is one.
+/// Returns the geometry of a scene; with an open search, that of the fastest search that has one.
 fn fitted(
     document: &mut Document,
     domain: &Domain,
@@ -182,22 +182,23 @@ fn all_alike(particles: &Particles) -> bool {
     particles.all().iter().all(same)
 }
 
-/// More discs than the partners in a fast method's lists have bits for.
+/// Error of more discs than the partners in a fast method's lists have bits for.
 fn numbered(document: &Document, particles: &Particles) -> Option<SceneError> {
     const MOST: usize = (1 << 29) - 3;
     let Scene { search, machine, .. } = &document.scene;
     let listed = machine.is_fast() && search.by != By::Lattice;
     (listed && particles.len() > MOST).then(|| {
-        let message = format!("{} discs; sectors and fast lists number at most {MOST}", particles.len());
+        let message =
+            format!("{} discs are too many: sectors and fast lists can number {MOST}", particles.len());
         document
             .values
             .spot(&SEARCH)
             .error(Reason::Placement, message)
-            .advising("search.by = \"lattice\" numbers more")
+            .advising("set search.by = \"lattice\", which can number more")
     })
 }
 
-/// What is not modelled because the scene has no need of it.
+/// Parts of the model that the scene does not need.
 fn not_modelled(scene: &Scene, particles: &Particles, alike: bool) -> Vec<String> {
     let contact = &scene.law.contact;
     let rubs = contact.friction > 0.0;
@@ -205,7 +206,7 @@ fn not_modelled(scene: &Scene, particles: &Particles, alike: bool) -> Vec<String
         (!rubs, "friction, spin and torque: law.friction is 0"),
         (rubs && contact.shear_damping == 0.0, "friction, spin and torque: law.shear_damping is 0"),
         (contact.normal_damping == 0.0, "normal damping: law.normal_damping is 0"),
-        (alike, "radius and mass of each disc: all are alike, so they are numbers, not vectors"),
+        (alike, "radius and mass of each disc: all discs are equal, so these are numbers, not vectors"),
         (scene.domain.gravity == [0.0; 2], "gravity: domain.gravity is 0"),
         (particles.grain_count() == particles.len(), "walls: there are no wall discs"),
         (scene.domain.periodic == [false; 2], "periodic images: both sides are open"),

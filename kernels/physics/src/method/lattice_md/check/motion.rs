@@ -1,4 +1,4 @@
-//! Whether the integrator follows the motion: damping, contacts, depths.
+//! Checks that the integrator resolves the motion: damping, contacts, depths.
 
 use super::Geometry;
 use crate::domain::Domain;
@@ -18,30 +18,30 @@ use crate::start::noun;
 use serde::Serialize;
 use stripmine_kernels::sweep::lattice::Coordinates;
 
-/// What is to be expected of the motion, from the start alone.
+/// Estimates of the motion from the start alone.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Estimates {
-    /// Typical speed of approach (length/time): √2 of the root mean square speed, that of a fall through a diameter, or
-    /// that of the walls.
+    /// Typical speed of approach (length/time): the largest of √2 times the root mean square speed, the speed of a fall through a radius, and the
+    /// speed of the walls.
     pub(crate) approach_speed: f64,
     /// Duration of an undamped contact at that speed (time); none if nothing moves.
     pub contact_duration: Option<f64>,
-    /// The same in time steps.
+    /// Duration of that contact in time steps.
     pub(crate) steps_per_contact: Option<f64>,
     /// Depth of such a contact, as a fraction of the sum of the radii.
     pub(crate) impact_penetration: f64,
-    /// Depth to which a grain sinks into another by its own weight, as a fraction of its radius.
+    /// Depth to which a grain's own weight presses it into another, as a fraction of its radius.
     pub(crate) resting_depth: f64,
-    /// γ_N dt: what the damping of a single contact asks of the integrator.
+    /// γ_N dt: damping of a single contact.
     pub damping: f64,
-    /// 3 γ_N dt: what the damping of a dense network of contacts asks.
+    /// 3 γ_N dt: damping in a dense network of contacts.
     pub(crate) network_damping: f64,
-    /// What the integrator bears.
+    /// Largest stable damping of the integrator.
     pub(crate) damping_limit: f64,
 }
 
-/// Largest γ dt for which a scheme is stable for pure drag: 0.545, 0.300 and 0.163 with Gear's 4, 5 and 6 values. Beyond 1 a step
-/// would turn a velocity round, though velocity Verlet is stable up to 2.
+/// Largest γ dt for which a scheme is stable for pure drag: 0.545, 0.300 and 0.163 with Gear's 4, 5 and 6 values. Capped at 1, because longer steps
+/// reverse a velocity, though velocity Verlet is stable up to 2.
 fn damping_limit(scheme: Scheme) -> f64 {
     largest_step(scheme, 0.0, 1.0).unwrap_or(1.0).min(1.0)
 }
@@ -53,21 +53,21 @@ fn scheme_in_words(scheme: Scheme) -> String {
     }
 }
 
-/// A disc in a dense network of contacts feels up to this many times γ_N.
+/// Largest damping of a disc in a dense network of contacts, in units of γ_N.
 pub(in crate::method::lattice_md) const NETWORK: f64 = 3.0;
 
-/// Steps of a contact that a scene is advised to take: `pipe` has 17, and half its dt changes no statistics.
+/// Recommended number of steps in a contact: `pipe` has 17, and half its dt changes no statistics.
 pub(in crate::method::lattice_md) const LEAST_STEPS: f64 = 15.0;
 
-/// With fewer steps a contact a collision changes the energy by tens of percent: 15 (Gear of 4 values), 18 (5), 9 (6) and 1 %
-/// (velocity Verlet) with this number.
+/// Minimum number of steps in a contact. With fewer, a collision changes the energy by tens of percent. At this number the change is 15 (Gear of 4
+/// values), 18 (5), 9 (6) and 1 % (velocity Verlet).
 pub(in crate::method::lattice_md) const FEWEST_STEPS: f64 = 3.0;
 
-/// How much faster than typical the fastest approach is.
+/// Speed of the fastest approach over the typical one.
 pub(in crate::method::lattice_md) const FASTEST: f64 = 3.0;
 
 impl Estimates {
-    /// For a scene and its discs.
+    /// Estimates for a scene and its discs.
     pub(in crate::method::lattice_md) fn of(scene: &Scene, particles: &Particles) -> Estimates {
         let grains = particles.grains();
         let number = grains.len().max(1) as f64;
@@ -103,12 +103,12 @@ impl Estimates {
     }
 }
 
-/// A reason to refuse a scene for its step.
+/// Reason to reject a scene's step.
 pub(super) struct Refusal {
     check: &'static str,
     share: f64,
     key: &'static Key,
-    /// What the user is told.
+    /// Message for the user.
     pub(super) error: SceneError,
 }
 
@@ -119,7 +119,7 @@ impl From<Refusal> for Warning {
     }
 }
 
-/// A damping at which even a single contact is unstable.
+/// Rejects a damping at which even a single contact is unstable.
 pub(super) fn instability(document: &Document) -> Option<Refusal> {
     let scene = &document.scene;
     let Integrator { dt, scheme, .. } = scene.integrator;
@@ -144,8 +144,8 @@ pub(super) fn instability(document: &Document) -> Option<Refusal> {
     })
 }
 
-/// Steps too long for the discs at the start: they would pass each other unseen, collide in too few steps, or be lost in the
-/// precision of their positions.
+/// Rejects steps too long for the discs at the start: discs would pass through each other undetected, collide in too few steps, or lose their motion
+/// to rounding.
 pub(super) fn long_steps(
     document: &Document,
     domain: &Domain,
@@ -165,8 +165,8 @@ pub(super) fn long_steps(
     {
         let (what, speed) = (noun(disc.kind), speed(disc));
         let message = format!(
-            "{what} {} moves at {speed}, {} in a step; beyond {limit} contacts deeper than law.max_penetration = {} \
-             could pass unseen between two steps",
+            "{what} {} moves at {speed}, {} in a step; beyond {limit}, contacts deeper than law.max_penetration = {} \
+             could be missed between two steps",
             disc.id,
             significant(speed * dt, 5),
             scene.law.max_penetration,
@@ -222,20 +222,19 @@ pub(super) fn long_steps(
     refusals
 }
 
-/// Part of a step that rounding a position may take: more is refused, for most discs would not move.
+/// Largest ratio of rounding to step: beyond it scenes are rejected, because most discs would not move.
 const MOST_LOST: f64 = 1.0;
 
-/// Part of a step that rounding a position may take: more is warned of. Errors of up to ± r of a displacement of mean square s²/2 along
-/// an axis add a part 2 r²/(3 s²) to its mean square: 6 % here.
+/// Ratio of rounding to step beyond which users are warned. Errors of up to ± r of a displacement of mean square s²/2 along an axis add a
+/// fraction 2 r²/(3 s²) to its mean square: 6 % here.
 pub(in crate::method::lattice_md) const MUCH_LOST: f64 = 0.3;
 
-/// Whether the state's positions are measured from the origin.
+/// True if the state's positions are measured from the origin.
 fn are_absolute(scene: &Scene) -> bool {
     !scene.machine.is_fast() && scene.machine.coordinates == Coordinates::Absolute
 }
 
-/// By how much a position is rounded in a step at most, and how long a typical step is (length), where the state is in single
-/// precision and anything moves.
+/// Largest rounding of a position in a step, and typical step (length); none unless the state is in single precision and something moves.
 fn lost_motion(
     scene: &Scene,
     domain: &Domain,
@@ -246,7 +245,7 @@ fn lost_motion(
     (typical > 0.0).then_some((rounding(scene, domain, geometry)?, typical))
 }
 
-/// By how much a position is rounded at most (length), where the state is in single precision.
+/// Largest rounding of a position (length), if the state is in single precision.
 pub(in crate::method::lattice_md) fn rounding(
     scene: &Scene,
     domain: &Domain,
@@ -260,7 +259,7 @@ pub(in crate::method::lattice_md) fn rounding(
     is_single.then(|| 0.5 * f64::from(f32::EPSILON) * farthest(0).max(farthest(1)))
 }
 
-/// What seldom ends well.
+/// Returns warnings about settings that seldom work.
 pub(super) fn warnings(
     scene: &Scene,
     domain: &Domain,
@@ -296,8 +295,7 @@ pub(super) fn warnings(
     depth_warnings(scene, domain, particles, estimates, &mut warn);
     let [gx, gy] = scene.domain.gravity;
     if (gx != 0.0 || gy != 0.0) && particles.grain_count() == particles.len() {
-        let why =
-            "there is gravity but there are no walls: discs fall for ever, or out of the box".to_owned();
+        let why = "there is gravity but there are no walls: discs fall forever, or out of the box".to_owned();
         warn(
             "no walls",
             f64::INFINITY,
@@ -306,7 +304,7 @@ pub(super) fn warnings(
             "add walls, or set domain.gravity = [0, 0]".to_owned(),
         );
     }
-    // Along an open side a grain that meets nothing flies, or falls, out of the box before the run ends.
+    // Along an open side a grain without collisions leaves the box before the run ends.
     let time = scene.duration();
     let leaves = |grain: &Particle| {
         (0..2).filter(|&axis| !domain.is_periodic(axis)).any(|axis| {
@@ -316,8 +314,8 @@ pub(super) fn warnings(
     };
     let has_no_walls = particles.grain_count() == particles.len();
     if has_no_walls && particles.grains().iter().any(leaves) {
-        let why = "sides that are not periodic hold nothing back, and there are no wall discs: a grain that leaves the box ends the run";
-        let what = "make them periodic, line them with wall discs (particles.wall_positions), or take method.kind = \"hard-disks\"";
+        let why = "sides that are not periodic do not confine discs, and there are no wall discs: a grain that leaves the box ends the run";
+        let what = "make them periodic, line them with wall discs (particles.wall_positions), or use method.kind = \"hard-disks\"";
         warn("open sides", f64::INFINITY, &PERIODIC, why.to_owned(), what.to_owned());
     }
     if let Some((rounding, step)) = lost_motion(scene, domain, geometry, estimates)
@@ -379,7 +377,7 @@ fn depth_warnings(
             bottom / most,
             &STIFFNESS,
             format!(
-                "a grain sinks {} of its radius into another by its own weight; under the weight of a column of this scene \
+                "a grain's own weight presses it {} of its radius into another; under the weight of a column of this scene, \
                  grains reach a penetration of {}, above law.max_penetration = {most}",
                 significant(estimates.resting_depth, 4),
                 significant(bottom, 3)
@@ -396,7 +394,7 @@ fn smallest_radius(particles: &Particles) -> f64 {
     particles.grains().iter().map(|disc| disc.radius).fold(f64::INFINITY, f64::min)
 }
 
-/// Weight of the highest column that the grains can make: all of them, spread over the box across gravity.
+/// Weight of the highest possible column of grains: all of them, spread over the box across gravity.
 fn column(scene: &Scene, domain: &Domain, particles: &Particles) -> f64 {
     let diameter = 2.0 * smallest_radius(particles);
     let heaviest = particles.grains().iter().map(|disc| disc.mass).fold(0.0, f64::max);

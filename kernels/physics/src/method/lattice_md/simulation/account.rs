@@ -1,4 +1,4 @@
-//! What a step is judged and accounted by, beside its forces: steps that are too long, periods crossed, powers.
+//! Accounting of a step beside its forces: steps that are too long, crossed periods, powers.
 
 use super::LatticeMd;
 use crate::method::lattice_md::programs::scales;
@@ -6,19 +6,19 @@ use stripmine_kernels::backend;
 use stripmine_kernels::isa::Array;
 
 impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
-    /// Discs that are so fast that contacts may pass unseen in a step.
+    /// Discs so fast that a step may miss their contacts.
     pub(super) fn far(&self) -> Vec<u32> {
         let Some(watch) = self.model.watch else { return vec![] };
         let column = |array| self.arrays.state(array).unwrap_or(&[]);
         let velocities = column(Array::X1).iter().zip(column(Array::Y1)).take(self.arrays.lengths().grains);
-        // The velocity as the state has it, at which a step is so long.
+        // Velocity of such a step, in the scale of the state.
         let fastest = watch.longest_step() * (scales(&self.model)[1] / self.model.dt);
         let square = S::from_f64(fastest * fastest);
         let is_far = |(x, y): (&S, &S)| square.less_than(*x * *x + *y * *y);
         (0..).zip(velocities).filter(|&(_, velocity)| is_far(velocity)).map(|(disc, _)| disc).collect()
     }
 
-    /// Periods that discs crossed when the Index wrapped them: no step is as long as half the box.
+    /// Counts the periods that discs crossed when the Index wrapped them: no step is as long as half the box.
     pub(super) fn count_crossings(&mut self) {
         if !self.elapsed.crossings.is_followed() {
             return;
@@ -37,7 +37,7 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
         }
     }
 
-    /// What the contacts found in the sweep of the lattice dissipate (energy/time).
+    /// Power dissipated by the contacts of the lattice sweep (energy/time).
     pub(super) fn power_on_lattice(&self) -> f64 {
         let Some(power) = self.arrays.lattice(Array::Power) else { return 0.0 };
         let grains = &self.arrays.cell()[..self.arrays.lengths().grains];

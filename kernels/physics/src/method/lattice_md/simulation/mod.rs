@@ -1,5 +1,5 @@
-//! Discs that are stepped by the vector programs, or by the rival with its lists on the same state: one step after the other, every broken
-//! precondition found in its step.
+//! Discs stepped by the vector programs, or by BP93's neighbour lists on the same state. Every violated precondition is detected in the step in which
+//! it occurs.
 
 mod account;
 mod names;
@@ -37,12 +37,12 @@ pub(super) struct LatticeMd<S, P> {
     walls: WallMotion,
     rival: Option<Rival<P>>,
     elapsed: Elapsed,
-    /// The cells from which discs are seen while the Index is made; empty if they are those of the arrays.
+    /// Cells that positions are measured in while the Index is built; empty if they are those of the arrays.
     anchor: Vec<u32>,
 }
 
 impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
-    /// Lays out `particles`. Their forces are not yet known: [`compute_forces`](Stepping::compute_forces) finds them.
+    /// Places `particles`. Their forces are unknown until [`compute_forces`](Stepping::compute_forces).
     pub(super) fn new(
         model: Model,
         contacts: Contacts,
@@ -74,7 +74,7 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
         }
     }
 
-    /// The second derivatives that belong to the first forces: a start from zero would spoil the order.
+    /// Sets the second derivatives of the first forces: a start from zero would reduce the order.
     fn start_derivatives(&mut self) {
         let scale = scales(&self.model)[2];
         let Model { gravity, inertia_factor, discs, .. } = self.model;
@@ -171,7 +171,7 @@ impl<S: backend::Precision, P: backend::Precision> Stepping for LatticeMd<S, P> 
         Ok(far)
     }
 
-    // The programs are made for what is asked.
+    // The programs are compiled for the quantities that the model needs.
     fn compute_forces(&mut self, _asked: Asked) -> Result<Met, Failure> {
         self.move_walls(self.elapsed.time());
         let mut timings = self.elapsed.timings;
@@ -179,7 +179,7 @@ impl<S: backend::Precision, P: backend::Precision> Stepping for LatticeMd<S, P> 
             self.anchor.clear();
             self.anchor.extend_from_slice(self.arrays.cell());
         }
-        // Where the printed text says nothing of discs outside, they are found before it looks for their cells.
+        // The printed programs do not handle discs outside, so these are detected before their cells are computed.
         let mut strays = timings.time(Phase::Index, || self.run(&[Part::Box]))?[STRAYS.0 as usize];
         let mut conflicts = 0;
         if strays == 0 {
@@ -197,7 +197,7 @@ impl<S: backend::Precision, P: backend::Precision> Stepping for LatticeMd<S, P> 
         {
             return Err(failure);
         }
-        // From now on discs are seen from the cells that they are in.
+        // From here on, positions are measured in the discs' current cells.
         self.anchor.clear();
         if conflicts > 0
             && self.rival.is_none()

@@ -1,4 +1,4 @@
-//! Which discs broke a precondition, once a counter says that one did.
+//! Identifies the discs that violated a precondition, after a counter reported one.
 
 use super::LatticeMd;
 use crate::domain::Domain;
@@ -37,7 +37,7 @@ impl<S: Precision, P: Precision> Named for LatticeMd<S, P> {
             return place;
         }
         let own = self.arrays.cell()[disc];
-        // A stray is in no cell, but was in one.
+        // A stray has no cell now, but had one before.
         let cell = if own == 0 { self.anchor.get(disc).copied().unwrap_or_default() } else { own };
         self.model.position(cell, place)
     }
@@ -59,11 +59,11 @@ impl<S: Precision, P: Precision> Named for LatticeMd<S, P> {
 }
 
 impl<S: Precision, P: Precision> LatticeMd<S, P> {
-    /// Whether a disc belongs to no cell.
+    /// True if a disc belongs to no cell.
     fn is_stray(&self, disc: usize) -> bool {
         match self.model.text {
             ProgramText::Ours => self.arrays.cell()[disc] == 0,
-            // Its cell is not looked for where there is a stray.
+            // Cells are not computed where there is a stray.
             ProgramText::Printed => {
                 let (at, domain) = (self.position(disc), self.model.domain());
                 let [low, sides] = [domain.corner(), domain.lengths()];
@@ -72,11 +72,11 @@ impl<S: Precision, P: Precision> LatticeMd<S, P> {
         }
     }
 
-    /// Discs that belong to no cell.
+    /// Failure of discs that belong to no cell.
     pub(super) fn stray(&self, count: u64) -> Option<Failure> {
         let strays = || (0..self.start.len()).filter(|&disc| self.is_stray(disc));
         let lost = |disc: &usize| self.position(*disc).iter().any(|r| !r.is_finite());
-        // Those that are nowhere come before those that are outside.
+        // Positions that are not finite are reported before positions outside.
         let (first, count) = match strays().find(lost) {
             Some(first) => (first, strays().filter(lost).count() as u64),
             None => (strays().next()?, count),
@@ -84,7 +84,7 @@ impl<S: Precision, P: Precision> LatticeMd<S, P> {
         Some(outside(self.clock(), count, self.culprit(first)))
     }
 
-    /// Discs whose cell another one took.
+    /// Failure of discs whose cell is taken by another disc.
     pub(super) fn conflicting(&self) -> Option<Failure> {
         let cell = self.arrays.cell();
         let index = self.arrays.index();
@@ -94,7 +94,7 @@ impl<S: Precision, P: Precision> LatticeMd<S, P> {
         Some(conflict(self.clock(), self.domain(), [self.culprit(first), self.culprit(second)]))
     }
 
-    /// Discs whose correction was no finite number.
+    /// Failure of discs whose correction is not finite.
     pub(super) fn not_finite(&self, count: u64) -> Option<Failure> {
         let disc = (0..self.start.len()).find(|&disc| {
             let moved =
@@ -104,7 +104,7 @@ impl<S: Precision, P: Precision> LatticeMd<S, P> {
         Some(not_finite(self.clock(), count, self.culprit(disc)))
     }
 
-    /// Pairs that may be too deep: around the cells that the sweep marked.
+    /// Pairs that may be too deep: those around the cells that the sweep marked.
     pub(super) fn marked_on_lattice(&self, depth: f64) -> Vec<[u32; 2]> {
         let Some(deepest) = self.arrays.lattice(Array::Deepest) else { return vec![] };
         let index = self.arrays.index();

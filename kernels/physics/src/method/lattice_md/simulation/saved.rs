@@ -7,14 +7,13 @@ use crate::method::restored::find_column;
 use stripmine_kernels::backend;
 use stripmine_kernels::isa::Array;
 
-/// Columns of a neighbour list's state: where the discs were when the lists were made.
+/// Columns of the neighbour lists' state: positions when the lists were built.
 const MADE_AT: [&str; 2] = ["listed.x", "listed.y"];
-/// How often lists were made, and how many pairs the last step met.
+/// Number of builds of the lists, and pairs visited in the last step.
 const LIST_COUNTS: &str = "listed.counts";
 
 impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
-    /// Whether the next step depends on the cells that discs were in: positions are seen from them, or a crossing is the way from
-    /// one cell to another.
+    /// True if the next step depends on the discs' previous cells: positions are measured in them, or crossings are derived from the change of cell.
     fn keeps_cells(&self) -> bool {
         self.model.is_anchored::<S>() || self.elapsed.crossings.is_followed()
     }
@@ -33,14 +32,14 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
             for (name, values) in MADE_AT.into_iter().zip(rival.made_at()) {
                 columns.push((name.to_owned(), Column::F64(values)));
             }
-            // Whole numbers up to 2⁵³: far more than there will ever be.
+            // Doubles are exact up to 2⁵³, far beyond any count.
             let counts = vec![rival.rebuilds as f64, rival.met.pairs as f64];
             columns.push((LIST_COUNTS.to_owned(), Column::F64(counts)));
         }
         columns
     }
 
-    /// Takes up columns that [`saved`](Self::saved) gave.
+    /// Restores columns that [`saved`](Self::saved) returned.
     pub(super) fn take_up(&mut self, columns: &[(String, Column)]) -> Result<(), String> {
         let expected: Vec<Array> = self.arrays.states().map(|(array, _)| array).collect();
         for array in expected {
@@ -56,14 +55,14 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
             let of = |axis: usize| find_column(columns, MADE_AT[axis], discs);
             let (made_at, counts) = ([of(0)?, of(1)?], find_column::<f64>(columns, LIST_COUNTS, 2)?);
             if counts.iter().any(|&count| count.fract() != 0.0 || !(0.0..=2f64.powi(53)).contains(&count)) {
-                return Err(format!("the column {LIST_COUNTS} holds what is no count"));
+                return Err(format!("the column {LIST_COUNTS} holds a number that is not a count"));
             }
             rival.take_up(&self.model, made_at, counts[0] as u64, counts[1] as u64);
         }
         Ok(())
     }
 
-    /// Takes up the cells that discs were in; where the run so far had no need of them, they are those of the positions.
+    /// Restores the cells of discs; if the run so far did not need them, they follow from the positions.
     fn take_up_cells(&mut self, columns: &[(String, Column)]) -> Result<(), String> {
         let label = Array::DiscCell.label();
         let is_kept = columns.iter().any(|(name, _)| name == label);
@@ -77,7 +76,7 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
         let cells = find_column::<f64>(columns, label, self.arrays.cell().len())?;
         let most = self.model.shape.padded() as f64;
         if let Some(cell) = cells.iter().find(|&&cell| !(1.0..=most).contains(&cell) || cell.fract() != 0.0) {
-            return Err(format!("the column {label} holds {cell}, which is no cell of the lattice"));
+            return Err(format!("the column {label} holds {cell}, which is not a cell of the lattice"));
         }
         self.arrays.cell_mut().iter_mut().zip(cells).for_each(|(to, cell)| *to = cell as u32);
         Ok(())

@@ -1,8 +1,8 @@
-//! An undamped contact: how long it lasts, how deep and how stiff it becomes.
+//! Duration, depth and stiffness of an undamped contact.
 
 use stripmine_kernels::law::granular::Contact;
 
-/// A contact of two discs that approach each other head on.
+/// Contact of two discs that approach each other head on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct HeadOn {
     pub law: Contact,
@@ -18,12 +18,12 @@ impl HeadOn {
         self.law.impact_depth(self.effective_mass, self.speed)
     }
 
-    /// How long it lasts (time); infinite at rest.
+    /// Duration (time); infinite at rest.
     pub(crate) fn duration(&self) -> f64 {
         self.law.impact_duration(self.effective_mass, self.speed)
     }
 
-    /// Square of the angular frequency of a spring that is as stiff as the contact where it is deepest (1/time²).
+    /// Squared angular frequency of a spring as stiff as the contact at its deepest (1/time²).
     pub(crate) fn stiffest(&self) -> f64 {
         self.law.stiffness_at(self.depth()) / self.effective_mass
     }
@@ -50,7 +50,7 @@ mod tests {
         HeadOn { law, speed: 0.7, effective_mass: 0.4 }
     }
 
-    /// The contact followed in 10⁵ steps.
+    /// Compared with a contact integrated in 10⁵ steps.
     #[test]
     fn duration_and_depth_are_those_of_a_contact_that_is_followed() {
         for spring in [Spring::Hertz, Spring::Linear] {
@@ -71,7 +71,7 @@ mod tests {
         }
     }
 
-    /// Energy, stiffness and depth at rest follow from the force.
+    /// Energy, stiffness and depth at rest are consistent with the force.
     #[test]
     fn what_a_spring_says_follows_from_its_force() {
         let number = |number: f64| number;

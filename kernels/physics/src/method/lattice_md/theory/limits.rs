@@ -1,4 +1,4 @@
-//! What bounds the step of a scene.
+//! Theoretical limits of a scene's step.
 
 use super::contact::HeadOn;
 use super::step_matrix::largest_step;
@@ -7,15 +7,15 @@ use crate::method::{Beyond, StepLimit};
 use crate::number::significant;
 use crate::particles::longest_step;
 
-/// Without gravity and dissipation discs have several contacts at once above this packing fraction.
+/// Packing fraction above which discs have several contacts at once even without gravity and dissipation.
 const DENSE: f64 = 0.5;
 
-/// Multiple of an unstable step beyond which the user is warned. Limits assume the stiffest case: three contacts that press a disc at
-/// once, or an approach at three times the typical speed. A single contact at the typical speed, with a third of the spring, bears √3
-/// times the step of the three; up to there most runs are right, and the balance of energy finds the others.
+/// Multiple of an unstable step beyond which the user is warned. Limits assume the stiffest case: three simultaneous contacts of a disc, or an
+/// approach at three times the typical speed. A single contact at the typical speed has a third of the stiffness and allows √3 times the step of the
+/// three. Up to there most runs are right, and the energy balance finds the others.
 const UNSTABLE_ALONE: f64 = 1.732_050_807_568_877_2;
 
-/// Every limit of a scene's step.
+/// Returns all limits of a scene's step.
 pub(crate) fn step_limits(checked: &Checked) -> Vec<StepLimit> {
     let all = [
         one_contact(checked),
@@ -28,7 +28,7 @@ pub(crate) fn step_limits(checked: &Checked) -> Vec<StepLimit> {
     all.into_iter().flatten().collect()
 }
 
-/// A head-on contact of the lightest grains at the typical speed of approach times a factor.
+/// Head-on contact of the lightest grains at a multiple of the typical speed of approach.
 pub(crate) fn contact(checked: &Checked, faster: f64) -> HeadOn {
     let masses = checked.particles.grains().iter().map(|disc| disc.mass);
     HeadOn {
@@ -60,7 +60,7 @@ fn one_contact(checked: &Checked) -> Option<StepLimit> {
     })
 }
 
-/// Where discs press each other from all sides.
+/// Limit for discs pressed from all sides.
 fn packing(checked: &Checked) -> Option<StepLimit> {
     let (scheme, law) = (checked.scene.integrator.scheme, &checked.scene.law.contact);
     let discs = checked.particles.all().iter().map(|disc| std::f64::consts::PI * disc.radius.powi(2));
@@ -72,7 +72,7 @@ fn packing(checked: &Checked) -> Option<StepLimit> {
     let contact = contact(checked, 1.0);
     let step = largest_step(scheme, NETWORK * contact.stiffest(), NETWORK * law.normal_damping)?;
     let why = format!(
-        "the same with {NETWORK} times spring and damper of a contact at the typical speed, {}: a disc pressed from all sides",
+        "largest eigenvalue of the step matrix with {NETWORK} times spring and damper of a contact at the typical speed, {}: a disc pressed from all sides",
         significant(contact.speed, 4)
     );
     Some(StepLimit {
@@ -85,13 +85,15 @@ fn packing(checked: &Checked) -> Option<StepLimit> {
     })
 }
 
-/// Both surfaces of a pair slow down: γ_S M_eff (1/m + 1/m + R²/I + R²/I).
+/// Limit for the drag that slows both surfaces of a pair: γ_S M_eff (1/m + 1/m + R²/I + R²/I).
 fn friction(checked: &Checked) -> Option<StepLimit> {
     let law = &checked.scene.law;
     let rate = law.contact.shear_damping * (1.0 + 1.0 / law.inertia.factor());
     let step = largest_step(checked.scene.integrator.scheme, 0.0, rate).filter(|_| law.has_friction())?;
     let per_time = significant(rate, 4);
-    let why = format!("the same on the drag of friction between two surfaces, {per_time} a unit of time");
+    let why = format!(
+        "largest eigenvalue of the step matrix on the drag of friction between two surfaces, {per_time} a unit of time"
+    );
     Some(StepLimit {
         name: "drag of friction",
         step,
@@ -123,7 +125,7 @@ fn of_duration(checked: &Checked, name: &'static str, steps: f64, warned_beyond:
 }
 
 fn followed(checked: &Checked) -> Option<StepLimit> {
-    // Fewer steps err by percents in single contacts, which means over many seldom show.
+    // With fewer steps single contacts err by percents, which averages over many contacts seldom show.
     of_duration(checked, "15 steps a contact", LEAST_STEPS, f64::INFINITY)
 }
 
@@ -131,15 +133,15 @@ fn fewest(checked: &Checked) -> Option<StepLimit> {
     of_duration(checked, "3 steps a contact", FEWEST_STEPS, 1.0)
 }
 
-/// How far the fastest disc of the start may move before contacts pass unseen.
+/// Limit for the fastest disc of the start, beyond which contacts are missed.
 fn mask(checked: &Checked) -> Option<StepLimit> {
     let speeds = checked.particles.all().iter().map(|disc| disc.velocity[0].hypot(disc.velocity[1]));
     let fastest = speeds.fold(0.0, f64::max).max(checked.estimates.approach_speed);
     let depth = checked.scene.law.max_penetration;
     let longest = longest_step(checked.geometry.radii[0], depth);
     let why = format!(
-        "a disc at {fastest} may move {longest} in a step; beyond, contacts deeper than law.max_penetration = {depth} could \
-         pass unseen",
+        "a disc at {fastest} may move {longest} in a step; beyond, contacts deeper than law.max_penetration = {depth} may \
+         be missed",
         fastest = significant(fastest, 4),
         longest = significant(longest, 4)
     );

@@ -1,4 +1,4 @@
-//! What theory says of the step: growth of errors by the matrix of a step, the duration and depth of a contact.
+//! Theory of the step: growth of errors by the matrix of a step, duration and depth of a contact.
 
 pub(crate) mod contact;
 pub(crate) mod limits;

@@ -1,4 +1,4 @@
-//! The matrix by which a scheme takes a spring and damper through one step, and when its powers grow.
+//! Step matrix of a scheme on a spring and damper, and the largest step at which its powers do not grow.
 
 use crate::method::lattice_md::model::{GearValues, Scheme};
 use stripmine_kernels::integrator::gear::{Acceleration, Gear};
@@ -6,19 +6,19 @@ use stripmine_kernels::integrator::single::Single;
 use stripmine_kernels::integrator::velocity_verlet::VelocityVerlet;
 use stripmine_kernels::integrator::{self, DERIVATIVES};
 
-/// Most values that a scheme carries.
+/// Step matrix, sized for the scheme with the most values.
 type Matrix = [[f64; DERIVATIVES]; DERIVATIVES];
 
-/// Errors grow where a disturbance gains this much during half a period of the spring.
+/// Gain of a disturbance during half a period of the spring above which errors count as growing.
 const GAIN: f64 = 0.1;
-/// Powers of the matrix are taken up to two to this.
+/// Squarings of the matrix: its power is two to this.
 const SQUARINGS: i32 = 40;
-/// What rounding may make of a factor 1.
+/// Rounding error of a factor 1.
 const ROUNDING: f64 = 1e-9;
 /// Bisections of a limit.
 const BISECTIONS: u32 = 50;
 
-/// The largest magnitude of an eigenvalue of the matrix of one step of x″ = −ω² x − γ x′; `spring` is (ω dt)², `damper` γ dt.
+/// Returns the spectral radius of the step matrix of x″ = −ω² x − γ x′; `spring` is (ω dt)², `damper` γ dt.
 pub(crate) fn spectral_radius(scheme: Scheme, spring: f64, damper: f64) -> f64 {
     let kind = if damper == 0.0 { Acceleration::OfPositions } else { Acceleration::OfVelocities };
     match scheme {
@@ -29,10 +29,10 @@ pub(crate) fn spectral_radius(scheme: Scheme, spring: f64, damper: f64) -> f64 {
     }
 }
 
-/// The same for a scheme that carries `values` derivatives.
+/// Returns the spectral radius for a scheme that carries `values` derivatives.
 fn radius_of<C: integrator::Scheme>(scheme: C, values: usize, spring: f64, damper: f64) -> f64 {
     let mut matrix = [[0.0; DERIVATIVES]; DERIVATIVES];
-    // Transposed, which has the same eigenvalues.
+    // Transposed, with the same eigenvalues.
     for (unit, image) in matrix.iter_mut().enumerate().take(values) {
         let mut single = Single::new(scheme, 1.0);
         single.row[unit] = 1.0;
@@ -42,7 +42,7 @@ fn radius_of<C: integrator::Scheme>(scheme: C, values: usize, spring: f64, dampe
     largest_eigenvalue(matrix)
 }
 
-/// By the norm of a high power: ‖A^n‖^(1/n).
+/// Computed from the norm of a high power: ‖A^n‖^(1/n).
 fn largest_eigenvalue(mut matrix: Matrix) -> f64 {
     let mut logarithm = 0.0;
     for squaring in 0..SQUARINGS {
@@ -66,9 +66,8 @@ fn squared(matrix: &Matrix) -> Matrix {
     std::array::from_fn(|row| std::array::from_fn(|column| product(row, column)))
 }
 
-/// The largest step (time) up to which errors do not grow on a spring of frequency² `spring` (1/time²) and a damper of rate
-/// `damper` (1/time): by more than a tenth within half a period of the spring, or at all where there is none. None where there is
-/// neither spring nor damper.
+/// Returns the largest step (time) at which errors do not grow on a spring of frequency² `spring` (1/time²) and a damper of rate `damper` (1/time).
+/// Growth means more than a tenth within half a period of the spring, or at all without a spring. None without spring and damper.
 pub(crate) fn largest_step(scheme: Scheme, spring: f64, damper: f64) -> Option<f64> {
     let frequency = spring.sqrt().max(damper);
     if frequency.is_nan() || frequency <= 0.0 || frequency.is_infinite() {
@@ -84,7 +83,7 @@ pub(crate) fn largest_step(scheme: Scheme, spring: f64, damper: f64) -> Option<f
             radius.powf(half_period.max(1.0)) > 1.0 + GAIN
         }
     };
-    // Steps rise until errors grow; no scheme bears more than a few radians.
+    // Increase the step until errors grow; no scheme is stable beyond a few radians.
     let mut high = 1.0 / 64.0;
     while !grows(high) {
         high *= 1.0625;
@@ -120,7 +119,7 @@ mod tests {
         assert!((limit - 1.0).abs() < 0.01, "{limit}");
     }
 
-    /// The eigenvalues of velocity Verlet on a spring alone are those of λ² − (2 − ω² dt²) λ + 1.
+    /// On a spring alone, the eigenvalues of velocity Verlet are the roots of λ² − (2 − ω² dt²) λ + 1.
     #[test]
     fn radii_are_those_of_the_characteristic_polynomial() {
         for spring in [4.5f64, 6.0, 10.0] {
@@ -131,7 +130,7 @@ mod tests {
         }
     }
 
-    /// 6/11, 3/10 and, from runs, 0.163.
+    /// Limits are 6/11, 3/10 and, measured in runs, 0.163.
     #[test]
     fn drag_is_borne_as_far_as_measured() {
         for (scheme, measured) in GEAR.into_iter().zip([6.0 / 11.0, 0.3, 0.1633]) {
@@ -140,7 +139,7 @@ mod tests {
         }
     }
 
-    /// A scheme with a wrong coefficient.
+    /// Scheme with a wrong coefficient.
     #[derive(Clone, Copy)]
     struct Wrong;
 
@@ -168,7 +167,7 @@ mod tests {
         ) {
             let before = *row;
             integrator::Scheme::correct(&right(), context, row, acceleration);
-            // The acceleration is corrected three times as much as it should be.
+            // Corrects the acceleration three times as much as it should.
             let once = row[2] - before[2];
             row[2] = row[2] + once + once;
         }

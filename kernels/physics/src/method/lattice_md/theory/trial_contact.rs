@@ -1,4 +1,4 @@
-//! Trial contacts: two typical grains that meet head on, followed by the scene's own scheme and step.
+//! Trial contacts: head-on collisions of two typical grains, integrated with the scene's own scheme and step.
 
 use super::contact::HeadOn;
 use crate::method::lattice_md::model::{GearValues, Scheme};
@@ -7,29 +7,29 @@ use stripmine_kernels::integrator::gear::{Acceleration, Gear};
 use stripmine_kernels::integrator::single::Single;
 use stripmine_kernels::integrator::velocity_verlet::VelocityVerlet;
 
-/// Contacts begin at this many places of a step.
+/// Number of phases within a step at which contacts begin.
 const PHASES: u32 = 16;
-/// The step of the reference, in steps.
+/// Step of the reference, in steps.
 const REFERENCE: f64 = 1.0 / 16.0;
-/// Contacts are followed in this many steps at most.
+/// Largest number of steps in a trial contact.
 const MOST: f64 = 1000.0;
-/// A contact that lasts longer than this many undamped ones does not end.
+/// Duration, in undamped contacts, after which a contact counts as endless.
 const ENDLESS: f64 = 20.0;
 
-/// By how much a contact is followed wrongly.
+/// Integration error of a contact.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub(crate) struct ContactError {
-    /// Error of the energy after the contact, over the energy before: root of the mean square over the phases of the step.
+    /// Error of the energy after the contact over the energy before: root mean square over the phases of the step.
     pub energy: f64,
-    /// The power of the step with which it falls, from half the step.
+    /// Power of the step with which the error falls, estimated from half the step.
     pub order: f64,
-    /// The step that was tried (time): the scene's own, or as long as a thousandth of the contact if that is longer.
+    /// Step of the trials (time): the scene's own, or a thousandth of the contact if that is longer.
     pub step: f64,
-    /// Contacts that were tried for it.
+    /// Number of trial contacts.
     pub phases: u32,
 }
 
-/// Tries a contact; none where nothing moves, or discs do not part again.
+/// Measures the error in trial contacts; none where nothing moves, or discs do not separate again.
 pub(crate) fn contact_error(contact: HeadOn, scheme: Scheme, dt: f64) -> Option<ContactError> {
     let duration = contact.duration();
     if !(duration.is_finite() && duration > 0.0) {
@@ -52,7 +52,7 @@ pub(crate) fn contact_error(contact: HeadOn, scheme: Scheme, dt: f64) -> Option<
 struct Trial(HeadOn);
 
 impl Trial {
-    /// The energy after the contact over that before, if the contact begins a part `phase` of a step late.
+    /// Returns the energy after the contact over that before, if the contact begins a fraction `phase` of a step late.
     fn energy_after(&self, scheme: Scheme, step: f64, phase: f64) -> Option<f64> {
         let kind = match self.0.law.normal_damping {
             0.0 => Acceleration::OfPositions,
@@ -77,7 +77,7 @@ impl Trial {
 
     fn followed<C: integrator::Scheme>(&self, scheme: C, step: f64, phase: f64) -> Option<f64> {
         let speed = self.0.speed;
-        // A whole step before the contact, and a part more: the derivatives of the start are those of free flight.
+        // Starts a whole step and a fraction before the contact, so that the first derivatives are those of free flight.
         let gap = (1.0 + phase) * speed * step;
         let mut single = Single::new(scheme, step).starting(-gap, speed, |_, _| 0.0);
         let most = (ENDLESS * self.0.duration() / step) as u64 + 64;
@@ -87,7 +87,7 @@ impl Trial {
             if !velocity.is_finite() {
                 return None;
             }
-            // Discs that have passed through each other are not apart.
+            // Discs that have passed through each other have not separated.
             if overlap < -gap && velocity < 0.0 {
                 return Some((velocity / speed).powi(2));
             }
@@ -116,7 +116,7 @@ mod tests {
         contact_error(contact, scheme, contact.duration() / steps).unwrap()
     }
 
-    /// The kink of Hertz's force leaves velocity Verlet an order of 2½, the jump of the damping any scheme one of 1.
+    /// The kink of Hertz's force limits velocity Verlet to an order of 2½, the jump of the damping any scheme to 1.
     #[test]
     fn errors_fall_as_the_law_lets_them() {
         let elastic = error(0.0, Scheme::VelocityVerlet, 60.0);
@@ -132,7 +132,7 @@ mod tests {
         let scheme = Scheme::Gear(GearValues::Four);
         let [few, many] = [4.0, 100.0].map(|steps| error(0.0, scheme, steps).energy);
         assert!(few > 0.03 && many < 1e-3, "{few} {many}");
-        // Beyond a thousand steps what is said is an upper bound.
+        // Beyond a thousand steps the reported error is an upper bound.
         let finest = error(0.0, scheme, 1e6);
         assert!(finest.energy <= many && finest.step > 0.0);
     }

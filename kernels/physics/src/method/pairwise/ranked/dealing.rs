@@ -1,4 +1,4 @@
-//! Discs dealt out to the ranks: at the start, again when they have gone far, and from a state.
+//! Distribution of discs to the ranks: at the start, again when they have moved far, and from a saved state.
 
 use super::layout::{Layout, Side};
 use super::wire::{Columns, column_like, entries};
@@ -11,7 +11,7 @@ use std::collections::HashMap;
 use stripmine_kernels::backend::Precision;
 
 impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
-    /// Holds those discs of the scene that are this rank's or near them, by the rows that all of the scene's are in.
+    /// Takes the discs that this rank owns or needs near its bands, given the rows of all discs of the scene.
     pub(super) fn take_part(&mut self, rows: &[u32]) {
         let grains = self.engine.start.grain_count();
         let mut weights = vec![0; self.layout_bands()];
@@ -32,19 +32,19 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
         self.engine.search.rows().bands().len()
     }
 
-    /// Bands by their weights.
+    /// Distributes bands by their weights.
     fn deal_out(&mut self, weights: &[u64]) {
         let (rows, periodic) = (self.engine.search.rows(), self.engine.search.cells().grid().periodic[1]);
         self.layout = Layout::new(rows, periodic, weights, self.ranks.count());
     }
 
-    /// Holds discs of this rank, those of others that are near, and walls, none of them in its cell yet.
+    /// Replaces the discs by those of this rank, nearby ones of other ranks, and walls, none in its cell yet.
     fn hold(&mut self, own: Vec<u32>, near: Vec<u32>, walls: Vec<u32>, row: impl Fn(u32) -> usize) {
         let (rank, [below, above]) = (self.ranks.rank(), self.ranks.neighbours());
         let on_side = |discs: &[u32], rank: usize, side: Side| -> Vec<u32> {
             discs.iter().copied().filter(|&disc| self.layout.side(rank, row(disc)) == Some(side)).collect()
         };
-        // What lies below a rank comes from the rank below it, which tells it upwards.
+        // Discs below a rank belong to the rank below, which sends them upwards.
         self.from = [on_side(&near, rank, Side::Below), on_side(&near, rank, Side::Above)];
         self.to = [on_side(&own, below, Side::Above), on_side(&own, above, Side::Below)];
         self.homes.clear();
@@ -54,7 +54,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
         self.engine.hold(Members { numbers, moving, grains }, search);
     }
 
-    /// Deals out the discs again: each to the rank of the row that it is in now.
+    /// Redistributes the discs: each goes to the rank of its current row.
     pub(super) fn migrate(&mut self) -> Result<Result<(), String>, RankError> {
         let state = &self.engine.state;
         let row = |disc: usize| self.engine.search.cells().cell(disc).map_or(0, |cell| cell[1]);
@@ -84,7 +84,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
         self.take_over(&came)
     }
 
-    /// Takes over what came from every rank.
+    /// Takes over the discs received from every rank.
     fn take_over(&mut self, came: &[Parcel]) -> Result<Result<(), String>, RankError> {
         let template = self.engine.columns_of(&[]);
         let mut discs: Vec<(bool, u32, Vec<f64>)> = vec![];
@@ -102,7 +102,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
         Ok(self.hold_again(discs, &template))
     }
 
-    /// Holds discs of which some are only near, with the entries of each in the columns of a template.
+    /// Replaces the discs, some of them only nearby, with the entries of each in the columns of a template.
     fn hold_again(
         &mut self,
         mut discs: Vec<(bool, u32, Vec<f64>)>,
@@ -133,13 +133,13 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
         let length = self.engine.state.len();
         self.engine.take_up_discs(&columns, (0..length as u32).collect(), length)?;
         made.into_iter().for_each(|made| self.engine.search.set_lists_made(made));
-        // It is done between a step and its forces.
+        // Migration happens between a step and its forces.
         self.engine.awaits_forces = true;
         self.look_up();
         Ok(())
     }
 
-    /// Takes up the state of the whole scene.
+    /// Restores the state of the whole scene.
     pub(super) fn restore(&mut self, steps: u64, columns: &Columns) -> Result<(), String> {
         let rows = columns.iter().find(|(name, _)| name == CELL[1]);
         let count = self.engine.search.rows().count;

@@ -1,4 +1,4 @@
-//! A scene that is dealt out to ranks: who begins with what.
+//! Distribution of a scene to ranks at the start.
 
 use super::first::{Ranked, Threads};
 use super::orders::serve;
@@ -19,7 +19,7 @@ use stripmine_kernels::backend::Precision;
 /// A scene has fewer bands than there are ranks.
 const TOO_MANY: FailureKind = FailureKind::new("too-many-ranks");
 
-/// What every rank knows of a scene but its particles.
+/// Data of a scene shared by all ranks, without its particles.
 pub(super) struct Scene<S, P, Q> {
     pub(super) dynamics: Arc<dyn Compiled<S, P, Q>>,
     pub(super) system: System,
@@ -34,11 +34,11 @@ impl<S: Precision, P: Precision, Q: Search<S, P> + 'static> Scene<S, P, Q> {
             return Ok(());
         }
         let what = format!("{count} ranks are more than the {bands} bands of rows that the scene has");
-        let remedy = format!("take at most {bands} ranks, or more particles");
+        let remedy = format!("use at most {bands} ranks, or more particles");
         Err(Failure::new(TOO_MANY, what, remedy))
     }
 
-    /// The part of a rank at the start.
+    /// Builds the part of a rank at the start.
     pub(super) fn part(&self, ranks: Box<dyn Ranks>, start: Arc<Particles>) -> Begun {
         let elapsed = Elapsed::new(self.system.dt, Crossings::new(self.system.followed, start.len()));
         let none = Members { numbers: vec![], moving: 0, grains: 0 };
@@ -48,7 +48,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P> + 'static> Scene<S, P, Q> {
         Ok(Box::new(worker))
     }
 
-    /// The first rank of several threads; the others begin.
+    /// Starts the other ranks on threads and returns the first rank.
     pub(super) fn on_threads(&self, count: usize, particles: Particles) -> Result<Ranked, Failure> {
         let start = Arc::new(particles);
         let per_rank = rayon::current_num_threads();
@@ -60,21 +60,21 @@ impl<S: Precision, P: Precision, Q: Search<S, P> + 'static> Scene<S, P, Q> {
             let Scene { dynamics, system, set, .. } = self;
             let scene = Scene { dynamics: dynamics.clone(), system: system.clone(), set: *set, search };
             let start = start.clone();
-            // The first rank finds a loss itself.
+            // The first rank detects a loss itself.
             let work = move || _ = serve_one(scene.part(Box::new(ranks), start));
             let pool = rayon::ThreadPoolBuilder::new().num_threads(per_rank).build();
             let spawned = pool.map_err(|error| error.to_string()).and_then(|pool| {
                 thread::Builder::new().spawn(move || pool.install(work)).map_err(|error| error.to_string())
             });
             threads.push(spawned.map_err(|error| {
-                let what = format!("no thread can be had for a rank: {error}");
-                Failure::new(TOO_MANY, what, "take fewer ranks or --threads")
+                let what = format!("cannot start a thread for a rank: {error}");
+                Failure::new(TOO_MANY, what, "use fewer ranks or --threads")
             })?);
         }
         Ranked::of(first, Threads(threads), |ranks| self.part(ranks, start))
     }
 
-    /// The part of a process that is not the first, for one simulation after the other, until the first says that there is no other.
+    /// Serves simulations on a process other than the first, one after the other, until the first ends it.
     pub(super) fn serve(&self, join: fn() -> Box<dyn Ranks>, particles: Particles) -> Failure {
         loop {
             let ids: HashSet<u32> = match join().tell_message::<Option<Vec<u32>>>(None) {
@@ -85,7 +85,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P> + 'static> Scene<S, P, Q> {
             let there = particles.all().iter().filter(|particle| ids.contains(&particle.id));
             let start = Particles::new(there.copied().collect());
             match serve_one(self.part(join(), Arc::new(start))) {
-                // The first one says why.
+                // The first rank reports the reason.
                 Ok(()) | Err(RankError::Ended(0)) => {}
                 Err(lost) => return ended(lost, Clock::default()),
             }
@@ -93,7 +93,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P> + 'static> Scene<S, P, Q> {
     }
 }
 
-/// Says how a part has begun, and does what the first rank says.
+/// Reports the start of a part to the first rank and follows its orders.
 ///
 /// # Errors
 /// As [`serve`].
@@ -105,7 +105,7 @@ fn serve_one(part: Begun) -> Result<(), RankError> {
         }
         Err((ranks, failure)) => {
             ranks.gather_messages(Some(failure))?;
-            // The first rank says that this is the end.
+            // Wait for the end announced by the first rank.
             ranks.tell_message::<Option<Order>>(None).map(drop)
         }
     }

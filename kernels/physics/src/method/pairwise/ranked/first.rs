@@ -1,4 +1,4 @@
-//! The first rank: the simulation that everyone else sees.
+//! First rank: the simulation that all other code uses.
 
 use super::wire::{Crossed, Do, ForcesReport, Order, Record, StepReport, What, column_like, put_own};
 use super::worker::{Begun, Part};
@@ -17,23 +17,23 @@ use std::thread::JoinHandle;
 use stripmine_kernels::law::Asked;
 use stripmine_kernels::sweep::fast::{Met, OfBand};
 
-/// The first rank, which speaks for all.
+/// First rank, which represents all.
 pub(super) struct Ranked {
     worker: Box<dyn Part>,
-    /// Dropped after the worker: a rank that waits for the first one ends when that one's end of the channel is gone.
+    /// Dropped after the worker: a rank that waits for the first one ends when the first one's end of the channel is closed.
     _threads: Threads,
-    /// What all are to know before they do something: periods crossed, by rank, and whether discs are dealt out again.
+    /// News for all ranks before their next order: crossed periods by rank, and whether to redistribute discs.
     crossed: Vec<(usize, Crossed)>,
     is_to_migrate: bool,
     shared_cells: usize,
-    /// Discs that a step or its forces have given, grains first, whichever rank has them.
+    /// Discs reported by a step or its forces, grains first, from any rank.
     named: Vec<Record>,
-    /// The reason why the other ranks have been told to end: the first loss that a step or a look has met. Looks since then lack a rank;
-    /// every later step and check fails by it.
+    /// Reason why the other ranks were ended: the first loss detected by a step or a sample. Samples since then lack a rank; every later step and
+    /// check fails with this reason.
     stopped: OnceCell<Failure>,
 }
 
-/// Ranks that are threads, joined when they are dropped.
+/// Threads of ranks, joined on drop.
 pub(super) struct Threads(pub(super) Vec<JoinHandle<()>>);
 
 impl Drop for Threads {
@@ -43,7 +43,7 @@ impl Drop for Threads {
 }
 
 impl Ranked {
-    /// The first rank, once all have begun.
+    /// Builds the first rank after all have started.
     pub(super) fn of(
         ranks: Box<dyn Ranks>,
         threads: Threads,
@@ -52,15 +52,15 @@ impl Ranked {
         let worker = match part(ranks) {
             Ok(worker) => worker,
             Err((ranks, failure)) => {
-                // The others have begun, or failed as well.
-                #[expect(clippy::let_underscore_must_use, reason = "a rank that has ended needs not be told")]
+                // The others have started, or failed as well.
+                #[expect(clippy::let_underscore_must_use, reason = "a rank that has ended needs no message")]
                 let _ = ranks.gather_messages(None::<Failure>);
-                #[expect(clippy::let_underscore_must_use, reason = "a rank that has ended needs not be told")]
+                #[expect(clippy::let_underscore_must_use, reason = "a rank that has ended needs no message")]
                 let _ = ranks.tell_message(Some(None::<Order>));
                 return Err(failure);
             }
         };
-        // Dropped where one has failed: it tells the others.
+        // Dropped if a rank has failed, which ends the others.
         let ranked = Ranked {
             worker,
             _threads: threads,
@@ -85,7 +85,7 @@ impl Ranked {
         self.worker.ranks().tell(Some(Parcel::of(&Some(order)))).map(drop)
     }
 
-    /// Has all ranks carry out an order that changes something; their answers.
+    /// Makes all ranks execute an order that changes something; returns their answers.
     fn order<T: DeserializeOwned>(&mut self, what: Do) -> Result<Vec<T>, Failure> {
         self.check_ranks()?;
         let crossed = std::mem::take(&mut self.crossed);
@@ -95,7 +95,7 @@ impl Ranked {
         answers.and_then(|all| opened(&all)).map_err(|lost| self.lose(lost))
     }
 
-    /// Has all ranks look at something that `found` makes of their answers; the default where a rank is lost.
+    /// Makes all ranks sample something; `found` combines their answers. Returns the default if a rank is lost.
     fn look<R: Default>(&self, what: What, found: impl FnOnce(&[Parcel]) -> Result<R, RankError>) -> R {
         let look = || {
             self.tell(&Do::Look(what).into())?;
@@ -113,22 +113,22 @@ impl Ranked {
         }
     }
 
-    /// Keeps the first loss of a rank, as a failure; all others end then, whatever message they wait for.
+    /// Stores the first loss of a rank as a failure; all others then end, whatever message they wait for.
     fn lose(&self, lost: RankError) -> Failure {
         self.stop(&Parcel::lost(RankError::Ended(0)), || ended(lost, self.clock()))
     }
 
-    /// Has the other ranks end, for a reason; gives the first one that there was.
+    /// Makes the other ranks end for a reason; returns the first reason.
     fn stop(&self, told: &Parcel, why: impl FnOnce() -> Failure) -> Failure {
         let stop = || {
-            #[expect(clippy::let_underscore_must_use, reason = "a rank that has ended needs not be told")]
+            #[expect(clippy::let_underscore_must_use, reason = "a rank that has ended needs no message")]
             let _ = self.worker.ranks().tell(Some(told.clone()));
             why()
         };
         self.stopped.get_or_init(stop).clone()
     }
 
-    /// What came of a step: discs that moved far.
+    /// Combines the reports of a step; returns the discs that moved far.
     fn heard(&mut self, reports: Vec<StepReport>) -> Result<Vec<u32>, Failure> {
         let (mut failures, mut far) = (vec![], vec![]);
         self.shared_cells = 0;
@@ -148,7 +148,7 @@ impl Ranked {
         Ok(self.name(far))
     }
 
-    /// Keeps discs to be named, and gives their places.
+    /// Stores discs to be named and returns their indices.
     fn name(&mut self, discs: Vec<Record>) -> Vec<u32> {
         let mut named = discs.clone();
         named.sort_by_key(|disc| (!disc.is_grain, disc.number));
@@ -160,7 +160,7 @@ impl Ranked {
         places
     }
 
-    /// For each of the scene's discs what its rank says; no numbers where a rank is lost.
+    /// Collects values of each of the scene's discs from its rank; NaN where a rank is lost.
     fn each<const N: usize>(&self, what: What) -> Vec<[f64; N]> {
         let none = || vec![[f64::NAN; N]; self.engine().start().len()];
         let found = |answers: &[Parcel]| {
@@ -177,12 +177,12 @@ impl Ranked {
     }
 }
 
-/// The messages of all ranks.
+/// Decodes the messages of all ranks.
 fn opened<T: DeserializeOwned>(answers: &[Parcel]) -> Result<Vec<T>, RankError> {
     answers.iter().enumerate().map(|(rank, answer)| answer.open(rank)).collect()
 }
 
-/// The failure that one rank alone would have named, of those of all ranks, with the rank that it comes from.
+/// Selects the failure that a single rank would have reported, and adds the rank that it comes from.
 fn first_of(failures: Vec<Option<Failure>>) -> Result<(), Failure> {
     let failures = failures.into_iter().enumerate().filter_map(|(rank, it)| Some((rank, it?)));
     let failures: Vec<(usize, Failure)> = failures.collect();
@@ -290,7 +290,7 @@ impl Stepping for Ranked {
     }
 
     fn end(&mut self) {
-        let what = "the other ranks have ended the simulation";
+        let what = "this simulation has already been ended on all ranks";
         let why = || Failure::new(FailureKind::MACHINE, what, "report this with the scene");
         self.stop(&Parcel::of(&None::<Order>), why);
     }
@@ -392,10 +392,10 @@ impl Losing for Ranked {
     }
 }
 
-/// A failure where discs could not be distributed again.
+/// Failure of a redistribution of discs.
 fn refuse(distributed: Result<(), String>, at: Clock) -> Result<(), Failure> {
     distributed.map_err(|why| {
-        let what = format!("discs cannot be dealt out to the ranks: {why}");
+        let what = format!("discs cannot be distributed to the ranks: {why}");
         Failure::new(FailureKind::MACHINE, what, "report this with the scene").at(at)
     })
 }

@@ -1,46 +1,45 @@
-//! Which rank has which bands, and what it must know of its neighbours.
+//! Assignment of bands to ranks, and the neighbourhood that each rank needs.
 
 use std::ops::Range;
 use stripmine_kernels::sweep::fast::{Rows, Share};
 
-/// Discs may be so many rows away from where they were when ranks were given their discs; then that is done again. No bit depends on it. Pairs that are
-/// found beside rows reach as far as partners lie ahead.
+/// Number of rows that a disc may move before discs are redistributed. No bit depends on it. Pairs found beside rows reach as far as partners are
+/// searched ahead.
 pub(super) fn margin(rows: Rows) -> usize {
     rows.ahead.max(2)
 }
 
-/// How far from a rank's rows discs may matter to it: discs of the rank may have gone as far as the margin, theirs too, and partners are that far
-/// ahead.
+/// Distance in rows within which discs matter to a rank: its own discs may have moved by the margin, others too, and partners are found ahead.
 pub(super) fn reach(rows: Rows) -> usize {
     2 * margin(rows) + rows.ahead
 }
 
-/// On which side of a rank a row lies.
+/// Side of a rank on which a row lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Side {
     Below,
     Above,
 }
 
-/// The bands of each rank: some that follow each other, as whole ones, so that sums are what they are on one rank.
+/// Bands of each rank: consecutive whole bands, so that sums equal those on one rank.
 #[derive(Clone, Debug)]
 pub(super) struct Layout {
     rows: Rows,
     is_periodic: bool,
     bands: Vec<Range<usize>>,
-    /// The first band of each rank, and the end.
+    /// First band of each rank, and the end.
     first: Vec<usize>,
 }
 
 impl Layout {
-    /// With bands of about as much work for each of `ranks`, by the weight of each band. A function of the weights alone.
+    /// Distributes the bands so that each of `ranks` has about the same weight. A function of the weights alone.
     pub(super) fn new(rows: Rows, is_periodic: bool, weights: &[u64], ranks: usize) -> Layout {
         let bands: Vec<Range<usize>> = rows.bands().collect();
         let all: u64 = weights.iter().sum();
         let (mut first, mut before, mut band) = (vec![0], 0, 0);
         for rank in 1..ranks {
             let goal = all * rank as u64 / ranks as u64;
-            // Each has one at least, and leaves one for each that follows.
+            // Each rank has at least one band and leaves one for each rank after it.
             let most = bands.len() - (ranks - rank);
             before += weights[band];
             band += 1;
@@ -58,24 +57,24 @@ impl Layout {
         self.bands.partition_point(|band| band.end <= row).min(self.bands.len() - 1)
     }
 
-    /// The rank of a row.
+    /// Rank that owns a row.
     pub(super) fn owner(&self, row: usize) -> usize {
         self.first.partition_point(|&first| first <= self.band(row)) - 1
     }
 
-    /// What a rank sees to.
+    /// Rows of a rank.
     pub(super) fn share(&self, rank: usize) -> Share {
         let [first, end] = [self.first[rank], self.first[rank + 1]];
         Share { rows: self.bands[first].start..self.bands[end - 1].end, margin: margin(self.rows) }
     }
 
-    /// On which side of a rank's rows a row lies, if it is so near that its discs matter there.
+    /// Side of a rank's rows on which a row lies; none if its discs do not matter there.
     pub(super) fn side(&self, rank: usize, row: usize) -> Option<Side> {
         let (rows, reach) = (self.share(rank).rows, reach(self.rows));
         if rows.contains(&row) {
             return None;
         }
-        // Rows from one to another on the way up.
+        // Number of rows upwards from one to another.
         let up = |from: usize, to: usize| {
             let straight = to.checked_sub(from);
             straight.or(self.is_periodic.then(|| (to + self.rows.count).saturating_sub(from)))
@@ -90,7 +89,7 @@ impl Layout {
         }
     }
 
-    /// Whether a disc that was in a row is farther from it than margins are for.
+    /// True if a disc is farther from its former row than the margin.
     pub(super) fn has_strayed(&self, from: usize, to: usize) -> bool {
         let away = from.abs_diff(to);
         let away = if self.is_periodic { away.min(self.rows.count - away) } else { away };
@@ -102,7 +101,7 @@ impl Layout {
 mod tests {
     use super::*;
 
-    /// Every band has one rank, every rank a band, and no rank has much more than its part.
+    /// Every band has one rank, every rank a band, and no rank has much more than its share.
     #[test]
     fn bands_are_dealt_out_by_their_weight() {
         let rows = Rows { count: 640, ahead: 2, band: 16 };
@@ -127,7 +126,7 @@ mod tests {
         }
     }
 
-    /// Sides are those of the ring where rows are periodic, and of a stack where they are not.
+    /// Sides form a ring if rows are periodic, and a stack if they are not.
     #[test]
     fn rows_near_a_rank_lie_on_one_side_of_it() {
         let rows = Rows { count: 64, ahead: 2, band: 16 };

@@ -1,14 +1,15 @@
-//! Several ranks that step the discs of one scene, each those of some bands of rows.
+//! Several ranks step the discs of one scene, each owning some bands of rows.
 //!
 //! ```text
-//! the first rank    is the simulation that everyone else sees; tells all what is next, adds up in the order of bands
-//! the others        do as they are told, until there is nothing left to do
+//! the first rank    is the simulation that all other code uses; broadcasts orders and adds up in the order of bands
+//! the others        execute orders until the simulation ends
 //!
 //! a step:  advance | halo: neighbours' discs | cells or lists | report | forces of the own bands | report
 //! ```
 //!
-//! Bits are those of one rank: bands are a function of the scene, each is swept whole by the rank that has it, and what its discs get from the
-//! band below is summed again by that rank, pair by pair, in place of being told the sum. Which rank has which bands changes no bit.
+//! Results equal those of one rank to the bit. Bands are a function of the scene, and each is swept whole by the rank that owns it. Forces on its
+//! discs from the band below are computed again by that rank, pair by pair, instead of being received as a sum. The assignment of bands changes no
+//! bit.
 
 mod dealing;
 mod dealt;
@@ -29,7 +30,7 @@ use std::sync::Arc;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
 
-/// Discs that are stepped by as many ranks as [`ranks::crew`] says: by an [`Engine`] alone, or by several.
+/// Starts stepping discs on as many ranks as [`ranks::crew`] has: with an [`Engine`] alone, or with several.
 ///
 /// # Errors
 /// As [`Engine::new`], or if the scene has fewer bands than there are ranks.

@@ -1,4 +1,4 @@
-//! Orders of the first rank, as each rank carries them out.
+//! Execution of the first rank's orders on each rank.
 
 use super::wire::{Columns, Do, ForcesReport, Order, What};
 use super::worker::{Part, Worker};
@@ -7,10 +7,10 @@ use crate::method::pairwise::{Named, Prescribed, Stepping};
 use crate::ranks::{Parcel, RankError, Ranks};
 use stripmine_kernels::backend::Precision;
 
-/// Carries out orders until none follows.
+/// Executes orders until none follows.
 ///
 /// # Errors
-/// [`RankError`]: a rank was lost, which the first rank is told, or the first rank has ended.
+/// [`RankError`]: a rank was lost, which is reported to the first rank, or the first rank has ended.
 pub(super) fn serve(mut part: Box<dyn Part>) -> Result<(), RankError> {
     loop {
         let order = part.ranks().tell_message::<Option<Order>>(None);
@@ -20,7 +20,7 @@ pub(super) fn serve(mut part: Box<dyn Part>) -> Result<(), RankError> {
             Err(lost) => {
                 #[expect(
                     clippy::let_underscore_must_use,
-                    reason = "this rank ends with what it has lost, heard or not"
+                    reason = "this rank ends with its loss, received or not"
                 )]
                 let _ = part.ranks().gather(Parcel::lost(lost));
                 return Err(lost);

@@ -7,18 +7,18 @@ use serde::{Deserialize, Serialize};
 use stripmine_kernels::law::Asked;
 use stripmine_kernels::sweep::fast::OfBand;
 
-/// Columns by their names.
+/// Columns by name.
 pub(super) type Columns = Vec<(String, Column)>;
 
-/// A disc, and the periods that it has crossed.
+/// Disc with the periods that it has crossed.
 pub(super) type Crossed = (usize, [f64; 2]);
 
-/// An order of the first rank to all. None follows the last one: the simulation has ended.
+/// Order of the first rank to all ranks. None ends the simulation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Order {
     /// Discs that have crossed periods, with the ranks that reported them.
     pub(super) crossed: Vec<(usize, Crossed)>,
-    /// Discs are distributed again first.
+    /// True if discs are redistributed first.
     pub(super) is_to_migrate: bool,
     pub(super) what: Do,
 }
@@ -33,55 +33,55 @@ pub(super) enum Do {
     Restore { steps: u64, columns: Columns },
 }
 
-/// A look changes nothing.
+/// Sample that a rank takes; it changes nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum What {
-    /// Position, angle, and the rates of the three, of each disc at the end of the step.
+    /// Position, angle and their rates of each disc at the end of the step.
     Standing,
-    /// One of the columns that the next step depends on, by its place among them: with all of them at once, the first rank would hold them three times.
+    /// Column of the state by its index. With all columns at once, the first rank would hold them three times.
     Column(usize),
     /// Force along x and y and torque on each disc.
     Forces,
-    /// The velocity of each disc that the last predictor left.
+    /// Velocity of each disc left by the last predictor.
     Velocities,
     /// Sums over the contacts of each band at the end of the step.
     Contacts,
     /// The number of listed pairs.
     Listed,
-    /// Discs that belong to no cell, or of which a number is not finite.
+    /// Discs that belong to no cell or have a value that is not finite.
     Unfit,
 }
 
 impl From<Do> for Order {
-    /// Nothing else is to be known before it.
+    /// Order without news.
     fn from(what: Do) -> Order {
         Order { crossed: vec![], is_to_migrate: false, what }
     }
 }
 
-/// Discs of a rank after a step: failures, and those that the first rank is to know of.
+/// Report of a rank after a step: its failure and the discs that the first rank needs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct StepReport {
     pub(super) failure: Option<Failure>,
     /// Discs that moved far.
     pub(super) far: Vec<Record>,
     pub(super) crossed: Vec<Crossed>,
-    /// A disc is farther from its home than margins are for.
+    /// True if a disc has moved farther than the margin.
     pub(super) has_strayed: bool,
     pub(super) shared_cells: usize,
 }
 
-/// Sums over the pairs of each band of a rank.
+/// Report of a rank's forces: sums over the pairs of each of its bands.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct ForcesReport {
-    /// Why discs could not be distributed again, if they could not.
+    /// Result of the redistribution, or the reason why it failed.
     pub(super) distributed: Result<(), String>,
     pub(super) failure: Option<Failure>,
     pub(super) bands: Vec<OfBand>,
     pub(super) deep: Vec<[Record; 2]>,
 }
 
-/// A disc as failures and checks know it, whichever rank has it.
+/// Description of a disc for failures and checks on other ranks.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Record {
     pub(super) number: usize,
@@ -92,10 +92,10 @@ pub(super) struct Record {
     pub(super) radius: f64,
 }
 
-/// Puts the numbers of each disc that a rank speaks for into its place.
+/// Stores the values of a rank's discs at their indices.
 ///
 /// # Errors
-/// [`RankError`] if they are not `N` of each, or of discs that the scene does not have.
+/// [`RankError`] if there are not `N` of each, or a disc does not exist in the scene.
 pub(super) fn put_own<const N: usize>(
     parcel: &Parcel,
     rank: usize,
@@ -110,7 +110,7 @@ pub(super) fn put_own<const N: usize>(
     Ok(())
 }
 
-/// The entries of a column as numbers. Counts are below 2⁵³.
+/// Returns the entries of a column as doubles. Counts are below 2⁵³.
 pub(super) fn entries(column: &Column) -> Vec<f64> {
     match column {
         Column::F64(values) => values.clone(),
@@ -120,7 +120,7 @@ pub(super) fn entries(column: &Column) -> Vec<f64> {
     }
 }
 
-/// A column of the type of another one.
+/// Builds a column of the same type as another one.
 pub(super) fn column_like(like: &Column, values: Vec<f64>) -> Column {
     match like {
         Column::F64(_) => Column::F64(values),
@@ -234,7 +234,7 @@ mod tests {
         )
     }
 
-    /// Sends a message: it comes with all bits, and cut off it names the rank that it comes from.
+    /// Checks that a message arrives bit by bit, and that a truncated one names the rank that it comes from.
     fn returns<T: Serialize + DeserializeOwned + Debug>(message: &T) {
         let parcel = Parcel::of(message);
         let opened: T = parcel.open(4).unwrap();
@@ -272,7 +272,7 @@ mod tests {
         }
     }
 
-    /// A failure is the same on the first rank, and of the same kind.
+    /// A failure keeps its content and kind on the first rank.
     #[test]
     fn failures_are_found_again() {
         let clock = Clock { steps: 7, time: 0.7, events: 0 };
@@ -287,7 +287,7 @@ mod tests {
         }
     }
 
-    /// Numbers of discs that the scene does not have, or not as many as expected, are refused with the name of the rank.
+    /// Values of discs that the scene does not have, or not as many as expected, are rejected with the number of the rank.
     #[test]
     fn numbers_of_discs_are_put_where_they_belong() {
         let sent = Parcel::of(&(vec![2_u32, 0], Parcel::of_numbers([1.0, 2.0, 3.0, 4.0])));

@@ -1,12 +1,12 @@
-//! The part of one rank: its discs, those of its neighbours that stand near them, and what is done with them when the first rank says so.
+//! Part of one rank: its discs, nearby discs of its neighbours, and their processing by order of the first rank.
 //!
 //! ```text
-//! discs in memory    moved here | of other ranks, near these | walls, on every rank
+//! discs in memory    owned | of other ranks, near these | walls, on every rank
 //! ```
 //!
-//! Between two *migrations* it is always the same discs. Those that are moved here may meanwhile go some rows beyond the rank's own ones
-//! ([`Layout`]); the sweep is made for that, and when one has gone farther, all ranks deal out their discs again. Neighbours' discs get their places and velocities
-//! from their own rank at every step, and then change cells as these do there.
+//! The discs stay the same between two *migrations*. Owned discs may meanwhile move some rows beyond the rank's own ([`Layout`]); the sweep allows
+//! for that, and when one has moved farther, all ranks redistribute their discs. Neighbours' discs receive positions and velocities from their own
+//! rank at every step, and then change cells as they do there.
 
 use super::layout::Layout;
 use super::wire::{Columns, Crossed, ForcesReport, Order, Record, StepReport, What, entries};
@@ -25,48 +25,48 @@ use stripmine_kernels::isa::{Element, ProgramError};
 use stripmine_kernels::law::Asked;
 use stripmine_kernels::sweep::fast::{OfBand, Passed, Rows, Share};
 
-/// The part of a rank, or why it has none and who is to say so.
+/// Part of a rank, or its failure with the rank that must report it.
 pub(super) type Begun = Result<Box<dyn Part>, (Box<dyn Ranks>, Failure)>;
 
-/// The part of a rank, whatever its precisions and its search.
+/// Part of a rank, independent of precision and search.
 pub(super) trait Part: Send {
-    /// The rank, and how it reaches the others.
+    /// Connection to the other ranks.
     fn ranks(&self) -> &dyn Ranks;
 
-    /// The engine with its discs.
+    /// Engine with its discs.
     fn engine(&self) -> &dyn Stepping;
 
     /// Mutable access to the engine.
     fn engine_mut(&mut self) -> &mut dyn Stepping;
 
-    /// How the discs that no force moves stand, where they move at all.
+    /// Prescribed motion of discs that no force moves, if they move.
     fn prescribed(&self) -> Option<Prescribed>;
 
-    /// Columns of what is each disc's own, without entries, and columns of what is no one disc's.
+    /// Columns of values of each disc, without entries, and columns shared by all discs.
     fn columns(&self) -> [Columns; 2];
 
-    /// Carries out an order; the answer of this rank, for the first one to open.
+    /// Executes an order; returns this rank's answer for the first rank.
     fn follow(&mut self, order: Order) -> Result<Parcel, RankError>;
 
-    /// Answers a look, for the first rank to open.
+    /// Takes a sample for the first rank.
     fn look(&self, what: What) -> Result<Parcel, RankError>;
 }
 
-/// The part of a rank, with an engine of some precisions and search.
+/// Part of a rank with an engine of some precisions and search.
 pub(super) struct Worker<S, P, Q> {
     pub(super) ranks: Box<dyn Ranks>,
     pub(super) engine: Engine<S, P, Q>,
     pub(super) layout: Layout,
-    /// Discs by their numbers in the scene, rising: those to tell the ranks below and above of, and those that these tell of.
+    /// Discs by their numbers in the scene, rising: those sent to the ranks below and above, and those received from them.
     pub(super) to: [Vec<u32>; 2],
     pub(super) from: [Vec<u32>; 2],
-    /// The same by their places in memory, of when the discs were put in order that often.
+    /// Indices of these discs in memory after the sort counted in `ordered`.
     to_in_memory: [Vec<u32>; 2],
     from_in_memory: [Vec<u32>; 2],
-    /// The discs that lie in memory between those to be told of: most of those that move.
+    /// Longest range in memory without discs to be sent: most of those that move.
     inner: Range<usize>,
     ordered: u64,
-    /// In which rows discs were at the last migration that have changed cells since.
+    /// Rows of discs at the last migration, for discs that have changed cells since.
     pub(super) homes: HashMap<u32, usize>,
 }
 
@@ -74,7 +74,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
     /// Takes its part of the start; `engine` has no discs yet.
     ///
     /// # Errors
-    /// The failure, and the rank, which is to say so.
+    /// Returns the failure, with the connection needed to report it.
     pub(super) fn new(
         ranks: Box<dyn Ranks>,
         engine: Engine<S, P, Q>,
@@ -96,7 +96,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
             homes: HashMap::new(),
         };
         let start = worker.engine.start.clone();
-        // One that is in no row is named by its rank when it takes its place.
+        // Its rank reports a disc outside all rows when it places it.
         let row = |number: usize| worker.engine.row_at(start.all()[number].place()).unwrap_or(0);
         let rows: Vec<u32> = (0..start.len()).map(|number| row(number) as u32).collect();
         worker.take_part(&rows);
@@ -107,7 +107,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
         Ok(worker)
     }
 
-    /// Looks up where in memory the discs are that are told of.
+    /// Finds the indices in memory of the discs that are sent and received.
     pub(super) fn look_up(&mut self) {
         let numbers = self.engine.state.numbers();
         let mut wanted = vec![0_u64; self.engine.start.len().div_ceil(64)];
@@ -123,7 +123,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
         self.ordered = self.engine.orders;
     }
 
-    /// One step on; what the first rank is to know of it.
+    /// Makes one step; returns the report for the first rank.
     pub(super) fn advance(&mut self) -> Result<StepReport, RankError> {
         self.engine.put_in_order_if_due();
         self.look_up_again();
@@ -138,26 +138,26 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
             }
             Err(error) => (Err(error.into()), vec![]),
         };
-        // Lists were made again, perhaps.
+        // Lists may have been rebuilt.
         self.look_up_again();
         Ok(self.report(kept, &far))
     }
 
-    /// Looks up where discs are in memory, where they were put in order since.
+    /// Finds the indices again if the discs were sorted since.
     fn look_up_again(&mut self) {
         if self.ordered != self.engine.orders {
             self.look_up();
         }
     }
 
-    /// Brings all cells up to date; what the first rank is to know of it.
+    /// Updates all cells; returns the report for the first rank.
     pub(super) fn settle(&mut self) -> StepReport {
         let moved = self.engine.settle_all();
         self.look_up_again();
         self.report(moved, &[])
     }
 
-    /// Cells or lists after a step: lists are made again by all ranks or by none.
+    /// Updates cells or lists after a step: all ranks rebuild their lists, or none.
     fn keep(&mut self, left: &[u32]) -> Result<Result<Vec<Moved>, Failure>, RankError> {
         if self.engine.search.lists().is_none() {
             return Ok(self.engine.keep_in_cells(left));
@@ -177,10 +177,10 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
         })
     }
 
-    /// What became of discs that change cells, and discs that moved far.
+    /// Reports discs that changed cells and discs that moved far.
     fn report(&mut self, moved: Result<Vec<Moved>, Failure>, far: &[u32]) -> StepReport {
         let (moved, failure) = moved.map_or_else(|failure| (vec![], Some(failure)), |moved| (moved, None));
-        // Walls cross nothing that is counted.
+        // Crossings of walls are not counted.
         let grains = self.engine.start.grain_count();
         let crosses = |it: &&Moved| it.periods != [0.0; 2] && (it.number as usize) < grains;
         let crossed = moved.iter().filter(crosses).map(|it| (it.number as usize, it.periods)).collect();
@@ -198,7 +198,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
         }
     }
 
-    /// A disc as others know it.
+    /// Describes a disc for other ranks.
     fn record(&self, disc: u32) -> Record {
         let (engine, disc) = (&self.engine, disc as usize);
         Record {
@@ -211,7 +211,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
         }
     }
 
-    /// Whether this rank speaks for a disc: for those that it moves, and for walls in its rows.
+    /// True if this rank reports a disc: one that it owns, or a wall in its rows.
     fn is_own(&self, disc: usize) -> bool {
         let engine = &self.engine;
         let in_own_rows = || {
@@ -221,22 +221,22 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
         disc < engine.state.moving() || disc >= engine.state.grains() && in_own_rows()
     }
 
-    /// The discs that it speaks for.
+    /// Discs that this rank reports.
     fn own(&self) -> Vec<u32> {
         let discs = 0..self.engine.state.len();
         discs.filter(|&disc| self.is_own(disc)).map(|disc| disc as u32).collect()
     }
 
-    /// Moves the discs one step on, those first of which the neighbours are told: while these messages are under way all others move.
+    /// Advances the discs by one step, first those that neighbours need: the others advance while these messages are sent.
     fn pass(&mut self) -> Result<Result<Passed, ProgramError>, RankError> {
-        debug_assert_eq!(self.ordered, self.engine.orders, "places of discs in memory are those of before");
+        debug_assert_eq!(self.ordered, self.engine.orders, "indices of discs in memory are out of date");
         let Worker { ranks, engine, .. } = self;
         let moving = engine.state.moving();
         let inner = self.inner.clone();
         let outer = [0..inner.start, inner.end..moving].map(|discs| engine.pass(discs));
         let [first, last] = match outer {
             [Ok(first), Ok(last)] => [first, last],
-            // Every rank has these instructions, or none has.
+            // All ranks have these instructions, or none.
             [Err(error), _] | [_, Err(error)] => return Ok(Err(error)),
         };
         let begun = Instant::now();
@@ -260,7 +260,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
         Ok(between.map(|between| first.and(between).and(last)))
     }
 
-    /// All forces; what the first rank is to know of them.
+    /// Computes all forces; returns the report for the first rank.
     pub(super) fn compute_forces(&mut self, asked: Asked) -> ForcesReport {
         let met = self.engine.compute_forces(asked);
         let (met, failure) =
@@ -269,14 +269,14 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
         ForcesReport { distributed: Ok(()), failure, bands: met.of_bands, deep }
     }
 
-    /// The discs that it speaks for, each with some numbers.
+    /// Sends some values of each disc that this rank reports.
     pub(super) fn each_own<const N: usize>(&self, of: impl Fn(usize) -> [f64; N]) -> Parcel {
         let discs = self.own();
         let numbers = Parcel::of_numbers(discs.iter().flat_map(|&disc| of(disc as usize)));
         Parcel::of(&(self.numbers(&discs), numbers))
     }
 
-    /// Position, angle, and the rates of the three, of each at the end of the step.
+    /// Sends position, angle and their rates of each disc at the end of the step.
     pub(super) fn standing(&self) -> Parcel {
         let engine = &self.engine;
         let columns = [0, 1, 2].map(|freedom| {
@@ -291,27 +291,27 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
         })
     }
 
-    /// The entry of each in one of the columns that the next step depends on.
+    /// Sends the entries of a column of the state.
     pub(super) fn column(&self, place: usize) -> Parcel {
         let (discs, source) = (self.own(), self.engine.sources()[place]);
         let entries = entries(&self.engine.column_of(source, &discs));
         Parcel::of(&(self.numbers(&discs), Parcel::of_numbers(entries)))
     }
 
-    /// Which of the scene's discs these are.
+    /// Numbers of these discs in the scene.
     pub(super) fn numbers(&self, discs: &[u32]) -> Vec<u32> {
         discs.iter().map(|&disc| self.engine.number(disc as usize) as u32).collect()
     }
 
-    /// Those of its discs that belong to no cell, or of which a number is not finite.
+    /// Discs of this rank that belong to no cell or have a value that is not finite.
     pub(super) fn unfit(&self) -> Vec<usize> {
         let own: HashSet<u32> = self.numbers(&self.own()).into_iter().collect();
         self.engine.unfit_discs().into_iter().filter(|&number| own.contains(&(number as u32))).collect()
     }
 
-    /// What its bands meet at the end of the step.
+    /// Sweeps its bands at the end of the step.
     pub(super) fn contacts(&self) -> Result<Vec<OfBand>, RankError> {
-        debug_assert_eq!(self.ordered, self.engine.orders, "places of discs in memory are those of before");
+        debug_assert_eq!(self.ordered, self.engine.orders, "indices of discs in memory are out of date");
         let mut corrected = self.engine.corrected_discs();
         let parcels = self
             .to_in_memory
@@ -325,13 +325,13 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
         Ok(self.engine.contacts_met(&corrected).of_bands)
     }
 
-    /// Pairs that its rows have listed.
+    /// Number of pairs listed by its rows.
     pub(super) fn listed(&self) -> usize {
         let rows = self.layout.share(self.ranks.rank()).rows;
         self.engine.search.lists().map_or(0, |lists| lists.entries_of(rows))
     }
 
-    /// Periods that discs of other ranks have crossed. The first rank knows of them from their reports.
+    /// Adds the periods that discs of other ranks have crossed. The first rank knows them from their reports.
     pub(super) fn hear_of_crossings(&mut self, crossed: &[(usize, Crossed)]) {
         let own = self.ranks.rank();
         for &(rank, (number, periods)) in crossed {
@@ -342,7 +342,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
     }
 }
 
-/// Lists after a step. The largest that a rank says holds for all.
+/// State of the lists after a step. The largest reported by any rank applies to all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 enum Lists {
     Fresh,
@@ -350,12 +350,12 @@ enum Lists {
     Failed,
 }
 
-/// Entries of some discs in some columns.
+/// Packs entries of some discs in some columns.
 fn of_discs<'c, T: Element>(columns: impl Iterator<Item = &'c [T]>, discs: &[u32]) -> Parcel {
     Parcel::of_numbers(columns.flat_map(|column| discs.iter().map(|&disc| column[disc as usize].to_f64())))
 }
 
-/// Puts the entries that a rank has sent into columns.
+/// Stores the entries received from a rank in columns.
 fn put_discs<T: Element>(
     (from, parcel): (usize, &Parcel),
     columns: Vec<&mut [T]>,
@@ -369,8 +369,7 @@ fn put_discs<T: Element>(
     Ok(())
 }
 
-/// The most that lie in memory beside each other, of some discs that move, and are none of those told of. Discs lie there by their rows, so these are all
-/// but a few.
+/// Longest range in memory of moving discs that contains none to be sent. Discs are sorted by rows, so this is nearly all of them.
 fn inner_of(told: &[Vec<u32>; 2], moving: usize) -> Range<usize> {
     let mut told: Vec<usize> = told.iter().flatten().map(|&disc| disc as usize).collect();
     told.sort_unstable();
@@ -386,7 +385,7 @@ fn of_corrected(corrected: &mut Corrected) -> Vec<&mut [f64]> {
     columns.map(Vec::as_mut_slice).collect()
 }
 
-/// All rows, for a search that holds no discs yet.
+/// Share of all rows, for a search without discs.
 pub(super) fn all_rows(rows: Rows) -> Share {
     Share { rows: 0..rows.count, margin: 0 }
 }

@@ -1,4 +1,4 @@
-//! Pairs found on a lattice with at most one disc a cell.
+//! Pair search on a lattice with at most one disc a cell.
 
 use super::{Cells, Search, observed, rows};
 use crate::method::pairwise::state::{Move, State};
@@ -12,11 +12,11 @@ use stripmine_kernels::sweep::fast::{Copies, Discs, DisplacementLimit, Grid, Met
 use stripmine_kernels::sweep::lattice::{Frame, LatticeShape};
 
 define_words! {
-    /// What becomes of a disc whose lattice cell is another's.
+    /// Action for a disc in an occupied lattice cell.
     pub enum OnConflict {
         /// The run stops.
         Stop = "stop",
-        /// It is kept in a list beside the lattice, and every such disc and step counted.
+        /// The disc is kept in a list beside the lattice, and every such disc and step is counted.
         Resolve = "resolve",
     }
 }
@@ -48,7 +48,7 @@ impl<S: Precision> Cells<S> for LatticeCells {
         if self.on_conflict == OnConflict::Stop {
             return entered;
         }
-        // The cell is that one's with the smallest number: a state knows no history.
+        // The disc with the smallest number owns the cell, so that a state does not depend on its history.
         let mut sharing = disc;
         if state.number(disc) < state.number(owner) {
             occupancy.leave(owner);
@@ -65,13 +65,13 @@ impl<S: Precision> Cells<S> for LatticeCells {
 
     fn arrange(&mut self, state: &State<S>) {
         let occupancy = &mut self.occupancy;
-        // Discs that shared the cell of one that has gone have it to themselves.
+        // Discs that shared the cell of a departed disc now own it.
         for (disc, cell) in occupancy.shared_cells().to_vec() {
             let disc = disc as usize;
             if occupancy.disc(cell[0], cell[1]).is_none() {
                 occupancy.leave(disc);
                 let entered = occupancy.enter(disc, cell, state.place(disc), state.radius(disc));
-                assert!(entered.is_ok(), "nobody was in the cell");
+                assert!(entered.is_ok(), "the cell was empty");
             }
         }
         occupancy.repeat_images();
@@ -98,18 +98,18 @@ impl<S: Precision> Cells<S> for LatticeCells {
     }
 }
 
-/// Pairs of discs on a lattice.
+/// Pair search on a lattice.
 pub(crate) struct LatticeSearch<P> {
     cells: LatticeCells,
     codes: Codes<P>,
     sweep: Sweep<Candidates>,
     share: Option<Share>,
-    /// The smallest radius (length).
+    /// Smallest radius (length).
     smallest: f64,
 }
 
 impl<P: Precision> LatticeSearch<P> {
-    /// An empty lattice for as many discs as there are radii (length).
+    /// Creates an empty lattice for as many discs as there are radii (length).
     pub(crate) fn new<S: Precision>(
         shape: LatticeShape,
         frame: Frame,
@@ -179,7 +179,7 @@ impl<S: Precision, P: Precision> Search<S, P> for LatticeSearch<P> {
     ) -> Result<Met, ProgramError> {
         let occupancy = &self.cells.occupancy;
         let codes = Codes::new(occupancy, occupancy.grid().frame);
-        // Two discs may each have come nearer; no contact distance is less than two smallest radii.
+        // Both discs of a pair may have come nearer; no contact distance is below two smallest radii.
         let slack = moved / self.smallest;
         observed(law, &Lattice { occupancy, codes: &codes, slack }, self.share.as_ref(), discs, set)
     }

@@ -1,4 +1,4 @@
-//! Pairs found in Verlet lists, made again whenever a disc has moved half the skin.
+//! Pair search by Verlet lists, rebuilt whenever a disc has moved half the skin.
 
 use super::{Search, observed, rows};
 use crate::method::pairwise::state::State;
@@ -11,7 +11,7 @@ use stripmine_kernels::sweep::fast::{
     Copies, Discs, DisplacementLimit, Grid, Met, Rows, Sectors, Share, Sweep, Touches, VerletList,
 };
 
-/// The sectors in which discs were when the lists were made, and the lists.
+/// Verlet lists, and the sectors of the discs when they were built.
 pub(crate) struct ListSearch<S, P> {
     sectors: Sectors,
     sweep: Sweep<Touches<P>>,
@@ -19,21 +19,21 @@ pub(crate) struct ListSearch<S, P> {
     listed: Listed<S>,
 }
 
-/// Columns of the state and sums have smaller numbers.
+/// First alignment number of the positions at the build; columns of the state and sums have smaller ones.
 const MADE_AT: usize = 28;
 
-/// Lists, and what they were made from.
+/// Lists with the positions at which they were built.
 pub(crate) struct Listed<S> {
     list: Option<VerletList>,
     skin: f64,
-    /// Places when the lists were made.
+    /// Positions when the lists were built.
     made_at: [AlignedColumn<S>; 2],
     made: u64,
 }
 
 impl<S: Precision, P: Precision> ListSearch<S, P> {
-    /// No lists yet, for `discs` discs whose pairs act up to a distance `reach` (length); a listed pair may be farther
-    /// apart by `skin` (length). Sectors are wide enough for both.
+    /// Creates a search without lists, for `discs` discs whose pairs act up to a distance `reach` (length). Listed pairs may be farther apart by
+    /// `skin` (length); sectors are wide enough for both.
     pub(crate) fn new(grid: Grid, discs: usize, reach: f64, skin: f64) -> Self {
         let sectors = Sectors::new(grid, discs, reach);
         let sweep = Sweep::new(rows::<S, P, _>(&sectors));
@@ -106,7 +106,7 @@ impl<S: Precision, P: Precision> Search<S, P> for ListSearch<S, P> {
             }
             in_pieces(made_at, |first, piece| piece.copy_from_slice(&places[first..first + piece.len()]));
         }
-        // Not beside the new ones: they are as large.
+        // Free the old list first: it is as large as the new one.
         listed.list = None;
         listed.list = Some(VerletList::new(sectors, places, listed.skin));
         listed.made += 1;
@@ -122,32 +122,32 @@ impl<S: Precision, P: Precision> Search<S, P> for ListSearch<S, P> {
 }
 
 impl<S: Precision> Listed<S> {
-    /// Pairs listed.
+    /// Number of listed pairs.
     pub(crate) fn entries(&self) -> usize {
         self.list.as_ref().map_or(0, VerletList::entries)
     }
 
-    /// Pairs listed in some rows of sectors.
+    /// Number of listed pairs in some rows of sectors.
     pub(crate) fn entries_of(&self, rows: std::ops::Range<usize>) -> usize {
         self.list.as_ref().map_or(0, |list| list.entries_of(rows))
     }
 
-    /// How often lists were made.
+    /// Number of list builds.
     pub(crate) fn made(&self) -> u64 {
         self.made
     }
 
-    /// How much farther than contact a listed pair may be (length).
+    /// Largest gap of a listed pair (length).
     pub(crate) fn skin(&self) -> f64 {
         self.skin
     }
 
-    /// Where the discs were when the lists were made.
+    /// Positions of the discs along an axis when the lists were built.
     pub(crate) fn made_at(&self, axis: usize) -> &[S] {
         &self.made_at[axis]
     }
 
-    /// Whether a disc at a place is as far from there as it may be.
+    /// True if a disc has moved farther from there than half the skin.
     pub(crate) fn has_strayed(&self, disc: usize, place: [f64; 2]) -> bool {
         let [dx, dy] = [0, 1].map(|axis| place[axis] - self.made_at[axis][disc].to_f64());
         dx * dx + dy * dy > 0.25 * self.skin * self.skin

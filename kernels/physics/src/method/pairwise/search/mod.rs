@@ -1,4 +1,4 @@
-//! How the fast engine finds pairs: on a lattice, in sectors, or in Verlet lists.
+//! Pair search of the fast engine: on a lattice, in sectors, or in Verlet lists.
 
 mod lattice;
 mod lists;
@@ -19,76 +19,76 @@ use stripmine_kernels::sweep::fast::{
     Copies, Discs, DisplacementLimit, Finder, Grid, Met, Rows, Share, Sweep,
 };
 
-/// Cells, and which discs are in them. A disc's place is seen from the centre of its cell.
+/// Cells and the discs in them. Positions are relative to the centre of a disc's cell.
 pub(crate) trait Cells<S: Precision>: Send + Sync {
-    /// Where the cells lie, how many there are, and which sides are periodic.
+    /// Grid of the cells: frame, counts and periodic sides.
     fn grid(&self) -> Grid;
 
-    /// Column and row of a disc; none if it is in no cell.
+    /// Returns column and row of a disc; none if it is in no cell.
     fn cell(&self, disc: usize) -> Option<[usize; 2]>;
 
-    /// Takes a disc out of its cell.
+    /// Removes a disc from its cell.
     fn leave(&mut self, disc: usize);
 
-    /// Puts a disc into a cell.
+    /// Enters a disc into a cell.
     ///
     /// # Errors
-    /// [`Taken`] if the cell is another disc's.
+    /// [`Taken`] if another disc owns the cell.
     fn enter(&mut self, to: &Move, state: &State<S>) -> Result<(), Taken>;
 
-    /// A disc that stays in its cell is at another place there.
+    /// Updates the position of a disc that stays in its cell.
     fn settle(&mut self, _disc: usize, _place: [f64; 2]) {}
 
-    /// What is to be done when discs have changed their cells.
+    /// Updates the cells after discs have changed them.
     fn arrange(&mut self, state: &State<S>);
 
-    /// The discs in order of their cells.
+    /// Returns the discs in order of their cells.
     fn order(&self) -> Vec<u32>;
 
-    /// Disc `n` is from now on what disc `order[n]` was.
+    /// Renumbers: disc `n` becomes what disc `order[n]` was.
     fn renumber(&mut self, order: &[u32]);
 
-    /// Whether a cell must hold one disc only.
+    /// True if a cell must hold one disc only.
     fn is_exclusive(&self) -> bool {
         false
     }
 
-    /// The disc that a cell holds, where it must hold one only.
+    /// Returns the disc in a cell, if cells hold one disc only.
     fn owner(&self, _cell: [usize; 2]) -> Option<usize> {
         None
     }
 
-    /// How many of some discs are in cells that are another disc's, where one disc has a cell.
+    /// Returns how many of some discs are in cells owned by another disc, if one disc owns a cell.
     fn shared_cells(&self, _counts: &dyn Fn(usize) -> bool) -> usize {
         0
     }
 }
 
-/// Pairs, found with the help of cells.
+/// Pair search that uses cells.
 ///
-/// The engine is compiled for each search: what a search does not need costs nothing.
+/// The engine is compiled for each search, so that unused parts cost nothing.
 pub(crate) trait Search<S: Precision, P: Precision>: Send + Sync {
-    /// The kind of cells.
+    /// Type of the cells.
     type Cells: Cells<S>;
 
-    /// The same for as many discs in the scene, with room for `discs` of them, none in it, and those rows that a rank sees to.
+    /// Returns an empty search with space for `discs` discs and the rows of a rank.
     fn emptied(&self, discs: usize, share: Share) -> Self;
 
-    /// The rows of cells that a sweep is made for.
+    /// Returns the rows of cells that a sweep is built for.
     fn rows(&self) -> Rows;
 
     fn cells(&self) -> &Self::Cells;
 
-    /// The same, to be changed.
+    /// Mutable access to the cells.
     fn cells_mut(&mut self) -> &mut Self::Cells;
 
-    /// How far discs may go, and what else is written when they do.
+    /// Returns the displacement limit of discs, and the copies to update when discs move.
     fn displacement_limit(&mut self) -> (DisplacementLimit<'_, S>, Option<Copies<'_>>);
 
-    /// All pairs with a law.
+    /// Sweeps all pairs with a law.
     ///
     /// # Errors
-    /// [`ProgramError`] if the processor lacks the instructions, or the law asks for what it does not state.
+    /// [`ProgramError`] if the processor lacks the instructions, or the law needs a quantity that it does not declare.
     fn sweep<L: Law<2> + Sync>(
         &mut self,
         law: &L,
@@ -98,8 +98,8 @@ pub(crate) trait Search<S: Precision, P: Precision>: Send + Sync {
         set: InstructionSet,
     ) -> Result<Met, ProgramError>;
 
-    /// Energy, virial, number and depth of the contacts of discs in the cells or lists as they stand, at places up to `moved`
-    /// (length) from those of the last [`sweep`](Self::sweep). Nothing is changed.
+    /// Computes energy, virial, number and depth of the contacts in the current cells or lists, at positions up to `moved` (length) from those of the
+    /// last [`sweep`](Self::sweep). Nothing is changed.
     ///
     /// # Errors
     /// As [`sweep`](Self::sweep).
@@ -111,20 +111,19 @@ pub(crate) trait Search<S: Precision, P: Precision>: Send + Sync {
         set: InstructionSet,
     ) -> Result<Met, ProgramError>;
 
-    /// Makes lists, where there are such, from the state as it stands. Due whenever discs were renumbered.
+    /// Builds lists, if the search has any, from the current state. Needed whenever discs were renumbered.
     fn make_lists(&mut self, _state: &State<S>) {}
 
-    /// From now on lists count as made so often.
+    /// Sets the number of list builds.
     fn set_lists_made(&mut self, _made: u64) {}
 
-    /// The lists, where there are such.
+    /// Returns the lists, if the search has any.
     fn lists(&self) -> Option<&Listed<S>> {
         None
     }
 }
 
-/// What a sweep in double precision sees of the pairs of a finder: the sweep of the forces in that precision, so that nothing
-/// more is compiled; its forces are thrown away.
+/// Observes the pairs of a finder with the force sweep in double precision, so that nothing more is compiled; the forces are discarded.
 fn observed<F: Finder<f64, f64>, L: Law<2> + Sync>(
     law: &L,
     finder: &F,
@@ -144,7 +143,7 @@ fn observed<F: Finder<f64, f64>, L: Law<2> + Sync>(
     )
 }
 
-/// The rows that a sweep for a finder is made for.
+/// Returns the rows that a sweep for a finder is built for.
 fn rows<S: Precision, P: Precision, F: Finder<S, P>>(finder: &F) -> Rows {
     finder.rows()
 }

@@ -1,4 +1,4 @@
-//! Pairs found in sectors, which hold any number of discs.
+//! Pair search in sectors, which hold any number of discs.
 
 use super::{Cells, Search, observed, rows};
 use crate::method::pairwise::state::{Move, State};
@@ -42,7 +42,7 @@ impl<S: Precision> Cells<S> for Sectors {
     }
 }
 
-/// Pairs of discs in sectors.
+/// Pair search in sectors.
 pub(crate) struct SectorSearch<P> {
     sectors: Sectors,
     sweep: Sweep<Touches<P>>,
@@ -50,7 +50,7 @@ pub(crate) struct SectorSearch<P> {
 }
 
 impl<P: Precision> SectorSearch<P> {
-    /// Empty sectors for `discs` discs whose pairs act up to a distance `reach` (length).
+    /// Creates empty sectors for `discs` discs whose pairs act up to a distance `reach` (length).
     pub(crate) fn new<S: Precision>(grid: Grid, discs: usize, reach: f64) -> Self {
         let sectors = Sectors::new(grid, discs, reach);
         let sweep = Sweep::new(rows::<S, P, _>(&sectors));
