@@ -42,7 +42,7 @@ pub(super) struct Running {
     row: Mark,
     /// Kinetic and potential energy at the start.
     start: [f64; 2],
-    /// True if further events are possible; asked at most once between two events.
+    /// True if the idleness check has run since the last event and proved nothing.
     may_meet: bool,
     /// The particles at the start, shared with the scene, and the index among them of each disc.
     particles: Arc<Particles>,

@@ -42,7 +42,7 @@ pub(super) fn step_limits(scene: &Scene, particles: Colliding) -> Vec<StepLimit>
         let (step, nearest) = stiffest(scene, particles, energy);
         limits.push(limit("hardest-collision", step, Beyond::Unstable, {
             format!(
-                "2 √(m/(2 U″)) where the potential is {} kT, at {:.3} diameters: beyond it, the stiffness of the pair ejects particles",
+                "2 √(m/(2 U″)) where the potential is {} kT, at {:.3} diameters: a longer step ejects pairs of this stiffness",
                 significant(energy, 3),
                 nearest / diameter
             )
@@ -54,7 +54,7 @@ pub(super) fn step_limits(scene: &Scene, particles: Colliding) -> Vec<StepLimit>
             "friction",
             step,
             Beyond::Unstable,
-            "2 m/γ: beyond it, friction reverses the velocity".to_owned(),
+            "2 m/γ: with a longer step friction reverses the velocity".to_owned(),
         ));
     }
     limits

@@ -1,4 +1,4 @@
-//! Configurations of nbody runs, and the theoretical order of their error.
+//! Trial configurations of bodies, and the theoretical order of their error.
 
 use super::checked::prepare;
 use super::keys::{ECCENTRICITY, ENGINE, INTEGRATOR, SOFTENING};

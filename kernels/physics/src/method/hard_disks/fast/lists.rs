@@ -55,7 +55,7 @@ pub(crate) fn displacement_limit(
         (count + 1.0, radius.max(largest), sum + radius)
     });
     let bounded = (0..2).all(|axis| domain.length(axis).is_finite());
-    // In an infinite box discs may be close-packed near the floor.
+    // In an infinite box discs may be packed densely near the floor.
     let density = if bounded { count / domain.area() } else { 0.5 / (largest * largest) };
     let sight = ((most + 1.0) / (std::f64::consts::PI * density)).sqrt();
     let wanted = 0.5 * (sight - 2.0 * sum / count);
