@@ -97,7 +97,7 @@ pub(super) static VOCABULARY: Vocabulary = Vocabulary {
             ("law.drag", "hard discs have no bath: they fly freely between collisions"),
             ("law.friction", "hard discs are smooth and do not spin"),
             ("law.stiffness", "hard discs are rigid: `law.restitution` sets the energy lost in a collision"),
-            ("machine.precision", "hard discs are always simulated in double precision"),
+            ("machine.precision", "hard discs are always in double precision"),
         ],
     },
     rules: &[disagreements, own_rules],
