@@ -34,7 +34,7 @@ pub(super) struct Watch {
     discs: u64,
     /// Time in which a disc falls through a radius; infinite without gravity.
     fall: f64,
-    /// Discs with events in this window, at most one more than [`FEW`].
+    /// Discs with events in this window, at most `FEW` + 1.
     involved: Vec<u32>,
     /// Consecutive windows, up to this one, in which few discs had many events.
     thick: u64,
