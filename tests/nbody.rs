@@ -206,7 +206,7 @@ fn what_cannot_be_is_refused_and_what_breaks_is_said() {
         &[],
     );
     assert_eq!(lost.status.code(), Some(4), "{}", said(&lost));
-    assert!(said(&lost).contains("not any more"), "{}", said(&lost));
+    assert!(said(&lost).contains("have become unbound"), "{}", said(&lost));
 }
 
 /// Two ways of one scene beside each other: exact arithmetic has the same bits on two instruction sets; the sum as it is written rounds

@@ -244,7 +244,7 @@ fn bodies_have_the_bits_of_one_rank() {
         }
     }
     let (few, _) = load("plummer", &["particles.count=100".to_owned()], METHODS).unwrap();
-    assert!(seen(&few, 8, 1).unwrap_err().contains("bands of rows that all pairs have"));
+    assert!(seen(&few, 8, 1).unwrap_err().contains("bands of rows of the all-pairs sum"));
     let (kepler, _) = load("kepler", &[], METHODS).unwrap();
     assert!(seen(&kepler, 2, 1).unwrap_err().contains("only machine.engine = \"fast\""));
 }

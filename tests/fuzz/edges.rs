@@ -109,7 +109,7 @@ fn runs_without_an_end_are_refused_with_the_bound() {
             &["particles.mass=9e180", "run.events=100000"],
             [
                 "`run.thermo_every` = 1 makes about",
-                "rows in the time that `run.events` = 100000 takes",
+                "rows in the duration of `run.events` = 100000",
                 "or at least",
             ],
         ),

@@ -1,10 +1,10 @@
-//! What is measured of hard discs.
+//! Benchmark of hard discs.
 
 use super::quantities::QUANTITIES;
 use crate::method::entry::bench_options;
 use crate::method::{Bench, Until};
 
-/// The benchmark.
+/// Benchmarks of the method.
 pub(crate) const BENCHES: &[Bench] = &[Bench {
     name: "hard-disks",
     doc: "ISO99's event-driven hard discs",

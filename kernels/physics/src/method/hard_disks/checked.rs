@@ -1,4 +1,4 @@
-//! A scene of hard discs, held against what the method demands.
+//! Checks a scene of hard discs against the preconditions of the method.
 
 use super::compress::compress;
 use super::fast;
@@ -19,23 +19,23 @@ use std::sync::Arc;
 use stripmine_kernels::flight::Disc;
 use stripmine_kernels::mask::Mask;
 
-/// A checked scene.
+/// Checked scene of hard discs.
 #[derive(Clone)]
 pub(super) struct Checked {
     pub(super) scene: Scene,
     pub(super) domain: Domain,
-    /// Shared with the simulation: there are many.
+    /// Shared with the simulation to save memory.
     pub(super) particles: Arc<Particles>,
-    /// The mask, where events are found the source's way.
+    /// Mask of the reference engine; none for the fast engine.
     pub(super) mask: Option<Mask>,
     pub(super) warnings: Vec<Warning>,
     pub(super) choices: Vec<String>,
 }
 
-/// Makes the discs of a scene and holds it against every precondition.
+/// Places the discs of a scene and checks every precondition.
 ///
 /// # Errors
-/// [`SceneErrors`]: every precondition that does not hold.
+/// [`SceneErrors`] with every violated precondition.
 pub(super) fn prepare(values: Values) -> Result<Prepared, SceneErrors> {
     let (mut scene, mut read) = (Scene::default(), Read::new(&values));
     scene.bind(&mut read);
@@ -57,7 +57,9 @@ pub(super) fn prepare(values: Values) -> Result<Prepared, SceneErrors> {
         errors.extend(found.into_iter().map(|error| match error.suggestion {
             Some(_) => error,
             None => {
-                error.advising("move the discs apart, lower their radii, or write positions with more digits")
+                error.advising(
+                    "move the discs apart, lower their radii, or write positions in higher precision",
+                )
             }
         }));
     }
@@ -76,7 +78,7 @@ pub(super) fn prepare(values: Values) -> Result<Prepared, SceneErrors> {
     SceneErrors::none_of(errors)?;
     SceneErrors::none_of(without_events(&values, &scene, domain, &particles).into_iter().collect())?;
     if let Some(thermal) = &mut scene.law.thermal {
-        // Written down where the start has no seed.
+        // Written into the scene if the start has no seed.
         if scene.start.seed().is_none() {
             scene.noise_seed.get_or_insert(thermal.seed);
         }
@@ -88,7 +90,7 @@ pub(super) fn prepare(values: Values) -> Result<Prepared, SceneErrors> {
     Ok(checked.prepared())
 }
 
-/// Discs that reach beyond closed sides.
+/// Error for a disc that reaches beyond a closed side.
 fn beyond_sides(values: &Values, domain: &Domain, particles: &Particles) -> Option<SceneError> {
     let beyond = |disc: &&Particle| {
         (0..2).any(|axis| match domain.sides[axis] {
@@ -109,14 +111,14 @@ fn beyond_sides(values: &Values, domain: &Domain, particles: &Particles) -> Opti
     Some(error.advising("make the sides periodic, or list discs at least a radius away from the sides"))
 }
 
-/// A floor that comes so high that a disc has no room below the ceiling.
+/// Error for a floor that rises so high that a disc does not fit below the ceiling.
 fn squeezed(values: &Values, scene: &Scene, domain: &Domain, particles: &Particles) -> Option<SceneError> {
     let swing = 2.0 * scene.law.floor?.amplitude;
     let [_, largest] = particles.radii()?;
     let room = domain.length(1) - swing;
     (!scene.open_top && room < 2.0 * largest).then(|| {
         let message = format!(
-            "the floor rises by {swing} and leaves {} below the ceiling to a disc of radius {largest}",
+            "the floor rises by {swing} and leaves a height of {} below the ceiling for a disc of radius {largest}",
             significant(room, 7)
         );
         let error = values.spot(&FLOOR_AMPLITUDE).error(Reason::Geometry, message);
@@ -126,7 +128,7 @@ fn squeezed(values: &Values, scene: &Scene, domain: &Domain, particles: &Particl
     })
 }
 
-/// Discs that nothing moves.
+/// Error for wall discs, which hard discs do not support.
 fn fixed(values: &Values, particles: &Particles) -> Option<SceneError> {
     let count = particles.len() - particles.grain_count();
     (count > 0).then(|| {
@@ -136,7 +138,7 @@ fn fixed(values: &Values, particles: &Particles) -> Option<SceneError> {
     })
 }
 
-/// Events of discs that have none.
+/// Error for a run of events in a scene that can have none.
 fn without_events(
     values: &Values,
     scene: &Scene,
@@ -145,13 +147,13 @@ fn without_events(
 ) -> Option<SceneError> {
     let is_idle = || never(&scene.arena(domain), &discs(&domain, particles).0);
     (matches!(scene.run.until, Until::Events(_)) && is_idle()).then(|| {
-        let message = "nothing will ever happen: no disc meets another one or a side";
+        let message = "nothing will ever happen: no disc meets another disc or a side";
         let error = values.spot(&EVENTS).error(Reason::Contradiction, message);
-        error.advising("give the discs a temperature or other velocities, or ask for a time")
+        error.advising("give the discs a temperature or other velocities, or set run.time")
     })
 }
 
-/// The discs by id, as events see them at the start; and for each the place of its particle.
+/// Returns the discs in the order of their ids, and the index of the particle of each.
 fn discs(domain: &Domain, particles: &Particles) -> (Vec<Disc>, Vec<usize>) {
     let all = particles.all();
     let mut order: Vec<usize> = (0..all.len()).collect();
@@ -167,7 +169,7 @@ fn discs(domain: &Domain, particles: &Particles) -> (Vec<Disc>, Vec<usize>) {
     (order.iter().map(disc).collect(), order)
 }
 
-/// How events are found: the mask of the source's way; none for the fast one.
+/// Selects the engine. Returns the mask of the reference engine, or none for the fast engine.
 fn way_of(
     values: &Values,
     scene: &mut Scene,
@@ -178,7 +180,7 @@ fn way_of(
 ) -> Result<Option<Mask>, SceneError> {
     let all = particles.all().iter().map(|disc| disc.radius);
     let displacement_limit = fast::displacement_limit(&scene.arena(*domain), all);
-    let small = "the box is too small for lists: a disc would see others across two of its sides";
+    let small = "the box is too small for lists: a disc would list others across two of its sides";
     let way = match (scene.engine, displacement_limit) {
         (EngineChoice::Fast, None) => {
             let error = values.spot(&ENGINE).error(Reason::Geometry, small);
@@ -202,7 +204,7 @@ fn way_of(
     serving(values, scene, domain, radii, particles.len(), choices).map(Some)
 }
 
-/// The mask that was asked for, or the cheapest.
+/// Returns the requested mask, or the cheapest one.
 fn serving(
     values: &Values,
     scene: &mut Scene,
@@ -216,7 +218,7 @@ fn serving(
     let refused = |message: String| {
         let error = values.spot(&MASK).error(Reason::Geometry, message);
         match serve.as_slice() {
-            [] => error.advising("take a larger box, or radii that differ less"),
+            [] => error.advising("use a larger box, or radii that differ less"),
             names => error.expecting(format!("one of {}", names.join(", "))),
         }
     };
@@ -227,7 +229,7 @@ fn serving(
         Some(own) if own.predictions.is_finite() => {}
         Some(own) => {
             return Err(refused(format!(
-                "mask {} does not serve {in_words}: it meets itself across a periodic side, or discs reach beyond it",
+                "mask {} does not serve {in_words}: it overlaps itself across a periodic side, or discs reach beyond it",
                 own.name
             )));
         }
@@ -238,7 +240,7 @@ fn serving(
             };
             best.name.clone_into(&mut scene.mask);
             choices.push(format!(
-                "search.mask = \"{}\": about {:.0} predictions a collision, the fewest of all masks",
+                "search.mask = \"{}\": about {:.0} predictions per collision, the fewest of all masks",
                 best.name, best.predictions
             ));
         }
@@ -247,7 +249,7 @@ fn serving(
 }
 
 impl Checked {
-    /// The discs by id, as events see them at the start; and for each the place of its particle.
+    /// Returns the discs in the order of their ids, and the index of the particle of each.
     pub(super) fn discs(&self) -> (Vec<Disc>, Vec<usize>) {
         discs(&self.domain, &self.particles)
     }

@@ -1,58 +1,58 @@
-//! Collisions without end: found out, so that no run hangs.
+//! Detection of infinitely many collisions, so that no run hangs.
 //!
-//! - Inelastic collapse: discs of e < 1 may collide without end in a finite time.
-//! - Rest: a disc that has come to lie on a side, or on discs that do, bounces on for ever, as often as it takes the contact
-//!   duration of the TC model to make bounces elastic. Hard discs have no contact that lasts.
+//! - Inelastic collapse: discs of e < 1 may collide infinitely often in a finite time.
+//! - Rest: a disc that lies on a side, or on resting discs, bounces for ever, at the rate at which the contact duration of the
+//!   TC model makes bounces elastic. Hard discs have no lasting contacts.
 
 use super::engine::{Occurred, Partner};
 use crate::io::checkpoint::Column;
 use crate::method::Snapshot;
 
-/// Events of a window.
+/// Events per window.
 const WINDOW: u64 = 256;
-/// Discs collapse where a window lasts less than this part of the time in which a typical disc flies through a radius.
+/// A window shorter than this fraction of the time in which a typical disc flies through a radius is a collapse.
 const PART: f64 = 1e-12;
-/// Discs rest that bounce, on average, more often than after this part of the time in which they fall through a radius: ten million
-/// events for what would be one.
+/// Discs are at rest if they bounce, on average, more often than once in this fraction of the time to fall through a radius: ten
+/// million events instead of one.
 const AT_REST: f64 = 1e-7;
-/// Windows in a row after which that is no chance.
+/// Consecutive windows after which rest is no coincidence.
 const WINDOWS: u64 = 16;
-/// Discs that rest on each other, of which one has come to rest first; where more have events nothing rests.
+/// Largest group of discs that can count as resting; if more discs have events, nothing rests.
 const FEW: usize = 16;
-/// The column of those in a checkpoint.
+/// Column of the involved discs in a checkpoint.
 const INVOLVED: &str = "watch.involved";
 
-/// Looks at how time passes.
+/// Monitor of the event rate.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Watch {
     events: u64,
     begun: f64,
-    /// The time in which a typical disc flies through a radius, and the events until it is worked out once more: as many as there
-    /// are discs, for each changes the motion of two.
+    /// Time in which a typical disc flies through a radius, and the events until it is recalculated. These are as many as there are
+    /// discs, because each event changes the motion of at most two.
     crossing: f64,
     renewed_after: u64,
     discs: u64,
-    /// The time in which a disc falls through a radius; infinite where nothing falls.
+    /// Time in which a disc falls through a radius; infinite without gravity.
     fall: f64,
-    /// Discs of the events of this window, one more than a few at most.
+    /// Discs with events in this window, at most `FEW` + 1.
     involved: Vec<u32>,
-    /// Windows in a row, up to this one, in which a few discs had events thick and fast.
+    /// Consecutive windows, up to this one, in which few discs had many events.
     thick: u64,
 }
 
-/// What was found: events, and how long they took (time).
+/// Finding of the monitor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Endless {
-    /// Whether discs have come to rest; otherwise they collapse.
+    /// True if discs have come to rest; false for a collapse.
     pub(crate) rests: bool,
     pub events: u64,
-    /// How long they took (time).
+    /// Duration of the events (time).
     pub duration: f64,
 }
 
 impl Watch {
-    /// From the start on: `crossing` is the time in which a typical one of `discs` discs flies through a radius, `fall` that in which
-    /// one falls through a radius, infinite where nothing falls.
+    /// Starts the monitor. `crossing` is the time in which a typical disc flies through a radius, `fall` the time to fall through a
+    /// radius, infinite without gravity.
     pub(super) fn new(crossing: f64, fall: f64, discs: usize) -> Watch {
         let discs = discs as u64;
         Watch {
@@ -67,10 +67,10 @@ impl Watch {
         }
     }
 
-    /// Takes up what a checkpoint kept.
+    /// Restores the state of a checkpoint.
     ///
     /// # Errors
-    /// A sentence, if it was not kept.
+    /// A message if it is missing.
     pub(super) fn restore(&mut self, kept: &Snapshot) -> Result<(), String> {
         self.events = kept.count("watch.events")?;
         self.begun = kept.time("watch.begun")?;
@@ -81,7 +81,7 @@ impl Watch {
         Ok(())
     }
 
-    /// What a checkpoint keeps of it.
+    /// Adds the state to a checkpoint.
     pub(super) fn keep(&self, kept: &mut Snapshot) {
         kept.add_count("watch.events", self.events);
         kept.add_sum("watch.begun", self.begun);
@@ -92,7 +92,7 @@ impl Watch {
         kept.add_column(INVOLVED, Column::U32(self.involved.clone()));
     }
 
-    /// An event; `crossing` says how long a typical disc flies through a radius now.
+    /// Registers an event. `crossing` returns the current time in which a typical disc flies through a radius.
     #[inline]
     pub(crate) fn see(&mut self, happened: &Occurred, crossing: impl FnOnce() -> f64) -> Option<Endless> {
         self.events += 1;
@@ -135,7 +135,7 @@ mod tests {
         Occurred { time, disc, with, impact: None, thrust: 0.0, work: 0.0, action: 0.0, free: [0.0; 2] }
     }
 
-    /// Events that are at most so far apart, of a group of discs in turn: after how many events that is found to be endless.
+    /// Feeds events `apart` in time, of `discs` discs in turn. Returns the number of events until detection, and the finding.
     fn found(fall: f64, apart: f64, discs: u32) -> Option<(u64, bool)> {
         let mut watch = Watch::new(1.0, fall, 100);
         (1..=20_000).find_map(|event| {
@@ -147,7 +147,7 @@ mod tests {
     #[test]
     fn rest_is_told_from_collapse_and_from_busy_discs() {
         assert_eq!(found(1.0, 1e-8, 1), Some((4096, true)));
-        // Two in step: each bounces half as often.
+        // Two discs in step: each bounces half as often.
         assert_eq!(found(1.0, 1e-8, 2), Some((4096, true)));
         assert_eq!(found(1.0, 1e-8, 11), None);
         assert_eq!(found(1.0, 2e-7, 1), None);

@@ -1,22 +1,21 @@
-//! Rows of `events.csv`: a collision each.
+//! Rows of `events.csv`, one per collision.
 
 use super::engine::{Occurred, Partner};
 use super::event::Arena;
 use std::fmt::Write;
 use stripmine_kernels::flight::Disc;
 
-/// The columns. `partner` is an id or the name of a side; the point is that of contact; the impulse is what `disc` was given, by a side only
-/// across it;
-/// free times are those since the event before of either disc, the first ones since the start.
+/// Columns. `partner` is an id or the name of a side. `x` and `y` are the point of contact. The impulse is that given to `disc`; a side
+/// gives one only across itself. Free times are counted from the previous event of either disc, or from the start.
 pub(super) const COLUMNS: &str =
     "event,time,disc,partner,x,y,impulse_x,impulse_y,free_time,partner_free_time";
 
-/// Rows not yet taken.
+/// Rows that have not been taken yet.
 #[derive(Debug, Default)]
 pub(super) struct Log(String);
 
 impl Log {
-    /// Adds what has just happened, as event number `event`; discs are given by their numbers, as they now are.
+    /// Adds an event with number `event`; `disc` returns discs in their state after it.
     pub(super) fn add<'d>(
         &mut self,
         event: u64,
@@ -57,7 +56,7 @@ impl Log {
         let _ = writeln!(self.0, "{event},{time:?},{id},{partner},{x:?},{y:?},{across:?},{along:?},{free}");
     }
 
-    /// The rows since this was last asked.
+    /// Returns the rows since the last call.
     pub(super) fn take(&mut self) -> String {
         std::mem::take(&mut self.0)
     }

@@ -1,4 +1,4 @@
-//! Dense starts: discs grow while they move and collide (Lubachevsky and Stillinger), until they have the radii that they should.
+//! Dense starts by the Lubachevsky–Stillinger method: discs move and collide while their radii grow to the final values.
 
 use super::engine::Engine;
 use super::event::{Arena, Law};
@@ -10,22 +10,22 @@ use stripmine_kernels::InstructionSet;
 use stripmine_kernels::flight::{Disc, Growth};
 use stripmine_kernels::noise::{Purpose, normals};
 
-/// Radii grow by this part of themselves while a typical disc flies through the mean radius: fast while there is room, slowly where
-/// order has to find its place.
+/// Relative growth of the radii while a typical disc flies through the mean radius: fast at low density, slow where the
+/// discs have to order.
 const GROWTH: [f64; 2] = [0.02, 0.001];
-/// The packing fraction from which on they grow slowly.
+/// Packing fraction above which the radii grow slowly.
 const CROWDED: f64 = 0.65;
-/// Radii grow this much beyond what they should be (relative), so that rounding lets none overlap.
+/// Relative excess of the final radii, so that rounding causes no overlap.
 const BEYOND: f64 = 1e-9;
-/// Events of each disc after which velocities are brought back to the temperature: growth heats.
+/// Events per disc between rescalings of the velocities: growth heats the discs.
 const BETWEEN: u64 = 20;
-/// Events of each disc after which there is no more hope.
+/// Events per disc after which the compression is given up as jammed.
 const MOST: u64 = 40_000;
 
-/// Lets discs grow from `scale` times their radii to the whole, by which their positions change; velocities are left as they are.
+/// Moves discs so that they can grow from `scale` times their radii to the full radii. Velocities stay unchanged.
 ///
 /// # Errors
-/// [`Uncompressed`]: how far they came, or why they cannot.
+/// [`Uncompressed`], with the packing fraction reached, or if the box is too small.
 pub fn compress(domain: &Domain, grains: &mut [Particle], scale: f64, seed: u64) -> Result<(), Uncompressed> {
     let count = grains.len() as u64;
     let mean = grains.iter().map(|grain| grain.radius).sum::<f64>() / count.max(1) as f64;
@@ -36,7 +36,7 @@ pub fn compress(domain: &Domain, grains: &mut [Particle], scale: f64, seed: u64)
     if displacement_limit(&arena, grains.iter().map(|grain| grain.radius)).is_none() {
         return Err(Uncompressed::TooSmall);
     }
-    // Masses are of no matter here: all are 1, and so is kT; speeds are in mean radii.
+    // Masses do not matter here: all masses and kT are 1; speeds are in mean radii.
     let mut discs: Vec<Disc> = grains
         .iter()
         .map(|grain| Disc {
@@ -116,7 +116,7 @@ mod tests {
         grains
     }
 
-    /// Nothing overlaps, and nothing reaches beyond a closed side, at packing fractions that no random placement reaches.
+    /// No disc overlaps another or a closed side, at packing fractions that random placement cannot reach.
     #[test]
     fn discs_grow_until_they_have_their_radii() {
         for (packing, spread, periodic) in

@@ -1,4 +1,4 @@
-//! What every way to find events offers, and what it says of them. All give the same events at the same times, to the bit.
+//! Interface of the engines that find events. All engines give the same events at the same times, to the bit.
 
 use super::event::{Arena, Bounce, Impact};
 use super::operations::Operations;
@@ -6,86 +6,86 @@ use crate::method::Snapshot;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::flight::Disc;
 
-/// A way to find events, with the discs under way. Discs are known by their numbers, in the order of their ids.
+/// Event-driven engine, which owns the moving discs. Discs are numbered in the order of their ids.
 pub(crate) trait Engine: Send {
-    /// How many discs there are.
+    /// Number of discs.
     fn count(&self) -> usize;
 
-    /// A disc, as it was after its last event.
+    /// Returns a disc in its state after its last event.
     fn disc(&self, number: u32) -> &Disc;
 
-    /// The next event, if it comes no later than `until` (time) and before the partners of all discs have been found `most`
-    /// times.
+    /// Executes the next event if it comes no later than `until` (time) and before all discs have had their partners searched
+    /// `most` times.
     ///
     /// # Errors
-    /// [`EngineError`]: what must not be.
+    /// [`EngineError`] if a precondition of the engine is broken.
     fn next(&mut self, until: f64, most: u64) -> Result<Option<Occurred>, EngineError>;
 
-    /// How often the partners of a disc were found, of all discs together over their number.
+    /// Number of partner searches per disc.
     fn rebuilds(&self) -> u64;
 
-    /// What it has done for its events.
+    /// Counts of the operations so far.
     fn operations(&self) -> Operations;
 
-    /// What a checkpoint keeps of it beside the discs, so that it goes on as if there had been none.
+    /// State beside the discs that a checkpoint needs for a bitwise resumption.
     fn snapshot(&self) -> Snapshot;
 
-    /// Takes up discs, by their numbers, and what was kept beside them.
+    /// Restores discs, in the order of their numbers, and the state of a checkpoint.
     ///
     /// # Errors
-    /// A sentence, if it is not of this engine and these discs.
+    /// A message if the state does not belong to this engine and these discs.
     fn restore(&mut self, discs: Vec<Disc>, kept: &Snapshot) -> Result<(), String>;
 
-    /// What it says of itself in a summary: names and values.
+    /// Names and values of the engine for the summary of a run.
     fn figures(&self) -> Vec<(&'static str, f64)>;
 }
 
-/// What a disc meets.
+/// Partner of a disc in an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Partner {
-    /// A disc, by its number.
+    /// Disc, by number.
     Disc(u32),
-    /// A closed side across an axis.
+    /// Closed side across an axis.
     Wall(u8),
 }
 
-/// What has happened.
+/// Event that has been executed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Occurred {
-    /// When (time).
+    /// Time of the event.
     pub time: f64,
-    /// To which disc, the one with the smaller number of two.
+    /// Number of the disc; of two discs the smaller number.
     pub disc: u32,
     pub with: Partner,
-    /// Of two discs: how.
+    /// Collision data, for two discs.
     pub(crate) impact: Option<Impact>,
-    /// What a wall has done to the disc (mass · length/time); 0 between discs.
+    /// Momentum given by a wall (mass · length/time); 0 between discs.
     pub(crate) thrust: f64,
-    /// Energy given to the discs; below 0 where it is taken.
+    /// Energy given to the discs; negative if taken.
     pub work: f64,
-    /// Action of the flights that end here (energy · time); 0 where the kinetic energy never changes.
+    /// Action of the flights that end in the event (energy · time); 0 if the kinetic energy is constant.
     pub action: f64,
-    /// Time since the event before, of the disc and of the one that it met.
+    /// Time since the previous event of the disc and of its partner.
     pub free: [f64; 2],
 }
 
-/// Why the discs stop.
+/// Failure of an engine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum EngineError {
-    /// Two discs have their centres in one cell: they overlap.
+    /// Two discs have their centres in one cell, so they overlap.
     SharedCell([u32; 2]),
-    /// A disc is so high that the look-up of cells above a floor takes too many entries.
+    /// A disc is so high above the floor that the cell look-up needs too many entries.
     TooHigh(u32, usize),
-    /// An event lies before one that has happened (time, time).
+    /// An event is earlier than the last one (time, time).
     BackInTime(u32, f64, f64),
-    /// A disc has more others around it than can be listed.
+    /// A disc has more neighbours than a list can hold.
     Crowded(u32, usize),
-    /// This processor has no such instructions.
+    /// The processor lacks the instruction set.
     NoInstructions(InstructionSet),
 }
 
 impl Occurred {
-    /// Two discs collide, known by their numbers and in any order.
+    /// Collides two discs, given with their numbers in any order.
     #[inline]
     pub(crate) fn collision(arena: &Arena, a: (u32, &mut Disc), b: (u32, &mut Disc), time: f64) -> Occurred {
         let ((a, one), (b, other)) = if a.0 < b.0 { (a, b) } else { (b, a) };
@@ -106,7 +106,7 @@ impl Occurred {
         }
     }
 
-    /// A disc meets a closed side across an axis.
+    /// Reflects a disc from a closed side across an axis.
     #[inline]
     pub(crate) fn at_wall(arena: &Arena, (number, disc): (u32, &mut Disc), axis: u8, time: f64) -> Occurred {
         let free = [time - disc.time, 0.0];

@@ -1,4 +1,4 @@
-//! The entry of hard discs in the list of methods.
+//! Entry of hard discs in the list of methods.
 
 use super::benches::BENCHES;
 use super::checked::prepare;

@@ -1,4 +1,4 @@
-//! What discs fly between, and what their events do to them. Nothing here knows how events are found.
+//! Box, flight and collision rules of hard discs, independent of how events are found.
 
 use super::fall::fall;
 use super::floor::Floor;
@@ -7,75 +7,75 @@ use crate::observe::conserved_axes;
 use stripmine_kernels::flight::{Disc, Growth, Space};
 use stripmine_kernels::noise::{Purpose, normals};
 
-/// What collisions do.
+/// Collision law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Law {
-    /// Restitution of two discs: relative normal speed after over that before.
+    /// Restitution of two discs: ratio of the relative normal speeds after and before the collision.
     pub restitution: f64,
     /// Restitution at walls.
     pub(crate) wall_restitution: f64,
-    /// A collision sooner than this after another event of either disc is elastic (time): the TC model of Luding and McNamara.
+    /// Collisions sooner than this after another event of either disc are elastic (time): TC model of Luding and McNamara.
     pub contact_duration: f64,
-    /// The side that gives back discs of a temperature; none where all reflect.
+    /// Thermal side, if any.
     pub(crate) thermal: Option<Thermal>,
-    /// How the floor, the lower end of the second side, moves; none where it is at rest.
+    /// Motion of the floor, the lower end of the second side; none if it is at rest.
     pub floor: Option<Floor>,
 }
 
 impl Law {
-    /// Nothing is lost, and no side does more than reflect.
+    /// Elastic collisions and reflecting sides.
     pub(crate) const ELASTIC: Law =
         Law { restitution: 1.0, wall_restitution: 1.0, contact_duration: 0.0, thermal: None, floor: None };
 }
 
-/// A wall that takes discs up and gives them back with velocities of its own temperature.
+/// Thermal wall, which re-emits discs with velocities of its own temperature.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Thermal {
-    /// The side: axis, and whether it is the upper one.
+    /// Axis of the side; true for the upper one.
     pub side: (usize, bool),
-    /// Its temperature kT (energy).
+    /// Temperature kT (energy).
     pub temperature: f64,
-    /// The seed of its velocities.
+    /// Seed of its velocities.
     pub seed: u64,
 }
 
-/// What a collision was.
+/// Result of a collision of two discs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Impact {
-    /// What the disc with the smaller number is given (mass · length/time).
+    /// Impulse given to the disc with the smaller number (mass · length/time).
     pub impulse: [f64; 2],
-    /// Impulse times the distance of the centres (mass · length²/time): what it adds to the virial.
+    /// Contribution to the virial: impulse times the distance of the centres (mass · length²/time).
     pub virial: f64,
-    /// Kinetic energy that it takes (energy): (1 − e²) of that of the approach.
+    /// Kinetic energy lost (energy): (1 − e²) of the energy of the approach.
     pub loss: f64,
-    /// Whether it was made elastic because another one was so short a time ago.
+    /// True if the contact duration made it elastic.
     pub(crate) was_made_elastic: bool,
 }
 
 /// Effect of a side on a disc.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Bounce {
-    /// Size of the momentum it gives (mass · length/time).
+    /// Magnitude of the momentum given (mass · length/time).
     pub(crate) thrust: f64,
-    /// Energy it gives; below 0 where it takes some.
+    /// Energy given; negative if taken.
     pub work: f64,
 }
 
-/// The box of the discs, and what happens in it.
+/// Box of the discs with gravity and the collision law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Arena {
     /// The box.
     pub domain: Domain,
-    /// What they fly through.
+    /// Periods, gravity and growth of free flight.
     pub(crate) space: Space,
-    /// What collisions do.
+    /// Collision law.
     pub law: Law,
-    /// Whether the kinetic energy never changes: nothing falls, and no collision and no side gives or takes energy.
+    /// True if the kinetic energy is constant: no gravity, and no collision and no side changes the energy.
     pub(crate) keeps_kinetic: bool,
 }
 
 impl Arena {
-    /// Of a box, with an acceleration of all discs (length/time²).
+    /// Creates the arena of a box, with an acceleration of all discs (length/time²).
     pub(crate) fn new(domain: Domain, gravity: [f64; 2], law: Law) -> Arena {
         let period = |axis: usize| match domain.sides[axis] {
             Side::Periodic(period) => Some(period),
@@ -89,12 +89,12 @@ impl Arena {
         Arena { domain, space: Space::new([0, 1].map(period), gravity), law, keeps_kinetic }
     }
 
-    /// The same, of discs that grow.
+    /// Returns the arena with growing discs.
     pub(crate) fn growing(self, growth: Growth) -> Arena {
         Arena { space: self.space.growing(growth), ..self }
     }
 
-    /// The radius of a disc at a time (length), and how fast it grows (length/time).
+    /// Radius of a disc at a time (length), and its rate of growth (length/time).
     #[inline]
     fn radius(&self, disc: &Disc, time: f64) -> [f64; 2] {
         match self.space.growth() {
@@ -103,7 +103,7 @@ impl Arena {
         }
     }
 
-    /// Where a disc is at a time, inside the box along periodic sides (length).
+    /// Position of a disc at a time, inside the box along periodic sides (length).
     pub(crate) fn place(&self, disc: &Disc, time: f64) -> [f64; 2] {
         self.domain.wrapped(disc.at(&self.space, time))
     }
@@ -120,7 +120,7 @@ impl Arena {
         disc.mass * mean_square * flown
     }
 
-    /// Potential energy of a disc in gravity at a time (energy), from the box's lower corner.
+    /// Potential energy of a disc at a time (energy), zero at the lower corner of the box.
     pub(crate) fn potential(&self, disc: &Disc, time: f64) -> f64 {
         let Some(gravity) = self.space.gravity() else { return 0.0 };
         let place = self.place(disc, time);
@@ -128,7 +128,7 @@ impl Arena {
         -disc.mass * (along_x + along_y)
     }
 
-    /// Axes along which the discs keep their momentum: the periodic ones, unless a thermal side draws velocities anew.
+    /// Axes along which the momentum is conserved: the periodic ones, unless a thermal side draws new velocities.
     pub(crate) fn conserved_axes(&self) -> [bool; 2] {
         match self.law.thermal {
             None => conserved_axes(&self.domain),
@@ -136,7 +136,7 @@ impl Arena {
         }
     }
 
-    /// Brings a disc to a time.
+    /// Advances a disc to the time of its event.
     #[inline]
     fn advance(&self, disc: &mut Disc, time: f64) {
         let (position, velocity) = (self.place(disc, time), disc.velocity_at(&self.space, time));
@@ -144,17 +144,17 @@ impl Arena {
         disc.events += 1;
     }
 
-    /// Whether an event of a disc comes so soon after the one before that it is elastic.
+    /// True if an event of a disc follows its last one so soon that it is elastic.
     fn is_too_soon(&self, disc: &Disc, time: f64) -> bool {
         disc.events > 0 && time - disc.time < self.law.contact_duration
     }
 
-    /// When a disc meets a closed side, and along which axis; infinite where there is none ahead.
+    /// Time at which a disc meets a closed side, and the axis; infinite if no side is ahead.
     #[inline]
     pub(crate) fn wall(&self, disc: &Disc) -> (f64, usize) {
         let along = |axis: usize| match self.domain.sides[axis] {
             Side::Closed(side) => self.wall_along(disc, axis, Some(side)),
-            // An open side has an end below.
+            // An open side is closed below.
             Side::Open => self.wall_along(disc, axis, None),
             Side::Periodic(_) | Side::Flat => f64::INFINITY,
         };
@@ -162,7 +162,7 @@ impl Arena {
         if y < x { (y, 1) } else { (x, 0) }
     }
 
-    /// When a disc meets one of the two ends of a side: at its low end, and at its high one if it has a length.
+    /// Time at which a disc meets an end of a side: the low end, or the high end if the side has a length.
     fn wall_along(&self, disc: &Disc, axis: usize, side: Option<f64>) -> f64 {
         let (low, v) = (self.domain.origin[axis], disc.velocity[axis]);
         let g = self.space.gravity().map_or(0.0, |gravity| gravity[axis]);
@@ -177,12 +177,12 @@ impl Arena {
         disc.time + to_low.min(to_high)
     }
 
-    /// How the lower end of a side moves.
+    /// Motion of the lower end of a side.
     fn floor(&self, axis: usize) -> Option<Floor> {
         self.law.floor.filter(|_| axis == 1)
     }
 
-    /// Two discs collide; `a` is the one with the smaller number.
+    /// Collides two discs; `a` has the smaller number.
     pub(crate) fn collide(&self, a: &mut Disc, b: &mut Disc, time: f64) -> Impact {
         let Law { restitution, .. } = self.law;
         let was_made_elastic = restitution < 1.0 && (self.is_too_soon(a, time) || self.is_too_soon(b, time));
@@ -190,12 +190,12 @@ impl Arena {
         self.advance(a, time);
         self.advance(b, time);
         let [dx, dy] = self.domain.displacement(a.position, b.position);
-        // Along the line of the centres without its length: no root, and no rounding of a direction that would heat or cool.
+        // The unnormalised line of centres needs no root, and no rounded direction heats or cools the discs.
         let square = dx * dx + dy * dy;
         let closing = (b.velocity[0] - a.velocity[0]) * dx + (b.velocity[1] - a.velocity[1]) * dy;
         let closing = match self.space.growth() {
             None => closing,
-            // As surfaces that swell see it.
+            // Closing speed of the growing surfaces.
             Some(growth) => closing - (a.radius + b.radius) * growth.rate * square.sqrt(),
         };
         let effective = a.mass * b.mass / (a.mass + b.mass);
@@ -208,14 +208,14 @@ impl Arena {
         Impact { impulse: [-impulse * dx, -impulse * dy], virial, loss, was_made_elastic }
     }
 
-    /// A disc is thrown back by a closed side across an axis, or given back by a thermal one; `number` is the disc's.
+    /// Reflects a disc from a closed side across an axis, or re-emits it from a thermal side; `number` is the disc's.
     pub(crate) fn rebound(&self, disc: &mut Disc, number: u32, axis: usize, time: f64) -> Bounce {
         let too_soon = self.is_too_soon(disc, time);
         self.advance(disc, time);
         let before = disc.velocity;
         let v = before[axis];
-        // At both ends of a side a disc flies outwards; one at rest under gravity lies on the side it is drawn to. One that grows
-        // may fly inwards, and so may one that a floor catches up with, but both are near one of the ends.
+        // A disc flies outwards at both ends of a side; one at rest under gravity lies on the side it is drawn to. A growing disc,
+        // or one hit by the floor, may fly inwards, but is near one of the ends.
         let [_, swelling] = self.radius(disc, time);
         let g = self.space.gravity().map_or(0.0, |gravity| gravity[axis]);
         let middle = self.domain.origin[axis] + 0.5 * self.domain.length(axis);
@@ -241,7 +241,7 @@ impl Arena {
                 disc.velocity[axis] = inwards - restitution * (v - inwards);
             }
         }
-        // Twice the gain of kinetic energy over the mass, as a product: nothing where a velocity is only turned round.
+        // Twice the gain of kinetic energy over the mass, as a product: exactly zero if a velocity is only reversed.
         let gain = |axis: usize| (disc.velocity[axis] - before[axis]) * (disc.velocity[axis] + before[axis]);
         Bounce {
             thrust: disc.mass * (disc.velocity[axis] - v).abs(),
@@ -251,8 +251,8 @@ impl Arena {
 }
 
 impl Thermal {
-    /// A velocity away from the wall and along it, as those of a gas of its temperature that fly through a plane: a function of
-    /// the seed, the number of the disc and its count of events.
+    /// Draws a velocity, normal and tangential to the wall, from the flux of a gas at its temperature. It is a function of the seed,
+    /// the number of the disc and its event count.
     fn velocity(&self, disc: &Disc, number: u32) -> [f64; 2] {
         let draw = |which: u64| normals(self.seed, Purpose::Wall, number, 2 * disc.events + which);
         let ([a, b], [along, _]) = (draw(0), draw(1));
@@ -274,7 +274,7 @@ mod tests {
         Arena::new(Domain::planar([0.0; 2], [20.0; 2], [true; 2]), [0.0; 2], law)
     }
 
-    /// Energy and momentum stay; what e < 1 takes is (1 − e²) of the energy of the approach.
+    /// Energy and momentum are conserved; e < 1 takes (1 − e²) of the energy of the approach.
     #[test]
     fn a_collision_keeps_what_it_must() {
         let start =
@@ -309,7 +309,7 @@ mod tests {
         }
     }
 
-    /// By hand: mass 2, thrown with (1, 2) under g = 1, after 3: 2 ∫ 1 + (2 − s)² ds = 2 (3 + (8 + 1)/3); its height is then 5 + 6 − 4.5.
+    /// Calculated by hand: mass 2, thrown with (1, 2) under g = 1, after 3: 2 ∫ 1 + (2 − s)² ds = 2 (3 + (8 + 1)/3); the height is 5 + 6 − 4.5.
     #[test]
     fn a_flight_has_its_action_and_its_height() {
         let domain = Domain::planar([0.0, 1.0], [20.0; 2], [true, false]);
@@ -345,7 +345,7 @@ mod tests {
         assert_eq!(arena.wall(&disc([3.0, 5.0], [0.0, 1.0])).0, f64::INFINITY);
     }
 
-    /// A disc thrown up comes back to the floor with the speed that it left with; one that flies high enough meets the ceiling.
+    /// A disc thrown up returns to the floor with its initial speed; one that is fast enough meets the ceiling.
     #[test]
     fn discs_fall_on_the_floor() {
         let domain = Domain::planar([0.0; 2], [10.0, 10.0], [true, false]);
@@ -354,10 +354,10 @@ mod tests {
         assert_eq!(arena.wall(&thrown), (3.0, 1));
         arena.rebound(&mut thrown, 0, 1, 3.0);
         assert_eq!((thrown.position[1], thrown.velocity[1], arena.wall(&thrown).0), (0.5, 3.0, 6.0));
-        // 9 high takes a speed of 6: it just arrives, after 3.
+        // A speed of 6 just reaches a height of 9, after 3.
         assert_eq!(arena.wall(&disc([5.0, 0.5], [0.0, 6.0])), (3.0, 1));
         assert!((arena.wall(&disc([5.0, 2.5], [0.0, -1.0])).0 - 1.0).abs() < 1e-15);
-        // At rest on the floor it meets it at once, again and again: what collapse is.
+        // A disc at rest on the floor meets it at once, again and again, as in a collapse.
         assert_eq!(arena.wall(&disc([5.0, 0.5], [1.0, 0.0])).0, 0.0);
     }
 

@@ -1,4 +1,4 @@
-//! Failures of hard discs, in words.
+//! Messages of failures of hard discs.
 
 use super::engine::EngineError;
 use crate::method::{Clock, Culprit, Failure, FailureKind};
@@ -6,13 +6,13 @@ use crate::particles::Particles;
 use stripmine_kernels::flight::Disc;
 use stripmine_kernels::isa::ProgramError;
 
-/// A disc, as a failure names it.
+/// Description of a disc in a failure.
 pub(super) fn culprit(number: u32, disc: &Disc, particles: &Particles, places: &[usize]) -> Culprit {
     let Disc { position, velocity, .. } = *disc;
     Culprit::in_plane("disc", particles.all()[places[number as usize]].id, position, velocity)
 }
 
-/// What an engine says, for the reader: with names of discs, and what to do.
+/// Converts an engine error to a failure that names the discs and the remedy.
 pub(super) fn failure(
     why: EngineError,
     disc: &dyn Fn(u32) -> Disc,
@@ -26,28 +26,28 @@ pub(super) fn failure(
             let [a, b] = pair.map(named);
             let message =
                 format!("{a} and {b} have their centres in one cell of the exclusive grid: they overlap");
-            let remedy = "this must not happen between hard discs: report it with the scene";
+            let remedy = "this is a bug: please report it with the scene";
             Failure::new(FailureKind::CONFLICT, message, remedy).at(clock).of(2, [a, b])
         }
         EngineError::Crowded(disc, most) => {
             let who = named(disc);
-            let message = format!("{who} has more than {most} others around it, and a list holds no more");
-            let remedy = "set machine.engine = \"reference\", or take radii that differ less";
+            let message = format!("{who} has more than {most} neighbours, the most that a list can hold");
+            let remedy = "set machine.engine = \"reference\", or use radii that differ less";
             Failure::new(FailureKind::CONFLICT, message, remedy).at(clock).of(1, [who])
         }
         EngineError::TooHigh(disc, entries) => {
             let who = named(disc);
             let message = format!(
-                "{who} is so high that the source's look-up of cells takes {entries} entries: they grow with the height"
+                "{who} is so high above the floor that the cell look-up of the reference engine needs {entries} entries, which grow with the height"
             );
-            let remedy = "set machine.engine = \"fast\", whose memory grows with the discs only";
+            let remedy = "set machine.engine = \"fast\", whose memory depends only on the number of discs";
             Failure::new(FailureKind::CONFLICT, message, remedy).at(clock).of(1, [who])
         }
         EngineError::NoInstructions(set) => ProgramError::NoSuchInstructionSet(set.name()).into(),
         EngineError::BackInTime(disc, time, now) => {
             let who = named(disc);
             let message = format!("the next event of {who} is at {time:?}, before the last one at {now:?}");
-            let remedy = "this must not happen: a mask missed a partner; report it with the scene";
+            let remedy = "this is a bug, a mask missed a partner: please report it with the scene";
             let failure = Failure::new(super::BACK_IN_TIME, message, remedy).at(clock).of(1, [who]);
             failure.with([("time", time), ("now", now)])
         }

@@ -1,8 +1,8 @@
-//! A floor that moves up and down, and when a disc meets it.
+//! Vibrating floor, and the time at which a disc meets it.
 
 use super::fall::fall;
 
-/// A floor whose height over its lowest place is A (1 − cos ω t), ω = 2π f: at the start it is at rest there.
+/// Floor at the height A (1 − cos ω t) above its lowest position, ω = 2π f. At the start it is at rest in its lowest position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Floor {
     /// A (length).
@@ -16,23 +16,23 @@ impl Floor {
         std::f64::consts::TAU * self.frequency
     }
 
-    /// Its height over its lowest place at a time (length).
+    /// Height above the lowest position at a time (length).
     pub(crate) fn height(&self, time: f64) -> f64 {
-        // The portable sine and cosine: the same bits on every platform.
+        // Portable sine and cosine: the same bits on every platform.
         self.amplitude * (1.0 - libm::cos(self.rate() * time))
     }
 
-    /// Its velocity at a time, upwards (length/time).
+    /// Upward velocity at a time (length/time).
     pub(crate) fn velocity(&self, time: f64) -> f64 {
         self.amplitude * self.rate() * libm::sin(self.rate() * time)
     }
 
-    /// How long after a time a disc meets it, whose lower end is `above` its lowest place then (length), with its velocity and its
-    /// acceleration upwards; infinite if it does not.
+    /// Returns the delay after `time` until a disc meets the floor; infinite if it never does. The lower end of the disc is `above` the
+    /// floor's lowest position (length); its velocity and acceleration point upwards.
     ///
-    /// The gap between both has nowhere a smaller second derivative than −m, m = A ω² − g. So it stays open for at least as long as
-    /// gap + slope h − m h²/2 does: steps of that length never pass the first meeting, and come to it as Newton's do. Where the disc
-    /// is above the highest place of the floor it falls there first.
+    /// The second derivative of the gap is nowhere below −m, m = A ω² − g. The gap therefore stays open for at least as long as
+    /// gap + slope h − m h²/2 does. Steps of that length never pass the first meeting and converge to it as Newton steps do. A disc
+    /// above the highest position of the floor first falls to that height.
     pub(crate) fn meeting(&self, above: f64, velocity: f64, acceleration: f64, time: f64) -> f64 {
         let highest = 2.0 * self.amplitude;
         let least = (self.amplitude * self.rate().powi(2) - acceleration).max(f64::MIN_POSITIVE);
@@ -43,7 +43,7 @@ impl Floor {
             let speed = velocity + acceleration * passed;
             if here > highest {
                 let falls = fall(here - highest, -speed, -acceleration);
-                // What rounding leaves above the highest place is there.
+                // A disc above the highest position only by rounding is treated as at that height.
                 if is_ahead(passed, falls) {
                     passed += falls;
                     if passed == f64::INFINITY {
@@ -56,7 +56,7 @@ impl Floor {
             let slope = speed - self.velocity(time + passed);
             let root = (slope * slope + 2.0 * least * gap).sqrt();
             let opens = if slope > 0.0 { (slope + root) / least } else { 2.0 * gap / (root - slope) };
-            // No number where the gap is none and neither opens nor closes.
+            // NaN if the gap is zero and neither opens nor closes.
             if !is_ahead(passed, opens) {
                 return passed;
             }
@@ -71,11 +71,11 @@ mod tests {
 
     const FLOOR: Floor = Floor { amplitude: 0.5, frequency: 0.5 };
 
-    /// The first time at which the gap is closed, by small steps.
+    /// First time at which the gap is closed, found with small steps.
     fn searched(floor: &Floor, above: f64, velocity: f64, acceleration: f64, time: f64) -> f64 {
         let gap = |s: f64| above + s * (velocity + 0.5 * acceleration * s) - floor.height(time + s);
         let step = 1e-5;
-        // From where the gap is open.
+        // Start where the gap is open.
         let begin = (1..1_000_000).find(|&i| gap(f64::from(i) * step) > 1e-9).unwrap();
         f64::from((begin..3_000_000).find(|&i| gap(f64::from(i) * step) <= 0.0).unwrap()) * step
     }
@@ -96,7 +96,7 @@ mod tests {
         }
     }
 
-    /// Thrown off the floor, a disc meets it later, not at once.
+    /// A disc thrown off the floor meets it again later, not at once.
     #[test]
     fn a_disc_that_leaves_the_floor_comes_back() {
         for start in [0.2, 0.5, 0.9, 1.4, 2.0] {

@@ -1,23 +1,23 @@
-//! Periods that discs cross, counted at each event: displacements across periodic sides.
+//! Crossings of periodic sides, counted at each event: displacements across periodic sides.
 
 use super::event::Arena;
 use crate::io::checkpoint::Column;
 use crate::method::pairwise::Crossings;
 use stripmine_kernels::flight::Disc;
 
-/// How many periods each disc has crossed, and each disc as its last event left it.
+/// Crossing counts, and each disc in the state after its last event.
 pub(super) struct Followed {
     crossings: Crossings,
     before: Vec<Disc>,
 }
 
 impl Followed {
-    /// None crossed yet, by discs in the order of their numbers.
+    /// Starts the counts at 0, for discs in the order of their numbers.
     pub(super) fn new(arena: &Arena, discs: Vec<Disc>) -> Followed {
         Followed { crossings: Crossings::new(arena.domain.periodic(), discs.len()), before: discs }
     }
 
-    /// Counts what a disc has crossed up to its event, after which it is `now`.
+    /// Counts the crossings of a disc up to its event, after which its state is `now`.
     pub(super) fn see(&mut self, arena: &Arena, number: u32, now: &Disc) {
         let before = &mut self.before[number as usize];
         let beyond = arena.domain.periods(before.at(&arena.space, now.time));
@@ -27,12 +27,12 @@ impl Followed {
         *before = *now;
     }
 
-    /// How many periods a disc has crossed at a time after its last event, as of its image inside the box.
+    /// Number of periods that a disc has crossed at a time after its last event, relative to its image inside the box.
     pub(super) fn image(&self, arena: &Arena, number: usize, time: f64) -> [i32; 2] {
         self.crossings.image(&arena.domain, number, self.before[number].at(&arena.space, time))
     }
 
-    /// Whether every periodic side is followed, and there is one.
+    /// True if there is a periodic side and all are followed.
     pub(super) fn follows(&self, arena: &Arena) -> bool {
         self.crossings.follows(&arena.domain)
     }
@@ -42,10 +42,10 @@ impl Followed {
         self.crossings.columns()
     }
 
-    /// Takes up discs and the columns of a checkpoint; those of a run in which nothing was followed have no counts, which begin at 0.
+    /// Restores discs and the columns of a checkpoint. If the run did not follow crossings, the counts begin at 0.
     ///
     /// # Errors
-    /// A sentence, if a column is not one of counts of these discs.
+    /// A message if a column does not hold the counts of these discs.
     pub(super) fn take_up(&mut self, discs: &[Disc], columns: &[(String, Column)]) -> Result<(), String> {
         let mut columns: Vec<(String, Column)> = Crossings::among(columns).cloned().collect();
         Crossings::begin_in(&mut columns, discs.len());

@@ -1,4 +1,4 @@
-//! Forecast of a run of hard discs: collisions in a time, and rows and frames written in it.
+//! Cost forecast of a run of hard discs: collisions per time, and the number of rows and frames.
 
 use super::checked::Checked;
 use super::keys::{CHECKPOINT_EVERY, EVENTS, MOST_EVENTS, SNAPSHOT_EVERY, THERMO_EVERY, TIME};
@@ -9,11 +9,11 @@ use crate::particles::Particle;
 use crate::scene::{Reason, SceneError, Values};
 use std::f64::consts::{PI, SQRT_2, TAU};
 
-/// Rows, snapshots or checkpoints of a run, at most.
+/// Maximum number of rows, snapshots or checkpoints of a run.
 const MOST_WRITTEN: f64 = 1e12;
 
-/// Nanoseconds of a collision of two discs by their packing fraction, found by lists and the source's way: the rates of the item
-/// `hard-disks-rates` with 2500 discs. More discs take longer, so that looking at them is a smaller part of the work than is asked for.
+/// Nanoseconds per collision by packing fraction, for the fast and the reference engine. Measured by the item
+/// `hard-disks-rates` with 2500 discs. In larger systems collisions take longer, so sampling takes a smaller share than requested.
 const COLLISION: [(f64, [f64; 2]); 5] = [
     (0.1, [1310.0, 3550.0]),
     (0.3, [790.0, 2260.0]),
@@ -22,12 +22,12 @@ const COLLISION: [(f64, [f64; 2]); 5] = [
     (0.7, [380.0, 1830.0]),
 ];
 
-/// Nanoseconds of a collision of two discs of a scene.
+/// Nanoseconds per collision in a scene.
 pub(super) fn nanoseconds_of_a_collision(checked: &Checked) -> f64 {
     of_a_collision(checked.packing_fraction(), checked.scene.engine)
 }
 
-/// Value at a packing fraction: interpolated between known ones, that of the nearest beyond them.
+/// Nanoseconds per collision at a packing fraction: interpolated within the table, constant beyond its ends.
 fn of_a_collision(fraction: f64, engine: EngineChoice) -> f64 {
     let way = usize::from(engine == EngineChoice::Reference);
     let [(first, lowest), .., (_, highest)] = COLLISION;
@@ -41,7 +41,7 @@ fn of_a_collision(fraction: f64, engine: EngineChoice) -> f64 {
     }
 }
 
-/// Collisions of a disc with others in a unit of time by Enskog, each counted once for both, for discs of a thermal speed √(kT/m).
+/// Enskog's collision rate per disc, each collision counted once for the pair, at a thermal speed √(kT/m).
 pub(super) fn enskog(checked: &Checked, speed: f64) -> f64 {
     let count = checked.particles.len() as f64;
     let [x, y] = checked.domain.lengths();
@@ -52,13 +52,13 @@ pub(super) fn enskog(checked: &Checked, speed: f64) -> f64 {
     PI.sqrt() * (count / x) * (diameter / y) * at_contact * speed
 }
 
-/// The thermal speed √(kT/m) of the discs at the start (length/time).
+/// Thermal speed √(kT/m) of the discs at the start (length/time).
 pub(super) fn thermal_speed(checked: &Checked) -> f64 {
     let largest = checked.particles.all().iter().map(speed_of).fold(0.0, f64::max);
     if largest == 0.0 {
         return 0.0;
     }
-    // Over the largest one, for squares of speeds at the ends of the number format are none.
+    // Relative to the largest speed, because squares of extreme speeds overflow or underflow.
     largest * mean(checked, |disc| (speed_of(disc) / largest).powi(2)).sqrt() / SQRT_2
 }
 
@@ -72,7 +72,7 @@ fn mean(checked: &Checked, of: impl Fn(&Particle) -> f64) -> f64 {
     discs.iter().map(of).sum::<f64>() / discs.len() as f64
 }
 
-/// Collisions in a unit of time, of pairs and at sides, at the speeds that the start, gravity, a thermal side and a floor give.
+/// Rate of all collisions, of pairs and at sides, at the speeds due to the start, gravity, a thermal side and a floor.
 fn rate(checked: &Checked) -> f64 {
     let (scene, domain) = (&checked.scene, &checked.domain);
     let fall = |axis: usize| (scene.domain.gravity[axis].abs() * domain.length(axis)).sqrt();
@@ -87,7 +87,7 @@ fn rate(checked: &Checked) -> f64 {
 }
 
 impl Checked {
-    /// A run without an end: more collisions than can be counted, or more rows, snapshots or checkpoints than can be written.
+    /// Error for a run that could never finish: too many collisions, rows, snapshots or checkpoints.
     pub(super) fn endless(&self, values: &Values) -> Option<SceneError> {
         let (run, rate) = (&self.scene.run, rate(self));
         let number = |value: f64| significant(value, 3);
@@ -95,7 +95,7 @@ impl Checked {
             Until::Time(time) => {
                 if time * rate > MOST_EVENTS as f64 {
                     let message = format!(
-                        "`{}` = {} takes about {} collisions, at the speeds that discs, gravity and sides give",
+                        "`{}` = {} takes about {} collisions at the speeds due to the start, gravity and the sides",
                         TIME.path(),
                         number(time),
                         number(time * rate)
@@ -123,7 +123,7 @@ impl Checked {
             let too_many = duration / every > MOST_WRITTEN;
             too_many.then(|| {
                 let length = match run.until {
-                    Until::Events(events) => format!("the time that `{}` = {events} takes", EVENTS.path()),
+                    Until::Events(events) => format!("the duration of `{}` = {events}", EVENTS.path()),
                     _ => format!("`{}` = {}", TIME.path(), number(duration)),
                 };
                 let message = format!(
@@ -144,7 +144,7 @@ mod tests {
     use super::*;
     use crate::method::{METHODS, load};
 
-    /// By hand: √π ρ d χ(ν) √(kT/m) collisions of a disc, each at the rate that was measured at its density (million a second).
+    /// Expected work by hand: √π ρ d χ(ν) √(kT/m) collisions per disc, at the rate measured for the density (million per second).
     #[test]
     fn work_is_that_of_the_measured_collisions() {
         for (fraction, engine, rate) in [

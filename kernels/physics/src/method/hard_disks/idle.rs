@@ -1,19 +1,19 @@
-//! Whether anything will ever happen: what can be proved of it.
+//! Proof that no event will ever happen, for the cases in which it is possible.
 
 use super::event::Arena;
 use stripmine_kernels::flight::Disc;
 
-/// Of more discs nothing is proved: each may meet each.
+/// Largest number of discs whose pairs are all checked. With more discs events are assumed possible.
 const MOST: usize = 4096;
-/// Distances at which discs miss each other are this much larger than those at which they touch: rounding.
+/// Relative margin of rounding between the distance of a miss and that of contact.
 const ROUNDED_UP: f64 = 1.0 + 1e-9;
 
-/// Whether it is certain that no disc will ever meet another one or a side. What is not certain may happen.
+/// True if certainly no disc will ever meet another disc or a side. False if an event is possible or the proof fails.
 pub(super) fn never(arena: &Arena, discs: &[Disc]) -> bool {
     if discs.iter().any(|disc| arena.wall(disc).0 < f64::INFINITY) {
         return false;
     }
-    // No side ahead: then nothing falls either, and all fly straight on along periodic sides, or are at rest.
+    // No side is ahead, so nothing falls: discs fly straight along periodic sides or are at rest.
     if discs.windows(2).all(|pair| pair[0].velocity == pair[1].velocity) {
         return true;
     }
@@ -21,8 +21,8 @@ pub(super) fn never(arena: &Arena, discs: &[Disc]) -> bool {
     discs.len() <= MOST && others.all(|(i, a)| discs[..i].iter().all(|b| pass(arena, a, b)))
 }
 
-/// Whether two discs that fly straight along periodic sides miss each other, with all their images. Seen from one, the centres of
-/// the other's images fly on parallel lines: those are apart by the greatest common measure of the sides' lengths across the way.
+/// True if two discs that fly straight along periodic sides miss each other and all images. Relative to one disc, the images of the
+/// other fly on parallel lines. The distance of these lines is the greatest common measure of the sides' components across the motion.
 fn pass(arena: &Arena, a: &Disc, b: &Disc) -> bool {
     let [u, v] = [0, 1].map(|axis| b.velocity[axis] - a.velocity[axis]);
     if [u, v] == [0.0; 2] {
@@ -33,7 +33,7 @@ fn pass(arena: &Arena, a: &Disc, b: &Disc) -> bool {
     let period = |axis: usize| if arena.domain.is_periodic(axis) { arena.domain.length(axis) } else { 0.0 };
     let across = [(period(0) * v).abs(), (period(1) * u).abs()];
     if !across.iter().all(|length| length.is_finite()) {
-        // Too fast or too far for a number: they may meet.
+        // Overflow: assume that they may meet.
         return false;
     }
     let lines = common_measure(across[0], across[1]);
@@ -42,7 +42,7 @@ fn pass(arena: &Arena, a: &Disc, b: &Disc) -> bool {
     off > (a.radius + b.radius) * u.hypot(v) * ROUNDED_UP
 }
 
-/// The largest number of which both are multiples: 0 of two zeros. The remainder of two numbers is exact.
+/// Greatest common measure of two numbers; 0 for two zeros. The remainder of two numbers is exact.
 fn common_measure(mut a: f64, mut b: f64) -> f64 {
     while b > 0.0 {
         (a, b) = (b, a % b);
@@ -60,7 +60,7 @@ mod tests {
         Disc { position, velocity, time: 0.0, radius: 0.5, mass: 1.0, events: 0 }
     }
 
-    /// By hand: at rest, alone, side by side, past each other on straight and on slanted ways; and what may meet.
+    /// Calculated by hand: discs at rest, alone, side by side, passing on straight and slanted lines, and pairs that may meet.
     #[test]
     fn what_never_meets_is_told_from_what_may() {
         let here = disc([2.0, 2.0], [0.0; 2]);
@@ -70,12 +70,12 @@ mod tests {
             (open, disc([5.0, 3.5], [1.0, 0.0]), true),
             (open, disc([5.0, 2.9], [1.0, 0.0]), false),
             (open, disc([5.0, 3.0], [1.0, 0.0]), false),
-            // Lines at 45 degrees are the side over √2 apart, once round.
+            // Lines at 45 degrees are side/√2 apart after one period.
             (open, disc([7.0, 2.0], [1.0, 1.0]), true),
             (open, disc([3.2, 2.0], [1.0, 1.0]), false),
-            // Five times as steep: the lines lie closer, but not so close.
+            // Five times as steep: the lines are denser, but not dense enough.
             (open, disc([3.0, 3.0], [1.0, 5.0]), false),
-            // No common measure to speak of: all of the box is passed.
+            // Almost incommensurable: the lines cover the whole box.
             (open, disc([7.0, 2.0], [1.0, 1.0 + 1e-9]), false),
             (closed, disc([5.0, 5.0], [1.0, 0.0]), true),
             (closed, disc([5.0, 5.0], [1.0, 1e-9]), false),

@@ -1,4 +1,4 @@
-//! The keys that are this method's own, and what they demand of each other.
+//! Keys of this method, and their constraints on each other.
 
 use super::options::EngineChoice;
 use crate::scene::Bounds::{AtMost, NonNegative, Positive};
@@ -13,63 +13,63 @@ use crate::words::Words;
 
 const ALWAYS: Use = None;
 const HEATED: Use = Some((&THERMAL_SIDE, &["left", "right", "bottom", "top"]));
-/// As many events as a run may have.
+/// Maximum number of events of a run.
 pub(super) const MOST_EVENTS: u64 = 1_000_000_000_000_000;
 
-/// The masks, by the names that scenes give them.
+/// Names of the masks in scenes.
 pub const MASKS: &[&str] = &["auto", "min", "r3", "r4", "r5", "r6", "r7", "r8", "r9", "r10"];
 
-/// Sides by the names that scenes give them.
+/// Names of the sides in scenes.
 pub(super) const THERMAL_SIDES: &[&str] = &["none", "left", "right", "bottom", "top"];
 
 define_keys! {
     /// Collisions, search and duration.
     static OWN;
     RESTITUTION = "law" "restitution", Number(AtMost(1.0)), "", Is("1.0"), ALWAYS,
-        "Relative normal speed of two discs after a collision over that before.";
+        "Restitution of disc collisions: ratio of the relative normal speeds after and before.";
     WALL_RESTITUTION = "law" "wall_restitution", Number(AtMost(1.0)), "", Is("1.0"), ALWAYS,
-        "The same at sides that are not periodic.";
+        "Restitution at sides that are not periodic.";
     CONTACT_DURATION = "law" "contact_duration", Number(NonNegative), "time", Is("0.0"), ALWAYS,
-        "A collision that comes sooner than this after another one of either disc is elastic, against inelastic collapse (the TC model); 0 for none.";
+        "Contact duration of the TC model, against inelastic collapse: a collision sooner than this after another one of either disc is elastic; 0 for none.";
 
     THERMAL_SIDE = "law" "thermal_side", Choice(THERMAL_SIDES), "", Is("\"none\""), ALWAYS,
-        "A side that is not periodic and gives back every disc with a velocity of its own temperature.";
+        "Thermal side: a side that is not periodic and re-emits every disc with a velocity of its own temperature.";
     WALL_TEMPERATURE = "law" "wall_temperature", Number(Positive), "mass·length²/time²", Is("1.0"), HEATED,
-        "Its temperature kT.";
+        "Temperature kT of the thermal side.";
     NOISE_SEED = "law" "noise_seed", Whole(0, u64::MAX), "", Otherwise("`particles.seed`; 1 where the start has none"), HEATED,
-        "Seed of the velocities that the thermal side gives. Where the start is a file or a list, they depend on the state as well: a run that continues from a frame has new ones.";
+        "Seed of the velocities drawn by the thermal side. If the start is a file or a list, they also depend on the state: a run that continues from a frame draws new ones.";
     FLOOR_AMPLITUDE = "law" "floor_amplitude", Number(NonNegative), "length", Is("0.0"), ALWAYS,
-        "A: the floor, the lower end of the second side, is A (1 − cos 2π f t) above the end of the box; 0 for a floor at rest.";
+        "Amplitude A of the floor, the lower end of the second side: it is A (1 − cos 2π f t) above the end of the box; 0 for a floor at rest.";
     FLOOR_FREQUENCY = "law" "floor_frequency", Number(Positive), "1/time", Is("1.0"), ALWAYS,
-        "f, the frequency of that.";
+        "Frequency f of the floor.";
     OPEN_TOP = "domain" "open_top", Switch, "", Is("false"), ALWAYS,
-        "Whether there is no ceiling: the upper end of the second side is open, and gravity points down.";
+        "Removes the ceiling: the upper end of the second side is open, and gravity points down.";
 
     ENGINE = "machine" "engine", Choice(EngineChoice::WORDS), "", Is("\"auto\""), ALWAYS,
-        "How events are found, all to the same bits: fast, by lists of each disc's own; or the source's way (reference), masks over the exclusive grid. auto is fast, unless a mask is given or the box is too small for lists.";
+        "Search for events; both engines give the same bits. fast keeps a neighbour list for each disc; reference uses masks over the exclusive grid, as in ISO99. auto is fast, unless a mask is given or the box is too small for lists.";
 
     MASK = "search" "mask", Choice(MASKS), "", Is("\"auto\""), ALWAYS,
-        "Cells around a disc in which it looks for partners: min is 5 × 5, r3 to r10 are the round masks of these radii. A larger one is filled less often; auto takes what costs least by the source's reckoning.";
+        "Mask of cells in which a disc searches for partners: min is 5 × 5, r3 to r10 are round masks of these radii. A larger mask needs fewer refills of the grid; auto takes the cheapest by ISO99's cost formula.";
 
     COLLISION_LOG = "output" "collisions", Switch, "", Is("false"), ALWAYS,
-        "A row for each collision as events.csv: when, which discs, where, with what impulse, and the free times before it.";
+        "Writes each collision as a row of events.csv: time, discs, point of contact, impulse and the free times before it.";
 
     EVENTS = "run" "events", Whole(1, MOST_EVENTS), "", Otherwise("from `time`"), ALWAYS,
-        "Collisions to do, of pairs and at walls.";
+        "Number of collisions, of pairs and at walls.";
     TIME = "run" "time", Number(NonNegative), "time", Otherwise("from `events`"), ALWAYS,
-        "Duration.";
+        "Duration of the run.";
     THERMO_EVERY = "run" "thermo_every", Number(NonNegative), "time", Is("1.0"), ALWAYS,
         "Time between rows of thermo.csv; 0 for none.";
     SNAPSHOT_EVERY = "run" "snapshot_every", Number(NonNegative), "time", Is("10.0"), ALWAYS,
-        "Time between snapshots; 0 for none but the first and the last.";
+        "Time between snapshots; 0 for the first and the last only.";
     CHECKPOINT_EVERY = "run" "checkpoint_every", Number(NonNegative), "time", Otherwise("by the wall clock"), ALWAYS,
-        "Time between checkpoints; 0 for one at the end only. Without it there is one in ten seconds. No result depends on it.";
+        "Time between checkpoints; 0 for one at the end only. Default: one every ten seconds of wall-clock time. No result depends on it.";
 }
 
-/// A run lasts for a number of events, or for a time.
+/// Alternative durations of a run: a number of events, or a time.
 static DURATION: &[Rivals] = &[Rivals { keys: &[&EVENTS, &TIME], used: ALWAYS, needed: true }];
 
-/// What the scenes of this method may say.
+/// Vocabulary of the scenes of this method.
 pub(super) static VOCABULARY: Vocabulary = Vocabulary {
     keys: KeySet {
         method: "hard-disks",
@@ -78,7 +78,7 @@ pub(super) static VOCABULARY: Vocabulary = Vocabulary {
         advice: &[
             (
                 "law.temperature",
-                "the start has `particles.temperature`, a thermal side `law.wall_temperature`",
+                "use `particles.temperature` for the start, `law.wall_temperature` for a thermal side",
             ),
             ("integrator.dt", "hard discs have no time step: they fly freely from one collision to the next"),
             (
@@ -89,14 +89,14 @@ pub(super) static VOCABULARY: Vocabulary = Vocabulary {
                 "integrator.scheme",
                 "hard discs have no time step: they fly freely from one collision to the next",
             ),
-            ("run.steps", "hard discs take no steps: give `run.events` or `run.time`"),
+            ("run.steps", "hard discs take no steps: set `run.events` or `run.time`"),
             (
                 "law.bath_temperature",
-                "hard discs have no bath: `particles.temperature` is that of the start, and a thermal side (`law.thermal_side`) keeps one",
+                "hard discs have no bath: set the temperature of the start with `particles.temperature`, or use a thermal side (`law.thermal_side`)",
             ),
             ("law.drag", "hard discs have no bath: they fly freely between collisions"),
-            ("law.friction", "hard discs are smooth: collisions change no spin"),
-            ("law.stiffness", "hard discs are rigid: `law.restitution` says what a collision takes"),
+            ("law.friction", "hard discs are smooth and do not spin"),
+            ("law.stiffness", "hard discs are rigid: `law.restitution` sets the energy lost in a collision"),
             ("machine.precision", "hard discs are always in double precision"),
         ],
     },
@@ -105,7 +105,7 @@ pub(super) static VOCABULARY: Vocabulary = Vocabulary {
     renamed: &[],
 };
 
-/// What belongs together.
+/// Checks the keys that depend on each other.
 fn own_rules(values: &Values) -> Vec<SceneError> {
     let mut errors = vec![];
     let periodic = match values.value(&PERIODIC) {
@@ -141,9 +141,9 @@ fn own_rules(values: &Values) -> Vec<SceneError> {
     };
     if shaken && heated == "bottom" {
         let message =
-            "the floor is thermal by `law.thermal_side`, and moves by `law.floor_amplitude`".to_owned();
+            "the floor is both thermal (`law.thermal_side`) and moving (`law.floor_amplitude`)".to_owned();
         let error = values.spot(&FLOOR_AMPLITUDE).error(Reason::Contradiction, message);
-        errors.push(error.advising("take one of the two"));
+        errors.push(error.advising("remove one of the two"));
     }
     if let Some((axis, _)) = side(&heated).filter(|(axis, _)| periodic[*axis]) {
         let message = format!("`law.thermal_side` is \"{heated}\", but that side is periodic");
@@ -156,7 +156,7 @@ fn own_rules(values: &Values) -> Vec<SceneError> {
     errors
 }
 
-/// A side by its name: axis, and whether it is the upper one.
+/// Axis of a named side; true for the upper one.
 pub(super) fn side(name: &str) -> Option<(usize, bool)> {
     match name {
         "left" => Some((0, false)),

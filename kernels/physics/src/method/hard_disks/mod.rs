@@ -1,4 +1,4 @@
-//! ISO99: event-driven hard discs, exact between collisions.
+//! Event-driven hard discs, exact between collisions (ISO99).
 
 pub(crate) mod benches;
 mod checked;
@@ -35,14 +35,14 @@ pub use entry::ENTRY;
 
 use crate::method::FailureKind;
 
-/// An event that lies before one that has happened.
+/// An event earlier than one that has happened.
 pub(crate) const BACK_IN_TIME: FailureKind = FailureKind::new("back-in-time");
 
-/// Collisions without end in a finite time.
+/// Infinitely many collisions in a finite time.
 pub const INELASTIC_COLLAPSE: FailureKind = FailureKind::new("inelastic-collapse");
 
-/// Discs that lie still, where contacts do not last.
+/// Discs at rest, which hard discs without lasting contacts cannot represent.
 pub(crate) const RESTING: FailureKind = FailureKind::new("resting");
 
-/// Nothing will ever happen.
+/// No event will ever happen.
 pub(crate) const IDLE: FailureKind = FailureKind::new("idle");

@@ -1,22 +1,22 @@
-//! What an engine does for its events, counted in the units of the source's cost formula (ISO99, section 4).
+//! Operation counts of an engine, in the units of ISO99's cost formula (section 4).
 
-/// Counts since an engine began or went on: one that goes on looks for some events once more, so they are of a session, not of a run.
+/// Counts since an engine started or resumed. Resuming repeats some searches, so the counts belong to a session, not to a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Operations {
-    /// Predictions of when a pair of discs meets: k_PP.
+    /// Predicted collision times of pairs: k_PP.
     pub(crate) predictions: u64,
-    /// Searches for the next event of a disc among all that it may meet.
+    /// Searches for the next event of a disc among all its possible partners.
     pub searches: u64,
-    /// Searches of these for a disc whose partner met another one before.
+    /// Searches due to a partner that had another event first.
     pub(crate) repairs: u64,
-    /// Events that were put into the queue or moved in it: k_CBT.
+    /// Insertions and moves in the event queue: k_CBT.
     pub(crate) queue_moves: u64,
-    /// Discs that were put into a cell: k_EEPGM.
+    /// Assignments of a disc to a cell: k_EEPGM.
     pub(crate) cell_updates: u64,
 }
 
 impl Operations {
-    /// Every count with its name.
+    /// Returns each count with its name.
     pub(crate) fn named(self) -> Vec<(&'static str, u64)> {
         let Operations { predictions, searches, repairs, queue_moves, cell_updates } = self;
         vec![

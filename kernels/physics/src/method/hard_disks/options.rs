@@ -1,15 +1,15 @@
-//! The words of this method's keys.
+//! Words of this method's keys.
 
 use crate::words::define_words;
 
 define_words! {
-    /// How events are found.
+    /// Engine that finds the events.
     pub enum EngineChoice {
-        /// As is fastest.
+        /// The fastest engine that fits the scene.
         Auto = "auto",
-        /// By lists of each disc's own.
+        /// A neighbour list for each disc.
         Fast = "fast",
-        /// The source's way: masks over the exclusive grid.
+        /// Masks over the exclusive grid, as in ISO99.
         Reference = "reference",
     }
 }

@@ -1,4 +1,4 @@
-//! What every engine is held against: all pairs and all walls, again and again.
+//! Oracle for all engines: brute-force search over all pairs and walls for each event.
 
 use super::engine::{Engine, Occurred, Partner};
 use super::event::{Arena, Law, Thermal};
@@ -12,7 +12,7 @@ use stripmine_kernels::flight::{Disc, meeting};
 use stripmine_kernels::mask::Mask;
 use stripmine_kernels::noise::{Purpose, Stream};
 
-/// The next event of all.
+/// Executes the next event, found among all pairs and walls.
 fn naive(arena: &Arena, discs: &mut [Disc], now: f64) -> Occurred {
     let count = discs.len() as u32;
     let mut next = (f64::INFINITY, 0, Partner::Wall(0));
@@ -40,10 +40,10 @@ fn naive(arena: &Arena, discs: &mut [Disc], now: f64) -> Occurred {
     }
 }
 
-/// Height below which discs start where there is no ceiling.
+/// Height below which discs start if there is no ceiling.
 const HEIGHT: f64 = 20.0;
 
-/// Discs at random places with random velocities; radii and masses differ by up to `spread`.
+/// Discs at random positions with random velocities; radii and masses differ by up to `spread`.
 fn random(domain: &Domain, count: usize, spread: f64, seed: u64) -> Vec<Disc> {
     let mut stream = Stream::new(seed, Purpose::Test, 1);
     let mut discs: Vec<Disc> = vec![];
@@ -63,11 +63,11 @@ fn random(domain: &Domain, count: usize, spread: f64, seed: u64) -> Vec<Disc> {
     discs
 }
 
-/// Both engines, the source's with several masks, and the fast one with every instruction set.
+/// Reference engines with several masks, and fast engines with every instruction set.
 fn engines(arena: Arena, discs: &[Disc]) -> Vec<(String, Box<dyn Engine>)> {
     let mut engines: Vec<(String, Box<dyn Engine>)> = vec![];
     for mask in [Mask::square(2), Mask::round(3), Mask::round(4)] {
-        let name = format!("{} places", mask.offsets().len());
+        let name = format!("{} offsets", mask.offsets().len());
         engines.push((name, reference::begin(arena, discs.to_vec(), &mask, 0.0).unwrap()));
     }
     if displacement_limit(&arena, discs.iter().map(|disc| disc.radius)).is_some() {
@@ -79,7 +79,7 @@ fn engines(arena: Arena, discs: &[Disc]) -> Vec<(String, Box<dyn Engine>)> {
     engines
 }
 
-/// Holds both engines against all pairs: every event, and every disc at the end. Gives how many were fast.
+/// Compares all engines with the oracle: every event, and every disc at the end. Returns the number of fast engines.
 fn hold(arena: Arena, discs: &[Disc], events: usize) -> usize {
     let (mut oracle, mut now) = (discs.to_vec(), 0.0);
     let events: Vec<Occurred> = (0..events)
@@ -103,7 +103,7 @@ fn hold(arena: Arena, discs: &[Disc], events: usize) -> usize {
     fast
 }
 
-/// The same events at the same times, to the bit, whatever the sides, the sizes, the restitution and gravity.
+/// Events and times are bitwise equal for all sides, sizes, restitutions and gravities.
 #[test]
 fn events_are_those_of_all_pairs() {
     let mut fast = 0;
@@ -123,7 +123,7 @@ fn events_are_those_of_all_pairs() {
     assert!(fast > 12, "{fast}");
 }
 
-/// Over a floor that moves up and down, with a ceiling and without.
+/// A vibrating floor, with a ceiling and without.
 #[test]
 fn events_above_a_vibrating_floor_are_those_of_all_pairs() {
     let open = Domain { origin: [0.0; 3], sides: [Side::Periodic(14.0), Side::Open, Side::Flat] };
@@ -135,7 +135,7 @@ fn events_above_a_vibrating_floor_are_those_of_all_pairs() {
     }
 }
 
-/// Without a ceiling, over a floor that gives back its temperature.
+/// A thermal floor without a ceiling.
 #[test]
 fn events_above_a_hot_floor_are_those_of_all_pairs() {
     let domain = Domain { origin: [0.0; 3], sides: [Side::Periodic(14.0), Side::Open, Side::Flat] };
@@ -145,7 +145,7 @@ fn events_above_a_hot_floor_are_those_of_all_pairs() {
     assert!(hold(Arena::new(domain, [0.0, -0.5], law), &discs, 3_000) > 0);
 }
 
-/// Discs that start on a square lattice with velocities along it meet by pairs at one time, again and again.
+/// Discs on a square lattice with velocities along it collide pairwise at equal times, again and again.
 #[test]
 fn meetings_at_one_time_come_in_the_order_of_the_numbers() {
     let domain = Domain::planar([0.0; 2], [24.0; 2], [true; 2]);
@@ -157,12 +157,12 @@ fn meetings_at_one_time_come_in_the_order_of_the_numbers() {
         mass: 1.0,
         events: 0,
     };
-    // Shuffled, so that the order of the numbers is not that of the places.
+    // Shuffled, so that the order of the numbers differs from that of the positions.
     let discs: Vec<Disc> = (0..36).map(|number| disc(number * 23 % 36)).collect();
     assert!(hold(Arena::new(domain, [0.0; 2], Law::ELASTIC), &discs, 300) > 0);
 }
 
-/// 10⁵ collisions of 200 discs: energy stays to rounding, momentum too, nothing overlaps, and both engines agree to the end.
+/// 10⁵ collisions of 200 discs: energy and momentum are conserved to rounding, no discs overlap, and both engines agree to the end.
 #[test]
 fn energy_and_momentum_stay() {
     let domain = Domain::planar([0.0; 2], [19.0, 18.0], [true; 2]);
@@ -192,7 +192,7 @@ fn energy_and_momentum_stay() {
     }
 }
 
-/// Both engines find the same 10⁶ events, at three densities, with discs of different sizes that lose energy, and under gravity.
+/// Both engines find the same 10⁶ events: at three densities, with polydisperse discs that lose energy, and under gravity.
 #[test]
 #[ignore = "long: cargo test --workspace --lib -- --ignored engines_agree"]
 fn engines_agree_over_a_million_events() {

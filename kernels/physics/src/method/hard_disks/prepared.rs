@@ -1,4 +1,4 @@
-//! What a checked scene of hard discs offers.
+//! Prepared scene of hard discs: facts, memory forecast, settings and the start of a simulation.
 
 use super::checked::Checked;
 use super::collision_log::COLUMNS;
@@ -18,7 +18,7 @@ use std::sync::Arc;
 use stripmine_kernels::flight::Disc;
 
 impl Checked {
-    /// What is offered.
+    /// Turns the checked scene into the interface common to all methods.
     pub(super) fn prepared(self) -> Prepared {
         let scene = &self.scene;
         Prepared {
@@ -33,7 +33,7 @@ impl Checked {
             warnings: self.warnings.clone(),
             choices: self.choices.clone(),
             left_out: left_out(&[
-                (true, "a time step, and how discs deform: they are hard"),
+                (true, "time steps and the deformation of discs: they are hard"),
                 (scene.law.restitution == 1.0, "dissipation of collisions: law.restitution is 1"),
                 (scene.law.contact_duration == 0.0, "the duration of contacts: law.contact_duration is 0"),
                 (self.domain.periodic() == [true; 2], "walls: both sides are periodic"),
@@ -82,7 +82,7 @@ impl Checked {
             let [columns, rows] = Sizes::new(&self.domain, low).cells;
             let cells = format!("{columns} × {rows} = {}", columns * rows);
             facts.push(Fact::new("cells", columns * rows, "cells", cells));
-            let places = format!("{}, {} places", self.scene.mask, mask.offsets().len());
+            let places = format!("{}, {} offsets", self.scene.mask, mask.offsets().len());
             facts.push(Fact::new("mask", self.scene.mask.as_str(), "mask", places));
         }
         facts
@@ -95,25 +95,25 @@ impl Checked {
                 let sizes = Sizes::new(&self.domain, self.particles.radii().map_or(1.0, |[low, _]| low));
                 let margin = 2 * mask.half_width() as usize;
                 let cells: f64 = sizes.cells.iter().map(|&cells| (cells + margin) as f64).product();
-                // An event, a node, a cell and a place a disc; less is in memory at once than by lists, for nothing is sorted (measured).
+                // Event, node, cell and position per disc; the peak is lower than with lists, because nothing is sorted (measured).
                 4.0 * cells + (16.0 + 8.0 + 4.0 + 24.0 - 40.0) * discs
             }
-            // List, time, partner, place, numbers and cells; discs and keys once more while they are sorted.
+            // List, time, partner, position, numbers and cells; discs and keys again while they are sorted.
             None => (64.0 + 9.2 + 4.0 + 16.0 + 8.0 + 8.0 + 80.0) * discs,
         };
-        // Each disc as its last event left it, and two counts.
+        // Each disc in the state after its last event, and two counts.
         let followed = match self.scene.output.follows_motion() {
             true => (size_of::<Disc>() + 2 * size_of::<f64>()) as f64,
             false => 0.0,
         };
-        // A disc; the scene's particles, which the simulation shares, once more as they are where a run goes on, and the two frames that
-        // are made and written; what is written of them.
+        // The disc; its particle in the scene, which the simulation shares; a copy in the current state on resumption; two frames, one being
+        // built and one being written; and the written text.
         let disc = size_of::<Disc>() as f64 + 4.0 * size_of::<Particle>() as f64 + 100.0 + followed;
         Foreseen {
             needed: (PROGRAM + disc * discs + of_engine) as u64,
             available: available(),
             what: format!("{} hard discs", self.particles.len()),
-            remedy: "take fewer discs",
+            remedy: "use fewer discs",
             ranks: OfRanks::default(),
         }
     }
@@ -149,7 +149,7 @@ impl Startable for Checked {
     }
 
     fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure> {
-        refuse_several_ranks("the events of hard discs are done one after the other, wherever they are")?;
+        refuse_several_ranks("the events of hard discs are executed in sequence, wherever they occur")?;
         let is_run = purpose == Purpose::Run;
         let observed = Observed {
             logs: is_run && self.scene.collision_log,

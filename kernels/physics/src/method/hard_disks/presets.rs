@@ -1,8 +1,8 @@
-//! Scenes to start from.
+//! Preset scenes of hard discs.
 
 use crate::scene::Preset;
 
-/// Every preset of this method.
+/// All presets of this method.
 pub(super) const PRESETS: &[Preset] = &[
     Preset { name: "hard-disks", text: include_str!("presets/hard-disks.toml") },
     Preset { name: "cooling-gas", text: include_str!("presets/cooling-gas.toml") },

@@ -1,4 +1,4 @@
-//! Whether the discs of a checkpoint can be those of a run: what cannot would make events without end.
+//! Plausibility check of restored discs: an impossible state would cause infinitely many events.
 
 use super::event::Arena;
 use crate::domain::Side;
@@ -7,19 +7,22 @@ use crate::near::Near;
 use crate::particles::{Particle, Particles};
 use stripmine_kernels::flight::Disc;
 
-/// Discs overlap, and stand out of the box, by less than this part of a radius in any run: rounding, many times over.
+/// Largest overlap, of discs or with the box, as a fraction of a radius: many times the rounding of any run.
 const ROUNDING: f64 = 1e-6;
-/// Energy is no more than this many times what a scene begins with or gives in one event.
+/// Largest ratio of the energy to that offered by the scene, at the start or per event.
 const MOST_ENERGY: f64 = 1e4;
 
-/// That discs are inside the box, apart from each other, not ahead of the clock, and no faster than the scene can make them.
+/// Checks that discs are inside the box, do not overlap, are not ahead of the clock, and have no more energy than the scene can give.
 ///
 /// # Errors
-/// A sentence that names the first that is not.
+/// A message that names the first violation.
 pub(super) fn sound(arena: &Arena, start: &Particles, discs: &[Disc], clock: &Clock) -> Result<(), String> {
     let now = clock.time;
     if let Some(disc) = discs.iter().find(|disc| !(0.0..=now).contains(&disc.time)) {
-        return Err(format!("the local time of a disc is {:?}, and the clock shows {now:?}", disc.time));
+        return Err(format!(
+            "the local time of a disc is {:?}, outside the range from 0 to the clock's {now:?}",
+            disc.time
+        ));
     }
     let places: Vec<[f64; 2]> = discs.iter().map(|disc| arena.place(disc, now)).collect();
     for (disc, place) in discs.iter().zip(&places) {
@@ -28,12 +31,12 @@ pub(super) fn sound(arena: &Arena, start: &Particles, discs: &[Disc], clock: &Cl
         }
     }
     let kinetic: f64 = discs.iter().map(|disc| 0.5 * disc.mass * disc.speed().powi(2)).sum();
-    // Only a floor gives more with every event; a thermal side gives its own temperature again.
+    // Only a floor adds energy with every event; a thermal side re-emits at its own temperature.
     let given = if arena.law.floor.is_some() { 1.0 + clock.events as f64 } else { 1.0 };
     let most = MOST_ENERGY * given * offered(arena, start);
     if kinetic > most || kinetic.is_nan() {
         return Err(format!(
-            "the discs have the kinetic energy {kinetic:?}, of which the scene offers {most:?} at most"
+            "the discs have the kinetic energy {kinetic:?}, but the scene can give at most {most:?}"
         ));
     }
     let largest = discs.iter().map(|disc| disc.radius).fold(0.0, f64::max);
@@ -63,7 +66,7 @@ fn is_inside(arena: &Arena, disc: &Disc, place: [f64; 2]) -> bool {
     })
 }
 
-/// What discs begin with, can fall through, and are given by a side in an event (energy).
+/// Energy available to the discs: at the start, by falling, and from a side in one event (energy).
 fn offered(arena: &Arena, start: &Particles) -> f64 {
     let gravity = arena.space.gravity().unwrap_or_default();
     let thermal = arena.law.thermal.map_or(0.0, |thermal| thermal.temperature);

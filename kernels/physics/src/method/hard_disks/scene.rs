@@ -1,4 +1,4 @@
-//! What a scene of this method says, as plain data.
+//! Scene of hard discs as plain data.
 
 use super::event::{Arena, Law, Thermal};
 use super::floor::Floor;
@@ -11,41 +11,41 @@ use crate::scene::{
 };
 use stripmine_kernels::InstructionSet;
 
-/// What is simulated. Units are the scene's own; `units` names them.
+/// Scene of the method, in its own units; `units` names them.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Scene {
-    /// The unit system: a label.
+    /// Label of the unit system.
     pub units: String,
     /// The box.
     pub domain: Domain,
-    /// The discs at the start.
+    /// Discs at the start.
     pub start: Start,
-    /// What collisions do.
+    /// Collision law.
     pub law: Law,
-    /// Seed of the thermal side, where it is not that of the start.
+    /// Seed of the thermal side, if it differs from that of the start.
     pub(crate) noise_seed: Option<u64>,
-    /// Whether there is no ceiling.
+    /// True without a ceiling.
     pub(crate) open_top: bool,
-    /// How events are found.
+    /// Engine that finds the events.
     pub engine: EngineChoice,
-    /// The instructions; the widest set that there is if none.
+    /// Instruction set; the widest available if none.
     pub instruction_set: Option<InstructionSet>,
-    /// The mask by its name.
+    /// Name of the mask.
     pub mask: String,
-    /// How long, and how often something is written.
+    /// Duration and output intervals.
     pub run: Run,
-    /// Which files are written.
+    /// Output files.
     pub output: Output,
-    /// Whether every collision is written.
+    /// True if every collision is written.
     pub(crate) collision_log: bool,
 }
 
-/// How long a run takes, and how often something is written (time; 0 is never).
+/// Duration and output intervals of a run (time; 0 is never).
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Run {
-    /// The end.
+    /// End of the run.
     pub until: Until,
-    /// The mean that ends the run before.
+    /// Target error of a mean, which ends the run early.
     pub target: Option<Target>,
     /// Time between rows of observables.
     pub(crate) thermo_every: f64,
@@ -101,7 +101,7 @@ impl Run {
         binding.number_if_any(&CHECKPOINT_EVERY, &mut self.checkpoint_every);
     }
 
-    /// As every method states it.
+    /// Schedule common to all methods.
     pub(super) fn schedule(&self) -> Schedule {
         Schedule {
             until: self.until,
@@ -113,7 +113,7 @@ impl Run {
 }
 
 impl Scene {
-    /// Meets every key of the method.
+    /// Binds every key of the method.
     pub(super) fn bind(&mut self, binding: &mut dyn Binding) {
         bind_heading(binding, &mut self.units, VOCABULARY.keys.method);
         self.domain.bind(binding);
@@ -133,7 +133,7 @@ impl Scene {
         binding.switch(&COLLISION_LOG, &mut self.collision_log);
     }
 
-    /// What its discs fly in, in a box.
+    /// Arena of the discs in a box.
     pub(super) fn arena(&self, domain: crate::domain::Domain) -> Arena {
         let mut arena = Arena::new(domain, self.domain.gravity, self.law);
         if self.open_top {
@@ -142,7 +142,7 @@ impl Scene {
         arena
     }
 
-    /// The instructions of a run.
+    /// Instruction set of a run.
     pub(super) fn instructions(&self) -> InstructionSet {
         self.instruction_set.unwrap_or_else(InstructionSet::best)
     }
@@ -153,7 +153,7 @@ impl Scene {
         let mut name = (*name.unwrap_or(&THERMAL_SIDES[0])).to_owned();
         let mut temperature = known.map_or(1.0, |thermal| thermal.temperature);
         binding.word(&THERMAL_SIDE, &mut name);
-        // Without a side that is hot it means nothing.
+        // These keys have no effect without a thermal side.
         if side(&name).is_some() {
             binding.number(&WALL_TEMPERATURE, &mut temperature);
             binding.whole_if_any(&NOISE_SEED, &mut self.noise_seed);
@@ -170,7 +170,7 @@ impl Scene {
         self.law.floor = (amplitude > 0.0).then_some(Floor { amplitude, frequency });
     }
 
-    /// The whole scene as TOML, defaults written out. Parsing it gives an equal scene.
+    /// Writes the whole scene as TOML, including defaults. Parsing it gives an equal scene.
     pub(super) fn to_toml(&self) -> String {
         let mut write = Write::default();
         self.clone().bind(&mut write);

@@ -1,4 +1,4 @@
-//! Hard discs under way, observed.
+//! Simulation of hard discs: advances the engine event by event and observes the discs.
 
 use super::checked::Checked;
 use super::collapse::{Endless, Watch};
@@ -28,42 +28,42 @@ use stripmine_kernels::InstructionSet;
 use stripmine_kernels::flight::Disc;
 use stripmine_kernels::mask::Mask;
 
-/// Events, or rebuilds of the grid, between looks at whether a run is to be interrupted.
+/// Events, or rebuilds of the grid, between checks for an interruption.
 const INTERRUPT_CHECK_INTERVAL: u64 = 4096;
 
-/// Discs under way.
+/// Running simulation of hard discs.
 pub(super) struct Running {
     engine: Box<dyn Engine>,
     arena: Arena,
     clock: Clock,
     totals: Totals,
     watch: Watch,
-    /// The sums at the row before.
+    /// Sums at the previous row.
     row: Mark,
     /// Kinetic and potential energy at the start.
     start: [f64; 2],
-    /// Whether it is not known that nothing will ever happen, though it was asked since the last event.
+    /// True if the idleness check has run since the last event and proved nothing.
     may_meet: bool,
-    /// The particles of the start, which the scene holds, and the place among them of each disc.
+    /// The particles at the start, shared with the scene, and the index among them of each disc.
     particles: Arc<Particles>,
     places: Vec<usize>,
-    /// Rows of collisions, where they are asked for.
+    /// Rows of collisions, if requested.
     log: Option<Log>,
-    /// The periods that discs cross, where displacements are asked for.
+    /// Crossings of periodic sides, if displacements are requested.
     followed: Option<Followed>,
     seconds: f64,
 }
 
-/// What of a run is kept beside its motion.
+/// Optional records of a run.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Observed {
-    /// Every collision, until it is taken.
+    /// Logs every collision.
     pub(super) logs: bool,
-    /// The periods that discs cross.
+    /// Counts crossings of periodic sides.
     pub(super) follows: bool,
 }
 
-/// How events are found.
+/// Configuration of the search for events.
 #[derive(Clone, Debug)]
 enum Way {
     Fast(InstructionSet),
@@ -80,7 +80,7 @@ impl Way {
 }
 
 impl Running {
-    /// Discs at their start.
+    /// Starts the simulation from the discs of a checked scene.
     pub(super) fn new(checked: &Checked, observed: Observed) -> Result<Running, Failure> {
         let (discs, places) = checked.discs();
         let arena = checked.scene.arena(checked.domain);
@@ -92,7 +92,7 @@ impl Running {
             None => Way::Fast(checked.scene.instructions()),
         };
         let followed = observed.follows.then(|| Followed::new(&arena, discs.clone()));
-        // The engine takes the discs: a failure makes them again.
+        // The engine consumes the discs, so a failure builds them again.
         let stopped = |why| {
             let (discs, _) = checked.discs();
             failure(why, &|disc| discs[disc as usize], &checked.particles, &places, Clock::default())
@@ -115,7 +115,7 @@ impl Running {
         })
     }
 
-    /// The discs by their numbers.
+    /// Iterates over the discs in the order of their numbers.
     fn discs(&self) -> impl Iterator<Item = &Disc> {
         (0..self.engine.count() as u32).map(|number| self.engine.disc(number))
     }
@@ -139,7 +139,7 @@ impl Running {
         }
     }
 
-    /// Whether it is proved that nothing will ever happen. Between events it need not be asked twice.
+    /// True if no event can ever happen. The proof runs at most once between two events.
     fn is_idle(&mut self) -> bool {
         if !self.may_meet {
             let discs: Vec<Disc> = self.discs().copied().collect();
@@ -149,8 +149,8 @@ impl Running {
     }
 
     fn idle(&self) -> Failure {
-        let message = "no disc will ever meet another one or a side";
-        let remedy = "ask for a time instead of events, or give the discs other velocities";
+        let message = "no disc will ever meet another disc or a side";
+        let remedy = "set run.time instead of run.events, or give the discs other velocities";
         Failure::new(super::IDLE, message, remedy).at(self.clock)
     }
 
@@ -166,20 +166,20 @@ impl Running {
         let (named, took) = (named.join(" and "), significant(duration, 4));
         let (kind, message, remedy) = if rests {
             let message = format!(
-                "{named} has come to rest: {events} events of it and what it lies on within a time of {took}, and hard discs have \
-                 no contact that lasts"
+                "{named} has come to rest: it and the discs below it had {events} events within a time of {took}, but hard \
+                 discs have no lasting contacts"
             );
             let least = significant(1e-4 * falling(self.discs(), &self.arena), 1);
             let remedy = format!(
                 "raise law.contact_duration to {least} or more, so that discs at rest bounce less often; raise law.wall_restitution; or \
-                 take soft discs, method.kind = \"lattice-md\""
+                 use soft discs, method.kind = \"lattice-md\""
             );
             (super::RESTING, message, remedy)
         } else {
             let message = format!(
                 "inelastic collapse: {events} collisions within a time of {took}, the last of {named}"
             );
-            let remedy = "set law.contact_duration to a small part of the mean free time: collisions that come sooner are then \
+            let remedy = "set law.contact_duration to a small fraction of the mean free time, so that more frequent collisions are \
                           elastic; or raise law.restitution";
             (super::INELASTIC_COLLAPSE, message, remedy.to_owned())
         };
@@ -197,12 +197,12 @@ impl Running {
     }
 }
 
-/// Potential energy at a time.
+/// Total potential energy of the discs at a time.
 fn potential<'d>(discs: impl Iterator<Item = &'d Disc>, arena: &Arena, time: f64) -> f64 {
     discs.map(|disc| arena.potential(disc, time)).sum()
 }
 
-/// The time in which a typical disc flies through the radius of the smallest.
+/// Time in which a disc of typical speed flies through the smallest radius.
 fn crossing<'d>(discs: impl Iterator<Item = &'d Disc>) -> f64 {
     let (mut count, mut squares, mut smallest) = (0.0, 0.0, f64::INFINITY);
     for disc in discs {
@@ -213,7 +213,7 @@ fn crossing<'d>(discs: impl Iterator<Item = &'d Disc>) -> f64 {
     smallest / (squares / count).sqrt()
 }
 
-/// The time in which a disc falls through the radius of the smallest; infinite where nothing falls.
+/// Time in which a disc falls through the smallest radius; infinite without gravity.
 fn falling<'d>(discs: impl IntoIterator<Item = &'d Disc>, arena: &Arena) -> f64 {
     let [gx, gy] = arena.space.gravity().unwrap_or_default();
     let smallest = discs.into_iter().map(|disc| disc.radius).fold(f64::INFINITY, f64::min);
@@ -221,12 +221,12 @@ fn falling<'d>(discs: impl IntoIterator<Item = &'d Disc>, arena: &Arena) -> f64 
 }
 
 impl Running {
-    /// The motion of all discs now.
+    /// Current motion of all discs.
     fn motion(&self) -> Motion {
         Motion::of(self.discs(), &self.arena, self.clock.time)
     }
 
-    /// All that is to be seen now, and the sums of which its means are.
+    /// Current observation, and the sums from which its means are calculated.
     fn seen(&self) -> (Seen, Mark) {
         let (time, motion) = (self.clock.time, self.motion());
         let mark = self.totals.mark(&self.arena, self.discs(), &motion, time);
@@ -309,7 +309,7 @@ impl Simulation for Running {
                         return Err(self.endless(&happened, endless));
                     }
                 }
-                // Nothing is expected any more, or nothing up to the end, or nothing has happened for long.
+                // No event is left, or none up to the end, or none within the checked number of rebuilds.
                 Ok(None) if self.engine.rebuilds() < since_check && end.is_finite() => self.clock.time = end,
                 Ok(None) if self.engine.rebuilds() < since_check || self.is_idle() => {
                     if end.is_infinite() {
@@ -413,8 +413,8 @@ impl Simulation for Running {
     fn warnings(&self) -> Vec<RunWarning> {
         let Totals { collisions, made_elastic, .. } = self.totals;
         let message = format!(
-            "{made_elastic} of {collisions} collisions were made elastic, because another one of either disc was less than \
-             law.contact_duration = {} ago",
+            "{made_elastic} of {collisions} collisions were made elastic, because either disc had collided less than \
+             law.contact_duration = {} before",
             self.arena.law.contact_duration
         );
         let warning = RunWarning { check: "made-elastic", value: made_elastic as f64, limit: 0.0, message };
@@ -429,8 +429,8 @@ impl Simulation for Running {
             false => significant(temperature, 5),
         };
         format!(
-            "{}, {} collisions of pairs; temperature {temperature}; since the start: compressibility {}, {} collisions of a disc in \
-             a unit of time",
+            "{}, {} collisions of pairs; temperature {temperature}; since the start: compressibility {}, {} collisions per disc and \
+             unit of time",
             counted(self.places.len(), "disc", "discs"),
             self.totals.collisions,
             significant(compressibility, 5),
@@ -441,7 +441,7 @@ impl Simulation for Running {
 
 type Field = fn(&mut Disc) -> &mut f64;
 
-/// What a checkpoint holds of a disc.
+/// Fields of a disc that a checkpoint stores.
 const FIELDS: [(&str, Field); 5] = [
     ("x", |disc| &mut disc.position[0]),
     ("y", |disc| &mut disc.position[1]),

@@ -1,4 +1,4 @@
-//! Discs of a start that overlap by no more than the digits of their positions: their radii are made smaller by as much.
+//! Repair of starts with rounding overlaps: if discs overlap only by the precision of their positions, all radii shrink accordingly.
 
 use super::scene::Scene;
 use crate::domain::{Domain, Side};
@@ -7,22 +7,22 @@ use crate::particles::Particles;
 use crate::scene::{FILE, GENERATE, POSITIONS, Start, Values, Warning};
 use crate::start::deepest_overlap;
 
-/// Discs may overlap by this part of the sum of their radii at the start: rounding of double precision.
+/// Tolerated overlap at the start as a fraction of the sum of the radii: rounding of double precision.
 pub(super) const ROUNDING: f64 = 1e-12;
-/// Radii are made smaller by no larger part.
+/// Largest relative reduction of the radii.
 const LARGEST: f64 = 1e-6;
 
-/// How far discs overlap each other, and reach beyond closed sides.
+/// Overlaps of discs with each other and with closed sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Squeeze {
-    /// Pairs and ends of sides of which it is true.
+    /// Number of overlapping pairs and of discs beyond a closed side.
     count: usize,
-    /// The deepest of them, as a part of the radii.
+    /// Deepest overlap as a fraction of the radii.
     deepest: f64,
 }
 
 impl Squeeze {
-    /// Of discs in a box.
+    /// Measures the overlaps of discs in a box.
     pub(super) fn of(domain: &Domain, particles: &Particles) -> Squeeze {
         let (mut count, mut deepest) = deepest_overlap(domain, particles, ROUNDING, LARGEST);
         for disc in particles.all() {
@@ -38,12 +38,12 @@ impl Squeeze {
         Squeeze { count, deepest }
     }
 
-    /// Whether it is more than digits leave out.
+    /// True if the overlap exceeds the precision of written positions.
     pub(super) fn is_deep(&self) -> bool {
         self.deepest > LARGEST
     }
 
-    /// Makes radii so much smaller that nothing overlaps, where that is as little as digits leave out; a word of it if it was done.
+    /// Shrinks all radii until nothing overlaps, if the overlaps are within the precision of positions. Returns a warning if it did.
     pub(super) fn undone(
         &self,
         values: &Values,
@@ -66,11 +66,11 @@ impl Squeeze {
             is_refusal: false,
             key: key.path(),
             message: format!(
-                "discs overlap each other or closed sides in {} places, by up to {part} of their radii, as positions of few digits do: all \
-                 radii are made smaller by this part",
+                "discs overlap each other or closed sides in {} places, by up to {part} of their radii, as positions of low precision do: \
+                 all radii are made smaller by this part",
                 self.count
             ),
-            suggestion: "write positions with all digits to keep the radii".to_owned(),
+            suggestion: "write positions in full precision to keep the radii".to_owned(),
         })
     }
 }

@@ -1,4 +1,4 @@
-//! Sums that every event adds to, and means over an interval that follow from them.
+//! Sums over events, and the means over an interval that follow from them.
 
 use super::engine::Occurred;
 use super::event::Arena;
@@ -11,20 +11,20 @@ use stripmine_kernels::flight::Disc;
 pub(super) struct Totals {
     /// Collisions of pairs.
     pub(super) collisions: u64,
-    /// Collisions that were made elastic.
+    /// Collisions made elastic by the contact duration.
     pub(super) made_elastic: u64,
     /// Σ impulse · distance (mass · length²/time).
     pub(super) virial: f64,
-    /// Energy given by sides, less what collisions have taken.
+    /// Energy given by sides, less the energy lost in collisions.
     pub(super) work: f64,
-    /// Action of all flights that are over (energy · time).
+    /// Action of all completed flights (energy · time).
     action: f64,
 }
 
-/// The sums at a moment: where an interval begins or ends.
+/// Sums at the beginning or end of an interval.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Mark {
-    /// When (time).
+    /// Time of the mark.
     time: f64,
     collisions: u64,
     virial: f64,
@@ -32,13 +32,13 @@ pub(super) struct Mark {
     action: f64,
 }
 
-/// Motion of all discs at a moment.
+/// Total motion of the discs at a moment.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Motion {
     pub(super) count: f64,
     pub(super) mass: f64,
     pub(super) axes: [AxisMotion; 2],
-    /// Axes along which the momentum stays.
+    /// Axes along which the momentum is conserved.
     pub(super) conserved: [bool; 2],
 }
 
@@ -50,7 +50,7 @@ pub(super) struct Means {
 }
 
 impl Motion {
-    /// Motion of discs at a time.
+    /// Sums the motion of discs at a time.
     pub(super) fn of<'d>(discs: impl Iterator<Item = &'d Disc>, arena: &Arena, time: f64) -> Motion {
         let conserved = arena.conserved_axes();
         let mut motion = Motion { count: 0.0, mass: 0.0, axes: [AxisMotion::default(); 2], conserved };
@@ -89,7 +89,7 @@ impl Totals {
         self.action += happened.action;
     }
 
-    /// The sums at a time, with the flights that are not over.
+    /// Returns the sums at a time, including the flights in progress.
     pub(super) fn mark<'d>(
         &self,
         arena: &Arena,
@@ -104,7 +104,7 @@ impl Totals {
         Mark { time, collisions: self.collisions, virial: self.virial, action }
     }
 
-    /// Adds them to a checkpoint.
+    /// Adds the sums to a checkpoint.
     pub(super) fn keep(&self, kept: &mut Snapshot) {
         kept.add_count("collisions", self.collisions);
         kept.add_count("made_elastic", self.made_elastic);
@@ -113,10 +113,10 @@ impl Totals {
         kept.add_sum("action", self.action);
     }
 
-    /// Those of a checkpoint of `events` events.
+    /// Reads the sums from a checkpoint written after `events` events.
     ///
     /// # Errors
-    /// A sentence, if one is missing.
+    /// A message if one is missing.
     pub(super) fn kept(kept: &Snapshot, events: u64) -> Result<Totals, String> {
         let collisions = kept.count_at_most("collisions", events)?;
         Ok(Totals {
@@ -130,13 +130,13 @@ impl Totals {
 }
 
 impl Mark {
-    /// Means from an earlier mark up to this one. Without a collision, and over no time, they are those of an ideal gas.
+    /// Means over the interval from an earlier mark. Without a collision, or over no time, they are those of an ideal gas.
     pub(super) fn since(&self, before: &Mark, motion: &Motion) -> Means {
         let (duration, collisions) = (self.time - before.time, self.collisions - before.collisions);
         if collisions == 0 || duration <= 0.0 {
             return Means { compressibility: 1.0, collision_rate: 0.0 };
         }
-        // Both axes are added up: all of ⟨Σ m v²⟩ may stand for the first.
+        // The action sums both axes, so the first axis carries all of ⟨Σ m v²⟩.
         let [x, y] = motion.axes.map(|axis| axis.momentum);
         let twice_kinetic = (self.action - before.action) / duration;
         let axes =
@@ -149,7 +149,7 @@ impl Mark {
         }
     }
 
-    /// Adds it to a checkpoint.
+    /// Adds the mark to a checkpoint.
     pub(super) fn keep(&self, kept: &mut Snapshot) {
         kept.add_sum("row.time", self.time);
         kept.add_count("row.collisions", self.collisions);
@@ -157,10 +157,10 @@ impl Mark {
         kept.add_sum("row.action", self.action);
     }
 
-    /// That of a checkpoint.
+    /// Reads the mark from a checkpoint.
     ///
     /// # Errors
-    /// A sentence, if it is missing or later than the sums.
+    /// A message if it is missing or later than the sums.
     pub(super) fn kept(kept: &Snapshot, totals: &Totals) -> Result<Mark, String> {
         Ok(Mark {
             time: kept.sum("row.time")?,

@@ -1,4 +1,4 @@
-//! What is measured of particles in a bath.
+//! Benchmark of Langevin dynamics.
 
 use super::laws::PairLaw;
 use super::quantities::QUANTITIES;
@@ -6,7 +6,7 @@ use crate::method::entry::bench_options;
 use crate::method::{Bench, Until};
 use crate::words::Words;
 
-/// The benchmark: the source's system.
+/// Benchmark with the system of LAN17.
 pub(super) const BENCHES: &[Bench] = &[Bench {
     name: "langevin",
     doc: "LAN17's particles in a bath",
@@ -16,7 +16,7 @@ pub(super) const BENCHES: &[Bench] = &[Bench {
     amount: |particles| (40_000_000 / particles.max(1)).clamp(20, 20_000),
     defaults: &[("particles", "40000")],
     options: bench_options! {
-        // The source's density, 4 particles in a unit of area.
+        // LAN17's density: 4 particles per unit of area.
         "particles" [], |count| {
             let side = count.parse::<f64>().map_or(100.0, |count| (count / 4.0).sqrt());
             vec![format!("particles.count={count}"), format!("domain.sides=[{side:?}, {side:?}]")]

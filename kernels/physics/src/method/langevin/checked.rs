@@ -1,4 +1,4 @@
-//! A scene of particles in a bath, held against what the method demands.
+//! Checks a scene of particles in a bath against the preconditions of the method.
 
 use super::found::{Found, found};
 use super::limits::{Colliding, bound, step_limits};
@@ -13,38 +13,38 @@ use crate::scene::{
 use crate::start::{Stated, make, noise_seed, outside, overlaps};
 use stripmine_kernels::noise::NoiseSource;
 
-/// Particles may start as near as their potential is so many ε.
+/// Largest pair energy at the start, in ε.
 const HIGHEST: f64 = 100.0;
 
-/// A checked scene.
+/// Checked scene of Langevin dynamics.
 #[derive(Clone)]
 pub(super) struct Checked {
     pub(super) scene: Scene,
     pub(super) domain: Domain,
     pub(super) particles: Particles,
-    /// σ and the mass of every particle (length, mass).
+    /// Diameter σ and mass of every particle (length, mass).
     pub(super) diameter: f64,
     pub(super) mass: f64,
-    /// The cut-off (length); a diameter where there are no pairs.
+    /// Cut-off (length); the diameter without pairs.
     pub(super) reach: f64,
     pub(super) found: Found,
-    /// Seed of the noise, as the scene says.
+    /// Seed of the noise given by the scene.
     pub(super) seed: u64,
-    /// Numbers that the bath draws.
+    /// Source of the bath's random numbers.
     pub(super) noise: NoiseSource,
     pub(super) warnings: Vec<Warning>,
     pub(super) choices: Vec<String>,
 }
 
-/// Makes the particles of a scene and holds it against every precondition.
+/// Places the particles of a scene and checks every precondition.
 ///
 /// # Errors
-/// [`SceneErrors`]: every precondition that does not hold.
+/// [`SceneErrors`] with every violated precondition.
 pub(super) fn prepare(values: Values) -> Result<Prepared, SceneErrors> {
     Ok(checked(values)?.prepared())
 }
 
-/// The same, as this method knows it.
+/// Checks a scene and returns the method's own representation.
 pub(super) fn checked(values: Values) -> Result<Checked, SceneErrors> {
     let (mut scene, mut read) = (Scene::default(), Read::new(&values));
     scene.bind(&mut read);
@@ -61,7 +61,7 @@ pub(super) fn checked(values: Values) -> Result<Checked, SceneErrors> {
     let mut errors = outside(&stated, &domain, &particles);
     if scene.law.has_pairs() {
         let deepest = 1.0 - scene.law.nearest(&scene.parameters, HIGHEST);
-        let why = "so near they would be thrown apart";
+        let why = "that near, they would be thrown apart";
         errors.extend(overlaps(&stated, &domain, &particles, deepest, why));
     }
     let first = match of_one_kind(&values, &particles) {
@@ -85,7 +85,7 @@ pub(super) fn checked(values: Values) -> Result<Checked, SceneErrors> {
     SceneErrors::none_of(errors)?;
     let mut warnings = made.warnings;
     warnings.extend(too_long(&scene, diameter, mass));
-    // Written down where the start has no seed. Where it has one, the noise follows that of the start, also where a
+    // Written into the scene if the start has no seed. Otherwise the noise follows the seed of the start, also if a
     // resolved scene is run again with another one.
     if scene.start.seed().is_none() {
         scene.noise_seed.get_or_insert(1);
@@ -95,7 +95,7 @@ pub(super) fn checked(values: Values) -> Result<Checked, SceneErrors> {
     Ok(Checked { scene, domain, particles, diameter, mass, reach, found, seed, noise, warnings, choices })
 }
 
-/// The first particle, if all are alike and move.
+/// Returns the first particle if all particles are equal and mobile.
 fn of_one_kind(values: &Values, particles: &Particles) -> Result<Particle, SceneError> {
     let refused = |message: String| values.spot(&RADIUS).error(Reason::Contradiction, message);
     let Some(&first) = particles.all().first() else {
@@ -114,14 +114,14 @@ fn of_one_kind(values: &Values, particles: &Particles) -> Result<Particle, Scene
     match particles.all().iter().find(differs) {
         None => Ok(first),
         Some(other) => Err(refused(format!(
-            "particle {} has radius {} and mass {}, particle {} has {} and {}: particles in a bath are all alike",
+            "particle {} has radius {} and mass {}, but particle {} has {} and {}: all particles in a bath must be equal",
             first.id, first.radius, first.mass, other.id, other.radius, other.mass
         ))
         .expecting("one radius and one mass, no radius_spread")),
     }
 }
 
-/// A step beyond the source's bound.
+/// Warning for a step beyond LAN17's bound.
 fn too_long(scene: &Scene, diameter: f64, mass: f64) -> Option<Warning> {
     let (step, _) = bound(scene, diameter, mass);
     (scene.law.has_pairs() && scene.dt > step).then(|| Warning {
@@ -133,17 +133,17 @@ fn too_long(scene: &Scene, diameter: f64, mass: f64) -> Option<Warning> {
             "dt = {} is beyond √(2 m r_c/F) = {step}, in which a particle crosses the cut-off: particles will be lost",
             scene.dt
         , step = significant(step, 5)),
-        suggestion: format!("take a step of at most {}", significant(0.1 * step, 2)),
+        suggestion: format!("set integrator.dt to at most {}", significant(0.1 * step, 2)),
     })
 }
 
 impl Checked {
-    /// Whether particles act on each other.
+    /// True if particles exert pair forces.
     pub(super) fn has_pairs(&self) -> bool {
         self.scene.law.has_pairs()
     }
 
-    /// What bounds the step.
+    /// Stability limits of the step.
     pub(super) fn limits(&self) -> Vec<StepLimit> {
         let (diameter, mass) = (self.diameter, self.mass);
         let (count, area) = (self.particles.len(), self.domain.area());

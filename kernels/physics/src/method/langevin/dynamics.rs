@@ -1,4 +1,4 @@
-//! Law, scheme and search of a scene, put together: what steps the particles.
+//! Stepper of a scene, assembled from its pair law, integrator and search.
 
 use super::checked::Checked;
 use super::found::Found;
@@ -15,7 +15,7 @@ use stripmine_kernels::backend;
 use stripmine_kernels::integrator::Inertia;
 use stripmine_kernels::integrator::langevin::{Baoab, Bath, Stochastic};
 
-/// Particles of one kind in a bath.
+/// Dynamics of particles of one species in a bath.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct InBath {
     law: SweptLaw,
@@ -26,7 +26,7 @@ pub(super) struct InBath {
 }
 
 impl InBath {
-    /// Of a scene.
+    /// Returns the dynamics of a checked scene.
     pub(super) fn of(checked: &Checked) -> InBath {
         let Checked { scene, diameter, mass, .. } = checked;
         InBath {
@@ -54,7 +54,7 @@ impl Dynamics for InBath {
     }
 }
 
-/// Particles of a checked scene, some of them or all, at their start.
+/// Creates the stepper of all or some particles of a checked scene, at their start.
 ///
 /// # Errors
 /// [`Failure`] if the start breaks a precondition, or the processor lacks the instructions.
@@ -92,7 +92,7 @@ fn of_precision<S: backend::Precision, P: backend::Precision>(
             SortKind::Auto | SortKind::WhenNeeded => Sort::WhenNeeded,
         },
         longest_step: f64::INFINITY,
-        // Particles that do not act on each other may go as far as they like.
+        // Without pair forces particles may cross any number of periods.
         crosses_any: !scene.law.has_pairs(),
         followed: [follows; 2],
         noise: checked.noise,
@@ -109,7 +109,7 @@ fn of_precision<S: backend::Precision, P: backend::Precision>(
     let all = (dynamics, system, set);
     match found.clone() {
         Found::Lattice(shape, frame) => {
-            // Each particle has the room of the cut-off to itself; those that come nearer share a cell.
+            // The cut-off is each particle's diameter on the lattice; particles nearer than that share a cell.
             let radii = std::iter::repeat_n(0.5 * reach, count);
             let search = LatticeSearch::<P>::new::<S>(shape, frame, OnConflict::Resolve, radii);
             boxed::<S, P, _>(all, search, particles)
@@ -123,7 +123,7 @@ fn of_precision<S: backend::Precision, P: backend::Precision>(
     }
 }
 
-/// Whether a failure is of particles that were thrown out, so that a run may go on without them.
+/// True if a failure concerns ejected particles, so that a run may continue without them.
 pub(super) fn is_loss(failure: &Failure) -> bool {
     matches!(failure.kind, FailureKind::OUT_OF_BOX | FailureKind::NOT_FINITE)
 }

@@ -1,4 +1,4 @@
-//! The entry of Langevin dynamics in the list of methods.
+//! Entry of Langevin dynamics in the list of methods.
 
 use super::benches::BENCHES;
 use super::checked::prepare;
@@ -12,7 +12,7 @@ use crate::method::Entry;
 pub static ENTRY: Entry = Entry {
     vocabulary: &VOCABULARY,
     source: "Langevin dynamics of 2017 (LAN17)",
-    doc: "particles in a bath of friction and noise, with pair forces or without",
+    doc: "particles in a bath of friction and noise, with or without pair forces",
     quantities: QUANTITIES,
     prepare,
     benches: BENCHES,

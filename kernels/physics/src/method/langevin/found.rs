@@ -1,4 +1,4 @@
-//! How pairs of a scene are found: as it says, or by what serves.
+//! Choice of the pair search of a scene, as requested or as suitable.
 
 use super::keys::{PER_SIDE, SEARCH, SKIN};
 use super::laws::LAW;
@@ -12,25 +12,25 @@ use stripmine_kernels::mask::Mask;
 use stripmine_kernels::sweep::fast::{Grid, GridError};
 use stripmine_kernels::sweep::lattice::{Frame, LatticeShape};
 
-/// Particles hardly come nearer than where their potential is so many ε: on a lattice those that do share a cell, which costs time.
+/// Pair energy, in ε, that particles hardly ever exceed. Pairs above it share a lattice cell, which costs time.
 const HIGHEST: f64 = 30.0;
-/// Cells that a lattice's mask sees on either side.
+/// Half-width of the lattice's mask, in cells.
 const HALF_WIDTH: u32 = 2;
-/// Sectors of the source's case of all pairs.
+/// Smallest number of sectors along a side: the all-pairs case of LAN17.
 const FEWEST: f64 = 3.0;
 
-/// How pairs are found, with all that is needed for it.
+/// Pair search with its parameters.
 #[derive(Clone, Debug)]
 pub(super) enum Found {
-    /// On a lattice.
+    /// Lattice.
     Lattice(LatticeShape, Frame),
     Sectors(Grid),
-    /// In lists, made of sectors, up to so much beyond the cut-off (length).
+    /// Neighbour lists built from sectors, with their skin (length).
     Lists(Grid, f64),
 }
 
 impl Found {
-    /// The word for it.
+    /// Word of the search in scenes.
     pub(super) fn by(&self) -> By {
         match self {
             Found::Lattice(..) => By::Lattice,
@@ -40,7 +40,7 @@ impl Found {
     }
 }
 
-/// How pairs are found, by what the scene says or what serves.
+/// Chooses the pair search that the scene requests or that suits it.
 pub(super) fn found(
     values: &Values,
     scene: &mut Scene,
@@ -67,7 +67,7 @@ pub(super) fn found(
     let chosen = match scene.by {
         By::Lattice => lattice().ok_or_else(|| {
             let message = format!(
-                "no lattice serves: a mask of 5 × 5 cells that are one particle's sees to {}, the cut-off is {reach}, and a box takes at \
+                "no lattice serves: a mask of 5 × 5 cells of one particle each reaches {}, the cut-off is {reach}, and a side needs at \
                  least five cells",
                 significant(f64::from(HALF_WIDTH) * edge, 5)
             );
@@ -84,16 +84,16 @@ pub(super) fn found(
             })?
         }
         By::Auto if scene.per_side.is_some() => {
-            choices.push("search.by = \"sectors\": their number is given".to_owned());
+            choices.push("search.by = \"sectors\": search.sectors is given".to_owned());
             Found::Sectors(sectors(scene)?)
         }
         By::Auto | By::NeighborList => match lists(scene).0 {
             Ok(lists) => {
-                choices.push("search.by = \"neighbor-list\": fastest wherever all were measured".to_owned());
+                choices.push("search.by = \"neighbor-list\": fastest in all measured cases".to_owned());
                 lists
             }
             Err(_) => {
-                choices.push("search.by = \"sectors\": the box has no room for lists".to_owned());
+                choices.push("search.by = \"sectors\": the box is too small for lists".to_owned());
                 Found::Sectors(sectors(scene)?)
             }
         },
@@ -105,7 +105,7 @@ pub(super) fn found(
     Ok(chosen)
 }
 
-/// Sectors along each side.
+/// Grid with a given number of sectors along each side.
 fn grid(values: &Values, domain: &Domain, per_side: u64, reach: f64) -> Result<Grid, SceneError> {
     let counts = [per_side as usize; 2];
     let edge = domain.lengths().map(|side| side / per_side as f64);
@@ -120,7 +120,7 @@ fn grid(values: &Values, domain: &Domain, per_side: u64, reach: f64) -> Result<G
         let error = values.spot(&PER_SIDE).error(Reason::Geometry, message);
         return Err(match most >= FEWEST {
             true => error.expecting(format!("from 3 to {most} sectors")),
-            false => error.advising("make the box larger: a side takes at least three sectors"),
+            false => error.advising("make the box larger: a side needs at least three sectors"),
         });
     }
     let along = per_side as f64;
@@ -131,8 +131,8 @@ fn grid(values: &Values, domain: &Domain, per_side: u64, reach: f64) -> Result<G
     Ok(Grid { frame: Frame { origin: domain.corner(), edge }, counts, periodic: domain.periodic() })
 }
 
-/// How much farther than the cut-off listed pairs may be (length): about a mean distance, within bounds, and not more than the box has
-/// room for.
+/// Default skin of the lists beyond the cut-off (length): about half the mean spacing, within bounds, and no more than the box
+/// allows.
 fn roomy_skin(domain: &Domain, reach: f64, count: usize) -> f64 {
     let spacing = (domain.area() / count.max(1) as f64).sqrt();
     let wanted = (0.5 * spacing).clamp(0.2 * reach, 2.0 * reach);
@@ -140,12 +140,12 @@ fn roomy_skin(domain: &Domain, reach: f64, count: usize) -> f64 {
     if room > 0.0 { wanted.min(room * (1.0 - 1e-12)) } else { wanted }
 }
 
-/// The widest cell (length) that hardly any two particles of a diameter share.
+/// Widest cell (length) that hardly any two particles of a diameter share.
 pub(super) fn widest_cell(scene: &Scene, diameter: f64) -> f64 {
     scene.law.nearest(&scene.parameters, HIGHEST) * diameter / std::f64::consts::SQRT_2
 }
 
-/// The lattice for pairs up to `reach` (length) apart, of cells that are at most so wide (length); none where the box has none.
+/// Returns the lattice for pairs up to `reach` (length) apart, with cells no wider than `widest` (length); none if the box is too small.
 fn lattice_of(domain: &Domain, reach: f64, widest: f64) -> Option<(LatticeShape, Frame)> {
     let least = reach / f64::from(HALF_WIDTH);
     if least > widest {

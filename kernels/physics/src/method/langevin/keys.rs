@@ -1,4 +1,4 @@
-//! The keys that are this method's own, and what they demand of each other.
+//! Keys of this method, and their constraints on each other.
 
 use super::laws;
 use super::options::{By, SchemeKind, SortKind};
@@ -25,27 +25,27 @@ define_keys! {
     BATH_TEMPERATURE = "law" "bath_temperature", Number(NonNegative), "energy", Is("1.0"), ALWAYS,
         "Temperature kT of the bath.";
     NOISE_SEED = "law" "noise_seed", Whole(0, u64::MAX), "", Otherwise("`particles.seed`; 1 where the start has none"), ALWAYS,
-        "Seed of the bath's noise: runs of one start with different seeds are independent replicas. Where the start is a file or a list, the noise depends on the state as well: a run that continues from a frame has new noise.";
+        "Seed of the bath's noise: runs of one start with different seeds are independent replicas. If the start is a file or a list, the noise also depends on the state: a run that continues from a frame draws new noise.";
 
     SEARCH = "search" "by", Choice(By::WORDS), "", Is("\"auto\""), ALWAYS,
-        "How pairs are found: on a lattice of cells that are one particle's each (for laws of short reach, such as wca), in sectors, or by lists of neighbours; auto takes the fastest that the scene allows.";
+        "Pair search: lattice, with cells of one particle each (for laws of short range, such as wca); sectors; or neighbor-list. auto takes the fastest that the scene allows.";
     PER_SIDE = "search" "sectors", Whole(3, 1_000_000), "", Otherwise("as is fastest"), SECTORS,
         "Sectors along each side; none may be narrower than the cut-off.";
     SORT = "search" "sort", Choice(SortKind::WORDS), "", Is("\"auto\""), SECTORS,
-        "When particles are put in the order of their sectors, by a counting sort: when a quarter of them has changed sectors, or at every step, as the source; auto is when-needed, which was cheaper wherever both were measured. No result depends on it.";
+        "Condition for sorting particles by sector (counting sort): when-needed, once a quarter of them has changed sectors; or every-step, as in LAN17. auto is when-needed, the cheaper one in all measured cases. No result depends on it.";
     SKIN = "search" "skin", Number(Positive), "length", Otherwise("by the density"), LISTS,
-        "Listed pairs are up to this much farther apart than the cut-off.";
+        "Skin: neighbour lists reach this far beyond the cut-off.";
 
     INTEGRATOR = "integrator" "kind", Choice(SchemeKind::WORDS), "", Is("\"baoab\""), ALWAYS,
-        "baoab; or the source's velocity Verlet with friction and noise in the acceleration (stochastic), also with friction by the velocity of the step before, as printed, which heats.";
+        "Integrator: baoab; stochastic, LAN17's velocity Verlet with friction and noise in the acceleration; or as-printed, the same with friction by the velocity of the previous step, as LAN17 prints it, which heats the system.";
 
     MOST_LOST = "run" "most_lost", Whole(0, 2_147_483_647), "", Is("0"), ALWAYS,
-        "The number of particles that may be lost: thrown out of the box farther than a period, or to no finite place. They are counted and listed, and the run goes on without them.";
+        "Number of particles that may be lost: thrown out of the box farther than a period, or to a position that is not finite. They are counted and listed, and the run continues without them.";
     LOSSES = "output" "losses", Switch, "", Is("true"), ALWAYS,
-        "A row for each particle lost, as events.csv.";
+        "Writes each lost particle as a row of events.csv.";
 }
 
-/// What the scenes of this method may say.
+/// Vocabulary of the scenes of this method.
 pub(super) static VOCABULARY: Vocabulary = Vocabulary {
     keys: KeySet {
         method: "langevin",
@@ -79,7 +79,7 @@ pub(super) static VOCABULARY: Vocabulary = Vocabulary {
     renamed: &[],
 };
 
-/// What the method has no place for.
+/// Rejects values that the method does not support.
 fn own_rules(values: &Values) -> Vec<SceneError> {
     let mut errors = vec![];
     let refused = |key, message: &str| values.spot(key).error(Reason::Contradiction, message.to_owned());
@@ -93,8 +93,9 @@ fn own_rules(values: &Values) -> Vec<SceneError> {
         errors.push(error.expecting("gravity = [0.0, 0.0]"));
     }
     if values.gives(&PER_SIDE) && values.gives(&SKIN) {
-        let error = refused(&PER_SIDE, "`search.sectors` and `search.skin` are of two ways to find pairs");
-        errors.push(error.advising("leave one out"));
+        let error =
+            refused(&PER_SIDE, "`search.sectors` and `search.skin` belong to two different pair searches");
+        errors.push(error.advising("remove one of the two"));
     }
     errors
 }

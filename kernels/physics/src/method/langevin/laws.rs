@@ -1,7 +1,7 @@
-//! Pair laws of scenes: one list, from which words, keys, help, potentials and simpler models follow.
+//! Pair laws of scenes: one list from which words, keys, help, potentials and simpler models follow.
 //!
-//! A law is a [`PairPotential`] with a cut-off. What scenes need beside these, such as limits of the step, how near particles may start and
-//! which searches serve, is asked of the potential.
+//! A law is a [`PairPotential`] with a cut-off. Everything else, such as limits of the step, the smallest distance at the start and
+//! the suitable searches, follows from the potential.
 
 use crate::method::pairwise::WithLaw;
 use crate::method::{Becomes, Twin};
@@ -11,9 +11,9 @@ use stripmine_kernels::law::lennard_jones::LennardJones;
 use stripmine_kernels::law::potential::{CutOff, PairPotential};
 use stripmine_kernels::law::yukawa::Yukawa;
 
-/// Defines everything of the laws by a list: a potential, and the laws that it makes. A law has its word; its help; keys of its own, each a
-/// static, a field of `Parameters`, a default, bounds, unit and help; what a simpler law in its place lacks; and the law of parameters and of
-/// particles of a diameter (length).
+/// Defines the pair laws: a list of potentials, each with its laws. An entry has a word, a help text, and its own keys. Each key gives a
+/// static, a field of `Parameters`, a default, bounds, unit and help. Then follow the part that a simpler law omits, and the law as a function
+/// of parameters and the particles' diameter (length).
 macro_rules! define_pair_laws {
     ($($potential:ident {
         $($law:ident = $word:literal, $help:literal,
@@ -24,22 +24,22 @@ macro_rules! define_pair_laws {
         define_words! {
             /// Pair law of the particles.
             pub enum PairLaw {
-                /// Nothing.
+                /// No pair forces.
                 None = "none",
                 $($(#[doc = $help] $law = $word,)+)+
             }
         }
 
-        /// The words of laws by which particles act on each other.
+        /// Words of the laws with pair forces.
         const WORDS: &[&str] = &[$($($word),+),+];
 
-        /// The pair law.
+        /// Key of the pair law.
         pub static LAW: Key = key("kind", Kind::Choice(PairLaw::WORDS), "", "\"wca\"", None, concat!(
-            "The pair law: none" $($(, "; ", $word, ", ", $help)+)+, ". The diameter σ is twice particles.radius."
+            "Pair law: none" $($(, "; ", $word, ", ", $help)+)+, ". The diameter σ is twice particles.radius."
         ));
-        /// The energy scale of the pair potential.
+        /// Key of the energy scale of the pair potential.
         pub static STRENGTH: Key = key("strength", Kind::Number(Bounds::Positive), "energy", "1.0", Some((&LAW, WORDS)),
-            "Energy ε of the pair potential; the depth of that of Lennard-Jones.");
+            "Energy ε of the pair potential; the well depth of Lennard-Jones.");
         $($($(
             #[doc = $doc]
             pub static $key: Key = key(stringify!($name), Kind::Number($bounds), $unit, stringify!($default),
@@ -49,7 +49,7 @@ macro_rules! define_pair_laws {
         /// Keys of the pair law, in the order in which they are written.
         pub(super) static KEYS: &[&Key] = &[&LAW, &STRENGTH, $($($(&$key,)*)+)+];
 
-        /// Numbers of the pair law.
+        /// Parameters of the pair law.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub(super) struct Parameters {
             /// ε (energy).
@@ -64,7 +64,7 @@ macro_rules! define_pair_laws {
         }
 
         impl Parameters {
-            /// Meets the keys of a law.
+            /// Binds the keys of a law.
             pub(super) fn bind(&mut self, law: PairLaw, binding: &mut dyn Binding) {
                 match law {
                     PairLaw::None => {}
@@ -76,31 +76,31 @@ macro_rules! define_pair_laws {
             }
         }
 
-        /// A law with its numbers, as sweeps are compiled for it: a variant for each potential.
+        /// Law with its parameters, as sweeps are compiled for it: one variant per potential.
         #[derive(Clone, Copy, Debug)]
         pub(super) enum SweptLaw {
             $($potential(CutOff<$potential>),)+
         }
 
         impl SweptLaw {
-            /// Does something with the law.
+            /// Calls `work` with the concrete law.
             pub(super) fn with<W: WithLaw>(self, work: W) -> W::Output {
                 match self { $(SweptLaw::$potential(law) => work.with(law),)+ }
             }
 
-            /// The potential, neither cut off nor shifted.
+            /// Potential without cut-off and shift.
             pub(super) fn potential(&self) -> &dyn PairPotential {
                 match self { $(SweptLaw::$potential(law) => law.potential(),)+ }
             }
 
-            /// The cut-off (length).
+            /// Cut-off (length).
             pub(super) fn cutoff(&self) -> f64 {
                 match self { $(SweptLaw::$potential(law) => law.cutoff(),)+ }
             }
         }
 
         impl PairLaw {
-            /// The law between particles of a diameter (length). Without pairs it has no strength and ends at the diameter.
+            /// Law between particles of a diameter (length). Without pairs its strength is 0 and it ends at the diameter.
             pub(super) fn of(self, parameters: &Parameters, diameter: f64) -> SweptLaw {
                 match self {
                     PairLaw::None => SweptLaw::LennardJones(CutOff::new(LennardJones::new(0.0, diameter), diameter)),
@@ -112,7 +112,7 @@ macro_rules! define_pair_laws {
             }
         }
 
-        /// Parts that a scene may be modelled without.
+        /// Simplifications of a scene.
         pub(super) const TWINS: &[Twin] = &[
             $($($(Twin {
                 name: $lacks,
@@ -136,7 +136,7 @@ define_pair_laws! {
             keys [], simpler [],
             |of, diameter| CutOff::new(LennardJones::new(of.strength, diameter), 1.122_462_048_309_373 * diameter);
         LennardJones = "lennard-jones", "Lennard-Jones cut off at 2.5 diameters and shifted",
-            keys [], simpler ["attraction between pairs (wca in the place of lennard-jones)", Wca],
+            keys [], simpler ["attraction between pairs (wca instead of lennard-jones)", Wca],
             |of, diameter| CutOff::new(LennardJones::new(of.strength, diameter), 2.5 * diameter);
     }
     Yukawa {
@@ -150,7 +150,7 @@ define_pair_laws! {
     }
 }
 
-/// A key of the pair law with a default.
+/// Creates a key of the pair law with a default.
 const fn key(
     name: &'static str,
     kind: Kind,
@@ -162,18 +162,18 @@ const fn key(
     Key { section: "law", name, kind, unit, fallback: Fallback::Is(default), used, implies: None, doc }
 }
 
-/// The law of a scene's values.
+/// Pair law in the values of a scene.
 fn law_of(values: &Values) -> Option<PairLaw> {
     PairLaw::parse(&values.choice(&LAW)?)
 }
 
 impl PairLaw {
-    /// Is true where particles act on each other.
+    /// True if particles exert pair forces.
     pub(super) fn has_pairs(self) -> bool {
         self != PairLaw::None
     }
 
-    /// Distance of two particles at which the potential is so many ε, in diameters to two digits behind the point.
+    /// Distance at which the pair potential is `energies` ε, in diameters, to two decimals.
     pub(super) fn nearest(self, parameters: &Parameters, energies: f64) -> f64 {
         let closest = self.of(parameters, 1.0).potential().closest(energies * parameters.strength);
         (100.0 * closest).round() / 100.0
@@ -181,7 +181,7 @@ impl PairLaw {
 }
 
 impl SweptLaw {
-    /// Is true if particles attract each other anywhere up to the cut-off, looked at in a hundred places.
+    /// True if particles attract each other anywhere up to the cut-off, sampled at a hundred distances.
     pub(super) fn attracts(&self) -> bool {
         (1..100).any(|place| self.potential().force(0.01 * f64::from(place) * self.cutoff()) < 0.0)
     }
@@ -202,14 +202,14 @@ mod tests {
 
     const DIAMETER: f64 = 0.7;
 
-    /// Every law by which particles act on each other, of ε = 1, with its word.
+    /// Every law with pair forces, with ε = 1 and its word.
     fn laws() -> impl Iterator<Item = (&'static str, SweptLaw)> {
         let all = PairLaw::ALL.iter().filter(|(law, _)| law.has_pairs());
         all.map(|(law, word)| (*word, law.of(&Parameters::default(), DIAMETER)))
     }
 
-    /// Of every law F = −dU/dr and U″ = −dF/dr, by central differences to 10⁻⁷, from 300 ε to the cut-off; particles repel each other at σ, and
-    /// collisions of more energy end nearer, where the potential is that energy and steeper.
+    /// For every law F = −dU/dr and U″ = −dF/dr, by central differences to 10⁻⁷, from 300 ε to the cut-off. Particles repel each other at σ.
+    /// Collisions of higher energy end nearer, where the potential equals that energy and is steeper.
     #[test]
     fn force_and_curvature_are_slopes_of_the_energy() {
         for (word, law) in laws() {
@@ -236,10 +236,10 @@ mod tests {
         }
     }
 
-    /// Sweep of a law.
+    /// Execution and instruction set of a sweep.
     type How = (Execution, InstructionSet);
 
-    /// Pairs at some distances on a lattice, swept in a precision: force apart, energy and virial of each pair.
+    /// Pairs at given distances on a lattice, swept in one precision: repulsive force, energy and virial of each pair.
     struct Pairs<'d, P>(&'d [f64], How, PhantomData<P>);
 
     impl<P: Precision> WithLaw for Pairs<'_, P> {
@@ -248,7 +248,7 @@ mod tests {
         fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> Vec<[f64; 3]> {
             let Pairs(distances, (execution, set), _) = self;
             let (mask, (sine, cosine)) = (Mask::square(2), 0.4f64.sin_cos());
-            // Farther from each other than the mask sees.
+            // Pairs are farther apart than the mask reaches.
             let shape = LatticeShape::new(5 * distances.len(), 5, &mask, [false; 2]).unwrap();
             let frame = Frame { origin: [0.0; 2], edge: [DIAMETER; 2] };
             let cells = (0..distances.len() as isize).map(|pair| shape.position(5 * pair + 1, 2));
@@ -278,8 +278,8 @@ mod tests {
         }
     }
 
-    /// In both precisions, by every execution on every instruction set a law gives the same bits: those that are stated, cut off and shifted, to
-    /// rounding, and nothing beyond the cut-off.
+    /// In both precisions, every execution on every instruction set gives the same bits. They match the shifted potential to rounding, and vanish
+    /// beyond the cut-off.
     #[test]
     fn sweeps_find_what_is_stated() {
         for (word, law) in laws() {
@@ -315,8 +315,8 @@ mod tests {
         }
     }
 
-    /// Numbers that followed from the formula of Lennard-Jones when they were written down: cells of a lattice for pairs that come as near as
-    /// 0.82 σ, and starts with overlaps of up to 0.25 σ. Only the longer cut-off leaves attraction.
+    /// Values calculated earlier from the Lennard-Jones formula: lattice cells for pairs as near as 0.82 σ, and starts with overlaps of up to
+    /// 0.25 σ. Only the longer cut-off leaves attraction.
     #[test]
     fn scenes_know_of_a_law_what_follows_from_its_potential() {
         let parameters = Parameters::default();
@@ -327,9 +327,9 @@ mod tests {
         assert_eq!(PairLaw::None.nearest(&parameters, 30.0), 0.0);
     }
 
-    /// By hand, as for Lennard-Jones in `limits`: the hardest of the collisions of 1000 particles of density 1 in a time of 1000 has 14.388 kT. With
+    /// Calculated by hand, as for Lennard-Jones in `limits`: the hardest collision of 1000 particles of density 1 in a time of 1000 has 14.388 kT. With
     /// ε = kT and κσ = 5 it ends at 0.57678, where exp(5 (1 − r))/r = 14.388 and U″ = U (25 + 10/r + 2/r²) = 695.65: the step is
-    /// 2 √(1/(2 U″)) = 0.053619. The source's bound, with r_c = 2.5 and F = 6, is √(2 · 2.5/6) = 0.91287.
+    /// 2 √(1/(2 U″)) = 0.053619. LAN17's bound, with r_c = 2.5 and F = 6, is √(2 · 2.5/6) = 0.91287.
     #[test]
     fn limits_of_yukawa_follow_from_its_potential() {
         let sets = [

@@ -1,4 +1,4 @@
-//! How long a step may be, by theory.
+//! Theoretical stability limits of the step.
 
 use super::options::SchemeKind;
 use super::scene::Scene;
@@ -6,10 +6,10 @@ use crate::method::{Beyond, StepLimit};
 use crate::number::significant;
 use std::f64::consts::PI;
 
-/// The least energy, in kT, of the hardest collisions that are looked at: of a million pairs about fifty meet harder.
+/// Lower bound of the hardest collision energy considered, in kT: about fifty of a million pairs collide harder.
 const HARDEST: f64 = 10.0;
 
-/// Particles of one kind in a run.
+/// Particles of one species in a run.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Colliding {
     pub(super) diameter: f64,
@@ -34,7 +34,7 @@ pub(super) fn step_limits(scene: &Scene, particles: Colliding) -> Vec<StepLimit>
         let (step, force) = bound(scene, diameter, mass);
         limits.push(limit("source-bound", step, Beyond::Unstable, {
             format!(
-                "√(2 m r_c/F) with F = {} at a distance of σ: necessary, by far not sufficient",
+                "√(2 m r_c/F) with F = {} at a distance of σ: necessary, but far from sufficient",
                 significant(force, 5)
             )
         }));
@@ -42,7 +42,7 @@ pub(super) fn step_limits(scene: &Scene, particles: Colliding) -> Vec<StepLimit>
         let (step, nearest) = stiffest(scene, particles, energy);
         limits.push(limit("hardest-collision", step, Beyond::Unstable, {
             format!(
-                "2 √(m/(2 U″)) where the potential is {} kT, at {:.3} diameters: the pair's spring there throws particles out",
+                "2 √(m/(2 U″)) where the potential is {} kT, at {:.3} diameters: a longer step ejects pairs of this stiffness",
                 significant(energy, 3),
                 nearest / diameter
             )
@@ -54,30 +54,30 @@ pub(super) fn step_limits(scene: &Scene, particles: Colliding) -> Vec<StepLimit>
             "friction",
             step,
             Beyond::Unstable,
-            "2 m/γ: friction reverses the velocity".to_owned(),
+            "2 m/γ: with a longer step friction reverses the velocity".to_owned(),
         ));
     }
     limits
 }
 
-/// The source's bound (time), and the force in it.
+/// LAN17's bound of the step (time), and the force in it.
 pub(super) fn bound(scene: &Scene, diameter: f64, mass: f64) -> (f64, f64) {
     let law = scene.law_at(diameter);
     let force = law.potential().force(diameter);
     ((2.0 * mass * law.cutoff() / force).sqrt(), force)
 }
 
-/// The energy, in kT, of the hardest collision that is expected in a run: one in M collisions has more than ln M.
+/// Energy, in kT, of the hardest collision expected in a run: one in M collisions exceeds ln M.
 ///
-/// Each of N particles has 2 √π n σ √(kT/m) collisions in a time with a number density n, as in a dilute gas: the logarithm hardly depends on it.
+/// Each of N particles collides 2 √π n σ √(kT/m) times per unit of time at a number density n, as in a dilute gas. The logarithm hardly depends on this rate.
 fn hardest(scene: &Scene, Colliding { diameter, mass, count, area }: Colliding) -> f64 {
     let [count, time] = [count as f64, scene.run.steps as f64 * scene.dt];
     let rate = 2.0 * (PI * scene.bath.temperature / mass).sqrt() * diameter * count / area;
     libm::log(0.5 * count * rate * time).max(HARDEST)
 }
 
-/// The step (time) at which velocity Verlet loses the spring that a pair is at the end of its hardest collisions, of an energy in kT, and how near the two
-/// are then (length).
+/// Stability limit (time) of velocity Verlet for the stiffness of a pair at the end of its hardest collision, of an energy in kT; and the
+/// distance of the two there (length).
 fn stiffest(scene: &Scene, Colliding { diameter, mass, .. }: Colliding, energy: f64) -> (f64, f64) {
     let law = scene.law_at(diameter);
     let nearest = law.potential().closest((energy * scene.bath.temperature).max(scene.parameters.strength));
@@ -88,8 +88,8 @@ fn stiffest(scene: &Scene, Colliding { diameter, mass, .. }: Colliding, energy: 
 mod tests {
     use super::*;
 
-    /// By hand: 1000 particles of density 1 have 3.545 collisions each in a time of 1, and half as many pairs collide: ln(1772.5 · 1000) = 14.388 kT in
-    /// a time of 1000. With ε = kT, x = (1 + √15.388)/2 = 2.4614; U″ = 4 (156 x² − 42 x) x^(1/3) = 4546.0; the step is 2 √(1/(2 U″)) = 0.020975.
+    /// Calculated by hand: 1000 particles of density 1 collide 3.545 times each in a time of 1, as half as many pairs. In a time of 1000 the hardest has
+    /// ln(1772.5 · 1000) = 14.388 kT. With ε = kT, x = (1 + √15.388)/2 = 2.4614; U″ = 4 (156 x² − 42 x) x^(1/3) = 4546.0; the step is 2 √(1/(2 U″)) = 0.020975.
     #[test]
     fn longer_runs_have_harder_collisions() {
         let of_time = |time: f64| {

@@ -1,4 +1,4 @@
-//! Particles that were thrown out of the box: who, when, where.
+//! Record of the particles lost from the box, with time and position.
 
 use crate::io::checkpoint::Column;
 use crate::method::restored::{find_column, find_counts};
@@ -6,64 +6,64 @@ use crate::number::significant;
 use serde::Serialize;
 use std::collections::BTreeSet;
 
-/// The columns of `events.csv`.
+/// Columns of `events.csv`.
 pub(super) const COLUMNS: &str = "loss,time,particle,step,x,y";
-/// How many are listed in `summary.json`, the first ones.
+/// Maximum number of losses listed in `summary.json`, the first ones.
 const LISTED: usize = 100;
 
 const NAMES: [&str; 2] = ["lost.id", "lost.step"];
 const PLACE: [&str; 2] = ["lost.x", "lost.y"];
 
-/// A particle that was lost.
+/// Lost particle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 struct Loss {
-    /// Its id.
+    /// Id of the particle.
     particle: u32,
-    /// The step in which it was lost.
+    /// Step in which it was lost.
     step: u64,
-    /// Where it was last seen (length).
+    /// Last known position (length).
     x: f64,
     y: f64,
 }
 
-/// Particles lost so far.
+/// All losses so far.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Losses {
-    /// In the order in which they were lost.
+    /// Losses in order of time.
     all: Vec<Loss>,
-    /// Rows not yet taken, where they are asked for.
+    /// Rows that have not been taken yet, if logged.
     rows: Option<String>,
 }
 
 impl Losses {
-    /// None yet; `logs` whether a row is kept of each until it is taken.
+    /// Creates an empty record. With `logs`, a row of each loss is kept until it is taken.
     pub(super) fn new(logs: bool) -> Losses {
         Losses { all: vec![], rows: logs.then(String::new) }
     }
 
-    /// How many.
+    /// Number of losses.
     pub(super) fn count(&self) -> u64 {
         self.all.len() as u64
     }
 
-    /// Which particles are lost.
+    /// Ids of the lost particles.
     pub(super) fn ids(&self) -> impl Iterator<Item = u32> {
         self.all.iter().map(|loss| loss.particle)
     }
 
-    /// The first ones, for `summary.json`.
+    /// First losses, for `summary.json`.
     pub(super) fn listed(&self) -> serde_json::Value {
         serde_json::json!(self.all[..self.all.len().min(LISTED)])
     }
 
-    /// The first one, in words.
+    /// Description of the first loss.
     pub(super) fn first_in_words(&self) -> Option<String> {
         let Loss { particle, step, x, y } = self.all.first()?;
         let [x, y] = [x, y].map(|along| significant(*along, 5));
         Some(format!("first particle {particle} in step {step} at ({x}, {y})"))
     }
 
-    /// One more, last seen at a place (length).
+    /// Adds a loss with the last known position (length).
     pub(super) fn add(&mut self, particle: u32, step: u64, time: f64, [x, y]: [f64; 2]) {
         self.all.push(Loss { particle, step, x, y });
         if let Some(rows) = &mut self.rows {
@@ -71,12 +71,12 @@ impl Losses {
         }
     }
 
-    /// The rows since this was last asked.
+    /// Returns the rows since the last call.
     pub(super) fn take_rows(&mut self) -> String {
         self.rows.as_mut().map(std::mem::take).unwrap_or_default()
     }
 
-    /// For a checkpoint.
+    /// Columns for a checkpoint.
     pub(super) fn columns(&self) -> [(String, Column); 4] {
         let whole = |of: fn(&Loss) -> u64| Column::U64(self.all.iter().map(of).collect());
         let real = |of: fn(&Loss) -> f64| Column::F64(self.all.iter().map(of).collect());
@@ -88,10 +88,10 @@ impl Losses {
         ]
     }
 
-    /// Takes up what [`columns`](Self::columns) gave after a number of steps of particles of these ids.
+    /// Restores the columns written by [`columns`](Self::columns) after a number of steps; `there` are the ids of the start.
     ///
     /// # Errors
-    /// A sentence, if it is not there, or of other particles or later steps.
+    /// A message if they are missing, or belong to other particles or later steps.
     pub(super) fn take_up(
         &mut self,
         steps: u64,
@@ -104,7 +104,10 @@ impl Losses {
         let ids: Vec<u32> = ids.iter().map(|&id| id as u32).collect();
         let lost: BTreeSet<u32> = ids.iter().copied().collect();
         if lost.len() < count || !lost.is_subset(there) || count > 0 && lost.len() == there.len() {
-            return Err(format!("the column {} holds what are no particles, or one twice, or all", NAMES[0]));
+            return Err(format!(
+                "the column {} holds unknown or repeated ids, or those of all particles",
+                NAMES[0]
+            ));
         }
         let along = |name: &str| find_column::<f64>(columns, name, ids.len());
         let places = along(PLACE[0])?.into_iter().zip(along(PLACE[1])?);

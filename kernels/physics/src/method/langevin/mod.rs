@@ -1,4 +1,4 @@
-//! LAN17: particles in a bath of friction and noise, with pair forces or without.
+//! Langevin dynamics (LAN17): particles in a bath of friction and noise, with or without pair forces.
 
 mod benches;
 mod checked;
@@ -22,5 +22,5 @@ pub use entry::ENTRY;
 
 use crate::method::FailureKind;
 
-/// More particles were thrown out than the scene allows.
+/// More particles were lost than the scene allows.
 pub(crate) const LOST: FailureKind = FailureKind::new("lost");

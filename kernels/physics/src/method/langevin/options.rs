@@ -1,49 +1,49 @@
-//! The words of this method's keys.
+//! Words of this method's keys.
 
 use crate::words::define_words;
 
 define_words! {
-    /// How pairs are found.
+    /// Pair search.
     pub enum By {
-        /// As is fastest.
+        /// The fastest search that the scene allows.
         Auto = "auto",
-        /// On a lattice of cells that are one particle's each.
+        /// Lattice of cells of one particle each.
         Lattice = "lattice",
-        /// In sectors.
+        /// Sectors at least as wide as the cut-off.
         Sectors = "sectors",
-        /// In lists.
+        /// Neighbour lists.
         NeighborList = "neighbor-list",
     }
 }
 
 define_words! {
-    /// When particles are put in the order of their sectors.
+    /// Condition for sorting particles by sector.
     pub enum SortKind {
-        /// As is cheaper: when needed, wherever both were measured.
+        /// The cheaper one: when needed, in all measured cases.
         Auto = "auto",
-        /// As soon as a quarter of them has changed sectors.
+        /// Once a quarter of the particles has changed sectors.
         WhenNeeded = "when-needed",
-        /// At every step, as the source.
+        /// At every step, as in LAN17.
         EveryStep = "every-step",
     }
 }
 
 define_words! {
-    /// The integrator.
+    /// Integrator.
     pub enum SchemeKind {
         /// Kick, drift, bath, drift, kick.
         Baoab = "baoab",
-        /// The source's: velocity Verlet with the bath in the acceleration.
+        /// LAN17's velocity Verlet with the bath in the acceleration.
         Stochastic = "stochastic",
-        /// The same with friction by the velocity of the step before, as the source prints it.
+        /// LAN17's scheme as printed, with friction by the velocity of the previous step.
         AsPrinted = "as-printed",
     }
 }
 
 impl SchemeKind {
-    /// Whether the kinetic energy is that of the velocities after the bath, which the predictor leaves. By baoab these have
-    /// m⟨v²⟩ = kT but for higher orders than dt², exactly in a harmonic trap; those of the end of the step, half a kick later, have
-    /// kT − dt²⟨F²⟩/(4 m), with ⟨F²⟩ = kT⟨U″⟩. By the source's scheme those of the end of the step have kT exactly in a trap.
+    /// True if the kinetic energy uses the velocities after the bath, which the predictor leaves. With baoab these have m⟨v²⟩ = kT up to
+    /// orders above dt², exactly in a harmonic trap. Those at the end of the step, half a kick later, have kT − dt²⟨F²⟩/(4 m), with
+    /// ⟨F²⟩ = kT⟨U″⟩. With LAN17's scheme those at the end of the step have exactly kT in a trap.
     pub(super) fn is_observed_after_bath(self) -> bool {
         self == SchemeKind::Baoab
     }

@@ -1,4 +1,4 @@
-//! What a checked scene of particles in a bath offers.
+//! Prepared scene of Langevin dynamics: facts, memory forecast, settings and the start of a simulation.
 
 use super::checked::Checked;
 use super::dynamics::InBath;
@@ -25,7 +25,7 @@ use stripmine_kernels::noise::NoiseSource;
 use stripmine_kernels::sweep::fast::lattice::SPARSE;
 
 impl Checked {
-    /// What is offered.
+    /// Turns the checked scene into the interface common to all methods.
     pub(super) fn prepared(self) -> Prepared {
         let (scene, word) = (&self.scene, self.scene.law.word());
         let only_repels = self.has_pairs() && !scene.law_at(self.diameter).attracts();
@@ -54,7 +54,7 @@ impl Checked {
         }
     }
 
-    /// Whether `events.csv` has a row for each loss.
+    /// True if `events.csv` has a row for each loss.
     pub(super) fn lists_losses(&self) -> bool {
         self.scene.losses && self.scene.most_lost > 0
     }
@@ -67,7 +67,7 @@ impl Checked {
             Found::Lattice(shape, _) => format!("lattice of {} × {} cells", shape.columns(), shape.rows()),
             Found::Sectors(grid) => format!("{} × {} sectors", grid.counts[0], grid.counts[1]),
             Found::Lists(_, skin) => {
-                format!("neighbour lists to {} beyond the cut-off", significant(*skin, 5))
+                format!("neighbour lists with a skin of {}", significant(*skin, 5))
             }
         };
         let mut facts = vec![
@@ -98,26 +98,26 @@ impl Checked {
 
     fn memory(&self) -> Foreseen {
         let count = self.particles.len() as f64;
-        // Rows of the state and the sums, one more of each to put them in order, and of the places at which lists were made.
+        // Rows of the state and the sums, one more for sorting each of them, and the positions of the last list build.
         let rows = if matches!(self.found, Found::Lists(..)) { 11.0 } else { 9.0 };
-        // Ids and numbers; lists.
+        // Ids and numbers; neighbour lists.
         let (engine, cells) = match &self.found {
             Found::Sectors(grid) => (99.0 * count, 8.0 * grid.counts.iter().product::<usize>() as f64),
             Found::Lists(grid, _) => (128.0 * count, 8.0 * grid.counts.iter().product::<usize>() as f64),
             Found::Lattice(shape, _) => {
-                // A number and a bit a cell; copies of the places where the lattice is not sparse.
+                // A number and a bit per cell; copies of the positions if the lattice is not sparse.
                 let copies = if count < SPARSE * shape.cells() as f64 { 0.0 } else { 2.0 };
                 let cells = shape.padded() as f64;
                 (139.0 * count, (1.0 + copies) * row(4.0 * cells) + 0.125 * cells)
             }
         };
-        // The scene's particles in three places, once more while they are observed, and the frame that is being written; what puts them in order.
+        // Three copies of the scene's particles, another while they are observed, the frame being written, and the sorting order.
         let particles = (6.0 * size_of::<Particle>() as f64 + 2.0 * 16.0 + 4.0) * count;
         Foreseen {
             needed: (PROGRAM + rows * row(8.0 * count) + engine + cells + particles) as u64,
             available: available(),
             what: format!("{count} particles"),
-            remedy: "take fewer particles",
+            remedy: "use fewer particles",
             ranks: OfRanks::in_bands(count, cells, [rows, 8.0 * count]),
         }
     }
@@ -158,7 +158,7 @@ impl Startable for Checked {
     }
 
     fn work(&self) -> f64 {
-        // Noise and motion, and the pairs within reach.
+        // Noise and motion, plus the pairs within reach.
         let density = self.particles.len() as f64 / self.domain.area();
         let pairs = if self.has_pairs() { 0.5 * PI * self.reach * self.reach * density } else { 0.0 };
         30.0 + 8.0 * pairs
@@ -205,7 +205,7 @@ mod tests {
         load(preset, &overrides, METHODS).unwrap().0
     }
 
-    /// The particles after a time, with noise of a seed and parts.
+    /// Returns the particles after a time, with noise of a seed and a number of parts.
     fn after(prepared: &Prepared, time: f64, (seed, parts): (u64, u32)) -> Particles {
         let coupled = prepared.model.with_noise(seed, parts).unwrap();
         let mut simulation = coupled.start(Purpose::Measurement).unwrap();
@@ -214,7 +214,7 @@ mod tests {
         simulation.particles()
     }
 
-    /// Root mean square distance of velocities, or of places of a short run.
+    /// Root mean square difference of velocities, or of positions in a short run.
     fn apart(a: &Particles, b: &Particles, of: fn(&Particle) -> [f64; 2]) -> f64 {
         let squares = a.all().iter().zip(b.all()).map(|(a, b)| {
             let ([x, y], [u, v]) = (of(a), of(b));
@@ -223,7 +223,7 @@ mod tests {
         (squares.sum::<f64>() / a.len() as f64).sqrt()
     }
 
-    /// The bath of baoab is exact: free particles end at the velocity of the shorter steps, but for rounding; with other noise they do not.
+    /// The bath of baoab is exact: free particles reach the same velocity as with shorter steps, to rounding, unless the noise differs.
     #[test]
     fn free_particles_with_the_same_noise_end_at_the_same_velocity() {
         for parts in [1, 2, 3, 8_u32] {
@@ -237,9 +237,9 @@ mod tests {
         }
     }
 
-    /// Particles of a fluid, followed with steps of 8, 4 and 2 parts and with one of a part. With the same noise paths come together, for baoab
-    /// with the first power of the step, for the source's scheme with its root, because half a kick of the start is missing in each; with
-    /// other noise they stay as far apart.
+    /// Trajectories of a fluid with steps of 8, 4 and 2 parts, compared with steps of one part. With the same noise they converge: for baoab
+    /// with the first power of the step, for LAN17's scheme with its root, because each misses half a kick at the start. With other noise they
+    /// stay equally far apart.
     #[test]
     fn paths_with_the_same_noise_come_together_with_the_step() {
         const PART: f64 = 0.0005;
@@ -260,7 +260,7 @@ mod tests {
         }
     }
 
-    /// One part and the scene's own seed are the scene itself, to the bit; without friction or temperature there is no noise.
+    /// One part and the scene's own seed reproduce the scene bitwise; without friction or temperature there is no noise.
     #[test]
     fn one_part_changes_nothing() {
         let own = prepared("langevin-dense", &["particles.count=100", "domain.sides=[12.0, 12.0]"], 0.005);

@@ -1,8 +1,8 @@
-//! Scenes to start from.
+//! Preset scenes of Langevin dynamics.
 
 use crate::scene::Preset;
 
-/// Every preset of this method.
+/// All presets of this method.
 pub(super) const PRESETS: &[Preset] = &[
     Preset { name: "langevin-free", text: include_str!("presets/langevin-free.toml") },
     Preset { name: "langevin-dense", text: include_str!("presets/langevin-dense.toml") },

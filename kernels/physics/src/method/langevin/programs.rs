@@ -1,4 +1,4 @@
-//! The law as the source's vector machine would meet it: at every place of a mask of the lattice.
+//! Force program of a pair law for the vector machine, over the offsets of a mask on the lattice.
 
 use super::checked::Checked;
 use super::dynamics::InBath;
@@ -12,11 +12,11 @@ use stripmine_kernels::sweep::lattice::forces::Forces;
 use stripmine_kernels::sweep::lattice::{Coordinates, Frame, LatticeShape};
 use stripmine_kernels::{Program, Runnable};
 
-/// The widest mask that is thought of: cells on either side.
+/// Largest half-width of a mask, in cells.
 const WIDEST: u32 = 12;
 
-/// The lattice on which hardly any two particles share a cell, with the smallest mask that sees to the cut-off; none where the box is
-/// too small for it.
+/// Returns the lattice whose cells hardly any two particles share, with the smallest mask that covers the cut-off; none if the box is
+/// too small.
 pub(super) fn lattice(checked: &Checked) -> Option<(LatticeShape, Frame, Mask)> {
     let (domain, reach) = (checked.domain, checked.reach);
     let largest = widest_cell(&checked.scene, checked.diameter);
@@ -33,7 +33,7 @@ pub(super) fn lattice(checked: &Checked) -> Option<(LatticeShape, Frame, Mask)> 
     Some((shape, Frame { origin: domain.corner(), edge }, mask))
 }
 
-/// The forces of a step; none without pairs, or without a lattice.
+/// Programs of the forces of a step; none without pairs or without a lattice.
 pub(super) fn programs(checked: &Checked) -> Vec<VectorProgram> {
     let Some((shape, frame, mask)) = checked.has_pairs().then(|| lattice(checked)).flatten() else {
         return vec![];
@@ -43,7 +43,7 @@ pub(super) fn programs(checked: &Checked) -> Vec<VectorProgram> {
     vec![VectorProgram { part: "forces", length: length.symbol(), n: shape.swept().len(), times: 1, program }]
 }
 
-/// The forces of a law on a lattice, as a program.
+/// Builds the program of the forces of a law on a lattice.
 struct OnLattice<'m>(&'m Mask, LatticeShape, Frame);
 
 impl WithLaw for OnLattice<'_> {
@@ -68,7 +68,7 @@ mod tests {
     use stripmine_kernels::noise::{Purpose, normals};
     use stripmine_kernels::{Execution, InstructionSet};
 
-    /// Forces as the potential states them, pair by pair.
+    /// Forces from the potential, summed over all pairs.
     fn written_down(checked: &Checked, particles: &Particles) -> Vec<[f64; 2]> {
         let law = checked.scene.law_at(checked.diameter);
         let force = |a: &Particle| {
@@ -86,7 +86,7 @@ mod tests {
         particles.all().iter().map(force).collect()
     }
 
-    /// Forces by the program over the whole lattice, run the CRAY's way and chained, are those that are written down but for rounding.
+    /// Forces of the program over the whole lattice match the sum over all pairs to rounding, in eager, strip-mined and chained execution.
     #[test]
     fn the_program_finds_the_forces_of_all_pairs() {
         for (_, law) in PairLaw::ALL.iter().filter(|(law, _)| law.has_pairs()) {
@@ -106,7 +106,7 @@ mod tests {
             }
             let fits = |axis: usize, at: f64| ((at - frame.origin[axis]) / frame.edge[axis]).floor();
             let padded = shape.padded();
-            // As the programs want it: places from the centre of the cell, and far away where nothing is.
+            // Input of the programs: positions relative to the cell centre, far away in empty cells.
             let (mut x, mut y) = (vec![1e30; padded], vec![1e30; padded]);
             let mut cell_of = vec![];
             for particle in particles.all() {

@@ -1,10 +1,10 @@
-//! What is observed of particles in a bath: one list of quantities, each with how it is read off what was seen.
+//! Observables of Langevin dynamics: one list of quantities, each with its definition.
 
 use crate::method::Kind::{Counter, Instant, Time};
 use crate::method::observed::observables;
 use crate::method::{Observable, Quantity, quantities};
 
-/// All that is seen of a moment, once.
+/// Observation of the system at a moment.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seen {
     pub(super) time: f64,
@@ -18,19 +18,19 @@ pub(super) struct Seen {
     pub(super) lost: u64,
 }
 
-/// What is observed, in the order of the columns.
+/// Observables, in the order of the columns.
 pub(super) const OBSERVABLES: [Observable<Seen>; 10] = observables! {
-    "time", "time", Time, |seen| seen.time, "The time.";
-    "kinetic", "energy", Instant, |seen| seen.kinetic, "Kinetic energy; by baoab of the velocities after the bath, which have m⟨v²⟩ = kT but for higher orders than dt², where those of the end of the step, in trajectory.xyz, are low by dt²⟨F²⟩/(4 m).";
-    "potential", "energy", Instant, |seen| seen.potential, "Energy of the pairs.";
-    "temperature", "energy", Instant, |seen| seen.temperature, "Σ m v² over all 2 N degrees of freedom: a bath conserves no momentum. Without friction Σ m v² about the mean motion over 2 N − 2.";
-    "pressure", "force/length", Instant, |seen| seen.pressure, "Pressure of the motion and of the pairs, over the area of the box.";
-    "msd", "length²", Instant, |seen| seen.msd, "Mean square displacement since the start, by the positions as if there were no sides.";
-    "rms", "length", Instant, |seen| seen.msd.sqrt(), "Its root.";
+    "time", "time", Time, |seen| seen.time, "Time.";
+    "kinetic", "energy", Instant, |seen| seen.kinetic, "Kinetic energy. With baoab it uses the velocities after the bath, which have m⟨v²⟩ = kT up to orders above dt²; those at the end of the step, in trajectory.xyz, are too low by dt²⟨F²⟩/(4 m).";
+    "potential", "energy", Instant, |seen| seen.potential, "Potential energy of the pairs.";
+    "temperature", "energy", Instant, |seen| seen.temperature, "Temperature kT: Σ m v² over all 2 N degrees of freedom, since a bath does not conserve momentum. Without friction: Σ m v² about the mean motion over 2 N − 2.";
+    "pressure", "force/length", Instant, |seen| seen.pressure, "Pressure: kinetic and pair contributions over the area of the box.";
+    "msd", "length²", Instant, |seen| seen.msd, "Mean square displacement since the start, from unwrapped positions.";
+    "rms", "length", Instant, |seen| seen.msd.sqrt(), "Root mean square displacement since the start.";
     "momentum_x", "mass·length/time", Instant, |seen| seen.momentum[0], "Momentum along x.";
     "momentum_y", "mass·length/time", Instant, |seen| seen.momentum[1], "Momentum along y.";
     "lost", "", Counter, |seen| seen.lost as f64, "Particles lost since the start.";
 };
 
-/// Their names, units and meanings.
+/// Names, units and meanings of the observables.
 pub(super) const QUANTITIES: &[Quantity] = &quantities(&OBSERVABLES);

@@ -1,4 +1,4 @@
-//! What a scene of this method says, as plain data.
+//! Scene of Langevin dynamics as plain data.
 
 use super::keys::*;
 use super::laws::{LAW, PairLaw, Parameters, SweptLaw};
@@ -9,46 +9,46 @@ use crate::scene::{
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::integrator::langevin::Bath;
 
-/// What is simulated. Units are the scene's own; `units` names them.
+/// Scene of the method, in its own units; `units` names them.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Scene {
-    /// The unit system: a label.
+    /// Label of the unit system.
     pub units: String,
     /// The box.
     pub domain: Domain,
-    /// The particles at the start.
+    /// Particles at the start.
     pub start: Start,
-    /// What they do to each other.
+    /// Pair law.
     pub law: PairLaw,
-    /// Its numbers.
+    /// Parameters of the pair law.
     pub(super) parameters: Parameters,
-    /// Friction and temperature.
+    /// Friction and temperature of the bath.
     pub bath: Bath,
-    /// Seed of the noise, where it is not that of the start.
+    /// Seed of the noise, if it differs from that of the start.
     pub(crate) noise_seed: Option<u64>,
-    /// How pairs are found.
+    /// Pair search.
     pub by: By,
-    /// Sectors along each side, where the scene says.
+    /// Sectors along each side, if given.
     pub per_side: Option<u64>,
-    /// When particles are put in the order of sectors.
+    /// Condition for sorting particles by sector.
     pub sort: SortKind,
-    /// How much farther than the cut-off listed pairs may be (length), where the scene says.
+    /// Skin of the lists beyond the cut-off (length), if given.
     pub skin: Option<f64>,
-    /// The integrator.
+    /// Integrator.
     pub scheme: SchemeKind,
     /// Time step (time).
     pub dt: f64,
     /// Precision of state and forces.
     pub precision: Precision,
-    /// The instructions; the widest set that there is if none.
+    /// Instruction set; the widest available if none.
     pub instruction_set: Option<InstructionSet>,
-    /// How long, and how often something is written.
+    /// Duration and output intervals.
     pub run: Run,
-    /// How many particles may be lost.
+    /// Number of particles that may be lost.
     pub(crate) most_lost: u64,
-    /// Which files are written.
+    /// Output files.
     pub output: Output,
-    /// Whether each loss is written.
+    /// True if each loss is written.
     pub losses: bool,
 }
 
@@ -79,7 +79,7 @@ impl Default for Scene {
 }
 
 impl Scene {
-    /// Meets every key of the method.
+    /// Binds every key of the method.
     pub(super) fn bind(&mut self, binding: &mut dyn Binding) {
         bind_heading(binding, &mut self.units, VOCABULARY.keys.method);
         self.domain.bind(binding);
@@ -107,17 +107,17 @@ impl Scene {
         binding.switch(&LOSSES, &mut self.losses);
     }
 
-    /// The law between particles of a diameter (length).
+    /// Pair law between particles of a diameter (length).
     pub(super) fn law_at(&self, diameter: f64) -> SweptLaw {
         self.law.of(&self.parameters, diameter)
     }
 
-    /// The instructions of a run.
+    /// Instruction set of a run.
     pub(super) fn instructions(&self) -> InstructionSet {
         self.instruction_set.unwrap_or_else(InstructionSet::best)
     }
 
-    /// The whole scene as TOML, defaults written out. Parsing it gives an equal scene.
+    /// Writes the whole scene as TOML, including defaults. Parsing it gives an equal scene.
     pub(super) fn to_toml(&self) -> String {
         let mut write = Write::default();
         self.clone().bind(&mut write);

@@ -1,4 +1,4 @@
-//! Particles in a bath under way, observed; what is thrown out is counted, and the run goes on without it.
+//! Simulation of particles in a bath. Particles thrown out of the box are counted, and the run continues without them.
 
 use super::checked::Checked;
 use super::dynamics::{is_loss, stepper};
@@ -16,36 +16,35 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::AtomicBool;
 use stripmine_kernels::law::Asked;
 
-/// Columns that are sums of forces; those of a step that is made again begin with none.
+/// Columns that are sums of forces; a repeated step starts them at 0.
 const SUMS: [&str; 3] = ["Fx", "Fy", "torque"];
-/// How often lists were made, in a checkpoint and in the summary.
+/// Name of the number of list builds, in a checkpoint and in the summary.
 const LISTS_MADE: &str = "lists_made";
-/// Energy and virial of the pairs in a checkpoint.
+/// Checkpoint names of the energy and virial of the pairs.
 const OF_PAIRS: [&str; 2] = ["potential", "virial"];
 
-/// What a run keeps beside its particles.
+/// State of a run beside its particles.
 pub(super) struct InRun {
     checked: Checked,
     purpose: Purpose,
-    /// The particles of the start that are still there.
+    /// Remaining particles, in the state of the start.
     start: Particles,
     losses: Losses,
-    /// Energy and virial of the pairs (energy), as of the last step, in a run.
+    /// Energy and virial of the pairs (energy) at the last step, in a run.
     of_pairs: [f64; 2],
-    /// Particles moved so far: particles times steps.
+    /// Particle steps so far.
     work: u64,
-    /// How often lists were made by other steppers before this one, whatever this one had to make to take their place; counts
-    /// wrap around.
+    /// List builds of earlier steppers, less the builds that the present one needed to replace them; counts wrap around.
     made_before: u64,
 }
 
-/// Particles under way: what steps them, and what the run keeps.
+/// Running simulation: stepper and state of the run.
 type Running = Stepped<InRun>;
 
-/// At the start.
+/// Creates the simulation at the start.
 ///
 /// # Errors
-/// [`Failure`] if it breaks a precondition already.
+/// [`Failure`] if the start breaks a precondition.
 pub(super) fn begin(checked: &Checked, purpose: Purpose) -> Result<Running, Failure> {
     let follows = purpose == Purpose::Run;
     let start = checked.particles.clone();
@@ -59,7 +58,7 @@ pub(super) fn begin(checked: &Checked, purpose: Purpose) -> Result<Running, Fail
 }
 
 impl Running {
-    /// All forces of the places as they stand.
+    /// Computes all forces at the current positions.
     fn compute_forces(&mut self) -> Result<(), Failure> {
         let asked = Asked { energy: self.method.purpose == Purpose::Run, ..Asked::default() };
         if self.method.checked.has_pairs() {
@@ -70,7 +69,7 @@ impl Running {
         Ok(())
     }
 
-    /// Goes on without the particles that a failure is of.
+    /// Removes the particles named by a failure and continues.
     fn lose(&mut self, failure: Failure) -> Result<(), Failure> {
         let unfit: BTreeSet<usize> = self.state.unfit().into_iter().collect();
         let standing = self.state.unwrapped();
@@ -87,8 +86,9 @@ impl Running {
         if lost > most || unfit.len() == self.method.start.len() {
             return Err(self.too_many(failure, lost, most));
         }
-        self.without(&|place, _| unfit.contains(&place))
-            .map_err(|why| Failure::new(super::LOST, why, "report this with the scene").at(clock))?;
+        self.without(&|place, _| unfit.contains(&place)).map_err(|why| {
+            Failure::new(super::LOST, why, "this is a bug: please report it with the scene").at(clock)
+        })?;
         self.state.settle()
     }
 
@@ -100,7 +100,7 @@ impl Running {
         failure.with([("lost", lost as f64), ("most_lost", most as f64)])
     }
 
-    /// What helps against the losses of a failure.
+    /// Returns the remedy for the losses of a failure.
     fn remedy(&self, failure: &Failure) -> String {
         let dt = self.method.checked.scene.dt;
         let shortest =
@@ -108,7 +108,7 @@ impl Running {
         if shortest < dt {
             let of = if self.method.checked.has_pairs() { "pairs" } else { "friction" };
             return format!(
-                "the time step is too long for the {of}: take integrator.dt below {}, or allow losses by run.most_lost",
+                "the time step is too long for the {of}: take integrator.dt below {}, or allow losses with run.most_lost",
                 significant(shortest, 3)
             );
         }
@@ -122,11 +122,11 @@ impl Running {
                 significant(sides[axis], 5),
                 significant(sides[axis] / velocity[axis].abs(), 3)
             ),
-            None => format!("lower integrator.dt (it is {dt}), or allow losses by run.most_lost"),
+            None => format!("lower integrator.dt (it is {dt}), or allow losses with run.most_lost"),
         }
     }
 
-    /// The same state without particles of some places and ids.
+    /// Removes the particles selected by index and properties from the state.
     fn without(&mut self, leaves: &dyn Fn(usize, &Particle) -> bool) -> Result<(), String> {
         let all = self.method.start.all();
         let stays: Vec<bool> =
@@ -149,23 +149,23 @@ impl Running {
         Ok(())
     }
 
-    /// Particles that are not lost; where a run ends by too many losses, the last ones still are in its state.
+    /// Number of particles that are not lost. If too many losses end a run, the last ones are still in its state.
     fn left(&self) -> u64 {
         self.method.checked.particles.len() as u64 - self.method.losses.count()
     }
 
-    /// How often lists were made since the start; none where there are none.
+    /// Number of list builds since the start; none without lists.
     fn lists_made(&self) -> Option<u64> {
         self.state.lists().map(|(_, made)| self.method.made_before.wrapping_add(made))
     }
 
-    /// So often they were made so far.
+    /// Sets the number of list builds so far.
     fn count_lists_from(&mut self, made: u64) {
         let by_this = self.state.lists().map_or(0, |(_, made)| made);
         self.method.made_before = made.wrapping_sub(by_this);
     }
 
-    /// Displacements since the start, as if there were no sides (length).
+    /// Unwrapped displacements since the start (length).
     fn displacements(&self, standing: &Particles) -> Vec<[f64; 2]> {
         let crossed = self.state.elapsed().crossings.counts();
         let sides = self.method.checked.domain.lengths();
@@ -177,7 +177,7 @@ impl Running {
     }
 }
 
-/// The entries of a column that stay; sums of forces begin with none. What has not an entry a particle stays as it is.
+/// Keeps the entries of the remaining particles; sums of forces restart at 0. Columns without one entry per particle are unchanged.
 fn kept(name: String, column: Column, stays: &[bool]) -> (String, Column) {
     fn of<T: Copy>(values: Vec<T>, stays: &[bool]) -> Vec<T> {
         values.into_iter().zip(stays).filter(|(_, stays)| **stays).map(|(value, _)| value).collect()
@@ -198,7 +198,7 @@ fn kept(name: String, column: Column, stays: &[bool]) -> (String, Column) {
 }
 
 impl Running {
-    /// All that there is to be seen now.
+    /// Current observation.
     fn seen(&self) -> Seen {
         let (particles, mass) = (self.state.unwrapped(), self.method.checked.mass);
         let count = particles.len() as f64;
@@ -211,7 +211,7 @@ impl Running {
             twice_kinetic: mass * thermal.iter().map(|velocity| velocity[axis] * velocity[axis]).sum::<f64>(),
             momentum: mass * thermal.iter().map(|velocity| velocity[axis]).sum::<f64>(),
         });
-        // Without friction there is no bath, and momentum stays.
+        // Without friction there is no bath, so momentum is conserved.
         let conserved = [self.method.checked.scene.bath.friction == 0.0; 2];
         let kinetic = 0.5 * mass * thermal.iter().map(|[u, v]| u * u + v * v).sum::<f64>();
         let [potential, virial] = self.method.of_pairs;
@@ -239,7 +239,7 @@ impl PerParticle for Running {
     }
 
     fn states(&self, states: &mut States) {
-        // The stepper numbers those that are still there.
+        // The stepper numbers only the remaining particles.
         match self.method.start.len() == self.method.checked.particles.len() {
             true => self.state.states(states),
             false => states.take_up(&self.state.particles()),

@@ -1,4 +1,4 @@
-//! How particles in a bath may be run, and what a map of stability varies.
+//! Configurations and stability parameters of Langevin dynamics.
 
 use super::checked::prepare;
 use super::keys::{BATH_TEMPERATURE, DRAG, INTEGRATOR, SEARCH};
@@ -8,14 +8,14 @@ use crate::method::trials::settings;
 use crate::method::{Axis, Decides, Parameter, Prepared, SMALLEST_RADIUS, Trials};
 use crate::scene::{DT, Key, Overrides, PRECISION, Precision, Values};
 
-/// Every way to run a scene of particles in a bath.
+/// Trial configurations of particles in a bath.
 pub(super) static TRIALS: Trials = Trials {
     step: &DT,
     references: [
         &[("integrator", "baoab"), ("precision", "f64")],
         &[("integrator", "stochastic"), ("precision", "f64")],
     ],
-    // A bath gives and takes energy.
+    // A bath exchanges energy with the particles.
     balance: None,
     shadow: None,
     encounter: |_, _| None,
@@ -62,7 +62,7 @@ pub(super) const AXES: &[Axis] = &[
     },
 ];
 
-/// What a map may vary.
+/// Parameters that a stability map may vary.
 const PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "strength",
@@ -96,7 +96,7 @@ const PARAMETERS: &[Parameter] = &[
     },
 ];
 
-/// From a thirtieth of a value to thirty times it.
+/// Range from a thirtieth of a value to thirty times the value.
 fn around(values: &Values, key: &Key) -> Option<[f64; 2]> {
     values.number(key).filter(|value| *value > 0.0).map(|value| [value / 30.0, value * 30.0])
 }

@@ -1,10 +1,10 @@
-//! What is measured of bodies.
+//! Benchmark of all-pairs gravity.
 
 use super::quantities::QUANTITIES;
 use crate::method::entry::bench_options;
 use crate::method::{Bench, Until};
 
-/// What makes a bench of an engine: only the fast one has estimated roots.
+/// Overrides that select an engine; only the fast one has estimated roots.
 fn of_engine(engine: &str, mut more: Vec<String>) -> Vec<String> {
     if engine != "fast" {
         more.push("machine.arithmetic=exact".to_owned());
@@ -13,7 +13,7 @@ fn of_engine(engine: &str, mut more: Vec<String>) -> Vec<String> {
     more
 }
 
-/// The benchmark.
+/// Benchmarks of the method.
 pub(super) const BENCHES: &[Bench] = &[Bench {
     name: "nbody",
     doc: "PWP's all-pairs gravity",

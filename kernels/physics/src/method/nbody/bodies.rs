@@ -1,23 +1,23 @@
-//! Bodies as columns.
+//! Column storage of bodies.
 
 use stripmine_kernels::sweep::all_pairs::{padded, padding};
 
-/// A quantity along three axes, an entry for every body and padding.
+/// Quantity along three axes, with an entry for every body and padding.
 pub(crate) type Columns = [Vec<f64>; 3];
 
-/// Columns of zeros for `entries` bodies.
+/// Returns columns of `entries` zeros.
 pub fn zeros(entries: usize) -> Columns {
     [0, 1, 2].map(|_| vec![0.0; entries])
 }
 
-/// `to += factor · of`, for every entry.
+/// Adds `factor · of` to every entry of `to`.
 pub(crate) fn add(to: &mut Columns, factor: f64, of: &Columns) {
     for (to, of) in to.iter_mut().zip(of) {
         to.iter_mut().zip(of).for_each(|(to, of)| *to += factor * of);
     }
 }
 
-/// Point masses in space. Behind the last there are entries without mass, far from the others, up to whole groups.
+/// Point masses in space, padded to whole groups by distant entries without mass.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bodies {
     count: usize,
@@ -30,7 +30,7 @@ pub struct Bodies {
 }
 
 impl Bodies {
-    /// Bodies at places (length) with velocities (length/time) and masses.
+    /// Creates bodies from positions (length), velocities (length/time) and masses.
     pub fn new(bodies: impl ExactSizeIterator<Item = ([f64; 3], [f64; 3], f64)>) -> Self {
         let count = bodies.len();
         let entries = padded(count);
@@ -43,37 +43,37 @@ impl Bodies {
                 made.velocity[axis][n] = velocity[axis];
             }
         }
-        // Padding has no mass and no velocity: no step moves it.
+        // Padding has no mass and no velocity, so no step moves it.
         made.position[0][count..].iter_mut().enumerate().for_each(|(n, x)| *x = padding(n));
         made
     }
 
-    /// How many there are, without the padding.
+    /// Number of bodies, without padding.
     pub fn len(&self) -> usize {
         self.count
     }
 
-    /// Whether there is none.
+    /// True if there are no bodies.
     pub fn is_empty(&self) -> bool {
         self.count == 0
     }
 
-    /// Entries of a column.
+    /// Number of entries of a column.
     pub fn entries(&self) -> usize {
         self.mass.len()
     }
 
-    /// The position of a body (length).
+    /// Position of a body (length).
     pub(crate) fn position_of(&self, body: usize) -> [f64; 3] {
         [0, 1, 2].map(|axis| self.position[axis][body])
     }
 
-    /// The velocity of a body (length/time).
+    /// Velocity of a body (length/time).
     pub(crate) fn velocity_of(&self, body: usize) -> [f64; 3] {
         [0, 1, 2].map(|axis| self.velocity[axis][body])
     }
 
-    /// The first body whose position or velocity is no finite number, and how many there are.
+    /// First body whose position or velocity is not finite, and the number of such bodies.
     pub fn not_finite(&self) -> Option<(usize, usize)> {
         let columns = || self.position.iter().chain(&self.velocity);
         let is_bad = |body: &usize| columns().any(|column| !column[*body].is_finite());

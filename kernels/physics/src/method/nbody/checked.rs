@@ -1,4 +1,4 @@
-//! A scene of bodies, held against what the method demands.
+//! Checks a scene of bodies against the preconditions of the method.
 
 use super::choice;
 use super::keys::{BODIES, ENGINE, GENERATE, SOFTENING};
@@ -10,10 +10,10 @@ use crate::particles::{Kind, Particle, Particles};
 use crate::scene::{PRECISION, Precision, Read, Reason, SceneError, SceneErrors, Values};
 use std::collections::HashMap;
 
-/// The lightest body over the heaviest in single precision: products of two such masses are still normal numbers.
+/// Smallest mass ratio in single precision: products of two such masses are still normal numbers.
 const LIGHTEST: f64 = 1e-18;
 
-/// A checked scene.
+/// Checked scene of bodies.
 #[derive(Clone)]
 pub(super) struct Checked {
     pub(super) scene: Scene,
@@ -21,15 +21,15 @@ pub(super) struct Checked {
     pub(super) choices: Vec<String>,
 }
 
-/// Makes the bodies of a scene and holds it against every precondition.
+/// Creates the bodies of a scene and checks every precondition.
 ///
 /// # Errors
-/// [`SceneErrors`]: every precondition that does not hold.
+/// [`SceneErrors`] with every violated precondition.
 pub(super) fn prepare(values: Values) -> Result<Prepared, SceneErrors> {
     Ok(checked(values)?.prepared())
 }
 
-/// The same, as this method knows it.
+/// Checks a scene and returns the method's own representation.
 pub(super) fn checked(values: Values) -> Result<Checked, SceneErrors> {
     let (mut scene, mut read) = (Scene::default(), Read::new(&values));
     scene.bind(&mut read);
@@ -78,9 +78,9 @@ pub(super) fn checked(values: Values) -> Result<Checked, SceneErrors> {
     Ok(Checked { scene, particles, choices })
 }
 
-/// The radius that viewers draw, for points have none: the softening, or a hundredth of how far bodies are from their middle.
+/// Radius for viewers, as points have none: the softening, or a hundredth of the median distance from the middle.
 fn radius_shown(scene: &Scene, bodies: &[Body]) -> f64 {
-    /// A hundredth of the scale of starts that are made.
+    /// Drawn radius relative to the scale of the start.
     const SMALL: f64 = 0.01;
     let mut scale = 1.0;
     if scene.start.kind == StartKind::List {
@@ -95,13 +95,13 @@ fn radius_shown(scene: &Scene, bodies: &[Body]) -> f64 {
     scene.softening.max((SMALL * scale).clamp(f64::MIN_POSITIVE, f64::MAX))
 }
 
-/// Fewer than two bodies, or masses that are not positive.
+/// Errors for fewer than two bodies, or for masses that are not positive.
 fn wrong_rows(values: &Values, scene: &Scene) -> Vec<SceneError> {
     let rows = &scene.start.bodies;
     let mut errors = vec![];
     if rows.len() < 2 {
         let message =
-            format!("`particles.bodies` lists {}, but one body alone does not attract anything", rows.len());
+            format!("`particles.bodies` lists {}, but one body alone has nothing to attract", rows.len());
         errors.push(values.spot(&BODIES).error(Reason::Range, message).expecting("two bodies or more"));
     }
     for (number, row) in rows.iter().enumerate().filter(|(_, row)| row[0] <= 0.0).take(5) {
@@ -113,7 +113,7 @@ fn wrong_rows(values: &Values, scene: &Scene) -> Vec<SceneError> {
     errors
 }
 
-/// A body so light beside the heaviest that forces in single precision vanish.
+/// Error for a body so light that its forces vanish in single precision.
 fn too_light(values: &Values, particles: &Particles) -> Option<SceneError> {
     let heaviest = particles.all().iter().max_by(|a, b| a.mass.total_cmp(&b.mass))?;
     let lightest = particles.all().iter().min_by(|a, b| a.mass.total_cmp(&b.mass))?;
@@ -121,23 +121,23 @@ fn too_light(values: &Values, particles: &Particles) -> Option<SceneError> {
         return None;
     }
     let message = format!(
-        "body {} has the mass {:?}, less than {LIGHTEST:e} of the {:?} of body {}: its forces vanish in single precision",
+        "body {} has the mass {:?}, less than {LIGHTEST:e} times the {:?} of body {}: its forces vanish in single precision",
         lightest.id, lightest.mass, heaviest.mass, heaviest.id
     );
     let error = values.spot(&PRECISION).error(Reason::Contradiction, message);
     Some(error.expecting("machine.precision = \"f64\", or a heavier body"))
 }
 
-/// Two bodies at one place, whose attraction is without bound where it is not softened.
+/// Error for two bodies at one position, whose attraction is infinite without softening.
 fn coincident(values: &Values, particles: &Particles) -> Option<SceneError> {
     let mut places: HashMap<[u64; 3], u32> = HashMap::new();
     for (number, body) in particles.all().iter().enumerate() {
-        // −0 and 0 are one place.
+        // −0 and 0 are the same position.
         let place = body.position.map(|x| (x + 0.0).to_bits());
         if let Some(first) = places.insert(place, body.id) {
             let [x, y, z] = body.position;
             let message = format!(
-                "bodies {first} and {} are both at ({x}, {y}, {z}), and nothing softens their attraction",
+                "bodies {first} and {} are both at ({x}, {y}, {z}), and their attraction is not softened",
                 body.id
             );
             let spot = if values.gives(&BODIES) {

@@ -1,6 +1,6 @@
-//! What `auto` becomes, and what else a scene is told of the ways it runs.
+//! Choice of the engine for `auto`, and notes on the chosen configuration.
 //!
-//! The choice depends on the scene alone, never on the machine or its threads, so that a run is the same everywhere.
+//! The choice depends on the scene alone, never on the machine or its threads, so runs are the same everywhere.
 
 use super::options::{ArithmeticKind, Engine};
 use super::scene::Scene;
@@ -8,23 +8,25 @@ use super::schemes::SchemeName;
 use crate::scene::Precision;
 use crate::words::Words;
 
-/// Bodies up to which the sum as it is written is the cheaper. It takes N (N − 1) scalar terms of some 12 clock periods; the
-/// sweep fills up its groups of 16 and takes about 2000 for one, most of them 256 terms by registers.
+/// Number of bodies up to which the direct sum is cheaper. It takes N (N − 1) scalar terms of some 12 clock periods. The
+/// sweep pads its groups to 16 and takes about 2000 clock periods for one, mostly for its 256 terms in registers.
 const FEW: usize = 12;
 
-/// Decides the engine where the scene leaves it open. Gives the reasons, and what is slower than one would think.
+/// Chooses the engine if the scene leaves it open. Returns the reasons, and notes on unexpectedly slow parts.
 pub(super) fn choose(scene: &mut Scene, bodies: usize) -> Vec<String> {
     let mut said = vec![];
     if scene.engine == Engine::Auto {
         let is_plain = scene.precision == Precision::F64 && scene.arithmetic == ArithmeticKind::Exact;
         let (engine, reason) = match (is_plain, bodies <= FEW) {
-            (false, _) => (Engine::Fast, "only it has single precision and estimated roots".to_owned()),
+            (false, _) => {
+                (Engine::Fast, "only this engine has single precision and estimated roots".to_owned())
+            }
             (_, true) => {
-                (Engine::Reference, format!("of {bodies} bodies, and up to {FEW}, it is the cheaper"))
+                (Engine::Reference, format!("the cheapest for {bodies} bodies, and for up to {FEW}"))
             }
             (_, false) => (
                 Engine::Fast,
-                format!("{bodies} bodies are more than the {FEW} up to which the reference is the cheaper"),
+                format!("the cheapest for {bodies} bodies; up to {FEW}, the reference is cheaper"),
             ),
         };
         scene.engine = engine;
@@ -32,8 +34,8 @@ pub(super) fn choose(scene: &mut Scene, bodies: usize) -> Vec<String> {
     }
     if scene.scheme == SchemeName::Gear6 && scene.engine != Engine::Reference {
         said.push(format!(
-            "integrator.kind = \"{}\" starts with derivatives that no sweep sums up: once, in double precision, pair by pair, as \
-             long as some hundred steps",
+            "integrator.kind = \"{}\" starts with derivatives that no sweep calculates: they are summed pair by pair in \
+             double precision, once, which takes as long as some hundred steps",
             scene.scheme.word()
         ));
     }
@@ -68,7 +70,7 @@ mod tests {
         }
     }
 
-    /// What is slower than it looks is said, and what was asked for stays.
+    /// A slow start is reported, and the requested engine stays.
     #[test]
     fn a_slow_start_is_said() {
         let said = |scheme, engine| {

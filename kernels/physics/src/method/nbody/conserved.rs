@@ -1,8 +1,8 @@
-//! What the motion conserves.
+//! Conserved quantities of the motion.
 
 use super::bodies::Bodies;
 
-/// Sums over all bodies that gravity leaves as they are.
+/// Sums over all bodies that gravity conserves.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Conserved {
     /// Kinetic energy.
@@ -12,12 +12,12 @@ pub(crate) struct Conserved {
     pub momentum: [f64; 3],
     /// Angular momentum about the origin.
     pub(crate) angular_momentum: [f64; 3],
-    /// The centre of mass (length).
+    /// Centre of mass (length).
     pub centre: [f64; 3],
 }
 
 impl Conserved {
-    /// Of bodies whose pairs have this potential energy.
+    /// Sums the quantities of bodies with this potential energy of the pairs.
     pub(super) fn of(bodies: &Bodies, potential: f64) -> Self {
         let mut sums = Conserved { potential, ..Conserved::default() };
         let mut mass = 0.0;
@@ -37,13 +37,13 @@ impl Conserved {
         sums
     }
 
-    /// Whether all sums are finite numbers.
+    /// True if all sums are finite.
     pub(super) fn is_finite(&self) -> bool {
         let vectors = [self.momentum, self.angular_momentum, self.centre];
         vectors.iter().flatten().chain([&self.kinetic, &self.potential]).all(|sum| sum.is_finite())
     }
 
-    /// Kinetic and potential energy.
+    /// Total energy.
     pub(super) fn energy(&self) -> f64 {
         self.kinetic + self.potential
     }

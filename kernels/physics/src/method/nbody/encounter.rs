@@ -1,28 +1,28 @@
-//! Which two bodies are the nearest to each other.
+//! Search for the nearest pair of bodies.
 
 use super::bodies::Columns;
 
-/// The nearest two of all bodies.
+/// Nearest pair of bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Encounter {
-    /// Their numbers, the smaller first.
+    /// Numbers of the bodies, the smaller first.
     pub(super) bodies: [usize; 2],
-    /// How far they are apart (length).
+    /// Distance of the bodies (length).
     pub(super) distance: f64,
-    /// Where the first of them is (length).
+    /// Position of the first body (length).
     pub(super) place: [f64; 3],
 }
 
-/// Looks for them: bodies are sorted along the axis on which they are spread the widest, and each is held against those behind it
-/// that are no farther along it than the nearest two so far.
+/// Search for the nearest pair. Bodies are sorted along the axis of their widest extent, and each is compared with the bodies behind it
+/// that are closer along this axis than the nearest pair so far.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Encounters {
-    /// As they were sorted last: almost as they will be.
+    /// Last order, which is almost the next one.
     order: Vec<u32>,
 }
 
 impl Encounters {
-    /// The nearest of the first `count` bodies; none where there are not two with a distance.
+    /// Returns the nearest pair of the first `count` bodies; none if no pair has a finite distance.
     pub(super) fn nearest(&mut self, position: &Columns, count: usize) -> Option<Encounter> {
         let spread = |column: &Vec<f64>| {
             let ends = column[..count]
@@ -62,7 +62,7 @@ mod tests {
     use rand::RngExt;
     use stripmine_kernels::noise::{Purpose, Stream};
 
-    /// Against all pairs, moved a little and looked at again; along lines and planes too.
+    /// Compared with all pairs, repeatedly after small moves; also for bodies on lines and planes.
     #[test]
     fn the_nearest_are_those_of_all_pairs() {
         let mut random = Stream::new(3, Purpose::Test, 0);

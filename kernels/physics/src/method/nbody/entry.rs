@@ -1,4 +1,4 @@
-//! The entry of bodies in the list of methods.
+//! Entry of all-pairs gravity in the list of methods.
 
 use super::benches::BENCHES;
 use super::checked::prepare;
@@ -11,7 +11,7 @@ use crate::method::Entry;
 pub static ENTRY: Entry = Entry {
     vocabulary: &VOCABULARY,
     source: "all-pairs gravity (PWP)",
-    doc: "bodies in space that all attract each other, softened, by nine integrators",
+    doc: "bodies in space with softened all-pairs gravity, by ten integrators",
     quantities: QUANTITIES,
     prepare,
     benches: BENCHES,

@@ -1,4 +1,4 @@
-//! Accelerations of bodies: interchangeable ways to the same sums.
+//! Accelerations of bodies, by interchangeable implementations of the same sums.
 
 use super::bodies::{Bodies, Columns};
 use super::options::{ArithmeticKind, Engine};
@@ -16,47 +16,47 @@ use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::sweep::all_pairs::Arithmetic;
 
-/// Derivatives of the acceleration that a start may ask for, itself first.
+/// Derivatives of the acceleration available to a start, including the acceleration itself.
 const ORDERS: usize = 4;
 
-/// The attraction of some masses.
+/// Gravitational field of the bodies.
 pub struct Attraction {
     softening: f64,
     constant: f64,
     mass: Vec<f64>,
-    /// G m.
+    /// G m of each body.
     pull: Vec<f64>,
-    /// G/m: accelerations over sums of m₁ m₂ d/d³; 0 where there is no mass.
+    /// G/m: converts sums of m₁ m₂ d/d³ to accelerations; 0 for padding without mass.
     per_mass: Vec<f64>,
     bodies: usize,
     pub(super) pairs: Pairs,
-    /// How often accelerations were asked for.
+    /// Number of evaluations of the accelerations.
     pub evaluations: u64,
 }
 
-/// The ways.
+/// Implementations of the pair sums.
 pub(crate) enum Pairs {
-    /// As the sum is written.
+    /// Direct sum.
     Reference,
-    /// By sums of forces, in the scene's precision.
+    /// Force sums in the scene's precision.
     Summed(Box<dyn Sums>),
 }
 
-/// An attraction as a scheme asks for it.
+/// Field during one step of a scheme.
 pub struct Asking<'a> {
     attraction: &'a mut Attraction,
-    /// Whether the energy is wanted of the positions that a step ends with.
+    /// True if the energy at the end of the step is needed.
     observed: bool,
-    /// That energy, where the forces were summed up there.
+    /// Energy at the end of the step, if it was summed with the forces.
     energy: Option<f64>,
     stop: Stop<'a>,
 }
 
 impl Attraction {
-    /// Of a scene's bodies, by as many ranks as there are.
+    /// Creates the field of a scene's bodies, on the current number of ranks.
     ///
     /// # Errors
-    /// [`Failure`] if they cannot be dealt out to so many ranks.
+    /// [`Failure`] if the bodies cannot be distributed to the number of ranks.
     pub fn new(scene: &Scene, bodies: &Bodies) -> Result<Self, Failure> {
         if !matches!(scene.engine, Engine::Fast | Engine::Auto) {
             refuse_several_ranks("only machine.engine = \"fast\" has bands of rows")?;
@@ -70,7 +70,7 @@ impl Attraction {
         let (softening, execution) = (scene.softening, (scene.execution, set));
         let pairs = match (scene.engine, scene.precision) {
             (Engine::Reference, _) => Pairs::Reference,
-            // The check has decided what `auto` is.
+            // The check has resolved `auto`.
             (Engine::Fast | Engine::Auto, Precision::F64) => {
                 Pairs::Summed(summed::<f64>(scene, bodies, arithmetic)?)
             }
@@ -96,7 +96,7 @@ impl Attraction {
         })
     }
 
-    /// Bytes that a scene's takes for a number of bodies.
+    /// Memory of the field of a scene with `count` bodies, in bytes.
     pub fn bytes(scene: &Scene, count: usize) -> usize {
         let has_rates = scene.scheme == SchemeName::Hermite4;
         let pairs = match (scene.engine, scene.precision) {
@@ -109,7 +109,7 @@ impl Attraction {
         pairs + 3 * size_of::<f64>() * count
     }
 
-    /// The rank that was lost, if one was.
+    /// Returns the lost rank, if any.
     pub fn lost(&self) -> Option<RankError> {
         match &self.pairs {
             Pairs::Reference => None,
@@ -117,15 +117,15 @@ impl Attraction {
         }
     }
 
-    /// For a step: whether the energy at its end is wanted, and what may stop it.
+    /// Returns the field for one step; `observed` requests the energy at its end, `stop` may interrupt it.
     pub fn asking<'a>(&'a mut self, observed: bool, stop: Stop<'a>) -> Asking<'a> {
         Asking { attraction: self, observed, energy: None, stop }
     }
 
-    /// The energy of all pairs.
+    /// Energy of all pairs.
     ///
     /// # Errors
-    /// [`ProgramError`] if the processor lacks what is asked for, or `stop` says so.
+    /// [`ProgramError`] if the processor lacks the instruction set, or `stop` returns true.
     pub fn potential(&mut self, position: &Columns, stop: Stop<'_>) -> Result<f64, ProgramError> {
         let energy = match &mut self.pairs {
             Pairs::Reference => potential(&self.mass[..self.bodies], position, self.softening, stop),
@@ -139,7 +139,7 @@ impl Attraction {
         squares.sum::<f64>() + self.softening * self.softening
     }
 
-    /// The sum as it is written, in the order of the bodies.
+    /// Direct sum in the order of the bodies.
     fn written(&self, position: &Columns, into: &mut Columns, stop: Stop<'_>) -> Result<(), ProgramError> {
         for body in 0..self.bodies {
             go_on(stop)?;
@@ -154,8 +154,8 @@ impl Attraction {
         Ok(())
     }
 
-    /// Derivatives of the acceleration by Taylor series of positions and pairs, an order after the other: for a start. Every body's
-    /// is a sum of its own, on threads.
+    /// Derivatives of the acceleration at a start, order by order, from Taylor series of the positions and pairs. The sums of the bodies
+    /// are independent and run on threads.
     fn series(
         &self,
         position: &Columns,
@@ -187,7 +187,7 @@ impl Attraction {
         Ok(())
     }
 
-    /// The coefficient of an order of a body's acceleration.
+    /// Taylor coefficient of an order of a body's acceleration.
     fn coefficient(&self, path: &[[[f64; ORDERS + 2]; 3]], body: usize, order: usize) -> [f64; 3] {
         let mut found = [0.0; 3];
         for other in (0..path.len()).filter(|&other| other != body) {
@@ -214,7 +214,7 @@ impl Attraction {
     }
 }
 
-/// The series of a power of a series, up to an order.
+/// Power of a series, up to an order.
 fn power(of: &[f64; ORDERS], exponent: f64, order: usize) -> [f64; ORDERS] {
     let mut result = [0.0; ORDERS];
     result[0] = of[0].powf(exponent);
@@ -226,7 +226,7 @@ fn power(of: &[f64; ORDERS], exponent: f64, order: usize) -> [f64; ORDERS] {
 }
 
 impl Asking<'_> {
-    /// The energy of all pairs at the positions that the step ended with.
+    /// Energy of all pairs at the positions at the end of the step.
     ///
     /// # Errors
     /// As [`Attraction::potential`].
@@ -289,7 +289,7 @@ mod tests {
     use crate::method::nbody::bodies::zeros;
     use stripmine_kernels::Execution;
 
-    /// The derivatives by series against differences of the accelerations along a path of theirs, and the fast sweep's jerk.
+    /// The series derivatives match finite differences of the acceleration along the path, and the sweep's jerk.
     #[test]
     fn derivatives_are_those_of_the_motion() {
         let mut scene = Scene { softening: 0.2, gravitational_constant: 3.7, ..Scene::default() };
@@ -299,7 +299,7 @@ mod tests {
         let mut field = Attraction::new(&scene, &all).unwrap();
         let mut orders: Vec<Columns> = (0..ORDERS).map(|_| zeros(all.entries())).collect();
         field.asking(false, &never).derivatives(&all.position, &all.velocity, &mut orders).unwrap();
-        // Along the path by its series the acceleration has these derivatives.
+        // Along the Taylor path the acceleration has these derivatives.
         let h = 0.004;
         let at = |time: f64| {
             let mut position = all.position.clone();
@@ -350,7 +350,7 @@ mod tests {
         }
     }
 
-    /// The reference and every fast way agree to what their precision has.
+    /// The reference and all other engines agree within their precision.
     #[test]
     fn ways_agree() {
         let mut scene = Scene { softening: 0.05, gravitational_constant: 0.31, ..Scene::default() };
@@ -383,7 +383,7 @@ mod tests {
                 assert!((energy / potential - 1.0).abs() < tolerance, "{energy} {potential}");
             }
         }
-        // The programs do the same however they are executed.
+        // The programs give the same bits in every execution.
         let by = |execution| found(Engine::Programs, execution, Precision::F64, ArithmeticKind::Exact);
         let chained = by(Execution::Chained);
         assert!([Execution::Eager, Execution::Strip(64)].into_iter().all(|other| by(other) == chained));

@@ -1,4 +1,4 @@
-//! The keys that are this method's own, and what they demand of each other.
+//! Keys of this method, and their constraints on each other.
 
 use super::options::{ArithmeticKind, Engine, StartKind};
 use super::schemes::SchemeName;
@@ -28,46 +28,46 @@ define_keys! {
     /// Bodies, softening, integrator and machine.
     static OWN;
     GENERATE = "particles" "generate", Choice(StartKind::WORDS), "", Required, ALWAYS,
-        "Where bodies start: two on an ellipse of half axis 1, at their nearest; three on the figure of eight; Plummer's sphere of scale 1; a uniform sphere or shell of radius 1; two Plummer spheres; as listed. Unless listed, the total mass is 1 and the total momentum 0, and velocities that follow from the attraction go with √G.";
+        "Initial state: two bodies on an ellipse of semi-major axis 1, at the nearest point; three on the figure of eight; Plummer's sphere of scale 1; a uniform sphere or shell of radius 1; two Plummer spheres; or a list. Unless listed, the total mass is 1, the total momentum is 0, and velocities due to gravity scale with √G.";
     COUNT = "particles" "count", Whole(2, 1_000_000), "", Is("1024"), DRAWN,
         "Number of bodies.";
     SEED = "particles" "seed", Whole(0, u64::MAX), "", Is("1"), DRAWN,
         "Seed of positions and velocities.";
     VIRIAL = "particles" "virial", Number(NonNegative), "", Is("0.0"), SPHERES,
-        "Kinetic energy of random velocities over the magnitude of the potential energy: 0.5 is equilibrium, 0 cold.";
+        "Ratio of the kinetic energy of random velocities to the magnitude of the potential energy: 0.5 is equilibrium, 0 is cold.";
     EXPANSION = "particles" "expansion", Number(Finite), "1/time", Is("0.0"), SPHERES,
-        "Velocity outwards over the distance from the centre.";
+        "Outward velocity over the distance from the centre.";
     ECCENTRICITY = "particles" "eccentricity", Number(UpTo(1.0)), "", Is("0.5"), KEPLER,
         "Eccentricity of the ellipse.";
     MASS_RATIO = "particles" "mass_ratio", Number(AtMost(1.0)), "", Is("1.0"), KEPLER,
-        "Mass of the second body over that of the first.";
+        "Ratio of the second body's mass to the first body's.";
     SEPARATION = "particles" "separation", Number(Positive), "length", Is("8.0"), CLUSTERS,
         "Distance of the centres of the two spheres.";
     APPROACH = "particles" "approach", Number(Finite), "length/time", Is("0.3"), CLUSTERS,
-        "Speed at which they approach each other, along the line between them and half as fast across it.";
+        "Speed of approach of the two spheres along the line between them, with half that speed across it.";
     BODIES = "particles" "bodies", Rows(7), "", Required, LISTED,
-        "A row for each body: mass, position along x, y, z (length), velocity along x, y, z (length/time); ids are 1, 2, …";
+        "List of bodies, a row each: mass, position along x, y, z (length), velocity along x, y, z (length/time); ids are 1, 2, …";
 
     SOFTENING = "law" "softening", Number(NonNegative), "length", Is("0.0"), ALWAYS,
-        "ε: the attraction of a unit mass is G d/(d² + ε²)^{3/2}.";
+        "Softening ε: the attraction of a unit mass is G d/(d² + ε²)^{3/2}.";
 
     CONSTANT = "law" "gravitational_constant", Number(Positive), "length³/(mass·time²)", Otherwise("6.6743e-11 where `units` is \"SI\", else 1"), ALWAYS,
-        "G: two bodies attract each other by G m₁ m₂/d². Masses may be given as G m instead, with a constant of 1.";
+        "Gravitational constant G: two bodies attract each other with G m₁ m₂/d². Masses may be given as G m instead, with a constant of 1.";
 
     INTEGRATOR = "integrator" "kind", Choice(SchemeName::WORDS), "", Is("\"leapfrog\""), ALWAYS,
-        "damped-euler is the source's; euler and euler-with-half fail and show how; leapfrog, yoshida-4, -6 and -8 are symplectic; runge-kutta-4, hermite-4 and gear-6 (started exactly) drift.";
+        "Integrator: damped-euler is PWP's; euler and euler-with-half are there to show how they fail; leapfrog, yoshida-4, -6 and -8 are symplectic; runge-kutta-4, hermite-4 and gear-6 (started exactly) drift in energy.";
     DAMPING = "integrator" "damping", Number(AtMost(1.0)), "", Is("1.0"), DAMPED,
-        "What velocities are multiplied by at every step: a friction −ln(damping)/dt.";
+        "Factor of the velocities at every step: a friction −ln(damping)/dt.";
 
     ENGINE = "machine" "engine", Choice(Engine::WORDS), "", Is("\"auto\""), ALWAYS,
-        "What finds the forces: fast, each pair once; whole-array operations at every cyclic shift (programs); or pair by pair as the sum is written (reference), in double precision. auto takes the reference for up to a dozen bodies, and fast for more, or where it is asked for single precision or estimated roots.";
+        "Force engine: fast visits each pair once; programs uses whole-array operations at every cyclic shift; reference is the direct sum, in double precision. auto takes reference for up to a dozen bodies, and fast for more bodies, single precision or estimated roots.";
     EXECUTION = "machine" "execution", Choice(&["chained", "eager", "strip:N"]), "", Is("\"chained\""), PROGRAMS,
-        "How programs are executed: instructions register by register, one pass over all bodies each, or by strips of N, all to the same bits.";
+        "Execution of programs: chained, register by register; eager, one pass over all bodies per instruction; or strip:N, in strips of N. All give the same bits.";
     ROOTS = "machine" "arithmetic", Choice(ArithmeticKind::WORDS), "", Is("\"exact\""), SWEPT,
-        "exact rounds every operation, to the same bits on every instruction set; estimated fuses products and sums and corrects the processor's estimate of inverse roots; raw leaves the correction out, to show what it is worth.";
+        "Arithmetic: exact rounds every operation, to the same bits on every instruction set; estimated fuses products and sums and corrects the processor's estimate of inverse roots; raw omits the correction, to show its effect.";
 }
 
-/// What the scenes of this method may say.
+/// Vocabulary of the scenes of this method.
 pub(super) static VOCABULARY: Vocabulary = Vocabulary {
     keys: KeySet {
         method: "nbody",
@@ -76,7 +76,7 @@ pub(super) static VOCABULARY: Vocabulary = Vocabulary {
         advice: &[
             (
                 "particles.file",
-                "bodies have no start file: list them in particles.bodies, a row [mass, x, y, z, vx, vy, vz] each, with \
+                "bodies have no start file: list them in particles.bodies, one row [mass, x, y, z, vx, vy, vz] each, with \
              particles.generate = \"list\"",
             ),
             ("integrator.step", "did you mean `integrator.dt`?"),
@@ -88,12 +88,12 @@ pub(super) static VOCABULARY: Vocabulary = Vocabulary {
             ("domain.sides", "bodies are in open space: there is no box and no gravity but their own"),
             ("domain.gravity", "bodies are in open space: there is no box and no gravity but their own"),
             ("domain.periodic", "bodies are in open space: there is no box and no gravity but their own"),
-            ("particles.radius", "bodies are points: `law.softening` is the only length of theirs"),
+            ("particles.radius", "bodies are points: their only length is `law.softening`"),
             (
                 "particles.temperature",
-                "bodies have no temperature: `particles.virial` is the kinetic energy of a sphere over the potential one",
+                "bodies have no temperature: `particles.virial` is the ratio of kinetic to potential energy of a sphere",
             ),
-            ("particles.positions", "list bodies by `particles.bodies`: mass, position and velocity of each"),
+            ("particles.positions", "list bodies in `particles.bodies`: mass, position and velocity of each"),
         ],
     },
     rules: &[too_many_steps, own_rules],
@@ -101,7 +101,7 @@ pub(super) static VOCABULARY: Vocabulary = Vocabulary {
     renamed: &[],
 };
 
-/// What does not belong together.
+/// Checks the keys that depend on each other.
 fn own_rules(values: &Values) -> Vec<SceneError> {
     let mut errors = vec![];
     let of_boxes = FORMATS.iter().zip(OUTPUT).filter(|(format, _)| format.needs_box);
@@ -109,8 +109,8 @@ fn own_rules(values: &Values) -> Vec<SceneError> {
         if values.value(key) == Some(Value::Switch(true)) {
             let error = values
                 .spot(key)
-                .error(Reason::Contradiction, format!("`{}` needs a box, and bodies have none", key.path()));
-            errors.push(error.advising(format!("leave it out: {} has what it would have", FORMATS[0].file)));
+                .error(Reason::Contradiction, format!("`{}` needs a box, but bodies have none", key.path()));
+            errors.push(error.advising(format!("remove it: {} has the same data", FORMATS[0].file)));
         }
     }
     errors

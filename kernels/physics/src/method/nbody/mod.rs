@@ -1,4 +1,4 @@
-//! PWP: bodies in space that all attract each other, by softened gravity.
+//! Bodies in space under softened all-pairs gravity (PWP).
 
 mod benches;
 pub mod bodies;
@@ -31,5 +31,5 @@ pub use entry::ENTRY;
 
 use crate::method::FailureKind;
 
-/// Bodies that were bound are not any more.
+/// Bodies that were bound have become unbound.
 pub(crate) const UNBOUND: FailureKind = FailureKind::new("unbound");

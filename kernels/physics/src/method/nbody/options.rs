@@ -1,49 +1,49 @@
-//! The words of this method's keys.
+//! Words of this method's keys.
 
 use crate::words::define_words;
 
 define_words! {
-    /// Where bodies start.
+    /// Initial state of the bodies.
     pub enum StartKind {
         /// Two bodies on an ellipse, at the nearest point.
         Kepler = "kepler",
-        /// Three on a figure of eight.
+        /// Three bodies on the figure of eight.
         FigureEight = "figure-eight",
         /// Plummer's sphere.
         Plummer = "plummer",
-        /// A uniform sphere.
+        /// Uniform sphere.
         Sphere = "sphere",
-        /// A shell.
+        /// Spherical shell.
         Shell = "shell",
         /// Two Plummer spheres.
         TwoClusters = "two-clusters",
-        /// As listed.
+        /// Listed bodies.
         List = "list",
     }
 }
 
 define_words! {
-    /// What finds the forces.
+    /// Engine that calculates the forces.
     pub enum Engine {
-        /// What is the cheapest for the number of bodies.
+        /// The cheapest engine for the number of bodies.
         Auto = "auto",
-        /// Each pair once, in registers, on threads.
+        /// Sweep that visits each pair once, in registers and on threads.
         Fast = "fast",
-        /// Whole-array operations between bodies and those a shift behind them, for every shift: the source's vector machine.
+        /// Whole-array operations between all bodies and those shifted by an offset, for every shift: PWP's vector machine.
         Programs = "programs",
-        /// Pair by pair as the sum is written: the oracle.
+        /// Direct sum, pair by pair: the oracle.
         Reference = "reference",
     }
 }
 
 define_words! {
-    /// How products and roots are formed.
+    /// Rounding of products and roots.
     pub enum ArithmeticKind {
-        /// Every operation rounded.
+        /// Every operation is rounded.
         Exact = "exact",
-        /// Fused, with estimated roots that are corrected.
+        /// Fused operations, with estimated roots that are corrected.
         Estimated = "estimated",
-        /// Fused, with roots as the processor estimates them.
+        /// Fused operations, with the processor's uncorrected estimate of roots.
         Raw = "raw",
     }
 }

@@ -1,4 +1,4 @@
-//! What a checked scene of bodies offers.
+//! Prepared scene of bodies: facts, step limits, memory forecast, settings and the start of a simulation.
 
 use super::checked::Checked;
 use super::field::Attraction;
@@ -18,7 +18,7 @@ use crate::words::Words;
 use serde_json::{Map, Value, json};
 
 impl Checked {
-    /// What is offered.
+    /// Turns the checked scene into the interface common to all methods.
     pub(super) fn prepared(self) -> Prepared {
         let scene = &self.scene;
         Prepared {
@@ -61,19 +61,19 @@ impl Checked {
         if constant == constant_of(units) && constant != 1.0 {
             words = format!("{constant:e} m³/(kg s²), for units = \"{units}\"");
         }
-        Fact::new("gravitational_constant", constant, "constant of gravity", words)
+        Fact::new("gravitational_constant", constant, "gravitational constant", words)
     }
 
     fn step_limits(&self) -> Vec<StepLimit> {
         let scene = &self.scene;
         match scene.start.kind {
             StartKind::Kepler => {
-                // At their nearest the bodies turn as on a circle of that radius. Schemes of the fourth order follow it in ten steps:
-                // a warning begins there, and the error of the energy judges the run.
+                // At the nearest point the bodies turn as on a circle of that radius. Fourth-order schemes resolve it in ten steps, so
+                // a warning begins there; the energy error judges the run.
                 let orbit = ORBIT / scene.gravitational_constant.sqrt();
                 let step = orbit * (1.0 - scene.start.eccentricity).powf(1.5) / 20.0;
                 let why =
-                    "a twentieth of the time of a circle through the nearest point, 2π (1 − e)^{3/2}/(20 √G)"
+                    "a twentieth of the period of a circle through the nearest point, 2π (1 − e)^{3/2}/(20 √G)"
                         .to_owned();
                 vec![StepLimit {
                     name: "nearest-passage",
@@ -89,7 +89,7 @@ impl Checked {
                 let attraction = scene.gravitational_constant * heaviest;
                 let step = (scene.softening.powi(3) / (2.0 * attraction)).sqrt();
                 let why =
-                    "√(ε³/2Gm): the time of a swing of two of the heaviest bodies through each other, over 2π"
+                    "√(ε³/2Gm): the oscillation period of two of the heaviest bodies through each other, over 2π"
                         .to_owned();
                 vec![StepLimit {
                     name: "closest-encounter",
@@ -107,8 +107,8 @@ impl Checked {
     fn memory(&self) -> Foreseen {
         let count = self.particles.len();
         let [held, carried] = self.scene.scheme.held();
-        // Positions, velocities and masses, and the state before a step; what a scheme holds; what half of the mass and the nearest
-        // two are sorted for. Particles of the scene, of the run, and of two frames.
+        // Positions, velocities and masses, and the state before a step; the quantities of the scheme; scratch for the half-mass radius and the
+        // nearest pair. Particles of the scene, of the run, and of two frames.
         let columns = 24 * (2 + 2 + held + carried) + 8 + 3 * 16 + 4;
         let particles = 4 * size_of::<Particle>();
         let needed = PROGRAM + (count * (columns + particles) + Attraction::bytes(&self.scene, count)) as f64;
@@ -116,7 +116,7 @@ impl Checked {
             needed: needed as u64,
             available: available(),
             what: format!("{count} bodies"),
-            remedy: "take fewer bodies",
+            remedy: "use fewer bodies",
             // Every rank has all bodies.
             ranks: OfRanks { each: needed - PROGRAM, ..OfRanks::default() },
         }

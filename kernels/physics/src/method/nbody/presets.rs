@@ -1,8 +1,8 @@
-//! Scenes to start from.
+//! Preset scenes of bodies.
 
 use crate::scene::Preset;
 
-/// Every preset of this method.
+/// All presets of this method.
 pub(super) const PRESETS: &[Preset] = &[
     Preset { name: "kepler", text: include_str!("presets/kepler.toml") },
     Preset { name: "figure-eight", text: include_str!("presets/figure-eight.toml") },

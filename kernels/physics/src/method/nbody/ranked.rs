@@ -1,7 +1,7 @@
-//! All pairs by several ranks, each those of some bands of rows.
+//! Force sum on several ranks, each with some bands of rows.
 //!
-//! Every rank has all bodies; the first one tells where they are, and adds up what the bands have met, in their order: the bits are those of one rank. What goes from
-//! rank to rank grows with the bodies, what is done with it with their square.
+//! Every rank has all bodies. The first rank broadcasts their positions and adds up the sums of the bands in order, so the bits are those of one
+//! rank. Communication grows with the number of bodies, computation with its square.
 
 use super::bodies::{Bodies, Columns};
 use super::scene::Scene;
@@ -17,13 +17,13 @@ use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::sweep::all_pairs::Arithmetic;
 
-/// More ranks than bands.
+/// Failure of more ranks than bands.
 const TOO_MANY: FailureKind = FailureKind::new("too-many-ranks");
 
-/// The sums of the first rank, by as many ranks as there are.
+/// Creates the sums of the first rank, which use all ranks.
 ///
 /// # Errors
-/// [`Failure`] if there are more ranks than bands; where this is a process that is not the first rank, that it is dismissed.
+/// [`Failure`] if there are more ranks than bands. In a process that is not the first rank, the failure reports its dismissal.
 pub(super) fn summed<P: Precision>(
     scene: &Scene,
     bodies: &Bodies,
@@ -38,8 +38,8 @@ pub(super) fn summed<P: Precision>(
     }
     let bands = own.bands();
     if count > bands {
-        let what = format!("{count} ranks are more than the {bands} bands of rows that all pairs have");
-        return Err(Failure::new(TOO_MANY, what, format!("take at most {bands} ranks, or more bodies")));
+        let what = format!("{count} ranks are more than the {bands} bands of rows of the all-pairs sum");
+        return Err(Failure::new(TOO_MANY, what, format!("use at most {bands} ranks, or more bodies")));
     }
     let (ranks, threads): (Box<dyn Ranks>, Vec<JoinHandle<()>>) = match crew {
         Crew::Processes(join) => {
@@ -60,15 +60,15 @@ pub(super) fn summed<P: Precision>(
                 let own = swept();
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(per_rank).build();
                 let pool = pool.map_err(|error| error.to_string())?;
-                // The first rank finds a loss itself.
+                // The first rank detects a loss itself.
                 let served = move || _ = serve(&ranks, own, true);
                 let work = move || pool.install(served);
                 thread::Builder::new().spawn(work).map_err(|error| error.to_string())
             };
             let threads: Result<Vec<_>, String> = rest.into_iter().map(begin).collect();
             let threads = threads.map_err(|error| {
-                let what = format!("no thread can be had for a rank: {error}");
-                Failure::new(TOO_MANY, what, "take fewer ranks or --threads")
+                let what = format!("cannot start a thread for a rank: {error}");
+                Failure::new(TOO_MANY, what, "use fewer ranks or --threads")
             });
             (first, threads?)
         }
@@ -80,24 +80,24 @@ fn bands_of(rank: usize, ranks: usize, bands: usize) -> Range<usize> {
     rank * bands / ranks..(rank + 1) * bands / ranks
 }
 
-/// The sums of the first rank.
+/// Sums of the first rank.
 struct RankedSums<P> {
-    /// The rank that was lost first, where one was.
+    /// Ranks, or the rank that was lost first.
     ranks: Mutex<Result<Box<dyn Ranks>, RankError>>,
     own: Swept<P>,
     threads: Vec<JoinHandle<()>>,
 }
 
-/// Order of the first rank to the others, sent in an option: none where no simulation follows ([`ranks::dismiss`]).
+/// Command of the first rank to the others, sent in an option: none if no simulation follows ([`ranks::dismiss`]).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Order {
-    /// Sums are wanted.
+    /// Calculate sums.
     Sum { observed: bool, position: Parcel, velocity: Option<Parcel> },
-    /// This simulation has ended.
+    /// End of this simulation.
     End,
 }
 
-/// Does as the first rank says: a thread until this simulation ends, a process until no other follows.
+/// Serves the first rank: a thread until this simulation ends, a process until no other follows.
 fn serve<P: Precision>(ranks: &dyn Ranks, mut own: Swept<P>, is_thread: bool) -> Result<(), RankError> {
     loop {
         let answer = match ranks.tell_message(None) {
@@ -113,7 +113,7 @@ fn serve<P: Precision>(ranks: &dyn Ranks, mut own: Swept<P>, is_thread: bool) ->
     }
 }
 
-/// The sums of each of the bands of a rank.
+/// Sums of each band of a rank.
 fn band_sums<P: Precision>(
     ranks: &dyn Ranks,
     own: &mut Swept<P>,
@@ -128,13 +128,13 @@ fn band_sums<P: Precision>(
     let (position, velocity) = (columns(position)?, velocity.map(columns).transpose()?);
     let bands = bands_of(ranks.rank(), ranks.count(), own.bands());
     let met = own.meet((&position, velocity.as_ref()), bands.clone(), observed, &never);
-    // The first rank has the same processor and the same law: what fails here fails there, with the reason.
+    // The first rank has the same processor and law, so it fails for the same reason and reports it.
     met.map_err(|_| RankError::Ended(ranks.rank()))?;
     Ok(bands.map(|band| Parcel::of_numbers(own.band(band, velocity.is_some()))).collect())
 }
 
 impl<P: Precision> RankedSums<P> {
-    /// What the other ranks have met is put beside what this one meets.
+    /// Visits the pairs of all ranks and collects the sums of the other ranks.
     fn met(
         &mut self,
         (position, velocity): (&Columns, Option<&Columns>),
@@ -179,7 +179,7 @@ impl<P: Precision> Sums for RankedSums<P> {
                 met?;
                 self.own.finish(velocity.is_some())
             }
-            // The step under way is finished alone, to the same bits; `lost` then ends the run.
+            // The current step is finished by the first rank alone, to the same bits; `lost` then ends the run.
             Err(lost) => {
                 self.ranks = Mutex::new(Err(lost));
                 self.own.sum(position, velocity, observed, stop)
@@ -199,7 +199,7 @@ impl<P: Precision> Sums for RankedSums<P> {
 impl<P> Drop for RankedSums<P> {
     fn drop(&mut self) {
         if let Ok(ranks) = self.ranks.get_mut().unwrap_or_else(PoisonError::into_inner) {
-            #[expect(clippy::let_underscore_must_use, reason = "a rank that has ended needs not be told")]
+            #[expect(clippy::let_underscore_must_use, reason = "a rank that has ended needs no message")]
             let _ = ranks.tell_message(Some(Some(Order::End)));
         }
         self.threads.drain(..).for_each(|thread| _ = thread.join());

@@ -1,14 +1,14 @@
-//! Bodies as a sweep sees them: in its precision, and, where that is single, about their middle and in units of their own.
+//! Bodies in the precision of a sweep. In single precision they are relative to their centre and in scaled units.
 
 use super::bodies::{Bodies, Columns};
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::sweep::all_pairs::{self, is_split, padding};
 
-/// Bodies farther than this many units of length from their mean take its place from it: a few that escape must not move the rest
-/// to where numbers are coarse.
+/// Distance from the mean, in units of length, beyond which bodies count as escaped. Escaped bodies must not move the origin to where
+/// the number format is coarse for the others.
 const FAR: f64 = 1024.0;
 
-/// Units of a sweep: powers of two, with which no bit is lost; 1 in double precision.
+/// Units of a sweep: powers of two, so that scaling is exact; 1 in double precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Units {
     length: f64,
@@ -16,9 +16,9 @@ pub(super) struct Units {
 }
 
 impl Units {
-    /// In single precision the heaviest body has a mass of 1 to 2, and the bodies a root mean square distance of 1 to 2 from their
-    /// mean: products of masses and cubes of distances then neither underflow nor overflow. Where a few bodies are far away, the
-    /// distance is the median one.
+    /// Chooses the units. In single precision the heaviest body has a mass of 1 to 2, and the root mean square distance from the mean is
+    /// 1 to 2: products of masses and cubes of distances then neither underflow nor overflow. If a few bodies are far away, the
+    /// median distance is used instead.
     fn of<P: Precision>(bodies: &Bodies) -> Units {
         if P::BYTES == size_of::<f64>() {
             return Units { length: 1.0, mass: 1.0 };
@@ -37,43 +37,43 @@ impl Units {
         Units { length: power_of_two(size), mass: power_of_two(heaviest) }
     }
 
-    /// A length in these units.
+    /// Converts a length to these units.
     pub(super) fn length(self, length: f64) -> f64 {
         length / self.length
     }
 
-    /// The unit of force, and of its rate.
+    /// Unit of force.
     pub(super) fn force(self) -> f64 {
         (self.mass / self.length).powi(2)
     }
 
-    /// The unit of the rate of a force; velocities keep theirs.
+    /// Unit of the rate of a force; velocities are not scaled.
     pub(super) fn force_rate(self) -> f64 {
         self.force() / self.length
     }
 
-    /// The unit of energy.
+    /// Unit of energy.
     pub(super) fn energy(self) -> f64 {
         self.mass * self.mass / self.length
     }
 }
 
-/// The largest power of two that is not above a number; 1 for what has none.
+/// Largest power of two not above a number; 1 if there is none.
 fn power_of_two(number: f64) -> f64 {
     if number.is_normal() { libm::scalbn(1.0, libm::ilogb(number)) } else { 1.0 }
 }
 
-/// The mean of the first entries.
+/// Mean of the first entries.
 fn mean(columns: &Columns, count: usize) -> [f64; 3] {
     columns.each_ref().map(|column| column[..count].iter().sum::<f64>() / count as f64)
 }
 
-/// The median of the first entries.
+/// Median of the first entries.
 fn medians(columns: &Columns, count: usize) -> [f64; 3] {
     columns.each_ref().map(|column| median(column[..count].to_vec()))
 }
 
-/// The upper median; 0 of no numbers.
+/// Upper median; 0 without numbers.
 fn median(mut numbers: Vec<f64>) -> f64 {
     match numbers.len() {
         0 => 0.0,
@@ -81,20 +81,20 @@ fn median(mut numbers: Vec<f64>) -> f64 {
     }
 }
 
-/// Columns of bodies, one behind the other as often as a sweep wants them.
+/// Columns of bodies in precision `P`, repeated as often as a sweep needs.
 pub(super) struct Rounded<P> {
     pub(super) units: Units,
-    /// Bodies, and entries with the padding.
+    /// Number of bodies, and of entries including padding.
     sizes: [usize; 2],
     pub(super) position: [Vec<P>; 3],
-    /// What rounding to single precision leaves of the positions; empty in double precision.
+    /// Remainder of the positions after rounding to single precision; empty in double precision.
     pub(super) rest: [Vec<P>; 3],
     pub(super) velocity: [Vec<P>; 3],
     pub(super) mass: Vec<P>,
 }
 
 impl<P: Precision> Rounded<P> {
-    /// Of bodies, `entries` of them (padding included) `times` over.
+    /// Creates columns of `entries` bodies (padding included), repeated `times` times.
     pub(super) fn new(bodies: &Bodies, entries: usize, times: usize) -> Self {
         let units = Units::of::<P>(bodies);
         let all = || vec![P::default(); times * entries];
@@ -110,10 +110,10 @@ impl<P: Precision> Rounded<P> {
         }
     }
 
-    /// Bytes that an entry takes.
+    /// Memory of an entry in bytes.
     pub(super) const BYTES: usize = (if is_split::<P>() { 10 } else { 7 }) * P::BYTES;
 
-    /// Takes positions and, where they are given, velocities.
+    /// Converts positions and, if given, velocities.
     pub(super) fn take(&mut self, position: &Columns, velocity: Option<&Columns>) {
         let [count, entries] = self.sizes;
         if !is_split::<P>() {
@@ -134,7 +134,7 @@ impl<P: Precision> Rounded<P> {
             self.position[0][entry] = padding(n);
             self.rest[0][entry] = P::default();
         }
-        // What all bodies have in common changes nothing between them.
+        // A common velocity has no effect on relative motion.
         if let Some(velocity) = velocity {
             let drift = if has_far { medians(velocity, count) } else { mean(velocity, count) };
             for ((to, from), drift) in self.velocity.iter_mut().zip(velocity).zip(drift) {
@@ -143,7 +143,7 @@ impl<P: Precision> Rounded<P> {
         }
     }
 
-    /// Takes positions as seen from a place (length), and what rounding leaves of them.
+    /// Converts positions relative to an origin (length), and stores the remainders of rounding.
     fn place_about(&mut self, position: &Columns, about: [f64; 3]) {
         let ([_, entries], units) = (self.sizes, self.units);
         for (axis, from) in position.iter().enumerate() {
@@ -154,7 +154,7 @@ impl<P: Precision> Rounded<P> {
         }
     }
 
-    /// As a sweep over all pairs takes them.
+    /// Borrows the columns as input of a sweep over all pairs.
     pub(super) fn bodies(&self) -> all_pairs::Bodies<'_, P> {
         all_pairs::Bodies {
             position: self.position.each_ref().map(Vec::as_slice),
@@ -165,7 +165,7 @@ impl<P: Precision> Rounded<P> {
     }
 }
 
-/// Every copy of a column, from one.
+/// Fills every copy of a column.
 fn fill<P>(to: &mut [P], from: &[f64], of: impl Fn(f64) -> P) {
     for copy in to.chunks_exact_mut(from.len().max(1)) {
         copy.iter_mut().zip(from).for_each(|(to, &from)| *to = of(from));

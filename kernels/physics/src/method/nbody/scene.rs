@@ -1,4 +1,4 @@
-//! What a scene of this method says, as plain data.
+//! Scene of bodies as plain data.
 
 use super::keys::*;
 use super::options::{ArithmeticKind, Engine, StartKind};
@@ -9,58 +9,58 @@ use stripmine_kernels::{Execution, InstructionSet};
 /// Bodies at the start.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Start {
-    /// Where they start.
+    /// Kind of start.
     pub kind: StartKind,
-    /// How many are drawn.
+    /// Number of drawn bodies.
     pub count: usize,
-    /// Seed of what is drawn.
+    /// Seed of the drawn bodies.
     pub seed: u64,
-    /// Kinetic over potential energy of spheres.
+    /// Ratio of kinetic to potential energy of spheres.
     pub virial: f64,
-    /// Velocity outwards over distance of spheres (1/time).
+    /// Outward velocity over distance, of spheres (1/time).
     pub(crate) expansion: f64,
-    /// Of the ellipse.
+    /// Eccentricity of the ellipse.
     pub eccentricity: f64,
-    /// Of the two bodies on it.
+    /// Mass ratio of the two bodies on the ellipse.
     pub(crate) mass_ratio: f64,
-    /// Of two clusters (length).
+    /// Distance of two clusters (length).
     pub separation: f64,
-    /// Their speed (length/time).
+    /// Speed of the two clusters (length/time).
     pub(crate) approach: f64,
-    /// Mass, position and velocity of each that is listed.
+    /// Mass, position and velocity of each listed body.
     pub bodies: Vec<Vec<f64>>,
 }
 
-/// What is simulated.
+/// Scene of the method, in its own units; `units` names them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
-    /// The unit system: a label.
+    /// Label of the unit system.
     pub units: String,
     /// Bodies at the start.
     pub start: Start,
-    /// ε (length).
+    /// Softening ε (length).
     pub softening: f64,
-    /// G (length³/(mass·time²)).
+    /// Gravitational constant G (length³/(mass·time²)).
     pub gravitational_constant: f64,
-    /// The integrator.
+    /// Integrator.
     pub scheme: SchemeName,
-    /// What the source's multiplies velocities by.
+    /// Factor by which PWP's integrator multiplies velocities in each step.
     pub damping: f64,
     /// Time step (time).
     pub dt: f64,
-    /// What finds the forces.
+    /// Engine that calculates the forces.
     pub engine: Engine,
-    /// How its programs are executed, where it has such.
+    /// Execution of the engine's programs, if it has any.
     pub execution: Execution,
-    /// How products and roots are formed.
+    /// Rounding of products and roots.
     pub arithmetic: ArithmeticKind,
     /// Precision of the forces; the state is in double precision.
     pub precision: Precision,
-    /// The instructions; the widest set that there is if none.
+    /// Instruction set; the widest available if none.
     pub instruction_set: Option<InstructionSet>,
-    /// How long, and how often something is written.
+    /// Duration and output intervals.
     pub run: Run,
-    /// Which files are written.
+    /// Output files.
     pub output: Output,
 }
 
@@ -121,22 +121,22 @@ impl Start {
         }
     }
 
-    /// Whether random numbers make it.
+    /// True if the start is drawn from random numbers.
     pub fn is_drawn(&self) -> bool {
         !matches!(self.kind, StartKind::Kepler | StartKind::FigureEight | StartKind::List)
     }
 }
 
-/// The gravitational constant of CODATA 2018 (m³/(kg s²)).
+/// Gravitational constant of CODATA 2018 (m³/(kg s²)).
 const CODATA: f64 = 6.674_30e-11;
 
-/// The gravitational constant of a unit system: 1 unless it is the SI.
+/// Gravitational constant of a unit system: 1 unless it is the SI.
 pub(super) fn constant_of(units: &str) -> f64 {
     if units == "SI" { CODATA } else { 1.0 }
 }
 
 impl Scene {
-    /// Meets every key of the method.
+    /// Binds every key of the method.
     pub(super) fn bind(&mut self, binding: &mut dyn Binding) {
         bind_heading(binding, &mut self.units, VOCABULARY.keys.method);
         self.start.bind(binding);
@@ -168,12 +168,12 @@ impl Scene {
         self.gravitational_constant = constant.unwrap_or_else(|| constant_of(&self.units));
     }
 
-    /// The instructions of a run.
+    /// Instruction set of a run.
     pub(super) fn instructions(&self) -> InstructionSet {
         self.instruction_set.unwrap_or_else(InstructionSet::best)
     }
 
-    /// The whole scene as TOML, defaults written out. Parsing it gives an equal scene.
+    /// Writes the whole scene as TOML, including defaults. Parsing it gives an equal scene.
     pub fn to_toml(&self) -> String {
         let mut write = Write::default();
         self.clone().bind(&mut write);

@@ -1,4 +1,4 @@
-//! The source's vector machine: whole-array operations between all bodies and those that are a shift behind them, for every shift.
+//! Force sum on the vector machine (PWP): whole-array operations between all bodies and those shifted by an offset, for every shift.
 
 use super::bodies::{Bodies, Columns};
 use super::rounded::Rounded;
@@ -14,11 +14,11 @@ use stripmine_kernels::sweep::all_pairs::shifts::{
 };
 use stripmine_kernels::{Execution, InstructionSet, Program};
 
-/// Shifts of a program: sums and own bodies are loaded once for them.
+/// Shifts per program: sums and own bodies are loaded once for all of them.
 const BLOCK: usize = 16;
 const AXES: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
 
-/// Programs over all shifts, in a precision.
+/// Programs over all shifts, in precision `P`.
 pub(super) struct Shifted<P: backend::Precision> {
     softening: f64,
     count: usize,
@@ -26,15 +26,15 @@ pub(super) struct Shifted<P: backend::Precision> {
     set: InstructionSet,
     forces: Vec<Program<Shifts<P, Gravity<false>>>>,
     with_rates: Vec<Program<Shifts<P, Gravity<true>>>>,
-    /// Every body twice over.
+    /// Bodies stored twice in a row, so that shifts need no wrapping.
     bodies: Rounded<P>,
-    /// Forces and their rates.
+    /// Sums of the forces and their rates.
     sums: [Vec<P>; 6],
-    /// In double precision, for the energy.
+    /// Masses in double precision, for the energy.
     masses: Vec<f64>,
 }
 
-/// The programs of all shifts of a number of bodies.
+/// Builds the programs of all shifts for a number of bodies.
 fn programs<P: backend::Precision, const RATE: bool>(
     softening: f64,
     count: usize,
@@ -45,7 +45,7 @@ fn programs<P: backend::Precision, const RATE: bool>(
         .collect()
 }
 
-/// The programs of a step's forces, of which those of whole blocks execute the same operations.
+/// Programs of the forces of a step; all whole blocks execute the same operations.
 pub(super) fn counted(softening: f64, count: usize) -> Vec<VectorProgram> {
     let of = |shifts: usize, times: usize| VectorProgram {
         part: "forces",
@@ -63,7 +63,7 @@ pub(super) fn counted(softening: f64, count: usize) -> Vec<VectorProgram> {
 }
 
 impl<P: backend::Precision> Shifted<P> {
-    /// Of bodies.
+    /// Creates the sums of bodies.
     pub(super) fn new(
         softening: f64,
         bodies: &Bodies,
@@ -87,14 +87,14 @@ impl<P: backend::Precision> Shifted<P> {
     }
 }
 
-/// Bytes that the programs of all shifts take.
+/// Memory of the programs of all shifts, in bytes.
 fn program_bytes<P: backend::Precision, const RATE: bool>(count: usize) -> usize {
     let law = Gravity::<RATE> { softening: 0.0 };
     let block = Program::new(Shifts::<P, _>::new(law, 1..1 + BLOCK)).tape().bytes();
     (count - 1).div_ceil(BLOCK) * (block + size_of::<Program<Shifts<P, Gravity<RATE>>>>())
 }
 
-/// Runs programs over all bodies, one after the other.
+/// Runs programs over all bodies in sequence.
 fn run<P: backend::Precision, L: Law<3> + Send + Sync>(
     programs: &[Program<Shifts<P, L>>],
     memory: &Memory<'_>,
@@ -111,7 +111,7 @@ fn run<P: backend::Precision, L: Law<3> + Send + Sync>(
 }
 
 impl<P: backend::Precision> Shifted<P> {
-    /// Bytes that it takes, with or without rates of the forces.
+    /// Memory in bytes, with or without rates of the forces.
     pub(super) fn bytes(count: usize, has_rates: bool) -> usize {
         let rates = if has_rates { program_bytes::<P, true>(count) } else { 0 };
         let columns = 2 * Rounded::<P>::BYTES + 6 * P::BYTES + size_of::<f64>();
@@ -154,7 +154,7 @@ impl<P: backend::Precision> Sums for Shifted<P> {
             None => run(forces, &memory, count, way, stop)?,
             Some(_) => run(with_rates, &memory, count, way, stop)?,
         }
-        // The programs have forces alone, as the source's.
+        // As in PWP, the programs calculate forces only.
         if observed { potential(&self.masses, position, self.softening, stop) } else { Ok(0.0) }
     }
 

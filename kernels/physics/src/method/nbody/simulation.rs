@@ -1,4 +1,4 @@
-//! Bodies under way, observed.
+//! Simulation of bodies: steps, observes and checks them.
 
 use super::bodies::{Bodies, Columns};
 use super::checked::Checked;
@@ -22,44 +22,44 @@ use std::cell::RefCell;
 use std::sync::atomic::{AtomicBool, Ordering};
 use stripmine_kernels::isa::ProgramError;
 
-/// Bodies are looked at this often (steps), and so few of them at every step: whether they are still bound, the error of their energy,
-/// and the nearest two.
+/// Interval of the checks (steps), and the number of bodies up to which every step is checked. A check covers the binding, the energy
+/// error and the nearest pair.
 const BETWEEN_LOOKS: u64 = 64;
 const FEW: usize = 64;
 
-/// How often forces were found, in a checkpoint and in the summary.
+/// Name of the number of force evaluations, in a checkpoint and in the summary.
 const EVALUATIONS: &str = "evaluations";
 
 const COLUMNS: [&str; 6] = ["x", "y", "z", "vx", "vy", "vz"];
 
-/// Bodies that are stepped.
+/// Stepped state of the bodies.
 pub(super) struct Moved {
     elapsed: Elapsed,
     pub(super) bodies: Bodies,
     scheme: Box<dyn Scheme>,
-    /// Observing needs the energy of the pairs, which is found as forces are.
+    /// Mutable while observing, because the pair energy is found with the forces.
     pub(super) field: RefCell<Attraction>,
     particles: Particles,
 }
 
-/// What a run keeps beside its bodies.
+/// State of a run beside its bodies.
 pub(super) struct Watched {
     softening: f64,
-    /// Rows are observed after multiples of this number of steps, and the last state after the other; none in a measurement.
+    /// Steps between observed rows, and the last step, which is observed too; none in a measurement.
     rows: Option<[u64; 2]>,
     watch: Watch,
     encounters: Encounters,
-    /// The nearest two bodies at the last look.
+    /// Nearest pair at the last check.
     last_encounter: Option<Encounter>,
     before: Before,
-    /// What the state conserves, where that was asked for already.
+    /// Cached conserved quantities of the current state.
     seen: RefCell<Option<Result<Conserved, ProgramError>>>,
 }
 
-/// Bodies under way, observed.
+/// Running simulation: state and observation of the bodies.
 pub(super) type Running = Stepped<Watched>;
 
-/// The state before a step of many bodies, to which a step that is interrupted goes back.
+/// State before a step of many bodies, which an interrupted step restores.
 #[derive(Default)]
 struct Before {
     position: Columns,
@@ -68,18 +68,18 @@ struct Before {
     evaluations: u64,
 }
 
-/// What a step found.
+/// Result of a step.
 struct Found {
-    /// The first body that is at no finite place, and how many there are.
+    /// First body whose state is not finite, and the number of such bodies.
     not_finite: Option<(usize, usize)>,
-    /// Where it was observed.
+    /// Conserved quantities, if observed.
     seen: Option<Conserved>,
 }
 
-/// At the start.
+/// Creates the simulation at the start.
 ///
 /// # Errors
-/// [`Failure`] if the processor lacks what is asked for, or bodies cannot be dealt out to so many ranks.
+/// [`Failure`] if the processor lacks the instruction set, or the bodies cannot be distributed to the number of ranks.
 pub(super) fn begin(checked: &Checked, purpose: Purpose) -> Result<Running, Failure> {
     let scene = &checked.scene;
     let all = checked.particles.all();
@@ -114,19 +114,19 @@ impl Running {
         self.state.bodies.len() <= FEW
     }
 
-    /// Whether a look is due after a number of steps.
+    /// True if a check is due after a number of steps.
     fn is_look(&self, steps: u64) -> bool {
         self.is_few() || steps.is_multiple_of(BETWEEN_LOOKS)
     }
 
-    /// Whether a row, or the end, is due after a number of steps.
+    /// True if a row, or the end, is due after a number of steps.
     fn is_row(&self, steps: u64) -> bool {
         self.method
             .rows
             .is_some_and(|[every, last]| steps == last || (every > 0 && steps.is_multiple_of(every)))
     }
 
-    /// What the state conserves; found once.
+    /// Conserved quantities of the state, calculated once.
     fn conserved(&self) -> Result<Conserved, ProgramError> {
         let found = || {
             let potential = self.state.field.borrow_mut().potential(&self.state.bodies.position, &never)?;
@@ -135,7 +135,7 @@ impl Running {
         self.method.seen.borrow_mut().get_or_insert_with(found).clone()
     }
 
-    /// The same; no numbers where the pairs' energy could not be found, which [`check`](crate::method::Simulation::check) has reported before.
+    /// Conserved quantities with NaN if the pair energy is unavailable, which [`check`](crate::method::Simulation::check) has reported before.
     fn conserved_or_nothing(&self) -> Conserved {
         self.conserved().unwrap_or_else(|_| Conserved::of(&self.state.bodies, f64::NAN))
     }
@@ -153,7 +153,7 @@ impl Running {
         }
     }
 
-    /// Moves bodies on, and finds what they conserve if that is wanted.
+    /// Advances the bodies by a step, and calculates the conserved quantities if `observed`.
     fn attempt(&mut self, observed: bool, stop: Stop<'_>) -> Result<Found, ProgramError> {
         let mut field = self.state.field.get_mut().asking(observed, stop);
         self.state.scheme.step(&mut self.state.bodies, self.state.elapsed.dt, &mut field)?;
@@ -183,20 +183,23 @@ impl Running {
         self.state.field.get_mut().evaluations = *evaluations;
     }
 
-    /// Bodies at no finite place, with the two that were the nearest to each other before.
+    /// Failure of bodies whose state is not finite, with the nearest pair before the step.
     fn not_finite(&mut self, first: usize, count: usize) -> Failure {
         let before = match self.is_few() {
             true => self.method.last_encounter,
             false => self.method.encounters.nearest(&self.method.before.position, self.state.bodies.len()),
         };
         let culprit = self.culprit(first);
-        let message = format!("{count} bodies are at no finite place, first body {}", culprit.id);
-        let met =
-            before.map_or(String::new(), |before| format!("; a step before, {}", self.met(&before, "were")));
+        let message = format!(
+            "the positions or velocities of {count} bodies are not finite, first body {}",
+            culprit.id
+        );
+        let met = before
+            .map_or(String::new(), |before| format!("; one step before, {}", self.met(&before, "were")));
         self.of_encounter(FailureKind::NOT_FINITE, message + &met, before).of(count as u64, [culprit])
     }
 
-    /// Two bodies in words, that `are` or `were` near each other.
+    /// Describes a pair of bodies that `are` or `were` near each other.
     fn met(&self, encounter: &Encounter, are: &str) -> String {
         let Encounter { bodies, distance, place: [x, y, z] } = *encounter;
         let [first, second] = bodies.map(|body| self.id(body));
@@ -206,7 +209,7 @@ impl Running {
             distance => format!("{} apart", significant(distance, 3)),
         };
         let softened = match self.method.softening {
-            0.0 => "nothing softens their attraction".to_owned(),
+            0.0 => "their attraction is not softened".to_owned(),
             softening => format!("their attraction is softened by {softening}"),
         };
         format!("bodies {first} and {second} {are} {apart} at {place}, and {softened}")
@@ -214,14 +217,14 @@ impl Running {
 
     fn of_encounter(&self, kind: FailureKind, message: String, encounter: Option<Encounter>) -> Failure {
         let remedy = format!(
-            "the time step is too long for how near bodies come: take a smaller integrator.dt (it is {}), or a law.softening above {}",
+            "the time step is too long for this encounter: lower integrator.dt (it is {}), or raise law.softening above {}",
             self.state.elapsed.dt, self.method.softening
         );
         let distance = encounter.map(|it| ("distance", it.distance));
         Failure::new(kind, message, remedy).at(self.clock()).with(distance.into_iter().collect::<Vec<_>>())
     }
 
-    /// Holds against each other what is conserved now and what it was at the start.
+    /// Checks the conserved quantities against those at the start.
     fn sound(&self, seen: &Conserved) -> Result<(), Failure> {
         if !seen.is_finite() {
             let bodies = &self.state.bodies;
@@ -242,17 +245,17 @@ impl Running {
         }
         let nearest = self.method.watch.nearest_in_words(|body| self.id(body));
         let message = format!(
-            "bodies that were bound are not any more: the energy was {} and is {}{}",
+            "the bodies have become unbound: the energy was {} at the start and is {} now{}",
             significant(self.method.watch.start, 5),
             significant(energy, 5),
             nearest.map_or(String::new(), |words| format!("; {words}"))
         );
-        let remedy = "the integrator loses the orbit: take a smaller dt, another integrator, or a softening";
+        let remedy = "the integrator loses the orbit: lower integrator.dt, set another integrator.kind, or raise law.softening";
         let failure = Failure::new(super::UNBOUND, message, remedy).at(self.clock());
         Err(failure.with([("energy", energy), ("energy_at_start", self.method.watch.start)]))
     }
 
-    /// All that there is to be seen now.
+    /// Current observation.
     fn seen(&self) -> Seen {
         let conserved = self.conserved_or_nothing();
         Seen {
@@ -264,7 +267,7 @@ impl Running {
         }
     }
 
-    /// The energy as it stands, and after how many steps.
+    /// Current energy and number of steps.
     fn now(&self) -> (f64, u64) {
         (self.conserved_or_nothing().energy(), self.state.elapsed.steps)
     }
@@ -314,7 +317,7 @@ impl Stepwise for Watched {
 
     fn step(run: &mut Stepped<Self>, interrupted: &AtomicBool) -> Result<bool, Failure> {
         let (steps, is_few) = (run.state.elapsed.steps + 1, run.is_few());
-        // A step of few bodies is over before anybody would notice.
+        // A step of few bodies is too short to interrupt.
         let stop = || !is_few && interrupted.load(Ordering::Relaxed);
         if !is_few {
             run.keep();
@@ -366,7 +369,7 @@ impl Stepwise for Watched {
         for (name, column) in COLUMNS.into_iter().zip(state) {
             column[..count].copy_from_slice(find(name)?);
         }
-        // Before the first step nothing is carried.
+        // Before the first step no derivatives are carried.
         let orders = if clock.steps == 0 { 0 } else { run.state.scheme.carries() };
         let mut carried = vec![];
         for order in 0..orders {
@@ -399,7 +402,7 @@ impl Stepwise for Watched {
     }
 
     fn warnings(run: &Stepped<Self>) -> Vec<RunWarning> {
-        // What drains energy on purpose does not keep it.
+        // A scheme with deliberate dissipation does not conserve energy.
         let is_watched = !run.state.scheme.drains();
         let warning = is_watched
             .then(|| run.method.watch.warning(run.now(), run.state.elapsed.dt, |body| run.id(body)));
@@ -418,7 +421,7 @@ impl Stepwise for Watched {
     }
 }
 
-/// The distance from the centre of mass within which half of the mass is.
+/// Radius around the centre of mass that contains half of the mass.
 fn half_mass_radius(bodies: &Bodies, centre: [f64; 3]) -> f64 {
     let mut around: Vec<(f64, f64)> = (0..bodies.len())
         .map(|body| {
@@ -434,6 +437,6 @@ fn half_mass_radius(bodies: &Bodies, centre: [f64; 3]) -> f64 {
         inside += mass;
         inside >= half
     });
-    // Half of a mass that is no number is nowhere.
+    // If the mass is NaN, no radius contains half of it.
     half_mass.map_or(f64::NAN, |(radius, _)| *radius)
 }

@@ -1,5 +1,5 @@
-//! Where bodies start. All are about the origin, with no momentum and, unless they are listed, a total mass of 1. Velocities that follow
-//! from the attraction go with √G.
+//! Initial states of bodies. All are centred on the origin without momentum and, unless listed, have a total mass of 1. Velocities due to
+//! gravity scale with √G.
 
 use super::options::StartKind;
 use super::scene::Start;
@@ -8,10 +8,10 @@ use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 use stripmine_kernels::noise::{Purpose, Stream};
 
-/// A body: mass, position (length) and velocity (length/time).
+/// Mass, position (length) and velocity (length/time) of a body.
 pub(crate) type Body = (f64, [f64; 3], [f64; 3]);
 
-/// The bodies of a start, softened by ε (length), that attract each other with G.
+/// Creates the bodies of a start, with softening ε (length) and gravitational constant G.
 pub fn bodies(start: &Start, softening: f64, constant: f64) -> Vec<Body> {
     let root = constant.sqrt();
     match start.kind {
@@ -31,13 +31,13 @@ pub fn bodies(start: &Start, softening: f64, constant: f64) -> Vec<Body> {
     }
 }
 
-/// The same bodies, so many times as fast.
+/// Multiplies all velocities by a factor.
 fn faster(mut bodies: Vec<Body>, times: f64) -> Vec<Body> {
     bodies.iter_mut().for_each(|(.., velocity)| *velocity = velocity.map(|v| times * v));
     bodies
 }
 
-/// Two bodies about their centre of mass, at their nearest: half axis, total mass and G are 1.
+/// Two bodies about their centre of mass, at the nearest point: semi-major axis, total mass and G are 1.
 fn kepler(eccentricity: f64, mass_ratio: f64) -> Vec<Body> {
     let share = mass_ratio / (1.0 + mass_ratio);
     let distance = 1.0 - eccentricity;
@@ -48,9 +48,9 @@ fn kepler(eccentricity: f64, mass_ratio: f64) -> Vec<Body> {
     ]
 }
 
-/// Three equal bodies on the figure of eight (Chenciner and Montgomery 2000); masses of 1 in their units are thirds here.
+/// Three equal bodies on the figure of eight (Chenciner and Montgomery 2000), whose masses of 1 are thirds here.
 fn figure_eight() -> Vec<Body> {
-    // With the mass m of a body times, velocities are √m times.
+    // If masses are multiplied by m, velocities are multiplied by √m.
     let slow = (1.0f64 / 3.0).sqrt();
     let [x, y] = [0.970_004_36, -0.243_087_53];
     let [u, v] = [0.932_407_37 * slow, 0.864_731_46 * slow];
@@ -62,7 +62,7 @@ fn figure_eight() -> Vec<Body> {
     ]
 }
 
-/// A direction, all alike.
+/// Draws an isotropic direction.
 fn direction(random: &mut Stream) -> [f64; 3] {
     let z = random.random_range(-1.0..1.0);
     let angle = random.random_range(0.0..TAU);
@@ -70,9 +70,9 @@ fn direction(random: &mut Stream) -> [f64; 3] {
     [across * libm::cos(angle), across * libm::sin(angle), z]
 }
 
-/// Plummer's sphere of scale 1 in equilibrium (Aarseth, Hénon and Wielen 1974), cut off where it holds 0.999 of its mass.
+/// Plummer's sphere of scale 1 in equilibrium (Aarseth, Hénon and Wielen 1974), cut off where it contains 0.999 of its mass.
 ///
-/// The bodies are numbered: each number draws from a stream of its own.
+/// Each body draws from the random stream of its number.
 fn plummer(numbers: Range<usize>, seed: u64) -> Vec<Body> {
     let mass = 1.0 / numbers.len() as f64;
     let body = |number: usize| {
@@ -80,7 +80,7 @@ fn plummer(numbers: Range<usize>, seed: u64) -> Vec<Body> {
         let inside = random.random_range(0.0..0.999);
         let radius = 1.0 / (libm::pow(inside, -2.0 / 3.0) - 1.0).sqrt();
         let place = direction(&mut random).map(|x| radius * x);
-        // Velocities over that of escape have the density q² (1 − q²)^{7/2}, below 0.1.
+        // The ratio q to the escape velocity has the density q² (1 − q²)^{7/2}, which is below 0.1.
         let q = loop {
             let (q, height) = (random.random_range(0.0..1.0f64), random.random_range(0.0..0.1));
             if height < q * q * libm::pow(1.0 - q * q, 3.5) {
@@ -93,7 +93,7 @@ fn plummer(numbers: Range<usize>, seed: u64) -> Vec<Body> {
     numbers.map(body).collect()
 }
 
-/// A uniform sphere of radius 1, or its surface, expanding.
+/// Uniform sphere of radius 1, or its surface, expanding.
 fn sphere(start: &Start) -> Vec<Body> {
     let mass = 1.0 / start.count as f64;
     let body = |number: usize| {
@@ -108,7 +108,7 @@ fn sphere(start: &Start) -> Vec<Body> {
     (0..start.count).map(body).collect()
 }
 
-/// Adds random velocities of a kinetic energy that is a part of the potential one.
+/// Adds random velocities whose kinetic energy is the given fraction of the potential energy.
 fn stir(bodies: &mut [Body], start: &Start, softening: f64, constant: f64) {
     if start.virial == 0.0 {
         return;
@@ -136,7 +136,7 @@ fn stir(bodies: &mut [Body], start: &Start, softening: f64, constant: f64) {
     without_drift(bodies);
 }
 
-/// The energy of all pairs.
+/// Potential energy of all pairs.
 fn potential(bodies: &[Body], softening: f64) -> f64 {
     let of = |number: usize| -> f64 {
         let (m, r, _) = bodies[number];
@@ -149,13 +149,13 @@ fn potential(bodies: &[Body], softening: f64) -> f64 {
     (0..bodies.len()).map(of).sum()
 }
 
-/// Two Plummer spheres of half the bodies each and half the mass, that approach each other; `root` is √G.
+/// Two approaching Plummer spheres, each with half of the bodies and of the mass; `root` is √G.
 fn two_clusters(start: &Start, root: f64) -> Vec<Body> {
     let first = start.count - start.count / 2;
     let mut bodies = vec![];
     for (side, numbers) in [(-0.5, 0..first), (0.5, first..start.count)] {
         let share = numbers.len() as f64 / start.count as f64;
-        // Half the mass in equilibrium at the same scale moves √½ as fast.
+        // In equilibrium at the same scale, half the mass moves √½ as fast.
         let slow = share.sqrt() * root;
         for (mass, place, velocity) in centred(plummer(numbers, start.seed)) {
             let place = [place[0] + side * start.separation, place[1], place[2]];
@@ -167,7 +167,7 @@ fn two_clusters(start: &Start, root: f64) -> Vec<Body> {
     centred(bodies)
 }
 
-/// The same bodies about their centre of mass, without momentum.
+/// Shifts bodies to their centre of mass and removes their momentum.
 fn centred(mut bodies: Vec<Body>) -> Vec<Body> {
     let mass: f64 = bodies.iter().map(|(m, ..)| m).sum();
     for axis in 0..3 {
@@ -186,7 +186,7 @@ fn without_drift(bodies: &mut [Body]) {
     }
 }
 
-/// The time of an orbit of two bodies on an ellipse.
+/// Orbital period of the two bodies on an ellipse.
 pub const ORBIT: f64 = 2.0 * PI;
 
 #[cfg(test)]
@@ -201,7 +201,7 @@ mod tests {
         bodies.iter().map(|(m, _, v)| 0.5 * m * v.iter().map(|v| v * v).sum::<f64>()).sum()
     }
 
-    /// Plummer's sphere: energy −3π/32 · ½, in virial equilibrium, half of the mass within 1.305.
+    /// Plummer's sphere has the potential energy −3π/32, virial equilibrium, and half of its mass within 1.305.
     #[test]
     fn a_plummer_sphere_is_in_equilibrium() {
         let bodies = bodies(&start(StartKind::Plummer, 4000), 0.0, 1.0);
@@ -213,7 +213,7 @@ mod tests {
         assert!((inside as f64 / 4000.0 - 0.5).abs() < 0.03, "{inside}");
     }
 
-    /// Energy −½ m₁ m₂ on an ellipse of half axis 1; a uniform sphere has −3/5; a virial ratio is what was asked for.
+    /// An ellipse of semi-major axis 1 has the energy −½ m₁ m₂, a uniform sphere −3/5; the virial ratio is as requested.
     #[test]
     fn energies_are_those_of_the_books() {
         for (eccentricity, ratio) in [(0.0, 1.0), (0.5, 1.0), (0.9, 0.1)] {
@@ -233,7 +233,7 @@ mod tests {
         }
     }
 
-    /// Clusters of one seed and of seeds one apart are unrelated: no body of any is, about its centre, where one of another is.
+    /// Clusters of one seed, and of consecutive seeds, are unrelated: relative to their centres, no two bodies coincide.
     #[test]
     fn clusters_and_seeds_share_no_body() {
         let mut seen: Vec<[f64; 6]> = vec![];
@@ -255,7 +255,7 @@ mod tests {
         }
     }
 
-    /// With another constant the virial ratio of every start that follows from the attraction is the same; speeds that are given stay.
+    /// The virial ratio of every start due to gravity is independent of the constant; given speeds stay.
     #[test]
     fn velocities_go_with_the_root_of_the_constant() {
         for kind in [StartKind::Kepler, StartKind::FigureEight, StartKind::Plummer, StartKind::Sphere] {

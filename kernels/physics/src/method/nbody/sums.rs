@@ -1,24 +1,24 @@
-//! Sums over pairs of bodies: what every way to them gives, and what the ways share.
+//! Interface of the force sums over pairs of bodies, and their shared functions.
 
 use super::bodies::Columns;
 use crate::ranks::RankError;
 use stripmine_kernels::backend;
 use stripmine_kernels::isa::ProgramError;
 
-/// Asked now and then whether to stop.
+/// Callback that returns true if a sum must stop; called now and then.
 pub(crate) type Stop<'a> = &'a (dyn Fn() -> bool + Sync);
 
-/// Never stops.
+/// Callback that never stops a sum.
 pub fn never() -> bool {
     false
 }
 
-/// A way to sum up forces and, where velocities are given, their rates.
+/// Implementation of the sums of forces and, if velocities are given, of their rates.
 pub(crate) trait Sums: Send + Sync {
-    /// Sums up for a gravitational constant of 1; gives the energy of the pairs if it is observed, else 0.
+    /// Sums for a gravitational constant of 1. Returns the energy of the pairs if `observed`, else 0.
     ///
     /// # Errors
-    /// [`ProgramError`] if the processor lacks what is asked for, or `stop` says so.
+    /// [`ProgramError`] if the processor lacks the instruction set, or `stop` returns true.
     fn sum(
         &mut self,
         position: &Columns,
@@ -27,24 +27,24 @@ pub(crate) trait Sums: Send + Sync {
         stop: Stop<'_>,
     ) -> Result<f64, ProgramError>;
 
-    /// The forces, and their rates, times `per_mass`.
+    /// Writes the forces, and their rates, times `per_mass`.
     fn over(&self, per_mass: &[f64], into: [Option<&mut Columns>; 2]);
 
-    /// The rank that was lost, where there are several: sums are right, and are those of the first rank alone since.
+    /// Returns the lost rank, if there are several. The sums stay correct; the first rank alone calculates them from then on.
     fn lost(&self) -> Option<RankError> {
         None
     }
 }
 
-/// Stops where it should.
+/// Returns an error if the sum must stop.
 pub(super) fn go_on(stop: Stop<'_>) -> Result<(), ProgramError> {
     if stop() { Err(ProgramError::Interrupted) } else { Ok(()) }
 }
 
-/// The energy of all pairs, as it is written, for a gravitational constant of 1.
+/// Energy of all pairs by the direct sum, for a gravitational constant of 1.
 ///
 /// # Errors
-/// [`ProgramError::Interrupted`] if `stop` says so.
+/// [`ProgramError::Interrupted`] if `stop` returns true.
 pub fn potential(
     mass: &[f64],
     position: &Columns,
@@ -62,7 +62,7 @@ pub fn potential(
     Ok(energy)
 }
 
-/// Three sums in their unit times `per_mass`.
+/// Writes three sums, converted from their unit, times `per_mass`.
 pub(super) fn over<P: backend::Precision>(
     sums: &[Vec<P>],
     unit: f64,

@@ -1,4 +1,4 @@
-//! Each pair once, in registers and on threads.
+//! Force sum that visits each pair once, in vector registers and on threads.
 
 use super::bodies::{Bodies, Columns};
 use super::rounded::Rounded;
@@ -11,7 +11,7 @@ use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::gravity::Gravity;
 use stripmine_kernels::sweep::all_pairs::{AllPairs, Arithmetic, Manner, padded};
 
-/// Each pair once, in a precision.
+/// Sweep over all pairs in precision `P`.
 pub(super) struct Swept<P> {
     softening: f64,
     count: usize,
@@ -39,7 +39,7 @@ impl<P: backend::Precision> Swept<P> {
         }
     }
 
-    /// Bytes that it takes, with or without rates of the forces.
+    /// Memory in bytes, with or without rates of the forces.
     pub(super) fn bytes(count: usize, has_rates: bool) -> usize {
         let rates = if has_rates { AllPairs::<P, 6>::bytes(count) } else { 0 };
         padded(count) * (Rounded::<P>::BYTES + 6 * P::BYTES) + AllPairs::<P, 3>::bytes(count) + rates
@@ -47,7 +47,7 @@ impl<P: backend::Precision> Swept<P> {
 }
 
 impl<P: backend::Precision> Swept<P> {
-    /// How many bands of rows there are.
+    /// Number of bands of rows.
     pub(super) fn bands(&self) -> usize {
         self.forces.bands()
     }
@@ -57,7 +57,7 @@ impl<P: backend::Precision> Swept<P> {
         self.sums[0].len()
     }
 
-    /// Meets the pairs of some of the bands.
+    /// Visits the pairs of some bands.
     ///
     /// # Errors
     /// As [`sum`](Sums::sum).
@@ -81,7 +81,7 @@ impl<P: backend::Precision> Swept<P> {
         }
     }
 
-    /// Adds up what all bands have met, with or without the rates of the forces; gives the energy.
+    /// Adds up the sums of all bands, with or without the rates of the forces. Returns the energy.
     ///
     /// # Errors
     /// As [`sum`](Sums::sum).
@@ -99,7 +99,7 @@ impl<P: backend::Precision> Swept<P> {
         Ok(energy * potential)
     }
 
-    /// What a band has met, as numbers: energy and virial, then every sum.
+    /// Sums of a band as numbers: energy and virial, then every force sum.
     pub(super) fn band(&self, number: usize, has_rates: bool) -> Vec<f64> {
         fn of<P: backend::Precision>(sums: &[Vec<P>], energy: [f64; 2]) -> Vec<f64> {
             energy.into_iter().chain(sums.iter().flatten().map(|sum| sum.to_f64())).collect()
@@ -116,10 +116,10 @@ impl<P: backend::Precision> Swept<P> {
         }
     }
 
-    /// Puts there what [`band`](Self::band) gave on another rank.
+    /// Stores the result of [`band`](Self::band) from another rank.
     ///
     /// # Errors
-    /// [`RankError`] if these are not as many numbers.
+    /// [`RankError`] if the number of values differs.
     pub(super) fn put_band(
         &mut self,
         number: usize,

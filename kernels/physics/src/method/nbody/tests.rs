@@ -1,4 +1,4 @@
-//! Runs of bodies from within: what stops them, what they are warned of, what they count.
+//! Tests of running simulations of bodies: failures, warnings and counts.
 
 use super::bodies::Columns;
 use super::checked::{Checked, checked};
@@ -27,7 +27,7 @@ fn advance(running: &mut Running, steps: u64) -> Result<(), Failure> {
     running.advance(&[Until::Steps(steps)], &AtomicBool::new(false))
 }
 
-/// Sums that do something else as well.
+/// Sums with a wrapper around them.
 struct Instead<F> {
     inner: Option<Box<dyn Sums>>,
     with: F,
@@ -57,7 +57,7 @@ where
     }
 }
 
-/// Puts something between a run and its sums.
+/// Wraps the sums of a simulation.
 fn between<F>(running: &mut Running, with: F)
 where
     F: Fn(Option<&mut dyn Sums>, &Columns, Option<&Columns>, bool, Stop<'_>) -> Result<f64, ProgramError>
@@ -73,7 +73,7 @@ where
     *pairs = Pairs::Summed(Box::new(Instead { inner, with }));
 }
 
-/// A sweep that fails stops the run before a row is written; no zeros stand for what is not known.
+/// A failing sweep stops the run before a row is written; unknown values are NaN, not 0.
 #[test]
 fn a_sweep_that_fails_is_no_row_of_zeros() {
     let mut running = started("plummer", &["particles.count=65"]);
@@ -85,7 +85,7 @@ fn a_sweep_that_fails_is_no_row_of_zeros() {
     assert_eq!(advance(&mut running, 9).unwrap_err().kind, FailureKind::MACHINE);
 }
 
-/// A row takes no sweep more than its step, and one is enough for all that is said of a state.
+/// A row needs no sweep beyond that of its step, and one sweep serves all output of a state.
 #[test]
 fn a_row_is_observed_once() {
     let mut running = started("plummer", &["particles.count=100", "run.thermo_every=8"]);
@@ -100,9 +100,9 @@ fn a_row_is_observed_once() {
         running.check().unwrap();
         let _ = (running.observe(), running.warnings(), running.summary(), running.in_words());
     }
-    // The first of all is the acceleration of the start.
+    // The first evaluation is the acceleration at the start.
     assert_eq!([0, 1].map(|which| sweeps[which].load(Ordering::Relaxed)), [29, 4]);
-    // What has no forces at the end of its step takes one sweep for a row.
+    // A scheme without forces at the end of its step needs one sweep per row.
     let mut running =
         started("plummer", &["particles.count=100", "run.thermo_every=8", "integrator.kind=hermite-4"]);
     let rows = Arc::new(AtomicUsize::new(0));
@@ -117,8 +117,8 @@ fn a_row_is_observed_once() {
     assert_eq!(rows.load(Ordering::Relaxed), 1);
 }
 
-/// A step that is interrupted between two tiles is not taken: the state is that of the last whole step, and what goes on from there
-/// has the bits, and the counts, of a run in one piece. For every scheme and engine, wherever in the step that is.
+/// A step interrupted between two tiles is discarded: the state is that of the last whole step. Resumption from there gives the bits and
+/// the counts of an uninterrupted run. Holds for every scheme and engine, and any moment of the step.
 #[test]
 fn an_interrupted_step_is_not_taken() {
     for (scheme, _) in SchemeName::ALL {
@@ -162,7 +162,7 @@ fn an_interrupted_step_is_not_taken() {
                 advance(&mut resumed, 6).unwrap();
                 assert_eq!(resumed.snapshot(), whole.snapshot(), "{here}");
                 assert_eq!(resumed.summary(), whole.summary(), "{here}");
-                // So has the one that was interrupted and goes on itself.
+                // The interrupted simulation itself continues to the same state.
                 advance(&mut running, 6).unwrap();
                 assert_eq!(running.snapshot(), whole.snapshot(), "{here}");
             }
@@ -174,16 +174,16 @@ fn scene_of(sets: &[String]) -> Checked {
     scene("plummer", &sets.iter().map(String::as_str).collect::<Vec<_>>())
 }
 
-/// The largest error of the energy along a run.
+/// Largest energy error during a run.
 fn largest_error(running: &mut Running, steps: u64) -> f64 {
     advance(running, steps).unwrap();
     running.summary()["largest_energy_error"].as_f64().unwrap().abs()
 }
 
-/// A hard pair far from the middle keeps its energy in mixed precision as it does in double.
+/// A hard pair far from the centre conserves its energy in mixed precision as well as in double precision.
 #[test]
 fn a_hard_pair_is_as_good_far_from_the_middle() {
-    // Two masses of 1 at a distance of 0.001 on a circle: the speed of each is √500.
+    // Two masses of 1 on a circle of diameter 0.001: the speed of each is √500.
     let v = 500f64.sqrt();
     let bodies = format!(
         "particles.bodies=[[1.0, 1000.0005, 7.0, 0.0, 0.0, {v:?}, 0.0], [1.0, 999.9995, 7.0, 0.0, 0.0, {back:?}, 0.0], \
@@ -205,11 +205,11 @@ fn a_hard_pair_is_as_good_far_from_the_middle() {
     }
 }
 
-/// Masses and lengths far from 1 are scaled where numbers have a narrow range.
+/// Masses and lengths far from 1 are scaled if the number format has a narrow range.
 #[test]
 fn light_bodies_do_not_fly_straight() {
     for (mass, length) in [(1e-25, 1.0), (1.0, 1e-15), (1e25, 1e12)] {
-        // A circle of two equal bodies; a quarter of it in 50 steps.
+        // Two equal bodies on a circle; a quarter of an orbit in 50 steps.
         let speed = 0.5 * f64::sqrt(2.0 * mass / length);
         let dt = std::f64::consts::FRAC_PI_2 * 0.5 * length / speed / 50.0;
         let (r, back) = (0.5 * length, -speed);
@@ -230,10 +230,10 @@ fn light_bodies_do_not_fly_straight() {
     }
 }
 
-/// An error of the energy on the way is warned of with its moment and the two that came near, though it is gone at the end.
+/// A temporary energy error causes a warning with its time and the nearest pair, even if it is gone at the end.
 #[test]
 fn an_encounter_followed_badly_is_warned_of() {
-    // Two bodies on an ellipse of eccentricity 0.97, from their farthest and back to it.
+    // Two bodies on an ellipse of eccentricity 0.97, from the farthest point back to it.
     let bodies = "particles.bodies=[[0.5, 0.985, 0.0, 0.0, 0.0, 0.0617, 0.0], [0.5, -0.985, 0.0, 0.0, 0.0, -0.0617, 0.0]]";
     let leapfrog = ["integrator.kind=leapfrog", "integrator.dt=0.001", "run.steps=6283"];
     let sets = [&["particles.generate=list", bodies][..], &leapfrog].concat();
@@ -246,14 +246,14 @@ fn an_encounter_followed_badly_is_warned_of() {
     let summary = running.summary();
     assert!(summary["energy_error"].as_f64().unwrap().abs() < 0.5 * warning.value, "{summary:?}");
     assert_eq!(summary["nearest_encounter"]["bodies"], serde_json::json!([1, 2]));
-    // What keeps its energy is not warned of.
+    // A run that conserves its energy has no warning.
     let mut good = started("kepler", &["integrator.kind=yoshida-8"]);
     advance(&mut good, 256).unwrap();
     assert!(good.warnings().is_empty(), "{:?}", good.warnings());
 }
 
-/// Many bodies are looked at every 64 steps, and at the end: what was lost since is found, and nothing is said in percent of an energy
-/// that means nothing.
+/// Many bodies are checked every 64 steps and at the end: a loss in between is found, and a meaningless energy is not reported in
+/// percent.
 #[test]
 fn what_is_lost_in_the_last_steps_is_found() {
     let mut running = started("plummer", &["particles.count=100", "run.steps=70", "run.thermo_every=0"]);
@@ -261,16 +261,16 @@ fn what_is_lost_in_the_last_steps_is_found() {
     running.state.bodies.velocity.iter_mut().flatten().for_each(|v| *v *= 300.0);
     let failure = advance(&mut running, 70).unwrap_err();
     assert_eq!(failure.kind, super::UNBOUND);
-    assert!(failure.message.contains("not any more"), "{failure}");
+    assert!(failure.message.contains("have become unbound"), "{failure}");
     let [warning] = &running.warnings()[..] else { panic!() };
     assert!(!warning.message.contains('%') && warning.message.contains("at the start and"), "{warning:?}");
 }
 
-/// Two bodies that meet are named, with the place and what would help.
+/// Two bodies that meet are reported with their position and a remedy.
 #[test]
 fn bodies_that_meet_are_named() {
     for engine in ["fast", "reference"] {
-        // In half a unit of time they come to one place, by the one scheme before its forces and by the other after.
+        // After half a unit of time they are at one position: before the forces in one scheme, after them in the other.
         for (kind, v) in [("damped-euler", 0.5), ("leapfrog", 0.75)] {
             let bodies = format!(
                 "particles.bodies=[[1.0, 1.5, 2.0, 3.0, -{v}, 0, 0], [1.0, 0.5, 2.0, 3.0, {v}, 0, 0]]"
@@ -281,15 +281,15 @@ fn bodies_that_meet_are_named() {
             let mut running = started("figure-eight", &sets);
             let failure = advance(&mut running, 9).unwrap_err();
             let said = failure.to_string();
-            let words = ["bodies 1 and 2", "at (1", "nothing softens", "law.softening", "integrator.dt"];
+            let words = ["bodies 1 and 2", "at (1", "not softened", "law.softening", "integrator.dt"];
             assert!(words.iter().all(|word| said.contains(word)), "{engine} {kind}: {said}");
             assert!(!said.contains("units"), "{said}");
         }
     }
 }
 
-/// Two spheres of 1 kg, 0.1 m apart, in SI units: each falls G/d² · t²/2, in 0.2 s 1.33486e-10 m, by every engine. A constant that is given is
-/// taken, whatever the units; other units have 1.
+/// Two spheres of 1 kg, 0.1 m apart, in SI units: each falls G/d² · t²/2, in 0.2 s 1.33486e-10 m, with every engine. A given constant is
+/// used in any units; other units default to 1.
 #[test]
 fn gravity_has_the_constant_of_its_units() {
     let bodies = "particles.bodies=[[1.0, -0.05, 0, 0, 0, 0, 0], [1.0, 0.05, 0, 0, 0, 0, 0]]";
@@ -320,7 +320,7 @@ fn gravity_has_the_constant_of_its_units() {
     }
 }
 
-/// The Earth is where it was after a sidereal year of 365.25636 days, and on the other side of the Sun after half of one.
+/// The Earth returns to its position after a sidereal year of 365.25636 days, and is on the other side of the Sun after half a year.
 #[test]
 fn the_earth_needs_a_year_around_the_sun() {
     let bodies =
@@ -334,7 +334,7 @@ fn the_earth_needs_a_year_around_the_sun() {
         .facts
         .iter()
         .filter_map(|fact| fact.words.clone())
-        .find(|(label, _)| *label == "constant of gravity");
+        .find(|(label, _)| *label == "gravitational constant");
     assert!(said.clone().is_some_and(|(_, words)| words.starts_with("6.6743e-11 m³/(kg s²)")), "{said:?}");
     for (steps, side) in [(1000, -1.0), (2000, 1.0)] {
         advance(&mut running, steps).unwrap();
@@ -345,7 +345,7 @@ fn the_earth_needs_a_year_around_the_sun() {
     }
 }
 
-/// Sixteen stars within a parsec, in metres: every engine, scheme and precision has the energies of the sum as it is written.
+/// Sixteen stars within a parsec, in metres: every engine, scheme and precision gives the energies of the direct sum.
 #[test]
 fn far_bodies_run_without_softening() {
     let rows: Vec<String> = (0..17)
@@ -384,7 +384,7 @@ fn far_bodies_run_without_softening() {
     }
 }
 
-/// A light body that flies off at 1e18, past where numbers are coarser than 1: the others move as without it.
+/// A light body escapes at speed 1e18, to where numbers are coarser than 1: the others move as without it.
 #[test]
 fn a_body_that_escapes_disturbs_nothing() {
     let rows: Vec<String> = (0..15)
@@ -419,8 +419,8 @@ fn a_body_that_escapes_disturbs_nothing() {
     }
 }
 
-/// Two bodies on a parabola have an energy of 0 but for rounding: its error is relative to the kinetic energy at the start, ¼, and so is that
-/// of speeds with eight decimals.
+/// Two bodies on a parabola have zero energy up to rounding. Its error is relative to the kinetic energy at the start, ¼, also for
+/// speeds with eight decimals.
 #[test]
 fn the_energy_error_of_a_parabola_is_small() {
     for speed in ["0.7071067811865476", "0.70710678", "0.7"] {

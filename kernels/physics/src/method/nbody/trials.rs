@@ -1,4 +1,4 @@
-//! How bodies may be run, and what theory says of the error.
+//! Trial configurations of bodies, and the theoretical order of their error.
 
 use super::checked::prepare;
 use super::keys::{ECCENTRICITY, ENGINE, INTEGRATOR, SOFTENING};
@@ -9,7 +9,7 @@ use crate::method::{Axis, Balance, Decides, Length, Parameter, Prepared, Setting
 use crate::particles::{Particle, Particles};
 use crate::scene::{DT, Overrides, PRECISION, Precision, Values};
 
-/// Every way to run a scene of bodies. Studies see the plane of x and y: orbits of two and three bodies lie in it.
+/// Trial configurations of bodies. Studies use the x-y plane, in which the orbits of two and three bodies lie.
 pub(super) static TRIALS: Trials = Trials {
     step: &DT,
     references: [
@@ -30,7 +30,7 @@ pub(super) static TRIALS: Trials = Trials {
     at_any_step: prepare,
 };
 
-/// What a scene may be modelled without.
+/// Simplifications of a scene.
 pub(super) const TWINS: &[Twin] = &[];
 
 pub(super) const AXES: &[Axis] = &[
@@ -96,7 +96,7 @@ fn setting_of(prepared: &Prepared, name: &str) -> Option<String> {
     Some(prepared.settings.get(name)?.as_str()?.to_owned())
 }
 
-/// The order of positions: that of the scheme, for nothing jumps.
+/// Order of the position error: that of the scheme, as the forces are smooth.
 fn theory(_: &Values, _: &Prepared, integrator: &Setting) -> Option<Theory> {
     let order = match integrator.name {
         "damped-euler" => 1.0,
@@ -109,7 +109,7 @@ fn theory(_: &Values, _: &Prepared, integrator: &Setting) -> Option<Theory> {
     Some(Theory { order, why: "the order of the scheme" })
 }
 
-/// Root mean square distance of the bodies from their middle at the start (length).
+/// Root mean square distance of the bodies from their mean position at the start (length).
 fn size(particles: &Particles) -> f64 {
     let all = particles.all();
     let count = all.len() as f64;

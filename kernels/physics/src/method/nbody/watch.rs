@@ -1,4 +1,4 @@
-//! What a run is watched for: the largest error of its energy, and the nearest encounter of two bodies.
+//! Monitor of a run: largest energy error, and nearest encounter of two bodies.
 
 use super::conserved::Conserved;
 use super::encounter::Encounter;
@@ -8,38 +8,38 @@ use crate::number::significant;
 use crate::observe::relative_energy_error;
 use serde_json::{Value, json};
 
-/// Columns of a checkpoint: energy and step of the largest error; both bodies, distance, place and step of the nearest encounter.
+/// Checkpoint columns: energy and step of the largest error; both bodies, distance, position and step of the nearest encounter.
 const WORST: &str = "largest_error";
 const NEAREST: &str = "nearest_encounter";
 
-/// The largest error that is no reason for a warning.
+/// Largest energy error without a warning.
 const MOST: f64 = 0.01;
-/// A part of the kinetic and potential energy that may be rounding.
+/// Fraction of the kinetic and potential energy that may be rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// What was seen so far.
+/// State of the monitor.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Watch {
-    /// The energy at the start.
+    /// Energy at the start.
     pub(super) start: f64,
-    /// Kinetic energy, and that and the magnitude of the potential energy, at the start.
+    /// Kinetic energy at the start, and its sum with the magnitude of the potential energy.
     kinetic: f64,
     size: f64,
-    /// The energy that was the farthest from that of the start, and after how many steps.
+    /// Energy farthest from that at the start, and its step.
     worst: (f64, u64),
-    /// The nearest encounter, and after how many steps.
+    /// Nearest encounter, and its step.
     nearest: Option<(Encounter, u64)>,
 }
 
 impl Watch {
-    /// From the start on.
+    /// Starts the monitor.
     pub(super) fn new(start: &Conserved) -> Watch {
         let energy = start.energy();
         let (kinetic, size) = (start.kinetic, start.kinetic + start.potential.abs());
         Watch { start: energy, kinetic, size, worst: (energy, 0), nearest: None }
     }
 
-    /// Takes note of a state after some steps.
+    /// Records a state after some steps.
     pub(super) fn look(&mut self, energy: f64, encounter: Option<Encounter>, steps: u64) {
         if (energy - self.start).abs() > (self.worst.0 - self.start).abs() {
             self.worst = (energy, steps);
@@ -48,17 +48,17 @@ impl Watch {
         self.nearest = encounter.filter(|it| it.distance < known).map(|it| (it, steps)).or(self.nearest);
     }
 
-    /// The error of an energy, relative to what does not vanish: bodies that attract each other have a kinetic or a total energy.
+    /// Relative error of an energy. The reference does not vanish: bodies that attract each other have a kinetic or a total energy.
     pub(super) fn relative(&self, energy: f64) -> f64 {
         relative_energy_error(energy - self.start, self.start, self.kinetic, 0.0)
     }
 
-    /// Whether bodies that were bound are not any more.
+    /// True if bodies that were bound have become unbound.
     pub(super) fn is_unbound(&self, energy: f64) -> bool {
         self.start < 0.0 && energy >= 0.0 && energy - self.start > ROUNDING * self.size
     }
 
-    /// The nearest encounter in words, bodies by their ids.
+    /// Describes the nearest encounter; `id` gives the ids of bodies.
     pub(super) fn nearest_in_words(&self, id: impl Fn(usize) -> u32) -> Option<String> {
         let (Encounter { bodies, distance, .. }, steps) = self.nearest?;
         let [first, second] = bodies.map(id);
@@ -66,30 +66,30 @@ impl Watch {
         Some(format!("bodies {first} and {second} were the nearest, {distance} apart at step {steps}"))
     }
 
-    /// What is to be said at the end, when the energy is `now`.
+    /// Returns the warning at the end, with the energy and step `now`.
     pub(super) fn warning(&self, now: (f64, u64), dt: f64, id: impl Fn(usize) -> u32) -> Option<RunWarning> {
         let (energy, steps) = self.worst_with(now);
         let is_small = self.start.abs() < self.kinetic;
-        let of = if is_small { "of the kinetic energy at the start" } else { "of itself" };
+        let of = if is_small { "of the kinetic energy at the start" } else { "of its value at the start" };
         let error = self.relative(energy).abs();
         if error <= MOST {
             return None;
         }
         let off = if error < 1.0 {
-            format!("was off by {} % {of}", significant(100.0 * error, 3))
+            format!("deviated by {} % {of}", significant(100.0 * error, 3))
         } else {
             format!("was {} at the start and {}", significant(self.start, 5), significant(energy, 5))
         };
         let nearest = self.nearest_in_words(id).map_or(String::new(), |words| format!("; {words}"));
         let message = format!(
-            "the energy {off} at step {steps}, time {}, more than at any other look{nearest}: take a smaller dt, an integrator \
-             of higher order, or a softening",
+            "the energy {off} at step {steps}, time {}, the largest error found{nearest}: lower integrator.dt, choose an \
+             integrator of higher order, or set law.softening",
             significant(steps as f64 * dt, 6)
         );
         Some(RunWarning { check: "energy-balance", value: error, limit: MOST, message })
     }
 
-    /// The same as entries of `summary.json`.
+    /// Entries of the monitor for `summary.json`.
     pub(super) fn entries(&self, now: (f64, u64), id: impl Fn(usize) -> u32) -> [(&'static str, Value); 3] {
         let (energy, steps) = self.worst_with(now);
         let nearest = self.nearest.map(|(Encounter { bodies, distance, place }, steps)| {
@@ -107,7 +107,7 @@ impl Watch {
         if farther { now } else { self.worst }
     }
 
-    /// For a checkpoint.
+    /// Columns for a checkpoint.
     pub(super) fn columns(&self) -> [(String, Column); 2] {
         let worst = vec![self.worst.0, self.worst.1 as f64];
         let nearest =
@@ -120,10 +120,10 @@ impl Watch {
         ]
     }
 
-    /// Takes up what a checkpoint has of `count` bodies.
+    /// Restores the monitor from a checkpoint of `count` bodies.
     ///
     /// # Errors
-    /// A sentence, if that is not of a watch.
+    /// A message if the columns do not belong to a monitor.
     pub(super) fn take_up(
         &mut self,
         start: f64,
@@ -135,7 +135,7 @@ impl Watch {
             _ => Err(format!("the column {name} is missing")),
         };
         let &[energy, steps] = find(WORST)? else {
-            return Err(format!("the column {WORST} has not two numbers"));
+            return Err(format!("the column {WORST} does not have two numbers"));
         };
         let nearest = match *find(NEAREST)? {
             [] => None,
@@ -143,7 +143,7 @@ impl Watch {
                 let bodies = [a as usize, b as usize];
                 Some((Encounter { bodies, distance, place: [x, y, z] }, steps as u64))
             }
-            _ => return Err(format!("the column {NEAREST} is of no two bodies")),
+            _ => return Err(format!("the column {NEAREST} does not describe two bodies")),
         };
         (self.start, self.worst, self.nearest) = (start, (energy, steps as u64), nearest);
         Ok(())

@@ -1,14 +1,14 @@
-//! What the next events will need, asked for in time: where there are many discs, most of it is not in the caches near a core.
+//! Prefetching for the next events: with many discs, most of the data is not in the caches near a core.
 
 use super::{Fast, RENEWAL};
 
-/// Of more discs than these not all are in the caches next to a core: then what is needed is asked for in time.
+/// Number of discs beyond which prefetching pays off, because they exceed the caches next to a core.
 pub(super) const OUT_OF_REACH: usize = 6_000;
-/// How many events ahead: for a disc and its list, for the discs of the list, and for those of the disc that it meets.
+/// Events ahead at which to prefetch a disc and its list, the discs of the list, and those around its partner.
 const AHEAD: [usize; 3] = [40, 24, 12];
 
 impl Fast {
-    /// Asks for what the next events will need: first the lines of their discs, then those of the discs around them.
+    /// Prefetches the data of the next events: first the cache lines of their discs, then those of the discs around them.
     #[inline(always)]
     pub(super) fn look_ahead(&self) {
         let Fast { discs, lists, queue, partners, .. } = self;

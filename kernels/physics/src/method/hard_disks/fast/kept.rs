@@ -1,4 +1,4 @@
-//! What a checkpoint keeps of the fast engine, and how it goes on with that.
+//! State of the fast engine in a checkpoint, and resumption from it.
 
 use super::leaving::leaving;
 use super::lists::Lists;
@@ -9,17 +9,17 @@ use crate::method::Snapshot;
 use stripmine_kernels::flight::{Disc, MOST_PARTNERS, ROW_UNIT};
 use stripmine_kernels::isa::AlignedColumn;
 
-/// Where discs were registered, in a checkpoint.
+/// Checkpoint columns of the registered positions.
 const REGISTERED: [&str; 2] = ["registered.x", "registered.y"];
 
-/// Lists of a checkpoint reach at least this part of the largest radius beyond contact.
+/// Smallest displacement limit accepted from a checkpoint, relative to the largest radius.
 const NARROWEST: f64 = 1e-6;
 
-/// A disc takes at least this many spacings of the clock's numbers to leave its list.
+/// Minimum time for a disc to leave its list, in spacings of the clock's numbers.
 const RESOLVED: f64 = 1e3;
 
 impl Fast {
-    /// What goes into a checkpoint, by the numbers of the discs.
+    /// Returns the state for a checkpoint, in the order of the discs' numbers.
     pub(super) fn kept(&self) -> Snapshot {
         let mut kept = Snapshot::default();
         let by_number =
@@ -41,33 +41,35 @@ impl Fast {
         kept
     }
 
-    /// Goes on with discs from what [`kept`](Self::kept) gave; why not, where it does not fit them.
+    /// Resumes with discs from the state of [`kept`](Self::kept). Returns a message if it does not fit them.
     pub(super) fn take_up(&mut self, discs: Vec<Disc>, kept: &Snapshot) -> Result<(), String> {
         let count = discs.len();
         let registered = [kept.numbers(REGISTERED[0], count)?, kept.numbers(REGISTERED[1], count)?];
         let origin = self.arena.domain.origin;
         if (0..2).any(|axis| registered[axis].iter().any(|&at| at < origin[axis])) {
-            return Err("a disc was listed at a place below the origin of the box".to_owned());
+            return Err("the registered position of a disc is below the origin of the box".to_owned());
         }
         let times = kept.times("expected.time", count)?;
         let [with, events] = [kept.codes("expected.with", count)?, kept.codes("expected.events", count)?];
         let none =
             |(own, &with): (usize, &u32)| with < WALL[0] && (with as usize >= count || with as usize == own);
         if with.iter().enumerate().any(none) {
-            return Err("a disc expects itself or one that is not there".to_owned());
+            return Err("a disc expects to meet itself or a disc that does not exist".to_owned());
         }
         let (stride, displacement_limit) =
             (kept.count("engine.stride")?, kept.sum("engine.displacement_limit")?);
-        // Narrower ones would be renewed without end.
+        // Narrower lists would be renewed endlessly.
         let narrowest = NARROWEST * self.largest;
         let is_whole = stride <= MOST_PARTNERS as u64 && stride.is_multiple_of(ROW_UNIT as u64);
         if !is_whole || !(narrowest..f64::INFINITY).contains(&displacement_limit) {
-            return Err(format!("lists of {stride} entries within {displacement_limit}"));
+            return Err(format!(
+                "lists have {stride} entries and the displacement limit {displacement_limit}"
+            ));
         }
         let time = kept.sum("engine.time")?;
         if discs.iter().any(|disc| disc.time > time) || times.iter().any(|&expected| expected < time) {
             return Err(format!(
-                "a disc is ahead of the engine's time {time:?}, or expects something before it"
+                "a disc is ahead of the engine's time {time:?}, or expects an event before it"
             ));
         }
         self.displacement_limit = displacement_limit;
@@ -100,16 +102,16 @@ impl Fast {
         Ok(())
     }
 
-    /// Checks that each disc expects something (time, by numbers) before it may leave its list.
+    /// Checks that each disc expects an event (time, by numbers) before it may leave its list.
     ///
-    /// Lists are renewed after the last event too, up to the first thing that is expected: at that moment every disc is still within its
-    /// own. Where discs fall, a list is renewed at the latest when a disc from rest would have left it.
+    /// Lists are also renewed after the last event, up to the first expected event: at that moment every disc is still within the range of
+    /// its list. Under gravity a list is renewed at the latest when a disc from rest would have left it.
     ///
     /// # Errors
-    /// A sentence that names the first disc that does not.
+    /// A message that names the first disc that does not.
     fn check_expectations(&self, times: &[f64]) -> Result<(), String> {
         let first = times.iter().copied().fold(f64::INFINITY, f64::min);
-        // Nothing is expected where all are at rest.
+        // If all discs are at rest, no event is expected.
         let now = if first.is_finite() { first } else { self.time };
         let limit = self.displacement_limit * (1.0 + 1e-6);
         for (place, &number) in self.numbers.iter().enumerate() {
@@ -121,13 +123,15 @@ impl Fast {
                 }
             };
             if times[number as usize] - now > within + 1e-9 * now.abs() {
-                return Err(format!("disc number {number} expects nothing before it leaves its list"));
+                return Err(format!("disc number {number} expects no event before it leaves its list"));
             }
-            // Otherwise the clock would stand still, one renewal of the list after the other.
+            // Otherwise the list would be renewed endlessly without advancing the clock.
             let [u, v] = self.discs[place].velocity_at(&self.arena.space, now);
             let unresolved = RESOLVED * f64::EPSILON * now.abs() * u.hypot(v);
             if limit.is_nan() || unresolved.is_nan() || limit < unresolved {
-                return Err(format!("disc number {number} moves too fast for times near {now}"));
+                return Err(format!(
+                    "disc number {number} moves too fast for the resolution of times near {now}"
+                ));
             }
         }
         Ok(())

@@ -1,51 +1,51 @@
-//! Which discs a disc may meet: lists around the places where discs were registered, each renewed when its own disc has moved
-//! away from there by a distance, and by nothing else.
+//! Neighbour lists around registered positions. A list is renewed when its own disc has moved away from its registered position by the
+//! displacement limit, and only then.
 //!
-//! A disc that is within `displacement_limit` of its registered place meets only discs registered within the sum of the radii and twice the
-//! displacement_limit: those are in its list, and it is in theirs.
+//! A disc within `displacement_limit` of its registered position meets only discs registered within the sum of the radii and twice
+//! the displacement limit. Those are in its list, and it is in theirs.
 
 use crate::domain::{Domain, Side};
 use stripmine_kernels::flight::ROW_UNIT;
 use stripmine_kernels::isa::AlignedColumn;
 
-/// Stands for no disc.
+/// Marks the end of a cell's chain.
 const NONE: u32 = u32::MAX;
-/// Entries of a row that is filled on average to this part.
+/// Average fill fraction of a row.
 const FILLED: f64 = 0.6;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Lists {
     domain: Domain,
     displacement_limit: f64,
-    /// Where each disc was registered (length).
+    /// Registered position of each disc (length).
     places: AlignedColumn<[f64; 2]>,
-    /// The discs in each list, a row each: behind the last one the row's own disc, and in the last entry how many they are. So every
-    /// entry is a disc's number, as a list never holds them all.
+    /// One row per list. The row's own number fills the entries behind the listed discs; the last entry is the count. Every entry
+    /// is therefore a valid number, as a list never holds all discs.
     rows: AlignedColumn<u32>,
     stride: usize,
     cells: Cells,
 }
 
-/// Discs by the cells of their registered places. Rows and columns of cells are counted round the grid, so that a side without end
-/// needs no more cells: discs that share a cell by that are far from each other, which their distance tells.
+/// Linked cells of the registered positions. Rows and columns of cells wrap around the grid, so an infinite side needs no more cells.
+/// Discs that share a cell by wrapping are far apart, and the distance check excludes them.
 #[derive(Clone, Debug)]
 struct Cells {
     counts: [usize; 2],
     edge: [f64; 2],
-    /// The first disc of each cell, row by row.
+    /// First disc of each cell, row by row.
     first: AlignedColumn<u32>,
-    /// The next disc of the same cell.
+    /// Next disc of the same cell.
     next: AlignedColumn<u32>,
 }
 
-/// Discs that are found around one at most: more than a list holds.
+/// Maximum number of neighbours found around a disc, more than a list holds.
 const FOUND: usize = 128;
 
-/// Cells between the ends of what a disc sees: two on each side of its own.
+/// Half-width of the searched block of cells.
 const AROUND: isize = 2;
 
-/// How far discs may go from where they were registered (length): such that lists hold about `most` discs, and that no disc sees
-/// another one across two sides. None in a box too small for any.
+/// Largest allowed displacement from the registered position (length). Lists then hold about `most` discs, and no disc sees another
+/// one across two sides. Returns none if the box is too small for lists.
 pub(crate) fn displacement_limit(
     domain: &Domain,
     radii: impl Iterator<Item = f64> + Clone,
@@ -55,20 +55,20 @@ pub(crate) fn displacement_limit(
         (count + 1.0, radius.max(largest), sum + radius)
     });
     let bounded = (0..2).all(|axis| domain.length(axis).is_finite());
-    // Where there is no end, discs are as dense as they can be near its other end.
+    // In an infinite box discs may be packed densely near the floor.
     let density = if bounded { count / domain.area() } else { 0.5 / (largest * largest) };
     let sight = ((most + 1.0) / (std::f64::consts::PI * density)).sqrt();
     let wanted = 0.5 * (sight - 2.0 * sum / count);
     let periodic = (0..2).filter(|&axis| domain.is_periodic(axis)).map(|axis| domain.length(axis));
-    // Registered within the sum of radii and two leashes, discs are within two more: less than half a side.
+    // Listed discs are registered within the sum of radii plus two limits and move by two more: together less than half a side.
     let bound = periodic.fold(f64::INFINITY, f64::min) / 8.0 - 0.5 * largest;
     let displacement_limit = wanted.max(0.1 * largest).min(0.9 * bound);
     (displacement_limit >= 0.05 * largest).then_some(displacement_limit)
 }
 
 impl Lists {
-    /// Of no disc yet; with room for lists of about `most` discs, and for discs that are `largest` (length). Rows have at least
-    /// `stride` entries, a multiple of [`ROW_UNIT`], one of which is their count.
+    /// Creates lists without discs, with space for about `most` discs each; `largest` is the largest radius (length). Rows have at least
+    /// `stride` entries, a multiple of [`ROW_UNIT`], one of which is the count.
     pub(super) fn new(
         domain: Domain,
         count: usize,
@@ -89,49 +89,49 @@ impl Lists {
         }
     }
 
-    /// How long a row is.
+    /// Length of a row.
     pub(super) fn stride(&self) -> usize {
         self.stride
     }
 
-    /// How far a disc may go from where it was registered (length).
+    /// Largest allowed displacement from the registered position (length).
     #[inline(always)]
     pub(crate) fn displacement_limit(&self) -> f64 {
         self.displacement_limit
     }
 
-    /// Where a disc was registered (length).
+    /// Registered position of a disc (length).
     #[inline(always)]
     pub(super) fn place(&self, disc: u32) -> [f64; 2] {
         self.places[disc as usize]
     }
 
-    /// The discs that a disc may meet.
+    /// Discs that a disc may meet.
     #[inline(always)]
     pub(super) fn of(&self, disc: u32) -> &[u32] {
         let (row, count) = self.row(disc);
         &row[..count]
     }
 
-    /// The row of a disc, as [`earliest`](stripmine_kernels::flight::earliest) takes it: whole, and how many discs are listed in it.
+    /// Returns the whole row of a disc, as [`earliest`](stripmine_kernels::flight::earliest) takes it, and the number of listed discs.
     #[inline(always)]
     pub(super) fn row(&self, disc: u32) -> (&[u32], usize) {
         let row = &self.rows[disc as usize * self.stride..][..self.stride];
         (row, row[self.stride - 1] as usize)
     }
 
-    /// Asks for the line of the list of a disc and that of its place.
+    /// Prefetches the cache lines of a disc's list and registered position.
     #[inline(always)]
     pub(crate) fn prefetch(&self, disc: usize) {
         self.rows.prefetch(disc * self.stride);
         self.places.prefetch(disc);
     }
 
-    /// Registers discs that are registered nowhere, at `places` inside the box (length); the list of a disc is that of those
-    /// before it, and they have it in theirs.
+    /// Registers unregistered discs at `places` inside the box (length). Each disc lists those registered before it, and they list
+    /// it.
     ///
     /// # Errors
-    /// A disc whose list is full.
+    /// The disc whose list is full.
     pub(super) fn begin(&mut self, places: &[[f64; 2]], radius: impl Fn(u32) -> f64) -> Result<(), u32> {
         for (disc, &place) in places.iter().enumerate() {
             self.enter(disc as u32, place, &radius)?;
@@ -139,10 +139,10 @@ impl Lists {
         Ok(())
     }
 
-    /// A disc is registered at another place inside the box (length).
+    /// Registers a disc at a new position inside the box (length).
     ///
     /// # Errors
-    /// A disc whose list is full.
+    /// The disc whose list is full.
     pub(crate) fn renew(
         &mut self,
         disc: u32,
@@ -164,7 +164,7 @@ impl Lists {
         let at = self.cells.coordinates(&self.domain, place);
         let reach = radius(disc) + 2.0 * self.displacement_limit;
         let [columns, rows] = [0, 1].map(|axis| self.cells.around(axis, at[axis]));
-        // Those near enough are written one over the other until one is: a branch for each would be a matter of luck.
+        // Candidates overwrite each other until one is near enough: a branch per candidate would be unpredictable.
         let (mut found, mut count) = ([0; FOUND], 0);
         for row in rows {
             for column in columns {
@@ -200,7 +200,7 @@ impl Lists {
     fn remove_partner(&mut self, from: u32, disc: u32) {
         let row = &mut self.rows[from as usize * self.stride..][..self.stride];
         let last = row.len() - 1;
-        // Without a branch for each entry: where it is, is a matter of luck.
+        // No branch per entry: the index is unpredictable.
         let at: u32 =
             row[..last].iter().zip(0..).map(|(&other, entry)| if other == disc { entry } else { 0 }).sum();
         row[last] -= 1;
@@ -210,14 +210,14 @@ impl Lists {
     }
 }
 
-/// Rows without an entry.
+/// Creates rows without entries.
 fn empty_rows(count: usize, stride: usize) -> AlignedColumn<u32> {
     let mut rows = AlignedColumn::filled(11, 0, count * stride);
     rows.chunks_exact_mut(stride).zip(0..).for_each(|(row, disc)| clear(row, disc));
     rows
 }
 
-/// Nothing is in the row of a disc any more.
+/// Empties the row of a disc.
 #[inline(always)]
 fn clear(row: &mut [u32], disc: u32) {
     row.fill(disc);
@@ -235,7 +235,7 @@ impl Cells {
             Side::Open | Side::Flat => least_edge,
             Side::Periodic(side) | Side::Closed(side) => side / counts[axis] as f64,
         });
-        // Where fewer cells than a disc sees lie along a side, they would be seen twice.
+        // With fewer cells along a side than a search covers, some would be visited twice.
         let counts = counts.map(|along| along.max(2 * AROUND as usize + 1));
         Cells {
             counts,
@@ -247,11 +247,11 @@ impl Cells {
 
     #[inline(always)]
     fn coordinates(&self, domain: &Domain, place: [f64; 2]) -> [isize; 2] {
-        // Nothing is below the origin of a box.
+        // No position is below the origin of the box.
         [0, 1].map(|axis| ((place[axis] - domain.origin[axis]) / self.edge[axis]) as isize)
     }
 
-    /// The columns or rows that a disc in one of them sees.
+    /// Columns or rows searched around one of them.
     #[inline(always)]
     fn around(&self, axis: usize, at: isize) -> [usize; 2 * AROUND as usize + 1] {
         let count = self.counts[axis] as isize;
@@ -273,7 +273,7 @@ impl Cells {
         let [column, row] = [0, 1].map(|axis| {
             let count = self.counts[axis] as isize;
             let along = at[axis];
-            // Mostly inside.
+            // Usually inside.
             if (0..count).contains(&along) { along as usize } else { along.rem_euclid(count) as usize }
         });
         row * self.counts[0] + column
@@ -312,7 +312,7 @@ mod tests {
     use rand::RngExt;
     use stripmine_kernels::noise::{Purpose, Stream};
 
-    /// Against all pairs, as discs move about, in boxes of every kind of side.
+    /// Compared with all pairs as discs move, in boxes of every kind of side.
     #[test]
     fn lists_hold_what_is_near_and_nothing_twice() {
         let mut stream = Stream::new(11, Purpose::Test, 0);

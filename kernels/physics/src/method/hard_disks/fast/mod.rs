@@ -1,25 +1,25 @@
-//! The fast engine: the same events as the source's, found by lists of each disc's own, predictions a register of partners at a
-//! time, and a queue of which only the next few events are sorted.
+//! Fast engine: finds the same events as the reference engine with a neighbour list per disc, collision predictions for a register of
+//! partners at a time, and a queue that sorts only the next few events.
 //!
-//! - A disc has one event: the first of its collisions, its wall, or the moment when its list has to be renewed.
-//! - What a disc expected of another one that has changed its motion is not looked for at once, but when its time comes: by
-//!   then most such discs have found something that comes sooner.
-//! - Discs lie in memory in the order of their places, and are put so once more now and then.
+//! - A disc has one event: its first collision, its wall, or the renewal of its list.
+//! - If a partner changes its motion, the disc is not predicted again at once, but when its event is due. By then most such discs
+//!   have found an earlier event.
+//! - Discs are stored in memory in the order of their positions, and are sorted again now and then.
 //!
-//! What was tried for speed, as times of the rate before (2500 discs, ν = 0.1, 0.5 and 0.7; AVX-512, paired rounds, the same events to the
-//! bit):
+//! Optimisations tried, with the rate relative to that before (2500 discs, ν = 0.1, 0.5 and 0.7; AVX-512, paired rounds, the same
+//! events to the bit):
 //!
 //! | | rate | |
 //! |---|---|---|
-//! | rows of partners filled up, so that no branch asks how many they are | 1.03, 1.05, 1.06 | kept |
+//! | rows of partners padded, so that no branch depends on their number | 1.03, 1.05, 1.06 | kept |
 //! | the next events ordered by counting those before each, level by level | 1.01, 1.03, 1.03 | kept |
-//! | no root for when a disc leaves its list, where it is still near enough at its next event | 1.02, 1.02, 1.03 | kept |
-//! | periods taken off only where a pair of the register is nearer across a side | 1.00, 1.00, 1.02 | kept, for the source's way gains a fifth |
-//! | both discs of a collision predicted in turns, register by register | 0.97, 0.92, 0.90 | registers spill |
+//! | no root for the time at which a disc leaves its list if it is still near enough at its next event | 1.02, 1.02, 1.03 | kept |
+//! | periods subtracted only if a pair of the register is nearer across a side | 1.00, 1.00, 1.02 | kept: the reference engine gains a fifth |
+//! | predictions of both discs of a collision interleaved register by register | 0.97, 0.92, 0.90 | registers spill |
 //! | partners' lines loaded whole and transposed in registers | 1.00, 1.00, 0.97 | |
-//! | times of expected events read only for partners that are met | 1.00 | |
+//! | times of expected events read only for partners that collide | 1.00 | |
 //! | events sorted as numbers of 128 bits | 1.00 | |
-//! | lists of 6, 7, 10 or 13 discs on average in the place of 8 | 0.84 to 1.03 | |
+//! | lists of 6, 7, 10 or 13 discs on average instead of 8 | 0.84 to 1.03 | |
 
 mod ahead;
 mod kept;
@@ -40,22 +40,22 @@ use stripmine_kernels::backend::{Registers, Task, dispatch_native};
 use stripmine_kernels::flight::{Disc, Earliest, MOST_PARTNERS, ROW_UNIT, earliest};
 use stripmine_kernels::isa::AlignedColumn;
 
-/// Discs that a list holds on average.
+/// Average number of discs in a list.
 const LISTED: f64 = 8.0;
-/// Discs are sorted by their places after this many events of each.
+/// Events per disc between sorts of the discs by position.
 const SORTED_AFTER: u64 = 200;
 
-/// What a disc expects beside other discs, which are known by their places in memory.
+/// Codes of wall events; other discs are given by their index in memory.
 const WALL: [u32; 2] = [u32::MAX - 2, u32::MAX - 1];
-/// Its list has to be renewed.
+/// Code of the renewal of a list.
 const RENEWAL: u32 = u32::MAX;
 
-/// What a disc expects.
+/// Expected next event of a disc.
 #[derive(Clone, Copy, Debug)]
 struct Expected {
-    /// Another disc by its place in memory, or one of the above.
+    /// Index in memory of another disc, or one of the codes above.
     with: u32,
-    /// How many events the other disc had had, of which it may have more when the time comes: then nothing is as expected.
+    /// Event count of the other disc at the prediction. If it is higher when the event is due, the prediction is invalid.
     events: u32,
 }
 
@@ -63,41 +63,41 @@ impl Expected {
     const RENEWAL: Expected = Expected { with: RENEWAL, events: 0 };
 }
 
-/// Discs under way.
+/// Fast engine with its discs.
 pub(crate) struct Fast {
     arena: Arena,
     set: InstructionSet,
-    /// By places in memory.
+    /// Discs in the order of memory.
     discs: AlignedColumn<Disc>,
-    /// The number of each, and where each number is.
+    /// Number of each disc in memory, and index in memory of each number.
     numbers: AlignedColumn<u32>,
     places: Vec<u32>,
     lists: Lists,
     displacement_limit: f64,
     largest: f64,
-    /// Whether all radii are the same.
+    /// True if all radii are equal.
     alike: bool,
-    /// How far ahead of where they are discs are registered (length).
+    /// Distance ahead of its position at which a disc is registered (length).
     flight: f64,
-    /// When each disc has its next event, and with what.
+    /// Times of the next events, and their partners.
     queue: Queue,
     partners: AlignedColumn<Expected>,
-    /// When a disc meets each of its list (time), while it is predicted.
+    /// Scratch of a prediction: collision times with the discs of the list.
     met: Box<[f64; MOST_PARTNERS]>,
-    /// The time of the last event.
+    /// Time of the last event.
     time: f64,
     renewals: u64,
     operations: Operations,
     events: u64,
-    /// Events after which discs are sorted.
+    /// Event count after which discs are sorted again.
     sorted_until: u64,
 }
 
 impl Fast {
-    /// Begins at a time.
+    /// Starts the engine at a time.
     ///
     /// # Errors
-    /// [`EngineError`] if a disc has more others around it than can be listed.
+    /// [`EngineError`] if a disc has more neighbours than a list can hold.
     pub(super) fn new(
         arena: Arena,
         discs: Vec<Disc>,
@@ -134,7 +134,7 @@ impl Fast {
         Ok(engine)
     }
 
-    /// Sorts the discs by their places at a time, registers all, and finds what each meets next.
+    /// Sorts the discs by position at a time, registers all, and predicts the next event of each.
     fn begin(&mut self, time: f64) -> Result<(), EngineError> {
         self.sort(time);
         let count = self.discs.len();
@@ -161,7 +161,7 @@ impl Fast {
         found.map_err(|_| EngineError::NoInstructions(self.set))
     }
 
-    /// Puts discs that are near each other near each other in memory: by the digits of their coordinates in turn (Morton).
+    /// Sorts discs in memory by position, by interleaving the bits of their cell coordinates (Morton order).
     fn sort(&mut self, time: f64) {
         let edge = 2.0 * (self.largest + self.displacement_limit);
         let key = |disc: &Disc| {
@@ -182,7 +182,7 @@ impl Fast {
         }
     }
 
-    /// Finds the next event of a disc at a time, and tells those who meet it sooner than what they expected.
+    /// Predicts the next event of a disc at a time, and updates the discs that meet it before their expected event.
     #[inline(always)]
     fn predict<R: Registers<Lane = f64>>(&mut self, registers: R, disc: u32, now: f64) {
         let Fast { arena, discs, numbers, lists, queue, partners, met, operations, .. } = self;
@@ -233,13 +233,13 @@ impl Fast {
         queue.set(disc as usize, numbers[disc as usize], next);
     }
 
-    /// The list of a disc is renewed at a time; whether there was room for that. If not, all have begun with longer ones.
+    /// Renews the list of a disc at a time. Returns false if the list was full and all lists were rebuilt with more space.
     fn renew(&mut self, disc: u32, time: f64) -> Result<bool, EngineError> {
         let place = self.registered(&self.discs[disc as usize], time);
         self.renewals += 1;
         self.operations.cell_updates += 1;
         let Fast { lists, discs, alike, largest, .. } = self;
-        // Discs that are all alike need not be looked at.
+        // Equal radii need not be read.
         let radius = |disc: u32| if *alike { *largest } else { discs[disc as usize].radius };
         match lists.renew(disc, place, radius) {
             Ok(()) => Ok(true),
@@ -247,7 +247,7 @@ impl Fast {
         }
     }
 
-    /// Where a disc is registered: ahead of where it is, by what it will fly before it leaves its list or collides.
+    /// Position at which a disc is registered: ahead of it by its expected flight before it leaves its list or collides.
     #[inline(always)]
     fn registered(&self, disc: &Disc, time: f64) -> [f64; 2] {
         let ([x, y], [u, v]) = (disc.at(&self.arena.space, time), disc.velocity_at(&self.arena.space, time));
@@ -261,7 +261,7 @@ impl Fast {
         }))
     }
 
-    /// As [`Engine::next`].
+    /// Implements [`Engine::next`] for a register type.
     #[inline(always)]
     fn next_on<R: Registers<Lane = f64>>(
         &mut self,
@@ -281,7 +281,7 @@ impl Fast {
             if time < self.time {
                 return Err(EngineError::BackInTime(self.numbers[first as usize], time, self.time));
             }
-            // Whose motion or list has changed, twice the same where it is one.
+            // Discs whose motion or list has changed; a single disc is listed twice.
             let Expected { with, events } = self.partners[first as usize];
             let (changed, happened) = match with {
                 RENEWAL => {
@@ -309,7 +309,7 @@ impl Fast {
                         let happened = Occurred::collision(&self.arena, (p, a), (q, b), time);
                         ([first, other], Some(happened))
                     } else {
-                        // The other one has changed its motion since.
+                        // The partner has changed its motion since the prediction.
                         self.operations.repairs += 1;
                         ([first; 2], None)
                     }
@@ -375,12 +375,12 @@ impl Engine for Fast {
     }
 }
 
-/// How far discs may go from where they were registered (length); none in a box too small for lists.
+/// Largest displacement from the registered position (length); none if the box is too small for lists.
 pub(crate) fn displacement_limit(arena: &Arena, radii: impl Iterator<Item = f64> + Clone) -> Option<f64> {
     lists::displacement_limit(&arena.domain, radii, LISTED)
 }
 
-/// The next event, compiled for an instruction set.
+/// Task of the next event, compiled for an instruction set.
 struct Next<'e> {
     engine: &'e mut Fast,
     until: f64,
@@ -395,7 +395,7 @@ impl Task<f64> for Next<'_> {
     }
 }
 
-/// What every disc meets next, from a time on.
+/// Task that predicts the next event of every disc from a time on.
 struct All<'e> {
     engine: &'e mut Fast,
     time: f64,
@@ -410,7 +410,7 @@ impl Task<f64> for All<'_> {
     }
 }
 
-/// The bits of a number with a place free after each.
+/// Spreads the bits of a number, with a zero after each.
 fn spread(number: u32) -> u64 {
     let mut bits = u64::from(number);
     for (shift, mask) in [

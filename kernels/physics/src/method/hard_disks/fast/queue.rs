@@ -1,19 +1,19 @@
-//! When each disc has its next event, and in which order they come.
+//! Event queue: the time of each disc's next event, and the order of the events.
 //!
-//! The next few events are kept sorted; all others only by groups, of which a time is known that none of them comes before. So
-//! the next event is known long before the one at hand is dealt with, and the processor works at both.
+//! Only the next few events are sorted. All others are grouped, with a lower bound of the times in each group. The next event is
+//! therefore known long before the current one is finished, and the processor overlaps both.
 
 use std::hint::select_unpredictable;
 use stripmine_kernels::backend::Registers;
 use stripmine_kernels::isa::{AlignedColumn, Vector};
 
-/// Members of a group: two lines of the cache.
+/// Members of a group: two cache lines.
 const GROUP: usize = 16;
 
-/// Events that are sorted at a time, at most: as many as are asked for ahead, a few times over.
+/// Maximum number of events sorted at a time: a few times the prefetch distance.
 const MOST_WANTED: usize = 256;
 
-/// Numbers of a group.
+/// Times of a group.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 struct Group([f64; GROUP]);
@@ -21,7 +21,7 @@ struct Group([f64; GROUP]);
 impl Group {
     const NONE: Group = Group([f64::INFINITY; GROUP]);
 
-    /// The members below a bound, a bit each.
+    /// Bit mask of the members below a bound.
     #[inline(always)]
     fn below<R: Registers<Lane = f64>>(&self, registers: R, bound: f64) -> u32 {
         let bound = registers.splat(bound);
@@ -34,7 +34,7 @@ impl Group {
         bits as u32
     }
 
-    /// The smallest of the members that are not below a bound.
+    /// Smallest member that is not below a bound.
     #[inline(always)]
     fn smallest_from<R: Registers<Lane = f64>>(&self, registers: R, bound: f64) -> f64 {
         let (bound, never) = (registers.splat(bound), registers.splat(f64::INFINITY));
@@ -53,18 +53,18 @@ impl Group {
     }
 }
 
-/// An event among the next ones.
+/// Sorted event.
 #[derive(Clone, Copy, Debug)]
 struct Entry {
-    /// When (time).
+    /// Time of the event.
     time: f64,
-    /// The number of the disc, and its place.
+    /// Number of the disc, and its index in memory.
     number: u32,
     place: u32,
 }
 
 impl Entry {
-    /// No event: comes after all.
+    /// No event; sorts last.
     const NONE: Entry = Entry { time: f64::INFINITY, number: u32::MAX, place: 0 };
 
     #[inline(always)]
@@ -75,24 +75,24 @@ impl Entry {
 
 #[derive(Clone, Debug)]
 pub(crate) struct Queue {
-    /// The times, and above them, level by level, what none of a group comes before, but those that are among the next ones.
+    /// Times, and above them, level by level, lower bounds of each group, which exclude the sorted events.
     levels: Vec<AlignedColumn<Group>>,
-    /// The next events in order, and how many of them are over. Some hold no more: the disc has another time.
+    /// Sorted next events, and how many are over. An entry is stale if its disc has another time now.
     next: Vec<Entry>,
     over: usize,
-    /// All events before this time are among the next ones.
+    /// All events before this time are sorted.
     end: f64,
-    /// How much time they span, and how many there should be.
+    /// Time span of the sorted events, and their desired number.
     span: f64,
     wanted: usize,
-    /// While they are looked for: which groups of each level hold any, the places of their discs, and their times.
+    /// Scratch of the search: groups of each level with members, indices of their discs, and their times.
     visited: Vec<Vec<u32>>,
     found: Vec<u32>,
     times: Vec<f64>,
 }
 
 impl Queue {
-    /// Of `count` discs that have no event.
+    /// Creates the queue of `count` discs without events.
     pub(super) fn new(count: usize) -> Queue {
         let groups =
             |members: usize, level| AlignedColumn::filled(level, Group::NONE, members.div_ceil(GROUP).max(1));
@@ -108,7 +108,7 @@ impl Queue {
             next: vec![],
             over: 0,
             end: 0.0,
-            // As many as are wanted come out soon, whatever the unit of time.
+            // The span adapts quickly to the desired number, whatever the unit of time.
             span: f64::MIN_POSITIVE,
             wanted,
             found: vec![],
@@ -116,15 +116,15 @@ impl Queue {
         }
     }
 
-    /// When each disc has its next event (time); infinite ones behind them.
+    /// Time of each disc's next event, padded with infinities.
     #[inline(always)]
     pub(super) fn times(&self) -> &[f64] {
         let groups = &self.levels[0];
-        // SAFETY: a group is its numbers, as large together and aligned more strictly.
+        // SAFETY: a group consists of its numbers, has their total size and a stricter alignment.
         unsafe { std::slice::from_raw_parts(groups.as_ptr().cast::<f64>(), groups.len() * GROUP) }
     }
 
-    /// The next event of a disc, by its place and its number, is at a time (at least 0).
+    /// Sets the time (at least 0) of a disc's next event; the disc is given by its index and its number.
     #[inline(always)]
     pub(super) fn set(&mut self, place: usize, number: u32, time: f64) {
         self.levels[0][place / GROUP].0[place % GROUP] = time;
@@ -149,7 +149,7 @@ impl Queue {
         self.next.insert(at, entry);
     }
 
-    /// The first event: its time and the place of the disc; of several at that time, that of the disc with the smallest number.
+    /// Returns the time of the first event and the index of its disc; of several at one time, the one with the smallest number.
     #[inline(always)]
     pub(super) fn first<R: Registers<Lane = f64>>(
         &mut self,
@@ -169,19 +169,19 @@ impl Queue {
         }
     }
 
-    /// Asks for the line of the time of a disc.
+    /// Prefetches the cache line of a disc's time.
     #[inline(always)]
     pub(crate) fn prefetch(&self, place: usize) {
         self.levels[0].prefetch(place / GROUP);
     }
 
-    /// The place of the disc whose event comes a number of events after the next one, as far as that is known.
+    /// Index of the disc whose event is `ahead` events after the next one, if that is sorted already.
     #[inline(always)]
     pub(crate) fn coming(&self, ahead: usize) -> Option<u32> {
         self.next.get(self.over + ahead).map(|entry| entry.place)
     }
 
-    /// Sorts the next events; whether there are any left.
+    /// Sorts the next events. Returns false if none are left.
     #[inline(always)]
     fn fill<R: Registers<Lane = f64>>(&mut self, registers: R, numbers: &[u32]) -> bool {
         let top = self.levels.len() - 1;
@@ -201,8 +201,8 @@ impl Queue {
         true
     }
 
-    /// Finds the places of all that comes before the end, from the top down, and makes known from the bottom up what the others
-    /// do not come before.
+    /// Finds all events before the end, from the top level down, and updates the lower bounds of the others from the bottom
+    /// up.
     #[inline(always)]
     fn find<R: Registers<Lane = f64>>(&mut self, registers: R) {
         let Queue { levels, visited, found, end, .. } = self;
@@ -235,8 +235,8 @@ impl Queue {
         }
     }
 
-    /// Puts what was found in order. The place of each is the number of those that come before it, counted a register at a time:
-    /// no branch of that is a matter of luck.
+    /// Sorts the found events. The index of each is the number of earlier ones, counted a register at a time without
+    /// unpredictable branches.
     #[inline(always)]
     fn sort<R: Registers<Lane = f64>>(&mut self, registers: R, numbers: &[u32]) {
         let mut times = std::mem::take(&mut self.times);
@@ -254,7 +254,7 @@ impl Queue {
                 let some = unsafe { registers.load(times.as_ptr().add(begin)) };
                 before += registers.bits(some.less_than(own)).count_ones() as usize;
             }
-            // Both discs of a collision have it at one time: the one found first takes the place. More at one time are rare.
+            // Both discs of a collision have the same time: the one found first takes the index. More at one time are rare.
             before += usize::from(self.next[before].time == time);
             while self.next[before].time == time {
                 are_pairs = false;
@@ -270,7 +270,7 @@ impl Queue {
         }
     }
 
-    /// Puts the two of one time in the order of their numbers.
+    /// Orders pairs of equal times by their numbers.
     #[inline(always)]
     fn order_pairs(&mut self) {
         for at in 1..self.next.len() {
@@ -290,13 +290,13 @@ mod tests {
     use stripmine_kernels::backend::Scalar;
     use stripmine_kernels::noise::{Purpose, Stream};
 
-    /// Against a list that is searched, with times that are equal now and then, as they come and as they change.
+    /// Compared with a linear search, with occasional equal times, as events occur and times change.
     #[test]
     fn events_come_in_order_whatever_changes() {
         let mut stream = Stream::new(7, Purpose::Test, 0);
         for count in [1usize, 2, 16, 17, 300, 5000] {
             let mut times = vec![f64::INFINITY; count];
-            // Numbers are the places the other way round.
+            // Numbers are the indices in reverse order.
             let numbers: Vec<u32> = (0..count as u32).rev().collect();
             let mut queue = Queue::new(count);
             let mut now = 0.0;

@@ -1,11 +1,11 @@
-//! Which mask: the fewest predictions a collision, by the source's reckoning.
+//! Choice of the mask with the fewest predictions per collision, by ISO99's cost formula.
 
 use super::grid::Sizes;
 use crate::domain::Domain;
 use crate::method::hard_disks::keys::MASKS;
 use stripmine_kernels::mask::Mask;
 
-/// The mask of a name; none for `auto`.
+/// Returns the mask of a name; none for `auto`.
 pub fn mask(name: &str) -> Option<Mask> {
     match name {
         "min" => Some(Mask::square(2)),
@@ -13,16 +13,16 @@ pub fn mask(name: &str) -> Option<Mask> {
     }
 }
 
-/// A mask that may be chosen.
+/// Mask that may be chosen.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Candidate {
     pub name: &'static str,
-    /// Predictions of pairs for each collision, about; infinite where it does not serve.
+    /// Estimated predictions of pairs per collision; infinite if the mask is unsuitable.
     pub(crate) predictions: f64,
 }
 
-/// What a mask costs: predictions around the two discs of a collision, and a share of those of filling the grid again, which
-/// comes after a flight of the slack at twice the largest speed. ISO99 section 4.
+/// Estimates the cost of each mask: predictions around the two discs of a collision, and a share of the predictions after a refill.
+/// The grid is refilled after a flight of the slack at twice the largest speed. ISO99 section 4.
 pub(crate) fn candidates(domain: &Domain, radii: [f64; 2], count: usize) -> Vec<Candidate> {
     let sizes = Sizes::new(domain, radii[0]);
     let occupancy = count as f64 / (sizes.cells[0] * sizes.cells[1]) as f64;
@@ -32,7 +32,7 @@ pub(crate) fn candidates(domain: &Domain, radii: [f64; 2], count: usize) -> Vec<
         let slack = sizes.reach(&mask) - 2.0 * radii[1];
         let serves = sizes.bears(domain, &mask) && slack > 0.0;
         let places = mask.offsets().len() as f64;
-        // An empty place costs a fifth of a prediction: it is read.
+        // Reading an empty cell costs a fifth of a prediction.
         let around = places * (occupancy + EMPTY);
         let between = collisions_while_flying(domain, radii, count, 0.5 * slack / FASTEST);
         let predictions = 2.0 * around * PER_DISC + count as f64 * around * 0.5 / between.max(1e-300);
@@ -41,14 +41,14 @@ pub(crate) fn candidates(domain: &Domain, radii: [f64; 2], count: usize) -> Vec<
     names.filter_map(of).collect()
 }
 
-/// An empty place of a mask, in predictions.
+/// Cost of an empty cell of a mask, in predictions.
 const EMPTY: f64 = 0.2;
-/// Discs that are predicted again for each disc of a collision: itself, and those that have lost their partner.
+/// Discs predicted again per disc of a collision: itself, and those that have lost their partner.
 const PER_DISC: f64 = 1.7;
-/// The largest speed over the typical one.
+/// Ratio of the largest to the typical speed.
 const FASTEST: f64 = 3.7;
 
-/// Collisions of all discs while one flies a distance (length) at the typical speed: by the free path of Henderson's equation.
+/// Collisions of all discs while one flies a distance (length) at the typical speed, by the mean free path of Henderson's equation.
 fn collisions_while_flying(domain: &Domain, radii: [f64; 2], count: usize, distance: f64) -> f64 {
     let radius = 0.5 * (radii[0] + radii[1]);
     let packing = (count as f64 * std::f64::consts::PI * radius * radius / domain.area()).min(0.9);
@@ -62,7 +62,7 @@ fn collisions_while_flying(domain: &Domain, radii: [f64; 2], count: usize, dista
 mod tests {
     use super::*;
 
-    /// Dense systems take the smallest mask, dilute ones a larger one. ISO99 section 4.
+    /// Dense systems prefer the smallest mask, dilute ones a larger one. ISO99 section 4.
     #[test]
     fn the_mask_grows_as_discs_become_rare() {
         let best = |packing: f64| {
@@ -85,7 +85,7 @@ mod tests {
             candidates(&domain, radii, 10).into_iter().find(|it| it.name == name).unwrap().predictions
         };
         assert!(cost("min", [0.5; 2]).is_finite() && cost("r10", [0.5; 2]).is_infinite());
-        // Discs three times as large reach beyond 5 × 5 cells of the smallest.
+        // Discs three times as large reach beyond 5 × 5 cells of the smallest disc.
         assert!(cost("min", [0.25, 0.75]).is_infinite());
     }
 }

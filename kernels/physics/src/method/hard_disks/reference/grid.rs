@@ -1,14 +1,14 @@
-//! The exclusive grid: cells that hold at most one disc's centre, and a mask of cells that holds whatever a disc may meet. ISO99.
+//! Exclusive grid (ISO99): each cell holds at most one centre, and a mask of cells covers all possible partners of a disc.
 //!
-//! Of a box every cell is stored; of a system without ceiling (`half_space`) those only that hold a disc.
+//! All cells of a closed box are stored. Without a ceiling (`half_space`) only the occupied cells are.
 
 use crate::domain::{Domain, Side};
 use stripmine_kernels::mask::Mask;
 
-/// Stands for no disc.
+/// Marks an empty cell.
 pub(crate) const EMPTY: u32 = u32::MAX;
 
-/// Sizes of the grid of a box.
+/// Number and size of the cells of a box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Sizes {
     /// Cells along x and y.
@@ -18,86 +18,86 @@ pub(crate) struct Sizes {
 }
 
 impl Sizes {
-    /// For discs no smaller than a radius: the fewest cells of which none holds two centres. ISO99 (2)–(5), with σ a radius.
+    /// Fewest cells of which none can hold two centres of discs with at least this radius. ISO99 (2)–(5), with σ a radius.
     ///
     /// # As printed
-    /// The names of the number of cells and of their side are swapped in (2)–(5).
+    /// The symbols for the number of cells and for their size are swapped in (2)–(5).
     pub(crate) fn new(domain: &Domain, smallest_radius: f64) -> Sizes {
         let bound = std::f64::consts::SQRT_2 * smallest_radius;
-        // Without an end the most there can be.
+        // An infinite side saturates.
         let cells = [0, 1].map(|axis| ((domain.length(axis) / bound) as usize).saturating_add(1));
         let edge = [0, 1].map(|axis| match domain.sides[axis] {
-            // Nothing has to be divided: just below the bound.
+            // An open side need not be divided evenly: just below the bound.
             Side::Open => bound * (1.0 - 1e-9),
             _ => domain.length(axis) / cells[axis] as f64,
         });
         Sizes { cells, edge }
     }
 
-    /// The column or row of a cell along an axis (length from the lower end).
+    /// Column or row of the cell at a distance from the lower end (length).
     pub(crate) fn along(&self, axis: usize, from_low: f64) -> usize {
         ((from_low / self.edge[axis]) as usize).min(self.cells[axis] - 1)
     }
 
-    /// Within which distance of a disc a mask shows every other one (length): r_NL.
+    /// Distance within which a mask contains every other disc (length): r_NL.
     pub(crate) fn reach(&self, mask: &Mask) -> f64 {
         f64::from(mask.reach_squared()).sqrt() * self.edge[0].min(self.edge[1])
     }
 
-    /// Whether periodic sides have enough cells for a mask not to meet itself.
+    /// True if periodic sides have enough cells for a mask not to overlap itself.
     pub(crate) fn bears(&self, domain: &Domain, mask: &Mask) -> bool {
         let least = 2 * mask.half_width() as usize + 1;
         (0..2).all(|axis| !domain.is_periodic(axis) || self.cells[axis] >= least)
     }
 }
 
-/// Where the discs were when they were last put into cells.
+/// Assignment of discs to cells at the last fill.
 pub(crate) trait Cells: Send {
-    /// Puts every disc into the cell of its place inside the box (length).
+    /// Assigns every disc to the cell of its position inside the box (length).
     ///
     /// # Errors
-    /// [`Misfit`]: why that cannot be.
+    /// [`Misfit`] if two discs share a cell or one is too high.
     fn fill(&mut self, places: Vec<[f64; 2]>) -> Result<(), Misfit>;
 
-    /// Where a disc was when it was put into its cell (length).
+    /// Position of a disc at the last fill (length).
     fn place(&self, disc: u32) -> [f64; 2];
 
-    /// The discs in the mask around one.
+    /// Iterates over the discs in the mask around one.
     fn around(&self, disc: u32) -> impl Iterator<Item = u32> + '_;
 
-    /// What it says of itself in a summary: a name and a value.
+    /// Name and value of the cells for the summary of a run.
     fn figure(&self) -> (&'static str, f64);
 }
 
-/// Why discs cannot be put into cells.
+/// Reason why discs cannot be assigned to cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Misfit {
-    /// Two of them are in one.
+    /// Two discs share a cell.
     Shared([u32; 2]),
-    /// One is so high that the look-up takes more entries than are allowed.
+    /// A disc is so high that the look-up needs more entries than are allowed.
     TooHigh(u32, usize),
 }
 
-/// Every cell of a box.
+/// Grid that stores every cell of a box.
 #[derive(Clone, Debug)]
 pub(crate) struct Grid {
     domain: Domain,
     sizes: Sizes,
-    /// Cells beyond each side, which show what lies across a periodic one.
+    /// Width of the margin, in cells, that mirrors cells across periodic sides.
     margin: usize,
     width: usize,
-    /// The disc in each cell, row by row, with the margins.
+    /// Disc in each cell, row by row, including the margins.
     discs: Vec<u32>,
     /// The cell of each disc.
     cell: Vec<u32>,
-    /// The place of each disc when it was put there (length).
+    /// Position of each disc at the last fill (length).
     places: Vec<[f64; 2]>,
-    /// From a cell to those of its mask.
+    /// Offsets from a cell to the cells of its mask.
     offsets: Vec<isize>,
 }
 
 impl Grid {
-    /// Of a box, for a mask; no disc is in it.
+    /// Creates the empty grid of a box, for a mask.
     pub(crate) fn new(domain: Domain, sizes: Sizes, mask: &Mask) -> Grid {
         let margin = mask.half_width() as usize;
         let [width, height] = sizes.cells.map(|cells| cells + 2 * margin);
@@ -114,7 +114,7 @@ impl Grid {
         }
     }
 
-    /// Shows in the margins what lies across periodic sides.
+    /// Copies cells across periodic sides into the margins.
     fn mirror(&mut self) {
         let ([columns, rows], margin, width) = (self.sizes.cells, self.margin, self.width);
         let is_periodic = |axis: usize| matches!(self.domain.sides[axis], Side::Periodic(_));
@@ -162,7 +162,7 @@ impl Cells for Grid {
         self.offsets.iter().map(there).filter(|&other| other != EMPTY)
     }
 
-    /// Discs for each cell.
+    /// Mean number of discs per cell.
     fn figure(&self) -> (&'static str, f64) {
         let [columns, rows] = self.sizes.cells;
         ("occupancy", self.cell.len() as f64 / (columns * rows) as f64)
@@ -175,7 +175,7 @@ mod tests {
     use rand::RngExt;
     use stripmine_kernels::noise::{Purpose, Stream};
 
-    /// Discs at random places: whatever is within reach is in the mask, also across periodic sides.
+    /// Random discs: the mask contains every disc within its reach, also across periodic sides.
     #[test]
     fn a_mask_shows_everything_within_its_reach() {
         let mut stream = Stream::new(11, Purpose::Test, 0);

@@ -1,10 +1,10 @@
-//! The exclusive grid without a ceiling: only the cells that hold a disc are stored, as the source prints it. ISO99.
+//! Exclusive grid without a ceiling (ISO99): only the occupied cells are stored, as in the paper.
 //!
 //! ```text
-//! N_G = N_gx j + i                    the number of the cell in column i and row j, both from 0
+//! N_G = N_gx j + i                    number of the cell in column i and row j, both from 0
 //! A, BX, BY                           disc, column and row of the occupied cells, in the order of N_G
-//! k = ⌊N_G / L⌋                       the block of L cells in which it lies
-//! C(k), D(k)                          where the entries of a block begin, and how many there are: at most L
+//! k = ⌊N_G / L⌋                       block of L cells that contains it
+//! C(k), D(k)                          first entry of a block and number of its entries: at most L
 //! ```
 //! A look-up reads C and D once and at most L entries of A, BX and BY.
 //!
@@ -16,21 +16,21 @@ use super::grid::{Cells, EMPTY, Misfit, Sizes};
 use crate::domain::Domain;
 use stripmine_kernels::mask::Mask;
 
-/// L: cells of a block.
+/// L: cells per block.
 const BLOCK: usize = 8;
-/// Blocks that may be, whatever the memory: 2 GB.
+/// Maximum number of blocks, independent of the memory: 2 GB.
 const MOST: usize = 1 << 28;
 
-/// The occupied cells.
+/// Grid that stores only the occupied cells.
 #[derive(Clone, Debug)]
 pub(crate) struct HalfSpace {
     domain: Domain,
     sizes: Sizes,
-    /// From a cell to those of its mask: columns and rows.
+    /// Offsets from a cell to the cells of its mask: columns and rows.
     offsets: Vec<[isize; 2]>,
     /// A, BX, BY: disc, column and row.
     occupied: Vec<(u32, u32, u32)>,
-    /// C, with the end of the last block behind it: D(k) is the difference of two neighbours.
+    /// C, followed by the end of the last block: D(k) is the difference of two neighbours.
     starts: Vec<u32>,
     /// Column and row of each disc.
     cell: Vec<[u32; 2]>,
@@ -38,13 +38,13 @@ pub(crate) struct HalfSpace {
 }
 
 impl HalfSpace {
-    /// Above a floor, for a mask; no disc is in it.
+    /// Creates the empty grid above a floor, for a mask.
     pub(super) fn new(domain: Domain, sizes: Sizes, mask: &Mask) -> HalfSpace {
         let offsets = mask.offsets().iter().map(|it| [it.columns as isize, it.rows as isize]).collect();
         HalfSpace { domain, sizes, offsets, occupied: vec![], starts: vec![], cell: vec![], places: vec![] }
     }
 
-    /// The disc in a cell; [`EMPTY`] if there is none.
+    /// Returns the disc in a cell; [`EMPTY`] if there is none.
     fn find(&self, column: usize, row: usize) -> u32 {
         let block = (self.sizes.cells[0] * row + column) / BLOCK;
         let [Some(&from), Some(&to)] = [block, block + 1].map(|k| self.starts.get(k)) else { return EMPTY };
@@ -109,7 +109,7 @@ impl Cells for HalfSpace {
         self.offsets.iter().filter_map(there)
     }
 
-    /// Entries of C and D.
+    /// Number of entries of C and D.
     fn figure(&self) -> (&'static str, f64) {
         ("blocks", self.starts.len().saturating_sub(1) as f64)
     }
@@ -126,7 +126,7 @@ mod tests {
         HalfSpace::new(domain, Sizes::new(&domain, 0.5), &Mask::square(2))
     }
 
-    /// By hand: neighbours beside, above and across the side; one disc 10⁵ high takes as many rows of blocks.
+    /// Calculated by hand: neighbours beside, above and across the side. One disc at a height of 10⁵ needs blocks for all rows below.
     #[test]
     fn a_mask_finds_the_discs_of_the_occupied_cells() {
         let places = vec![[0.6, 0.6], [1.7, 0.6], [0.6, 1.7], [9.8, 0.6], [5.0, 1e5]];
@@ -138,7 +138,7 @@ mod tests {
             assert_eq!(seen, near);
             assert_eq!(cells.around(4).count(), 0);
             let (_, blocks) = cells.figure();
-            // 15 cells a row, rows of just below 0.7071.
+            // 15 cells per row, rows of just below 0.7071.
             assert!(
                 (blocks - 15.0 * 1e5 / std::f64::consts::FRAC_1_SQRT_2 / BLOCK as f64).abs() < 15.0,
                 "{blocks}"

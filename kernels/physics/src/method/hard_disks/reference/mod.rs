@@ -1,5 +1,5 @@
-//! The source's engine: local minima over masks of the exclusive grid, a complete binary tree, local times, and no events for
-//! leaving a cell. ISO99.
+//! Reference engine (ISO99): local minima over masks of the exclusive grid, a complete binary tree, local times, and no
+//! cell-crossing events.
 
 pub mod choice;
 pub(crate) mod grid;
@@ -18,26 +18,26 @@ use stripmine_kernels::flight::{Disc, Space, meeting};
 use stripmine_kernels::mask::Mask;
 use tournament::Tournament;
 
-/// What a disc will meet next.
+/// Predicted next event of a disc.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Event {
-    /// When (time); infinite if nothing.
+    /// Time of the event; infinite if none.
     time: f64,
     with: Partner,
 }
 
 impl Event {
-    /// Nothing.
+    /// No event.
     const NONE: Event = Event { time: f64::INFINITY, with: Partner::Wall(0) };
 
-    /// Whether it comes before another one of the same disc; of two at one time, that with the smaller number.
+    /// True if it precedes another event of the same disc; of two at one time, the one with the smaller partner comes first.
     #[inline(always)]
     fn is_before(&self, other: &Event) -> bool {
         self.time < other.time || self.time == other.time && self.with < other.with
     }
 }
 
-/// Discs under way.
+/// Engine over cells of type `C`.
 #[derive(Clone, Debug)]
 pub(crate) struct Reference<C> {
     arena: Arena,
@@ -45,38 +45,38 @@ pub(crate) struct Reference<C> {
     grid: C,
     events: Vec<Event>,
     tree: Tournament,
-    /// The time of the last event, or up to which it is known that there is none.
+    /// Time of the last event, or the time up to which there is none.
     time: f64,
-    /// What two discs may approach each other by until the masks miss one (length), at the time `since`.
+    /// Distance by which two discs may approach before the masks miss a pair (length), at the time `since`.
     slack: f64,
     since: f64,
-    /// No disc is faster (length/time).
+    /// Largest speed (length/time).
     fastest: f64,
     /// r_NL − 2 σ_max (length): the slack of a new grid.
     whole_slack: f64,
-    /// How often the grid was filled.
+    /// Number of fills of the grid.
     remaps: u64,
     operations: Operations,
-    /// Discs that have lost their partner, while an event is dealt with.
+    /// Discs that have lost their partner in the current event.
     lost: Vec<u32>,
-    /// When the grid was filled. Speeds are those in a frame that falls from then on: gravity changes none of them.
+    /// Time of the last fill. Speeds are measured in a frame that falls freely from then on, so gravity does not change them.
     filled: f64,
-    /// The discs' speeds when the grid was filled (length/time).
+    /// Speeds of the discs at the last fill (length/time).
     speeds: Vec<f64>,
 }
 
-/// Where discs were put into cells, in a checkpoint.
+/// Checkpoint columns of the positions at the last fill.
 const FILLED_AT: [&str; 2] = ["filled.x", "filled.y"];
-/// What else a checkpoint keeps.
+/// Checkpoint names of the sums of the engine.
 const SUMS: [&str; 5] = ["engine.time", "engine.slack", "engine.since", "engine.fastest", "engine.filled"];
 
-/// Distances that may not be exceeded are taken this much larger.
+/// Safety factor for distances that must not be exceeded.
 const ROUNDED_UP: f64 = 1.0 + 1e-9;
 
-/// Begins at a time: over every cell of a box, or over those that hold a disc where there is no ceiling.
+/// Starts the engine at a time, over all cells of a box, or over the occupied cells if there is no ceiling.
 ///
 /// # Errors
-/// An error of the engine if discs cannot be put into cells.
+/// [`EngineError`] if discs cannot be assigned to cells.
 pub(crate) fn begin(
     arena: Arena,
     discs: Vec<Disc>,
@@ -96,7 +96,7 @@ pub(crate) fn begin(
 }
 
 impl<C: Cells> Reference<C> {
-    /// Begins at a time; within `reach` (length) of a disc the cells show every other one.
+    /// Starts at a time; the cells contain every other disc within `reach` (length) of a disc.
     fn new(
         arena: Arena,
         discs: Vec<Disc>,
@@ -126,7 +126,7 @@ impl<C: Cells> Reference<C> {
         Ok(engine)
     }
 
-    /// Up to when the masks show every partner (time). Nothing later is predicted.
+    /// Time up to which the masks contain every partner. No later event is predicted.
     fn horizon(&self) -> f64 {
         self.since + self.slack / (2.0 * self.fastest)
     }
@@ -154,7 +154,7 @@ impl<C: Cells> Reference<C> {
         }
     }
 
-    /// The dynamic upper cut-off: a disc that is faster than all shortens the time for which masks are whole.
+    /// Applies the dynamic upper cut-off: a new fastest disc shortens the time for which the masks are complete.
     fn heed(&mut self, disc: u32) {
         let speed = self.speed(&self.discs[disc as usize]);
         if speed > self.fastest {
@@ -164,13 +164,13 @@ impl<C: Cells> Reference<C> {
         }
     }
 
-    /// A speed in the frame that falls since the grid was filled (length/time).
+    /// Speed in the frame that falls freely since the last fill (length/time).
     fn speed(&self, disc: &Disc) -> f64 {
         let [u, v] = disc.velocity_at(&self.arena.space, self.filled);
         (u * u + v * v).sqrt()
     }
 
-    /// Finds the next events of discs whose motion has changed, and of those that expected to meet them.
+    /// Finds the next events of discs whose motion has changed, and of the discs that expected to meet them.
     fn repair(&mut self, changed: [u32; 2]) {
         let [a, b] = changed;
         let mut lost = std::mem::take(&mut self.lost);
@@ -210,7 +210,7 @@ impl<C: Cells> Reference<C> {
         self.lost = lost;
     }
 
-    /// The next event of a disc is another.
+    /// Replaces the next event of a disc.
     fn renew(&mut self, disc: u32, event: Event) {
         let Reference { events, tree, .. } = self;
         events[disc as usize] = event;
@@ -223,7 +223,7 @@ impl<C: Cells> Reference<C> {
         Event { time, with: Partner::Wall(axis as u8) }
     }
 
-    /// What a disc meets next, of all that its mask shows.
+    /// Predicts the next event of a disc among all discs in its mask.
     fn predicted(&self, disc: u32) -> Event {
         let horizon = self.horizon();
         self.grid.around(disc).fold(self.at_wall(disc), |next, other| {
@@ -233,7 +233,7 @@ impl<C: Cells> Reference<C> {
         })
     }
 
-    /// Puts the discs into the cells of their places (length).
+    /// Assigns the discs to the cells of their positions (length).
     fn fill(&mut self, places: Vec<[f64; 2]>) -> Result<(), EngineError> {
         self.grid.fill(places).map_err(|why| match why {
             Misfit::Shared(pair) => EngineError::SharedCell(pair),
@@ -241,7 +241,7 @@ impl<C: Cells> Reference<C> {
         })
     }
 
-    /// Fills the grid with the discs as they are at a time, and finds what each meets next.
+    /// Fills the grid with the discs at a time, and predicts the next event of each.
     fn remap(&mut self, time: f64) -> Result<(), EngineError> {
         self.fill(self.discs.iter().map(|disc| self.arena.place(disc, time)).collect())?;
         self.time = time;
@@ -262,7 +262,7 @@ impl<C: Cells> Reference<C> {
         }
         let (now, horizon, ahead) = (time, self.horizon(), self.slack / (2.0 * self.fastest));
         let Reference { grid, discs, events, arena, speeds, operations, .. } = self;
-        // Each pair once, if it may meet so soon at all.
+        // Visit each pair once, and only if it can meet before the horizon.
         for disc in 0..discs.len() as u32 {
             let (own, speed, here) = (&discs[disc as usize], speeds[disc as usize], grid.place(disc));
             for other in grid.around(disc).filter(|&other| other > disc) {
@@ -361,7 +361,7 @@ impl<C: Cells> Engine for Reference<C> {
     }
 }
 
-/// When two discs meet, by their numbers.
+/// Collision time of two discs, given by their numbers.
 #[inline(always)]
 fn pair(space: &Space, discs: &[Disc], [disc, other]: [u32; 2], now: f64, horizon: f64) -> f64 {
     let [a, b] = [disc.min(other), disc.max(other)];

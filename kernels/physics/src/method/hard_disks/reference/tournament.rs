@@ -1,19 +1,19 @@
-//! A complete binary tree over the discs, in which the smaller of two keys goes up: the smallest of all is at the root.
+//! Complete binary tree over the discs, in which the smaller key wins: the root holds the smallest key.
 
-/// The tree. Leaves are discs, by number.
+/// Tournament tree. Leaves are discs, by number.
 #[derive(Clone, Debug)]
 pub(crate) struct Tournament {
-    /// The winner of each node; the root is 1, the children of k are 2k and 2k + 1. Leaves are not kept.
+    /// Winner of each node; the root is 1, the children of k are 2k and 2k + 1. Leaves are not stored.
     winners: Vec<u32>,
-    /// Leaves: a power of two.
+    /// Number of leaves, a power of two.
     leaves: usize,
 }
 
-/// Stands for no disc.
+/// Marks a leaf without a disc.
 const NONE: u32 = u32::MAX;
 
 impl Tournament {
-    /// Of `count` discs, of which `time` gives the key; ties go to the smaller number.
+    /// Builds the tree of `count` discs with the keys `time`; ties go to the smaller number.
     pub(super) fn new(count: usize, time: impl Fn(u32) -> f64) -> Tournament {
         let leaves = count.next_power_of_two().max(2);
         let mut tree = Tournament { winners: vec![NONE; leaves], leaves };
@@ -23,26 +23,26 @@ impl Tournament {
         tree
     }
 
-    /// The disc with the smallest key.
+    /// Returns the disc with the smallest key.
     #[inline]
     pub(super) fn first(&self) -> u32 {
         self.winners[1]
     }
 
-    /// Makes all keys known again.
+    /// Replays all nodes after all keys have changed.
     pub(crate) fn renew(&mut self, count: usize, time: impl Fn(u32) -> f64) {
         for node in (1..self.leaves).rev() {
             self.winners[node] = self.play(node, count, &time);
         }
     }
 
-    /// The key of a disc is another.
+    /// Updates the tree after the key of a disc has changed.
     #[inline]
     pub(super) fn update(&mut self, disc: u32, count: usize, time: impl Fn(u32) -> f64) {
         let mut node = (self.leaves + disc as usize) / 2;
         while node > 0 {
             let winner = self.play(node, count, &time);
-            // Above, nothing changes for a disc that neither won nor wins.
+            // The nodes above are unaffected if the disc neither won before nor wins now.
             if winner == self.winners[node] && winner != disc {
                 return;
             }

@@ -1,29 +1,29 @@
-//! The leapfrog, and schemes of higher order composed of it (Yoshida 1990). All are symplectic and reversible.
+//! Leapfrog, and its compositions of higher order (Yoshida 1990). All are symplectic and reversible.
 
 use super::{Bodies, Columns, Field, Scheme, padded, room};
 use crate::method::nbody::bodies::add;
 use stripmine_kernels::isa::ProgramError;
 
-/// Leapfrogs (kick, drift, kick) one after the other, each over its part of the step.
+/// Sequence of leapfrogs (kick, drift, kick), each over a fraction of the step.
 #[derive(Clone, Debug)]
 pub(crate) struct Composed {
     order: u32,
-    /// Parts of the step; their sum is 1.
+    /// Fractions of the step; their sum is 1.
     parts: Vec<f64>,
     acceleration: Columns,
-    /// Whether the acceleration is that of the positions.
+    /// True if the acceleration belongs to the current positions.
     is_known: bool,
 }
 
 impl Composed {
-    /// Parts in the middle and, outwards from there, on both sides.
+    /// Composes a scheme from the fractions on either side of the middle one, listed outwards.
     fn new(order: u32, outwards: &[f64]) -> Self {
         let middle = 1.0 - 2.0 * outwards.iter().sum::<f64>();
         let parts = outwards.iter().rev().copied().chain([middle]).chain(outwards.iter().copied()).collect();
         Composed { order, parts, acceleration: Columns::default(), is_known: false }
     }
 
-    /// The leapfrog itself, second order.
+    /// Leapfrog, second order.
     pub(crate) fn leapfrog() -> Self {
         Composed::new(2, &[])
     }
@@ -80,7 +80,7 @@ impl Scheme for Composed {
     }
 
     fn carried(&self) -> Vec<&Columns> {
-        // Found again of the same positions it has the same bits, but that would be a sweep more.
+        // Recalculating it would give the same bits, but needs another sweep.
         if self.is_known { vec![&self.acceleration] } else { vec![] }
     }
 

@@ -1,13 +1,13 @@
-//! Schemes of first order: the source's and the explicit one.
+//! First-order schemes: PWP's damped Euler and the explicit Euler.
 
 use super::{Bodies, Columns, Field, Scheme, room};
 use crate::method::nbody::bodies::add;
 use stripmine_kernels::isa::ProgramError;
 
-/// The source's scheme: v ← damping · (v + a dt), r ← r + v dt. With damping 1 it is symplectic: the energy error stays bounded.
+/// PWP's scheme: v ← damping · (v + a dt), r ← r + v dt. With damping 1 it is symplectic: the energy error stays bounded.
 ///
 /// # As printed
-/// The source calls the ½ a dt² missing and the scheme a gain of energy; it is neither. Damping below 1 acts at every step, as a
+/// PWP says that the ½ a dt² is missing and that the scheme gains energy; neither is true. Damping below 1 acts at every step, as a
 /// friction −ln(damping)/dt: the smaller dt, the sooner an orbit is lost.
 #[derive(Clone, Debug)]
 pub(crate) struct DampedEuler {
@@ -16,7 +16,7 @@ pub(crate) struct DampedEuler {
 }
 
 impl DampedEuler {
-    /// With what velocities are multiplied by at every step.
+    /// Creates the scheme with the factor of the velocities at every step.
     pub(crate) fn new(damping: f64) -> Self {
         DampedEuler { damping, acceleration: Columns::default() }
     }
@@ -44,7 +44,7 @@ impl Scheme for DampedEuler {
     }
 }
 
-/// The explicit Euler scheme: r ← r + v dt + share · a dt², v ← v + a dt, both by what was before the step. It gains energy.
+/// Explicit Euler scheme: r ← r + v dt + share · a dt², v ← v + a dt, both with the values before the step. It gains energy.
 #[derive(Clone, Debug)]
 pub(crate) struct Euler {
     share: f64,
@@ -52,7 +52,7 @@ pub(crate) struct Euler {
 }
 
 impl Euler {
-    /// With a share of a dt² in the positions: 0, or ½.
+    /// Creates the scheme with a share of a dt² in the positions: 0 or ½.
     pub(crate) fn new(share: f64) -> Self {
         Euler { share, acceleration: Columns::default() }
     }

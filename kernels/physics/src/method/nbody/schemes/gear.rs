@@ -1,16 +1,16 @@
-//! Gear's predictor and corrector with six values, for equations of second order.
+//! Gear's six-value predictor and corrector for second-order equations.
 
 use super::{Bodies, Columns, Field, Scheme, padded, room};
 use crate::method::nbody::bodies::{add, zeros};
 use stripmine_kernels::isa::ProgramError;
 
-/// Values that are carried: q_k = dt^k/k! d^k r/dt^k.
+/// Number of values: q_k = dt^k/k! d^k r/dt^k.
 const VALUES: usize = 6;
 
-/// What the corrector adds of the difference to each value, for forces that do not depend on velocities.
+/// Corrector coefficients of the values, for forces independent of velocities.
 const CORRECTOR: [f64; VALUES] = [3.0 / 20.0, 251.0 / 360.0, 1.0, 11.0 / 18.0, 1.0 / 6.0, 1.0 / 60.0];
 
-/// Started exactly: with zeros in place of the higher derivatives it would be of second order only.
+/// Gear's scheme, started exactly: with zeros for the higher derivatives it would be of second order only.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Gear {
     /// q_2 to q_5; q_0 and q_1 are position and velocity · dt.
@@ -20,7 +20,7 @@ pub(crate) struct Gear {
 }
 
 impl Gear {
-    /// The higher values, from the derivatives of the acceleration as they are.
+    /// Initialises the higher values from the exact derivatives of the acceleration.
     fn start(&mut self, bodies: &Bodies, dt: f64, field: &mut dyn Field) -> Result<(), ProgramError> {
         self.higher = (2..VALUES).map(|_| zeros(bodies.entries())).collect();
         field.derivatives(&bodies.position, &bodies.velocity, &mut self.higher)?;

@@ -1,15 +1,15 @@
-//! Hermite's scheme of fourth order, with the jerk: predicted, evaluated, corrected (Makino and Aarseth 1992).
+//! Fourth-order Hermite scheme with jerk: predict, evaluate, correct (Makino and Aarseth 1992).
 
 use super::{Bodies, Columns, Field, Scheme, padded, room};
 use crate::method::nbody::bodies::add;
 use stripmine_kernels::isa::ProgramError;
 
-/// One evaluation of acceleration and jerk a step, at the predicted positions.
+/// Hermite scheme: one evaluation of acceleration and jerk per step, at the predicted positions.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Hermite {
-    /// Acceleration and jerk that the step begins with.
+    /// Acceleration and jerk at the beginning of the step.
     begin: [Columns; 2],
-    /// The same at its predicted end.
+    /// Acceleration and jerk at the predicted end.
     end: [Columns; 2],
     position: Columns,
     velocity: Columns,
@@ -34,7 +34,7 @@ impl Scheme for Hermite {
         add(&mut self.velocity, dt * dt / 2.0, j);
         field.derivatives(&self.position, &self.velocity, &mut self.end)?;
         let [a_end, j_end] = &self.end;
-        // The corrected position takes the mean of both velocities, the second of them corrected.
+        // The corrected position uses the mean of the old and the corrected velocity.
         add(position, dt / 2.0, velocity);
         add(velocity, dt / 2.0, a);
         add(velocity, dt / 2.0, a_end);

@@ -1,4 +1,4 @@
-//! Integrators of bodies, one file each. State is positions and velocities; what a scheme carries beside them is its own.
+//! Integrators of bodies, one file each. The state is positions and velocities; schemes may carry further values.
 
 mod composed;
 mod euler;
@@ -16,15 +16,15 @@ pub(crate) use gear::Gear;
 pub(crate) use hermite::Hermite;
 pub(crate) use runge_kutta::RungeKutta;
 
-/// What bodies do to each other, as far as a scheme asks.
+/// Force field as schemes use it.
 pub trait Field {
-    /// Accelerations of bodies at these positions (length/time²).
+    /// Calculates the accelerations at these positions (length/time²).
     ///
     /// # Errors
-    /// [`ProgramError`] if the processor lacks what is asked for, or it was interrupted.
+    /// [`ProgramError`] if the processor lacks the instruction set, or the evaluation is interrupted.
     fn acceleration(&mut self, position: &Columns, into: &mut Columns) -> Result<(), ProgramError>;
 
-    /// The same at the positions that a step ends with, whose energy may be wanted next.
+    /// Calculates the accelerations at the end of a step, whose energy may be needed next.
     ///
     /// # Errors
     /// As [`Field::acceleration`].
@@ -32,7 +32,7 @@ pub trait Field {
         self.acceleration(position, into)
     }
 
-    /// Accelerations and their time derivatives, as many as `orders` has room for, the acceleration first.
+    /// Calculates the accelerations and their time derivatives, one per entry of `orders`, the acceleration first.
     ///
     /// # Errors
     /// As [`Field::acceleration`].
@@ -44,44 +44,44 @@ pub trait Field {
     ) -> Result<(), ProgramError>;
 }
 
-/// An integrator.
+/// Integrator of the equations of motion.
 pub trait Scheme: Send {
     /// Advances the bodies by `dt` (time).
     ///
     /// # Errors
-    /// [`ProgramError`] of the field; bodies and scheme are then somewhere in the step.
+    /// [`ProgramError`] of the field; bodies and scheme are then left within the step.
     fn step(&mut self, bodies: &mut Bodies, dt: f64, field: &mut dyn Field) -> Result<(), ProgramError>;
 
-    /// The order of convergence: with n times as many steps the error at a fixed time is about n^order smaller.
+    /// Order of convergence: with n times as many steps the error at a fixed time is about n^order smaller.
     fn order(&self) -> u32;
 
-    /// What is carried from step to step beside positions and velocities and cannot be had from them.
+    /// Values carried between steps that cannot be calculated from positions and velocities.
     fn carried(&self) -> Vec<&Columns> {
         vec![]
     }
 
-    /// How many columns [`carried`](Self::carried) gives after a step.
+    /// Number of columns of [`carried`](Self::carried) after a step.
     fn carries(&self) -> usize {
         0
     }
 
-    /// Takes up what [`carried`](Self::carried) gave, without the padding; the bodies are those of that moment already.
+    /// Restores the values of [`carried`](Self::carried), without padding; the bodies are already restored.
     fn take_up(&mut self, bodies: &Bodies, carried: Vec<Columns>);
 
-    /// Whether it takes energy out on purpose.
+    /// True if the scheme dissipates energy on purpose.
     fn drains(&self) -> bool {
         false
     }
 }
 
 define_words! {
-    /// Integrators by name.
+    /// Names of the integrators.
     pub enum SchemeName {
-        /// The source's: velocities first, damped at every step, then positions.
+        /// PWP's scheme: velocities first, damped at every step, then positions.
         DampedEuler = "damped-euler",
-        /// Positions by the old velocities: to show how it fails.
+        /// Explicit Euler, with the old velocities: shows how it fails.
         Euler = "euler",
-        /// Euler with the ½ a dt² that the source misses: to show that it is worse.
+        /// Explicit Euler with the ½ a dt² that PWP misses: shows that it is worse.
         EulerWithHalf = "euler-with-half",
         /// Kick, drift, kick.
         Leapfrog = "leapfrog",
@@ -93,15 +93,15 @@ define_words! {
         Yoshida8 = "yoshida-8",
         /// The classical Runge–Kutta scheme.
         RungeKutta4 = "runge-kutta-4",
-        /// Predicted, evaluated, corrected with the jerk.
+        /// Hermite scheme: predict, evaluate, correct with the jerk.
         Hermite4 = "hermite-4",
-        /// Gear's predictor and corrector with six values, started exactly.
+        /// Gear's six-value predictor and corrector, started exactly.
         Gear6 = "gear-6",
     }
 }
 
 impl SchemeName {
-    /// The scheme; `damping` is what velocities are multiplied by at every step of the source's.
+    /// Creates the scheme; `damping` is the factor of the velocities at every step of PWP's scheme.
     pub fn scheme(self, damping: f64) -> Box<dyn Scheme> {
         match self {
             SchemeName::DampedEuler => Box::new(DampedEuler::new(damping)),
@@ -119,7 +119,7 @@ impl SchemeName {
 }
 
 impl SchemeName {
-    /// Quantities along three axes that a scheme holds for every body, and those of them that it carries from step to step.
+    /// Numbers of three-axis quantities per body that a scheme stores, and that it carries between steps.
     pub fn held(self) -> [usize; 2] {
         match self {
             SchemeName::DampedEuler | SchemeName::Euler | SchemeName::EulerWithHalf => [1, 0],
@@ -128,20 +128,20 @@ impl SchemeName {
             }
             SchemeName::RungeKutta4 => [5, 0],
             SchemeName::Hermite4 => [6, 2],
-            // Its start takes paths and what else is found of them.
+            // Includes the Taylor series of its start.
             SchemeName::Gear6 => [12, 4],
         }
     }
 }
 
-/// Columns as long as those of `bodies`, made where they are not there yet.
+/// Resizes columns to the entries of `bodies`.
 fn room(columns: &mut Columns, bodies: &Bodies) {
     for column in columns {
         column.resize(bodies.entries(), 0.0);
     }
 }
 
-/// Columns with room for the padding of the bodies.
+/// Extends columns by the padding of the bodies.
 fn padded(mut columns: Columns, bodies: &Bodies) -> Columns {
     room(&mut columns, bodies);
     columns

@@ -1,10 +1,10 @@
-//! The classical Runge–Kutta scheme of fourth order. Its energy drifts.
+//! Classical fourth-order Runge–Kutta scheme. Its energy drifts.
 
 use super::{Bodies, Columns, Field, Scheme, room};
 use crate::method::nbody::bodies::add;
 use stripmine_kernels::isa::ProgramError;
 
-/// Four evaluations a step; nothing is carried.
+/// Runge–Kutta scheme: four evaluations per step, no carried values.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RungeKutta {
     /// Accelerations of the four stages.
@@ -16,7 +16,7 @@ impl Scheme for RungeKutta {
     fn step(&mut self, bodies: &mut Bodies, dt: f64, field: &mut dyn Field) -> Result<(), ProgramError> {
         self.stages.iter_mut().for_each(|stage| room(stage, bodies));
         let Bodies { position, velocity, .. } = bodies;
-        // Velocities of the stages are v + c dt a of the stage before: positions take a of the one before that.
+        // Stage velocities are v + c dt a of the previous stage, so positions use a of the stage before that.
         for stage in 0..4 {
             let [c, before] = [[0.0, 0.0], [0.5, 0.0], [0.5, 0.25], [1.0, 0.5]][stage];
             self.at.clone_from(position);
