@@ -1,4 +1,4 @@
-//! `stripmine average`: the mean of every quantity of a run, or of several, with its error.
+//! `stripmine average`: mean and error of every quantity, over one run or several.
 
 use super::run_folder;
 use crate::console::{Common, Failure, print, print_json, warn};
@@ -14,21 +14,23 @@ use stripmine_physics::number::{counted, significant};
 use stripmine_physics::run::{Finished, Function, Number, Point, averages_of, function_of, functions_of};
 use stripmine_physics::structure::{NAMES, observable};
 
-/// The mean of every quantity of a run with its error, correlation time, equilibration and independent samples; several runs of one scene, with seeds of their own, are joined
+/// Prints the mean of every quantity of a run with its error
+///
+/// Several runs of one scene with different seeds are joined.
 #[derive(Args)]
 pub(super) struct AverageVerb {
     /// Folders of runs
     #[arg(required = true, value_name = "RUN")]
     runs: Vec<PathBuf>,
-    /// The table as comma-separated values
+    /// Prints the table as CSV
     #[arg(long, conflicts_with = "json")]
     csv: bool,
-    /// A function of the structure in place of the averages, such as "g(r)": where, mean and bar
+    /// Prints a structure function instead, such as "g(r)", with its error bars
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(NAMES))]
     structure: Option<String>,
 }
 
-/// What is said as data.
+/// Document of `--json`.
 #[derive(Serialize)]
 struct Said<'a> {
     #[serde(flatten)]
@@ -48,7 +50,7 @@ impl AverageVerb {
             if common.json {
                 return print_json(&function);
             }
-            // Beside a table for programs, and not in it.
+            // Warnings go to standard error: the table may be read by a program.
             doubts(std::slice::from_ref(&function));
             return match self.csv {
                 true => print(&function.csv()),
@@ -74,14 +76,14 @@ impl AverageVerb {
     }
 }
 
-/// Says what is doubtful of functions.
+/// Warns of every function whose result is doubtful.
 fn doubts(functions: &[Function]) {
     for Function { name, doubt, .. } in functions {
         doubt.iter().for_each(|doubt| warn(format_args!("{name}: {doubt}")));
     }
 }
 
-/// A function, point by point.
+/// Table of a structure function, one row per point.
 fn of_function(function: &Function) -> Table {
     let with_unit = |[name, unit]: [&str; 2]| match unit {
         "" => name.to_owned(),
@@ -99,7 +101,7 @@ fn of_function(function: &Function) -> Table {
     .table("structure", format!("{} of {}", function.name, counted(function.runs, "run", "runs")))
 }
 
-/// The numbers that stand for functions of the structure.
+/// Table of the characteristic numbers of structure functions, such as a peak height.
 fn of_structure(functions: &[Function]) -> Table {
     let of = |function: &'_ Function| -> Vec<(&'static str, Number)> {
         function.headlines.iter().map(|number| (function.name, number.clone())).collect()
@@ -114,7 +116,7 @@ fn of_structure(functions: &[Function]) -> Table {
         .text("unit", |(_, number)| number.unit)
         .table("structure", "Structure".to_owned())
         .note(format!(
-            "± 95 %: over blocks of a run, or by Student's t of what lies between several. --structure NAME has a whole function: {}.",
+            "± 95 %: from blocks of one run, or from the scatter between runs (Student's t). --structure NAME prints a whole function: {}.",
             names.join(", ")
         ))
 }
@@ -153,13 +155,13 @@ fn table(averages: &Averages) -> Table {
         .note(format!("± 95 %: the {}.", averages.bar))
 }
 
-/// Decimals that show a number of digits.
+/// Decimals that show a number of significant digits.
 fn decimals(value: f64, digits: i32) -> usize {
     let magnitude = value.abs().log10().floor();
     if magnitude.is_finite() { (digits - 1 - magnitude as i32).max(0) as usize } else { 0 }
 }
 
-/// Decimals of a mean with its bar; more where there is none, or it is of rounding alone.
+/// Decimals of a mean: two digits of its error bar, or six digits if the bar is missing or only rounding.
 fn decimals_of_mean(mean: f64, bar: f64) -> usize {
     if bar > 1e-9 * mean.abs() { decimals(bar, 2) } else { decimals(mean, 6) }
 }

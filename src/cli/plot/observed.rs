@@ -1,4 +1,4 @@
-//! The observables of a run: `thermo.csv` as charts, and a line for each in the terminal.
+//! Observables of a run: `thermo.csv` as charts, and one line for each in the terminal.
 
 use super::means::Means;
 use crate::frame::{Rows, Table};
@@ -13,30 +13,30 @@ use stripmine_physics::reported::{Class, Reported};
 use stripmine_physics::run::{TableError, TableReader};
 use stripmine_physics::words::suggestion;
 
-/// Curves of a picture: more cannot be told apart.
+/// Most curves of a chart that can be told apart.
 const CURVES: usize = 5;
-/// A curve whose own range is a smaller part of its chart's than this is a line.
+/// Least range of a curve relative to its chart; below it the curve looks like a straight line.
 const FLAT: f64 = 0.2;
-/// A curve's range is that without this part of its values at either end: a short peak fills no chart.
+/// Fraction of the values ignored at either end of a curve's range, so that a short peak does not fill the chart.
 const PEAKS: f64 = 0.05;
-/// Points of a curve: more cannot be seen.
+/// Most points of a curve.
 const POINTS: usize = 2000;
-/// Characters of a curve in the terminal.
+/// Length of a curve in the terminal (characters).
 const SMALL: usize = 40;
-/// Digits of a value in the terminal.
+/// Significant digits of a value in the terminal.
 const DIGITS: usize = 5;
-/// Why there are no curves.
+/// Errors of reading observables.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum ObservedError {
     /// No column of that name.
-    #[error("there is no column {}; these are: {}{}", quoted(name), known.join(", "), suggestion(name, known.iter().map(String::as_str)))]
+    #[error("unknown column {}; expected one of: {}{}", quoted(name), known.join(", "), suggestion(name, known.iter().map(String::as_str)))]
     NoColumn {
-        /// What was asked for.
+        /// The requested column.
         name: String,
-        /// What there is.
+        /// The columns of the table.
         known: Vec<String>,
     },
-    /// The table.
+    /// The table cannot be read.
     #[error(transparent)]
     Table(#[from] TableError),
 }
@@ -57,21 +57,21 @@ impl Reported for ObservedError {
     }
 }
 
-/// `thermo.csv`.
+/// Contents of `thermo.csv`.
 pub(super) struct Observed {
     columns: Vec<String>,
     rows: Vec<Vec<f64>>,
-    /// None of a table of no method of this version.
+    /// None if no method of this version has these columns.
     means: Option<Means>,
 }
 
-/// Curves that share a chart: each column with its range.
+/// Curves of one chart: each column with its range.
 struct Group {
     curves: Vec<(usize, [f64; 2])>,
 }
 
 impl Group {
-    /// Whether one more curve is none too many, and neither it nor one of the others becomes a line.
+    /// Returns true if one more curve fits, and every curve keeps a visible range.
     fn has_room_for(&self, ends: [f64; 2]) -> bool {
         let all = || self.curves.iter().map(|(_, ends)| *ends).chain([ends]);
         let low = all().map(|[low, _]| low).fold(f64::INFINITY, f64::min);
@@ -84,7 +84,7 @@ impl Group {
     }
 }
 
-/// A column that is asked for, with what is known of it.
+/// Requested column with its unit.
 pub(super) struct Wanted {
     column: usize,
     unit: &'static str,
@@ -139,7 +139,7 @@ impl Observed {
         names.iter().map(find).collect()
     }
 
-    /// Pictures of a few curves at most, all of one unit, none of which is a line on the scale of the others.
+    /// Charts of a few curves each, all of one unit and of similar range.
     pub(super) fn figures(&self, wanted: &[Wanted]) -> Vec<Figure> {
         let mut units: BTreeMap<&str, Vec<Group>> = BTreeMap::new();
         for it in wanted {
@@ -156,7 +156,7 @@ impl Observed {
         units.into_iter().flat_map(of).collect()
     }
 
-    /// The range of a column.
+    /// Range of a column, short peaks excluded.
     fn ends(&self, column: usize) -> [f64; 2] {
         let mut values: Vec<f64> = self.column(column).collect();
         values.sort_by(f64::total_cmp);
@@ -193,17 +193,17 @@ impl Observed {
             .fold(chart.with(ribbons), Chart::band)
             .figure(names.join("-").replace('_', "-"), words.join(", "))
             .caption(format!(
-                "Of thermo.csv, with means and their 95 % intervals as of `average`. {}.",
+                "From thermo.csv, with means and 95 % intervals as in `average`. {}.",
                 said.join("; ")
             ))
     }
 
-    /// What there is to be said of a column's mean.
+    /// Short description of a column's mean.
     fn mean_of(&self, column: usize) -> Option<String> {
         self.means.as_ref()?.words(&self.columns[column])
     }
 
-    /// Every column in a line: first, last, mean, and its course.
+    /// Table with a row for each column: first, last, mean and curve.
     pub(super) fn small(&self, wanted: &[Wanted], out: &Path) -> Table {
         let number = |value: Option<f64>| value.map_or(String::new(), |value| significant(value, DIGITS));
         Rows::of(wanted)
@@ -211,13 +211,13 @@ impl Observed {
             .text("first", |it| number(self.column(it.column).next()))
             .text("last", |it| number(self.column(it.column).last()))
             .text("mean ± 95 %", |it| self.mean_of(it.column).unwrap_or_default().replace('\u{a0}', " "))
-            .text("course", |it| course(&self.column(it.column).collect::<Vec<_>>()))
-            .table("plot", "The run")
-            .note(format!("pictures in {}", quoted::path(out)))
+            .text("curve", |it| course(&self.column(it.column).collect::<Vec<_>>()))
+            .table("plot", "Observables over time")
+            .note(format!("pictures: {}", quoted::path(out)))
     }
 }
 
-/// A curve of a few characters, from the smallest to the largest value.
+/// Curve of a few block characters, scaled from the smallest to the largest value.
 fn course(values: &[f64]) -> String {
     const STEPS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
@@ -251,7 +251,7 @@ mod tests {
         let wanted: Vec<Wanted> = (1..7).map(|column| Wanted { column, unit: "energy" }).collect();
         let names: Vec<String> = observed.figures(&wanted).into_iter().map(|figure| figure.name).collect();
         assert_eq!(names, ["kinetic-elastic", "temperature", "px-py", "far"]);
-        // Small numbers have digits in the terminal.
+        // Small numbers keep their significant digits in the terminal.
         let small = observed.small(&wanted, Path::new("out"));
         assert_eq!(small.rows[3][2], Cell::Text("1e-15".to_owned()));
     }

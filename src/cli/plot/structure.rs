@@ -1,4 +1,4 @@
-//! The structure that a run has summed up: a chart of each of its files, with the bars, or a map where it is one of places.
+//! Structure functions of a run: a chart of each file with error bars, or a map for functions of position.
 
 use crate::console::warn;
 use crate::report::figure::{Axis, Chart, Figure, Map, Picture, Series, Style};
@@ -6,7 +6,7 @@ use std::path::Path;
 use stripmine_physics::run::{FinishedError, Function, Point, functions_of};
 use stripmine_physics::structure::{Observable, Over, Seen};
 
-/// A figure of each file that is there and has rows; says why there is none of another.
+/// Draws a figure of each structure file with rows, and warns about the others.
 ///
 /// # Errors
 /// As [`functions_of`].
@@ -51,12 +51,12 @@ fn figure(function: &Function) -> Option<Figure> {
     })
 }
 
-/// Whether a function is over wave vectors.
+/// Returns true for functions of wave vectors.
 fn is_of_waves(observable: &Observable) -> bool {
     matches!(observable.seen, Seen::Once { over: Over::Waves, .. })
 }
 
-/// The points of a function that have a coordinate, with their bars where these are known.
+/// Points of a function that have a coordinate, with their error bars if known.
 fn series(function: &Function, name: &str, hue: usize, of: impl Fn(&Point) -> Option<f64>) -> Series {
     let point = |point: &Point| {
         let bar = if point.bar.is_nan() { 0.0 } else { point.bar };
@@ -65,7 +65,7 @@ fn series(function: &Function, name: &str, hue: usize, of: impl Fn(&Point) -> Op
     Series::new(name, Style::Joined, hue, function.points.iter().filter_map(point).collect::<Vec<_>>())
 }
 
-/// A function of places on a whole grid, which it has row by row; none where some of its cells are missing.
+/// Map of a function of position, stored row by row on a grid; none if cells are missing.
 fn map(function: &Function, [x, y]: [Axis; 2]) -> Option<Picture> {
     let points = &function.points;
     let first = points.first()?;
