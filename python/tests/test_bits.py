@@ -129,7 +129,7 @@ class Forces(unittest.TestCase):
     def test_what_has_no_such_forces_says_so(self):
         for name in ("hard-disks", "cold-collapse"):
             simulation = stripmine.scene(name, scenes.SHORT[name]).start()
-            with self.assertRaisesRegex(stripmine.Error, "no forces between discs"):
+            with self.assertRaisesRegex(stripmine.Error, "no continuous pair forces"):
                 simulation.forces()
         free = stripmine.scene("langevin-free", {"particles.count": 10}).start()
         np.testing.assert_array_equal(free.forces(), np.zeros((10, 2)))

@@ -186,7 +186,7 @@ class Studies(InFolder):
 
     def test_warnings_of_the_command_are_warnings_of_python(self):
         (self.folder / "stripmine").touch()
-        with self.assertWarnsRegex(UserWarning, "trials are not kept"):
+        with self.assertWarnsRegex(UserWarning, "trials are not cached"):
             stripmine.scene("hard-disks", DISCS).explain("compressibility", "5%", seconds=1)
 
 

@@ -109,7 +109,7 @@ struct AccuracyVerb {
 
 /// Maps where a scene is stable, over the step and a second parameter
 ///
-/// Edges are found by bisection and compared with theory; failures are classified. Scenes of hard-disks have no time step and no such map.
+/// Scenes of hard-disks have no time step and no such map. Edges are found by bisection and compared with theory; failures are classified.
 #[derive(Args)]
 struct StabilityVerb {
     /// Preset name or scene file

@@ -16,7 +16,7 @@ use stripmine_physics::averages::Outcome;
 use stripmine_physics::io::replace::{may_put, put, try_beside};
 use stripmine_physics::memory::peak;
 use stripmine_physics::method::Methods;
-use stripmine_physics::number::significant;
+use stripmine_physics::number::{counted, significant};
 use stripmine_physics::quoted;
 use stripmine_physics::reported::{Class, Reported};
 use stripmine_physics::scene::Width;
@@ -139,7 +139,7 @@ impl ExplainVerb {
         let kept = Kept::here();
         if self.forget {
             let count = kept.forget().map_err(failed)?;
-            print(&format!("removed {count} cached files\n"))?;
+            print(&format!("removed {}\n", counted(count, "cached measurement", "cached measurements")))?;
         }
         let Some(scene) = &self.scene else { return Ok(()) };
         // Checked before any trial runs.

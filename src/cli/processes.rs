@@ -167,7 +167,7 @@ const PATIENCE: [u64; 2] = [20, 280];
 fn waiting(Launched { rank, count, .. }: Launched) -> Vec<(std::time::Duration, joining::Act)> {
     let [notice, end] = PATIENCE;
     let words = move |seconds: u64| {
-        format!("rank {rank} has waited {seconds} s for other processes of {count}, which have not joined")
+        format!("rank {rank} of {count} has waited {seconds} s for processes that have not joined")
     };
     let remedy = format!(
         "give all ranks the same verb: {}, --help and --version join no other process",

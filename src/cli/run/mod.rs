@@ -170,7 +170,7 @@ impl RunVerb {
                         say(format_args!("tuned: {}: {}", found.overrides.texts().join(", "), found.origin))
                     }
                     None => say(format_args!(
-                        "--tuned changes nothing: no key is `auto`, or no similar scene was measured; measure with: stripmine explain {}",
+                        "tuned: nothing to change: no key is `auto`, or no similar scene was measured (stripmine explain {} measures)",
                         self.scene
                     )),
                 },
