@@ -104,7 +104,10 @@ mod limits {
         while IS_ENDING.swap(true, Ordering::SeqCst) {
             std::thread::yield_now();
         }
-        say(2, format_args!("error: out of memory: {bytes} bytes could not be allocated\n  help: {REMEDY}\n"));
+        say(
+            2,
+            format_args!("error: out of memory: {bytes} bytes could not be allocated\n  help: {REMEDY}\n"),
+        );
         if AS_DATA.load(Ordering::Relaxed) && is_untouched() {
             let kind = Class::InputOutput.name();
             say(

@@ -144,7 +144,9 @@ fn a_film_of_nothing_or_of_one_frame_says_so() {
     let first: String = text.lines().take(4).map(|line| format!("{line}\n")).collect();
     fs::write(&file, &first).unwrap();
     let (page, shown) = film(folder, "two-discs", "speed");
-    assert!(page.contains("The trajectory has only one frame") && shown["times"].as_array().unwrap().len() == 1);
+    assert!(
+        page.contains("The trajectory has only one frame") && shown["times"].as_array().unwrap().len() == 1
+    );
     // More than fits in: every fourth frame, and every third particle.
     let moment = |at: usize| first.replacen("Time=0.0", &format!("Time={at}.0"), 1);
     fs::write(&file, (0..3100).map(moment).collect::<String>()).unwrap();

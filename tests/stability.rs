@@ -261,7 +261,8 @@ fn what_is_to_be_expected_is_said_before_a_run() {
     let out = folder.path().join("run");
     let output = stripmine(&["run", "two-discs", "--set", "run.steps=100", "--out", out.to_str().unwrap()]);
     let text = said(&output);
-    for word in ["expected: one contact: at most", "expected: error of a contact", "expected: time of a run"]
+    for word in
+        ["expected: drag of friction: at most", "expected: error of a contact", "expected: time of a run"]
     {
         assert!(text.contains(word), "{text}");
     }

@@ -1,10 +1,11 @@
 //! `stripmine bench`: measures how many particle steps or events a second a configuration makes.
 
+use super::display::decimals;
 use super::processes;
 use super::run::{MOST_RANKS, threads_of_ranks};
 use crate::console::{Common, Failure, clear_progress, count, print, print_json, progress};
 use crate::provenance::built;
-use crate::report::{Rows, Table, terminal};
+use crate::report::{Cell, Rows, Table, terminal};
 use crate::study::scaling::{self, OfThreads, Scaling, scaling};
 use clap::{Arg, ArgAction, ArgMatches, Args, value_parser};
 use serde_json::{Value, json};
@@ -263,8 +264,8 @@ fn by_threads(found: &Scaling) -> Table {
     Rows::of(&found.by_threads)
         .count("ranks", |it| it.crew.ranks)
         .count("threads of each", |it| it.crew.threads)
-        .number("million a second, best", 2, |it| 1e-6 * it.rate[0])
-        .number("median", 2, |it| 1e-6 * it.rate[1])
+        .cell("million a second, best", |it| rounded(1e-6 * it.rate[0], 4))
+        .cell("median", |it| rounded(1e-6 * it.rate[1], 4))
         .number("gain", 2, |it| it.gain)
         .number("efficiency", 2, |it| it.gain * found.by_threads[0].crew.all() as f64 / it.crew.all() as f64)
         .table(
@@ -280,12 +281,17 @@ fn by_threads(found: &Scaling) -> Table {
         .note(format!("Predicted by Amdahl's law alone: {}.", foreseen.join(", ")))
 }
 
+/// Number with some significant digits.
+fn rounded(value: f64, digits: i32) -> Cell {
+    Cell::Number(value, decimals(value, digits))
+}
+
 /// Table of the time of each phase, and of the part of it that does not scale.
 fn by_phases(found: &Scaling) -> Table {
     let mut rows = Rows::of(&found.phases).text("phase", |it| it.name.clone());
     for (at, OfThreads { crew: scaling::Crew { ranks, threads }, .. }) in found.by_threads.iter().enumerate()
     {
-        rows = rows.number(format!("ns, {ranks} × {threads}"), 2, move |it| it.nanoseconds[at]);
+        rows = rows.cell(format!("ns, {ranks} × {threads}"), move |it| rounded(it.nanoseconds[at], 3));
     }
     rows.number("serial part (%)", 1, |it| it.serial.map(|part| 100.0 * part))
         .text("per", |it| if it.is_beside { "particle and call" } else { "particle and step" })
@@ -332,7 +338,7 @@ fn text(result: &Throughput) -> String {
     let phases: Vec<String> = result
         .phases
         .iter()
-        .map(|(phase, &seconds)| format!("{} {:.1}", phase.replace('_', " "), each(seconds)))
+        .map(|(phase, &seconds)| format!("{} {}", phase.replace('_', " "), significant(each(seconds), 3)))
         .collect();
     let settings: Vec<String> =
         settings.iter().map(|(name, value)| format!("{} {}", name.replace('_', " "), brief(value))).collect();
@@ -343,17 +349,17 @@ fn text(result: &Throughput) -> String {
     let at_end = result.at_end.iter().map(|(name, value)| format!("{name} {}", significant(*value, 6)));
     let observed: Vec<String> = compared.chain(at_end).collect();
     format!(
-        "{what}: {}, {}, {}\n{:.2} million {} a second (median {:.2}) over {} of {}\n\
-         nanoseconds a particle and step: {:.1} in all; {}\n{}\nchecksum {}\n",
+        "{what}: {}, {}, {}\n{} million {} a second (median {}) over {} of {}\n\
+         nanoseconds per particle and step: {} in total; {}\n{}\nchecksum {}\n",
         counted(particles, "particle", "particles"),
         settings.join(", "),
         counted(result.threads, "thread", "threads"),
-        result.rate * 1e-6,
+        significant(result.rate * 1e-6, 4),
         result.rate_name.trim_end_matches("_per_second").replace('_', "-"),
-        result.median_rate * 1e-6,
+        significant(result.median_rate * 1e-6, 4),
         counted(result.repeats, "repeat", "repeats"),
         counted(result.steps, "step", "steps"),
-        each(result.seconds),
+        significant(each(result.seconds), 3),
         phases.join(", "),
         observed.join(", "),
         result.checksum

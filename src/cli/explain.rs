@@ -1,5 +1,6 @@
 //! `stripmine explain`: finds the cheapest configuration, step and run length for a target error.
 
+use super::display::decimals;
 use crate::console::{Common, Failure, clear_progress, print, print_json, say, warn};
 use crate::report::{Cell, Rows, terminal};
 use crate::study::explain::{
@@ -335,7 +336,8 @@ fn table(rows: &[Compared], cut_off: Option<String>) -> String {
         .text("estimated", number(|it| it.estimated))
         .text("actual", number(|it| it.actual))
         .cell("ratio", |it| {
-            if it.estimated == 0.0 { Cell::Nothing } else { Cell::Number(it.actual / it.estimated, 2) }
+            let ratio = it.actual / it.estimated;
+            if it.estimated == 0.0 { Cell::Nothing } else { Cell::Number(ratio, decimals(ratio, 3)) }
         })
         .text("remark", |it| {
             if it.is_within { String::new() } else { format!("outside the expected range: {}", it.advice) }

@@ -7,7 +7,10 @@ const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
         &[
             ("stripmine run pipe-small", "runs a preset into the folder pipe-small.run"),
             ("stripmine plot pipe-small.run", "plots its observables and last state"),
-            ("stripmine explain langevin-dense --of pressure --error 1%", "finds the cheapest run with this error"),
+            (
+                "stripmine explain langevin-dense --of pressure --error 1%",
+                "finds the cheapest run with this error",
+            ),
             ("stripmine table", "compares the efficiency table of 1993 with our count"),
             ("stripmine reproduce --quick", "makes the report in half a minute"),
         ],
@@ -49,7 +52,10 @@ const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
         "plot",
         &[
             ("stripmine plot pipe-small.run", "writes SVG and PNG to pipe-small.plots"),
-            ("stripmine plot melting.run --film --color psi6", "also writes a film for a browser, coloured by order"),
+            (
+                "stripmine plot melting.run --film --color psi6",
+                "also writes a film for a browser, coloured by order",
+            ),
         ],
     ),
     (
@@ -87,11 +93,17 @@ const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
     ("chart", &[("stripmine chart soft-hard", "compares soft discs with hard discs")]),
     (
         "table",
-        &[("stripmine table --ladder --machine cray-1", "shows what strip-mining, chaining and memory ports add")],
+        &[(
+            "stripmine table --ladder --machine cray-1",
+            "shows what strip-mining, chaining and memory ports add",
+        )],
     ),
     (
         "listing",
-        &[("stripmine listing forces --json", "prints operation, destination and sources of each instruction")],
+        &[(
+            "stripmine listing forces --json",
+            "prints operation, destination and sources of each instruction",
+        )],
     ),
     ("calibrate", &[("stripmine calibrate --out host.toml", "measures this host in 75 seconds")]),
     (
@@ -100,10 +112,7 @@ const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
     ),
     (
         "completions",
-        &[(
-            "stripmine completions bash",
-            "save it to ~/.local/share/bash-completion/completions/stripmine",
-        )],
+        &[("stripmine completions bash", "save it to ~/.local/share/bash-completion/completions/stripmine")],
     ),
     ("man", &[("stripmine man run", "prints the page of a verb; pipe it into man -l -")]),
 ];
@@ -113,10 +122,7 @@ const EXIT_CODES: &[(&str, &str)] = &[
     ("0", "success, also if the reader closes the pipe"),
     ("2", "wrong arguments, or the folder holds something else"),
     ("3", "invalid scene or input file; every mistake is listed"),
-    (
-        "4",
-        "physics failure, unreachable error, or prediction outside calibration",
-    ),
+    ("4", "physics failure, unreachable error, or prediction outside calibration"),
     ("5", "reading or writing failed, or out of memory or threads"),
     ("6", "damaged checkpoint"),
     ("130", "interrupted; a run leaves a checkpoint"),

@@ -5,6 +5,7 @@ mod bench;
 mod chart;
 mod compare;
 mod completions;
+mod display;
 mod explain;
 mod man;
 mod manual;

@@ -12,7 +12,7 @@ use std::cell::Cell;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use stripmine_physics::method::Methods;
-use stripmine_physics::number::counted;
+use stripmine_physics::number::{counted, significant};
 use stripmine_physics::quoted;
 use stripmine_physics::ranks::{Crew, Ranks};
 use stripmine_physics::signals;
@@ -212,7 +212,8 @@ impl Job<'_> {
     fn say(&self, Outcome { item, verdict, seconds, folder }: &Outcome) {
         if !self.common.quiet {
             say(format_args!(
-                "{item:<20} {verdict:<18} {seconds:>6.1} s  {}",
+                "{item:<20} {verdict:<18} {:>6} s  {}",
+                significant(*seconds, 3),
                 quoted::path(Path::new(folder))
             ));
         }

@@ -30,10 +30,7 @@ pub struct Machine {
 impl Machine {
     /// Describes this machine, from `/proc/cpuinfo` and `/sys/devices/system/cpu` on Linux. Unreported properties are left out.
     pub(crate) fn here() -> Machine {
-        #[expect(
-            clippy::disallowed_methods,
-            reason = "without this file the properties are left out"
-        )]
+        #[expect(clippy::disallowed_methods, reason = "without this file the properties are left out")]
         let cpuinfo = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
         let field = |name: &str| {
             let value = |line: &str| Some(line.strip_prefix(name)?.split_once(':')?.1.trim().to_owned());

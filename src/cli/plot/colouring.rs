@@ -1,6 +1,7 @@
 //! Colourings of particles: one list for pictures, films, help and errors.
 
 use super::window;
+use crate::cli::display::UnitSystem;
 use crate::statistics::quantile;
 use clap::builder::PossibleValue;
 use std::path::Path;
@@ -8,7 +9,6 @@ use stripmine_physics::domain::Domain;
 use stripmine_physics::io::extxyz::Frame;
 use stripmine_physics::method::{Methods, load};
 use stripmine_physics::particles::Particle;
-use stripmine_physics::quoted::quoted;
 use stripmine_physics::reported::{Class, Reported};
 use stripmine_physics::structure::{PairForces, Setting, forces_on_each, hexatic_orders};
 
@@ -121,8 +121,7 @@ fn room(frame: &Frame) -> Domain {
 
 /// Sum of the magnitudes of the forces on each grain.
 fn forces_on(frame: &Frame, forces: Option<&PairForces>) -> Result<Vec<f64>, &'static str> {
-    let forces =
-        forces.ok_or("the scene has no continuous pair forces, or cannot be read")?;
+    let forces = forces.ok_or("the scene has no continuous pair forces, or cannot be read")?;
     let setting = Setting::new(room(frame), &frame.particles);
     let mut sums = forces_on_each(&setting, frame.particles.all(), forces);
     sums.truncate(frame.particles.grain_count());
@@ -223,45 +222,10 @@ impl Colours {
     /// Label of the colour scale: the quantity and its unit.
     pub(super) fn label(&self, scene: Option<&toml::Table>) -> String {
         let Colouring { label, si, .. } = *self.colouring;
-        match (si, units(scene)) {
+        match (si, UnitSystem::of(scene)) {
             (None, _) => label.to_owned(),
-            (Some(si), Units::Si) => format!("{label} ({si})"),
-            (Some(_), Units::Other(name)) => format!("{label} ({name})"),
-        }
-    }
-}
-
-/// The units of a run.
-pub(super) enum Units {
-    /// Metres, seconds.
-    Si,
-    /// As the scene calls them.
-    Other(String),
-}
-
-/// Those of a scene.
-pub(super) fn units(scene: Option<&toml::Table>) -> Units {
-    match scene.and_then(|scene| scene.get("units")?.as_str()) {
-        Some("SI") => Units::Si,
-        Some(name) => Units::Other(quoted(name)),
-        None => Units::Other("the scene's unit".to_owned()),
-    }
-}
-
-impl Units {
-    /// Those of lengths and times at axes.
-    pub(super) fn at_axes(self) -> [String; 2] {
-        match self {
-            Units::Si => ["m", "s"].map(str::to_owned),
-            Units::Other(name) => [name.clone(), name],
-        }
-    }
-
-    /// Those of lengths and times.
-    pub(super) fn of_length_and_time(self) -> [String; 2] {
-        match self {
-            Units::Si => ["m", "s"].map(str::to_owned),
-            Units::Other(name) => [format!("({name})"), format!("({name})")],
+            (Some(si), UnitSystem::Si) => format!("{label} ({si})"),
+            (Some(_), UnitSystem::Other(name)) => format!("{label} ({name})"),
         }
     }
 }

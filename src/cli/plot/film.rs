@@ -1,8 +1,9 @@
 //! Film of a run: the frames of its trajectory in one HTML page.
 
-use super::colouring::{ColouringError, Colours, units};
-use super::particles::{SHOWN, WIDTH, point, scene};
+use super::colouring::{ColouringError, Colours};
+use super::particles::{SHOWN, WIDTH, point};
 use super::window;
+use crate::cli::display::{UnitSystem, scene_of};
 use crate::report::section::{Film, Frame as Moment, Side};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -96,7 +97,7 @@ pub(super) fn film(run: &Path, colours: &Colours) -> Result<(Film, Vec<String>),
     let Some((last, cast)) = reel.last.take() else {
         return Err(FilmError::NoFrame { file, others: others(run) });
     };
-    let scene = scene(run);
+    let scene = scene_of(run);
     let (mut film, notes) = reel.film(&last, cast, colours, scene.as_ref())?;
     let name = run.file_stem().unwrap_or_default().to_string_lossy();
     film.title = format!("{}: {}", quoted::quoted(&name), film.title);
@@ -228,7 +229,7 @@ impl Reel {
                 self.kept.first().map_or(0.0, |(time, _)| *time),
                 self.kept.last().map_or(0.0, |(time, _)| *time)
             ),
-            units: units(scene).of_length_and_time(),
+            units: UnitSystem::of(scene).of_length_and_time(),
             window,
             sides: sides(last, bounds, window),
             falls: if height > width { gravity[1] < 0.0 } else { gravity[0] > 0.0 },
@@ -259,10 +260,10 @@ impl Reel {
             (cast.every > 1).then(|| format!("Shows one of every {} particles.", cast.every)),
             seen.any(|seen| seen.position[2] != 0.0)
                 .then(|| "Seen along z: x to the right, y upwards.".to_owned()),
-            is_of_points
-                .then(|| "Bodies have no size; the dots are enlarged.".to_owned()),
-            (beyond > 0.0)
-                .then(|| format!("Outside the picture: {} % of all positions.", significant(100.0 * beyond, 2))),
+            is_of_points.then(|| "Bodies have no size; the dots are enlarged.".to_owned()),
+            (beyond > 0.0).then(|| {
+                format!("Outside the picture: {} % of all positions.", significant(100.0 * beyond, 2))
+            }),
             film.sides
                 .iter()
                 .any(|side| side.is_periodic)

@@ -60,6 +60,21 @@ impl Means {
         (first > self.ends[0]).then(|| Band::of_x(BEFORE, [self.ends[0], first]))
     }
 
+    /// Mean of a column with its error, or one or two words on why there is none.
+    pub(super) fn short(&self, name: &str) -> String {
+        self.of_column(name).map_or_else(String::new, |average| match &average.outcome {
+            Outcome::Mean(Estimate { mean, bar, .. }) if average.of == "rate" => {
+                format!("rate {}", with_bar(*mean, *bar))
+            }
+            Outcome::Mean(Estimate { mean, bar, .. }) => with_bar(*mean, *bar),
+            Outcome::Constant { .. } => "constant".to_owned(),
+            Outcome::TooShort { .. } => "too short".to_owned(),
+            Outcome::Changing { .. } => "changing".to_owned(),
+            Outcome::Undefined => "undefined".to_owned(),
+            Outcome::Kept { .. } => String::new(),
+        })
+    }
+
     /// Short description of a column's mean.
     pub(super) fn words(&self, name: &str) -> Option<String> {
         let average = self.of_column(name)?;

@@ -8,6 +8,7 @@ mod particles;
 mod structure;
 mod window;
 
+use super::display::{UnitSystem, scene_of};
 use super::run_folder;
 use crate::console::{Common, Failure, print, print_json, warn};
 use crate::report::figure::{Figure, png, svg};
@@ -65,8 +66,9 @@ impl PlotVerb {
         let run = run_folder(&self.run);
         let table = Observed::read(&run.join("thermo.csv"), methods)?;
         let wanted = table.wanted(&self.columns, methods)?;
-        let mut figures = table.figures(&wanted);
-        figures.extend(structure::figures(&run)?);
+        let units = UnitSystem::of(scene_of(&run).as_ref());
+        let mut figures = table.figures(&wanted, &units);
+        figures.extend(structure::figures(&run, &units)?);
         let colours = Colours::new(self.color.as_deref(), &run, methods);
         match particles::pictures(&run, &colours) {
             Ok(pictures) => figures.extend(pictures),

@@ -1,6 +1,7 @@
 //! Observables of a run: `thermo.csv` as charts, and one line for each in the terminal.
 
 use super::means::Means;
+use crate::cli::display::UnitSystem;
 use crate::frame::{Rows, Table};
 use crate::report::figure::{Axis, Chart, Figure, Series, Style};
 use crate::statistics::quantile;
@@ -21,10 +22,11 @@ const FLAT: f64 = 0.2;
 const PEAKS: f64 = 0.05;
 /// Most points of a curve.
 const POINTS: usize = 2000;
-/// Length of a curve in the terminal (characters).
-const SMALL: usize = 40;
+/// Length of a curve in the terminal (characters): a row fits into 80 columns.
+const SMALL: usize = 16;
 /// Significant digits of a value in the terminal.
-const DIGITS: usize = 5;
+const DIGITS: usize = 4;
+
 /// Errors of reading observables.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum ObservedError {
@@ -140,7 +142,7 @@ impl Observed {
     }
 
     /// Charts of a few curves each, all of one unit and of similar range.
-    pub(super) fn figures(&self, wanted: &[Wanted]) -> Vec<Figure> {
+    pub(super) fn figures(&self, wanted: &[Wanted], system: &UnitSystem) -> Vec<Figure> {
         let mut units: BTreeMap<&str, Vec<Group>> = BTreeMap::new();
         for it in wanted {
             let ends = self.ends(it.column);
@@ -151,7 +153,8 @@ impl Observed {
             }
         }
         let of = |(unit, groups): (&str, Vec<Group>)| -> Vec<Figure> {
-            groups.iter().map(|group| self.figure(unit, &group.columns())).collect()
+            let unit = system.symbol(unit);
+            groups.iter().map(|group| self.figure(&unit, &group.columns(), system)).collect()
         };
         units.into_iter().flat_map(of).collect()
     }
@@ -163,7 +166,7 @@ impl Observed {
         [PEAKS, 1.0 - PEAKS].map(|part| quantile(&values, part).unwrap_or(0.0))
     }
 
-    fn figure(&self, unit: &str, columns: &[usize]) -> Figure {
+    fn figure(&self, unit: &str, columns: &[usize], system: &UnitSystem) -> Figure {
         let names: Vec<String> = columns.iter().map(|&column| quoted(&self.columns[column])).collect();
         let every = self.rows.len().div_ceil(POINTS);
         let time = self.time();
@@ -181,8 +184,9 @@ impl Observed {
             Series::new(said.clone(), Style::Line, hue, points)
         });
         let label = if let [name] = words.as_slice() { name } else { "value" };
+        let [_, of_time] = system.at_axes();
         let chart = Chart::of(
-            Axis::linear("time", Some("the scene's unit")),
+            Axis::linear("time", Some(of_time.as_str())),
             Axis::linear(label, (!unit.is_empty()).then_some(unit)),
         )
         .with(series);
@@ -210,7 +214,9 @@ impl Observed {
             .text("quantity", |it| quoted(&self.columns[it.column]))
             .text("first", |it| number(self.column(it.column).next()))
             .text("last", |it| number(self.column(it.column).last()))
-            .text("mean ± 95 %", |it| self.mean_of(it.column).unwrap_or_default().replace('\u{a0}', " "))
+            .text("mean ± 95 %", |it| {
+                self.means.as_ref().map_or_else(String::new, |means| means.short(&self.columns[it.column]))
+            })
             .text("curve", |it| course(&self.column(it.column).collect::<Vec<_>>()))
             .table("plot", "Observables over time")
             .note(format!("pictures: {}", quoted::path(out)))
@@ -240,7 +246,7 @@ mod tests {
     fn a_course_goes_from_the_smallest_to_the_largest() {
         assert_eq!(course(&[0.0, 1.0, 2.0, 4.0]), "▁▃▅█");
         assert_eq!(course(&[3.0]), "▁");
-        assert_eq!(course(&[1.0; 100]).chars().count(), 40);
+        assert_eq!(course(&[1.0; 100]).chars().count(), SMALL);
     }
 
     #[test]
@@ -249,7 +255,9 @@ mod tests {
         let row = |t: f64| vec![t, 680.0 * t, 0.7 * t, 200.0 * t, 1e-15 * t, 2e-15 * t, 1e9 + 300.0 * t];
         let observed = Observed { columns: columns.to_vec(), rows: vec![row(0.0), row(1.0)], means: None };
         let wanted: Vec<Wanted> = (1..7).map(|column| Wanted { column, unit: "energy" }).collect();
-        let names: Vec<String> = observed.figures(&wanted).into_iter().map(|figure| figure.name).collect();
+        let system = UnitSystem::Other("reduced".to_owned());
+        let figures = observed.figures(&wanted, &system);
+        let names: Vec<String> = figures.into_iter().map(|figure| figure.name).collect();
         assert_eq!(names, ["kinetic-elastic", "temperature", "px-py", "far"]);
         // Small numbers keep their significant digits in the terminal.
         let small = observed.small(&wanted, Path::new("out"));

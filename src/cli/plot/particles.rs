@@ -1,11 +1,11 @@
 //! Pictures of the particles of a run: its last state and, in a long box, the density along it over time.
 
-use super::colouring::{ColouringError, Colours, Units, units};
+use super::colouring::{ColouringError, Colours};
 use super::window;
+use crate::cli::display::{UnitSystem, scene_of};
 use crate::report::figure::{Axis, Drawing, Figure, Guide, Map, Picture, Shape, Tint};
 use std::path::Path;
 use stripmine_physics::io::extxyz::Frame;
-use stripmine_physics::io::regular_file;
 use stripmine_physics::io::trajectory::{Trajectory, TrajectoryError};
 use stripmine_physics::number::significant;
 
@@ -68,7 +68,7 @@ pub(super) fn pictures(run: &Path, colours: &Colours) -> Result<Vec<Figure>, Pic
         last = Some(frame);
     }
     let Some(last) = last else { return Ok(vec![]) };
-    let scene = scene(run);
+    let scene = scene_of(run);
     let every = (tracks.len() * last.particles.len()).div_ceil(TRACES).max(1);
     let traces = tracks.into_iter().step_by(every).flatten().collect::<Vec<_>>();
     let has_depth = last.particles.all().iter().any(|particle| particle.position[2] != 0.0);
@@ -112,15 +112,6 @@ impl View {
     fn axes(self) -> [usize; 2] {
         if self == View::AlongY { [0, 2] } else { [0, 1] }
     }
-}
-
-/// Limit of the size of a scene file (bytes).
-const LONGEST_SCENE: u64 = 1 << 24;
-
-/// Scene of a run, if it can be read.
-pub(super) fn scene(run: &Path) -> Option<toml::Table> {
-    let text = regular_file::read(&run.join("scene.toml"), LONGEST_SCENE).ok()?;
-    String::from_utf8(text).ok()?.parse().ok()
 }
 
 /// Gravity of a scene; none if it is zero.
@@ -183,9 +174,9 @@ fn state(
         words: particle.id.to_string(),
     });
     let outside = all.iter().filter(|particle| !is_inside(particle.position)).count();
-    let [of_length, of_time] = match units(scene) {
-        Units::Si => ["m", " s"],
-        Units::Other(_) => ["", ""],
+    let [of_length, of_time] = match UnitSystem::of(scene) {
+        UnitSystem::Si => ["m", " s"],
+        UnitSystem::Other(_) => ["", ""],
     };
     let time = format!("time {}{of_time}", significant(frame.time, 6));
     let mut title = match *tells_apart {
@@ -269,7 +260,7 @@ fn density(
     let rows = slices.iter().step_by(stride).map(|(_, counts)| counts.iter().map(|it| it / mean).collect());
     let [width, height] = last.cell;
     let (side, way) = if width > height { (0, "x") } else { (1, "y") };
-    let [of_length, of_time] = units(scene).at_axes();
+    let [of_length, of_time] = UnitSystem::of(scene).at_axes();
     let axis = |label: &str, unit: &str, ends| Axis::linear(label, Some(unit)).between(ends);
     Some(
         Picture::Map(Map {

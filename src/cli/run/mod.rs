@@ -2,6 +2,7 @@
 
 mod seeds;
 
+use super::display::UnitSystem;
 use super::processes;
 use crate::console::{
     Common, Failure, MOST_THREADS, STEPS, bar, clear_progress, count_up_to, print, print_json, say, warn,
@@ -11,7 +12,7 @@ use crate::study::Case;
 use crate::study::explain::{Kept, tuned};
 use clap::Args;
 use std::path::{Path, PathBuf};
-use stripmine_physics::method::{Clock, Entry, Methods, Prepared, Purpose, prepare, vocabularies};
+use stripmine_physics::method::{Clock, Entry, Methods, Prepared, Purpose, StepLimit, prepare, vocabularies};
 use stripmine_physics::number::significant;
 use stripmine_physics::quoted;
 use stripmine_physics::ranks::{self, Crew};
@@ -137,7 +138,7 @@ impl RunVerb {
                 if !common.quiet {
                     summary.warnings.iter().for_each(warn);
                 }
-                print(&text(&summary, folder))
+                print(&text(&summary, folder, &prepared.scene))
             }
             Ending::Interrupted { clock } => {
                 Err(Failure::Interrupted { moment: clock.to_string(), folder: folder.to_owned() })
@@ -205,19 +206,32 @@ fn before(prepared: &Prepared, begins: bool) {
     forecast::above_limits(prepared).iter().for_each(warn);
     let of_the_start = forecast::of_the_start(prepared).filter(|_| begins);
     let facts = of_the_start.into_iter().chain(forecast::of_the_step(prepared)).chain(of_this_host);
-    for (label, words) in facts.filter_map(|fact| fact.words) {
+    let limits = &prepared.step_limits;
+    let is_shown = |name: &str| is_lowest(limits, name) || limits.iter().all(|limit| limit.name != name);
+    for (label, words) in facts.filter_map(|fact| fact.words).filter(|(label, _)| is_shown(label)) {
         say(format_args!("expected: {label}: {words}"));
     }
 }
 
-fn text(summary: &Summary, folder: &Path) -> String {
+/// Returns true for the lowest limit of the step among those with the same consequence.
+fn is_lowest(limits: &[StepLimit], name: &str) -> bool {
+    let is_higher =
+        |one: &StepLimit| limits.iter().any(|other| other.beyond == one.beyond && other.share > one.share);
+    limits.iter().any(|limit| limit.name == name && !is_higher(limit))
+}
+
+fn text(summary: &Summary, folder: &Path, scene: &str) -> String {
     let &Summary { steps, events, time, seconds, from, .. } = summary;
     let done = Clock { steps, time, events }.done();
-    let session = if from == Clock::default() { String::new() } else { format!(" (from {from} on)") };
-    let time = significant(time, 9);
-    let mut text =
-        format!("{done}, time {time}, in {seconds:.2} s{session}\nat the end: {}\n", summary.in_words);
-    text.push_str(&summary.averages.to_string());
+    let session = if from == Clock::default() { String::new() } else { format!(" (resumed at {from})") };
+    let units = UnitSystem::of(scene.parse().ok().as_ref());
+    let unit = if matches!(units, UnitSystem::Si) { " s" } else { "" };
+    let [time, seconds] = [significant(time, 9), significant(seconds, 3)];
+    let mut text = format!(
+        "{done}, time {time}{unit}, in {seconds} s of wall time{session}\nat the end: {}\n",
+        summary.in_words
+    );
+    text.push_str(&units.averages(&summary.averages).to_string());
     for Summed { name, doubt, .. } in &summary.structure {
         doubt.iter().for_each(|doubt| text.push_str(&format!("{name}: {doubt}\n")));
     }
@@ -229,4 +243,21 @@ fn text(summary: &Summary, folder: &Path) -> String {
     }
     text.push_str(&format!("results: {}\n", quoted::path(folder)));
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stripmine_physics::method::{METHODS, load};
+
+    #[test]
+    fn one_limit_is_shown_for_each_consequence() {
+        let (prepared, _) = load("two-discs", &[], METHODS).unwrap();
+        let limits = &prepared.step_limits;
+        let lowest: Vec<&StepLimit> = limits.iter().filter(|it| is_lowest(limits, it.name)).collect();
+        assert!(lowest.len() == 3 && limits.len() > 3);
+        for limit in limits {
+            assert!(lowest.iter().any(|it| it.beyond == limit.beyond && it.share >= limit.share));
+        }
+    }
 }

@@ -1,6 +1,7 @@
 //! `run --seeds`: runs one scene with several seeds side by side, and averages over the runs.
 
 use super::RunVerb;
+use crate::cli::display::UnitSystem;
 use crate::cli::processes;
 use crate::console::{Common, Failure, SHARES, bar, clear_progress, print, print_json, say, to_json, warn};
 use crate::provenance::built;
@@ -168,6 +169,7 @@ impl RunVerb {
             return print_json(&ensemble);
         }
         let Ensemble { averages, seconds, structure, .. } = &ensemble;
+        let averages = UnitSystem::of(prepared.scene.parse().ok().as_ref()).averages(averages);
         let doubt = |it: &Function| Some(format!("{}: {}\n", it.name, it.doubt.as_ref()?));
         let doubts: String = structure.iter().filter_map(doubt).collect();
         print(&format!(
