@@ -63,7 +63,7 @@ pub(super) fn is_first(verb: &str) -> bool {
 
 const PROCESSES: FailureKind = FailureKind::new("processes");
 
-/// Session of messages between ranks, kept until the program ends.
+/// Session of messages between ranks, open until the program ends.
 pub(super) struct Session {
     #[cfg(feature = "mpi")]
     _session: Option<stripmine_physics::ranks::mpi::Session>,
@@ -273,7 +273,7 @@ pub(super) fn together(
     Ok(())
 }
 
-/// Runs independent pieces of work, dealt to the ranks in turn. The first rank returns the first failure once all have ended.
+/// Runs independent pieces of work, distributed over the ranks in turn. The first rank returns the first failure once all have ended.
 ///
 /// # Errors
 /// The rank's own failure; on the first rank also that of another; or that of [`begin`].

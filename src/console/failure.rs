@@ -130,11 +130,11 @@ struct Document<'f> {
 struct Report {
     /// Name of the class, or `interrupted`.
     kind: &'static str,
-    /// What is wrong, with the numbers.
+    /// Description of the failure, with the numbers.
     message: String,
     /// Location, if known.
     place: Option<FilePlace>,
-    /// What to do, if the message does not include it.
+    /// Advice, if the message does not include it.
     remedy: Option<String>,
     /// Details of a failed simulation: kind of failure, time, particles and values.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -75,7 +75,7 @@ impl Item {
     /// Makes the item.
     ///
     /// # Errors
-    /// Those of its study.
+    /// Errors of its study.
     pub(crate) fn make(&self, lab: &Lab<'_>, size: Size) -> Result<Made, console::Failure> {
         (self.make)(lab, size)
     }

@@ -87,7 +87,7 @@ pub(crate) struct Journal {
     known: RwLock<Runs>,
     /// Number of runs read from the file.
     before: usize,
-    /// None if nothing is stored.
+    /// Open file; none if nothing is stored.
     file: Option<Mutex<File>>,
     path: PathBuf,
     digest: String,
@@ -245,7 +245,7 @@ impl Journal {
     /// A checksum detects damage, not a line of another study: `fits` rejects values that no run of this study gives.
     ///
     /// # Errors
-    /// Those of the run, and [`JournalError`] if the result cannot be stored.
+    /// Errors of the run, and [`JournalError`] if the result cannot be stored.
     pub(crate) fn recall<T, E>(
         &self,
         key: &str,

@@ -64,7 +64,7 @@ impl<'p> Meter<'p> {
     /// Computes all cases on all threads, one unit of work each, and returns the results in order.
     ///
     /// # Errors
-    /// That of a case.
+    /// First error of a case.
     pub(crate) fn each<C: Sync, T: Send, E: Send>(
         &self,
         cases: &[C],
@@ -76,7 +76,7 @@ impl<'p> Meter<'p> {
     /// As [`each`](Self::each), but starts with the last case, for cases of increasing cost.
     ///
     /// # Errors
-    /// That of a case.
+    /// First error of a case.
     pub(crate) fn each_from_last<C: Sync, T: Send, E: Send>(
         &self,
         cases: &[C],

@@ -63,7 +63,7 @@ impl Reported for ObservedError {
 pub(super) struct Observed {
     columns: Vec<String>,
     rows: Vec<Vec<f64>>,
-    /// None if no method of this version has these columns.
+    /// Means of the columns; none if no method of this version has them.
     means: Option<Means>,
 }
 

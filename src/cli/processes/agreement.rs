@@ -10,11 +10,11 @@ use stripmine_physics::ranks::{RankError, Ranks};
 /// State of a process before its first message.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) enum Part {
-    /// It begins the work that this text describes (scene and program).
+    /// Begins the work that this text describes (scene and program).
     Begins(String),
-    /// It has ended successfully without the others.
+    /// Has ended successfully without the others.
     Finished,
-    /// It cannot begin.
+    /// Cannot begin.
     Refused { code: u8, words: String },
 }
 
