@@ -13,9 +13,9 @@ use stripmine_physics::number::significant;
 use stripmine_physics::particles::Particles;
 use stripmine_physics::scene::SceneErrors;
 
-/// Runs a scene in two configurations and compares them bit by bit
+/// Compares two configurations of a scene bit by bit
 ///
-/// Prints the first difference and its growth over time.
+/// Runs the scene in both, and prints the first difference and its growth over time.
 #[derive(Args)]
 pub(super) struct CompareVerb {
     /// Preset name or scene file

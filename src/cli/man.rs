@@ -32,7 +32,7 @@ impl ManVerb {
         let parts = manual::parts(self.verb.as_deref().unwrap_or_default());
         let mut text = Vec::new();
         // The text that help shows below the options is added as sections.
-        let page = Man::new(page.after_long_help(None::<&str>));
+        let page = Man::new(page.after_help(None::<&str>).after_long_help(None::<&str>));
         page.render(&mut text)
             .and_then(|()| below(parts).to_writer(&mut text))
             .map_err(Failure::writing("the manual page"))?;

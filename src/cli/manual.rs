@@ -154,8 +154,17 @@ pub(super) fn parts(verb: &str) -> Vec<Part> {
 
 /// Parts of a verb as help shows them.
 pub(super) fn text(verb: &str) -> String {
+    written(parts(verb))
+}
+
+/// Examples of a verb as short help shows them.
+pub(super) fn examples(verb: &str) -> String {
+    written(parts(verb).into_iter().filter(|(heading, _)| *heading == "Examples"))
+}
+
+fn written(parts: impl IntoIterator<Item = Part>) -> String {
     let mut text = String::new();
-    for (heading, entries) in parts(verb) {
+    for (heading, entries) in parts {
         text.push_str(&format!("{heading}:\n"));
         for (what, meaning) in entries {
             // A command has its own line, so that it can be copied.

@@ -116,6 +116,7 @@ fn command(methods: Methods) -> clap::Command {
     general
         .mut_subcommand("chart", |chart| chart.subcommands(charts_of(methods).map(subcommand)))
         .subcommands(verbs_of(methods).map(subcommand))
+        .after_help(manual::examples(""))
         .after_long_help(manual::text(""))
         .mut_subcommands(|verb| {
             let text = manual::text(verb.get_name());
