@@ -21,7 +21,7 @@ pub enum Failure {
     #[error(transparent)]
     Options(SceneErrors),
     /// Unknown option of a benchmark: exit code 2.
-    #[error("bench {bench} has no option --{option}")]
+    #[error("bench {bench} has no option --{option}\n  help: stripmine bench --help lists the options")]
     NoSuchOption {
         /// Name of the benchmark.
         bench: &'static str,
