@@ -231,8 +231,7 @@ impl Journal {
     pub(crate) fn notes(&self) -> Vec<String> {
         const NAMED: usize = 5;
         let file = quoted::path(&self.path);
-        let one =
-            |line: &usize| format!("{file}:{line}: damaged line (wrong checksum); its run is measured again");
+        let one = |line: &usize| format!("{file}:{line}: damaged line; its run is measured again");
         let mut notes: Vec<String> = self.changed.iter().take(NAMED).map(one).collect();
         if let Some(more) = self.changed.len().checked_sub(NAMED).filter(|&more| more > 0) {
             notes.push(format!("{file}: {more} more damaged lines; their runs are measured again"));
