@@ -192,9 +192,9 @@ impl Simulation {
             (Some(steps), None, None) => Ok(Until::Steps(whole("steps", steps)?)),
             (None, None, Some(events)) => Ok(Until::Events(whole("events", events)?)),
             (None, Some(time), None) if time.is_finite() && time >= 0.0 => Ok(Until::Time(time)),
-            (None, Some(time), None) => {
-                Err(PyValueError::new_err(format!("time cannot be {time}; expected a finite number, 0 or more")))
-            }
+            (None, Some(time), None) => Err(PyValueError::new_err(format!(
+                "time cannot be {time}; expected a finite number, 0 or more"
+            ))),
             _ => Err(PyTypeError::new_err("advance takes exactly one of steps, time and events")),
         }
     }
