@@ -1,16 +1,16 @@
-//! Notes which source the package is built from, for the record of each run.
+//! Records the source commit of the package, which is stored with each run.
 
 use std::process::Command;
 
 fn git(arguments: &[&str]) -> Option<String> {
-    // Git would write what it has looked at to its index, which is looked at for changes: the next build would do everything again.
+    // Without this option git refreshes its index. Cargo watches the index, and would rebuild everything next time.
     let output =
         Command::new("git").arg("--no-optional-locks").args(arguments).current_dir("..").output().ok()?;
     output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
 }
 
 fn main() {
-    // Outside a checkout (a source package) there is no commit to name.
+    // A source package outside a checkout has no commit.
     let commit = git(&["rev-parse", "--short=12", "HEAD"]).unwrap_or_else(|| "unknown".to_owned());
     let sources =
         ["kernels", "Cargo.toml", "python/src", "python/Cargo.toml", "python/Cargo.lock", "python/build.rs"];

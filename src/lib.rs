@@ -1,20 +1,20 @@
 //! Stripmine: a SIMD vector machine for 2D particle dynamics.
 //!
-//! The equations of a method are written once, as operations on whole vectors (the crate `stripmine_kernels`), and everything that a
-//! run needs is a library (the crate `stripmine_physics`). This crate is the laboratory around them, and the command: the model
-//! that predicts what a step costs, studies that answer a user's question, and reports that show the answer.
+//! The equations of a method are written once, as operations on whole vectors (the crate `stripmine_kernels`). Everything that a
+//! run needs is a library (the crate `stripmine_physics`). This crate adds the laboratory and the command: a model that predicts
+//! the cost of a step, studies that answer a user's question, and reports that show the answer.
 //!
 //! | task | entry point |
 //! |---|---|
 //! | the command, from within a program | [`cli::run_with`] |
-//! | price a program on a vector machine | [`model::clock`], [`model::machines`] |
+//! | cost of a program on a vector machine | [`model::clock`], [`model::machines`] |
 //! | predict a run on this host | [`model::host`] |
 //! | draw a chart | [`report::figure`] |
-//! | tables with units, and expressions of their cells | [`frame`] |
-//! | judge claims by tables | [`claims`] |
+//! | tables with units, and expressions over their cells | [`frame`] |
+//! | check claims against tables | [`claims`] |
 //! | read committed results | [`results::Folder`] |
 //!
-//! The paper's price of a program, NOP·(n + D), on its machine with D = 20: two loads, a product and a store over 100 elements:
+//! BP93's cost of a program, NOP·(n + D), on its machine with D = 20: two loads, a product and a store over 100 elements:
 //!
 //! ```
 //! use stripmine::model::clock::{Clock, Work};
@@ -44,7 +44,7 @@
 //! # Ok::<(), stripmine::model::machines::MachineError>(())
 //! ```
 //!
-//! A table, and an expression of its cells as claims have it:
+//! A table, and an expression over its cells, as in claims:
 //!
 //! ```
 //! use stripmine::frame::{Expressions, Rows, Scope};
@@ -72,7 +72,7 @@
 //! ```
 
 #![warn(unreachable_pub)]
-// Where a panic is possible, or an error is dropped, the reason stands beside it.
+// Every possible panic and every dropped error has its reason beside it.
 #![cfg_attr(
     not(test),
     warn(

@@ -1,4 +1,4 @@
-//! The command `stripmine`, and what it does where the system has no more memory: it ends in words, with an exit code.
+//! The command `stripmine`. When the system runs out of memory, it ends with a message and an exit code instead of an abort.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::process::ExitCode;
@@ -8,13 +8,13 @@ fn main() -> ExitCode {
     stripmine::cli::run(std::env::args_os())
 }
 
-/// The allocator of the system. Where it has no memory left, the program ends in words; without this it would be aborted.
+/// The system allocator, with a message when no memory is left. Without it the program would be aborted.
 struct InWords;
 
 #[global_allocator]
 static ALLOCATOR: InWords = InWords;
 
-// SAFETY: every block is the system allocator's; where it has none, no call returns.
+// SAFETY: every block comes from the system allocator; when it fails, no call returns.
 unsafe impl GlobalAlloc for InWords {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         // SAFETY: as the caller promises.
@@ -44,19 +44,19 @@ mod limits {
     use stripmine::console::is_untouched;
     use stripmine_physics::reported::Class;
 
-    /// Whether the command was asked for data.
+    /// Set by `--json`.
     static AS_DATA: AtomicBool = AtomicBool::new(false);
     static IS_ENDING: AtomicBool = AtomicBool::new(false);
 
-    const REMEDY: &str = "raise the limit of memory (ulimit -v, ulimit -d, the control group), or ask for fewer particles, --ranks or --threads";
+    const REMEDY: &str = "raise the memory limit (ulimit -v, ulimit -d, control group), or use fewer particles, --ranks or --threads";
 
-    /// Makes what a limited address space holds depend on what is used: an allocator of many threads reserves 64 MiB for each.
+    /// Limits reserved memory where the address space is limited: glibc would reserve 64 MiB for each thread.
     pub(super) fn prepare() {
         AS_DATA.store(std::env::args_os().any(|argument| argument == "--json"), Ordering::Relaxed);
         #[cfg(all(target_os = "linux", target_env = "gnu"))]
         {
             let mut limit = libc::rlimit { rlim_cur: 0, rlim_max: 0 };
-            // SAFETY: both calls take what they are declared to take, and there is one thread.
+            // SAFETY: both calls get arguments of the declared types, and there is one thread.
             unsafe {
                 if libc::getrlimit(libc::RLIMIT_AS, &raw mut limit) == 0
                     && limit.rlim_cur != libc::RLIM_INFINITY
@@ -67,7 +67,7 @@ mod limits {
         }
     }
 
-    /// The block, if it is one.
+    /// Returns the block; ends the program if it is null.
     #[inline]
     pub(super) fn given(block: *mut u8, bytes: usize) -> *mut u8 {
         if block.is_null() {
@@ -76,7 +76,7 @@ mod limits {
         block
     }
 
-    /// Words on the stack: there is no other memory.
+    /// Message on the stack, since there is no other memory.
     struct Words {
         bytes: [u8; 512],
         length: usize,
@@ -94,27 +94,30 @@ mod limits {
     fn say(to: i32, words: fmt::Arguments<'_>) {
         let mut said = Words { bytes: [0; 512], length: 0 };
         let _ = said.write_fmt(words);
-        // SAFETY: so many bytes were written there. Where the file takes no more there is nowhere to say so.
+        // SAFETY: `length` bytes were written there. A failed write cannot be reported anywhere.
         let _ = unsafe { libc::write(to, said.bytes.as_ptr().cast(), said.length) };
     }
 
     #[cold]
     fn end(bytes: usize) -> ! {
-        // One thread says it.
+        // Only one thread prints the message.
         while IS_ENDING.swap(true, Ordering::SeqCst) {
             std::thread::yield_now();
         }
-        say(2, format_args!("error: {bytes} bytes of memory cannot be had\n  help: {REMEDY}\n"));
+        say(
+            2,
+            format_args!("error: out of memory: {bytes} bytes could not be allocated\n  help: {REMEDY}\n"),
+        );
         if AS_DATA.load(Ordering::Relaxed) && is_untouched() {
             let kind = Class::InputOutput.name();
             say(
                 1,
                 format_args!(
-                    "{{\"error\": {{\"kind\": \"{kind}\", \"message\": \"{bytes} bytes of memory cannot be had\", \"place\": null, \"remedy\": \"{REMEDY}\"}}}}\n"
+                    "{{\"error\": {{\"kind\": \"{kind}\", \"message\": \"out of memory: {bytes} bytes could not be allocated\", \"place\": null, \"remedy\": \"{REMEDY}\"}}}}\n"
                 ),
             );
         }
-        // SAFETY: ends the process, without handlers that would ask for memory.
+        // SAFETY: ends the process without exit handlers, which would allocate.
         unsafe { libc::_exit(Class::InputOutput.exit_code().into()) }
     }
 }

@@ -115,7 +115,7 @@ fn a_plan_is_not_written_over_what_is_there() {
     assert_eq!(fs::read(&scene).unwrap(), own);
     ends_with(&to("link.toml", &["--overwrite"]), 0, &[]);
     assert!(fs::symlink_metadata(folder.join("link.toml")).unwrap().is_file());
-    assert!(fs::read_to_string(folder.join("link.toml")).unwrap().starts_with("# By stripmine explain"));
+    assert!(fs::read_to_string(folder.join("link.toml")).unwrap().starts_with("# Plan by stripmine explain"));
     assert_eq!(fs::read_to_string(folder.join("mine.txt")).unwrap(), "mine");
     assert!(fs::metadata(folder.join("pipe")).unwrap().file_type().is_fifo());
     // Nothing temporary is left.
@@ -135,7 +135,7 @@ fn an_unusable_cache_costs_no_plan() {
     };
     let warned = |output: &Output| {
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(output.status.success() && said.contains("warning: trials are not kept"), "{said}");
+        assert!(output.status.success() && said.contains("warning: trials are not cached"), "{said}");
         let found: Value = serde_json::from_slice(&output.stdout).unwrap();
         assert!(found["mean"][0].as_f64().unwrap() > 3.0, "{found:#}");
     };
@@ -242,7 +242,7 @@ fn a_long_plan_is_carried_out_only_if_the_user_says_so() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let long = explain(folder, &[&GAS[..], &["--error", "0.02%", "--analyze"]].concat());
-    ends_with(&long, 2, &["was not carried out", "takes about", "--yes"]);
+    ends_with(&long, 2, &["was not executed", "takes about", "--yes"]);
     let page = String::from_utf8_lossy(&long.stdout).into_owned();
     assert!(
         page.contains("stripmine run hard-disks") && page.contains("expected: compressibility"),
@@ -286,7 +286,7 @@ fn a_run_may_be_tuned_by_what_was_measured_of_a_scene_that_is_alike() {
     let (said, scene) = run("particles.count=150", &["--overwrite", "--set", "search.by=sectors"]);
     assert!(!said.contains("search.by=") && scene.contains("by = \"sectors\""), "{said}");
     let (said, _) = run("particles.count=1500", &["--overwrite"]);
-    assert!(said.contains("nothing is kept of a scene that is alike"), "{said}");
+    assert!(said.contains("no similar scene was measured"), "{said}");
 }
 
 #[test]
@@ -315,7 +315,7 @@ fn what_cannot_be_planned_is_refused() {
     let folder = folder.path();
     let bad = |arguments: &[&str]| explain(folder, arguments);
     ends_with(&bad(&["hard-disks", "--of", "colour"]), 2, &["`colour`", "one of events", "compressibility"]);
-    ends_with(&bad(&["hard-disks", "--error", "little"]), 2, &["above 0, or a part such as 1%"]);
+    ends_with(&bad(&["hard-disks", "--error", "little"]), 2, &["above 0, or a percentage such as 1%"]);
     ends_with(&bad(&["nothing.toml"]), 3, &["nothing.toml"]);
     let cooling = ["cooling-gas", "--of", "temperature", "--error", "1%", "--seconds", "1"];
     ends_with(

@@ -144,20 +144,22 @@ fn a_film_of_nothing_or_of_one_frame_says_so() {
     let first: String = text.lines().take(4).map(|line| format!("{line}\n")).collect();
     fs::write(&file, &first).unwrap();
     let (page, shown) = film(folder, "two-discs", "speed");
-    assert!(page.contains("The trajectory has one frame") && shown["times"].as_array().unwrap().len() == 1);
+    assert!(
+        page.contains("The trajectory has only one frame") && shown["times"].as_array().unwrap().len() == 1
+    );
     // More than fits in: every fourth frame, and every third particle.
     let moment = |at: usize| first.replacen("Time=0.0", &format!("Time={at}.0"), 1);
     fs::write(&file, (0..3100).map(moment).collect::<String>()).unwrap();
     let (page, shown) = film(folder, "two-discs", "speed");
     let times: Vec<f64> = serde_json::from_value(shown["times"].clone()).unwrap();
-    assert!(page.contains("One of 4 of its 3100 frames is shown."));
+    assert!(page.contains("Shows one of every 4 frames, of 3100."));
     assert_eq!(times, (0..775).map(|frame| 4.0 * f64::from(frame)).collect::<Vec<_>>());
     let row = first.lines().nth(2).unwrap();
     let rows = (1..=45_000).map(|id| row.replacen(" 0.0 1 ", &format!(" 0.0 {id} "), 1) + "\n");
     let comment = first.lines().nth(1).unwrap();
     fs::write(&file, format!("45000\n{comment}\n{}", rows.collect::<String>())).unwrap();
     let (page, shown) = film(folder, "two-discs", "id");
-    assert!(page.contains("One of 3 particles is shown."));
+    assert!(page.contains("Shows one of every 3 particles."));
     let ids = column(&shown["shades"]).0;
     assert!(ids.len() == 15_000 && ids[0] == 1.0 && ids[14_999] == 44_998.0);
     fs::write(&file, "").unwrap();

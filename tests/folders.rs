@@ -411,7 +411,7 @@ fn no_verb_writes_over_what_it_did_not_write() {
         names.filter_map(first).filter(|name| !name.is_empty() && name != "help").collect()
     };
     let verbs = below(&help(&[]), "Commands:");
-    let charts = below(&help(&["chart"]), "What to chart:");
+    let charts = below(&help(&["chart"]), "Studies:");
     assert!(verbs.len() > 8 && charts.len() == 5, "{verbs:?} {charts:?}");
     for verb in
         verbs.iter().map(|verb| vec![verb.as_str()]).chain(charts.iter().map(|name| vec!["chart", name]))

@@ -222,7 +222,7 @@ fn a_chart_has_the_mean_of_the_summary_and_its_transient() {
     let second = x(1.0) - x(0.0);
     near(x(left), cut, 0.02 * second);
     near(x(left + across), 50.0, 0.03 * second);
-    let shaded = between(&svg, "<title>transient: not in the mean</title>", "/>");
+    let shaded = between(&svg, "<title>transient, excluded from the mean</title>", "/>");
     let [from, _, width, ..] = numbers(shaded.split_once("x=").unwrap().1)[..] else { panic!("{shaded}") };
     near(x(from), 0.0, 0.1 * second);
     near(x(from + width), cut, 0.2 * second);

@@ -95,7 +95,7 @@ fn what_works_ends_where_theory_says() {
     }
     // A finished study is only read again.
     let again = map("two-discs", &out, &over);
-    assert!(said(&again).contains("going on with") && succeeds(&again) == data);
+    assert!(said(&again).contains("resuming with") && succeeds(&again) == data);
 }
 
 #[test]
@@ -144,7 +144,7 @@ fn every_method_with_steps_has_a_map_without_an_axis() {
     assert_eq!(hard.status.code(), Some(2));
     assert!(said(&hard).contains("hard-disks take no time steps"), "{}", said(&hard));
     let help = stripmine(&["chart", "stability", "--help"]);
-    assert!(String::from_utf8_lossy(&help.stdout).contains("Scenes of hard-disks take no steps"));
+    assert!(String::from_utf8_lossy(&help.stdout).contains("Scenes of hard-disks have no time step"));
 }
 
 /// Discs so soft that they pass through each other, whatever the step.
@@ -259,7 +259,8 @@ fn what_is_to_be_expected_is_said_before_a_run() {
     let out = folder.path().join("run");
     let output = stripmine(&["run", "two-discs", "--set", "run.steps=100", "--out", out.to_str().unwrap()]);
     let text = said(&output);
-    for word in ["expected: one contact: at most", "expected: error of a contact", "expected: time of a run"]
+    for word in
+        ["expected: drag of friction: at most", "expected: error of a contact", "expected: time of a run"]
     {
         assert!(text.contains(word), "{text}");
     }

@@ -53,7 +53,7 @@ fn a_study_that_was_interrupted_goes_on_and_another_scenes_is_refused() {
     assert!(!out.join("host").exists());
     let kept = lines();
     let gone_on = command(&arguments).output().unwrap();
-    assert!(gone_on.status.success() && said(&gone_on).contains("going on with"), "{}", said(&gone_on));
+    assert!(gone_on.status.success() && said(&gone_on).contains("resuming with"), "{}", said(&gone_on));
     assert!(lines() > kept && out.join("host/work-precision/orders.csv").exists());
 
     let before = fs::read(&journal).unwrap();

@@ -1,23 +1,23 @@
-//! Scenes as simulations and runs have them: read, and held against every precondition.
+//! Scenes that were read and checked against every precondition.
 
 use crate::particles::dimensions;
 use stripmine_physics::method::{Entry, METHODS, Prepared, prepare, vocabularies};
 use stripmine_physics::scene::{SceneErrors, Values};
 
-/// The name in errors of a scene that is given as a text.
+/// Name in errors of a scene given as text.
 const OF_TEXT: &str = "scene";
 
-/// The origin of a scene.
+/// Source of a scene.
 #[derive(Clone)]
 pub(crate) enum Source {
-    /// A preset's name, or a file's path.
+    /// Preset name or file path.
     Named(String),
-    /// A text.
+    /// Text in TOML.
     Text(String),
 }
 
 impl Source {
-    /// Its name in errors.
+    /// Name in errors.
     pub(crate) fn name(&self) -> &str {
         match self {
             Source::Named(name) => name,
@@ -34,15 +34,14 @@ impl Source {
     }
 }
 
-/// A scene that was read and may run.
+/// Scene that was read, passed all checks, and has its particles.
 pub(crate) struct Checked {
-    /// With its particles.
     pub(crate) prepared: Prepared,
-    /// Its method.
+    /// Method of the scene.
     pub(crate) entry: &'static Entry,
-    /// In how many dimensions its particles move.
+    /// Dimensions in which the particles move.
     pub(crate) dimensions: usize,
-    /// As they were read.
+    /// Values as read, before choices are made.
     pub(crate) values: Values,
 }
 

@@ -1,5 +1,5 @@
-//! Computing beside Python: other threads of Python go on meanwhile, a fault becomes an exception, and a process that was forked off threads
-//! that have computed is refused instead of waiting for them for ever.
+//! Computing without the interpreter's lock: other Python threads continue, and a panic becomes an exception. A process that was
+//! forked after the first computation is rejected, since it would wait forever for threads that it does not have.
 
 use crate::exceptions;
 use pyo3::prelude::*;
@@ -7,25 +7,25 @@ use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Whether this process has computed, and with that has threads.
+/// Set once this process has computed, and so has threads.
 static HAS_COMPUTED: AtomicBool = AtomicBool::new(false);
-/// Whether it was forked off one that had.
+/// Set in a process that was forked from one with threads.
 static IS_FORKED: AtomicBool = AtomicBool::new(false);
 
-/// What a child process does first.
+/// Marks a forked child process; called first in the child.
 #[pyfunction]
 pub(crate) fn _forked() {
     IS_FORKED.store(HAS_COMPUTED.load(Ordering::Relaxed), Ordering::Relaxed);
 }
 
-/// Computes without holding up other threads of Python.
+/// Computes without blocking other Python threads.
 ///
 /// # Errors
-/// If the process was forked off one that had computed, or the program is at fault.
+/// If the process was forked from one that had computed, or the program panics.
 pub(crate) fn computed<R: Send>(py: Python<'_>, work: impl FnOnce() -> R + Send) -> PyResult<R> {
     if IS_FORKED.load(Ordering::Relaxed) {
-        let message = "this process was forked off one that had computed, and its threads are not here\n  \
-                       help: start processes by multiprocessing.get_context(\"spawn\")";
+        let message = "this process was forked from one that had computed, and has none of its threads\n  \
+                       help: start processes with multiprocessing.get_context(\"spawn\")";
         return Err(exceptions::refused(py, message));
     }
     HAS_COMPUTED.store(true, Ordering::Relaxed);
@@ -33,8 +33,8 @@ pub(crate) fn computed<R: Send>(py: Python<'_>, work: impl FnOnce() -> R + Send)
     done.map_err(|said| exceptions::fault(py, words(said.as_ref())))
 }
 
-/// What a panic says.
+/// Message of a panic.
 fn words(said: &(dyn Any + Send)) -> &str {
     let text = said.downcast_ref::<String>().map(String::as_str);
-    text.or_else(|| said.downcast_ref::<&str>().copied()).unwrap_or("it does not say why")
+    text.or_else(|| said.downcast_ref::<&str>().copied()).unwrap_or("no message")
 }

@@ -1,4 +1,4 @@
-//! What went wrong, as exceptions of Python; the words are those of the command line.
+//! Errors as Python exceptions, with the messages of the command line.
 
 use crate::json;
 use pyo3::call::PyCallArgs;
@@ -11,7 +11,7 @@ use stripmine_physics::quoted;
 use stripmine_physics::reported::{Class, Reported};
 use stripmine_physics::scene::{SceneError, SceneErrors};
 
-/// Any error of the physics as the exception that is meant for it.
+/// Converts an error of the physics to its exception.
 pub(crate) fn of(py: Python<'_>, error: &dyn Reported) -> PyErr {
     let message = quoted::shown(&error.to_string());
     if let Some(mistakes) = error.mistakes() {
@@ -26,32 +26,32 @@ pub(crate) fn of(py: Python<'_>, error: &dyn Reported) -> PyErr {
     }
 }
 
-/// A file that cannot be read, or whose content is wrong.
+/// `RunError` for a file that cannot be read or has invalid content.
 pub(crate) fn of_file(py: Python<'_>, class: Class, message: &str, file: &Path) -> PyErr {
     let file = file.display().to_string();
     made(py, "RunError", (quoted::shown(message), class.name(), None::<String>, file))
 }
 
-/// Something that is asked for and cannot be.
+/// `Error` for an invalid request.
 pub(crate) fn refused(py: Python<'_>, message: impl Into<String>) -> PyErr {
     made(py, "Error", (message.into(),))
 }
 
-/// Threads that the system does not give.
+/// `Error` for threads that cannot be started.
 pub(crate) fn without_threads(py: Python<'_>, cause: &io::Error) -> PyErr {
-    refused(py, format!("the threads cannot be had: {cause}"))
+    refused(py, format!("threads cannot be started: {cause}"))
 }
 
-/// Something that another thread is using.
+/// `BusyError` for a simulation in use by another thread.
 pub(crate) fn busy(py: Python<'_>) -> PyErr {
-    let message = "the simulation is in use by another thread: wait for that one, or start another simulation of the same scene";
+    let message = "the simulation is in use by another thread: wait for it, or start another simulation of the same scene";
     made(py, "BusyError", (message,))
 }
 
-/// A fault of the program: what was said of it.
+/// `Error` for a bug in the program, with its message.
 pub(crate) fn fault(py: Python<'_>, said: &str) -> PyErr {
     let said = quoted::one_line(said);
-    refused(py, format!("the program is at fault, not the scene: {said}\n  help: report this with the scene"))
+    refused(py, format!("bug in the program, not in the scene: {said}\n  help: report this with the scene"))
 }
 
 fn of_scene(py: Python<'_>, message: &str, SceneErrors(mistakes): &SceneErrors) -> PyResult<PyErr> {
@@ -71,7 +71,7 @@ fn of_failure(py: Python<'_>, message: &str, remedy: Option<String>, details: &V
     Ok(made(py, "SimulationError", (message, remedy, json::to_python(py, details)?)))
 }
 
-/// The exception of a class of `stripmine._errors`, or why there is none.
+/// Makes an exception of a class in `stripmine._errors`; if that fails, returns the reason as an exception.
 fn made<'py>(py: Python<'py>, class: &str, arguments: impl PyCallArgs<'py>) -> PyErr {
     let module = py.import("stripmine._errors");
     match module.and_then(|module| module.getattr(class)?.call1(arguments)) {

@@ -1,4 +1,4 @@
-//! The frames of a trajectory, one after the other.
+//! Frames of a trajectory, read one at a time.
 
 use crate::exceptions;
 use crate::particles::{Particles, dimensions};
@@ -20,11 +20,11 @@ class_of_attributes! {
         step: u64,
         /// The particles.
         particles: Py<Particles>,
-        /// The sides of the box along x and y (length); infinite where there is no box.
+        /// Sides of the box along x and y (length); infinite without a box.
         sides: [f64; 2],
-        /// The lower left corner of the box (length).
+        /// Lower left corner of the box (length).
         origin: [f64; 2],
-        /// Whether the box repeats along x and along y.
+        /// True where the box is periodic, along x and along y.
         periodic: Option<[bool; 2]>,
     }
 }
@@ -37,17 +37,17 @@ impl Frame {
     }
 }
 
-/// The frames of a trajectory, each read when it is asked for.
+/// Frames of a trajectory, each read when it is requested.
 #[pyclass(frozen, module = "stripmine")]
 pub(crate) struct Frames {
     reading: Mutex<Reading>,
-    /// The folder stays as long as it is read.
+    /// Keeps a temporary folder alive while it is read.
     _scratch: Option<Arc<Scratch>>,
 }
 
 struct Reading {
     frames: Trajectory,
-    /// In how many dimensions the particles of the first frame move.
+    /// Dimensions in which the particles of the first frame move.
     dimensions: Option<usize>,
 }
 
@@ -55,7 +55,7 @@ impl Frames {
     /// Opens the trajectory of the run in a folder.
     ///
     /// # Errors
-    /// If the system does not let it be read.
+    /// If it cannot be read.
     pub(crate) fn open(py: Python<'_>, folder: &Path, scratch: Option<Arc<Scratch>>) -> PyResult<Frames> {
         let frames = Trajectory::open(folder).map_err(|error| wrong(py, &error))?;
         let reading = Mutex::new(Reading { frames, dimensions: None });

@@ -1,4 +1,4 @@
-//! Work that Ctrl-C ends: it is done in a thread of its own, while the one that asked for it answers signals.
+//! Work that Ctrl-C can end: it runs in a separate thread while the calling thread handles signals.
 
 use crate::pulse::BEAT;
 use pyo3::prelude::*;
@@ -8,15 +8,15 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 
-/// Does work that ends soon after its flag is set; gives what comes out, and the exception that a signal made meanwhile.
+/// Runs work that ends soon after its flag is set. Returns its result, and the exception that a signal raised meanwhile.
 ///
 /// # Errors
-/// If the system gives no thread for it; then nothing was done.
+/// If no thread can be started; then nothing was done.
 pub(crate) fn beside<R: Send>(work: impl FnOnce(&AtomicBool) -> R + Send) -> io::Result<(R, Option<PyErr>)> {
     let interrupted = &AtomicBool::new(false);
     let (done, waiting) = channel::<()>();
     let work = move || {
-        // It goes when the work is over, however that ends.
+        // Dropped when the work ends, however it ends.
         let _done = done;
         work(interrupted)
     };
@@ -26,7 +26,7 @@ pub(crate) fn beside<R: Send>(work: impl FnOnce(&AtomicBool) -> R + Send) -> io:
         while waiting.recv_timeout(BEAT) == Err(RecvTimeoutError::Timeout) {
             if signal.is_none() {
                 let answered = Python::try_attach(|py| py.check_signals());
-                // Where Python is about to end, the work is too.
+                // If the interpreter is shutting down, the work ends too.
                 interrupted.store(!matches!(answered, Some(Ok(()))), Ordering::Relaxed);
                 signal = answered.and_then(Result::err);
             }

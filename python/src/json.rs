@@ -1,14 +1,14 @@
-//! Data as values of Python.
+//! JSON data as Python objects.
 
 use pyo3::prelude::*;
 use serde_json::Value;
 
-/// Data as dicts, lists, numbers and texts.
+/// Converts data to dicts, lists, numbers and strings.
 pub(crate) fn to_python<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyAny>> {
     of_text(py, &value.to_string())
 }
 
-/// The data of a JSON text.
+/// Parses a JSON text into Python objects.
 pub(crate) fn of_text<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyAny>> {
     py.import("json")?.call_method1("loads", (text,))
 }

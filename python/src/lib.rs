@@ -1,5 +1,5 @@
-//! The package `stripmine` for Python: scenes, simulations and runs of the physics, with arrays of numpy and tables in the format of
-//! Arrow. What Python sees is described in `stripmine/__init__.pyi`.
+//! Python package `stripmine`: scenes, simulations and runs, with numpy arrays and Arrow tables. The Python interface is described
+//! in `stripmine/__init__.pyi`.
 
 mod checked;
 mod computing;
@@ -21,7 +21,7 @@ mod table;
 
 use pyo3::prelude::*;
 
-/// What `stripmine/__init__.py` passes on.
+/// Names that `stripmine/__init__.py` re-exports.
 #[pymodule]
 mod _stripmine {
     #[pymodule_export]

@@ -1,4 +1,4 @@
-//! What there is: presets, methods, and the keys of scenes.
+//! Lists of presets, methods and scene keys.
 
 use crate::json;
 use pyo3::exceptions::PyValueError;
@@ -9,7 +9,7 @@ use stripmine_physics::method::observed::UnknownName;
 use stripmine_physics::method::{Entry, METHODS, Quantity, method};
 use stripmine_physics::scene::{Fallback, Key};
 
-/// The scenes that come with the package: name, and what it shows.
+/// Preset scenes of the package: name and title.
 #[pyfunction]
 pub(crate) fn presets(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let all = PyDict::new(py);
@@ -19,7 +19,7 @@ pub(crate) fn presets(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     Ok(all)
 }
 
-/// The methods: name, source, what each simulates and observes.
+/// Methods: name, source, description and observed quantities.
 #[pyfunction]
 pub(crate) fn methods(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
     let quantity = |it: &Quantity| json!({ "name": it.name, "unit": it.unit, "doc": it.doc });
@@ -34,7 +34,7 @@ pub(crate) fn methods(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
     json::to_python(py, &METHODS.iter().map(one).collect::<Value>())
 }
 
-/// Every key of the scenes of a method, the first one's by default, as `stripmine scene keys --json`.
+/// Keys of the scenes of a method (default: the first), as `stripmine scene keys --json`.
 #[pyfunction]
 #[pyo3(signature = (method = None))]
 pub(crate) fn keys<'py>(py: Python<'py>, method: Option<&str>) -> PyResult<Bound<'py, PyAny>> {

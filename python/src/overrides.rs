@@ -1,17 +1,17 @@
-//! A dict of Python as overrides `section.key=value`.
+//! Python dicts as overrides `section.key=value`.
 
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 use serde_json::Value;
 
-/// Lists within lists are read as deep as this.
+/// Deepest nesting of lists.
 const DEEPEST: usize = 8;
 
-/// The overrides of a dict, whose keys are `section.key`, or sections that hold dicts of their keys; or those of a list of texts.
+/// Converts to overrides a dict with keys `section.key`, a dict of sections with dicts of keys, or a list of strings.
 ///
 /// # Errors
-/// `TypeError` where a key is no text, or a value has no form in a scene.
+/// `TypeError` if a key is not a string, or a value has no form in a scene.
 pub(crate) fn overrides(given: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
     let Ok(given) = given.cast::<PyDict>() else { return given.extract() };
     let mut found = vec![];
@@ -34,25 +34,25 @@ fn text(key: &Bound<'_, PyAny>) -> PyResult<String> {
     match key.cast::<PyString>() {
         Ok(text) => Ok(text.to_str()?.to_owned()),
         Err(_) => Err(PyTypeError::new_err(format!(
-            "a key of a scene is a text such as \"particles.count\", and {} is none",
+            "{} is not a scene key; expected a string such as \"particles.count\"",
             key.repr()?
         ))),
     }
 }
 
-/// A value as a scene has it: numbers to the bit.
+/// Formats a value as TOML, numbers exact to the bit.
 fn toml(path: &str, value: &Bound<'_, PyAny>, depth: usize) -> PyResult<String> {
     let list = |items: Vec<Bound<'_, PyAny>>| {
         let items: PyResult<Vec<String>> = items.iter().map(|item| toml(path, item, depth + 1)).collect();
         Ok(format!("[{}]", items?.join(", ")))
     };
     if depth > DEEPEST {
-        return Err(PyTypeError::new_err(format!("`{path}` holds lists within lists without end")));
+        return Err(PyTypeError::new_err(format!("`{path}` has lists nested too deeply")));
     }
     if let Ok(switch) = value.cast::<PyBool>() {
         Ok(switch.is_true().to_string())
     } else if value.is_instance_of::<PyInt>() {
-        // Enumerations of whole numbers print as something else.
+        // The `__repr__` of int itself: integer enumerations print their names.
         Ok(value.py().get_type::<PyInt>().call_method1("__repr__", (value,))?.extract()?)
     } else if let Ok(number) = value.cast::<PyFloat>() {
         Ok(of_number(number.value()))
@@ -69,19 +69,19 @@ fn toml(path: &str, value: &Bound<'_, PyAny>, depth: usize) -> PyResult<String> 
         let fields: PyResult<Vec<String>> = fields.iter().map(field).collect();
         Ok(format!("{{ {} }}", fields?.join(", ")))
     } else if value.hasattr("tolist")? {
-        // Arrays and numbers of numpy.
+        // numpy arrays and scalars.
         toml(path, &value.call_method0("tolist")?, depth + 1)
     } else if value.hasattr("__fspath__")? {
         toml(path, &value.call_method0("__fspath__")?, depth + 1)
     } else {
         let kind = value.get_type().qualname()?;
         Err(PyTypeError::new_err(format!(
-            "`{path}` cannot be of the type {kind}: numbers, texts, True and False, lists, dicts and arrays can stand in a scene"
+            "`{path}` cannot be of type {kind}; expected a number, string, bool, list, dict or array"
         )))
     }
 }
 
-/// A number as TOML reads it, to the bit.
+/// Formats a number for TOML, exact to the bit.
 fn of_number(number: f64) -> String {
     match number {
         _ if number.is_nan() => "nan".to_owned(),
@@ -90,7 +90,7 @@ fn of_number(number: f64) -> String {
     }
 }
 
-/// A text in quotes: what JSON escapes, TOML reads as the same, but for the character that only JSON lets stand.
+/// Quotes a string for TOML. JSON's escapes are valid TOML, except for DEL, which JSON leaves unescaped.
 fn quoted(text: &str) -> String {
     Value::from(text).to_string().replace('\u{7f}', "\\u007f")
 }

@@ -1,4 +1,4 @@
-//! Particles as arrays.
+//! Particles as numpy arrays.
 
 use crate::pickling::class_of_attributes;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
@@ -6,18 +6,17 @@ use pyo3::prelude::*;
 use stripmine_physics::particles::{self, Kind, Particle};
 
 class_of_attributes! {
-    /// Particles at a moment, as arrays of their own: those that forces move first, then discs of walls. N is their number; D is 2, or 3 for
-    /// bodies in space.
+    /// Particles at one time, as arrays: moving particles first, then wall discs. N is their number; D is 2, or 3 for bodies in space.
     Particles, made again by _particles {
-        /// A number of its own, which stays with it; shape (N,).
+        /// Unique, permanent number of each particle; shape (N,).
         id: Py<PyArray1<u32>>,
-        /// Whether it is a disc of a wall, which no force moves; shape (N,).
+        /// True for wall discs, which no force moves; shape (N,).
         wall: Py<PyArray1<bool>>,
         /// Centres (length), shape (N, D).
         positions: Py<PyArray2<f64>>,
         /// Velocities (length/time), shape (N, D).
         velocities: Py<PyArray2<f64>>,
-        /// Angles (radian), counter-clockwise, shape (N,); 0 in frames, which have none.
+        /// Angles (radian), counter-clockwise, shape (N,); 0 in frames, which store none.
         angle: Py<PyArray1<f64>>,
         /// Angular velocities (1/time), counter-clockwise, shape (N,).
         angular_velocity: Py<PyArray1<f64>>,
@@ -29,10 +28,10 @@ class_of_attributes! {
 }
 
 impl Particles {
-    /// Arrays of some particles in so many dimensions.
+    /// Arrays of particles in a number of dimensions.
     ///
     /// # Errors
-    /// If there is no memory for them.
+    /// If memory is short.
     pub(crate) fn of(py: Python<'_>, all: &[Particle], dimensions: usize) -> PyResult<Particles> {
         let vectors = |of: fn(&Particle) -> [f64; 3]| {
             rows(py, all.iter().flat_map(|it| of(it).into_iter().take(dimensions)).collect(), dimensions)
@@ -62,16 +61,16 @@ impl Particles {
     }
 }
 
-/// In how many dimensions some particles move: 2 where none has a third coordinate, which then stays so.
+/// Dimensions in which particles move: 2 if no third coordinate or velocity is nonzero, and then it stays so.
 pub(crate) fn dimensions(particles: &particles::Particles) -> usize {
     let is_planar = |it: &Particle| it.position[2] == 0.0 && it.velocity[2] == 0.0;
     if particles.all().iter().all(is_planar) { 2 } else { 3 }
 }
 
-/// An array of rows of so many numbers.
+/// Array of rows of `width` numbers.
 ///
 /// # Errors
-/// If there is no memory for it.
+/// If memory is short.
 pub(crate) fn rows(py: Python<'_>, numbers: Vec<f64>, width: usize) -> PyResult<Py<PyArray2<f64>>> {
     let count = numbers.len() / width;
     Ok(PyArray1::from_vec(py, numbers).reshape([count, width])?.unbind())

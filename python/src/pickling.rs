@@ -1,6 +1,6 @@
-//! Classes that pickle and copy make again from their attributes.
+//! Classes that pickle and copy rebuild from their attributes.
 
-/// Defines a class of attributes that cannot change, their names in order, and the function that makes an object of them.
+/// Defines a class with read-only attributes, the ordered list of their names, and the function that rebuilds an object.
 macro_rules! class_of_attributes {
     (
         $(#[$about:meta])*
@@ -15,11 +15,11 @@ macro_rules! class_of_attributes {
         }
 
         impl $class {
-            /// The attributes, in the order in which pickle hands them over.
+            /// Names of the attributes, in pickle's order.
             pub(crate) const ATTRIBUTES: &[&str] = &[$(stringify!($name)),*];
         }
 
-        /// An object of these attributes, as pickle hands them over.
+        /// Rebuilds an object from its attributes, for pickle.
         #[pyfunction]
         #[pyo3(signature = ($($name),*))]
         #[allow(clippy::too_many_arguments, reason = "one for each attribute")]

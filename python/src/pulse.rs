@@ -1,4 +1,4 @@
-//! Flags that are raised some twenty times a second: who computes for long comes up then and looks whether Ctrl-C was pressed.
+//! Flags raised twenty times a second. A long computation pauses when its flag is raised, and checks for Ctrl-C.
 
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -6,16 +6,16 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 use std::thread;
 use std::time::Duration;
 
-/// How long between two beats.
+/// Interval between two beats.
 pub(crate) const BEAT: Duration = Duration::from_millis(50);
 
-/// The flags that are raised, while they are in use.
+/// Flags in use.
 static FLAGS: Mutex<Vec<Weak<AtomicBool>>> = Mutex::new(vec![]);
 
-/// A flag that is raised at every beat, as long as it lives.
+/// Makes a flag that is raised at every beat, as long as it lives.
 ///
 /// # Errors
-/// If the system gives no thread for it.
+/// If no thread can be started.
 pub(crate) fn flag() -> io::Result<Arc<AtomicBool>> {
     let flag = Arc::new(AtomicBool::new(false));
     let mut flags = flags();
@@ -26,7 +26,7 @@ pub(crate) fn flag() -> io::Result<Arc<AtomicBool>> {
     Ok(flag)
 }
 
-/// Beats until there is no flag any more.
+/// Raises all flags at every beat, until none is left.
 fn beat() {
     loop {
         thread::sleep(BEAT);

@@ -1,4 +1,4 @@
-//! Runs that have been written: their rows, frames, means and scenes.
+//! Finished runs: their rows, frames, means and scenes.
 
 use crate::computing::computed;
 use crate::exceptions;
@@ -20,18 +20,18 @@ const THERMO: &str = "thermo.csv";
 const SCENE: &str = "scene.toml";
 const SUMMARY: &str = "summary.json";
 
-/// Longer than any text that a run writes of itself (bytes).
+/// Limit of the size of a text file of a run (bytes).
 const LONGEST_TEXT: u64 = 64 << 20;
 
-/// A run in its folder. `Scene.run` and `stripmine.read` make it.
+/// Run in its folder. `Scene.run` and `stripmine.read` make it.
 #[pyclass(frozen, module = "stripmine")]
 pub(crate) struct Run {
     folder: PathBuf,
-    /// The folder, where it goes with the run.
+    /// Set if the folder is temporary.
     scratch: Option<Arc<Scratch>>,
 }
 
-/// The run in a folder, finished or not.
+/// Opens the run in a folder, finished or not.
 #[pyfunction]
 pub(crate) fn read(py: Python<'_>, folder: PathBuf) -> PyResult<Run> {
     let run = Run::in_folder(folder);
@@ -39,7 +39,7 @@ pub(crate) fn read(py: Python<'_>, folder: PathBuf) -> PyResult<Run> {
     Ok(run)
 }
 
-/// The means of several runs of one scene with seeds of their own, joined.
+/// Joins the means of several runs of one scene with different seeds.
 #[pyfunction]
 #[pyo3(signature = (*runs))]
 pub(crate) fn average(runs: &Bound<'_, PyTuple>) -> PyResult<Table> {
@@ -50,12 +50,12 @@ pub(crate) fn average(runs: &Bound<'_, PyTuple>) -> PyResult<Table> {
 }
 
 impl Run {
-    /// Run in a folder, wherever this process goes later.
+    /// Run in a folder. The path is made absolute, since the process may change its directory.
     pub(crate) fn in_folder(folder: PathBuf) -> Run {
         Run { folder: std::path::absolute(&folder).unwrap_or(folder), scratch: None }
     }
 
-    /// That of a folder that goes with it.
+    /// Run in a temporary folder, which is removed with it.
     pub(crate) fn in_scratch(scratch: Scratch) -> Run {
         Run { folder: scratch.path().to_owned(), scratch: Some(Arc::new(scratch)) }
     }
@@ -83,34 +83,34 @@ impl Run {
         &self.folder
     }
 
-    /// True where the folder goes with the last run that is of it.
+    /// True if the folder is removed with its last `Run`.
     #[getter]
     fn _is_temporary(&self) -> bool {
         self.scratch.is_some()
     }
 
-    /// The rows of `thermo.csv`.
+    /// Rows of `thermo.csv`.
     fn thermo(&self, py: Python<'_>) -> PyResult<Table> {
         let table = py.detach(|| thermo(&self.folder.join(THERMO)));
         table.map_err(|error| exceptions::of(py, &error))
     }
 
-    /// The mean of each quantity with its error, as `stripmine average`.
+    /// Mean of each quantity with its error, as `stripmine average`.
     fn averages(&self, py: Python<'_>) -> PyResult<Table> {
         joined(py, &[self.finished(py)?])
     }
 
-    /// The frames of its trajectory, one after the other: of `trajectory.gsd` where `trajectory.xyz` has none.
+    /// Frames of the trajectory, read one at a time from `trajectory.xyz`, or from `trajectory.gsd` if that has none.
     fn frames(&self, py: Python<'_>) -> PyResult<Frames> {
         Frames::open(py, &self.folder, self.scratch.clone())
     }
 
-    /// The scene as TOML, every value spelled out and every choice made.
+    /// The scene as TOML, with every value and every choice explicit.
     fn toml(&self, py: Python<'_>) -> PyResult<String> {
         self.text(py, SCENE)
     }
 
-    /// What the run says of itself at its end.
+    /// Contents of `summary.json`.
     fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         json::of_text(py, &self.text(py, SUMMARY)?)
     }
@@ -120,7 +120,7 @@ impl Run {
     }
 }
 
-/// The table of a run: the step, or the number of events, and then what is observed.
+/// Table of a run: the step, or the number of events, then the observables.
 fn thermo(path: &Path) -> Result<Table, TableError> {
     let mut table = TableReader::open(path)?;
     let names = table.columns().to_vec();
@@ -142,7 +142,7 @@ fn joined(py: Python<'_>, runs: &[Finished]) -> PyResult<Table> {
     Ok(means(&averages.map_err(|error| exceptions::of(py, &error))?))
 }
 
-/// A row for each quantity; what it does not have is no number.
+/// Table of averages, a row for each quantity; missing values are NaN.
 fn means(Averages { quantities, .. }: &Averages) -> Table {
     let words = |name: &str, of: &dyn Fn(&Average) -> String| {
         Column::words(name, quantities.iter().map(of).collect())
@@ -191,7 +191,7 @@ fn means(Averages { quantities, .. }: &Averages) -> Table {
     ])
 }
 
-/// The word of an outcome, as in `summary.json`.
+/// Word for an outcome, as in `summary.json`.
 fn says(outcome: &Outcome) -> &'static str {
     match outcome {
         Outcome::Mean(_) => "mean",

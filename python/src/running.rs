@@ -1,4 +1,4 @@
-//! A whole run, which Ctrl-C ends at its next step with a checkpoint.
+//! Whole runs, which Ctrl-C ends at the next step with a checkpoint.
 
 use crate::checked::Checked;
 use crate::computing::computed;
@@ -13,7 +13,7 @@ use std::sync::atomic::AtomicBool;
 use stripmine_physics::origin::Origin;
 use stripmine_physics::run::{Existing, Job, RunError, run};
 
-/// The package, for the record.
+/// Version and commit of the package, recorded with runs.
 fn built() -> Origin {
     Origin {
         version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -23,16 +23,16 @@ fn built() -> Origin {
     }
 }
 
-/// A folder for the results of a run that nobody has asked to keep.
+/// Makes a temporary folder for the results of a run.
 ///
 /// # Errors
-/// If the system does not let it be made.
+/// If it cannot be made.
 pub(crate) fn begin_scratch(py: Python<'_>) -> PyResult<Scratch> {
     Scratch::new()
-        .map_err(|cause| exceptions::refused(py, format!("no folder for results can be made: {cause}")))
+        .map_err(|cause| exceptions::refused(py, format!("a temporary folder cannot be made: {cause}")))
 }
 
-/// Runs a scene into a folder; gives what the command says where it fails.
+/// Runs a scene into a folder; the inner result has the failure of the run.
 ///
 /// # Errors
 /// `KeyboardInterrupt` after Ctrl-C, with a checkpoint in the folder.

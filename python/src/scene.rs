@@ -1,4 +1,4 @@
-//! Scenes: read, checked, started and run.
+//! Class `Scene`: reads, checks, starts and runs scenes.
 
 use crate::checked::{Checked, Source};
 use crate::computing::computed;
@@ -18,7 +18,7 @@ use std::sync::Arc;
 use stripmine_physics::method::Counted;
 use stripmine_physics::run::{Existing, RunError, chosen_otherwise, forecast};
 
-/// A scene that was read, checked and may run. `stripmine.scene` makes it.
+/// Scene that was read and checked. `stripmine.scene` makes it.
 #[pyclass(frozen, module = "stripmine")]
 pub(crate) struct Scene {
     source: Source,
@@ -28,9 +28,9 @@ pub(crate) struct Scene {
 
 /// Reads and checks a scene, and makes its particles.
 ///
-/// `source` is a preset's name, a file's path, or the scene itself as a text in TOML of several lines. `overrides` says what is to be
-/// otherwise: `{"particles.count": 400}`, section by section `{"particles": {"count": 400}}`, or a list of texts as the command line
-/// takes them, `["particles.count=400"]`. All mistakes come at once, as `SceneError`.
+/// `source` is a preset name, a file path, or the scene itself as TOML text of several lines. `overrides` changes values:
+/// `{"particles.count": 400}`, by section `{"particles": {"count": 400}}`, or as on the command line `["particles.count=400"]`.
+/// Raises `SceneError` with all mistakes at once.
 #[pyfunction]
 #[pyo3(signature = (source, overrides = None))]
 pub(crate) fn scene(source: &Bound<'_, PyAny>, overrides: Option<&Bound<'_, PyAny>>) -> PyResult<Scene> {
@@ -44,13 +44,13 @@ pub(crate) fn scene(source: &Bound<'_, PyAny>, overrides: Option<&Bound<'_, PyAn
 }
 
 impl Scene {
-    /// That the machine has the memory for it.
+    /// Checks that the machine has enough memory for it.
     fn fits(&self, py: Python<'_>) -> PyResult<()> {
         let fits = self.checked.prepared.memory.fits(self.source.name());
         fits.map_err(|mistakes| exceptions::of(py, &mistakes))
     }
 
-    /// The same scene with what the run in a folder has chosen, where this one leaves it open.
+    /// The scene with the choices of the run in a folder, where this scene leaves them open.
     fn as_begun(&self, py: Python<'_>, folder: &Path) -> PyResult<Arc<Checked>> {
         let Checked { prepared, entry, values, .. } = &*self.checked;
         let chosen = chosen_otherwise(values, entry.vocabulary, &prepared.scene, folder);
@@ -65,23 +65,23 @@ impl Scene {
 
 #[pymethods]
 impl Scene {
-    /// The scene as TOML, every value spelled out and every choice made.
+    /// The scene as TOML, with every value and every choice explicit.
     fn toml(&self) -> &str {
         &self.checked.prepared.scene
     }
 
-    /// The name of its method.
+    /// Name of its method.
     #[getter]
     fn method(&self) -> &'static str {
         self.checked.entry.vocabulary.keys.method
     }
 
-    /// The particles at the start.
+    /// Particles at the start.
     fn particles(&self, py: Python<'_>) -> PyResult<Particles> {
         Particles::of(py, self.checked.prepared.particles().all(), self.checked.dimensions)
     }
 
-    /// What there is to be said of the scene, as `stripmine scene check --json`.
+    /// Step limits, expected time and memory, choices and warnings, as `stripmine scene check --json`.
     fn check<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.fits(py)?;
         let Checked { prepared, entry, .. } = &*self.checked;
@@ -100,8 +100,8 @@ impl Scene {
         json::to_python(py, &Value::Object(data))
     }
 
-    /// The whole-array operations of a step, as `stripmine scene programs --json` counts them: by the programs of the lattice, whatever finds contacts or pairs
-    /// in a run of the scene. No rows where a step has no vector programs.
+    /// Whole-array operations of a step, as `stripmine scene programs --json` counts them: for the lattice programs, whichever search a
+    /// run of the scene uses. The table is empty if a step has no vector programs.
     fn counts(&self, py: Python<'_>) -> PyResult<Table> {
         let model = &self.checked.prepared.model;
         let counted = computed(py, || Counted::of(&model.programs()))?;
@@ -118,17 +118,16 @@ impl Scene {
         ]))
     }
 
-    /// Begins a simulation that is advanced step by step.
+    /// Starts a simulation that is advanced step by step.
     fn start(&self, py: Python<'_>) -> PyResult<Simulation> {
         self.fits(py)?;
         Simulation::start(py, self.checked.clone())
     }
 
-    /// Runs the scene as a whole, as `stripmine run` does, into the folder `out`.
+    /// Runs the whole scene into the folder `out`, as `stripmine run` does.
     ///
-    /// Without `out` the folder is a temporary one, which goes with the last run that is of it. `resume` goes on with the run in the
-    /// folder, or begins where there is none; `other_version` goes on also where another version began it; `overwrite` begins again.
-    /// Ctrl-C ends it with a checkpoint.
+    /// Without `out` the folder is temporary, and removed with its last `Run`. `resume` resumes the run in the folder, or starts it if there
+    /// is none; `other_version` also resumes a run of another version; `overwrite` replaces a run. Ctrl-C ends it with a checkpoint.
     #[pyo3(signature = (out = None, *, resume = false, overwrite = false, other_version = false))]
     fn run(
         &self,
@@ -141,7 +140,7 @@ impl Scene {
         let existing = match (resume, overwrite) {
             (true, true) => return Err(exceptions::refused(py, "resume and overwrite exclude each other")),
             (false, _) if other_version => {
-                return Err(exceptions::refused(py, "other_version is for runs that go on: it needs resume"));
+                return Err(exceptions::refused(py, "other_version needs resume=True"));
             }
             (true, _) => Existing::Resume { other_version },
             (_, true) => Existing::Overwrite,
@@ -151,7 +150,7 @@ impl Scene {
         let Some(folder) = out else {
             let scratch = begin_scratch(py)?;
             let done = carry_out(py, &self.checked, scratch.path(), existing)?;
-            // The state of a failed step goes with its folder.
+            // The temporary folder is removed, so the failure must not refer to its files.
             return match done {
                 Ok(()) => Ok(Run::in_scratch(scratch)),
                 Err(RunError::Physics { failure, .. }) => Err(exceptions::of(py, &failure)),
@@ -163,7 +162,7 @@ impl Scene {
         Ok(Run::in_folder(folder))
     }
 
-    /// The plan of `stripmine explain --json`.
+    /// Plan of `stripmine explain --json`.
     #[pyo3(
         signature = (*given, **options),
         text_signature = "($self, of=None, error=None, *, time=None, limit=None, window=None, seconds=None, command=None)"
@@ -176,7 +175,7 @@ impl Scene {
         study(slf, "explain", given, options)
     }
 
-    /// The tables of `stripmine chart accuracy`, by name.
+    /// Tables of `stripmine chart accuracy`, by name.
     #[pyo3(
         signature = (*given, **options),
         text_signature = "($self, of=None, error=None, *, window=None, budget=60, out=None, command=None)"
@@ -195,7 +194,7 @@ impl Scene {
     }
 }
 
-/// A study of `stripmine/_studies.py`, which knows its options.
+/// Calls a study of `stripmine/_studies.py`, which defines its options.
 fn study<'py>(
     scene: &Bound<'py, Scene>,
     name: &str,

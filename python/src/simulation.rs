@@ -1,4 +1,4 @@
-//! A simulation that is advanced step by step.
+//! Class `Simulation`: simulations advanced step by step.
 
 use crate::checked::Checked;
 use crate::computing::computed;
@@ -16,25 +16,25 @@ use std::time::Instant;
 use stripmine_physics::method::{self, Failure, Purpose, Until, steps_over};
 use stripmine_physics::structure::{Setting, net_forces};
 
-/// A simulation under way, for one thread at a time. `Scene.start` makes it.
+/// Running simulation, for one thread at a time. `Scene.start` makes it.
 #[pyclass(frozen, module = "stripmine")]
 pub(crate) struct Simulation {
     checked: Arc<Checked>,
     state: Mutex<State>,
-    /// Raised at every beat, so that Ctrl-C is answered.
+    /// Flag raised at every beat, so that Ctrl-C is handled.
     pause: Arc<AtomicBool>,
 }
 
 struct State {
     running: Box<dyn method::Simulation>,
     broken: Option<Broken>,
-    /// Whether a step takes longer than a beat: it would not come to its end between two.
+    /// True if a step takes longer than a beat, so that it would never end between two.
     is_slow: bool,
-    /// The time that the advances by a time so far add up to; none where the last one was by something else, or did not come to its end.
+    /// Sum of the times of the advances so far; none if the last one was by steps or events, or was interrupted.
     asked: Option<TimeSum>,
 }
 
-/// A sum of times, and the rounding that it lacks: a time in pieces ends where it does at once.
+/// Compensated sum of times, so that advancing in pieces ends at the same time as advancing at once.
 #[derive(Clone, Copy)]
 struct TimeSum {
     sum: f64,
@@ -53,32 +53,32 @@ impl TimeSum {
     }
 }
 
-/// The sum of two numbers, and what rounding took from it.
+/// Sum of two numbers, and its rounding error.
 fn two_sum(a: f64, b: f64) -> [f64; 2] {
     let sum = a + b;
     let of_b = sum - a;
     [sum, (a - (sum - of_b)) + (b - of_b)]
 }
 
-/// Why it does not go on.
+/// Reason why a simulation cannot continue.
 enum Broken {
-    /// The physics.
+    /// The physics failed.
     Failure(Failure),
-    /// The program, in the midst of a step.
+    /// The program panicked in a step.
     Fault,
 }
 
 impl State {
-    /// That it may go on.
+    /// Checks that it can continue.
     fn is_sound(&self, py: Python<'_>) -> PyResult<()> {
         match &self.broken {
             None => Ok(()),
             Some(Broken::Failure(failure)) => Err(exceptions::of(py, failure)),
-            Some(Broken::Fault) => Err(exceptions::fault(py, "a step was left half done")),
+            Some(Broken::Fault) => Err(exceptions::fault(py, "a step was not completed")),
         }
     }
 
-    /// End of an advance by a distance, and the sum of times that is then reached.
+    /// End of an advance by a distance, and the sum of times reached then.
     fn end_of(&self, distance: Until) -> (Until, Option<TimeSum>) {
         let clock = self.running.clock();
         let Until::Time(time) = distance else { return (distance.after(&clock), None) };
@@ -90,15 +90,15 @@ impl State {
         (end, Some(asked))
     }
 
-    /// Goes on until the end has come, or a flag is set.
+    /// Advances to the end, or until the flag is set.
     fn advance(&mut self, end: Until, interrupted: &AtomicBool) -> Result<(), Failure> {
         let advanced = self.running.advance(&[end], interrupted);
-        // Only runs write rows of events; here they would pile up.
+        // Only runs write event rows; here they would accumulate.
         self.running.take_events();
         advanced
     }
 
-    /// Goes on until the end has come, or at most until the next beat.
+    /// Advances to the end, or at most until the next beat.
     fn advance_for_a_beat(&mut self, py: Python<'_>, end: Until, pause: &AtomicBool) -> PyResult<()> {
         let from = self.running.clock();
         pause.store(false, Ordering::Relaxed);
@@ -109,7 +109,7 @@ impl State {
         Ok(())
     }
 
-    /// Goes on until the end has come, in a thread of its own, while this one answers signals.
+    /// Advances to the end in a separate thread, while this one handles signals.
     fn advance_beside(&mut self, py: Python<'_>, end: Until) -> PyResult<()> {
         let begun = Instant::now();
         let done = computed(py, || beside(|interrupted| self.advance(end, interrupted)));
@@ -123,7 +123,7 @@ impl State {
         signal.map_or(Ok(()), Err)
     }
 
-    /// Notes what does not go on.
+    /// Records a failure, after which the simulation cannot continue.
     fn settle(&mut self, py: Python<'_>, advanced: PyResult<Result<(), Failure>>) -> PyResult<()> {
         match advanced {
             Ok(Ok(())) => Ok(()),
@@ -141,10 +141,10 @@ impl State {
 }
 
 impl Simulation {
-    /// Begins.
+    /// Starts a simulation.
     ///
     /// # Errors
-    /// If the start breaks a precondition, or the system gives no thread.
+    /// If the start breaks a precondition, or no thread can be started.
     pub(crate) fn start(py: Python<'_>, checked: Arc<Checked>) -> PyResult<Simulation> {
         let running = computed(py, || checked.prepared.start(Purpose::Run))?;
         let running = running.map_err(|failure| exceptions::of(py, &failure))?;
@@ -156,57 +156,57 @@ impl Simulation {
         })
     }
 
-    /// The state, unless another thread has it.
+    /// Locks the state, unless another thread has it.
     fn state(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, State>> {
         match self.state.try_lock() {
             Ok(state) => Ok(state),
-            // What panics while it has the state leaves it as it says itself.
+            // After a panic, `broken` describes the state.
             Err(TryLockError::Poisoned(poisoned)) => Ok(poisoned.into_inner()),
             Err(TryLockError::WouldBlock) => Err(exceptions::busy(py)),
         }
     }
 
-    /// Looks at the state as it stands.
+    /// Computes a value from the current state.
     fn look<R: Send>(&self, py: Python<'_>, of: impl FnOnce(&State) -> R + Send) -> PyResult<R> {
         let mut state = self.state(py)?;
         let state = &mut *state;
         computed(py, move || of(state))
     }
 
-    /// How far to go.
+    /// Distance of an advance from its arguments.
     fn distance(&self, steps: Option<i64>, time: Option<f64>, events: Option<i64>) -> PyResult<Until> {
         let takes_steps = matches!(self.checked.prepared.schedule.until, Until::Steps(_));
         let method = self.checked.entry.vocabulary.keys.method;
         let whole = |name: &str, count: i64| {
             u64::try_from(count).map_err(|_| {
-                PyValueError::new_err(format!("{name} cannot be {count}: a whole number, 0 or more"))
+                PyValueError::new_err(format!("{name} cannot be {count}; expected a whole number, 0 or more"))
             })
         };
         match (steps, time, events) {
             (Some(_), None, None) if !takes_steps => {
-                Err(PyValueError::new_err(format!("{method} takes no steps: give time or events")))
+                Err(PyValueError::new_err(format!("{method} has no steps: use time or events")))
             }
             (None, None, Some(_)) if takes_steps => {
-                Err(PyValueError::new_err(format!("{method} has no events: give steps or time")))
+                Err(PyValueError::new_err(format!("{method} has no events: use steps or time")))
             }
             (Some(steps), None, None) => Ok(Until::Steps(whole("steps", steps)?)),
             (None, None, Some(events)) => Ok(Until::Events(whole("events", events)?)),
             (None, Some(time), None) if time.is_finite() && time >= 0.0 => Ok(Until::Time(time)),
-            (None, Some(time), None) => {
-                Err(PyValueError::new_err(format!("time cannot be {time}: a finite number, 0 or more")))
-            }
-            _ => Err(PyTypeError::new_err("advance takes one of steps, time and events")),
+            (None, Some(time), None) => Err(PyValueError::new_err(format!(
+                "time cannot be {time}; expected a finite number, 0 or more"
+            ))),
+            _ => Err(PyTypeError::new_err("advance takes exactly one of steps, time and events")),
         }
     }
 }
 
 #[pymethods]
 impl Simulation {
-    /// Goes on by a number of steps, by a time (time), or by a number of events.
+    /// Advances by a number of steps, by a time (time), or by a number of events.
     ///
-    /// Hard discs take no steps, and are advanced by a time, which is met exactly, or by events; the other methods come to the end of the
-    /// first step at which the time is over. Times add up: any pieces give the bits, and the number of steps, of one. Other threads go on
-    /// meanwhile; Ctrl-C ends it, and the simulation may go on then. What has failed does not go on: the same error is raised again.
+    /// Hard discs have no steps; they advance by a time, which is reached exactly, or by events. The other methods end with the first
+    /// step that reaches the time. Times add up: any pieces give the same bits and number of steps as one. Other threads continue
+    /// meanwhile. Ctrl-C ends the call, and the simulation can continue. A failed simulation raises the same error again.
     #[pyo3(signature = (*, steps = None, time = None, events = None))]
     fn advance(
         &self,
@@ -219,7 +219,7 @@ impl Simulation {
         let mut state = self.state(py)?;
         state.is_sound(py)?;
         let (end, asked) = state.end_of(distance);
-        // What is cut off is not asked for any more.
+        // An interrupted advance forgets the rest of its time.
         state.asked = None;
         if !state.is_slow {
             state.advance_for_a_beat(py, end, &self.pause)?;
@@ -232,10 +232,11 @@ impl Simulation {
         Ok(())
     }
 
-    /// A value for each quantity that the method observes, by name: the columns of `thermo.csv`. `compressibility` and `collision_rate` of hard discs are means since the start.
+    /// Values of the quantities of the method, by name: the columns of `thermo.csv`. `compressibility` and `collision_rate` of hard discs
+    /// are means since the start.
     fn observe<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let seen = self.look(py, |State { running, broken, .. }| {
-            // The state of a failed step is seen as it is.
+            // The state of a failed step is not checked again.
             if broken.is_none() {
                 running.check()?;
             }
@@ -249,7 +250,7 @@ impl Simulation {
         Ok(seen)
     }
 
-    /// The unit of each quantity, by name; empty for pure numbers.
+    /// Units of the quantities, by name; empty for pure numbers.
     #[getter]
     fn units<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let units = PyDict::new(py);
@@ -259,20 +260,20 @@ impl Simulation {
         Ok(units)
     }
 
-    /// The particles as they stand, positions inside the box.
+    /// Current particles, positions inside the box.
     fn particles(&self, py: Python<'_>) -> PyResult<Particles> {
         let particles = self.look(py, |state| state.running.particles())?;
         Particles::of(py, particles.all(), self.checked.dimensions)
     }
 
-    /// The sum of the forces that pairs exert on each particle, shape (N, 2) (force), in the order of `particles()`.
+    /// Sum of the pair forces on each particle, shape (N, 2) (force), in the order of `particles()`.
     ///
-    /// Gravity, a bath and closed sides are no pairs. Hard discs and bodies have no such forces.
+    /// Excludes gravity, the bath and closed sides. Hard discs and bodies have no such forces.
     fn forces(&self, py: Python<'_>) -> PyResult<Py<PyArray2<f64>>> {
         let prepared = &self.checked.prepared;
         let Some(forces) = prepared.model.pair_forces() else {
             let method = self.checked.entry.vocabulary.keys.method;
-            let message = format!("{method} has no forces between discs that act at any moment");
+            let message = format!("{method} has no continuous pair forces");
             return Err(exceptions::refused(py, message));
         };
         let sums = self.look(py, |state| {
@@ -285,7 +286,7 @@ impl Simulation {
         particles::rows(py, sums.concat(), 2)
     }
 
-    /// What seldom means well and has happened on the way.
+    /// Warnings about suspicious events so far.
     fn warnings(&self, py: Python<'_>) -> PyResult<Vec<String>> {
         let warnings = self.look(py, |state| state.running.warnings())?;
         Ok(warnings.into_iter().map(|warning| warning.message).collect())
@@ -297,13 +298,13 @@ impl Simulation {
         Ok(self.state(py)?.running.clock().time)
     }
 
-    /// Steps since the start; 0 where a method takes none.
+    /// Steps since the start; 0 if the method has none.
     #[getter]
     fn step(&self, py: Python<'_>) -> PyResult<u64> {
         Ok(self.state(py)?.running.clock().steps)
     }
 
-    /// Events since the start; 0 where a method has none.
+    /// Events since the start; 0 if the method has none.
     #[getter]
     fn events(&self, py: Python<'_>) -> PyResult<u64> {
         Ok(self.state(py)?.running.clock().events)
@@ -313,7 +314,7 @@ impl Simulation {
         let method = self.checked.entry.vocabulary.keys.method;
         match self.state.try_lock() {
             Ok(state) => format!("<Simulation: {method}, {}>", state.running.clock()),
-            Err(_) => format!("<Simulation: {method}, under way>"),
+            Err(_) => format!("<Simulation: {method}, running>"),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Tables: columns as arrays of numpy, and all of them in the format of Arrow.
+//! Class `Table`: columns as numpy arrays, whole tables in Arrow's format.
 
 use arrow_array::ffi_stream::FFI_ArrowArrayStream;
 use arrow_array::{ArrayRef, Float64Array, RecordBatch, RecordBatchIterator, StringArray, UInt64Array};
@@ -11,34 +11,34 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use stripmine_physics::method::observed::UnknownName;
 
-/// A column of a table.
+/// Column of a table.
 pub(crate) struct Column {
     name: String,
-    /// Empty for pure numbers and for words.
+    /// Empty for pure numbers and strings.
     unit: String,
     values: Values,
 }
 
-/// What a column holds.
+/// Values of a column.
 enum Values {
     Counts(Vec<u64>),
-    /// What is not there is no number.
+    /// Missing values are NaN.
     Numbers(Vec<f64>),
     Words(Vec<String>),
 }
 
 impl Column {
-    /// Of whole numbers.
+    /// Column of whole numbers.
     pub(crate) fn counts(name: &str, values: Vec<u64>) -> Column {
         Column { name: name.to_owned(), unit: String::new(), values: Values::Counts(values) }
     }
 
-    /// Of numbers in a unit.
+    /// Column of numbers with a unit.
     pub(crate) fn numbers(name: &str, unit: &str, values: Vec<f64>) -> Column {
         Column { name: name.to_owned(), unit: unit.to_owned(), values: Values::Numbers(values) }
     }
 
-    /// Of words.
+    /// Column of strings.
     pub(crate) fn words(name: &str, values: Vec<String>) -> Column {
         Column { name: name.to_owned(), unit: String::new(), values: Values::Words(values) }
     }
@@ -81,7 +81,7 @@ impl Column {
     }
 }
 
-/// A table of columns, each with its name, its unit, its type ("counts", "numbers" or "words") and its values. None is no number or no word.
+/// Makes a table of columns, each with name, unit, type ("counts", "numbers" or "words") and values. None becomes NaN or an empty string.
 #[pyfunction]
 pub(crate) fn _table(columns: Vec<(String, String, String, Bound<'_, PyAny>)>) -> PyResult<Table> {
     let columns = columns.into_iter().map(|(name, unit, kind, values)| {
@@ -98,14 +98,14 @@ pub(crate) fn _table(columns: Vec<(String, String, String, Bound<'_, PyAny>)>) -
     Ok(Table::new(columns.collect::<PyResult<_>>()?))
 }
 
-/// A table: `table["name"]` is a column, and pandas, polars and pyarrow read all of it.
+/// Table: `table["name"]` is a column; pandas, polars and pyarrow read the whole table.
 #[pyclass(frozen, module = "stripmine")]
 pub(crate) struct Table {
     columns: Vec<Column>,
 }
 
 impl Table {
-    /// Of columns that are as long as each other.
+    /// Table of columns of equal length.
     pub(crate) fn new(columns: Vec<Column>) -> Table {
         Table { columns }
     }
@@ -119,13 +119,13 @@ impl Table {
 
 #[pymethods]
 impl Table {
-    /// The names of the columns.
+    /// Names of the columns.
     #[getter]
     fn columns(&self) -> Vec<&str> {
         self.columns.iter().map(|column| column.name.as_str()).collect()
     }
 
-    /// The unit of each column, by name; empty for pure numbers and for words.
+    /// Units of the columns, by name; empty for pure numbers and strings.
     #[getter]
     fn units<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let units = PyDict::new(py);
@@ -144,7 +144,7 @@ impl Table {
         Ok(all)
     }
 
-    /// A `pandas.DataFrame`.
+    /// Converts to a `pandas.DataFrame`.
     fn to_pandas<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         py.import("pandas")?.call_method1("DataFrame", (self.to_dict(py)?,))
     }
@@ -171,7 +171,7 @@ impl Table {
         format!("<Table: {} rows of {}>", self.__len__(), self.columns().join(", "))
     }
 
-    /// The stream of the Arrow PyCapsule interface; a schema that is asked for is not heeded, as the interface allows.
+    /// Stream of the Arrow PyCapsule interface. A requested schema is ignored, as the interface allows.
     #[pyo3(signature = (requested_schema = None))]
     fn __arrow_c_stream__<'py>(
         &self,

@@ -1,6 +1,6 @@
-"""2D particle dynamics: granular discs, hard discs, Langevin dynamics, and bodies that attract each other.
+"""2D particle dynamics: granular discs, hard discs, Langevin dynamics, and gravitating bodies.
 
-A scene says what is simulated; it is run as a whole, or advanced step by step:
+A scene defines a simulation. Run it as a whole, or advance it step by step:
 
     import stripmine
     scene = stripmine.scene("hard-disks", {"particles.count": 400})
@@ -8,7 +8,7 @@ A scene says what is simulated; it is run as a whole, or advanced step by step:
     simulation.advance(time=10.0)
     simulation.observe()["compressibility"]
 
-Quantities are in the units of the scene; "length", "time", "mass", "energy" and so on are named where a quantity has one.
+Quantities are in the units of the scene; dimensions such as "length" or "energy" are given with each quantity.
 """
 
 import os as _os
@@ -58,6 +58,6 @@ __all__ = [
 
 _pickling.register()
 
-# Threads do not survive a fork: where some have computed, the child is told so instead of waiting for them.
+# Threads do not survive a fork: a child of a process that has computed gets an error instead of waiting forever.
 if hasattr(_os, "register_at_fork"):
     _os.register_at_fork(after_in_child=_forked)

@@ -1,13 +1,12 @@
-"""What may go wrong, as exceptions: the words are those of the command line."""
+"""Exceptions, with the messages of the command line."""
 
 from dataclasses import dataclass
 
 
 class Error(Exception):
-    """Anything that this package refuses or that fails.
+    """Base class of all errors of this package.
 
-    `kind` is "usage", "input", "precondition", "input-output" or "checkpoint", as the command line has it; `remedy` says what to
-    do, where that is known.
+    `kind` is "usage", "input", "precondition", "input-output" or "checkpoint", as on the command line; `remedy` is what to do, if known.
     """
 
     def __init__(self, message, kind="usage", remedy=None):
@@ -16,7 +15,7 @@ class Error(Exception):
         self.remedy = remedy
 
     def __reduce__(self):
-        # From one process to another it goes as it is, whatever it was made of.
+        # Pickled by its attributes, since subclasses have other constructors.
         return _again, (type(self), self.args, self.__dict__)
 
 
@@ -28,7 +27,7 @@ def _again(kind, arguments, state):
 
 @dataclass(frozen=True)
 class Mistake:
-    """One mistake of a scene: where it stands, what is wrong, what was expected, what to do."""
+    """One mistake of a scene: its location, what is wrong, what was expected, what to do."""
 
     file: str
     line: int | None
@@ -48,11 +47,11 @@ class SceneError(Error, ValueError):
 
 
 class SimulationError(Error, RuntimeError):
-    """The physics broke a precondition, or failed on the way.
+    """The physics broke a precondition, or failed during the simulation.
 
-    `failure` is what kind of failure, such as "too-deep"; `step` and `time` are when; `particles` are those named, each a dict with
-    `called`, `id`, `position` (length) and `velocity` (length/time); `count` is how many particles it is true of; `values` are the
-    numbers found and what they were held against.
+    `failure` is the kind of failure, such as "too-deep"; `step` and `time` are when it happened; `particles` are those named, each a
+    dict with `called`, `id`, `position` (length) and `velocity` (length/time); `count` is the number of affected particles; `values`
+    are the measured values and their limits.
     """
 
     def __init__(self, message, remedy, details):
@@ -67,7 +66,7 @@ class SimulationError(Error, RuntimeError):
 
 
 class RunError(Error):
-    """A run, or a folder of one, that cannot be made, gone on with or read. `file` is where."""
+    """A run or its folder cannot be made, resumed or read. `file` is its location."""
 
     def __init__(self, message, kind, remedy, file):
         super().__init__(message, kind, remedy)
@@ -75,4 +74,4 @@ class RunError(Error):
 
 
 class BusyError(Error, RuntimeError):
-    """A simulation that another thread is using."""
+    """The simulation is in use by another thread."""

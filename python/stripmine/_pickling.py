@@ -1,5 +1,4 @@
-"""How objects go to other processes, and are copied: a scene as its TOML, a run as its folder, particles and frames as their arrays.
-Importing this module registers it with `pickle` and `copy`."""
+"""Pickling and copying: a scene as its TOML, a run as its folder, particles and frames as their arrays."""
 
 import copyreg
 
@@ -28,7 +27,7 @@ def _by_attributes(make, names):
 def _reduced_run(run):
     if run._is_temporary:
         raise TypeError(
-            "a run in a temporary folder goes with this process: run the scene into a folder, scene.run(out), and hand that run over"
+            "a run in a temporary folder cannot be pickled or copied: use scene.run(out) with a folder, and pass that run"
         )
     return _run, (run.folder,)
 
@@ -41,14 +40,14 @@ def _refusing(message):
 
 
 def register():
-    """Tells `copyreg`, which both modules ask."""
+    """Registers the classes with `copyreg`, which pickle and copy use."""
     copyreg.pickle(_stripmine.Scene, lambda scene: (_scene, (scene.toml(),)))
     copyreg.pickle(_stripmine.Run, _reduced_run)
     copyreg.pickle(_stripmine.Particles, _by_attributes(_particles, _stripmine._attributes_of_particles))
     copyreg.pickle(_stripmine.Frame, _by_attributes(_frame, _stripmine._attributes_of_a_frame))
     for kind, message in (
-        (_stripmine.Simulation, "a simulation under way cannot be handed over or copied: hand over the scene, and start it there"),
-        (_stripmine.Frames, "an open trajectory cannot be handed over or copied: hand over the run, or list(run.frames())"),
-        (_stripmine.Table, "a table cannot be handed over or copied: hand over table.to_pandas(), or its columns, table[name]"),
+        (_stripmine.Simulation, "a running simulation cannot be pickled or copied: pass the scene, and start it there"),
+        (_stripmine.Frames, "an open trajectory cannot be pickled or copied: pass the run, or list(run.frames())"),
+        (_stripmine.Table, "a table cannot be pickled or copied: pass table.to_pandas(), or its columns, table[name]"),
     ):
         copyreg.pickle(kind, _refusing(message))

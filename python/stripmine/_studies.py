@@ -1,4 +1,4 @@
-"""Studies of a scene, carried out by the command `stripmine`: the package itself links the physics, and not the laboratory."""
+"""Studies of a scene, made by the command `stripmine`: the package links the physics, but not the laboratory."""
 
 import json
 import os
@@ -13,9 +13,9 @@ from . import _stripmine
 from ._errors import Error
 
 _IS_POSIX = os.name == "posix"
-# The scene's file, in a folder of its own.
+# File name of the scene in its temporary folder.
 _SCENE = "scene.toml"
-# A study of means, and where its folder has the tables.
+# Name of the study of means, and path of its tables.
 _ACCURACY = "accuracy"
 _TABLES = Path("host", _ACCURACY)
 
@@ -45,14 +45,14 @@ def _table(fields, rows):
 
 
 def _type(values):
-    """The type of a column. Values that are missing are no numbers."""
+    """The type of a column. Missing values make it "numbers"."""
     if any(isinstance(value, str) for value in values):
         return "words"
     return "counts" if values and all(isinstance(value, int) for value in values) else "numbers"
 
 
 def _printed(scene, verb, options, window, folder, command):
-    """The JSON that a verb of the command prints for a scene. The command works in a folder that exists, where it finds the scene."""
+    """The JSON that a verb of the command prints for a scene. The command runs in an existing folder with the scene file."""
     options = [f"--{name}={value}" for name, value in options.items() if value is not None]
     if window is not None:
         options += ["--window", *map(str, window)]
@@ -68,10 +68,10 @@ def _printed(scene, verb, options, window, folder, command):
         data = {}
     if code == 0 and data:
         return data
-    # Under this name a plan has a number.
+    # A plan has a number under this name.
     failure = data.get("error")
     if not isinstance(failure, dict):
-        raise Error(f"{program} ended with {code}: {said.strip()}", "input-output")
+        raise Error(f"{program} failed with exit code {code}: {said.strip()}", "input-output")
     raise _error(failure["message"], failure["remedy"], failure["kind"])
 
 
@@ -80,24 +80,24 @@ def _error(message, remedy, kind="usage"):
 
 
 def _program(command):
-    """The path of the command, which is of the version of this package."""
+    """Path of the command, which must have the version of this package."""
     named = os.fspath(command or os.environ.get("STRIPMINE") or "stripmine")
-    remedy = "install it from the checkout of this package, cargo install --path ., or pass its path as command="
+    remedy = "install it from the checkout of this package (cargo install --path .), or pass its path as command="
     program = shutil.which(named)
     if program is None:
-        raise _error(f"the command {named} is needed for this, and was not found", remedy)
+        raise _error(f"the command {named} was not found", remedy)
     program = os.path.abspath(program)
     _, version, _ = _run([program, "--version"], None)
     if version.split() != ["stripmine", _stripmine.__version__]:
         known = version.strip()[:80]
-        raise _error(f"{program} is {known!r}, and this package needs stripmine {_stripmine.__version__}", remedy)
+        raise _error(f"{program} is {known!r}; this package needs stripmine {_stripmine.__version__}", remedy)
     return program
 
 
 def _run(arguments, folder):
     """Exit code, output and error text of a program."""
     pipes = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
-    # In a group of its own, so that Ctrl-C of a terminal reaches it once: a second one would end it before it has kept its trials.
+    # In its own process group, so that Ctrl-C reaches it once: a second signal would end it before it has stored its trials.
     group = {"process_group": 0} if _IS_POSIX else {}
     try:
         process = subprocess.Popen(arguments, cwd=folder, encoding="utf-8", errors="replace", **pipes, **group)
@@ -108,11 +108,11 @@ def _run(arguments, folder):
 
 
 def _ended(process):
-    """Output and error text of a process until its end. Ctrl-C is passed on to it."""
+    """Output and error text of a process until its end. Forwards Ctrl-C to it."""
     try:
         return process.communicate()
     except KeyboardInterrupt:
-        # Elsewhere it has heard of it by itself.
+        # On other systems it has received the signal itself.
         if _IS_POSIX:
             process.send_signal(signal.SIGINT)
         _ended(process)

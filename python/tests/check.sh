@@ -3,8 +3,8 @@
 #
 #   python/tests/check.sh [ENVIRONMENT_FOLDER]
 #
-# Needs Python 3.11 and, for what is not there yet, a network; says SKIPPED where the package cannot be built for want of these. Tests that hold it
-# against the command need STRIPMINE, the command's path. Exits with 1 if anything is not as it should be.
+# Needs Python 3.11 and, for missing packages, a network; prints SKIPPED if the package cannot be built without them. Tests that compare it
+# with the command need its path in STRIPMINE. Exits with 1 if anything fails.
 set -euo pipefail
 here=$(cd "$(dirname "$0")/.." && pwd)
 scratch=$(mktemp -d)
@@ -16,7 +16,7 @@ if ! "$python" -c 'import maturin, numpy' 2>/dev/null; then
     exit 0
 fi
 PATH=$(dirname "$python"):$PATH "$python" -m pip install --quiet --disable-pip-version-check --no-build-isolation "$here"
-# Not beside the sources of the package: a folder named as it is would be imported in its place, without its compiled part.
+# The tests are copied, since beside the sources the source folder would be imported instead of the installed package.
 cp -r "$here/tests" "$here/notebooks" "$scratch"
 cd "$scratch"
 "$python" -m unittest discover -t . -s tests

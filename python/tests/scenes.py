@@ -1,9 +1,9 @@
-"""One short scene of each method, and the command where there is one."""
+"""Short scenes of each method, and the command, if available."""
 
 import os
 import shutil
 
-# Preset, overrides for a short run, and rows of it.
+# Presets, with overrides for a short run of a few rows.
 SHORT = {
     "pipe-small": {"run.steps": 60, "run.thermo_every": 20, "run.snapshot_every": 30},
     "dense-gas": {"particles.count": 200, "run.steps": 60, "run.thermo_every": 20, "run.snapshot_every": 30},
@@ -14,12 +14,12 @@ SHORT = {
 
 
 def command():
-    """The command `stripmine`: that of the environment variable STRIPMINE, or the one on the path; None without."""
+    """Path of the command `stripmine`, from the environment variable STRIPMINE or the path; None if there is none."""
     return os.environ.get("STRIPMINE") or shutil.which("stripmine")
 
 
 def flat(overrides):
-    """Overrides as the command takes them."""
+    """Overrides as command-line arguments."""
     arguments = []
     for name, value in overrides.items():
         keys = {f"{name}.{key}": inner for key, inner in value.items()} if isinstance(value, dict) else {name: value}

@@ -1,4 +1,4 @@
-"""Whatever is given wrongly is an exception with the words of the command line, and never the end of the process."""
+"""Invalid input raises an exception with the message of the command line, and never ends the process."""
 
 import json
 import pickle
@@ -13,7 +13,7 @@ import stripmine
 
 from . import scenes
 
-# Preset, overrides, and what the error says.
+# Preset, overrides, and a pattern of the error message.
 WRONG = [
     ("hard-disks", {"particles.cuont": 5}, "did you mean `particles.count`"),
     ("hard-disks", {"particels.count": 5}, r"did you mean \[particles\]"),
@@ -50,7 +50,7 @@ WRONG = [
     ("two-discs", {"integrator.dt": 1e9}, "."),
 ]
 
-# Two discs that hit each other so hard that their contact is too deep.
+# Two discs that collide so fast that they overlap too much.
 TOO_FAST = {"particles.velocities": [[30.0, 0.0], [-30.0, 0.0]]}
 
 # Arguments that no scene can have.
@@ -154,7 +154,7 @@ class Advancing(unittest.TestCase):
         with self.assertRaises(stripmine.SimulationError) as again:
             simulation.advance(steps=1)
         self.assertEqual(str(error), str(again.exception))
-        # It can still be looked at.
+        # Its state can still be read.
         simulation.observe()
         simulation.particles()
 

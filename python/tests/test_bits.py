@@ -1,4 +1,4 @@
-"""What comes out is the same to the bit, however it is asked for."""
+"""Results are identical to the bit, whichever way they are requested."""
 
 import subprocess
 import tempfile
@@ -13,12 +13,12 @@ from . import scenes
 
 
 def stride(scene):
-    """The way from one row to the next, three of which are the run."""
+    """Distance between two rows; a run has three."""
     return {"time": 2.0} if scene.method == "hard-disks" else {"steps": 20}
 
 
 def state(simulation):
-    """Everything of the particles, as bytes."""
+    """State of all particles as bytes."""
     particles = simulation.particles()
     return b"".join(
         array.tobytes()
@@ -46,7 +46,7 @@ class Bits(unittest.TestCase):
                 self.assertEqual((whole.time, whole.step, whole.events), (pieces.time, pieces.step, pieces.events))
 
     def compare_rows(self, thermo, found):
-        """Rows are what a simulation observes; what a row has since the row before is since the start there: its mean over time."""
+        """Compares rows with observations. Rates are since the previous row in the former, and since the start in the latter."""
         there, names = rows(thermo), thermo.columns[1:]
         for name in ("compressibility", "collision_rate"):
             if name in names:
@@ -112,7 +112,7 @@ class Bits(unittest.TestCase):
 
 class Forces(unittest.TestCase):
     def test_forces_of_pairs_move_what_is_free(self):
-        # Mass times the change of velocity in a step that is short; discs in contact, no gravity.
+        # Mass times the change of velocity in a short step; discs in contact, no gravity.
         scene = stripmine.scene("two-discs")
         simulation = scene.start()
         while not np.any(simulation.forces()):
@@ -129,7 +129,7 @@ class Forces(unittest.TestCase):
     def test_what_has_no_such_forces_says_so(self):
         for name in ("hard-disks", "cold-collapse"):
             simulation = stripmine.scene(name, scenes.SHORT[name]).start()
-            with self.assertRaisesRegex(stripmine.Error, "no forces between discs"):
+            with self.assertRaisesRegex(stripmine.Error, "no continuous pair forces"):
                 simulation.forces()
         free = stripmine.scene("langevin-free", {"particles.count": 10}).start()
         np.testing.assert_array_equal(free.forces(), np.zeros((10, 2)))

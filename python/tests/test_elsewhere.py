@@ -1,4 +1,4 @@
-"""Objects in other folders, other processes and as copies; times in pieces."""
+"""Objects in other folders, in other processes, and as copies; advancing in pieces."""
 
 import copy
 import multiprocessing
@@ -55,14 +55,14 @@ class ElsewhereTest(unittest.TestCase):
                 self.same(copied(frame).particles, frame.particles)
                 for name in ("time", "step", "sides", "origin", "periodic"):
                     self.assertEqual(getattr(copied(frame), name), getattr(frame, name))
-            # A deep copy has arrays of its own.
+            # A deep copy has its own arrays.
             particles = scene.particles()
             deep = copy.deepcopy(particles)
             deep.positions[0] += 1.0
             self.same(particles, scene.particles())
             for thing, words in (
-                (scene.start(), "hand over the scene"),
-                (run.frames(), "hand over the run"),
+                (scene.start(), "pass the scene"),
+                (run.frames(), "pass the run"),
                 (run.thermo(), "to_pandas"),
                 (stripmine.scene("two-discs", {"run.steps": 1}).run(), "scene.run\\(out\\)"),
             ):

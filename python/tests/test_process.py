@@ -15,19 +15,19 @@ import stripmine
 
 from . import scenes
 
-# Longer than any test waits.
+# A run longer than any test.
 LONG = {"particles.count": 400, "run.steps": 10_000_000}
 
 
 def interrupted_soon():
-    """Presses Ctrl-C in a while."""
+    """Sends Ctrl-C to this process after 0.3 s."""
     timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
     timer.start()
     return timer
 
 
 def child(ask, answer):
-    """What a process that was forked off hears."""
+    """Calls `ask` in a forked process and returns its outcome in a queue."""
     try:
         ask()
         answer.put("computed")
@@ -86,7 +86,7 @@ class Interruption(unittest.TestCase):
                 self.assertEqual(simulation.observe(), other.observe())
 
     def test_a_step_longer_than_a_beat_comes_to_its_end(self):
-        # Bodies can be interrupted within a step, which then begins again; this start takes a second.
+        # Bodies can be interrupted within a step, which then starts over; this step takes a second.
         scene = stripmine.scene("cold-collapse", {"integrator.kind": "gear-6", "run.steps": 2, "run.thermo_every": 1})
         simulation = scene.start()
         simulation.advance(steps=1)
@@ -123,7 +123,7 @@ class Forks(unittest.TestCase):
         simulation, run = scene.start(), scene.run()
         for ask in (lambda: simulation.advance(steps=1), simulation.observe, scene.start, scene.run, run.averages):
             self.assertIn("forked", self.heard(ask))
-        # What needs no threads is there, and the parent's folder stays.
+        # Calls that need no threads work, and the parent's folder stays.
         self.assertEqual(self.heard(run.thermo), "computed")
         self.assertTrue(run.folder.exists())
         simulation.advance(steps=1)

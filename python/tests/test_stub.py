@@ -1,4 +1,4 @@
-"""What `__init__.pyi` says is what the package has: every name, and every parameter with its default."""
+"""`__init__.pyi` matches the package: every name, and every parameter with its default."""
 
 import ast
 import inspect
@@ -9,7 +9,7 @@ import stripmine
 
 
 def parameters(function):
-    """Names of the parameters of a function of a stub with their kinds and whether they have a default, without `self`."""
+    """Parameters of a function in the stub, without `self`: name, kind, and True with a default."""
     arguments = function.args
     plain = [(it.arg, "positional-only") for it in arguments.posonlyargs] + [(it.arg, "positional or keyword") for it in arguments.args]
     found = [(name, kind, at >= len(plain) - len(arguments.defaults)) for at, (name, kind) in enumerate(plain)]
@@ -21,7 +21,7 @@ def parameters(function):
 
 
 def parameters_there(function):
-    """The same of a function that is there."""
+    """Parameters of a function of the package, in the same form."""
     there = inspect.signature(function).parameters.values()
     found = [(it.name, it.kind.description, it.default is not it.empty) for it in there if it.name != "self"]
     return found

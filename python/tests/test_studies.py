@@ -1,4 +1,4 @@
-"""Plans and the accuracy of means, which the command finds."""
+"""Plans and the accuracy of means, found by the command."""
 
 import inspect
 import os
@@ -18,22 +18,22 @@ from stripmine import _studies
 
 from . import scenes
 
-# Discs as dense as half of the area. p A / (N k T) of very many is 4.125 by Henderson, (1 + ν²/8) / (1 - ν)² (Mol. Phys. 30, 971, 1975).
+# Discs of packing fraction 0.5. In the limit of many discs p A / (N k T) is 4.125 by Henderson, (1 + ν²/8) / (1 - ν)² (Mol. Phys. 30, 971, 1975).
 DISCS = {"particles.count": 400, "particles.packing_fraction": 0.5}
 HENDERSON = 1.03125 / 0.25
-# Relative difference that is allowed to 400 discs and a mean of a few seconds.
+# Relative tolerance for 400 discs and a run of a few seconds.
 CLOSE = 0.012
 
-# For tests with a program of the shell in place of the command.
+# For tests with a shell script instead of the command.
 SHELL = unittest.skipUnless(os.name == "posix", "this system has no sh")
 COMMAND = unittest.skipUnless(scenes.command(), "there is no command `stripmine`: set STRIPMINE, or the path")
 
-# First line of a program that claims to be the command.
+# First line of a script that pretends to be the command.
 VERSION = f'[ "$1" = --version ] && echo stripmine {stripmine.__version__} && exit\n'
 
 
 def program(folder, lines):
-    """A program of some lines of the shell."""
+    """A shell script with these lines."""
     path = Path(folder, "command")
     path.write_text(f"#!/bin/sh\n{lines}\n")
     path.chmod(path.stat().st_mode | stat.S_IXUSR)
@@ -41,7 +41,7 @@ def program(folder, lines):
 
 
 class InFolder(unittest.TestCase):
-    """Tests with a folder, in which the command keeps what it measures."""
+    """Tests with a folder in which the command caches its measurements."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -63,17 +63,17 @@ class Commands(InFolder):
 
     def test_without_the_command_a_study_says_how_to_get_it(self):
         with mock.patch.dict(os.environ, {"PATH": str(self.folder), "STRIPMINE": ""}):
-            error = self.refused("the command stripmine is needed.* not found\n.*cargo install --path")
+            error = self.refused("the command stripmine was not found\n.*cargo install --path")
         self.assertIn("command=", error.remedy)
         with mock.patch.dict(os.environ, {"STRIPMINE": "/no/such/program"}):
-            self.refused("the command /no/such/program is needed")
-        self.refused("no-such-command is needed", command="no-such-command")
+            self.refused("the command /no/such/program was not found")
+        self.refused("no-such-command was not found", command="no-such-command")
 
     @SHELL
     def test_a_command_of_another_version_is_refused(self):
         other = program(self.folder, "echo stripmine 0.0.1")
-        self.refused(f"'stripmine 0.0.1', and .* needs stripmine {stripmine.__version__}\n.*cargo install", command=other)
-        self.refused("is '', and this package needs", command=program(self.folder, "exit 1"))
+        self.refused(f"'stripmine 0.0.1'; .* needs stripmine {stripmine.__version__}\n.*cargo install", command=other)
+        self.refused("is ''; this package needs", command=program(self.folder, "exit 1"))
 
     @SHELL
     def test_options_are_passed_to_the_command(self):
@@ -86,7 +86,7 @@ class Commands(InFolder):
     @SHELL
     def test_a_command_that_breaks_is_an_error_with_what_it_said(self):
         for lines in ("echo broken >&2; exit 3", "echo '{\"error\": 0.5}'; echo broken >&2; exit 3", "echo '['; echo broken >&2; exit 3"):
-            self.refused("ended with 3: broken", command=program(self.folder, VERSION + lines))
+            self.refused("failed with exit code 3: broken", command=program(self.folder, VERSION + lines))
         program(self.folder, "").write_bytes(b"\x7fELF")
         self.refused("cannot be run", command=self.folder / "command")
 
@@ -110,7 +110,7 @@ class Studies(InFolder):
         seeds = [f"particles.seed={1 + run}" for run in range(plan["seeds"])]
         means = stripmine.average(*(stripmine.scene(scene.toml(), [*plan["overrides"], seed]).run() for seed in seeds))
         mean = means["mean"][means["quantity"] == "compressibility"]
-        # The error of the plan, and that of 400 discs.
+        # The error of the plan, plus the finite-size error of 400 discs.
         np.testing.assert_allclose(mean, [HENDERSON], rtol=0.02 + CLOSE)
         # The second plan uses the trials of the first.
         self.assertIn("kept from", scene.explain("compressibility", 0.1, seconds=4)["origin"])
@@ -178,7 +178,7 @@ class Studies(InFolder):
         threading.Thread(target=interrupt, daemon=True).start()
         with self.assertRaises(KeyboardInterrupt):
             stripmine.scene("dense-gas").explain("kinetic", "0.1%", seconds=60, command=command)
-        # A terminal's Ctrl-C, which goes to the group of this process, reaches the command once.
+        # A terminal sends Ctrl-C to the process group; the command gets it once.
         self.assertEqual(groups, [int(number.read_text())])
         with self.assertRaises(ProcessLookupError):
             os.kill(int(number.read_text()), 0)
@@ -186,7 +186,7 @@ class Studies(InFolder):
 
     def test_warnings_of_the_command_are_warnings_of_python(self):
         (self.folder / "stripmine").touch()
-        with self.assertWarnsRegex(UserWarning, "trials are not kept"):
+        with self.assertWarnsRegex(UserWarning, "trials are not cached"):
             stripmine.scene("hard-disks", DISCS).explain("compressibility", "5%", seconds=1)
 
 

@@ -45,7 +45,7 @@ class Tables(unittest.TestCase):
         counts = stripmine.scene("dense-gas-printed", overrides).counts()
         self.assertEqual(counts.columns[:4], ["part", "section", "length", "n"])
         operations = {part: int(counts["operations"][counts["part"] == part].sum()) for part in set(counts["part"])}
-        # As `stripmine table` counts them, with what a scene's programs check beside: 30 operations of the forces, 8 of the corrector.
+        # Counts of `stripmine table`, plus the checks of a scene's programs: 30 operations in the forces, 8 in the corrector.
         self.assertEqual(
             [operations[part] for part in ("predictor", "index", "forces", "corrector")], [87, 20, 1596 + 30, 74 + 8]
         )

@@ -1,5 +1,6 @@
-//! `stripmine average`: the mean of every quantity of a run, or of several, with its error.
+//! `stripmine average`: mean and error of every quantity, over one run or several.
 
+use super::display::{UnitSystem, decimals, scene_of};
 use super::run_folder;
 use crate::console::{Common, Failure, print, print_json, warn};
 use crate::frame::{Frame, csv};
@@ -10,25 +11,27 @@ use serde::Serialize;
 use std::path::PathBuf;
 use stripmine_physics::averages::{Average, Averages, Estimate, Outcome};
 use stripmine_physics::method::Methods;
-use stripmine_physics::number::{counted, significant};
+use stripmine_physics::number::{counted, significant, with_bar};
 use stripmine_physics::run::{Finished, Function, Number, Point, averages_of, function_of, functions_of};
 use stripmine_physics::structure::{NAMES, observable};
 
-/// The mean of every quantity of a run with its error, correlation time, equilibration and independent samples; several runs of one scene, with seeds of their own, are joined
+/// Prints the mean of every quantity of a run with its error
+///
+/// Several runs of one scene with different seeds are joined.
 #[derive(Args)]
 pub(super) struct AverageVerb {
     /// Folders of runs
     #[arg(required = true, value_name = "RUN")]
     runs: Vec<PathBuf>,
-    /// The table as comma-separated values
+    /// Prints the table as CSV
     #[arg(long, conflicts_with = "json")]
     csv: bool,
-    /// A function of the structure in place of the averages, such as "g(r)": where, mean and bar
+    /// Prints a structure function instead, such as "g(r)", with its error bars
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(NAMES))]
     structure: Option<String>,
 }
 
-/// What is said as data.
+/// Document of `--json`.
 #[derive(Serialize)]
 struct Said<'a> {
     #[serde(flatten)]
@@ -42,17 +45,18 @@ impl AverageVerb {
         let runs = self.runs.iter().map(|run| Finished::read(&run_folder(run), methods));
         let averages = averages_of(&runs.collect::<Result<Vec<_>, _>>()?)?;
         let folders: Vec<PathBuf> = self.runs.iter().map(|run| run_folder(run)).collect();
+        let units = UnitSystem::of(folders.first().and_then(|run| scene_of(run)).as_ref());
         let folders = || folders.iter().map(PathBuf::as_path);
         if let Some(observable) = self.structure.as_deref().and_then(observable) {
             let function = function_of(folders(), observable)?;
             if common.json {
                 return print_json(&function);
             }
-            // Beside a table for programs, and not in it.
+            // Warnings go to standard error: the table may be read by a program.
             doubts(std::slice::from_ref(&function));
             return match self.csv {
                 true => print(&function.csv()),
-                false => print(&terminal::render(&of_function(&function))),
+                false => print(&terminal::render(&of_function(&function, &units))),
             };
         }
         let functions = functions_of(folders())?;
@@ -60,32 +64,31 @@ impl AverageVerb {
             return print_json(&Said { averages: &averages, structure: &functions });
         }
         doubts(&functions);
-        let table = table(&averages);
         if self.csv {
             let mut bytes = vec![];
-            csv::write(&Frame::from(&table), &mut bytes).map_err(Failure::writing("CSV"))?;
+            csv::write(&Frame::from(&table(&averages)), &mut bytes).map_err(Failure::writing("CSV"))?;
             return print(&String::from_utf8_lossy(&bytes));
         }
-        print(&terminal::render(&table))?;
+        print(&terminal::render(&means(&units.averages(&averages))))?;
         if functions.is_empty() {
             return Ok(());
         }
-        print(&format!("\n{}", terminal::render(&of_structure(&functions))))
+        print(&format!("\n{}", terminal::render(&of_structure(&functions, &units))))
     }
 }
 
-/// Says what is doubtful of functions.
+/// Warns of every function whose result is doubtful.
 fn doubts(functions: &[Function]) {
     for Function { name, doubt, .. } in functions {
         doubt.iter().for_each(|doubt| warn(format_args!("{name}: {doubt}")));
     }
 }
 
-/// A function, point by point.
-fn of_function(function: &Function) -> Table {
+/// Table of a structure function, one row per point.
+fn of_function(function: &Function, units: &UnitSystem) -> Table {
     let with_unit = |[name, unit]: [&str; 2]| match unit {
         "" => name.to_owned(),
-        unit => format!("{name} ({unit})"),
+        unit => format!("{name} ({})", units.symbol(unit)),
     };
     let mut rows = Rows::of(&function.points);
     for (at, &over) in function.observable.over.iter().enumerate() {
@@ -99,8 +102,8 @@ fn of_function(function: &Function) -> Table {
     .table("structure", format!("{} of {}", function.name, counted(function.runs, "run", "runs")))
 }
 
-/// The numbers that stand for functions of the structure.
-fn of_structure(functions: &[Function]) -> Table {
+/// Table of the characteristic numbers of structure functions, such as a peak height.
+fn of_structure(functions: &[Function], units: &UnitSystem) -> Table {
     let of = |function: &'_ Function| -> Vec<(&'static str, Number)> {
         function.headlines.iter().map(|number| (function.name, number.clone())).collect()
     };
@@ -111,15 +114,66 @@ fn of_structure(functions: &[Function]) -> Table {
         .text("number", |(_, number)| number.name)
         .cell("mean", |(_, number)| Cell::Number(number.mean, decimals_of_mean(number.mean, number.bar)))
         .cell("± 95 %", |(_, number)| Cell::Number(number.bar, decimals(number.bar, 2)))
-        .text("unit", |(_, number)| number.unit)
+        .text("unit", |(_, number)| units.symbol(number.unit))
         .table("structure", "Structure".to_owned())
         .note(format!(
-            "± 95 %: over blocks of a run, or by Student's t of what lies between several. --structure NAME has a whole function: {}.",
+            "± 95 %: from blocks of one run, or from the scatter between runs (Student's t). --structure NAME prints a whole function: {}.",
             names.join(", ")
         ))
 }
 
-/// Every quantity in a line: its mean with all that is known of it, or why there is none.
+/// Table of the means for the terminal. Quantities without a mean are listed below it.
+fn means(averages: &Averages) -> Table {
+    let known: Vec<(&Average, &Estimate)> = averages
+        .quantities
+        .iter()
+        .filter_map(|it| if let Outcome::Mean(estimate) = &it.outcome { Some((it, estimate)) } else { None })
+        .collect();
+    let listed = |heading: &str, words: fn(&Average) -> Option<String>| -> Option<String> {
+        let names: Vec<String> = averages
+            .quantities
+            .iter()
+            .filter_map(|it| Some(format!("{}{}", it.quantity, words(it)?)))
+            .collect();
+        (!names.is_empty()).then(|| format!("{heading}: {}.", names.join(", ")))
+    };
+    let notes = [
+        listed("Run too short (time needed)", |it| match &it.outcome {
+            Outcome::TooShort { enough_at, .. } => Some(format!(" ({})", significant(*enough_at, 2))),
+            _ => None,
+        }),
+        listed("Still changing", |it| match &it.outcome {
+            Outcome::Changing { first, last } => {
+                Some(format!(" (from {} to {})", significant(*first, 3), significant(*last, 3)))
+            }
+            _ => None,
+        }),
+        listed("Largest deviation from the first value", |it| match &it.outcome {
+            Outcome::Kept { farthest, .. } => Some(format!(" {}", significant(*farthest, 2))),
+            _ => None,
+        }),
+        listed("Constant", |it| match &it.outcome {
+            Outcome::Constant { mean } => Some(format!(" {}", significant(*mean, 6))),
+            _ => None,
+        }),
+        listed("Undefined in some rows", |it| matches!(it.outcome, Outcome::Undefined).then(String::new)),
+    ];
+    let name = |it: &Average| match it.of {
+        "rate" => format!("rate of {}", it.quantity),
+        _ => it.quantity.to_owned(),
+    };
+    Rows::of(&known)
+        .text("quantity", |(it, _)| name(it))
+        .text("mean ± 95 %", |(_, it)| with_bar(it.mean, it.bar))
+        .text("unit", |(it, _)| it.unit.clone())
+        .cell("from time", |(_, it)| Cell::Number(it.equilibrated_at, decimals(it.equilibrated_at, 3)))
+        .cell("samples", |(_, it)| Cell::Count(it.independent_samples as u64))
+        .table("averages", format!("Means of {}, {} rows", counted(averages.runs, "run", "runs"), averages.rows))
+        .notes(notes.into_iter().flatten())
+        .note("Samples are independent; from time: end of the transient. --csv has standard errors and correlation times.")
+}
+
+/// Full table of the averages, a row for each quantity.
 fn table(averages: &Averages) -> Table {
     let runs = counted(averages.runs, "run", "runs");
     let number = |of: fn(&Estimate) -> f64| {
@@ -153,13 +207,7 @@ fn table(averages: &Averages) -> Table {
         .note(format!("± 95 %: the {}.", averages.bar))
 }
 
-/// Decimals that show a number of digits.
-fn decimals(value: f64, digits: i32) -> usize {
-    let magnitude = value.abs().log10().floor();
-    if magnitude.is_finite() { (digits - 1 - magnitude as i32).max(0) as usize } else { 0 }
-}
-
-/// Decimals of a mean with its bar; more where there is none, or it is of rounding alone.
+/// Decimals of a mean: two digits of its error bar, or six digits if the bar is missing or only rounding.
 fn decimals_of_mean(mean: f64, bar: f64) -> usize {
     if bar > 1e-9 * mean.abs() { decimals(bar, 2) } else { decimals(mean, 6) }
 }
@@ -168,19 +216,19 @@ fn remark(average: &Average) -> String {
     match &average.outcome {
         Outcome::Mean(_) if average.of == "values" => String::new(),
         Outcome::Mean(_) => match average.of {
-            "rate" => "rate of what is counted".to_owned(),
-            _ => "of the intervals between rows".to_owned(),
+            "rate" => "rate of the count".to_owned(),
+            _ => "mean over intervals between rows".to_owned(),
         },
-        Outcome::Constant { .. } => "does not vary".to_owned(),
-        Outcome::Undefined => "not defined in some rows".to_owned(),
+        Outcome::Constant { .. } => "constant".to_owned(),
+        Outcome::Undefined => "undefined in some rows".to_owned(),
         Outcome::TooShort { enough_at, .. } => {
-            format!("too short: until about time {}", significant(*enough_at, 2))
+            format!("run too short, needs time {}", significant(*enough_at, 2))
         }
         Outcome::Changing { first, last } => {
-            format!("still changing: from {} to {}", significant(*first, 3), significant(*last, 3))
+            format!("still changing, from {} to {}", significant(*first, 3), significant(*last, 3))
         }
         Outcome::Kept { first, farthest, .. } => {
-            format!("at most {} from {}", significant(*farthest, 2), significant(*first, 3))
+            format!("deviates by at most {} from {}", significant(*farthest, 2), significant(*first, 3))
         }
     }
 }

@@ -1,10 +1,11 @@
-//! `stripmine bench`: one throughput measurement of moving particles.
+//! `stripmine bench`: measures how many particle steps or events a second a configuration makes.
 
+use super::display::decimals;
 use super::processes;
 use super::run::{MOST_RANKS, threads_of_ranks};
 use crate::console::{Common, Failure, clear_progress, count, print, print_json, progress};
 use crate::provenance::built;
-use crate::report::{Rows, Table, terminal};
+use crate::report::{Cell, Rows, Table, terminal};
 use crate::study::scaling::{self, OfThreads, Scaling, scaling};
 use clap::{Arg, ArgAction, ArgMatches, Args, value_parser};
 use serde_json::{Value, json};
@@ -15,27 +16,27 @@ use stripmine_physics::number::{counted, significant};
 use stripmine_physics::ranks::{self, Crew};
 use stripmine_physics::scene::{Reason, SceneErrors, Values};
 
-/// One throughput measurement of moving particles
+/// Measures throughput: particle steps, or events, a second
 #[derive(Args)]
 pub(super) struct BenchVerb {
-    /// What to measure
+    /// Benchmark
     what: String,
-    /// Steps, or collisions, of each repeat; about a second's worth by default
+    /// Steps, or collisions, per repeat; default: about one second of work
     #[arg(long, visible_alias = "collisions", value_parser = count)]
     steps: Option<u64>,
-    /// Ranks that share the particles, each with as many threads; several numbers, such as 1,2, in turn
+    /// Ranks that share the particles, each with --threads threads; a list such as 1,2 is measured in turn
     #[arg(long, value_delimiter = ',', value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_RANKS)))]
     ranks: Vec<u16>,
-    /// Repeats
+    /// Number of repeats
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..))]
     repeats: u16,
 }
 
-/// The kind of value that follows an option.
+/// Kind of value that follows an option.
 #[derive(Clone, Copy)]
 enum Takes {
     Nothing,
-    /// A whole number from 1 on.
+    /// Whole number, 1 or more.
     Count,
     Number,
     Word,
@@ -45,41 +46,41 @@ macro_rules! options {
     ($($takes:ident $name:literal $help:literal;)*) => { &[$(($name, Takes::$takes, $help)),*] };
 }
 
-/// The options of benches: the kind of value that follows, and the help.
+/// Options of all benchmarks: kind of value, name and help.
 const OPTIONS: &[(&str, Takes, &str)] = options! {
-    Count "particles" "Number of particles, at least";
-    Number "packing-fraction" "Area of the discs over that of the box";
+    Count "particles" "Least number of particles";
+    Number "packing-fraction" "Area of the discs over area of the box";
     Word "precision" "Precision of state and forces: f64, f32 or mixed";
     Word "integrator" "Integrator, such as gear4, gear5, gear6, velocity-verlet, baoab or stochastic";
-    Word "engine" "What moves the particles: auto, fast, or programs of lattice MD, reference of hard discs; the fastest by default";
-    Word "text" "Whose programs: ours, or printed for the source's own; implies programs";
-    Word "execution" "How programs are executed: eager, strip:N or chained; implies programs";
-    Word "instruction-set" "scalar, avx2, avx512, wide, or auto for the widest there is";
-    Nothing "frictionless" "Leave out friction, and with it rotation";
-    Number "cell-edge" "Side of a lattice cell; the largest that the geometry allows by default";
-    Word "mask" "Mask of cells around a disc, such as min or r3; the cheapest by default";
-    Word "law" "Pair law of particles in a bath, a word of law.kind";
-    Word "search" "How pairs of particles in a bath are found: auto, lattice, sectors or neighbor-list";
+    Word "engine" "Engine: auto, fast, programs (lattice MD) or reference (hard discs); default: the fastest";
+    Word "text" "Vector programs: ours, or printed (as in the paper); implies --engine programs";
+    Word "execution" "Execution of the programs: eager, strip:N or chained; implies --engine programs";
+    Word "instruction-set" "Instruction set: scalar, avx2, avx512, wide, or auto for the widest available";
+    Nothing "frictionless" "Without friction and rotation";
+    Number "cell-edge" "Side of a lattice cell; default: the largest that the geometry allows";
+    Word "mask" "Mask of cells around a disc, such as min or r3; default: the cheapest";
+    Word "law" "Pair law of Langevin particles (law.kind)";
+    Word "search" "Pair search of Langevin particles: auto, lattice, sectors or neighbor-list";
     Count "sectors" "Sectors along each side";
-    Word "sort" "When particles in a bath are put in the order of their sectors: auto, when-needed or every-step";
-    Number "skin" "How much farther than the cut-off listed pairs may be";
-    Word "arithmetic" "How products and roots of bodies are formed: exact, estimated or raw";
+    Word "sort" "When Langevin particles are sorted by sector: auto, when-needed or every-step";
+    Number "skin" "Distance beyond the cut-off up to which pairs are listed";
+    Word "arithmetic" "Arithmetic of gravity: exact, estimated or raw inverse roots";
 };
 
-/// The kind of value that follows an option, and its help; a word where the option is of a method that this program does not know.
+/// Kind of value and help of an option; a word for options of methods unknown to this program.
 fn described(option: &BenchOption) -> (Takes, &'static str) {
     let known = OPTIONS.iter().find(|(name, ..)| *name == option.name);
     known.map_or((Takes::Word, "A value of the scene"), |&(_, takes, help)| (takes, help))
 }
 
-/// The options of all benches, each once.
+/// Options of all benchmarks, each once.
 fn options(methods: Methods) -> impl Iterator<Item = &'static BenchOption> {
     let all = methods.iter().flat_map(|method| method.benches).flat_map(|bench| bench.options);
     let mut seen = BTreeSet::new();
     all.filter(move |option| seen.insert(option.name))
 }
 
-/// The same as arguments.
+/// Options of all benchmarks as clap arguments.
 pub(super) fn arguments(methods: Methods) -> impl Iterator<Item = Arg> {
     options(methods).map(|option| {
         let value = option.name.to_uppercase().replace('-', "_");
@@ -94,7 +95,7 @@ pub(super) fn arguments(methods: Methods) -> impl Iterator<Item = Arg> {
     })
 }
 
-/// The value of an option that was given, as text.
+/// Value of an option as text, if it was given.
 fn value_of(option: &BenchOption, given: &ArgMatches) -> Option<String> {
     match described(option).0 {
         Takes::Nothing => given.get_flag(option.name).then(String::new),
@@ -104,14 +105,14 @@ fn value_of(option: &BenchOption, given: &ArgMatches) -> Option<String> {
     }
 }
 
-/// An override, and the option that it stands for.
+/// Override of the scene, with the option that caused it.
 struct Override {
     text: String,
     option: String,
 }
 
 impl BenchVerb {
-    /// What the options say in a scene, defaults included.
+    /// Overrides of the scene from the options, defaults included.
     fn overrides(
         &self,
         bench: &Bench,
@@ -171,7 +172,7 @@ impl BenchVerb {
         })
     }
 
-    /// The bench by some ranks.
+    /// Measures on one crew of ranks.
     fn on_one(
         &self,
         (entry, bench, given): (&'static Entry, &'static Bench, &[Override]),
@@ -200,7 +201,7 @@ impl BenchVerb {
         Ok(Measurement { bench, prepared, equilibration: 200.max(steps / 10), steps, repeats })
     }
 
-    /// The bench on several numbers of ranks and threads, in turn.
+    /// Measures on several numbers of ranks and threads in turn.
     fn on_several(
         &self,
         entry: &'static Entry,
@@ -227,7 +228,7 @@ impl BenchVerb {
     }
 }
 
-/// Figures of several numbers of ranks and threads, for programs.
+/// JSON of a measurement on several numbers of ranks and threads.
 fn for_programs(found: &Scaling) -> Value {
     let Scaling { what, particles, steps, repeats, settings, same_bits, by_threads, phases } = found;
     let of_threads = |it: &OfThreads| {
@@ -250,21 +251,21 @@ fn for_programs(found: &Scaling) -> Value {
     })
 }
 
-/// The numbers of threads that a run on one core's figures is carried to.
+/// Numbers of threads for which Amdahl's law predicts the gain.
 const FORESEEN: [usize; 2] = [8, 16];
 
-/// What each number of threads gains.
+/// Table of rate and gain for each number of threads.
 fn by_threads(found: &Scaling) -> Table {
-    let bits = if found.same_bits { "the same bits on all" } else { "the bits DIFFER" };
+    let bits = if found.same_bits { "same bits on all" } else { "bits DIFFER" };
     let foreseen = FORESEEN.map(|threads| {
         let gain = found.foreseen(threads).map_or("–".to_owned(), |gain| significant(gain, 3));
-        format!("{gain} times on {threads}")
+        format!("{gain} times on {threads} threads")
     });
     Rows::of(&found.by_threads)
         .count("ranks", |it| it.crew.ranks)
         .count("threads of each", |it| it.crew.threads)
-        .number("million a second, best", 2, |it| 1e-6 * it.rate[0])
-        .number("median", 2, |it| 1e-6 * it.rate[1])
+        .cell("million a second, best", |it| rounded(1e-6 * it.rate[0], 4))
+        .cell("median", |it| rounded(1e-6 * it.rate[1], 4))
         .number("gain", 2, |it| it.gain)
         .number("efficiency", 2, |it| it.gain * found.by_threads[0].crew.all() as f64 / it.crew.all() as f64)
         .table(
@@ -277,23 +278,28 @@ fn by_threads(found: &Scaling) -> Table {
                 counted(found.repeats, "repeat", "repeats"),
             ),
         )
-        .note(format!("By Amdahl's law, and no more than that: {}.", foreseen.join(", ")))
+        .note(format!("Predicted by Amdahl's law alone: {}.", foreseen.join(", ")))
 }
 
-/// What each phase gains.
+/// Number with some significant digits.
+fn rounded(value: f64, digits: i32) -> Cell {
+    Cell::Number(value, decimals(value, digits))
+}
+
+/// Table of the time of each phase, and of the part of it that does not scale.
 fn by_phases(found: &Scaling) -> Table {
     let mut rows = Rows::of(&found.phases).text("phase", |it| it.name.clone());
     for (at, OfThreads { crew: scaling::Crew { ranks, threads }, .. }) in found.by_threads.iter().enumerate()
     {
-        rows = rows.number(format!("ns, {ranks} × {threads}"), 2, move |it| it.nanoseconds[at]);
+        rows = rows.cell(format!("ns, {ranks} × {threads}"), move |it| rounded(it.nanoseconds[at], 3));
     }
     rows.number("serial part (%)", 1, |it| it.serial.map(|part| 100.0 * part))
-        .text("of", |it| if it.is_beside { "particle, each time" } else { "particle and step" })
-        .table("phases", "Phases, ranks × threads of each, and the part of each phase that does not gain")
-        .note("Best repeats. Below 0: it gains more than there are threads, by caches.".to_owned())
+        .text("per", |it| if it.is_beside { "particle and call" } else { "particle and step" })
+        .table("phases", "Time of each phase by ranks × threads, and its serial part")
+        .note("Best repeats. A serial part below 0 means more gain than threads, from caches.".to_owned())
 }
 
-/// An error with the options that it is about.
+/// Failure of a measurement; mistakes of the scene are reported as mistakes of the options.
 fn refused(error: MeasurementError, given: &[Override]) -> Failure {
     match error {
         MeasurementError::Scene(mistakes) if mistakes.0.iter().all(|it| it.reason != Reason::Memory) => {
@@ -303,7 +309,7 @@ fn refused(error: MeasurementError, given: &[Override]) -> Failure {
     }
 }
 
-/// Mistakes of the scene as those of the options that it was made of.
+/// Replaces the location of each mistake by the option that caused it.
 fn in_options(SceneErrors(mut mistakes): SceneErrors, given: &[Override]) -> SceneErrors {
     for mistake in &mut mistakes {
         let option = given.iter().find(|given| mistake.file == format!("--set {}", given.text));
@@ -314,7 +320,7 @@ fn in_options(SceneErrors(mut mistakes): SceneErrors, given: &[Override]) -> Sce
     SceneErrors(mistakes)
 }
 
-/// A setting as a person reads it: numbers to five digits.
+/// A setting for reading: numbers to five digits.
 fn brief(value: &Value) -> String {
     match value {
         Value::Number(number) if number.is_f64() => significant(number.as_f64().unwrap_or(f64::NAN), 5),
@@ -332,7 +338,7 @@ fn text(result: &Throughput) -> String {
     let phases: Vec<String> = result
         .phases
         .iter()
-        .map(|(phase, &seconds)| format!("{} {:.1}", phase.replace('_', " "), each(seconds)))
+        .map(|(phase, &seconds)| format!("{} {}", phase.replace('_', " "), significant(each(seconds), 3)))
         .collect();
     let settings: Vec<String> =
         settings.iter().map(|(name, value)| format!("{} {}", name.replace('_', " "), brief(value))).collect();
@@ -343,17 +349,17 @@ fn text(result: &Throughput) -> String {
     let at_end = result.at_end.iter().map(|(name, value)| format!("{name} {}", significant(*value, 6)));
     let observed: Vec<String> = compared.chain(at_end).collect();
     format!(
-        "{what}: {}, {}, {}\n{:.2} million {} a second (median {:.2}) over {} of {}\n\
-         nanoseconds a particle and step: {:.1} in all; {}\n{}\nchecksum {}\n",
+        "{what}: {}, {}, {}\n{} million {} a second (median {}) over {} of {}\n\
+         nanoseconds per particle and step: {} in total; {}\n{}\nchecksum {}\n",
         counted(particles, "particle", "particles"),
         settings.join(", "),
         counted(result.threads, "thread", "threads"),
-        result.rate * 1e-6,
+        significant(result.rate * 1e-6, 4),
         result.rate_name.trim_end_matches("_per_second").replace('_', "-"),
-        result.median_rate * 1e-6,
+        significant(result.median_rate * 1e-6, 4),
         counted(result.repeats, "repeat", "repeats"),
         counted(result.steps, "step", "steps"),
-        each(result.seconds),
+        significant(each(result.seconds), 3),
         phases.join(", "),
         observed.join(", "),
         result.checksum

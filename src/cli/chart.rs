@@ -1,4 +1,4 @@
-//! `stripmine chart`: studies as data and charts. Methods add studies of their own.
+//! `stripmine chart`: studies written as data and charts. Methods add their own studies.
 
 use super::explain::{failed, width};
 use super::processes;
@@ -23,22 +23,22 @@ use stripmine_physics::ranks::Crew;
 use stripmine_physics::scene::Width;
 use stripmine_physics::signals;
 
-/// Seconds that a study may take.
+/// Allowed budgets (processor seconds).
 const BUDGET: std::ops::RangeInclusive<i64> = 1..=86_400;
-/// Timed runs of each.
+/// Allowed numbers of timed runs.
 const REPEATS: std::ops::RangeInclusive<i64> = 1..=100;
-/// Values, and steps, of a map.
+/// Allowed numbers of values, and of steps, of a map.
 const SIZE: std::ops::RangeInclusive<i64> = 3..=200;
-/// Seeds of its edges.
+/// Allowed numbers of seeds per edge of a map.
 const SEEDS: std::ops::RangeInclusive<i64> = 1..=100;
-/// Starts a step of a collision.
+/// Phases of the step at which a collision starts.
 const PHASES: u32 = 16;
 
-/// Studies as data and charts
+/// Studies a scene and writes data and charts
 #[derive(Args)]
 #[command(
     subcommand_value_name = "WHAT",
-    subcommand_help_heading = "What to chart",
+    subcommand_help_heading = "Studies",
     disable_help_subcommand = true
 )]
 pub(super) struct ChartVerb {
@@ -53,98 +53,101 @@ enum Study {
     Stability(StabilityVerb),
 }
 
-/// The error of positions and energy of a scene over its cost, for every configuration and step, where trajectories can be compared; which is the cheapest for an error
+/// Charts the error of positions and energy over the cost, for every configuration and step
+///
+/// Marks the cheapest configuration for each error. Needs a method whose trajectories can be compared; for others the error of a mean is charted.
 #[derive(Args)]
 struct WorkPrecisionVerb {
-    /// A preset's name, or a scene file
+    /// Preset name or scene file
     scene: String,
-    /// Overrides a value; may be given several times
+    /// Overrides a value; can be repeated
     #[arg(long = "set", value_name = "SECTION.KEY=VALUE")]
     overrides: Vec<String>,
-    /// Also clock periods on a machine, for configurations whose operations are counted: a preset of `table`, or a machine file
+    /// Also charts clock periods on this machine, where operations are counted: a preset of `table`, or a machine file
     #[arg(long)]
     machine: Option<String>,
-    /// Processor seconds that it may take about; runs that do not fit are left out and named
+    /// Approximate limit in processor seconds; runs that do not fit are skipped and named
     #[arg(long, default_value_t = 150, value_parser = clap::value_parser!(u32).range(BUDGET))]
     budget: u32,
-    /// Timed runs of each configuration and step
+    /// Timed runs per configuration and step
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(REPEATS))]
     repeats: u16,
-    /// Charts the error of the mean of a quantity, as `chart accuracy` does, and not that of positions
+    /// Charts the error of the mean of a quantity instead, as `chart accuracy` does
     #[arg(long = "of", value_name = "QUANTITY", conflicts_with_all = ["machine", "repeats"])]
     quantity: Option<String>,
-    /// Folder for data, tables and figures; by default the scene's name with `.work-precision`, or `.accuracy` for the error of a mean. A study that was
-    /// interrupted resumes there
+    /// Folder for data, tables and figures; default: SCENE.work-precision, or SCENE.accuracy for the error of a mean. An interrupted study resumes there
     #[arg(long)]
     out: Option<PathBuf>,
 }
 
-/// The error of a mean over the wall time of a run, for each integrator and step: bias and chance added, the scene as it stands and the plan marked
+/// Charts the error of a mean over the wall time of a run, for each integrator and step
+///
+/// The error is the bias plus the statistical error. The scene as it is and the plan are marked.
 #[derive(Args)]
 struct AccuracyVerb {
-    /// A preset's name, or a scene file
+    /// Preset name or scene file
     scene: String,
-    /// Overrides a value; may be given several times
+    /// Overrides a value; can be repeated
     #[arg(long = "set", value_name = "SECTION.KEY=VALUE")]
     overrides: Vec<String>,
-    /// The quantity whose mean it is; the first of the method by default
+    /// Quantity to average; default: the first of the method
     #[arg(long = "of", value_name = "QUANTITY")]
     quantity: Option<String>,
-    /// Marks the plan for this error of the mean, such as 1% or 0.02
+    /// Marks the plan for this target error, such as 1% or 0.02
     #[arg(long, value_parser = width)]
     error: Option<Width>,
-    /// Averages each run from one time to another, instead of over its steady state
+    /// Averages each run between two times instead of over its steady state
     #[arg(long, num_args = 2, value_names = ["FROM", "TO"])]
     window: Option<Vec<f64>>,
-    /// Processor seconds of trials, about
+    /// Approximate processor seconds of trial runs
     #[arg(long, default_value_t = 60, value_parser = clap::value_parser!(u32).range(BUDGET))]
     budget: u32,
-    /// Folder for data, tables and figures; the scene's name with `.accuracy` by default
+    /// Folder for data, tables and figures; default: SCENE.accuracy
     #[arg(long)]
     out: Option<PathBuf>,
 }
 
-/// Where a scene works, over the step and a second parameter: edges by bisection, failures by kind, theory beside them. Scenes of hard-disks take no steps, and have
-/// no such map
+/// Maps where a scene is stable, over the step and a second parameter
+///
+/// Scenes of hard-disks have no time step and no such map. Edges are found by bisection and compared with theory; failures are classified.
 #[derive(Args)]
 struct StabilityVerb {
-    /// A preset's name, or a scene file
+    /// Preset name or scene file
     scene: String,
-    /// Overrides a value; may be given several times
+    /// Overrides a value; can be repeated
     #[arg(long = "set", value_name = "SECTION.KEY=VALUE")]
     overrides: Vec<String>,
-    /// What is varied beside the step: stiffness, damping, density or speed of lattice-md, strength, temperature or friction of langevin, eccentricity or softening
-    /// of nbody, and more; one that does not exist names them all. By default the first that the scene has a value of
+    /// Second parameter: stiffness, damping, density or speed (lattice-md); strength, temperature or friction (langevin); eccentricity or softening (nbody);
+    /// an unknown name lists all. Default: the first that the scene sets
     #[arg(long, value_name = "NAME")]
     over: Option<String>,
-    /// From where to where it goes; a range about the scene's own value by default
+    /// Range of the second parameter; default: a range around the scene's value
     #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"])]
     range: Option<Vec<f64>>,
-    /// Values, and steps, at most
+    /// Most values, and most steps, of the map
     #[arg(long, default_value_t = 24, value_parser = clap::value_parser!(u16).range(SIZE))]
     size: u16,
-    /// Seeds of the edges, at most
+    /// Most seeds per edge
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(SEEDS))]
     seeds: u16,
-    /// Edges are found within this part of the step
+    /// Relative tolerance of the step at an edge
     #[arg(long, default_value_t = 0.05, value_parser = part)]
     tolerance: f64,
-    /// Processor seconds that it may take; where these are not enough, there are fewer seeds, values and steps, and shorter runs
+    /// Limit in processor seconds; if it is short, the map has fewer seeds, values and steps, and shorter runs
     #[arg(long, default_value_t = 300, value_parser = clap::value_parser!(u32).range(BUDGET))]
     budget: u32,
-    /// Folder for data, tables and figures; the scene's name with `.stability` by default. A study that was interrupted resumes
-    /// there
+    /// Folder for data, tables and figures; default: SCENE.stability. An interrupted study resumes there
     #[arg(long)]
     out: Option<PathBuf>,
 }
 
-/// A part of a step within which edges can be found.
+/// Parses the relative tolerance of an edge.
 fn part(text: &str) -> Result<f64, String> {
     let is_one = |part: &f64| (1e-6..=1.0).contains(part);
     text.parse()
         .ok()
         .filter(is_one)
-        .ok_or_else(|| "a tolerance is a part of the step, from 1e-6 to 1".to_owned())
+        .ok_or_else(|| "expected a fraction of the step from 1e-6 to 1".to_owned())
 }
 
 impl ChartVerb {
@@ -188,7 +191,7 @@ impl WorkPrecisionVerb {
 
 impl AccuracyVerb {
     fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
-        // The next trial depends on times: trials are the first process's alone.
+        // The choice of the next trial depends on measured times, so the first process makes all trials.
         if processes::rank(common.crew) > 0 {
             return Ok(());
         }
@@ -236,7 +239,7 @@ impl StabilityVerb {
     }
 }
 
-/// Writes what a study made, and says it.
+/// Writes the result of a study and prints it.
 fn written(common: &Common, folder: &Folder, name: &str, made: &Made, begun: Instant) -> Result<(), Failure> {
     let provenance = Provenance::here(common.command.clone(), begun.elapsed().as_secs_f64());
     let (path, section) = signals::whole(|| {
@@ -253,13 +256,13 @@ fn written(common: &Common, folder: &Folder, name: &str, made: &Made, begun: Ins
     print(&(section.paragraphs().collect::<Vec<_>>().join("\n\n") + "\n"))
 }
 
-/// Where a study's results go.
+/// Destination of the results of a study.
 struct Place<'p> {
-    /// The study.
+    /// Name of the study.
     name: &'static str,
-    /// The scene, as it is named on the command line.
+    /// The scene as named on the command line.
     scene: &'p str,
-    /// The folder that was asked for.
+    /// The folder of `--out`.
     out: Option<&'p Path>,
 }
 
@@ -268,7 +271,7 @@ impl Place<'_> {
         self.out.map_or_else(|| PathBuf::from(format!("{stem}.{}", self.name)), Path::to_owned)
     }
 
-    /// The folder, before anything takes its time, and the scene's stem.
+    /// Opens the folder, before any work is done; returns it with the scene's stem.
     fn folder(&self) -> Result<(Folder, String), Failure> {
         let stem = self.stem();
         Ok((Folder::open(&self.out(&stem), &[self.name], true)?, stem))
@@ -278,7 +281,7 @@ impl Place<'_> {
         Path::new(self.scene).file_stem().unwrap_or_default().to_string_lossy().into_owned()
     }
 
-    /// Makes a study of the finished runs in its folder, with progress and the scene's stem.
+    /// Runs a study, resuming from the finished runs in its folder.
     fn study(
         &self,
         (common, crew): (&Common, Crew),
@@ -291,7 +294,7 @@ impl Place<'_> {
             processes::begin(join().as_ref(), &same)?;
         }
         let team = Team::of(crew);
-        // The first of several processes writes there, and says what it does.
+        // The first of several processes writes the results and reports progress.
         let is_first = team.as_ref().is_none_or(Team::is_first);
         let (folder, stem) = if is_first {
             self.folder().map(|(folder, stem)| (Some(folder), stem))?
@@ -303,7 +306,7 @@ impl Place<'_> {
         journal.notes().iter().for_each(warn);
         if !common.quiet && !journal.is_empty() {
             let finished = counted(journal.len(), "finished run", "finished runs");
-            say(format_args!("going on with {finished} in {}", quoted::path(&out)));
+            say(format_args!("resuming with {finished} in {}", quoted::path(&out)));
         }
         let bar = progress(common, self.name);
         let start = Instant::now();

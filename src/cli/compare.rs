@@ -1,4 +1,4 @@
-//! `stripmine compare`: two ways to run one scene, beside each other.
+//! `stripmine compare`: runs one scene in two configurations and compares the trajectories.
 
 use crate::console::{Common, Failure, print, print_json};
 use crate::report::Rows;
@@ -13,36 +13,38 @@ use stripmine_physics::number::significant;
 use stripmine_physics::particles::Particles;
 use stripmine_physics::scene::SceneErrors;
 
-/// Two ways to run one scene, beside each other: whether they give the same bits, the first difference, and how it grows
+/// Compares two configurations of a scene bit by bit
+///
+/// Runs the scene in both, and prints the first difference and its growth over time.
 #[derive(Args)]
 pub(super) struct CompareVerb {
-    /// A file, or a preset's name
+    /// Preset name or scene file
     scene: String,
-    /// Overrides a value in both ways; may be given several times
+    /// Overrides a value in both configurations; can be repeated
     #[arg(long = "set", value_name = "SECTION.KEY=VALUE")]
     overrides: Vec<String>,
-    /// Overrides a value in the second way only; may be given several times
+    /// Overrides a value in the second configuration only; can be repeated
     #[arg(long = "against", value_name = "SECTION.KEY=VALUE", required = true)]
     against: Vec<String>,
 }
 
-/// Looks at both ways: at the start and after 1, 2, 4, … of this many parts.
+/// Exponent of the shortest interval: samples are taken at the start and after 2⁻¹⁶, 2⁻¹⁵, … 1 of the run.
 const PARTS: u32 = 16;
 
-/// How far both are from each other at a moment.
+/// Differences of the two runs at one time.
 #[derive(Serialize)]
 struct Look {
-    /// Steps or events done, and the time, of the first.
+    /// Clock of the first run.
     steps: u64,
     events: u64,
     time: f64,
-    /// Particles that are in both.
+    /// Particles present in both runs.
     particles: usize,
-    /// Particles that are in one only: lost in the other.
+    /// Particles present in one run only: lost in the other.
     unmatched: usize,
-    /// Whether all numbers have the same bits.
+    /// True if all numbers have the same bits.
     same_bits: bool,
-    /// The largest differences of positions (length) and velocities (length/time), and the particle of the former.
+    /// Largest difference of positions (length) and of velocities (length/time), and the particle with the former.
     position: f64,
     velocity: f64,
     particle: Option<u32>,
@@ -50,9 +52,9 @@ struct Look {
 
 #[derive(Serialize)]
 struct Comparison {
-    /// Whether all looks saw the same bits.
+    /// True if all samples have the same bits.
     same_bits: bool,
-    /// The first look that saw a difference.
+    /// Index of the first sample with a difference.
     first_difference: Option<usize>,
     looks: Vec<Look>,
 }
@@ -88,7 +90,7 @@ impl CompareVerb {
     }
 }
 
-/// Mistakes of the scene, those in what only the second way has under the name of its option.
+/// Names `--against` as the location of mistakes in overrides of the second configuration.
 fn of_against(SceneErrors(mut mistakes): SceneErrors, against: &[String]) -> SceneErrors {
     for mistake in &mut mistakes {
         if let Some(text) =
@@ -100,7 +102,7 @@ fn of_against(SceneErrors(mut mistakes): SceneErrors, against: &[String]) -> Sce
     SceneErrors(mistakes)
 }
 
-/// The moment at a 2^part-th of the way.
+/// End of the run divided by 2^part.
 fn share(until: Until, part: u32) -> Until {
     match until {
         Until::Steps(steps) => Until::Steps((steps >> part).max(1)),
@@ -147,12 +149,12 @@ fn look(first: &dyn Simulation, second: &dyn Simulation, domain: &Domain) -> Loo
 fn text(scene: &str, comparison: &Comparison) -> String {
     let looks = &comparison.looks;
     let answer = match comparison.first_difference {
-        None => format!("{scene}: the same bits at all {} looks", looks.len()),
-        Some(0) => format!("{scene}: the two ways differ at the start already"),
+        None => format!("{scene}: same bits in all {} samples", looks.len()),
+        Some(0) => format!("{scene}: the two configurations differ at the start"),
         Some(at) => {
             let (before, seen) = (&looks[at - 1], &looks[at]);
             format!(
-                "{scene}: the same bits up to time {}, then different: at most {} at time {}",
+                "{scene}: same bits up to time {}; positions differ by up to {} at time {}",
                 significant(before.time, 6),
                 significant(seen.position, 2),
                 significant(seen.time, 6)
@@ -172,7 +174,7 @@ fn text(scene: &str, comparison: &Comparison) -> String {
             .count("in one only", |look| look.unmatched)
             .table("comparison", answer)
             .note(
-                "Largest differences over all particles; the particle is that of the largest of positions.",
+                "Largest differences over all particles; `particle` has the largest difference of positions.",
             ),
     )
 }

@@ -1,4 +1,4 @@
-//! `stripmine completions`: what a shell needs to complete the command.
+//! `stripmine completions`: completion scripts for shells.
 
 use super::{command, scene};
 use crate::console::{Failure, print};
@@ -8,10 +8,10 @@ use clap::{Args, Command};
 use clap_complete::{Shell, generate};
 use stripmine_physics::method::Methods;
 
-/// Shell completion, to standard output
+/// Prints a shell completion script
 #[derive(Args)]
 pub(super) struct Completions {
-    /// The shell
+    /// Shell
     #[arg(value_enum)]
     shell: Shell,
 }
@@ -24,7 +24,7 @@ impl Completions {
     }
 }
 
-/// The command with all that its arguments may name: presets, machines, keys. Shells offer files where nothing of these fits; fish
+/// The command with the values that its arguments can name: presets, machines, keys. Shells offer files where none of these fits; fish
 /// completes verbs and options only.
 fn completed(command: Command, methods: Methods) -> Command {
     let presets: Vec<String> = scene::presets(methods).map(|preset| preset.name.to_owned()).collect();
@@ -43,7 +43,7 @@ fn completed(command: Command, methods: Methods) -> Command {
     )
 }
 
-/// The command and all below it, with these values for arguments of these names.
+/// Adds values to the arguments of the given names, in the command and all its subcommands.
 fn with_values(command: Command, values: &[(&str, &Vec<String>)]) -> Command {
     command.mut_subcommands(|below| with_values(below, values)).mut_args(|arg| {
         match values.iter().find(|(name, _)| arg.get_id() == *name && arg.get_action().takes_values()) {

@@ -1,5 +1,6 @@
-//! `stripmine explain`: which way to run a scene, which step and how long, for an error that can be borne.
+//! `stripmine explain`: finds the cheapest configuration, step and run length for a target error.
 
+use super::display::decimals;
 use crate::console::{Common, Failure, clear_progress, print, print_json, say, warn};
 use crate::report::{Cell, Rows, terminal};
 use crate::study::explain::{
@@ -16,65 +17,67 @@ use stripmine_physics::averages::Outcome;
 use stripmine_physics::io::replace::{may_put, put, try_beside};
 use stripmine_physics::memory::peak;
 use stripmine_physics::method::Methods;
-use stripmine_physics::number::significant;
+use stripmine_physics::number::{counted, significant};
 use stripmine_physics::quoted;
 use stripmine_physics::reported::{Class, Reported};
 use stripmine_physics::scene::Width;
 use stripmine_physics::signals;
 
-/// Which integrator, step, precision, search, run length and seeds a scene needs for an error you can bear, and what that costs
+/// Finds the cheapest configuration that reaches a target error
+///
+/// The plan names integrator, step, precision, search, run length and seeds, with the cost and the reason of each.
 #[derive(Args)]
 pub(super) struct ExplainVerb {
-    /// A preset's name, or a scene file
+    /// Preset name or scene file
     #[arg(required_unless_present = "forget")]
     scene: Option<String>,
-    /// Overrides a value; may be given several times
+    /// Overrides a value; can be repeated
     #[arg(long = "set", value_name = "SECTION.KEY=VALUE")]
     overrides: Vec<String>,
-    /// The error of the mean that can be borne with a probability of 95 %, such as 1% or 0.02; without it, that of the scene's own values
+    /// Target error of the mean (95 % confidence), such as 1% or 0.02; default: the error of the scene as it is
     #[arg(long, value_parser = width)]
     error: Option<Width>,
-    /// The quantity whose mean it is; what the method is mostly asked for by default
+    /// Quantity to average; default: the main quantity of the method
     #[arg(long = "of", value_name = "QUANTITY")]
     quantity: Option<String>,
-    /// Wall seconds that the run may take: the plan of the least error that can be had in them
+    /// Finds the least error within this wall time instead
     #[arg(long = "time", value_name = "SECONDS", conflicts_with = "error", value_parser = above_zero)]
     within: Option<f64>,
-    /// The most wall seconds that a plan may take, an hour by default: a longer one is refused with the error that can be had in them
+    /// Rejects plans with a longer wall time; default: one hour
     #[arg(long, value_name = "SECONDS", conflicts_with = "within", value_parser = above_zero)]
     limit: Option<f64>,
-    /// Averages each run from one time to another, instead of over its steady state
+    /// Averages each run between two times instead of over its steady state
     #[arg(long, num_args = 2, value_names = ["FROM", "TO"])]
     window: Option<Vec<f64>>,
-    /// Runs nothing: by what is kept of the scene
+    /// Runs no trials; uses only cached measurements
     #[arg(long, conflicts_with = "patient")]
     estimate: bool,
-    /// Trials of up to a minute in the place of ten seconds
+    /// Runs trials for up to a minute instead of ten seconds
     #[arg(long)]
     patient: bool,
-    /// Seconds of trials at most
+    /// Limit of all trials in seconds
     #[arg(long, conflicts_with_all = ["estimate", "patient"], value_parser = clap::value_parser!(u16).range(1..=3600))]
     seconds: Option<u16>,
-    /// Carries out one run of the plan, and prints what was expected beside what came out; asks first where that takes above a minute
+    /// Executes one run of the plan and compares it with the estimates; asks first if it takes more than a minute
     #[arg(long)]
     analyze: bool,
-    /// Carries out also a plan of more than a minute, without asking
+    /// Executes plans of more than a minute without asking
     #[arg(long, requires = "analyze")]
     yes: bool,
     /// Writes the plan as a scene file
     #[arg(long, value_name = "FILE")]
     write: Option<PathBuf>,
-    /// Write over a file that is there
+    /// Overwrites an existing file
     #[arg(long, requires = "write")]
     overwrite: bool,
-    /// Removes what is kept of scenes on this host
+    /// Removes the cached measurements of all scenes on this host
     #[arg(long)]
     forget: bool,
 }
 
-/// A plan is not carried out: it takes so long (s), and nobody said that it may.
+/// The plan was not executed, because it takes this long (s) and `--yes` was not given.
 #[derive(Debug, thiserror::Error)]
-#[error("the plan was not carried out: a run of it takes about {}\n  help: add --yes to carry it out", seconds(*.0))]
+#[error("the plan was not executed: one run takes about {}\n  help: add --yes to execute it", seconds(*.0))]
 struct LongRun(f64);
 
 impl Reported for LongRun {
@@ -83,49 +86,49 @@ impl Reported for LongRun {
     }
 }
 
-/// Plans that take longer are carried out only if the user says so (s).
+/// Longest plan that is executed without confirmation (s).
 const LONG: f64 = 60.0;
 
 fn above_zero(text: &str) -> Result<f64, String> {
     let is_time = |seconds: &f64| seconds.is_finite() && *seconds > 0.0;
-    text.parse().ok().filter(is_time).ok_or_else(|| "a time is a number of seconds above 0".to_owned())
+    text.parse().ok().filter(is_time).ok_or_else(|| "expected a number of seconds above 0".to_owned())
 }
 
-/// Bytes.
+/// Megabyte (bytes).
 const MEGABYTE: f64 = 1e6;
-/// Trials may take so much more memory than a run: several ways are prepared one after the other (bytes).
+/// Memory that trials may take beyond a run, since several configurations are prepared one after the other (bytes).
 const MORE: f64 = 16e6;
 
 pub(super) fn width(text: &str) -> Result<Width, String> {
-    Width::parse(text).ok_or_else(|| "an error is a number above 0, or a part such as 1%".to_owned())
+    Width::parse(text).ok_or_else(|| "expected a number above 0, or a percentage such as 1%".to_owned())
 }
 
-/// A row of what was expected and came out.
+/// Estimate of the plan compared with the run.
 #[derive(Clone, Debug, Serialize)]
 struct Compared {
     what: String,
     estimated: f64,
     actual: f64,
     unit: String,
-    /// Whether it lies within what was expected.
+    /// True if the actual value is within the expected range.
     is_within: bool,
-    /// What to measure again, where it does not.
+    /// Likely reason of a difference, and what to do.
     advice: &'static str,
 }
 
-/// What `--json` prints.
+/// Document of `--json`.
 #[derive(Serialize)]
 struct Said {
     #[serde(flatten)]
     plan: Plan,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     analyzed: Vec<Compared>,
-    /// Where the run that was analyzed ended before its time.
+    /// Reason for which the executed run ended early.
     #[serde(skip_serializing_if = "Option::is_none")]
     cut_off: Option<String>,
 }
 
-/// What came of carrying out a plan.
+/// Result of executing a plan.
 #[derive(Default)]
 struct Analysis {
     rows: Vec<Compared>,
@@ -137,10 +140,10 @@ impl ExplainVerb {
         let kept = Kept::here();
         if self.forget {
             let count = kept.forget().map_err(failed)?;
-            print(&format!("removed: {count}\n"))?;
+            print(&format!("removed {}\n", counted(count, "cached measurement", "cached measurements")))?;
         }
         let Some(scene) = &self.scene else { return Ok(()) };
-        // Before trials take their time.
+        // Checked before any trial runs.
         self.may_write()?;
         let case = Case::load(scene, &self.overrides, methods)?;
         let target = Target::of(&case, self.quantity.as_deref(), self.error).map_err(failed)?;
@@ -152,11 +155,11 @@ impl ExplainVerb {
             _ => self.seconds.map_or(SECONDS[0], f64::from),
         };
         if !common.quiet && seconds > 0.0 {
-            say(format_args!("trials of at most about {seconds} s, unless they are kept"));
+            say(format_args!("running trials for up to {seconds} s (cached trials are reused)"));
         }
         let notice = |error: &KeptError| {
             if !common.quiet {
-                warn(format_args!("trials are not kept, or not found again: {error}"));
+                warn(format_args!("trials are not cached: {error}"));
             }
         };
         let trial = Trial { watch: &Stopwatch::wall(), stop: signals::asked() };
@@ -186,14 +189,14 @@ impl ExplainVerb {
         written.and(refused.map_err(Failure::from))
     }
 
-    /// That the plan may be written where it is to be, and that this can be done.
+    /// Checks that the plan can be written to the file of `--write`.
     fn may_write(&self) -> Result<(), Failure> {
         let Some(file) = &self.write else { return Ok(()) };
         may_put(file, self.overwrite, "choose another --write, or add --overwrite to lose it")?;
         try_beside(file).map_err(Failure::writing(file.display().to_string()))
     }
 
-    /// That the plan may be carried out: its user says so where it takes long.
+    /// Checks that the plan may be executed; asks the user if it takes long.
     fn may_analyze(&self, plan: &Plan) -> Result<(), LongRun> {
         let likely = plan.seconds.likely;
         if likely <= LONG || self.yes {
@@ -204,32 +207,32 @@ impl ExplainVerb {
             return refusal();
         }
         let mut answer = String::new();
-        #[expect(clippy::let_underscore_must_use, reason = "where nothing can be asked, the answer is no")]
+        #[expect(clippy::let_underscore_must_use, reason = "without a terminal the answer is no")]
         let _ =
-            write!(io::stderr(), "a run of the plan takes about {}: carry it out? [y/N] ", seconds(likely));
-        #[expect(clippy::let_underscore_must_use, reason = "where nothing is answered, the answer is no")]
+            write!(io::stderr(), "one run of the plan takes about {}: execute it? [y/N] ", seconds(likely));
+        #[expect(clippy::let_underscore_must_use, reason = "without an answer the answer is no")]
         let _ = io::stdin().read_line(&mut answer);
         if matches!(answer.trim(), "y" | "Y" | "yes") { Ok(()) } else { refusal() }
     }
 
-    /// Writes the whole file, or leaves what was there.
+    /// Writes the plan as a scene file; on failure the old file stays.
     fn written(&self, plan: &Plan, file: &Path, case: &Case) -> Result<(), Failure> {
         let prepared = case.prepared_with(&plan.overrides)?;
         let seeds = if plan.seeds > 1 { format!(" --seeds {}", plan.seeds) } else { String::new() };
         let text = format!(
-            "# By stripmine explain, for {}: run it with{} stripmine run FILE{seeds}\n{}",
+            "# Plan by stripmine explain for {}. Run it{}: stripmine run FILE{seeds}\n{}",
             plan.quantity,
-            if seeds.is_empty() { "" } else { " its seeds:" },
+            if seeds.is_empty() { "" } else { " with its seeds" },
             prepared.scene
         );
         put(file, &text, self.overwrite).map_err(Failure::writing(file.display().to_string()))
     }
 
-    /// Carries out one run of the plan.
+    /// Executes one run of the plan and compares it with the estimates.
     fn analyzed(plan: &Plan, target: &Target, case: &Case) -> Result<Analysis, Failure> {
         let prepared = case.prepared_with(&plan.overrides)?;
         let observed = (case.entry.quantities, target.place);
-        // Interrupted, it ends early and says so.
+        // An interrupted run ends early and is reported as cut off.
         let held = signals::hold();
         let trial = Trial { watch: &Stopwatch::wall(), stop: signals::asked() };
         let found: Sample =
@@ -255,16 +258,16 @@ impl ExplainVerb {
             actual: found.seconds,
             unit: "s".to_owned(),
             is_within: (plan.seconds.least..=plan.seconds.most).contains(&found.seconds),
-            advice: "the host was busier or idler than in the trials: --patient",
+            advice: "the load of the host has changed since the trials: use --patient",
         }];
         if let Outcome::Kept { farthest, .. } = found.outcome {
             rows.push(Compared {
-                what: format!("{}, at its farthest", plan.quantity),
+                what: format!("largest {}", plan.quantity),
                 estimated: plan.expected.most,
                 actual: farthest,
                 unit: plan.unit.to_owned(),
                 is_within: farthest <= plan.error.unwrap_or(f64::INFINITY),
-                advice: "two steps did not tell the law: --patient",
+                advice: "two steps did not determine the order of the error: use --patient",
             });
         }
         for (name, estimated) in &plan.phases {
@@ -276,49 +279,49 @@ impl ExplainVerb {
                 estimated: *estimated,
                 actual,
                 unit: "s".to_owned(),
-                // What takes next to nothing is not foreseen as a part of itself.
+                // Phases that take almost no time have no useful relative error.
                 is_within: (actual - estimated).abs() <= 0.5 * estimated + 0.02 * found.seconds,
-                advice: "the phases of another step or start: --patient",
+                advice: "phases were measured at another step or start: use --patient",
             });
         }
         rows.extend(peak().map(|peak| Compared {
-            what: "memory, of trials too".to_owned(),
+            what: "memory, trials included".to_owned(),
             estimated: plan.memory as f64 / MEGABYTE,
             actual: peak as f64 / MEGABYTE,
             unit: "MB".to_owned(),
             is_within: peak as f64 <= plan.memory as f64 + MORE,
-            advice: "trials took more than a run: see scene check for that of a run",
+            advice: "trials need more than a run: see `scene check` for a run",
         }));
         if let (true, Some([mean, bar])) = (plan.is_whole, plan.mean) {
             let chance = plan.expected.chance * seeds.sqrt();
             rows.push(Compared {
-                what: format!("{} over the run, less that of the reference", plan.quantity),
+                what: format!("mean {} over the run, minus reference", plan.quantity),
                 estimated: 0.0,
                 actual: found.mean_over(window) - mean,
                 unit: plan.unit.to_owned(),
                 is_within: (found.mean_over(window) - mean).abs()
                     <= plan.expected.bias.with(chance.hypot(bar)),
-                advice: "the step or the digits take it off: --patient",
+                advice: "bias from the step or the precision: use --patient",
             });
         }
         if let (Some(known), Some([mean, bar])) = (known, plan.mean) {
             let chance = plan.expected.chance * seeds.sqrt();
             rows.push(Compared {
-                what: format!("chance of {} in a run (95 %), at most", plan.quantity),
+                what: format!("statistical error of {} in a run (95 %), at most", plan.quantity),
                 estimated: chance,
                 actual: known.bar,
                 unit: plan.unit.to_owned(),
                 is_within: known.bar <= chance,
-                advice: "the scatter was hardly known: --patient",
+                advice: "trials were too short to estimate the scatter: use --patient",
             });
             let allowed = plan.expected.bias.with(known.bar.hypot(bar));
             rows.push(Compared {
-                what: format!("{} less that of the reference", plan.quantity),
+                what: format!("mean {}, minus reference", plan.quantity),
                 estimated: 0.0,
                 actual: known.mean - mean,
                 unit: plan.unit.to_owned(),
                 is_within: (known.mean - mean).abs() <= allowed,
-                advice: "the step or the digits take it off: --patient",
+                advice: "bias from the step or the precision: use --patient",
             });
         }
         Ok(Analysis { rows, cut_off: None })
@@ -333,17 +336,18 @@ fn table(rows: &[Compared], cut_off: Option<String>) -> String {
         .text("estimated", number(|it| it.estimated))
         .text("actual", number(|it| it.actual))
         .cell("ratio", |it| {
-            if it.estimated == 0.0 { Cell::Nothing } else { Cell::Number(it.actual / it.estimated, 2) }
+            let ratio = it.actual / it.estimated;
+            if it.estimated == 0.0 { Cell::Nothing } else { Cell::Number(ratio, decimals(ratio, 3)) }
         })
         .text("remark", |it| {
-            if it.is_within { String::new() } else { format!("outside of what was expected: {}", it.advice) }
+            if it.is_within { String::new() } else { format!("outside the expected range: {}", it.advice) }
         })
-        .table("analyzed", "Expected and come out")
-        .notes(cut_off.map(|why| format!("The run was {why}: nothing else of it is compared.")));
+        .table("analyzed", "Estimates of the plan, compared with the run")
+        .notes(cut_off.map(|why| format!("The run was {why}; only its wall time is compared.")));
     terminal::render(&table)
 }
 
-/// The failure of a plan; trials that were stopped end as any command that was.
+/// Failure of a plan; stopped trials end like any interrupted command.
 pub(super) fn failed(error: impl Into<ExplainError>) -> Failure {
     match error.into() {
         ExplainError::Stopped => Failure::Stopped(signals::End::Whole),

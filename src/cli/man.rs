@@ -1,4 +1,4 @@
-//! `stripmine man`: the manual page.
+//! `stripmine man`: the manual page in roff.
 
 use super::{command, manual};
 use crate::console::{Failure, print};
@@ -7,16 +7,16 @@ use clap_mangen::Man;
 use clap_mangen::roff::{Roff, bold, roman};
 use stripmine_physics::method::Methods;
 
-/// The manual page, in roff, to standard output: stripmine man | man -l -
+/// Prints the manual page: stripmine man | man -l -
 #[derive(Args)]
 pub(super) struct ManVerb {
-    /// The page of this verb instead of the overview
+    /// Verb whose page is printed; default: the overview
     verb: Option<String>,
 }
 
 impl ManVerb {
     pub(super) fn run(&self, methods: Methods) -> Result<(), Failure> {
-        // Built, so that every verb knows the options that all share.
+        // Propagates the global options to every verb.
         let mut command = command(methods);
         command.build();
         let page = match &self.verb {
@@ -31,8 +31,8 @@ impl ManVerb {
         };
         let parts = manual::parts(self.verb.as_deref().unwrap_or_default());
         let mut text = Vec::new();
-        // What help says below the options has headings of its own here.
-        let page = Man::new(page.after_long_help(None::<&str>));
+        // The text that help shows below the options is added as sections.
+        let page = Man::new(page.after_help(None::<&str>).after_long_help(None::<&str>));
         page.render(&mut text)
             .and_then(|()| below(parts).to_writer(&mut text))
             .map_err(Failure::writing("the manual page"))?;
@@ -40,7 +40,7 @@ impl ManVerb {
     }
 }
 
-/// The parts that stand below the options.
+/// Sections below the options: examples, exit codes, environment.
 fn below(parts: Vec<manual::Part>) -> Roff {
     let mut page = Roff::new();
     for (heading, entries) in parts {

@@ -1,33 +1,37 @@
-//! What help and manual pages say beside the options: examples, exit codes, environment, where to read on.
+//! Text of help and manual pages beside the options: examples, exit codes, environment, further reading.
 
-/// Examples by verb; the overview has those under no verb.
+/// Examples by verb; those under the empty verb are shown in the overview.
 const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
     (
         "",
         &[
-            ("stripmine run pipe-small", "a run of a preset; its folder is pipe-small.run"),
-            ("stripmine plot pipe-small.run", "its observables and its last state as pictures"),
-            ("stripmine table", "the efficiency table of 1993 beside ours"),
-            ("stripmine reproduce --quick", "the report in half a minute"),
+            ("stripmine run pipe-small", "runs a preset into the folder pipe-small.run"),
+            ("stripmine plot pipe-small.run", "plots its observables and last state"),
+            (
+                "stripmine explain langevin-dense --of pressure --error 1%",
+                "finds the cheapest run with this error",
+            ),
+            ("stripmine table", "compares the efficiency table of 1993 with our count"),
+            ("stripmine reproduce --quick", "makes the report in half a minute"),
         ],
     ),
     (
         "run",
         &[
-            ("stripmine run hard-disks", "a preset"),
+            ("stripmine run hard-disks", "runs a preset"),
             (
                 "stripmine run scene.toml --out first.run --set run.steps=1000",
-                "a file, with another number of steps",
+                "runs a scene file with another number of steps",
             ),
-            ("stripmine run hard-disks --seeds 8", "eight runs with seeds of their own, and their mean"),
-            ("stripmine run pipe --resume", "begins, or goes on where the run was interrupted"),
+            ("stripmine run hard-disks --seeds 8", "runs eight different seeds and averages them"),
+            ("stripmine run pipe --resume", "starts the run, or resumes it after an interruption"),
         ],
     ),
     (
         "average",
         &[
-            ("stripmine average pipe-small.run", "means with their errors"),
-            ("stripmine average a.run b.run --json", "two runs of one scene with seeds of their own, joined"),
+            ("stripmine average pipe-small.run", "prints means with errors"),
+            ("stripmine average a.run b.run --json", "joins two runs of one scene with different seeds"),
         ],
     ),
     (
@@ -35,20 +39,23 @@ const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
         &[
             (
                 "stripmine explain langevin-dense --of pressure --error 1%",
-                "the cheapest run that reaches it, and why",
+                "finds the cheapest run with this error, with reasons",
             ),
             (
                 "stripmine explain kepler --of energy_error --error 1e-6 --write plan.toml",
-                "the step that keeps the energy",
+                "finds the largest step that conserves the energy this well",
             ),
-            ("stripmine explain pipe-small --estimate", "by what is kept of it, without a run"),
+            ("stripmine explain pipe-small --estimate", "uses cached measurements only"),
         ],
     ),
     (
         "plot",
         &[
-            ("stripmine plot pipe-small.run", "SVG and PNG in pipe-small.plots, courses in the terminal"),
-            ("stripmine plot melting.run --film --color psi6", "a film for a browser too, coloured by order"),
+            ("stripmine plot pipe-small.run", "writes SVG and PNG to pipe-small.plots"),
+            (
+                "stripmine plot melting.run --film --color psi6",
+                "also writes a film for a browser, coloured by order",
+            ),
         ],
     ),
     (
@@ -56,84 +63,84 @@ const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
         &[
             (
                 "stripmine bench lattice --packing-fraction 0.84 --steps 1e4 --threads 1",
-                "steps a second of dense discs",
+                "measures steps a second of dense discs",
             ),
-            ("stripmine bench langevin --json", "the same of particles in a bath, as data"),
+            ("stripmine bench langevin --json", "measures Langevin particles and prints JSON"),
         ],
     ),
     (
         "compare",
         &[(
             "stripmine compare plummer --against machine.engine=reference",
-            "two engines: same bits, or where they part",
+            "compares two engines bit by bit",
         )],
     ),
     (
         "scene",
         &[
-            ("stripmine scene keys lattice-md", "every key with unit, default and meaning"),
-            ("stripmine scene check pipe-small", "the step beside every limit of theory, before a run"),
-            ("stripmine scene show pipe-small", "the preset as a file to begin from"),
+            ("stripmine scene keys lattice-md", "lists every key with unit, default and meaning"),
+            ("stripmine scene check pipe-small", "compares the step with every theoretical limit"),
+            ("stripmine scene show pipe-small", "prints a preset as a starting point"),
         ],
     ),
     (
         "reproduce",
         &[
-            ("stripmine reproduce --only table --only misprints", "two items"),
-            ("stripmine reproduce --out report", "all, into a folder"),
+            ("stripmine reproduce --only table --only misprints", "makes two items"),
+            ("stripmine reproduce --out report", "makes all default items in a folder"),
         ],
     ),
-    ("chart", &[("stripmine chart soft-hard", "when soft discs are as good as hard ones")]),
+    ("chart", &[("stripmine chart soft-hard", "compares soft discs with hard discs")]),
     (
         "table",
-        &[("stripmine table --ladder --machine cray-1", "what strip-mining, chaining and memory ports add")],
+        &[(
+            "stripmine table --ladder --machine cray-1",
+            "shows what strip-mining, chaining and memory ports add",
+        )],
     ),
     (
         "listing",
-        &[("stripmine listing forces --json", "instructions with operation, destination and sources")],
+        &[(
+            "stripmine listing forces --json",
+            "prints operation, destination and sources of each instruction",
+        )],
     ),
-    ("calibrate", &[("stripmine calibrate --out host.toml", "a model of this host in 75 seconds")]),
+    ("calibrate", &[("stripmine calibrate --out host.toml", "measures this host in 75 seconds")]),
     (
         "validate-model",
-        &[("stripmine validate-model --host host.toml", "its predictions beside what is measured")],
+        &[("stripmine validate-model --host host.toml", "compares predictions with measurements")],
     ),
     (
         "completions",
-        &[(
-            "stripmine completions bash",
-            "to be kept where the shell looks, such as ~/.local/share/bash-completion/completions/stripmine",
-        )],
+        &[("stripmine completions bash", "save it to ~/.local/share/bash-completion/completions/stripmine")],
     ),
-    ("man", &[("stripmine man run", "the page of a verb, in roff: pipe it into man -l -")]),
+    ("man", &[("stripmine man run", "prints the page of a verb; pipe it into man -l -")]),
 ];
 
-/// Exit codes with their meaning.
+/// Exit codes and their meanings.
 const EXIT_CODES: &[(&str, &str)] = &[
-    ("0", "done, also where a reader closes the pipe"),
-    ("2", "wrong arguments, or a folder that holds something else"),
-    ("3", "a scene or an input file that cannot be used; every mistake with its place"),
-    (
-        "4",
-        "the physics failed, an accuracy cannot be reached, or a prediction lies outside what was calibrated",
-    ),
-    ("5", "reading or writing failed, or the system gives no more memory or threads"),
-    ("6", "a damaged checkpoint"),
-    ("130", "interrupted; a run has written its checkpoint"),
+    ("0", "success, also if the reader closes the pipe"),
+    ("2", "wrong arguments, or the folder holds something else"),
+    ("3", "invalid scene or input file; every mistake is listed"),
+    ("4", "physics failure, unreachable error, or prediction outside calibration"),
+    ("5", "reading or writing failed, or out of memory or threads"),
+    ("6", "damaged checkpoint"),
+    ("130", "interrupted; a run leaves a checkpoint"),
 ];
 
-/// Variables of the environment that are read.
+/// Environment variables that are read.
 const ENVIRONMENT: &[(&str, &str)] = &[
-    ("COLUMNS", "width of tables and notes, where it is set"),
-    ("RAYON_NUM_THREADS", "threads where --threads is not given, at most 1024"),
+    ("COLUMNS", "width of tables and messages"),
+    ("RAYON_NUM_THREADS", "threads without --threads, at most 1024"),
 ];
 
-/// Where to read on.
-const SEE_ALSO: &str = "stripmine VERB --help, stripmine man VERB, stripmine scene keys, and the README";
+/// Further reading.
+const SEE_ALSO: &str = "stripmine VERB --help, stripmine man VERB, stripmine scene keys, README";
 
-/// A heading and its entries: what is written, and what it means.
+/// Heading with its entries, each a text and its meaning.
 pub(super) type Part = (&'static str, Vec<(&'static str, &'static str)>);
 
-/// What there is to be said of a verb, or, under no verb, of the command.
+/// Parts for a verb, or for the command as a whole if the verb is empty.
 pub(super) fn parts(verb: &str) -> Vec<Part> {
     let examples =
         EXAMPLES.iter().filter(|(of, _)| *of == verb).map(|(_, examples)| ("Examples", examples.to_vec()));
@@ -145,13 +152,22 @@ pub(super) fn parts(verb: &str) -> Vec<Part> {
     examples.chain(codes).collect()
 }
 
-/// The same as help shows it.
+/// Parts of a verb as help shows them.
 pub(super) fn text(verb: &str) -> String {
+    written(parts(verb))
+}
+
+/// Examples of a verb as short help shows them.
+pub(super) fn examples(verb: &str) -> String {
+    written(parts(verb).into_iter().filter(|(heading, _)| *heading == "Examples"))
+}
+
+fn written(parts: impl IntoIterator<Item = Part>) -> String {
     let mut text = String::new();
-    for (heading, entries) in parts(verb) {
+    for (heading, entries) in parts {
         text.push_str(&format!("{heading}:\n"));
         for (what, meaning) in entries {
-            // A command stands on a line of its own: it is copied whole.
+            // A command has its own line, so that it can be copied.
             let between = if heading == "Examples" { "\n      " } else { "  " };
             let end = if meaning.is_empty() { String::new() } else { format!("{between}{meaning}") };
             text.push_str(&format!("  {what}{end}\n"));

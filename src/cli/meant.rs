@@ -1,4 +1,4 @@
-//! What a mistaken argument may have meant: the nearest verb, or the key of scenes that an option is called like.
+//! Suggestions for wrong arguments: the nearest verb, or the scene key with the name of the option.
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use std::collections::BTreeSet;
@@ -6,10 +6,10 @@ use std::ffi::OsString;
 use stripmine_physics::method::Methods;
 use stripmine_physics::words::nearest;
 
-/// Keys that are named for one option, at most.
+/// Most keys suggested for one option.
 const MOST: usize = 3;
 
-/// A mistake of the arguments with what may have been meant, where the parser does not know it.
+/// Adds a suggestion to an argument error that the parser has none for.
 pub(super) fn advised(
     mut mistake: clap::Error,
     arguments: &[OsString],
@@ -35,7 +35,7 @@ pub(super) fn advised(
             };
             if let Some(tip) = of_key(found, &words, methods) {
                 mistake.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
-                // An option that only looks alike is not meant.
+                // The parser's similar option is a worse guess.
                 mistake.remove(ContextKind::SuggestedArg);
             }
         }
@@ -44,12 +44,12 @@ pub(super) fn advised(
     mistake
 }
 
-/// The verb that the words name, as far as they do.
+/// Innermost verb named by the words.
 fn verb<'c>(command: &'c clap::Command, words: &[&str]) -> &'c clap::Command {
     words.iter().fold(command, |verb, word| verb.find_subcommand(word).unwrap_or(verb))
 }
 
-/// The keys that an option is called like, as they would be set.
+/// Suggestion to set the scene keys whose name is the option's.
 fn of_key(found: &str, words: &[&str], methods: Methods) -> Option<String> {
     let name = found.trim_start_matches('-').split('=').next().unwrap_or_default().replace('-', "_");
     let keys = methods.iter().flat_map(|method| method.vocabulary.keys.keys());
@@ -66,5 +66,5 @@ fn of_key(found: &str, words: &[&str], methods: Methods) -> Option<String> {
     let next = at.and_then(|at| words.get(at + 1)).map(|word| (*word).to_owned());
     let value = words.iter().find_map(|word| after(word)).or(next).unwrap_or_else(|| "VALUE".to_owned());
     let said: Vec<String> = paths.iter().map(|path| format!("--set {path}={value}")).collect();
-    (!said.is_empty()).then(|| format!("it is a key of scenes: {}", said.join(" or ")))
+    (!said.is_empty()).then(|| format!("it is a scene key: {}", said.join(" or ")))
 }

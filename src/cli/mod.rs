@@ -1,10 +1,11 @@
-//! The command line: one file per verb; composes, decides nothing. Methods add verbs, benches, presets and items.
+//! Command line, one file per verb. Verbs only combine library calls. Methods add verbs, benches, presets and report items.
 
 mod average;
 mod bench;
 mod chart;
 mod compare;
 mod completions;
+mod display;
 mod explain;
 mod man;
 mod manual;
@@ -33,7 +34,7 @@ use stripmine_physics::quoted::quoted;
 use stripmine_physics::ranks::Crew;
 use stripmine_physics::signals;
 
-/// A SIMD vector machine for 2D particle dynamics.
+/// Simulates 2D particle systems, plans runs for a target error, and counts every vector operation.
 #[derive(Parser)]
 #[command(name = "stripmine", version, arg_required_else_help = true)]
 struct CommandLine {
@@ -43,7 +44,7 @@ struct CommandLine {
     common: Common,
 }
 
-/// The verbs that do not belong to a method.
+/// Verbs that do not belong to a method.
 #[derive(Subcommand)]
 enum GeneralVerb {
     Reproduce(reproduce::Reproduce),
@@ -57,32 +58,32 @@ enum GeneralVerb {
     Explain(Box<explain::ExplainVerb>),
     Completions(completions::Completions),
     Man(man::ManVerb),
-    /// Measures the cases that standard input names, for a study of this program
+    /// Measures the cases read from standard input, for a study of this program
     #[command(name = VERB, hide = true)]
     Measure,
 }
 
-/// The verbs of methods.
+/// Verbs of the given methods.
 fn verbs_of(methods: Methods) -> impl Iterator<Item = &'static Verb> {
     laboratories(methods).flat_map(|laboratory| laboratory.verbs)
 }
 
-/// The studies of methods, below `chart`.
+/// Studies of the given methods, shown below `chart`.
 fn charts_of(methods: Methods) -> impl Iterator<Item = &'static Verb> {
     laboratories(methods).flat_map(|laboratory| laboratory.charts)
 }
 
-/// What `reproduce` makes, in the order of the page: of methods, and of studies that all of them share.
+/// Items of `reproduce` in the order of the page: those of the methods, then those of shared studies.
 fn items_of(methods: Methods) -> impl Iterator<Item = &'static Item> {
     laboratories(methods).flat_map(|laboratory| laboratory.items).chain(study::ITEMS)
 }
 
-/// A verb of a method as a command.
+/// Verb of a method as a clap command.
 fn subcommand(verb: &Verb) -> clap::Command {
     (verb.command)(clap::Command::new(verb.name))
 }
 
-/// The command, with what its methods add.
+/// The clap command with the verbs, benches, presets and items of the methods.
 fn command(methods: Methods) -> clap::Command {
     let benches = methods.iter().flat_map(|method| method.benches);
     let benches: Vec<PossibleValue> =
@@ -115,6 +116,7 @@ fn command(methods: Methods) -> clap::Command {
     general
         .mut_subcommand("chart", |chart| chart.subcommands(charts_of(methods).map(subcommand)))
         .subcommands(verbs_of(methods).map(subcommand))
+        .after_help(manual::examples(""))
         .after_long_help(manual::text(""))
         .mut_subcommands(|verb| {
             let text = manual::text(verb.get_name());
@@ -122,7 +124,7 @@ fn command(methods: Methods) -> clap::Command {
         })
 }
 
-/// The folder of a run that is meant: where there is none of that name, the one of a run that is called so.
+/// Folder of a run: `name`, or `name.run` if only that exists.
 fn run_folder(name: &Path) -> PathBuf {
     let mut with_ending = name.to_owned().into_os_string();
     with_ending.push(".run");
@@ -130,15 +132,15 @@ fn run_folder(name: &Path) -> PathBuf {
     if !name.exists() && with_ending.is_dir() { with_ending } else { name.to_owned() }
 }
 
-/// Runs the command with its arguments, the first of which is its name.
+/// Runs the command; the first argument is its name.
 pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
     run_with(arguments, METHODS)
 }
 
-/// Runs the command for scenes of some methods.
+/// Runs the command with a given list of methods.
 pub fn run_with(arguments: impl Iterator<Item = OsString>, methods: Methods) -> ExitCode {
     let arguments: Vec<OsString> = arguments.collect();
-    // Asked before the arguments are understood: a mistake among them is said as data too.
+    // Read before the arguments are parsed, since a parse error is printed as JSON too.
     let as_data = arguments.iter().any(|argument| argument == "--json");
     let last_words = move |end| {
         clear_progress();
@@ -147,14 +149,14 @@ pub fn run_with(arguments: impl Iterator<Item = OsString>, methods: Methods) -> 
     let matches = understood(&arguments, methods);
     let verb = matches.as_ref().ok().and_then(Option::as_ref).and_then(ArgMatches::subcommand_name);
     let verb = verb.unwrap_or_default().to_owned();
-    // Help and version need no other process. One with a mistake among its arguments joins the others to end them.
+    // Help and version join no other process. A process with wrong arguments joins the others to end them.
     let outcome = match matches.transpose().map(|matches| (Session::begin(&verb), matches)) {
         None => Ok(()),
-        // The session lasts as long as what is carried out.
+        // The session outlives the verb.
         Some((Ok(session), matches)) => {
             let outcome = matches.and_then(|matches| {
-                // It waits in a thread of its own, which is the first thing to fail where memory is short.
-                let what = "the handler of interruptions (a thread, which takes some megabytes of memory)";
+                // The handler waits in its own thread, the first thing to fail when memory is short.
+                let what = "the interrupt handler (a thread that takes some megabytes of memory)";
                 signals::install(last_words).map_err(Failure::writing(what))?;
                 carried_out(&matches, &command_line(&arguments), session.crew(), methods)
             });
@@ -169,7 +171,7 @@ pub fn run_with(arguments: impl Iterator<Item = OsString>, methods: Methods) -> 
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             let code = failure.exit_code();
-            // What is wrong for all is said once.
+            // A failure of all processes is printed once.
             if code != 0 && processes::is_first(&verb) {
                 tell(&failure, as_data);
             }
@@ -178,20 +180,20 @@ pub fn run_with(arguments: impl Iterator<Item = OsString>, methods: Methods) -> 
     }
 }
 
-/// Refuses a number of threads in the environment that is none.
+/// Rejects an invalid number of threads in `RAYON_NUM_THREADS`.
 fn threads_of_environment() -> Result<(), Failure> {
     let Some(given) = std::env::var_os("RAYON_NUM_THREADS").filter(|given| !given.is_empty()) else {
         return Ok(());
     };
     let given = given.to_string_lossy();
-    // 0 leaves the number to the machine.
+    // 0 means one thread per core.
     match given.parse::<u16>() {
         Ok(0..=MOST_THREADS) => Ok(()),
         _ => Err(Failure::ThreadsOfEnvironment(quoted(&given))),
     }
 }
 
-/// What the arguments ask for; nothing where the answer, help or version, is given.
+/// Parses the arguments; returns none after printing help or the version.
 fn understood(arguments: &[OsString], methods: Methods) -> Result<Option<ArgMatches>, Failure> {
     let mut command = command(methods);
     match command.try_get_matches_from_mut(arguments) {
@@ -207,12 +209,12 @@ fn carried_out(matches: &ArgMatches, command: &str, crew: Crew, methods: Methods
     let common = Common::from_arg_matches(matches).map_err(Failure::Arguments)?;
     let rank = processes::rank(crew);
     let common = Common { command: command.to_owned(), crew, quiet: common.quiet || rank > 0, ..common };
-    // What no other rank has a part in is the first one's.
+    // Other verbs run on the first rank only.
     let verb = matches.subcommand_name().unwrap_or_default();
     if rank > 0 && !["run", "bench", "chart", "reproduce"].contains(&verb) {
         return Ok(());
     }
-    // Without an answer the default pool has a thread for each core, or as many as the environment says.
+    // Without --threads the default pool has a thread for each core, or as many as the environment sets.
     let threads = common.threads.iter().copied().max().map_or(0, usize::from);
     if threads == 0 {
         threads_of_environment()?;
@@ -232,7 +234,7 @@ fn carried_out(matches: &ArgMatches, command: &str, crew: Crew, methods: Methods
         None => None,
     };
     match of_method {
-        // These are one process's.
+        // Verbs of methods run in one process.
         Some(_) if rank > 0 => return Ok(()),
         Some((verb, matches)) => return (verb.run)(matches, &common),
         None => {}
@@ -247,7 +249,7 @@ fn carried_out(matches: &ArgMatches, command: &str, crew: Crew, methods: Methods
             let given = matches.subcommand().map_or(matches, |(_, below)| below);
             verb.run(given, &common, methods)
         }
-        // Once all have begun, an error of another process is one of the first process too.
+        // Once all processes have begun, the first one reports an error of any.
         GeneralVerb::Chart(verb) if rank > 0 => match verb.run(&common, methods) {
             Err(_) if processes::have_met() => Ok(()),
             outcome => outcome,

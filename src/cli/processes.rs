@@ -1,6 +1,6 @@
-//! The processes that `mpiexec` has started, where it has: which one this is, and what the others do meanwhile.
+//! Processes started by `mpiexec`: the rank of this one, and the work of the others.
 //!
-//! The first rank is the program that the user sees. The others read the same scene and do as it says, or runs of their own; they print nothing.
+//! The first rank prints. The others read the same scene, follow the first rank or make their share of the runs, and print nothing.
 
 mod agreement;
 #[cfg(any(test, feature = "mpi"))]
@@ -18,7 +18,7 @@ use stripmine_physics::method::{DISMISSED, Failure as Broken, FailureKind, RANK_
 use stripmine_physics::ranks::{self, Crew, RankError, Ranks, dismiss, is_dismissed};
 use stripmine_physics::reported::Class;
 
-/// Variables by which a launcher tells processes how many they are, and which one each is.
+/// Environment variables in which a launcher stores the number of processes and the rank.
 struct Launcher {
     size: &'static str,
     rank: &'static str,
@@ -31,19 +31,19 @@ const LAUNCHERS: [Launcher; 3] = [
     Launcher { size: "SLURM_NTASKS", rank: "PMIX_RANK" },
 ];
 
-/// Verbs that start no simulation together. Each process carries them out on its own, whatever launcher has set its variables.
+/// Verbs that start no joint simulation. Each process runs them independently under any launcher.
 const ALONE: [&str; 6] = ["scene", "average", "plot", "completions", "man", MEASURE];
 
-/// A process among those that a launcher has started.
+/// One of several processes started by a launcher.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Launched {
     rank: usize,
     count: usize,
-    /// The variable that tells the rank.
+    /// Variable that holds the rank.
     variable: &'static str,
 }
 
-/// The place of this process among several, by the variables of the environment; none where it is the only one.
+/// Rank of this process, from the environment; none if it is the only one.
 fn launched(variable: impl Fn(&str) -> Option<String>) -> Option<Launched> {
     let number = |name: &str| variable(name)?.trim().parse::<usize>().ok();
     LAUNCHERS.iter().find_map(|launcher| {
@@ -56,14 +56,14 @@ fn own_place() -> Option<Launched> {
     launched(|name| std::env::var(name).ok())
 }
 
-/// Reports whether this process says what fails: the first one, the only one, or any where each works on its own.
+/// Returns true if this process prints errors: the first one, the only one, or any that works independently.
 pub(super) fn is_first(verb: &str) -> bool {
     ALONE.contains(&verb) || own_place().is_none_or(|place| place.rank == 0)
 }
 
 const PROCESSES: FailureKind = FailureKind::new("processes");
 
-/// What ranks need to speak to each other; the program holds it to its end.
+/// Session of messages between ranks, open until the program ends.
 pub(super) struct Session {
     #[cfg(feature = "mpi")]
     _session: Option<stripmine_physics::ranks::mpi::Session>,
@@ -71,10 +71,10 @@ pub(super) struct Session {
 }
 
 impl Session {
-    /// Joins the other processes, where there are some and the verb has work for them.
+    /// Joins the other processes, if there are any and the verb has work for them.
     ///
     /// # Errors
-    /// [`Failure`] where there are some, and this program was built without MPI.
+    /// [`Failure`] if there are any and this program was built without MPI.
     pub(super) fn begin(verb: &str) -> Result<Session, Failure> {
         let Some(place) = own_place().filter(|_| !ALONE.contains(&verb)) else {
             return Ok(Session {
@@ -92,13 +92,12 @@ impl Session {
         Err(without_mpi(place))
     }
 
-    /// By whom simulations are carried out.
+    /// Crew that runs simulations.
     pub(super) fn crew(&self) -> Crew {
         self.crew
     }
 
-    /// The outcome of this process, once every other one knows of it: a process that could not begin ends all of them, in place of leaving them to
-    /// wait for it.
+    /// Outcome of this process, shared with all others. A process that could not begin ends all of them, so that none waits for it.
     pub(super) fn ended(&self, outcome: Result<(), Failure>) -> Result<(), Failure> {
         let Crew::Processes(join) = self.crew else { return outcome };
         let part = match &outcome {
@@ -114,7 +113,7 @@ impl Session {
 
 impl Drop for Session {
     fn drop(&mut self) {
-        // MPI would wait for the others, which wait for this process.
+        // MPI would deadlock: it waits for the others, and they wait for this process.
         if thread::panicking() && matches!(self.crew, Crew::Processes(_)) {
             abort(PANICKED);
         }
@@ -132,15 +131,15 @@ fn abort(code: u8) -> ! {
     std::process::exit(code.into());
 }
 
-/// Records that the processes have heard of each other. They do so once, before any other message.
+/// Set by the first exchange, which comes once and before any other message.
 static HAVE_MET: AtomicBool = AtomicBool::new(false);
 
-/// Whether all processes have begun, or ended, together.
+/// Returns true once all processes have begun, or ended, together.
 pub(super) fn have_met() -> bool {
     HAVE_MET.load(Ordering::SeqCst)
 }
 
-/// The verdict on all processes, of the first exchange; later ones find nothing more.
+/// Verdict on all processes from the first exchange; later calls return `Own`.
 fn first_exchange(ranks: &dyn Ranks, part: Part) -> Result<Verdict, Failure> {
     if HAVE_MET.swap(true, Ordering::SeqCst) {
         return Ok(Verdict::Own);
@@ -148,10 +147,10 @@ fn first_exchange(ranks: &dyn Ranks, part: Part) -> Result<Verdict, Failure> {
     agreed(ranks, part).map_err(lost)
 }
 
-/// Begins what all processes do together, if every one of them can begin and does `same`; for each of several processes to call before its first message.
+/// Begins joint work if every process can begin and has the same `same`. Each process calls this before its first message.
 ///
 /// # Errors
-/// [`Failure`] on all of them, naming the rank that cannot begin, or that does something else.
+/// [`Failure`] on all processes, naming the rank that cannot begin or does something else.
 pub(super) fn begin(ranks: &dyn Ranks, same: &str) -> Result<(), Failure> {
     match first_exchange(ranks, Part::Begins(same.to_owned()))? {
         Verdict::Own => Ok(()),
@@ -159,16 +158,16 @@ pub(super) fn begin(ranks: &dyn Ranks, same: &str) -> Result<(), Failure> {
     }
 }
 
-/// How long others are waited for before this is said, and how much longer before this process ends (s).
+/// Time to wait for other processes before a notice, and further time before this process ends (s).
 #[cfg(feature = "mpi")]
 const PATIENCE: [u64; 2] = [20, 280];
 
-/// What a process does that waits for others to join: the first two say so, for one of them may be missing itself; all end in the end.
+/// Actions while waiting for others to join: ranks 0 and 1 print a notice, since either may be the missing one; all end after the limit.
 #[cfg(feature = "mpi")]
 fn waiting(Launched { rank, count, .. }: Launched) -> Vec<(std::time::Duration, joining::Act)> {
     let [notice, end] = PATIENCE;
     let words = move |seconds: u64| {
-        format!("rank {rank} waits for others of {count} processes, which have not joined for {seconds} s")
+        format!("rank {rank} of {count} has waited {seconds} s for processes that have not joined")
     };
     let remedy = format!(
         "give all ranks the same verb: {}, --help and --version join no other process",
@@ -196,11 +195,11 @@ fn waiting(Launched { rank, count, .. }: Launched) -> Vec<(std::time::Duration, 
 #[cfg(not(feature = "mpi"))]
 fn without_mpi(Launched { count, variable, .. }: Launched) -> Failure {
     let what = format!(
-        "this is one of {count} processes ({variable} is set), but the program was built without MPI"
+        "this is one of {count} processes ({variable} is set), but this program was built without MPI"
     );
     let remedy = format!(
-        "build it with: cargo build --release --features mpi; or take ranks that are threads: run --ranks; or unset {variable} \
-         where each process is to work on its own"
+        "build it with cargo build --release --features mpi, or use threads as ranks (run --ranks), or unset {variable} \
+         if each process works independently"
     );
     broken(what, &remedy)
 }
@@ -209,12 +208,12 @@ fn broken(what: String, remedy: &str) -> Failure {
     StudyError::Own(Box::new(Broken::new(PROCESSES, what, remedy))).into()
 }
 
-/// A rank is lost.
+/// Failure for a lost rank.
 pub(super) fn lost(lost: RankError) -> Failure {
-    broken(lost.to_string(), "see what it said last")
+    broken(lost.to_string(), "see its last message")
 }
 
-/// The failure of another rank, with its exit code and words.
+/// Failure of another rank, with its exit code and message.
 pub(super) fn of_rank(rank: usize, code: u8, said: &str) -> Failure {
     Failure::OfProcess {
         process: format!("rank {rank}"),
@@ -223,23 +222,23 @@ pub(super) fn of_rank(rank: usize, code: u8, said: &str) -> Failure {
     }
 }
 
-/// Which of several processes this is.
+/// Rank of this process; 0 if it is the only one.
 pub(super) fn rank(crew: Crew) -> usize {
     if let Crew::Processes(join) = crew { join().rank() } else { 0 }
 }
 
-/// Ranks were asked for as threads and as processes.
+/// Failure for ranks requested both as threads and as processes.
 pub(super) fn ranks_twice() -> Failure {
-    let what = "--ranks was given, but this is one of several processes already".to_owned();
-    broken(what, "take --ranks without mpiexec, or mpiexec -n without --ranks")
+    let what = "--ranks was given, but this is already one of several processes".to_owned();
+    broken(what, "use --ranks without mpiexec, or mpiexec -n without --ranks")
 }
 
-/// The part that a rank which is not the first takes in simulations that `start` begins, until the first dismisses it.
+/// Serves simulations begun by `start` on a rank other than the first, until the first dismisses it.
 pub(super) fn serve(crew: Crew, start: impl FnOnce() -> Result<(), Broken>) {
     let Crew::Processes(join) = crew else { return };
     let Err(failure) = ranks::over(crew, start) else { return };
-    // Where the first rank has begun nothing, it was refused the same, and says so. Elsewhere it waits for this rank; and so do others, where
-    // this one has lost one of them in the middle of a step.
+    // If the first rank has begun nothing, it failed for the same reason and reports it. Otherwise it waits for this rank; so do
+    // others, if this rank lost one of them in the middle of a step.
     let is_waited_for = match failure.kind {
         DISMISSED => false,
         RANK_ENDED => true,
@@ -253,11 +252,10 @@ pub(super) fn serve(crew: Crew, start: impl FnOnce() -> Result<(), Broken>) {
     }
 }
 
-/// Does the same on all processes. The first rank does `first`, which may begin simulations on all of them, the others `serve`, which takes their part
-/// in these.
+/// Runs joint work on all processes. The first rank runs `first`, which may begin simulations on all of them; the others run `serve`.
 ///
 /// # Errors
-/// [`Failure`] of the rank itself, or of [`begin`] where they do not say the same of it (scene and program).
+/// [`Failure`] of the rank itself, or of [`begin`] if scenes or programs differ.
 pub(super) fn together(
     join: fn() -> Box<dyn Ranks>,
     same: &str,
@@ -275,10 +273,10 @@ pub(super) fn together(
     Ok(())
 }
 
-/// Work that ranks do on their own, each every so-many-th piece of it; the first failure, on the first rank once all have ended.
+/// Runs independent pieces of work, distributed over the ranks in turn. The first rank returns the first failure once all have ended.
 ///
 /// # Errors
-/// The rank's own failure; on the first rank that of another one; or that of [`begin`].
+/// The rank's own failure; on the first rank also that of another; or that of [`begin`].
 pub(super) fn apart(
     join: fn() -> Box<dyn Ranks>,
     same: &str,
@@ -300,7 +298,7 @@ mod tests {
 
     #[test]
     fn launchers_are_recognised_by_size_and_rank() {
-        /// Variables, and the rank and count that they tell.
+        /// Variables, and the rank and count they encode.
         type Case<'a> = (&'a [(&'a str, &'a str)], Option<(usize, usize)>);
         let cases: [Case<'_>; 10] = [
             (&[], None),
@@ -308,9 +306,9 @@ mod tests {
             (&[("OMPI_COMM_WORLD_SIZE", "2"), ("OMPI_COMM_WORLD_RANK", "1")], Some((1, 2))),
             // srun with PMIx.
             (&[("SLURM_NTASKS", "2"), ("PMIX_RANK", "0")], Some((0, 2))),
-            // A batch script or shell of Slurm, which has started nothing.
+            // A batch script or shell of Slurm, without srun.
             (&[("SLURM_NTASKS", "64"), ("SLURM_PROCID", "0")], None),
-            // mpirun of Open MPI inside a job of Slurm: its own count.
+            // mpirun of Open MPI inside a Slurm job has its own count.
             (
                 &[
                     ("SLURM_NTASKS", "64"),

@@ -1,4 +1,4 @@
-//! `stripmine reproduce`: the main job.
+//! `stripmine reproduce`: makes the items of the report.
 
 use super::{items_of, processes};
 use crate::console::{Common, Failure, SHARES, bar, clear_progress, print_json, say};
@@ -12,22 +12,23 @@ use std::cell::Cell;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use stripmine_physics::method::Methods;
-use stripmine_physics::number::counted;
+use stripmine_physics::number::{counted, significant};
 use stripmine_physics::quoted;
 use stripmine_physics::ranks::{Crew, Ranks};
 use stripmine_physics::signals;
 
-/// Every table, figure and claim of the sources, with data and a page that says what came out. Interrupted, the same command goes on
-/// with the item where it was
+/// Reproduces every table, figure and claim of the papers
+///
+/// Writes data, figures and a page with the verdicts. After an interruption the same command resumes with the unfinished items.
 #[derive(Args)]
 pub(super) struct Reproduce {
-    /// Also what the sources do not ask, and the speed of this host, and series up to 10 million discs: takes twenty times as long, and 5 GB
+    /// Also makes items beyond the papers, measures this host, and extends series to 10 million discs; takes 20 times as long and 5 GB
     #[arg(long)]
     all: bool,
-    /// Take less time: of everything what can be made in a minute, measured less
+    /// Makes only the items that fit into a minute, with shorter measurements
     #[arg(long, conflicts_with = "all")]
     quick: bool,
-    /// Only this item; may be given several times. The page keeps what the folder holds of the others
+    /// Makes only this item; can be repeated. The page keeps the other items of the folder
     #[arg(long)]
     only: Vec<String>,
     /// Folder for the results
@@ -35,7 +36,7 @@ pub(super) struct Reproduce {
     out: PathBuf,
 }
 
-/// What was done with an item.
+/// Result of making an item.
 #[derive(Serialize, Deserialize)]
 struct Outcome {
     item: String,
@@ -44,26 +45,26 @@ struct Outcome {
     folder: String,
 }
 
-/// The names of the items of each process.
+/// Names of the items of each process.
 type Names = Vec<Vec<String>>;
 
-/// Items that a process has made, or the exit code and words of its failure.
+/// Items made by a process, or the exit code and message of its failure.
 type Made = Result<Vec<Outcome>, (u8, String)>;
 
-/// Where items go, and how.
+/// Settings and destination of the items of one process.
 struct Job<'j> {
     effort: Size,
     common: &'j Common,
     folder: &'j Folder,
-    /// The items of the page; none where another process writes it.
+    /// Items of the page; none if another process writes it.
     on_page: Option<Vec<&'j str>>,
     bar: ProgressBar,
-    /// Seconds that were expected for what is made.
+    /// Expected seconds of the items made so far.
     before: Cell<f64>,
 }
 
 impl Reproduce {
-    /// Makes the items; of several processes each makes some, and the first alone those that are of this host.
+    /// Makes the items. Several processes share them; the first alone makes those that measure this host.
     pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
         let Crew::Processes(join) = common.crew else { return self.make(None, common, methods) };
         let ranks = join();
@@ -86,7 +87,7 @@ impl Reproduce {
         let bar = bar(common, ticks(expected), SHARES);
         if !common.quiet && items.len() > 1 {
             say(format_args!(
-                "{} will take about {}.",
+                "{} will take about {}",
                 counted(items.len(), "item", "items"),
                 lasting(expected)
             ));
@@ -94,7 +95,7 @@ impl Reproduce {
                 let more = others.iter().map(|item| item.seconds(Size::All)).sum::<f64>()
                     + items.iter().map(|item| item.seconds(Size::All) - item.seconds(effort)).sum::<f64>();
                 say(format_args!(
-                    "{} beyond the sources and of this host, and longer series, about {} more: --all",
+                    "--all adds {} (beyond the papers, and of this host) and longer series: about {} more",
                     counted(others.len(), "item", "items"),
                     lasting(more)
                 ));
@@ -117,7 +118,7 @@ impl Reproduce {
         if common.json { print_json(&outcomes) } else { Ok(()) }
     }
 
-    /// Makes what the first process has dealt out to this one.
+    /// Makes the items that the first process assigns to this one.
     fn help(&self, ranks: &dyn Ranks, common: &Common, methods: Methods) {
         let effort = self.effort();
         let folder = Folder::of_another(&self.out);
@@ -150,8 +151,8 @@ impl Reproduce {
         }
     }
 
-    /// The items that are still to be made: if the same command of the same program made some of them here, but not all, it was
-    /// interrupted, and goes on.
+    /// Items that remain to be made. If the same command of the same program made some of them here, but not all, it was
+    /// interrupted and resumes.
     fn left(
         &self,
         common: &Common,
@@ -171,7 +172,7 @@ impl Reproduce {
         let left = unfinished(asked, &made);
         if left.len() < number && !common.quiet {
             say(format_args!(
-                "{} of {number} items made before by this command are kept; to make them again, remove {}",
+                "keeping {} of {number} items that this command made before; to make them again, remove {}",
                 number - left.len(),
                 quoted::path(&self.out)
             ));
@@ -195,7 +196,7 @@ impl Job<'_> {
         let made = item.make(&lab, self.effort)?;
         self.before.set(before + share);
         let seconds = start.elapsed().as_secs_f64();
-        // Finished items are on the disk, and on the page, before the next one starts, and before a signal ends it all.
+        // A finished item is written, also to the page, before the next one starts or a signal ends the program.
         let provenance = Provenance::here(self.common.command.clone(), seconds);
         let (folder, section) = signals::whole(|| {
             let written = self.folder.write(item.name, &made, &provenance)?;
@@ -211,13 +212,14 @@ impl Job<'_> {
     fn say(&self, Outcome { item, verdict, seconds, folder }: &Outcome) {
         if !self.common.quiet {
             say(format_args!(
-                "{item:<20} {verdict:<18} {seconds:>6.1} s  {}",
+                "{item:<20} {verdict:<18} {:>6} s  {}",
+                significant(*seconds, 3),
                 quoted::path(Path::new(folder))
             ));
         }
     }
 
-    /// Makes items that are dealt out, those of each process beside those of the others.
+    /// Makes items distributed over the processes, side by side.
     fn make_together(
         &self,
         ranks: &dyn Ranks,
@@ -239,7 +241,7 @@ impl Job<'_> {
     }
 }
 
-/// Things dealt out so that each of `count` gets about as much: the longest first, each to who has least.
+/// Distributes items evenly over `count` processes: the longest first, each to the process with the least work.
 fn dealt_out<T>(mut all: Vec<T>, count: usize, seconds: impl Fn(&T) -> f64) -> Vec<Vec<T>> {
     all.sort_by(|a, b| seconds(b).total_cmp(&seconds(a)));
     let mut dealt: Vec<(f64, Vec<T>)> = (0..count).map(|_| (0.0, vec![])).collect();
@@ -253,7 +255,7 @@ fn dealt_out<T>(mut all: Vec<T>, count: usize, seconds: impl Fn(&T) -> f64) -> V
     dealt.into_iter().map(|(_, own)| own).collect()
 }
 
-/// What is left of a job that made some of its items; all of one that made none, or that came to its end.
+/// Items left of an interrupted job; all items if none or all were made.
 fn unfinished<T>(items: Vec<T>, made: &[bool]) -> Vec<T> {
     if made.iter().all(|made| *made) {
         return items;
@@ -261,7 +263,7 @@ fn unfinished<T>(items: Vec<T>, made: &[bool]) -> Vec<T> {
     items.into_iter().zip(made).filter(|(_, made)| !**made).map(|(item, _)| item).collect()
 }
 
-/// A time for a reader.
+/// Duration for reading.
 fn lasting(seconds: f64) -> String {
     match seconds {
         ..1.5 => "a second".to_owned(),
@@ -270,7 +272,7 @@ fn lasting(seconds: f64) -> String {
     }
 }
 
-/// Progress is counted in thousandths of an expected second.
+/// Progress in thousandths of an expected second.
 fn ticks(seconds: f64) -> u64 {
     (1000.0 * seconds) as u64
 }
@@ -280,7 +282,7 @@ mod tests {
     use super::*;
     use stripmine_physics::method::METHODS;
 
-    /// README promises five minutes and 2 GB for `reproduce` on two cores. Items are made one after the other, so the largest counts.
+    /// README promises five minutes and 2 GB for `reproduce` on two cores. Items run one after the other, so the largest memory counts.
     #[test]
     fn the_default_items_take_five_minutes_and_two_gigabytes() {
         let default: Vec<&Item> = items_of(METHODS).filter(|item| item.is_default()).collect();
@@ -292,13 +294,13 @@ mod tests {
         }
     }
 
-    /// Stated costs follow what the committed report took, by its own record: within a factor of 1.5, and a second.
+    /// Stated costs match the times recorded in the committed report within a factor of 1.5 and one second.
     #[test]
     fn stated_costs_are_near_those_of_the_committed_report() {
         let folder = Folder::of_another(&Path::new(env!("CARGO_MANIFEST_DIR")).join("reports"));
         for item in items_of(METHODS) {
             let Some(made) = folder.provenance(item.name).unwrap() else { continue };
-            // Costs are those of a release, and of an item as its template has it.
+            // Costs are stated for release builds and for current templates.
             if made.code.is_none() || !made.machine.compiler.contains("release") {
                 continue;
             }

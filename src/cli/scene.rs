@@ -1,4 +1,4 @@
-//! `stripmine scene`: presets, keys, and the check of a scene.
+//! `stripmine scene`: lists presets and keys, and checks scenes.
 
 use crate::console::{Common, Failure, print, print_json, warn};
 use crate::frame::{Rows, Table};
@@ -16,7 +16,7 @@ use stripmine_physics::quoted;
 use stripmine_physics::run::forecast;
 use stripmine_physics::scene::{Fallback, Key, Preset, SECTIONS};
 
-/// Presets, a preset's text to start from, the check of a scene, and every key of a scene file
+/// Lists presets and keys, checks a scene
 #[derive(Args)]
 pub(super) struct SceneVerb {
     #[command(subcommand)]
@@ -25,38 +25,38 @@ pub(super) struct SceneVerb {
 
 #[derive(Subcommand)]
 enum Action {
-    /// The presets
+    /// Lists the presets
     List,
-    /// The text of a preset
+    /// Prints a preset as a scene file
     Show {
-        /// The preset
+        /// Preset name
         name: String,
     },
-    /// All mistakes of a scene at once, or its discs, its lattice and what it leaves out
+    /// Checks a scene: all mistakes, or its step limits, time and memory
     Check {
-        /// A file, or a preset's name
+        /// Preset name or scene file
         scene: String,
-        /// Overrides a value; may be given several times
+        /// Overrides a value; can be repeated
         #[arg(long = "set", value_name = "SECTION.KEY=VALUE")]
         overrides: Vec<String>,
     },
-    /// The vector programs of a scene: operations of a step, and clock periods of machines
+    /// Counts the vector operations of a step, and clock periods on a machine
     Programs {
-        /// A file, or a preset's name
+        /// Preset name or scene file
         scene: String,
-        /// Overrides a value; may be given several times
+        /// Overrides a value; can be repeated
         #[arg(long = "set", value_name = "SECTION.KEY=VALUE")]
         overrides: Vec<String>,
-        /// The machine
+        /// Machine: a preset of `table`, or a machine file
         #[arg(long, default_value = "cray-y-mp-el")]
         machine: String,
-        /// Instead: the vector instructions, as an assembly listing
+        /// Prints the vector instructions as an assembly listing instead
         #[arg(long)]
         listing: bool,
     },
-    /// Every key of a scene file: type, unit, default, meaning
+    /// Lists every key of a scene file: type, unit, default, meaning
     Keys {
-        /// The method whose scenes are meant; the first by default
+        /// Method of the scene; default: the first
         method: Option<String>,
     },
 }
@@ -95,7 +95,7 @@ fn list(common: &Common, methods: Methods) -> Result<(), Failure> {
         .text("name", |line| line.name)
         .text("what it shows", |line| line.title)
         .table("presets", "Presets")
-        .note("stripmine scene show NAME prints a preset to start from.");
+        .note("stripmine scene show NAME prints a preset as a starting point.");
     print(&terminal::render(&table))
 }
 
@@ -110,7 +110,7 @@ fn show(name: &str, common: &Common, methods: Methods) -> Result<(), Failure> {
     }
 }
 
-/// Every preset of some methods.
+/// Presets of the given methods.
 pub(super) fn presets(methods: Methods) -> impl Iterator<Item = &'static Preset> {
     methods.iter().flat_map(|method| method.vocabulary.presets)
 }
@@ -120,9 +120,9 @@ fn table(name: &str, facts: &[Fact], prepared: &Prepared) -> Table {
     let left_out = prepared.left_out.iter().map(|what| format!("left out: {what}"));
     let limits = prepared.step_limits.iter().map(|limit| format!("{}: {}", limit.name, limit.why));
     Rows::of(facts.iter().filter_map(|fact| fact.words.as_ref()))
-        .text("of the scene", |(label, _)| *label)
+        .text("property", |(label, _)| *label)
         .text("value", |(_, words)| words)
-        .table("scene", format!("{}: scene is valid", quoted::path(name.as_ref())))
+        .table("scene", format!("{}: valid scene", quoted::path(name.as_ref())))
         .notes(chosen)
         .notes(left_out)
         .notes(limits)
@@ -153,7 +153,7 @@ fn check(name: &str, overrides: &[String], common: &Common, methods: Methods) ->
     print_json(&data)
 }
 
-/// A program, as data.
+/// Program as data.
 #[derive(Serialize)]
 struct Listing {
     part: &'static str,
@@ -207,7 +207,7 @@ fn programs(
     print(&(note + &listings.iter().map(text).collect::<String>()))
 }
 
-/// A key, as data.
+/// Key as data.
 #[derive(Serialize)]
 struct KeyLine {
     section: &'static str,

@@ -1,4 +1,4 @@
-//! Why a verb did not come to its end, in words and as data: what `--json` prints in the place of a result.
+//! Failures of verbs, as messages and as the document that `--json` prints instead of a result.
 
 use super::MOST_THREADS;
 use super::output::{is_untouched, print_json, say};
@@ -11,101 +11,101 @@ use stripmine_physics::scene::SceneErrors;
 use stripmine_physics::signals::{self, End};
 use stripmine_physics::words::suggestion;
 
-/// Why a verb did not come to its end; each kind has its exit code.
+/// Failure of a verb; each kind has its exit code.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
-    /// Arguments that the command does not understand: exit code 2.
+    /// Invalid arguments: exit code 2.
     #[error(transparent)]
     Arguments(clap::Error),
-    /// Options of which no scene can be made: exit code 2.
+    /// Options that make an invalid scene: exit code 2.
     #[error(transparent)]
     Options(SceneErrors),
-    /// An option that a bench does not have: exit code 2.
-    #[error("bench {bench} takes no --{option}")]
+    /// Unknown option of a benchmark: exit code 2.
+    #[error("bench {bench} has no option --{option}\n  help: stripmine bench --help lists the options")]
     NoSuchOption {
-        /// The bench.
+        /// Name of the benchmark.
         bench: &'static str,
-        /// The option.
+        /// Name of the option.
         option: &'static str,
     },
-    /// A value that an option of a bench does not have: exit code 2.
-    #[error("--{option} cannot be {value}\n  help: one of {}", values.join(", "))]
+    /// Invalid value of an option of a benchmark: exit code 2.
+    #[error("--{option} cannot be {value}\n  help: use one of: {}", values.join(", "))]
     NoSuchValue {
-        /// The option.
+        /// Name of the option.
         option: &'static str,
-        /// The value.
+        /// The given value.
         value: String,
-        /// Those there are.
+        /// The allowed values.
         values: &'static [&'static str],
     },
-    /// Ranks with more threads together than a run may have: exit code 2.
+    /// Ranks with too many threads in total: exit code 2.
     #[error(
-        "{ranks} ranks of {threads} threads are more than {MOST_THREADS} threads; take fewer --ranks or --threads"
+        "{ranks} ranks with {threads} threads each are more than {MOST_THREADS} threads in total; use fewer --ranks or --threads"
     )]
     ManyThreads {
-        /// Ranks.
+        /// Number of ranks.
         ranks: u16,
-        /// Threads of each.
+        /// Threads per rank.
         threads: usize,
     },
-    /// A number of threads in the environment that cannot be: exit code 2.
+    /// Invalid number of threads in the environment: exit code 2.
     #[error(
         "RAYON_NUM_THREADS is {0}; expected a whole number from 1 to {MOST_THREADS}: correct it, or give --threads"
     )]
     ThreadsOfEnvironment(String),
     /// Several numbers of threads for a verb that takes one: exit code 2.
-    #[error("several numbers of threads are for bench; {0} takes one")]
+    #[error("{0} takes one number of threads; only bench takes several")]
     SeveralThreads(String),
-    /// A verb that there is not: exit code 2.
-    #[error("there is no verb {verb}; these are: {}{}", verbs.join(", "), suggestion(verb, verbs.iter().map(String::as_str)))]
+    /// Unknown verb: exit code 2.
+    #[error("unknown verb {verb}; expected one of: {}{}", verbs.join(", "), suggestion(verb, verbs.iter().map(String::as_str)))]
     UnknownVerb {
-        /// The verb asked for.
+        /// The given verb.
         verb: String,
-        /// Those there are.
+        /// The known verbs.
         verbs: Vec<String>,
     },
-    /// Another of several processes failed: the exit code is that of its class.
+    /// Failure of another process: the exit code is that of its class.
     #[error("{process}: {said}")]
     OfProcess {
         /// Name of the process, or its task.
         process: String,
-        /// The class of its failure; none where a signal ended it.
+        /// Class of its failure; none if a signal ended it.
         class: Option<Class>,
-        /// Its words.
+        /// Its message.
         said: String,
     },
-    /// Threads that the system does not give: exit code 5.
-    #[error("the threads cannot be had: {0}; ask for fewer with --threads")]
+    /// The system refuses to start threads: exit code 5.
+    #[error("threads cannot be started: {0}; use fewer with --threads")]
     Threads(rayon::ThreadPoolBuildError),
     /// Any other error: the exit code is that of its class.
     #[error("{0}")]
     Reported(Box<dyn Reported>),
     /// Interrupted or terminated: exit code 130.
     #[error(
-        "interrupted at {moment}; a checkpoint is written, go on with --resume --out {}",
+        "interrupted at {moment}; a checkpoint is written, resume with --resume --out {}",
         quoted::path(folder)
     )]
     Interrupted {
-        /// How far the run has come.
+        /// Clock of the run.
         moment: String,
-        /// The folder of the run.
+        /// Folder of the run.
         folder: PathBuf,
     },
-    /// Ended by a signal, and nothing of it goes on: exit code 130.
+    /// Ended by a signal, without a checkpoint: exit code 130.
     #[error("{}", match .0 {
-        End::Whole => "interrupted: what was finished before is kept, nothing is half written",
-        End::Forced => "interrupted twice, and ended at once: what was being written may be incomplete",
+        End::Whole => "interrupted: finished results are kept, and no file is incomplete",
+        End::Forced => "interrupted twice and ended at once: the last file may be incomplete",
     })]
     Stopped(End),
-    /// Standard output takes no more: exit code 5; 0 where its reader closed the pipe, for it has seen enough.
+    /// Standard output cannot be written: exit code 5, or 0 if its reader closed the pipe.
     #[error("standard output cannot be written: {0}")]
     StandardOutput(std::io::Error),
-    /// Reading or writing: exit code 5.
+    /// Reading or writing failed: exit code 5.
     #[error("{what}: {cause}")]
     InputOutput {
-        /// What was being done.
+        /// The action or its object.
         what: String,
-        /// What the system said.
+        /// Error of the system.
         cause: std::io::Error,
     },
 }
@@ -116,7 +116,7 @@ impl<E: Reported + 'static> From<E> for Failure {
     }
 }
 
-/// The document.
+/// Document of `--json` for a failure.
 #[derive(Serialize)]
 struct Document<'f> {
     error: Report,
@@ -125,59 +125,59 @@ struct Document<'f> {
     errors: Option<&'f SceneErrors>,
 }
 
-/// One failure.
+/// One failure as data.
 #[derive(Debug, PartialEq, Eq, Serialize)]
 struct Report {
-    /// By the exit code: the name of the class, or interrupted.
+    /// Name of the class, or `interrupted`.
     kind: &'static str,
-    /// What is wrong, with the numbers.
+    /// Description of the failure, with the numbers.
     message: String,
-    /// Where, if it has a place.
+    /// Location, if known.
     place: Option<FilePlace>,
-    /// What to do about it, where the message does not say so itself.
+    /// Advice, if the message does not include it.
     remedy: Option<String>,
-    /// What more is known, where a simulation broke: what kind of failure, when, who, and the values found.
+    /// Details of a failed simulation: kind of failure, time, particles and values.
     #[serde(skip_serializing_if = "Option::is_none")]
     details: Option<serde_json::Value>,
 }
 
-/// Says a failure: in words on standard error and, where data is asked for and none is there yet, as data on standard output.
+/// Reports a failure: as a message on standard error and, with `--json` and no output yet, as data on standard output.
 pub(crate) fn tell(failure: &Failure, as_data: bool) {
     match failure {
         Failure::Arguments(mistake) if is_plain(mistake) => {
             #[expect(
                 clippy::let_underscore_must_use,
-                reason = "where standard error is full or closed there is nowhere to say so"
+                reason = "if standard error is full or closed, nothing can be reported"
             )]
             let _ = mistake.print();
         }
-        // The parser's own words begin as ours do.
+        // The parser's messages begin with "error:" as ours do.
         Failure::Arguments(mistake) => say(mistake.render().to_string().trim_end()),
         _ => say(format_args!("error: {failure}")),
     }
     if as_data && is_untouched() {
         #[expect(
             clippy::let_underscore_must_use,
-            reason = "the first failure decides the exit code, said or not"
+            reason = "the first failure decides the exit code, reported or not"
         )]
         let _ = print_json(&Document { error: failure.report(), errors: failure.mistakes() });
     }
 }
 
-/// Whether a mistake among the arguments quotes nothing that a terminal would obey.
+/// Returns true if an argument error quotes no control characters.
 fn is_plain(mistake: &clap::Error) -> bool {
     let text = mistake.render().to_string();
     quoted::message(&text) == text
 }
 
 impl Failure {
-    /// A system error while `what` was being written or read.
+    /// Makes a failure of a system error while `what` was being written or read.
     pub fn writing(what: impl Into<String>) -> impl FnOnce(std::io::Error) -> Failure {
         let what = what.into();
         move |cause| Failure::InputOutput { what, cause }
     }
 
-    /// The class; none where a signal ended the verb.
+    /// Class of the failure; none if a signal ended the verb.
     pub(crate) fn class(&self) -> Option<Class> {
         Some(match self {
             Failure::Arguments(_)
@@ -197,7 +197,7 @@ impl Failure {
         })
     }
 
-    /// The exit code.
+    /// Exit code of the failure.
     pub fn exit_code(&self) -> u8 {
         match self {
             Failure::StandardOutput(cause) if cause.kind() == ErrorKind::BrokenPipe => 0,
@@ -205,7 +205,6 @@ impl Failure {
         }
     }
 
-    /// Mistakes of an input file.
     fn mistakes(&self) -> Option<&SceneErrors> {
         match self {
             Failure::Options(errors) => Some(errors),
@@ -214,7 +213,7 @@ impl Failure {
         }
     }
 
-    /// The failure in words, as `tell` says it behind "error:".
+    /// Message as `tell` prints it after "error: ".
     pub fn words(&self) -> String {
         let text = match self {
             Failure::Arguments(mistake) => mistake.render().to_string(),
@@ -240,7 +239,7 @@ impl Failure {
             };
         }
         let text = self.words();
-        // What to do stands in a paragraph of its own, or after "help".
+        // The remedy is a separate paragraph, or follows "help:".
         let (message, remedy) = match text.split_once("\n\n").or_else(|| text.split_once("\n  help: ")) {
             Some((message, remedy)) => (message, Some(remedy.trim().to_owned())),
             None => (text.as_str(), None),
@@ -269,13 +268,13 @@ impl Failure {
     fn remedy(&self) -> Option<String> {
         let words = match self {
             Failure::Reported(error) => return error.remedy(),
-            Failure::Threads(_) => "ask for fewer with --threads",
+            Failure::Threads(_) => "use fewer with --threads",
             Failure::Interrupted { folder, .. } => {
-                return Some(format!("go on with --resume --out {}", quoted::path(folder)));
+                return Some(format!("resume with --resume --out {}", quoted::path(folder)));
             }
-            Failure::Stopped(_) => "repeat the command; a run goes on with --resume",
+            Failure::Stopped(_) => "repeat the command; a run resumes with --resume",
             Failure::InputOutput { .. } | Failure::StandardOutput(_) => {
-                "see that the place is there, may be written, and has room"
+                "check that the location exists, is writable, and has free space"
             }
             _ => return None,
         };

@@ -1,4 +1,4 @@
-//! What verbs share, those of the command and those that methods bring: options, output, failures.
+//! Options, output and failures shared by all verbs.
 
 mod failure;
 mod output;
@@ -16,52 +16,52 @@ pub(crate) use verb::Verb;
 use clap::Args;
 use stripmine_physics::ranks::Crew;
 
-/// More threads than any machine at hand has cores; each takes memory of its own.
+/// Limit of threads, above the cores of any machine at hand; each thread takes memory.
 pub(crate) const MOST_THREADS: u16 = 1024;
 
-/// What every verb takes.
+/// Options that every verb takes.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct Common {
-    /// One JSON document on standard output
+    /// Prints one JSON document to standard output
     #[arg(long, global = true)]
     pub json: bool,
-    /// Nothing on standard error but errors
+    /// Prints nothing but errors to standard error
     #[arg(long, global = true)]
     pub(crate) quiet: bool,
-    /// Threads, at most 1024; all cores by default. `bench` takes several numbers, such as 1,2,4
+    /// Number of threads, at most 1024; default: all cores. `bench` takes a list, such as 1,2,4
     #[arg(long, global = true, value_delimiter = ',', value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_THREADS)))]
     pub threads: Vec<u16>,
-    /// By whom simulations are carried out that a verb may give to several ranks.
+    /// Crew of the simulations that a verb can distribute over ranks.
     #[arg(skip = Crew::One)]
     pub(crate) crew: Crew,
-    /// The whole command line, for the record of where results come from.
+    /// The whole command line, recorded with results.
     #[arg(skip)]
     pub command: String,
 }
 
-/// The largest count on the command line: above it not every whole number is a double.
+/// Largest count on the command line: above it not every whole number is a double.
 const MOST: u64 = 1 << 53;
 
-/// A count on the command line: a whole number from 1 to 2⁵³, also as 1e6.
+/// Parses a count on the command line: a whole number from 1 to 2⁵³, also written as 1e6.
 ///
 /// # Errors
-/// A sentence, if it is none.
+/// A message if it is none.
 pub(crate) fn count(text: &str) -> Result<u64, String> {
     count_up_to(MOST, text)
 }
 
-/// The same up to a smaller number.
+/// Parses a count up to a smaller limit.
 ///
 /// # Errors
-/// A sentence, if it is none.
+/// A message if it is none.
 pub(crate) fn count_up_to(most: u64, text: &str) -> Result<u64, String> {
     let whole = text.parse::<u64>().ok().or_else(|| {
         let number: f64 = text.parse().ok()?;
         (number.fract() == 0.0 && (1.0..=MOST as f64).contains(&number)).then_some(number as u64)
     });
     whole.filter(|count| (1..=most).contains(count)).ok_or_else(|| match most {
-        MOST => "a whole number, 1 or more, such as 1000 or 1e6".to_owned(),
-        most => format!("a whole number from 1 to {most}"),
+        MOST => "expected a whole number, 1 or more, such as 1000 or 1e6".to_owned(),
+        most => format!("expected a whole number from 1 to {most}"),
     })
 }
 

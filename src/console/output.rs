@@ -1,5 +1,5 @@
-//! What a user sees: data on standard output; messages and progress on standard error, which may fail without changing what
-//! the command does.
+//! Output of the command: data on standard output; messages and progress on standard error. A failure to write the latter
+//! does not change what the command does.
 
 use super::{Common, Failure};
 use crate::report::terminal;
@@ -11,23 +11,23 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 use stripmine_physics::quoted;
 
-/// Whether anything was written to standard output.
+/// Set once anything is written to standard output.
 static BEGUN: AtomicBool = AtomicBool::new(false);
 
-/// The bar on the screen.
+/// Progress bar on the screen.
 static BAR: Mutex<Option<ProgressBar>> = Mutex::new(None);
 
 fn shown() -> MutexGuard<'static, Option<ProgressBar>> {
     BAR.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Writes a line to standard error, above the progress.
+/// Writes a line to standard error, above the progress bar.
 pub(crate) fn say(message: impl Display) {
     let line = || {
         let text = terminal::fitted(&quoted::message(&message.to_string()));
         #[expect(
             clippy::let_underscore_must_use,
-            reason = "where standard error is full or closed there is nowhere to say so"
+            reason = "if standard error is full or closed, nothing can be reported"
         )]
         let _ = writeln!(io::stderr().lock(), "{text}");
     };
@@ -43,7 +43,7 @@ pub(crate) fn warn(message: impl Display) {
     say(format_args!("warning: {message}"));
 }
 
-/// Progress with ETA, on a terminal; nothing elsewhere.
+/// Starts a progress bar with ETA on a terminal; hidden elsewhere.
 pub(crate) fn bar(common: &Common, length: u64, template: &str) -> ProgressBar {
     let target = if common.quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
     let bar = ProgressBar::with_draw_target(Some(length), target);
@@ -52,7 +52,7 @@ pub(crate) fn bar(common: &Common, length: u64, template: &str) -> ProgressBar {
         #[expect(clippy::let_underscore_must_use, reason = "a bar that cannot be drawn is not drawn")]
         let _ = out.write_str(&remaining(state.fraction(), state.elapsed(), state.eta()));
     }));
-    // Time goes on where nothing else does. Where nothing is drawn no thread is needed for it.
+    // A thread keeps the elapsed time current; a hidden bar needs none.
     if !bar.is_hidden() {
         bar.enable_steady_tick(TICK);
     }
@@ -60,15 +60,15 @@ pub(crate) fn bar(common: &Common, length: u64, template: &str) -> ProgressBar {
     bar
 }
 
-/// How often a bar is drawn though nothing was finished.
+/// Interval at which a bar is redrawn without progress.
 const TICK: Duration = Duration::from_millis(500);
 
-/// The template of a bar over shares, with a message.
+/// Template of a bar in percent, with a message.
 pub(crate) const SHARES: &str = "{wide_bar} {msg} {percent}% [{elapsed}{left}]";
-/// The template of a bar over steps.
+/// Template of a bar over steps.
 pub(crate) const STEPS: &str = "{wide_bar} {pos}/{len} [{elapsed}{left}]";
 
-/// The time that is left, once enough is done to say so: two hundredths, and three seconds.
+/// Remaining time, once 2 % and three seconds are done.
 fn remaining(share: f32, elapsed: Duration, eta: Duration) -> String {
     if share < 0.02 || elapsed < Duration::from_secs(3) {
         return String::new();
@@ -76,14 +76,14 @@ fn remaining(share: f32, elapsed: Duration, eta: Duration) -> String {
     format!(", ETA {}", HumanDuration(eta))
 }
 
-/// Progress in thousandths.
+/// Starts a progress bar in thousandths.
 pub(crate) fn progress(common: &Common, what: &'static str) -> ProgressBar {
     let bar = bar(common, 1000, SHARES);
     bar.set_message(what);
     bar
 }
 
-/// Takes the progress off the screen.
+/// Removes the progress bar from the screen.
 pub(crate) fn clear_progress() {
     if let Some(bar) = shown().take() {
         bar.finish_and_clear();
@@ -96,20 +96,20 @@ fn write(text: impl FnOnce() -> io::Result<()>) -> Result<(), Failure> {
     text().and_then(|()| io::stdout().flush()).map_err(Failure::StandardOutput)
 }
 
-/// Whether standard output is still empty.
+/// Returns true if nothing was written to standard output.
 pub fn is_untouched() -> bool {
     !BEGUN.load(Ordering::SeqCst)
 }
 
-/// Writes data to standard output; what a terminal would obey in the names that it repeats is spelled out.
+/// Writes data to standard output; control characters in quoted names are escaped.
 ///
 /// # Errors
-/// [`Failure::StandardOutput`], if it takes no more.
+/// [`Failure::StandardOutput`] if it cannot be written.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     write(|| io::stdout().write_all(quoted::shown(text).as_bytes()))
 }
 
-/// Writes what the reader of arguments answers, help or version, to standard output.
+/// Writes the parser's help or version to standard output.
 pub(crate) fn print_answer(answer: &clap::Error) -> Result<(), Failure> {
     write(|| answer.print())
 }
@@ -117,15 +117,15 @@ pub(crate) fn print_answer(answer: &clap::Error) -> Result<(), Failure> {
 /// Writes data to standard output as one JSON document.
 ///
 /// # Errors
-/// [`Failure::StandardOutput`], if it takes no more.
+/// [`Failure::StandardOutput`] if it cannot be written.
 pub(crate) fn print_json(data: &impl serde::Serialize) -> Result<(), Failure> {
     print(&(to_json(data)? + "\n"))
 }
 
-/// Data as JSON, floats in shortest round-trip form.
+/// Formats data as JSON, floats in shortest round-trip form.
 ///
 /// # Errors
-/// If it is nothing that JSON can hold.
+/// If JSON cannot represent the data.
 pub(crate) fn to_json(data: &impl serde::Serialize) -> Result<String, Failure> {
     let text = serde_json::to_string_pretty(data).map_err(|cause| Failure::writing("JSON")(cause.into()))?;
     Ok(quoted::in_json(&text))

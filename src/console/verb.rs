@@ -1,14 +1,13 @@
-//! A verb that is the laboratory's own.
+//! Verbs of the laboratory.
 
 use super::{Common, Failure};
 
-/// A verb of the command that the laboratory of a method brings.
+/// Verb of the command defined by the laboratory of a method.
 #[derive(Debug)]
 pub(crate) struct Verb {
-    /// The name.
     pub name: &'static str,
-    /// Its help and arguments.
+    /// Adds help and arguments.
     pub command: fn(clap::Command) -> clap::Command,
-    /// Carries it out.
+    /// Executes the verb.
     pub run: fn(&clap::ArgMatches, &Common) -> Result<(), Failure>,
 }

@@ -1,39 +1,36 @@
-//! The machine that something was measured on, as far as the system says.
+//! Description of the machine of a measurement, as far as the system reports it.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::fs;
 use std::path::Path;
 
-/// What a time depends on beside the program.
+/// Properties of the machine that measured times depend on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Machine {
-    /// The processor's name and the platform.
+    /// Name of the processor, and the platform.
     pub(crate) processor: String,
-    /// Family, model and stepping of the processor; none where the system does not say.
+    /// Family, model and stepping of the processor, if reported.
     #[serde(default)]
     pub model: Option<String>,
-    /// Processors that the system shows.
+    /// Number of processors available to the program.
     pub(crate) cores: usize,
-    /// The clock of the first of them when it was asked (MHz).
+    /// Clock of the first processor at the time of the query (MHz).
     pub clock: Option<f64>,
     /// Caches of the first processor, such as `L1d 32K`.
     pub(crate) caches: Vec<String>,
-    /// How the system sets the clock; none where it does not say, as in most virtual machines.
+    /// Frequency governor; none if not reported, as in most virtual machines.
     pub(crate) governor: Option<String>,
-    /// Whether the system runs in a virtual machine; none where it does not say.
+    /// True in a virtual machine; none if not reported.
     pub(crate) is_virtual: Option<bool>,
-    /// The compiler of this program, and the flags that were given beside its profile.
+    /// Compiler of this program, with flags beyond its profile.
     pub(crate) compiler: String,
 }
 
 impl Machine {
-    /// This machine. What the system does not say is left out; Linux says it in `/proc/cpuinfo` and `/sys/devices/system/cpu`.
+    /// Describes this machine, from `/proc/cpuinfo` and `/sys/devices/system/cpu` on Linux. Unreported properties are left out.
     pub(crate) fn here() -> Machine {
-        #[expect(
-            clippy::disallowed_methods,
-            reason = "a system that does not name its processor leaves it out"
-        )]
+        #[expect(clippy::disallowed_methods, reason = "without this file the properties are left out")]
         let cpuinfo = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
         let field = |name: &str| {
             let value = |line: &str| Some(line.strip_prefix(name)?.split_once(':')?.1.trim().to_owned());
@@ -54,7 +51,7 @@ impl Machine {
 }
 
 impl Machine {
-    /// This without the clock, which differs from moment to moment on some machines.
+    /// Copy without the clock, which fluctuates on some machines.
     pub(crate) fn without_clock(&self) -> Machine {
         Machine { clock: None, ..self.clone() }
     }
@@ -84,14 +81,14 @@ impl fmt::Display for Machine {
     }
 }
 
-/// Family, model and stepping, as `/proc/cpuinfo` has them.
+/// Family, model and stepping from `/proc/cpuinfo`.
 fn model(field: &dyn Fn(&str) -> Option<String>) -> Option<String> {
     let [family, model, stepping] =
         [field("cpu family")?, field("model\t").or_else(|| field("model "))?, field("stepping")?];
     Some(format!("family {family} model {model} stepping {stepping}"))
 }
 
-/// A cache as the kernel describes it: level, kind, size.
+/// Level, kind and size of a cache as the Linux kernel describes them.
 fn cache(folder: &Path) -> Option<String> {
     let [level, kind, size] = ["level", "type", "size"].map(|name| word(&folder.join(name)));
     let kind = match kind?.as_str() {

@@ -1,4 +1,4 @@
-//! Where a result comes from: what a reader needs to get it again.
+//! Provenance of results: program, command and machine, as needed to reproduce them.
 
 mod machine;
 
@@ -12,7 +12,7 @@ use stripmine_physics::number::counted;
 use stripmine_physics::origin::{Origin, today};
 use stripmine_physics::quoted;
 
-/// This program, as it was built.
+/// Version, commit and target of this program.
 pub fn built() -> Origin {
     Origin {
         version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -22,30 +22,30 @@ pub fn built() -> Origin {
     }
 }
 
-/// How and where an item of a reproduction was made.
+/// Provenance of an item of a report.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Provenance {
     /// The program.
     pub origin: Origin,
-    /// The whole command line, as it was given.
+    /// The whole command line as given.
     pub command: String,
     /// The machine.
     pub machine: Machine,
-    /// Threads that were there to be used.
+    /// Number of available threads.
     pub threads: usize,
-    /// The widest instructions.
+    /// The widest instruction set.
     pub(crate) instruction_set: String,
-    /// Seconds that it took.
+    /// Duration (s).
     pub seconds: f64,
-    /// When it was made: the day, in universal time, as year-month-day.
+    /// Day in universal time, as year-month-day.
     pub date: String,
-    /// Processes that measured its times; one where it has none.
+    /// Number of processes that measured times; one if none were measured.
     #[serde(default = "one")]
     pub(crate) processes: usize,
-    /// Code that it depends on; none of results of earlier versions.
+    /// Fingerprints of the code it depends on; none for results of earlier versions.
     #[serde(default)]
     pub code: Option<Fingerprints>,
-    /// Measurements that it repeats.
+    /// Earlier measurements that it repeats.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub repeated: Vec<Measurement>,
 }
@@ -54,16 +54,16 @@ fn one() -> usize {
     1
 }
 
-/// Fingerprints of the code that results depend on, crate by crate.
+/// Fingerprints of the code that results depend on, by crate.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Fingerprints {
     pub(crate) kernels: String,
-    /// Physics, without files, records and processes.
+    /// Physics, without file formats, records and processes.
     pub(crate) physics: String,
 }
 
 impl Fingerprints {
-    /// Fingerprints of this program.
+    /// Returns those of this program.
     pub(crate) fn here() -> Fingerprints {
         Fingerprints {
             kernels: env!("STRIPMINE_KERNELS").to_owned(),
@@ -72,21 +72,21 @@ impl Fingerprints {
     }
 }
 
-/// A measurement that was made before, and is repeated by a report.
+/// Earlier measurement that a report repeats.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Measurement {
-    /// Day: year-month-day.
+    /// Day, as year-month-day.
     pub date: String,
-    /// Commit of our source.
+    /// Source commit of the program.
     pub commit: String,
-    /// Command that measured.
+    /// Command of the measurement.
     pub command: String,
-    /// Processor.
+    /// Name of the processor.
     pub(crate) host: String,
 }
 
 impl Provenance {
-    /// Of something that this program, called by `command`, has just made in `seconds`.
+    /// Provenance of a result that this program, called by `command`, has just made in `seconds`.
     pub(crate) fn here(command: String, seconds: f64) -> Provenance {
         Provenance {
             origin: built(),
@@ -102,40 +102,40 @@ impl Provenance {
         }
     }
 
-    /// Returns whether `reproduce` made it.
+    /// Returns true if `reproduce` made it.
     pub(crate) fn is_of_the_report(&self) -> bool {
         self.command.split(' ').nth(1) == Some("reproduce")
     }
 
-    /// Returns whether kernels or physics have changed since it was made.
+    /// Returns true if kernels or physics have changed since it was made.
     pub(crate) fn is_stale(&self) -> bool {
         self.code != Some(Fingerprints::here())
     }
 
-    /// The day on which its results were measured: of results that are repeated, the last.
+    /// Day of the measurement: the last one for repeated results.
     pub fn measured_on(&self) -> &str {
         self.repeated.iter().map(|it| it.date.as_str()).max().unwrap_or(&self.date)
     }
 
-    /// Whether the same command of the same program, from a source that is in a commit or was released, made it on the same host.
+    /// Returns true if the same command of the same program, built from a commit or a release, made it on the same host.
     pub(crate) fn is_of_the_command(&self, other: &Provenance) -> bool {
         let of = |it: &Provenance| (it.origin.clone(), it.command.clone(), it.machine.processor.clone());
         !other.origin.dirty && of(self) == of(other)
     }
 
-    /// The program, in words that go on after how many were made.
+    /// Phrase with date and program, to follow the number of items.
     pub(crate) fn of_program(&self) -> String {
         let Origin { version, commit, dirty, .. } = &self.origin;
         let state = if *dirty { ", with changes that are in no commit" } else { "" };
         format!("made on {} by stripmine {version} of source commit {commit}{state}", self.date)
     }
 
-    /// The machine, in words.
+    /// Phrase with instruction set and machine.
     pub(crate) fn of_machine(&self) -> String {
         format!("{}, on {}", self.instruction_set, self.machine.without_clock())
     }
 
-    /// When, how long, by which command and commit, in a sentence.
+    /// Sentence with date, duration, command and commit.
     pub(crate) fn sentence(&self) -> String {
         let Provenance { origin, command, threads, seconds, date, repeated, processes, .. } = self;
         if !repeated.is_empty() {
@@ -153,8 +153,7 @@ impl Provenance {
     }
 }
 
-/// A command line as a shell takes it again: the name of the program without its folder, and the arguments as they were
-/// given, in quotation marks where a shell needs them.
+/// Command line that a shell accepts again: the program without its folder, and the arguments, quoted where a shell needs it.
 pub(crate) fn command_line(arguments: &[OsString]) -> String {
     let name = arguments.first().map(Path::new).and_then(Path::file_stem);
     let given = arguments.iter().skip(1).map(OsString::as_os_str);

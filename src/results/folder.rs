@@ -1,7 +1,7 @@
-//! The folder that results go to: a folder for each item, and the pages over all of them.
+//! Folder of results: a folder for each item, and pages over all of them.
 //!
-//! Only what this program wrote is written over. An item's folder is its own if `provenance.json` there lists every file in
-//! it; a page, if it bears the mark of ours; the whole folder, if it is empty or holds one of these, or a journal of ours.
+//! Only files that this program wrote are overwritten. An item's folder is ours if its `provenance.json` lists every file in
+//! it; a page, if it carries our mark; the whole folder, if it is empty or holds one of these, or one of our journals.
 
 use super::Made;
 use super::journal::{self, NAME as JOURNAL};
@@ -24,22 +24,22 @@ use stripmine_physics::origin::Origin;
 use stripmine_physics::quoted;
 use stripmine_physics::reported::{Class, Reported};
 
-/// Where an item comes from, and its files; the one file of an item that differs from run to run.
+/// File with an item's provenance and file list; the only file of an item that differs from run to run.
 const PROVENANCE: &str = "provenance.json";
-/// The pages over all items, and the mark by which each is known.
+/// Pages over all items, with the mark that identifies each.
 const PAGES: [(&str, &str); 2] = [("README.md", page::MARK), ("index.html", html::MARK)];
-/// A folder of results; items that depend on the host are below `host`.
+/// Kind of a folder of results; items that depend on the host are stored below `host`.
 const RESULTS: FolderKind = FolderKind {
     lock: LOCK,
     list: PROVENANCE,
     holds: Holds::Folders { marked: &[PAGES[0], PAGES[1], (JOURNAL, journal::MARK)], below: &["host"] },
 };
 
-/// Results that are committed would be written over by those of a source that is not.
+/// Error for committed results that a build with uncommitted changes would overwrite.
 #[derive(Debug, thiserror::Error)]
 #[error(
-    "the results in {} are committed, but this program was built from changes that are in no commit\n  help: \
-     commit them and build again, or choose another --out",
+    "the results in {} are committed, but this program was built with uncommitted changes\n  help: \
+     commit the changes and build again, or choose another --out",
     quoted::path(.0)
 )]
 struct Uncommitted(PathBuf);
@@ -50,7 +50,7 @@ impl Reported for Uncommitted {
     }
 }
 
-/// What `provenance.json` holds: where an item comes from, and the names of its files.
+/// Contents of `provenance.json`: the provenance of an item, and the names of its files.
 #[derive(Serialize)]
 struct Listed<'a> {
     #[serde(flatten)]
@@ -58,16 +58,14 @@ struct Listed<'a> {
     files: Vec<&'a str>,
 }
 
-/// The folder, while this process writes into it.
+/// Folder of results, locked while this process writes to it.
 pub struct Folder(OwnedFolder);
 
 impl Folder {
-    /// Makes the folder if it is not there, and keeps other processes out. `items` and, if asked for, the pages will be
-    /// written there.
+    /// Creates the folder if needed, and locks it for writing `items` and optionally the pages.
     ///
     /// # Errors
-    /// If what stands there is not ours, is committed while the source of this program is not, or another process writes
-    /// there.
+    /// If its content is not ours, is committed while the source of this program is not, or another process writes to it.
     pub(crate) fn open(path: &Path, items: &[&str], pages: bool) -> Result<Folder, Failure> {
         traceable(path, &built())?;
         let pages = PAGES.iter().filter(|_| pages).map(|(name, _)| (*name).to_owned());
@@ -75,15 +73,15 @@ impl Folder {
         Ok(Folder(OwnedFolder::open(path, RESULTS, &wanted)?))
     }
 
-    /// One that another process has opened, which lets this one write items there.
+    /// Folder that another process has opened, into which this one may write items.
     pub fn of_another(path: &Path) -> Folder {
         Folder(OwnedFolder::of_another(path, RESULTS))
     }
 
-    /// Writes an item's files: all of them, or, where that fails, none. Returns their folder and the section that the page shows.
+    /// Writes all files of an item, or none on failure. Returns their folder and the section for the page.
     ///
     /// # Errors
-    /// If what is there is not ours, or the system does not let the files be written.
+    /// If the existing files are not ours, or writing fails.
     pub(crate) fn write(
         &self,
         name: &str,
@@ -105,7 +103,7 @@ impl Folder {
         Ok((folder, section))
     }
 
-    /// Writes the pages over every item that the folder holds.
+    /// Writes the pages over all items in the folder.
     ///
     /// # Errors
     /// As [`write`](Self::write).
@@ -118,9 +116,9 @@ impl Folder {
                 Known::Absent => {}
             }
         }
-        // Within a chapter, items stand as they are listed.
+        // The sort is stable: within a chapter, items keep the order of the list.
         sections.sort_by_key(|section| section.chapter);
-        // A picture that is gone leaves a gap in the page, and is there again with the item's next making.
+        // A missing picture leaves a gap in the page until the item is made again.
         let drawn = |section: &Section, figure: &Figure| {
             let file = self.0.file(&section.folder()).join(format!("{}.svg", figure.name));
             let picture =
@@ -136,7 +134,7 @@ impl Folder {
         Ok(())
     }
 
-    /// The item's section, if the folder has it.
+    /// Reads the item's section, if the folder has it.
     fn read(&self, name: &str) -> Result<Known, Failure> {
         let Some(folder) = self.item(name) else { return Ok(Known::Absent) };
         let Some(provenance) = self.provenance(name)? else { return Ok(Known::OfAnotherVersion) };
@@ -145,7 +143,7 @@ impl Folder {
             None => None,
         };
         let section = match made.map(|made| self.renewed(name, &folder, &made, &provenance)).transpose() {
-            // Its tables are not those that the page of this version shows.
+            // The template of this version needs other tables.
             Err(_) if provenance.origin.version != built().version => None,
             section => section?,
         };
@@ -153,8 +151,8 @@ impl Folder {
         Ok(section.map_or(Known::OfAnotherVersion, there))
     }
 
-    /// The section of an item whose data are there, by its template of today. Files that the template changes are written again; the
-    /// record of where the data come from stays.
+    /// Section of an item from its stored data and the current template. Files that the template changes are written again; the
+    /// provenance of the data stays.
     fn renewed(
         &self,
         name: &str,
@@ -172,7 +170,7 @@ impl Folder {
         Ok(section)
     }
 
-    /// How the folder's item of this name was made; none if it has no such item that this version of the program can read.
+    /// Provenance of an item; none if the folder has no such item that this version can read.
     ///
     /// # Errors
     /// If it cannot be read.
@@ -181,7 +179,7 @@ impl Folder {
         Ok(serde_json::from_slice(&bytes_of(&folder.join(PROVENANCE))?).ok())
     }
 
-    /// The tables of an item, for expressions; none if the folder does not have it, or another version of the program wrote it.
+    /// Tables of an item, for expressions; none if the folder does not have it, or another version wrote it.
     ///
     /// # Errors
     /// If they cannot be read.
@@ -189,10 +187,10 @@ impl Folder {
         self.item(name).map_or(Ok(None), |folder| made::scope(&folder))
     }
 
-    /// An item as its page shows it; none if the folder does not have it, or another version of the program wrote it.
+    /// Section of an item as the page shows it; none if the folder does not have it, or another version wrote it.
     ///
     /// # Errors
-    /// If it cannot be read, or its page or a claim names what is not there.
+    /// If it cannot be read, or its template or a claim names missing data.
     pub fn section(&self, name: &str) -> Result<Option<Section>, Failure> {
         match self.read(name)? {
             Known::There(section) => Ok(Some(*section)),
@@ -200,23 +198,22 @@ impl Folder {
         }
     }
 
-    /// The folder of an item that is there.
+    /// Folder of an existing item.
     fn item(&self, name: &str) -> Option<PathBuf> {
         let folders = Section::folders(name).map(|folder| self.0.file(&folder));
         folders.into_iter().find(|folder| folder.join(PROVENANCE).exists())
     }
 }
 
-/// What a folder has of an item.
+/// State of an item in the folder.
 enum Known {
     There(Box<Section>),
-    /// Files that another version of the program wrote.
+    /// Another version of the program wrote the files.
     OfAnotherVersion,
-    /// Nothing.
     Absent,
 }
 
-/// Refuses to write over committed results what no commit can make again.
+/// Refuses to overwrite committed results with results that no commit can reproduce.
 fn traceable(path: &Path, origin: &Origin) -> Result<(), Uncommitted> {
     match !origin.is_committed() && is_committed(path) {
         true => Err(Uncommitted(path.to_owned())),
@@ -224,7 +221,7 @@ fn traceable(path: &Path, origin: &Origin) -> Result<(), Uncommitted> {
     }
 }
 
-/// Whether git keeps files of a folder, which may have been removed; without git, or outside a checkout, it keeps none.
+/// Returns true if git tracks files of a folder, even removed ones; false without git or outside a checkout.
 fn is_committed(folder: &Path) -> bool {
     let there = folder.ancestors().find(|there| there.is_dir()).unwrap_or(Path::new(""));
     // Git does not take empty paths.
@@ -261,7 +258,7 @@ mod tests {
         assert!(traceable(&kept, &of(false)).is_ok());
         fs::remove_dir_all(&kept).unwrap();
         assert!(traceable(&kept, &of(true)).is_err());
-        // Folders that git does not keep, and that are not there yet, may be written by any program.
+        // Any build may write to untracked and to new folders.
         assert!(traceable(&scratch, &of(true)).is_ok());
         assert!(traceable(&checkout.path().join("new"), &of(true)).is_ok());
     }

@@ -1,17 +1,17 @@
-//! What can be reproduced: a table or figure of a source, or of our own, by its name.
+//! Items of the report: tables and figures of the papers or of our own, by name.
 
 use super::{Lab, Made, Size};
 use crate::console;
 use crate::pages::{Cost, Page};
 use crate::report::Chapter;
 
-/// Where the share of a piece of work that is done is heard.
+/// Callback that receives the finished fraction of a piece of work.
 pub(crate) type Progress<'p> = &'p (dyn Fn(f64) + Sync);
 
-/// What makes an item.
+/// Function that makes an item.
 type Make = fn(&Lab<'_>, Size) -> Result<Made, console::Failure>;
 
-/// An item of the report.
+/// Item of the report.
 #[derive(Debug)]
 pub(crate) struct Item {
     /// Name on the command line, and of its template.
@@ -19,11 +19,11 @@ pub(crate) struct Item {
     make: Make,
 }
 
-/// MiB of an item without a page.
+/// Memory of an item without a page (MiB).
 const USUAL_MEMORY: u64 = 256;
 
 impl Item {
-    /// An item whose template says title, chapter and cost.
+    /// Item whose template has title, chapter and cost.
     pub(crate) const fn of(name: &'static str, make: Make) -> Item {
         Item { name, make }
     }
@@ -36,28 +36,27 @@ impl Item {
         self.page().map_or_else(String::new, |page| page.title().to_owned())
     }
 
-    /// Chapter of the report.
     pub(crate) fn chapter(&self) -> Chapter {
         self.page().map_or(Chapter::Beyond, |page| page.chapter())
     }
 
-    /// Stated cost.
+    /// Cost stated in the template.
     fn cost(&self) -> Cost {
         let none = Cost { quick: None, full: 0.0, all: None, memory: USUAL_MEMORY };
         self.page().map_or(none, |page| page.cost())
     }
 
-    /// Returns whether `--quick` makes it.
+    /// Returns true if `reproduce --quick` makes it.
     pub(crate) fn is_quick(&self) -> bool {
         self.cost().quick.is_some()
     }
 
-    /// Returns whether `reproduce` makes it without `--all`.
+    /// Returns true if `reproduce` makes it without `--all`.
     pub(crate) fn is_default(&self) -> bool {
         self.chapter() == Chapter::Sources
     }
 
-    /// Seconds that it takes about.
+    /// Expected duration (s).
     pub(crate) fn seconds(&self, size: Size) -> f64 {
         let cost = self.cost();
         match size {
@@ -67,16 +66,16 @@ impl Item {
         }
     }
 
-    /// MiB of memory that it takes in full, at most.
+    /// Most memory of the full size (MiB).
     #[cfg(test)]
     pub(crate) fn memory(&self) -> u64 {
         self.cost().memory
     }
 
-    /// Makes it.
+    /// Makes the item.
     ///
     /// # Errors
-    /// Those of its study.
+    /// Errors of its study.
     pub(crate) fn make(&self, lab: &Lab<'_>, size: Size) -> Result<Made, console::Failure> {
         (self.make)(lab, size)
     }

@@ -1,8 +1,8 @@
-//! Finished runs of a study, a line each, so that a study that was interrupted goes on where it stopped.
+//! Journal of the finished runs of a study, one line each, from which an interrupted study resumes.
 //!
-//! The first line says whose runs they are: the study, and a digest of its scene and of the program's version. Each line after
-//! it has a checksum of the digest, its key and its value. What does not fit is left out, so that it is measured again; a last
-//! line that was cut off too, without a word.
+//! The first line identifies the study, with a digest of its scene and of the program's version. Each further line has a checksum of
+//! the digest, its key and its value. Invalid lines are dropped with a note, and their runs are measured again. A truncated last line
+//! is dropped silently.
 
 use super::journal_error::JournalError;
 use super::meter::{for_each_below, side_by_side};
@@ -19,24 +19,24 @@ use stripmine_physics::io::replace::replace;
 use stripmine_physics::io::{FileError, regular_file};
 use stripmine_physics::quoted;
 
-/// The name of the file.
+/// File name of the journal.
 pub(super) const NAME: &str = "journal.jsonl";
-/// How the first line begins.
+/// Beginning of the first line.
 pub(super) const MARK: &str = "{\"stripmine journal\":2,";
-/// Longer than any journal (bytes).
+/// Limit of the size of a journal (bytes).
 const LONGEST: u64 = 1 << 30;
 
-/// Whose runs a journal holds.
+/// Identity of the study that a journal belongs to.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Identity {
-    /// The study and its scene, for a reader.
+    /// Study and scene, for reading.
     pub of: String,
-    /// A digest of all that results depend on.
+    /// Digest of everything that results depend on.
     pub(crate) digest: String,
 }
 
 impl Identity {
-    /// The first line of its journal.
+    /// First line of its journal.
     fn heading(&self) -> Result<String, serde_json::Error> {
         Ok(format!(
             "{MARK}\"of\":{},\"digest\":{}}}\n",
@@ -46,27 +46,27 @@ impl Identity {
     }
 }
 
-/// A finished run.
+/// Line of the journal: a finished run.
 #[derive(Serialize, Deserialize)]
 struct Line {
     key: String,
     value: Value,
 }
 
-/// How a line begins; then its checksum in eight hexadecimal digits, and [`BEHIND`].
+/// Beginning of a line; its checksum in eight hexadecimal digits and [`BEHIND`] follow.
 const BEFORE: &str = "{\"checksum\":\"";
-/// What stands between the checksum and the text that it is of.
+/// Separator between the checksum and the text it covers.
 const BEHIND: &str = "\",";
 
 impl Line {
-    /// As it stands in the journal with this digest.
+    /// Formats the line for the journal with this digest.
     fn text(&self, digest: &str) -> Result<String, serde_json::Error> {
         let text = serde_json::to_string(self)?;
         let rest = text.trim_start_matches('{');
         Ok(format!("{BEFORE}{:08x}{BEHIND}{rest}\n", checksum(digest, rest)))
     }
 
-    /// A line of the journal with this digest; none if it is not as it was written.
+    /// Parses a line of the journal with this digest; none if its checksum is wrong.
     fn read(text: &str, digest: &str) -> Option<Line> {
         let (stated, rest) = text.strip_prefix(BEFORE)?.split_once(BEHIND)?;
         let is_whole = stated == format!("{:08x}", checksum(digest, rest.strip_suffix('\n')?));
@@ -74,7 +74,7 @@ impl Line {
     }
 }
 
-/// CRC-32 of a journal's digest and the text of a line behind its checksum.
+/// CRC-32 of a journal's digest and the text of a line after its checksum.
 fn checksum(digest: &str, text: &str) -> u32 {
     let mut sum = Hasher::new();
     sum.update(digest.as_bytes());
@@ -82,23 +82,23 @@ fn checksum(digest: &str, text: &str) -> u32 {
     sum.finalize()
 }
 
-/// The runs that are finished.
+/// Finished runs of a study.
 pub(crate) struct Journal {
     known: RwLock<Runs>,
-    /// How many were known from the file.
+    /// Number of runs read from the file.
     before: usize,
-    /// None where nothing is kept.
+    /// Open file; none if nothing is stored.
     file: Option<Mutex<File>>,
     path: PathBuf,
     digest: String,
     changed: Vec<usize>,
-    /// The processes that make the study together, and what this one has made since it told the others.
+    /// Processes that make the study together, and the runs this one has made since the last exchange.
     team: Option<Team>,
     made: Mutex<Runs>,
 }
 
 impl Journal {
-    /// One that forgets: for studies that are made in one go.
+    /// Journal without a file, for studies made in one go.
     pub(crate) fn none() -> Journal {
         Journal {
             known: RwLock::default(),
@@ -112,17 +112,17 @@ impl Journal {
         }
     }
 
-    /// Opens the journal of a folder that is there, or begins one: where several processes make the study, for all of them.
+    /// Opens or creates the journal of a folder, for all processes that make the study.
     ///
     /// # Errors
-    /// [`JournalError`] if it is another's, or the system does not let it be read and written.
+    /// [`JournalError`] if it belongs to another study, or cannot be read and written.
     pub(crate) fn open(
         folder: &Path,
         identity: &Identity,
         team: Option<Team>,
     ) -> Result<Journal, JournalError> {
         let Some(team) = team else { return Journal::read(folder, identity) };
-        // The first puts the file in order before others read it, and nothing is added before all have read it.
+        // The first process cleans the file before others read it, and nothing is added before all have read it.
         let first = team.is_first().then(|| Journal::read(folder, identity)).transpose()?;
         let own = Runs::from([(identity.digest.clone(), Value::Null)]);
         if team.exchanged(&own)? != own {
@@ -154,7 +154,7 @@ impl Journal {
                     known.insert(key, value);
                     kept.push_str(line);
                 }
-                // Of the last line a writer that was killed leaves a part.
+                // A killed writer leaves a partial last line.
                 None if line.ends_with('\n') => changed.push(number),
                 None => {}
             }
@@ -174,23 +174,23 @@ impl Journal {
         })
     }
 
-    /// How many runs were finished before.
+    /// Number of runs finished before.
     pub(crate) fn len(&self) -> usize {
         self.before
     }
 
-    /// Whether none was.
+    /// Returns true if no run was finished before.
     pub(crate) fn is_empty(&self) -> bool {
         self.before == 0
     }
 
-    /// Whether this process writes what comes of the study, and takes times.
+    /// Returns true if this process writes the results and measures times.
     pub(crate) fn is_first(&self) -> bool {
         self.team.as_ref().is_none_or(Team::is_first)
     }
 
-    /// What `run` gives of each of some independent things, made side by side on all threads of all processes. What it gives must be recalled or follow from what
-    /// is: each process finds there what others have made.
+    /// Results of `run` for independent inputs, computed on all threads of all processes. `run` must get its results from
+    /// [`recall`](Self::recall), or derive them from such, since each process finds the results of the others there.
     ///
     /// # Errors
     /// The first failure of a run, and [`JournalError`].
@@ -205,7 +205,7 @@ impl Journal {
         E: From<JournalError> + Send,
     {
         if let Some(team) = &self.team {
-            // What fails here fails again below.
+            // A failure here occurs again below.
             let part = team.part(all);
             for_each_below(part.len(), &|at| _ = run(part[at]));
             let made = std::mem::take(&mut *self.made.lock().unwrap_or_else(PoisonError::into_inner));
@@ -215,7 +215,7 @@ impl Journal {
         side_by_side(all, run)
     }
 
-    /// What one process finds, and the others are told.
+    /// Result of one process, broadcast to the others.
     ///
     /// # Errors
     /// As [`over`](Self::over).
@@ -227,27 +227,24 @@ impl Journal {
         Ok(found.swap_remove(0))
     }
 
-    /// What was found in lines that are not as they were written: a sentence for each, and for many one for the rest.
+    /// Notes on damaged lines: a sentence for each of the first, and one for the rest.
     pub(crate) fn notes(&self) -> Vec<String> {
         const NAMED: usize = 5;
         let file = quoted::path(&self.path);
-        let one = |line: &usize| {
-            format!(
-                "{file}:{line}: the line is not as it was written; it is left out, and its run is measured again"
-            )
-        };
+        let one = |line: &usize| format!("{file}:{line}: damaged line; its run is measured again");
         let mut notes: Vec<String> = self.changed.iter().take(NAMED).map(one).collect();
         if let Some(more) = self.changed.len().checked_sub(NAMED).filter(|&more| more > 0) {
-            notes.push(format!("{file}: {more} more such lines; their runs are measured again"));
+            notes.push(format!("{file}: {more} more damaged lines; their runs are measured again"));
         }
         notes
     }
 
-    /// What a run gave, if it was finished before and `fits` the study, and otherwise what it gives now, which is kept. A checksum tells damage, not whether a line
-    /// is one of this study: a value that no run of it gives is measured again.
+    /// Result of a run from the journal, if it was finished before and `fits`; otherwise runs it and stores the result.
+    ///
+    /// A checksum detects damage, not a line of another study: `fits` rejects values that no run of this study gives.
     ///
     /// # Errors
-    /// Those of the run, and [`JournalError`] if it cannot be kept.
+    /// Errors of the run, and [`JournalError`] if the result cannot be stored.
     pub(crate) fn recall<T, E>(
         &self,
         key: &str,
@@ -286,7 +283,7 @@ impl Journal {
     }
 }
 
-/// Why a journal whose first line is another than ours is not gone on with.
+/// Error for a journal whose first line differs from ours.
 fn refused(file: PathBuf, first: &str, ours: &Identity) -> JournalError {
     let theirs = serde_json::from_str::<Identity>(first).ok().filter(|_| first.starts_with(MARK));
     let said = |it: &Identity| format!("{} ({})", it.of, it.digest.chars().take(8).collect::<String>());
@@ -343,7 +340,7 @@ mod tests {
         }
     }
 
-    /// A line may have its right checksum and a value that no run gives.
+    /// A line can have a correct checksum and an impossible value.
     #[test]
     fn values_that_do_not_fit_are_measured_again() {
         let folder = tempfile::tempdir().unwrap();
@@ -356,7 +353,7 @@ mod tests {
         assert_eq!(open().recall("a", fits, || Ok::<_, JournalError>(4)).unwrap(), 3);
     }
 
-    /// Every part of a line is held by its checksum, and a line of another journal is none of this one.
+    /// The checksum covers every part of a line, and lines of another journal are rejected.
     #[test]
     fn lines_that_were_changed_are_measured_again() {
         let folder = tempfile::tempdir().unwrap();

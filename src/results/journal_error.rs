@@ -1,4 +1,4 @@
-//! Why there is no journal of a study.
+//! Errors of journals.
 
 use std::path::PathBuf;
 use stripmine_physics::io::FileError;
@@ -6,40 +6,40 @@ use stripmine_physics::quoted;
 use stripmine_physics::ranks::RankError;
 use stripmine_physics::reported::{Class, FilePlace, Reported};
 
-/// Why there is no journal.
+/// Errors of opening or writing the journal of a study.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum JournalError {
-    /// The folder holds the runs of something else.
+    /// The folder holds the runs of another study.
     #[error(
-        "{} holds the runs of {}, not of {ours}: a study goes on only with the scene, the options and the version \
-         of the program that it was begun with; choose another --out",
+        "{} holds the runs of {}, not of {ours}: a study resumes only with the scene, options and program version \
+         that it was started with; choose another --out",
         quoted::path(file),
         quoted::one_line(theirs)
     )]
     Other {
-        /// The journal.
+        /// File of the journal.
         file: PathBuf,
-        /// What it was begun with.
+        /// Study of the journal.
         theirs: String,
-        /// What was asked for.
+        /// Requested study.
         ours: String,
     },
-    /// A file of that name that is none of ours.
+    /// A file of the journal's name with another format.
     #[error(
-        "{} is no journal of this version of the program: move it away, or choose another --out",
+        "{} is not a journal of this program version: move it away, or choose another --out",
         quoted::path(.0)
     )]
     Foreign(PathBuf),
-    /// The system.
+    /// Reading or writing failed.
     #[error(transparent)]
     File(#[from] FileError),
-    /// Processes of one study were given other things.
+    /// Processes of one study have different inputs.
     #[error(
-        "the processes have not the same scene, options and program: give all of them the same files and the same program"
+        "the processes differ in scene, options or program: start all of them with the same files and the same program"
     )]
     Differs,
     /// Another process of the study is lost.
-    #[error("{0}: a study goes on with the runs that were finished when it is begun again")]
+    #[error("{0}: repeat the command to resume the study with its finished runs")]
     Rank(#[from] RankError),
 }
 

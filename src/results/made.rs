@@ -1,4 +1,4 @@
-//! The files of an item: written from what a study made, and read back into the same.
+//! Files of an item: written from the result of a study, and read back.
 
 use super::Made;
 use crate::claims;
@@ -14,19 +14,19 @@ use std::path::Path;
 use stripmine_physics::io::regular_file;
 use stripmine_physics::quoted;
 
-/// Longer than any file of an item that is read again (bytes).
+/// Limit of the size of a file that is read again (bytes).
 pub(super) const LONGEST: u64 = 1 << 30;
-/// Columns, types, units and meanings of an item's tables.
+/// File with columns, types, units and meanings of an item's tables.
 const PACKAGE: &str = "datapackage.json";
-/// Frames of an item's film.
+/// File with the frames of an item's film.
 const FILM: &str = "film.json";
-/// Ending of the name of a table with the data of a figure.
+/// Suffix of the name of a table with the data of a figure.
 const OF_FIGURE: &str = ".data";
 
-/// A file: its name and contents.
+/// Name and contents of a file.
 type File = (String, Vec<u8>);
 
-/// The section of an item, and its files but `provenance.json`. An item of the report has claims, a study of another scene has none.
+/// Section of an item, and its files except `provenance.json`. Claims belong to items of the report, not to studies of other scenes.
 pub(super) fn files_of(
     name: &str,
     made: &Made,
@@ -61,7 +61,7 @@ pub(super) fn files_of(
     Ok((section, all))
 }
 
-/// An item as its folder has it, for a template; nothing if another version of the program wrote it.
+/// Reads an item from its folder, for a template; none if another version wrote it.
 pub(super) fn read(folder: &Path, page: &Page) -> Result<Option<Made>, Failure> {
     if !folder.join(PACKAGE).exists() {
         return Ok(None);
@@ -74,7 +74,7 @@ pub(super) fn read(folder: &Path, page: &Page) -> Result<Option<Made>, Failure> 
     let has_picture = |table: &str| table.strip_suffix(OF_FIGURE).is_some_and(|it| drawn.contains(&it));
     for resource in package.resources {
         let name = resource.path.trim_end_matches(".csv").to_owned();
-        // The template makes the data of its charts again.
+        // The data of charts are made again from the template.
         if name.ends_with(OF_FIGURE) && !has_picture(&name) {
             continue;
         }
@@ -101,7 +101,7 @@ pub(super) fn read(folder: &Path, page: &Page) -> Result<Option<Made>, Failure> 
     Ok(Some(made))
 }
 
-/// The tables of an item's folder, for expressions; nothing if another version of the program wrote it.
+/// Reads the tables of an item's folder, for expressions; none if another version wrote it.
 pub(super) fn scope(folder: &Path) -> Result<Option<Scope>, Failure> {
     let mut frames = vec![];
     if folder.join(PACKAGE).exists() {
@@ -117,13 +117,13 @@ pub(super) fn scope(folder: &Path) -> Result<Option<Scope>, Failure> {
     Ok(Some(Scope::of(frames)))
 }
 
-/// The bytes of a file.
+/// Reads a file.
 pub(super) fn bytes_of(path: &Path) -> Result<Vec<u8>, Failure> {
     let what = || format!("reading {}", quoted::path(path));
     regular_file::read(path, LONGEST).map_err(|cause| Failure::InputOutput { what: what(), cause })
 }
 
-/// JSON without blanks: datasets are for programs.
+/// JSON without white space: datasets are for programs.
 fn compact(data: &impl Serialize) -> Result<String, Failure> {
     let text = serde_json::to_string(data).map_err(|cause| Failure::writing("JSON")(cause.into()))?;
     Ok(text + "\n")

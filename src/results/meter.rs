@@ -1,11 +1,11 @@
-//! How much of a piece of work is done, while its parts go on side by side.
+//! Progress of work whose parts run in parallel.
 
 use super::Progress;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// Does the work of every case on all threads: what comes of them, in their order. After a failure no other case is begun.
+/// Computes all cases on all threads and returns the results in order. After a failure no further case is begun.
 ///
 /// # Errors
 /// The first error, in the order of the cases.
@@ -25,12 +25,12 @@ pub(crate) fn side_by_side<C: Sync, T: Send, E: Send>(
     results.into_iter().filter_map(|it| it.into_inner().unwrap_or_else(PoisonError::into_inner)).collect()
 }
 
-/// Does something for every number below `count`, on all threads; compiled once, whatever is done.
+/// Calls `work` for every number below `count` on all threads; not generic, so that it is compiled once.
 pub(super) fn for_each_below(count: usize, work: &(dyn Fn(usize) + Sync)) {
     (0..count).into_par_iter().for_each(work);
 }
 
-/// Hears of work that is done, and says the share that it is.
+/// Meter of progress: adds up finished work and reports its fraction.
 pub(crate) struct Meter<'p> {
     done: Mutex<f64>,
     all: Mutex<f64>,
@@ -38,12 +38,12 @@ pub(crate) struct Meter<'p> {
 }
 
 impl<'p> Meter<'p> {
-    /// Of work that is expected to come to `all`: cases, steps or seconds.
+    /// Meter of work that is expected to total `all` cases, steps or seconds.
     pub(crate) fn new(all: f64, progress: Progress<'p>) -> Self {
         Meter { done: Mutex::new(0.0), all: Mutex::new(all), progress }
     }
 
-    /// The rest of the work is expected to come to `rest`.
+    /// Sets the expected remaining work.
     pub(crate) fn expect(&self, rest: f64) {
         let done = self.done.lock().map_or(0.0, |done| *done);
         if let Ok(mut all) = self.all.lock() {
@@ -51,7 +51,7 @@ impl<'p> Meter<'p> {
         }
     }
 
-    /// So much more is done.
+    /// Adds finished work.
     pub(crate) fn add(&self, more: f64) {
         let done = self.done.lock().map_or(0.0, |mut done| {
             *done += more;
@@ -61,10 +61,10 @@ impl<'p> Meter<'p> {
         (self.progress)((done / all.max(f64::MIN_POSITIVE)).min(1.0));
     }
 
-    /// Does the work of every case on all threads, each of them one unit of the whole: what comes of them, in their order.
+    /// Computes all cases on all threads, one unit of work each, and returns the results in order.
     ///
     /// # Errors
-    /// That of a case.
+    /// First error of a case.
     pub(crate) fn each<C: Sync, T: Send, E: Send>(
         &self,
         cases: &[C],
@@ -73,10 +73,10 @@ impl<'p> Meter<'p> {
         side_by_side(cases, |case| work(case).inspect(|_| self.add(1.0)))
     }
 
-    /// The same, begun with the last case: for cases that take longer and longer.
+    /// As [`each`](Self::each), but starts with the last case, for cases of increasing cost.
     ///
     /// # Errors
-    /// That of a case.
+    /// First error of a case.
     pub(crate) fn each_from_last<C: Sync, T: Send, E: Send>(
         &self,
         cases: &[C],
@@ -93,7 +93,7 @@ impl<'p> Meter<'p> {
 mod tests {
     use super::*;
 
-    /// In order whichever is begun first; every share is heard once, and an error ends it.
+    /// Results are in order, every fraction is reported once, and an error ends the work.
     #[test]
     fn cases_come_back_in_their_order() {
         let heard = Mutex::new(vec![]);

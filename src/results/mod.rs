@@ -1,4 +1,4 @@
-//! Results: what a finished item holds, the folder that items are written to, and the runs that a study has finished.
+//! Results: finished items, the folder they are written to, and the journal of a study.
 
 mod folder;
 mod item;
@@ -21,22 +21,22 @@ use crate::report::figure::Picture;
 use crate::report::section::Film;
 use std::path::PathBuf;
 
-/// Surroundings of a study.
+/// Environment of a study.
 pub(crate) struct Lab<'p> {
-    /// Hears the share of the work that is done.
+    /// Receives the finished fraction of the work.
     pub progress: Progress<'p>,
-    /// Program that measures in processes of its own; none where this process measures.
+    /// Program that measures in separate processes; none if this process measures.
     pub program: Option<PathBuf>,
 }
 
 impl<'p> Lab<'p> {
-    /// Surroundings in which everything happens in this process.
+    /// Environment that measures in this process.
     #[cfg(test)]
     pub(crate) fn here(progress: Progress<'p>) -> Lab<'p> {
         Lab { progress, program: None }
     }
 
-    /// Surroundings in which processes of their own measure.
+    /// Environment that measures in separate processes.
     pub(crate) fn apart(progress: Progress<'p>) -> Lab<'p> {
         Lab { progress, program: std::env::current_exe().ok() }
     }
@@ -45,43 +45,43 @@ impl<'p> Lab<'p> {
 /// Size of a study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Size {
-    /// Under a minute in all.
+    /// All items together take under a minute.
     Quick,
-    /// As much as the sources show, in five minutes.
+    /// The extent of the papers, in five minutes.
     Full,
-    /// More of the items that say so, for hours to spare.
+    /// Larger items where available, for hours.
     All,
 }
 
-/// A finished item.
+/// Finished item.
 #[derive(Default)]
 pub(crate) struct Made {
     pub frames: Vec<Frame>,
-    /// Pictures that are no charts of frames, by name.
+    /// Pictures that are not charts of frames, by name.
     pub pictures: Vec<(String, Picture)>,
     pub(crate) film: Option<Film>,
     /// Further files: name and contents.
     pub files: Vec<(String, String)>,
     /// Seeds of the random numbers.
     pub seeds: Vec<u64>,
-    /// Processes that measured times; none where the record has them.
+    /// Number of processes that measured times; none if the provenance has it.
     pub(crate) processes: Option<usize>,
-    /// Measurements that it repeats.
+    /// Earlier measurements that it repeats.
     pub repeated: Vec<Measurement>,
 }
 
 impl Made {
-    /// An item whose page is a template.
+    /// Item with tables, whose page is a template.
     pub(crate) fn of(frames: impl IntoIterator<Item = Frame>) -> Made {
         Made { frames: frames.into_iter().collect(), ..Made::default() }
     }
 
-    /// The data for programs: each frame by its name, as a list of rows.
+    /// Data as JSON: each frame by name, as a list of rows.
     pub(crate) fn json(&self) -> serde_json::Value {
         self.frames.iter().map(|frame| (frame.name.clone(), frame.json())).collect()
     }
 
-    /// Adds a picture that is no chart of a frame.
+    /// Adds a picture that is not a chart of a frame.
     #[must_use]
     pub(crate) fn with_picture(mut self, name: &str, picture: Picture) -> Made {
         self.pictures.push((name.to_owned(), picture));
@@ -100,7 +100,7 @@ impl Made {
         Made { seeds: seeds.into_iter().collect(), ..self }
     }
 
-    /// With one more file.
+    /// Adds a file.
     #[must_use]
     pub(crate) fn with_file(mut self, name: &str, text: String) -> Made {
         self.files.push((name.to_owned(), text));

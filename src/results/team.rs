@@ -1,8 +1,8 @@
-//! Processes that make one study together.
+//! Team of processes that make one study together.
 //!
-//! All of them carry out the same study. Of what is independent in it each makes a part; then they tell each other what they found, as the
-//! lines of a [`Journal`](super::Journal), and each goes on as if it had made everything. What depends on time, such as a rate, is made by one and told to all,
-//! so that all decide alike.
+//! All processes execute the same study. Each makes a part of the independent runs; then they exchange results as lines of a
+//! [`Journal`](super::Journal), and each continues as if it had made all runs. Results that depend on time, such as a rate, are
+//! measured by one process and broadcast, so that all make the same decisions.
 
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -10,14 +10,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use stripmine_physics::ranks::{Crew, Parcel, RankError, Ranks};
 
-/// Runs by their keys.
+/// Results of runs by key.
 pub(super) type Runs = BTreeMap<String, Value>;
 
-/// The runs that each process has made, as JSON; none of one that has ended its part. The first process tells all of them, or whose end is the
-/// end of the study.
+/// Runs of each process as JSON, none for one that has ended its part. The first process broadcasts them, or the error that ends the study.
 type Told = Result<Vec<Option<String>>, RankError>;
 
-/// One of the processes.
+/// Membership of this process in the team.
 pub(crate) struct Team {
     ranks: Mutex<Box<dyn Ranks>>,
     rank: usize,
@@ -26,7 +25,7 @@ pub(crate) struct Team {
 }
 
 impl Team {
-    /// The processes of a crew; none where this one is alone.
+    /// Team of the processes of a crew; none if this process is alone.
     pub(crate) fn of(crew: Crew) -> Option<Team> {
         match crew {
             Crew::Processes(join) => Some(Team::new(join())),
@@ -34,26 +33,26 @@ impl Team {
         }
     }
 
-    /// This one of several ranks.
+    /// Team with this process as one of several ranks.
     pub(crate) fn new(ranks: Box<dyn Ranks>) -> Team {
         let (rank, count) = (ranks.rank(), ranks.count());
         Team { ranks: Mutex::new(ranks), rank, count, has_ended: AtomicBool::new(false) }
     }
 
-    /// Whether it is this one that writes, prints and takes times.
+    /// Returns true if this process writes, prints and measures times.
     pub(crate) fn is_first(&self) -> bool {
         self.rank == 0
     }
 
-    /// Its part of some independent things.
+    /// Share of this process in a list of independent inputs.
     pub(super) fn part<'i, T>(&self, all: &'i [T]) -> Vec<&'i T> {
         all.iter().skip(self.rank).step_by(self.count).collect()
     }
 
-    /// Runs that this one has made, for those that all have made. Waits for the others.
+    /// Exchanges the runs of this process for those of all. Waits for the others.
     ///
     /// # Errors
-    /// [`RankError`] if the study has ended on the first one, or another one is lost.
+    /// [`RankError`] if the study has ended on the first process, or another process is lost.
     pub(super) fn exchanged(&self, own: &Runs) -> Result<Runs, RankError> {
         let text = serde_json::to_string(own).map_err(|_| RankError::Unreadable(self.rank))?;
         let ranks = self.ranks();
@@ -79,11 +78,11 @@ impl Team {
 }
 
 impl Drop for Team {
-    /// The first one ends the study on all, however it came to its end there; the others wait for that.
+    /// The first process ends the study on all, however it ended there; the others wait for that.
     fn drop(&mut self) {
         let ranks = self.ranks();
         while !self.has_ended.load(Ordering::Relaxed) {
-            // Whatever runs the others have made, nobody needs them.
+            // The runs of the others are discarded.
             let gathered = ranks.gather(Parcel::of(&None::<String>));
             let said = self.is_first().then_some(Err(RankError::Ended(0)));
             let told = gathered.and_then(|_| ranks.tell_message::<Told>(said));
@@ -100,10 +99,10 @@ mod tests {
     use std::thread;
     use stripmine_physics::ranks::local;
 
-    /// What each rank finds; nothing where the study does not come to its end.
+    /// Results of each rank; none if the study fails.
     type Found = Vec<Option<Vec<u64>>>;
 
-    /// What a study of three stages finds, and which rank has made which runs.
+    /// Results of a study of three stages, and the rank that made each run.
     fn study(folder: &Path, count: usize, fails: bool) -> (Found, Vec<(usize, u64)>) {
         let made = Mutex::new(vec![]);
         let found = thread::scope(|scope| {
@@ -138,7 +137,7 @@ mod tests {
         (found, made.into_inner().unwrap())
     }
 
-    /// Every run is made once, by the ranks in turn, and all find the same; what was finished is not made again.
+    /// Every run is made once, by the ranks in turn; all have the same results; finished runs are not repeated.
     #[test]
     fn ranks_make_a_study_together() {
         let expected = Some((0..21).map(|key| 10 * key).collect());
@@ -153,7 +152,7 @@ mod tests {
         }
     }
 
-    /// Where the first rank ends early, the others do not wait for ever.
+    /// If the first rank ends early, the others do not wait forever.
     #[test]
     fn the_end_of_the_first_rank_is_the_end_of_all() {
         let folder = tempfile::tempdir().unwrap();

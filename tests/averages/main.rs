@@ -154,7 +154,7 @@ fn seeds_make_an_ensemble() {
     ends_with(&run(folder, "all", &wanted), 2, &["all/seed-1 already contains a run"]);
     ends_with(&run(folder, "all", &[&wanted[..], &["--resume"]].concat()), 0, &[]);
     let output = stripmine(folder, &["run", "two-discs", "--seeds", "2"]);
-    ends_with(&output, 2, &["nothing of this scene is drawn at random"]);
+    ends_with(&output, 2, &["this scene has no random numbers"]);
 }
 
 /// Two particles in a bath that meet in some runs only: nothing is known where they have not, and no run is left out of a join.

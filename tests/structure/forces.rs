@@ -224,5 +224,5 @@ fn a_run_has_its_stress_in_files_and_pictures() {
     stripmine(folder, &["run", "hard-disks", "--out", "b", "--set", "run.time=1.0"]);
     let refused = plot("b", &[]);
     let said = String::from_utf8_lossy(&refused.stderr).into_owned();
-    assert!(refused.status.code() == Some(2) && said.contains("no forces between discs"), "{said}");
+    assert!(refused.status.code() == Some(2) && said.contains("no continuous pair forces"), "{said}");
 }

@@ -1,6 +1,7 @@
-//! What the colours of particles say: one list for pictures, films, help and errors.
+//! Colourings of particles: one list for pictures, films, help and errors.
 
 use super::window;
+use crate::cli::display::UnitSystem;
 use crate::statistics::quantile;
 use clap::builder::PossibleValue;
 use std::path::Path;
@@ -8,36 +9,35 @@ use stripmine_physics::domain::Domain;
 use stripmine_physics::io::extxyz::Frame;
 use stripmine_physics::method::{Methods, load};
 use stripmine_physics::particles::Particle;
-use stripmine_physics::quoted::quoted;
 use stripmine_physics::reported::{Class, Reported};
 use stripmine_physics::structure::{PairForces, Setting, forces_on_each, hexatic_orders};
 
-/// Few values are much larger than the others: they look like the largest of a hundred.
+/// Quantile of the values that has the last colour, so that few large values do not darken all others.
 const MOST: f64 = 0.99;
 
-/// What the colours of particles say.
+/// Colouring of particles by a quantity.
 pub(super) struct Colouring {
-    /// The word on the command line.
+    /// Word on the command line.
     word: &'static str,
-    /// What it is.
+    /// Help text.
     doc: &'static str,
-    /// Its name at the colours.
+    /// Name beside the colour scale.
     label: &'static str,
-    /// Its unit where the scene's are SI; none for pure numbers.
+    /// SI unit; none for pure numbers.
     si: Option<&'static str>,
-    /// Its value for each grain of a frame, or why it has none.
+    /// Value of each grain of a frame, or the reason why it has none.
     of: fn(&Frame, Option<&PairForces>) -> Result<Vec<f64>, &'static str>,
-    /// Whether that takes the forces of the run's scene.
+    /// True if it needs the forces of the run's scene.
     takes_forces: bool,
-    /// The values of the lowest and the highest colour, of all values in order, or why they say nothing.
+    /// Values of the lowest and the highest colour, from all sorted values, or the reason why there are none.
     ends: fn(&[f64]) -> Result<[f64; 2], &'static str>,
 }
 
-/// All of them, the usual one first.
+/// All colourings, the default first.
 static COLOURINGS: [Colouring; 6] = [
     Colouring {
         word: "speed",
-        doc: "how fast it moves",
+        doc: "speed",
         label: "speed",
         si: Some("m/s"),
         of: |frame, _| Ok(of_each(frame, |it| it.velocity.iter().map(|v| v * v).sum::<f64>().sqrt())),
@@ -46,7 +46,7 @@ static COLOURINGS: [Colouring; 6] = [
     },
     Colouring {
         word: "psi6",
-        doc: "hexatic order |ψ6|, 1 in a hexagonal crystal; of discs in a box",
+        doc: "hexatic order |ψ6|, 1 in a hexagonal crystal (discs in a box)",
         label: "hexatic order |ψ6|",
         si: None,
         of: |frame, _| orders(frame),
@@ -55,7 +55,7 @@ static COLOURINGS: [Colouring; 6] = [
     },
     Colouring {
         word: "force",
-        doc: "magnitudes of what all others exert on it, summed up; of discs with forces between them",
+        doc: "sum of the magnitudes of all pair forces on it (discs with pair forces)",
         label: "force",
         si: Some("N"),
         of: forces_on,
@@ -64,7 +64,7 @@ static COLOURINGS: [Colouring; 6] = [
     },
     Colouring {
         word: "spin",
-        doc: "angular velocity, counter-clockwise; of discs that turn",
+        doc: "angular velocity, counter-clockwise (rotating discs)",
         label: "spin",
         si: Some("1/s"),
         of: |frame, _| Ok(of_each(frame, |disc| disc.omega)),
@@ -72,12 +72,12 @@ static COLOURINGS: [Colouring; 6] = [
         ends: |spins| {
             let [low, high] = [1.0 - MOST, MOST].map(|part| quantile(spins, part).unwrap_or(0.0));
             let most = high.abs().max(low.abs());
-            if most > 0.0 { Ok([-most, most]) } else { Err("none of them turns") }
+            if most > 0.0 { Ok([-most, most]) } else { Err("no disc rotates") }
         },
     },
     Colouring {
         word: "radius",
-        doc: "its radius",
+        doc: "radius",
         label: "radius",
         si: Some("m"),
         of: |frame, _| Ok(of_each(frame, |disc| disc.radius)),
@@ -86,7 +86,7 @@ static COLOURINGS: [Colouring; 6] = [
     },
     Colouring {
         word: "id",
-        doc: "its number, from which it is seen how particles mix",
+        doc: "particle number, to see mixing",
         label: "number",
         si: None,
         of: |frame, _| Ok(of_each(frame, |particle| f64::from(particle.id))),
@@ -103,7 +103,7 @@ fn first_and_last(values: &[f64]) -> Result<[f64; 2], &'static str> {
     Ok([values.first(), values.last()].map(|end| end.copied().unwrap_or(0.0)))
 }
 
-/// The box of a frame, or where it has no sides, a closed one around the discs.
+/// Box of a frame, or a closed box around the discs if the frame has none.
 fn room(frame: &Frame) -> Domain {
     let grains = frame.particles.grains();
     if window::is_endless(frame) {
@@ -119,10 +119,9 @@ fn room(frame: &Frame) -> Domain {
     }
 }
 
-/// The magnitudes of the forces on each grain, summed up.
+/// Sum of the magnitudes of the forces on each grain.
 fn forces_on(frame: &Frame, forces: Option<&PairForces>) -> Result<Vec<f64>, &'static str> {
-    let forces =
-        forces.ok_or("its scene has no forces between discs that act at any moment, or cannot be read")?;
+    let forces = forces.ok_or("the scene has no continuous pair forces, or cannot be read")?;
     let setting = Setting::new(room(frame), &frame.particles);
     let mut sums = forces_on_each(&setting, frame.particles.all(), forces);
     sums.truncate(frame.particles.grain_count());
@@ -142,9 +141,9 @@ fn orders(frame: &Frame) -> Result<Vec<f64>, &'static str> {
     Ok(hexatic_orders(&setting, &frame.particles).into_iter().map(|[x, y]| x.hypot(y)).collect())
 }
 
-/// A colouring that a run does not have.
+/// Colouring that is not available for a run.
 #[derive(Debug, thiserror::Error)]
-#[error("particles cannot be coloured by {word}: {why}; the others are: {}", others.join(", "))]
+#[error("particles cannot be coloured by {word}: {why}; use one of: {}", others.join(", "))]
 pub(super) struct ColouringError {
     word: &'static str,
     why: &'static str,
@@ -158,23 +157,23 @@ impl Reported for ColouringError {
 }
 
 impl Colouring {
-    /// All of them, for the command line.
+    /// All colourings as values of `--color`.
     pub(super) fn possible_values() -> Vec<PossibleValue> {
         COLOURINGS.iter().map(|it| PossibleValue::new(it.word).help(it.doc)).collect()
     }
 }
 
-/// A colouring of the particles of a run.
+/// Colouring of the particles of one run.
 pub(super) struct Colours {
     colouring: &'static Colouring,
-    /// Set if the user asked for it.
+    /// True if `--color` was given.
     pub(super) is_chosen: bool,
-    /// The forces of its scene, where the colouring takes them.
+    /// Pair forces of the scene, if the colouring needs them.
     forces: Option<PairForces>,
 }
 
 impl Colours {
-    /// The colouring of a word, the usual one where there is none of it.
+    /// Colouring named by a word, or the default.
     pub(super) fn new(word: Option<&str>, run: &Path, methods: Methods) -> Colours {
         let colouring = COLOURINGS.iter().find(|it| Some(it.word) == word).unwrap_or(&COLOURINGS[0]);
         let forces = || {
@@ -186,23 +185,23 @@ impl Colours {
         Colours { colouring, is_chosen: word.is_some(), forces }
     }
 
-    /// A value for each grain of a frame.
+    /// Values of the grains of a frame.
     ///
     /// # Errors
-    /// If its particles have no such values.
+    /// If the particles have no such values.
     pub(super) fn values(&self, frame: &Frame) -> Result<Vec<f64>, ColouringError> {
         (self.colouring.of)(frame, self.forces.as_ref()).map_err(|why| self.none(why))
     }
 
-    /// The values that have the lowest and the highest colour.
+    /// Values of the lowest and the highest colour.
     ///
     /// # Errors
-    /// If the values say nothing.
+    /// If the values define no scale.
     pub(super) fn ends(&self, mut values: Vec<f64>) -> Result<[f64; 2], ColouringError> {
         values.retain(|value| value.is_finite());
         values.sort_by(f64::total_cmp);
         let ends = (self.colouring.ends)(&values).map_err(|why| self.none(why))?;
-        // Where all are one, that one is in the middle; at rest nothing is fast.
+        // Equal values get the middle colour; zeros get the lowest.
         Ok(match ends {
             [low, high] if low < high => ends,
             [0.0, _] => [0.0, 1.0],
@@ -216,53 +215,17 @@ impl Colours {
         ColouringError { word: self.colouring.word, why, others }
     }
 
-    /// Name of the quantity.
     pub(super) fn quantity(&self) -> &'static str {
         self.colouring.label
     }
 
-    /// What stands at the colours: the quantity and its unit.
+    /// Label of the colour scale: the quantity and its unit.
     pub(super) fn label(&self, scene: Option<&toml::Table>) -> String {
         let Colouring { label, si, .. } = *self.colouring;
-        match (si, units(scene)) {
+        match (si, UnitSystem::of(scene)) {
             (None, _) => label.to_owned(),
-            (Some(si), Units::Si) => format!("{label} ({si})"),
-            (Some(_), Units::Other(name)) => format!("{label} ({name})"),
-        }
-    }
-}
-
-/// The units of a run.
-pub(super) enum Units {
-    /// Metres, seconds.
-    Si,
-    /// As the scene calls them.
-    Other(String),
-}
-
-/// Those of a scene.
-pub(super) fn units(scene: Option<&toml::Table>) -> Units {
-    match scene.and_then(|scene| scene.get("units")?.as_str()) {
-        Some("SI") => Units::Si,
-        Some(name) => Units::Other(quoted(name)),
-        None => Units::Other("the scene's unit".to_owned()),
-    }
-}
-
-impl Units {
-    /// Those of lengths and times at axes.
-    pub(super) fn at_axes(self) -> [String; 2] {
-        match self {
-            Units::Si => ["m", "s"].map(str::to_owned),
-            Units::Other(name) => [name.clone(), name],
-        }
-    }
-
-    /// Those of lengths and times.
-    pub(super) fn of_length_and_time(self) -> [String; 2] {
-        match self {
-            Units::Si => ["m", "s"].map(str::to_owned),
-            Units::Other(name) => [format!("({name})"), format!("({name})")],
+            (Some(si), UnitSystem::Si) => format!("{label} ({si})"),
+            (Some(_), UnitSystem::Other(name)) => format!("{label} ({name})"),
         }
     }
 }

@@ -1,8 +1,9 @@
-//! A film of a run: the frames of its trajectory in one page.
+//! Film of a run: the frames of its trajectory in one HTML page.
 
-use super::colouring::{ColouringError, Colours, units};
-use super::particles::{SHOWN, WIDTH, point, scene};
+use super::colouring::{ColouringError, Colours};
+use super::particles::{SHOWN, WIDTH, point};
 use super::window;
+use crate::cli::display::{UnitSystem, scene_of};
 use crate::report::section::{Film, Frame as Moment, Side};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -10,39 +11,39 @@ use stripmine_physics::io::FORMATS;
 use stripmine_physics::io::extxyz::Frame;
 use stripmine_physics::io::output_format::OutputFormat;
 use stripmine_physics::io::trajectory::{FrameReading, Trajectory, TrajectoryError};
-use stripmine_physics::number::counted;
+use stripmine_physics::number::{counted, significant};
 use stripmine_physics::particles::{Kind, Particle};
 use stripmine_physics::quoted;
 use stripmine_physics::reported::{Class, FilePlace, Reported};
 
-/// Places of particles in a film: at two bytes a coordinate and at most two a shade, in base 64, less than 20 million bytes.
+/// Most positions in a film: at two bytes per coordinate and at most two per shade, in base 64, less than 20 million bytes.
 const PLACES: usize = 2_400_000;
-/// Frames of a film: more take minutes to see.
+/// Most frames of a film; more take minutes to watch.
 const FRAMES: usize = 1500;
-/// A wall disc that is never farther from its first place than this part of its radius stands still: the rest is rounding.
+/// Largest displacement of a fixed wall disc, in radii; the rest is rounding.
 const STILL: f64 = 1e-6;
-/// Places that decide what is shown.
+/// Most positions used to choose the window.
 const LOOKED_AT: usize = 100_000;
 
-/// Why there is no film.
+/// Errors of making a film.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum FilmError {
     /// The trajectory has no frame.
     #[error(
-        "{} has no frame, of which a film is made\n  help: a run with --set {} writes one every run.snapshot_every{others}",
+        "{} has no frames for a film\n  help: run the scene with --set {}, which writes a frame every run.snapshot_every{others}",
         quoted::path(file),
         keys()
     )]
     NoFrame {
         /// The trajectory.
         file: PathBuf,
-        /// Files of other formats that are there, with what they lack.
+        /// Existing files of other formats, with what they lack.
         others: String,
     },
     /// The trajectory cannot be read.
     #[error(transparent)]
     Trajectory(#[from] TrajectoryError),
-    /// Its particles have no such colours.
+    /// The particles cannot be coloured this way.
     #[error(transparent)]
     Colouring(#[from] ColouringError),
 }
@@ -67,13 +68,13 @@ impl Reported for FilmError {
     }
 }
 
-/// The keys that ask for frames of which a film is made.
+/// Output keys whose files a film can be made from.
 fn keys() -> String {
     let read = FORMATS.iter().filter(|format| format.is_read());
     read.map(|format| format!("output.{}=true", format.key)).collect::<Vec<_>>().join(" or ")
 }
 
-/// The files of a run that no film is made of, with what they lack.
+/// Files of a run that cannot be used for a film, with what they lack.
 fn others(run: &Path) -> String {
     let lacking = |format: &OutputFormat| match format.reading {
         FrameReading::Lacks(what) => Some(format!("; {} has no {what}", format.file)),
@@ -82,10 +83,10 @@ fn others(run: &Path) -> String {
     FORMATS.iter().filter(|format| run.join(format.file).exists()).filter_map(lacking).collect()
 }
 
-/// The film of a run, and what a reader must know of it, a line each.
+/// Film of a run, with notes for the viewer.
 ///
 /// # Errors
-/// If there is no trajectory, it cannot be read, or its particles cannot be coloured so.
+/// If the trajectory is missing or cannot be read, or its particles cannot be coloured this way.
 pub(super) fn film(run: &Path, colours: &Colours) -> Result<(Film, Vec<String>), FilmError> {
     let trajectory = Trajectory::open(run)?;
     let file = trajectory.path().to_owned();
@@ -96,19 +97,19 @@ pub(super) fn film(run: &Path, colours: &Colours) -> Result<(Film, Vec<String>),
     let Some((last, cast)) = reel.last.take() else {
         return Err(FilmError::NoFrame { file, others: others(run) });
     };
-    let scene = scene(run);
+    let scene = scene_of(run);
     let (mut film, notes) = reel.film(&last, cast, colours, scene.as_ref())?;
     let name = run.file_stem().unwrap_or_default().to_string_lossy();
     film.title = format!("{}: {}", quoted::quoted(&name), film.title);
     Ok((film, notes))
 }
 
-/// Who is in the film, as of the first frame.
+/// Particles in the film, as of the first frame.
 struct Cast {
-    /// The place of each in every frame, by its id.
+    /// Index of each particle in every frame, by its id.
     places: HashMap<u32, usize>,
     particles: Vec<Particle>,
-    /// One of so many is in it.
+    /// Stride: one of this many particles is shown.
     every: usize,
 }
 
@@ -122,19 +123,19 @@ impl Cast {
     }
 }
 
-/// Frames as they are read: whenever there are too many, every other one goes.
+/// Frames read so far. When there are too many, every other one is dropped.
 #[derive(Default)]
 struct Reel {
     /// Frames read.
     read: usize,
-    /// Frames after which the next is kept, less than 2 for all; doubles.
+    /// Every `stride`-th frame is kept, all if less than 2. It doubles when frames are dropped.
     stride: usize,
     kept: Vec<(f64, Vec<Option<Seen>>)>,
-    /// The newest frame, and the cast.
+    /// The latest frame, and the cast.
     last: Option<(Frame, Cast)>,
 }
 
-/// Where a particle is in a frame, and its value where it has one.
+/// Position of a particle in a frame, and its value if it has one.
 #[derive(Clone, Copy)]
 struct Seen {
     position: [f64; 3],
@@ -147,7 +148,7 @@ impl Reel {
         if self.read.is_multiple_of(self.stride.max(1)) {
             let values = colours.values(&frame)?;
             let mut seen = vec![None; cast.particles.len()];
-            // Grains come before walls, and have values.
+            // Grains come before walls; only grains have values.
             for (at, particle) in frame.particles.all().iter().enumerate() {
                 if let Some(&place) = cast.places.get(&particle.id) {
                     let value = values.get(at).copied().unwrap_or(f64::NAN);
@@ -188,7 +189,7 @@ impl Reel {
         let of_a_point = point / WIDTH * (right - left).max(high - low);
         let is_of_points = window::is_of_points(last, bounds);
         let radius = |particle: &Particle| if is_of_points { of_a_point } else { particle.radius };
-        // Walls that stand still are drawn once.
+        // Fixed walls are drawn once.
         let is_still = |place: usize| {
             let Particle { kind, position: first, radius, .. } = cast.particles[place];
             let stays = |(_, seen): &(f64, Vec<Option<Seen>>)| {
@@ -228,7 +229,7 @@ impl Reel {
                 self.kept.first().map_or(0.0, |(time, _)| *time),
                 self.kept.last().map_or(0.0, |(time, _)| *time)
             ),
-            units: units(scene).of_length_and_time(),
+            units: UnitSystem::of(scene).of_length_and_time(),
             window,
             sides: sides(last, bounds, window),
             falls: if height > width { gravity[1] < 0.0 } else { gravity[0] > 0.0 },
@@ -247,31 +248,32 @@ impl Reel {
         Ok((film, notes))
     }
 
-    /// What a reader must know: what is left out, how much of all places (a part of 1) is beyond the picture, and what is drawn how.
+    /// Notes for the viewer: what is not shown, the fraction of positions outside the picture, and how things are drawn.
     fn notes(&self, cast: &Cast, film: &Film, is_of_points: bool, beyond: f64) -> Vec<String> {
         let mut seen = self.kept.iter().flat_map(|(_, seen)| seen).flatten();
         let notes = [
             (self.read == 1).then(|| {
-                "The trajectory has one frame: run.snapshot_every says how many there are.".to_owned()
+                "The trajectory has only one frame; a smaller run.snapshot_every writes more.".to_owned()
             }),
             (self.stride > 1)
-                .then(|| format!("One of {} of its {} frames is shown.", self.stride, self.read)),
-            (cast.every > 1).then(|| format!("One of {} particles is shown.", cast.every)),
+                .then(|| format!("Shows one of every {} frames, of {}.", self.stride, self.read)),
+            (cast.every > 1).then(|| format!("Shows one of every {} particles.", cast.every)),
             seen.any(|seen| seen.position[2] != 0.0)
                 .then(|| "Seen along z: x to the right, y upwards.".to_owned()),
-            is_of_points
-                .then(|| "Bodies have no size; the dots are as large as they must be to be seen.".to_owned()),
-            (beyond > 0.0).then(|| format!("Beyond the picture: {:.1} % of all places.", 100.0 * beyond)),
+            is_of_points.then(|| "Bodies have no size; the dots are enlarged.".to_owned()),
+            (beyond > 0.0).then(|| {
+                format!("Outside the picture: {} % of all positions.", significant(100.0 * beyond, 2))
+            }),
             film.sides
                 .iter()
                 .any(|side| side.is_periodic)
-                .then(|| "Dashed: periodic sides; what leaves there comes in at the other.".to_owned()),
+                .then(|| "Dashed lines: periodic sides.".to_owned()),
         ];
         notes.into_iter().flatten().collect()
     }
 }
 
-/// The sides of the box that are within a window.
+/// Sides of the box that lie within a window.
 fn sides(frame: &Frame, bounds: [[f64; 2]; 2], [corner, end]: [[f64; 2]; 2]) -> Vec<Side> {
     let mut sides = vec![];
     for axis in [0, 1] {

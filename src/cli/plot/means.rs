@@ -1,24 +1,24 @@
-//! The means of a run on the charts of its observables: a ribbon from the end of the transient on, and what came before it.
+//! Means on the charts of observables: a ribbon after the transient, and a band over the transient.
 
 use crate::report::figure::{Band, Series, Style};
 use stripmine_physics::averages::{Average, Averages, Estimate, Outcome, Rows};
 use stripmine_physics::method::{Kind, Methods, observer};
 use stripmine_physics::number::{significant, with_bar};
 
-/// What ribbons are, in the legend.
-pub(super) const RIBBON: &str = "mean ± 95 %, from the end of the transient on";
-/// What comes before all of them, there.
-pub(super) const BEFORE: &str = "transient: not in the mean";
+/// Legend of the ribbons.
+pub(super) const RIBBON: &str = "mean ± 95 %, after the transient";
+/// Legend of the time before all ribbons.
+pub(super) const BEFORE: &str = "transient, excluded from the mean";
 
-/// The means of a run, as `average` and `summary.json` have them.
+/// Means of a run, as in `average` and `summary.json`.
 pub(super) struct Means {
     averages: Vec<Average>,
-    /// When the first and the last row were (time).
+    /// Times of the first and the last row.
     ends: [f64; 2],
 }
 
 impl Means {
-    /// Of the rows of a table, whose first column is the step; none where no method observes its columns.
+    /// Means of the rows of a table whose first column is the step; none if no method has these columns.
     pub(super) fn of(columns: &[String], rows: &[Vec<f64>], methods: Methods) -> Option<Means> {
         let method = observer(methods, columns)?;
         let mut all = Rows::new(method.quantities);
@@ -32,7 +32,7 @@ impl Means {
         self.averages.iter().find(|average| average.quantity == name)
     }
 
-    /// The mean of a column's values; none where there is none, or where it is of the column's rate.
+    /// Mean of a column's values; none without a mean, or if it is a rate.
     fn drawn(&self, name: &str) -> Option<&Estimate> {
         match self.of_column(name)? {
             Average { of: "rate", .. } => None,
@@ -41,39 +41,54 @@ impl Means {
         }
     }
 
-    /// The means of some columns, each with the hue of its curve.
+    /// Ribbons of some columns, each with the hue of its curve.
     pub(super) fn ribbons(&self, names: &[&str]) -> Vec<Series> {
         let estimates = names.iter().enumerate().filter_map(|(hue, name)| Some((hue, self.drawn(name)?)));
         let ribbon = |(place, (hue, it)): (usize, (usize, &Estimate))| {
             let spread = [it.mean - it.bar, it.mean + it.bar];
             let points = [it.equilibrated_at, self.ends[1]].map(|time| (time, it.mean, spread));
-            // One entry of the legend is for all of them.
+            // All ribbons share one entry of the legend.
             Series::new(if place == 0 { RIBBON } else { "" }, Style::Ribbon, hue, points)
         };
         estimates.enumerate().map(ribbon).collect()
     }
 
-    /// What comes before every mean of some columns; none where a mean begins at the start.
+    /// Band over the time before every mean of some columns; none if a mean begins at the start.
     pub(super) fn before(&self, names: &[&str]) -> Option<Band> {
         let cuts = names.iter().filter_map(|name| Some(self.drawn(name)?.equilibrated_at));
         let first = cuts.reduce(f64::min)?;
         (first > self.ends[0]).then(|| Band::of_x(BEFORE, [self.ends[0], first]))
     }
 
-    /// What there is to be said of a column's mean, in a few words.
+    /// Mean of a column with its error, or one or two words on why there is none.
+    pub(super) fn short(&self, name: &str) -> String {
+        self.of_column(name).map_or_else(String::new, |average| match &average.outcome {
+            Outcome::Mean(Estimate { mean, bar, .. }) if average.of == "rate" => {
+                format!("rate {}", with_bar(*mean, *bar))
+            }
+            Outcome::Mean(Estimate { mean, bar, .. }) => with_bar(*mean, *bar),
+            Outcome::Constant { .. } => "constant".to_owned(),
+            Outcome::TooShort { .. } => "too short".to_owned(),
+            Outcome::Changing { .. } => "changing".to_owned(),
+            Outcome::Undefined => "undefined".to_owned(),
+            Outcome::Kept { .. } => String::new(),
+        })
+    }
+
+    /// Short description of a column's mean.
     pub(super) fn words(&self, name: &str) -> Option<String> {
         let average = self.of_column(name)?;
         let rate = if average.of == "rate" { "rate " } else { "" };
-        // A mean and its bar stay in one line.
+        // Non-breaking blanks keep a mean and its error bar on one line.
         let whole = |text: String| text.replace(' ', "\u{a0}");
         Some(match &average.outcome {
             Outcome::Mean(Estimate { mean, bar, .. }) => format!("{rate}{}", whole(with_bar(*mean, *bar))),
             Outcome::Constant { mean } => format!("{rate}always {}", significant(*mean, 6)),
             Outcome::TooShort { enough_at, .. } => {
-                format!("too short for a mean, until about time {}", significant(*enough_at, 2))
+                format!("run too short for a mean, needs time {}", significant(*enough_at, 2))
             }
             Outcome::Changing { .. } => "still changing, no mean".to_owned(),
-            Outcome::Undefined => "not defined in some rows, no mean".to_owned(),
+            Outcome::Undefined => "undefined in some rows, no mean".to_owned(),
             Outcome::Kept { .. } => return None,
         })
     }

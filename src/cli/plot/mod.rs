@@ -1,4 +1,4 @@
-//! `stripmine plot`: a run to look at, without another program.
+//! `stripmine plot`: pictures and films of a run.
 
 mod colouring;
 mod film;
@@ -8,8 +8,9 @@ mod particles;
 mod structure;
 mod window;
 
+use super::display::{UnitSystem, scene_of};
 use super::run_folder;
-use crate::console::{Common, Failure, print, print_json, say};
+use crate::console::{Common, Failure, print, print_json, warn};
 use crate::report::figure::{Figure, png, svg};
 use crate::report::{html, terminal};
 use clap::Args;
@@ -25,37 +26,39 @@ use stripmine_physics::io::owned_folder::{FolderKind, Holds, LOCK, OwnedFolder};
 use stripmine_physics::method::Methods;
 use stripmine_physics::quoted;
 
-/// A run to look at: its observables over time with their means, its structure, its last state and the density along a long box as pictures, and small in the terminal; as a film on request
+/// Plots a run: observables, structure functions and last state
+///
+/// Writes SVG and PNG files and prints small curves to the terminal. A long box also gets its density over time.
 #[derive(Args)]
 pub(super) struct PlotVerb {
-    /// The folder of a run
+    /// Folder of a run
     run: PathBuf,
-    /// Columns of thermo.csv, with commas between them; all that change by default
+    /// Columns of thermo.csv, separated by commas; default: all that change
     #[arg(long, value_delimiter = ',')]
     columns: Vec<String>,
-    /// Meaning of the particles' colours: their speed, or which body is which of up to six with tracks, where this is left out
+    /// Colours the particles by this quantity; default: speed, or one colour each for up to six bodies with tracks
     #[arg(long, value_parser = PossibleValuesParser::new(Colouring::possible_values()))]
     color: Option<String>,
-    /// Also a film of the trajectory: film.html, one page to be opened in a browser, which needs nothing else
+    /// Also writes a film of the trajectory: film.html, a self-contained page for a browser
     #[arg(long)]
     film: bool,
-    /// Folder for the pictures; the run's name with `.plots` by default
+    /// Folder for the pictures; default: RUN.plots
     #[arg(long)]
     out: Option<PathBuf>,
-    /// Write also over files of the pictures' names that this command did not write
+    /// Overwrites files of the same names even if this command did not write them
     #[arg(long)]
     overwrite: bool,
 }
 
-/// The film of a run.
+/// File name of a film.
 const FILM: &str = "film.html";
-/// A folder of pictures.
+/// Kind of a folder of pictures.
 const PICTURES: FolderKind = FolderKind {
     lock: LOCK,
     list: "plot.files",
     holds: Holds::Files { heading: "stripmine plot.files 1", is_own: is_picture, is_shared: true },
 };
-/// Longest name of a picture (characters), its kind and number left out.
+/// Longest name of a picture (characters), without extension and number.
 const LONGEST_NAME: usize = 80;
 
 impl PlotVerb {
@@ -63,13 +66,14 @@ impl PlotVerb {
         let run = run_folder(&self.run);
         let table = Observed::read(&run.join("thermo.csv"), methods)?;
         let wanted = table.wanted(&self.columns, methods)?;
-        let mut figures = table.figures(&wanted);
-        figures.extend(structure::figures(&run)?);
+        let units = UnitSystem::of(scene_of(&run).as_ref());
+        let mut figures = table.figures(&wanted, &units);
+        figures.extend(structure::figures(&run, &units)?);
         let colours = Colours::new(self.color.as_deref(), &run, methods);
         match particles::pictures(&run, &colours) {
             Ok(pictures) => figures.extend(pictures),
             Err(PictureError::Colouring(error)) => return Err(error.into()),
-            Err(why) if !common.quiet => say(format_args!("the particles are not drawn: {why}")),
+            Err(why) if !common.quiet => warn(format_args!("the particles are not drawn: {why}")),
             Err(_) => {}
         }
         let out = self.out.clone().unwrap_or_else(|| {
@@ -99,31 +103,31 @@ impl PlotVerb {
         }
         let mut small = table.small(&wanted, &out);
         if self.film {
-            small = small.note(format!("film: {}, to be opened in a browser", quoted::path(&out.join(FILM))));
+            small = small.note(format!("film for a browser: {}", quoted::path(&out.join(FILM))));
         }
         print(&terminal::render(&small))
     }
 }
 
-/// Whether a picture or a film may be called so.
+/// Returns true if the name can be that of a picture or a film.
 fn is_picture(name: &str) -> bool {
     name == FILM || [".svg", ".png"].iter().any(|end| name.ends_with(end))
 }
 
-/// A picture in both forms; none where it cannot be drawn, which is said.
+/// Draws a picture as SVG and PNG; warns and returns none if it cannot be drawn.
 fn drawn(figure: &Figure, common: &Common) -> Result<Option<(String, Vec<u8>)>, Failure> {
     match svg(figure).and_then(|vector| Ok((vector, png(figure)?))) {
         Ok(pictures) => Ok(Some(pictures)),
         Err(why) => {
             if !common.quiet {
-                say(format_args!("{} is not drawn: {why}", quoted::quoted(&figure.title)));
+                warn(format_args!("{} is not drawn: {why}", quoted::quoted(&figure.title)));
             }
             Ok(None)
         }
     }
 }
 
-/// A file's name for a picture's, which may come from the heading of a file: letters, digits and hyphens, and none twice.
+/// Unique file name for a picture: letters, digits and hyphens. Names of pictures can come from the header of a file.
 fn file_name(name: &str, taken: &mut BTreeSet<String>) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
     let short: String = name.chars().map(plain).take(LONGEST_NAME).collect();

@@ -1,6 +1,7 @@
-//! The observables of a run: `thermo.csv` as charts, and a line for each in the terminal.
+//! Observables of a run: `thermo.csv` as charts, and one line for each in the terminal.
 
 use super::means::Means;
+use crate::cli::display::UnitSystem;
 use crate::frame::{Rows, Table};
 use crate::report::figure::{Axis, Chart, Figure, Series, Style};
 use crate::statistics::quantile;
@@ -13,30 +14,31 @@ use stripmine_physics::reported::{Class, Reported};
 use stripmine_physics::run::{TableError, TableReader};
 use stripmine_physics::words::suggestion;
 
-/// Curves of a picture: more cannot be told apart.
+/// Most curves of a chart that can be told apart.
 const CURVES: usize = 5;
-/// A curve whose own range is a smaller part of its chart's than this is a line.
+/// Least range of a curve relative to its chart; below it the curve looks like a straight line.
 const FLAT: f64 = 0.2;
-/// A curve's range is that without this part of its values at either end: a short peak fills no chart.
+/// Fraction of the values ignored at either end of a curve's range, so that a short peak does not fill the chart.
 const PEAKS: f64 = 0.05;
-/// Points of a curve: more cannot be seen.
+/// Most points of a curve.
 const POINTS: usize = 2000;
-/// Characters of a curve in the terminal.
-const SMALL: usize = 40;
-/// Digits of a value in the terminal.
-const DIGITS: usize = 5;
-/// Why there are no curves.
+/// Length of a curve in the terminal (characters): a row fits into 80 columns.
+const SMALL: usize = 16;
+/// Significant digits of a value in the terminal.
+const DIGITS: usize = 4;
+
+/// Errors of reading observables.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum ObservedError {
     /// No column of that name.
-    #[error("there is no column {}; these are: {}{}", quoted(name), known.join(", "), suggestion(name, known.iter().map(String::as_str)))]
+    #[error("unknown column {}; expected one of: {}{}", quoted(name), known.join(", "), suggestion(name, known.iter().map(String::as_str)))]
     NoColumn {
-        /// What was asked for.
+        /// The requested column.
         name: String,
-        /// What there is.
+        /// The columns of the table.
         known: Vec<String>,
     },
-    /// The table.
+    /// The table cannot be read.
     #[error(transparent)]
     Table(#[from] TableError),
 }
@@ -57,21 +59,21 @@ impl Reported for ObservedError {
     }
 }
 
-/// `thermo.csv`.
+/// Contents of `thermo.csv`.
 pub(super) struct Observed {
     columns: Vec<String>,
     rows: Vec<Vec<f64>>,
-    /// None of a table of no method of this version.
+    /// Means of the columns; none if no method of this version has them.
     means: Option<Means>,
 }
 
-/// Curves that share a chart: each column with its range.
+/// Curves of one chart: each column with its range.
 struct Group {
     curves: Vec<(usize, [f64; 2])>,
 }
 
 impl Group {
-    /// Whether one more curve is none too many, and neither it nor one of the others becomes a line.
+    /// Returns true if one more curve fits, and every curve keeps a visible range.
     fn has_room_for(&self, ends: [f64; 2]) -> bool {
         let all = || self.curves.iter().map(|(_, ends)| *ends).chain([ends]);
         let low = all().map(|[low, _]| low).fold(f64::INFINITY, f64::min);
@@ -84,7 +86,7 @@ impl Group {
     }
 }
 
-/// A column that is asked for, with what is known of it.
+/// Requested column with its unit.
 pub(super) struct Wanted {
     column: usize,
     unit: &'static str,
@@ -139,8 +141,8 @@ impl Observed {
         names.iter().map(find).collect()
     }
 
-    /// Pictures of a few curves at most, all of one unit, none of which is a line on the scale of the others.
-    pub(super) fn figures(&self, wanted: &[Wanted]) -> Vec<Figure> {
+    /// Charts of a few curves each, all of one unit and of similar range.
+    pub(super) fn figures(&self, wanted: &[Wanted], system: &UnitSystem) -> Vec<Figure> {
         let mut units: BTreeMap<&str, Vec<Group>> = BTreeMap::new();
         for it in wanted {
             let ends = self.ends(it.column);
@@ -151,19 +153,20 @@ impl Observed {
             }
         }
         let of = |(unit, groups): (&str, Vec<Group>)| -> Vec<Figure> {
-            groups.iter().map(|group| self.figure(unit, &group.columns())).collect()
+            let unit = system.symbol(unit);
+            groups.iter().map(|group| self.figure(&unit, &group.columns(), system)).collect()
         };
         units.into_iter().flat_map(of).collect()
     }
 
-    /// The range of a column.
+    /// Range of a column, short peaks excluded.
     fn ends(&self, column: usize) -> [f64; 2] {
         let mut values: Vec<f64> = self.column(column).collect();
         values.sort_by(f64::total_cmp);
         [PEAKS, 1.0 - PEAKS].map(|part| quantile(&values, part).unwrap_or(0.0))
     }
 
-    fn figure(&self, unit: &str, columns: &[usize]) -> Figure {
+    fn figure(&self, unit: &str, columns: &[usize], system: &UnitSystem) -> Figure {
         let names: Vec<String> = columns.iter().map(|&column| quoted(&self.columns[column])).collect();
         let every = self.rows.len().div_ceil(POINTS);
         let time = self.time();
@@ -181,8 +184,9 @@ impl Observed {
             Series::new(said.clone(), Style::Line, hue, points)
         });
         let label = if let [name] = words.as_slice() { name } else { "value" };
+        let [_, of_time] = system.at_axes();
         let chart = Chart::of(
-            Axis::linear("time", Some("the scene's unit")),
+            Axis::linear("time", Some(of_time.as_str())),
             Axis::linear(label, (!unit.is_empty()).then_some(unit)),
         )
         .with(series);
@@ -193,31 +197,33 @@ impl Observed {
             .fold(chart.with(ribbons), Chart::band)
             .figure(names.join("-").replace('_', "-"), words.join(", "))
             .caption(format!(
-                "Of thermo.csv, with means and their 95 % intervals as of `average`. {}.",
+                "From thermo.csv, with means and 95 % intervals as in `average`. {}.",
                 said.join("; ")
             ))
     }
 
-    /// What there is to be said of a column's mean.
+    /// Short description of a column's mean.
     fn mean_of(&self, column: usize) -> Option<String> {
         self.means.as_ref()?.words(&self.columns[column])
     }
 
-    /// Every column in a line: first, last, mean, and its course.
+    /// Table with a row for each column: first, last, mean and curve.
     pub(super) fn small(&self, wanted: &[Wanted], out: &Path) -> Table {
         let number = |value: Option<f64>| value.map_or(String::new(), |value| significant(value, DIGITS));
         Rows::of(wanted)
             .text("quantity", |it| quoted(&self.columns[it.column]))
             .text("first", |it| number(self.column(it.column).next()))
             .text("last", |it| number(self.column(it.column).last()))
-            .text("mean ± 95 %", |it| self.mean_of(it.column).unwrap_or_default().replace('\u{a0}', " "))
-            .text("course", |it| course(&self.column(it.column).collect::<Vec<_>>()))
-            .table("plot", "The run")
-            .note(format!("pictures in {}", quoted::path(out)))
+            .text("mean ± 95 %", |it| {
+                self.means.as_ref().map_or_else(String::new, |means| means.short(&self.columns[it.column]))
+            })
+            .text("curve", |it| course(&self.column(it.column).collect::<Vec<_>>()))
+            .table("plot", "Observables over time")
+            .note(format!("pictures: {}", quoted::path(out)))
     }
 }
 
-/// A curve of a few characters, from the smallest to the largest value.
+/// Curve of a few block characters, scaled from the smallest to the largest value.
 fn course(values: &[f64]) -> String {
     const STEPS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
@@ -240,7 +246,7 @@ mod tests {
     fn a_course_goes_from_the_smallest_to_the_largest() {
         assert_eq!(course(&[0.0, 1.0, 2.0, 4.0]), "▁▃▅█");
         assert_eq!(course(&[3.0]), "▁");
-        assert_eq!(course(&[1.0; 100]).chars().count(), 40);
+        assert_eq!(course(&[1.0; 100]).chars().count(), SMALL);
     }
 
     #[test]
@@ -249,9 +255,11 @@ mod tests {
         let row = |t: f64| vec![t, 680.0 * t, 0.7 * t, 200.0 * t, 1e-15 * t, 2e-15 * t, 1e9 + 300.0 * t];
         let observed = Observed { columns: columns.to_vec(), rows: vec![row(0.0), row(1.0)], means: None };
         let wanted: Vec<Wanted> = (1..7).map(|column| Wanted { column, unit: "energy" }).collect();
-        let names: Vec<String> = observed.figures(&wanted).into_iter().map(|figure| figure.name).collect();
+        let system = UnitSystem::Other("reduced".to_owned());
+        let figures = observed.figures(&wanted, &system);
+        let names: Vec<String> = figures.into_iter().map(|figure| figure.name).collect();
         assert_eq!(names, ["kinetic-elastic", "temperature", "px-py", "far"]);
-        // Small numbers have digits in the terminal.
+        // Small numbers keep their significant digits in the terminal.
         let small = observed.small(&wanted, Path::new("out"));
         assert_eq!(small.rows[3][2], Cell::Text("1e-15".to_owned()));
     }

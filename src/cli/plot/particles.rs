@@ -1,62 +1,62 @@
-//! Pictures of the particles of a run: its last state, and, where the box is long, the density along it over time.
+//! Pictures of the particles of a run: its last state and, in a long box, the density along it over time.
 
-use super::colouring::{ColouringError, Colours, Units, units};
+use super::colouring::{ColouringError, Colours};
 use super::window;
+use crate::cli::display::{UnitSystem, scene_of};
 use crate::report::figure::{Axis, Drawing, Figure, Guide, Map, Picture, Shape, Tint};
 use std::path::Path;
 use stripmine_physics::io::extxyz::Frame;
-use stripmine_physics::io::regular_file;
 use stripmine_physics::io::trajectory::{Trajectory, TrajectoryError};
 use stripmine_physics::number::significant;
 
-/// Particles of a picture: more cannot be seen, and files would be large.
+/// Most particles of a picture; more cannot be seen, and files would be large.
 pub(super) const SHOWN: usize = 20_000;
-/// Rows of a map: more cannot be seen.
+/// Most rows of a map.
 const ROWS: usize = 160;
-/// A box that is this many times as long as wide has a density along it.
+/// Least aspect ratio of a box whose density is drawn.
 const LONG: f64 = 4.0;
-/// Bins along it: a slice of each has about this many mean diameters, as in the pictures of BP93's pipe.
+/// Width of a density bin in mean diameters, as in the figures of BP93's pipe.
 const BIN: f64 = 2.5;
 
-/// Bodies up to which the places of earlier frames are shown too.
+/// Most bodies for which earlier positions are drawn.
 const TRACED: usize = 12;
-/// Bodies up to which each has a colour of its own.
+/// Most bodies that get individual colours.
 const TOLD_APART: usize = 6;
-/// Places of earlier frames, at most.
+/// Most earlier positions drawn.
 const TRACES: usize = 5000;
-/// Width of a picture, and of one that is much wider than high (pixels).
+/// Width of a picture, and of a very wide one (pixels).
 pub(super) const WIDTH: f64 = 720.0;
 const WIDE: f64 = 1800.0;
-/// Least radius of a particle; radius of one of a few bodies, which have none, and of where it was (pixels).
+/// Radius of the smallest particle, of one of a few point bodies, and of an earlier position (pixels).
 const LEAST: f64 = 1.0;
 const LARGE_POINT: f64 = 9.0;
 const TRACE: f64 = 1.6;
-/// Thickness of the tracks of bodies that are told apart, in grey print too (parts of the usual one).
+/// Relative thickness of the tracks of coloured bodies, distinguishable in grey print too.
 const THICKNESS: [f64; 3] = [1.0, 0.5, 1.5];
-/// Letters of a run's name in a title, at most.
+/// Most characters of a run's name in a title.
 const NAMED: usize = 60;
 
-/// Radius of one of some bodies (pixels): the more, the smaller, for a dense core is to be seen in a halo.
+/// Radius of a point body (pixels). It shrinks with the number of bodies, so that a dense core is visible in a halo.
 pub(super) fn point(bodies: usize) -> f64 {
     let shrunk = 2.5 * (1000.0 / bodies as f64).sqrt();
     if bodies <= TRACED { LARGE_POINT } else { shrunk.clamp(1.7, 2.5) }
 }
 
-/// Why there are no pictures.
+/// Errors of drawing particles.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum PictureError {
     /// The trajectory cannot be read.
     #[error(transparent)]
     Trajectory(#[from] TrajectoryError),
-    /// Its particles have no such colours.
+    /// The particles cannot be coloured this way.
     #[error(transparent)]
     Colouring(#[from] ColouringError),
 }
 
-/// The pictures of a trajectory. Gravity is that of the run's scene, if the scene can be read.
+/// Pictures of a trajectory. The direction of gravity comes from the run's scene, if it can be read.
 ///
 /// # Errors
-/// If the trajectory cannot be read, or its particles cannot be coloured so.
+/// If the trajectory cannot be read, or its particles cannot be coloured this way.
 pub(super) fn pictures(run: &Path, colours: &Colours) -> Result<Vec<Figure>, PictureError> {
     let (mut last, mut slices, mut tracks) = (None, vec![], vec![]);
     for frame in Trajectory::open(run)? {
@@ -68,7 +68,7 @@ pub(super) fn pictures(run: &Path, colours: &Colours) -> Result<Vec<Figure>, Pic
         last = Some(frame);
     }
     let Some(last) = last else { return Ok(vec![]) };
-    let scene = scene(run);
+    let scene = scene_of(run);
     let every = (tracks.len() * last.particles.len()).div_ceil(TRACES).max(1);
     let traces = tracks.into_iter().step_by(every).flatten().collect::<Vec<_>>();
     let has_depth = last.particles.all().iter().any(|particle| particle.position[2] != 0.0);
@@ -84,52 +84,43 @@ pub(super) fn pictures(run: &Path, colours: &Colours) -> Result<Vec<Figure>, Pic
     Ok(states.chain(density(&name, &last, scene.as_ref(), &slices)).collect())
 }
 
-/// What the shades of particles say.
+/// Shades of the particles.
 struct Shades {
-    /// A value for each grain.
+    /// Values of the grains.
     values: Vec<f64>,
-    /// Those of the lowest and the highest shade.
+    /// Values of the lowest and the highest shade.
     ends: [f64; 2],
     quantity: &'static str,
     label: String,
-    /// Set if each particle has a colour of its own instead.
+    /// True if each particle has an individual colour instead.
     tells_apart: bool,
 }
 
-/// From where particles are seen.
+/// Direction of view.
 #[derive(Clone, Copy, PartialEq)]
 enum View {
-    /// They lie in it.
+    /// Particles in a plane.
     Plane,
-    /// Bodies in space.
+    /// Bodies in space, from above.
     AlongZ,
-    /// The same from the side.
+    /// Bodies in space, from the side.
     AlongY,
 }
 
 impl View {
-    /// The coordinates to the right and upwards.
+    /// Axes drawn to the right and upwards.
     fn axes(self) -> [usize; 2] {
         if self == View::AlongY { [0, 2] } else { [0, 1] }
     }
 }
 
-/// Longer than any scene (bytes).
-const LONGEST_SCENE: u64 = 1 << 24;
-
-/// The scene of a run.
-pub(super) fn scene(run: &Path) -> Option<toml::Table> {
-    let text = regular_file::read(&run.join("scene.toml"), LONGEST_SCENE).ok()?;
-    String::from_utf8(text).ok()?.parse().ok()
-}
-
-/// Which way gravity pulls in a run.
+/// Gravity of a scene; none if it is zero.
 fn gravity(scene: &toml::Table) -> Option<[f64; 2]> {
     let [x, y] = window::pair(scene, "gravity")?;
     ([x, y] != [0.0, 0.0]).then_some([x, y])
 }
 
-/// The particles of a frame with their shades.
+/// Picture of the particles of a frame.
 fn state(
     name: &str,
     frame: &Frame,
@@ -146,7 +137,7 @@ fn state(
     let bounds = window::bounds(frame, scene, traces, axes);
     let [[x, x_end], [y, y_end]] = window::shown(frame, traces, axes, bounds);
     let (width, height) = (x_end - x, y_end - y);
-    // A tall box lies down, its upper end to the left.
+    // A tall box is drawn lying, its upper end to the left.
     let lies = height > LONG * width;
     let place = |[a, b]: [f64; 2]| if lies { [y_end - b, a - x] } else { [a, b] };
     let window = if lies { [[0.0, 0.0], [height, width]] } else { [[x, y], [x_end, y_end]] };
@@ -155,7 +146,7 @@ fn state(
     let is_point = window::is_of_points(frame, bounds);
     let radius = |of: f64| if is_point { point(all.len()) * pixel } else { of.max(LEAST * pixel) };
     let (across, up) = (x..=x_end, y..=y_end);
-    // What is beyond the window would be drawn over the words around it.
+    // Shapes outside the window would cover the labels around it.
     let upright = bounds[0].into_iter().filter(|at| across.contains(at)).map(|at| [[at, y], [at, y_end]]);
     let level = bounds[1].into_iter().filter(|at| up.contains(at)).map(|at| [[x, at], [x_end, at]]);
     let walls = upright.chain(level).map(|ends| Shape::Line { ends: ends.map(place) });
@@ -169,7 +160,7 @@ fn state(
         let radius = TRACE * THICKNESS[hue % THICKNESS.len()] * pixel;
         Shape::Disc { centre: place(flat(trace)), radius, tint: Tint::Hue(hue) }
     });
-    // Grains come before walls, and have values.
+    // Grains come before walls; only grains have values.
     let seen = || all.iter().enumerate().step_by(every).filter(|(_, particle)| is_inside(particle.position));
     let shade = |value: &f64| Tint::Shade(((value - low) / (high - low)).clamp(0.0, 1.0));
     let shapes = seen().map(|(at, particle)| Shape::Disc {
@@ -183,9 +174,9 @@ fn state(
         words: particle.id.to_string(),
     });
     let outside = all.iter().filter(|particle| !is_inside(particle.position)).count();
-    let [of_length, of_time] = match units(scene) {
-        Units::Si => ["m", " s"],
-        Units::Other(_) => ["", ""],
+    let [of_length, of_time] = match UnitSystem::of(scene) {
+        UnitSystem::Si => ["m", " s"],
+        UnitSystem::Other(_) => ["", ""],
     };
     let time = format!("time {}{of_time}", significant(frame.time, 6));
     let mut title = match *tells_apart {
@@ -201,21 +192,21 @@ fn state(
         title.push_str("; there are none");
     }
     if !traces.is_empty() && !tells_apart {
-        title.push_str("; small dots: where they were");
+        title.push_str("; small dots: earlier positions");
     }
     if outside > 0 {
-        title.push_str(&format!("; {outside} of {} are farther out", all.len()));
+        title.push_str(&format!("; {outside} of {} outside the picture", all.len()));
     }
     let is_cut = |[low, high]: [f64; 2], [from, to]: [f64; 2]| {
         low.is_finite() && high.is_finite() && (from > low || to < high)
     };
     if is_cut(bounds[0], [x, x_end]) || is_cut(bounds[1], [y, y_end]) {
-        title.push_str("; the rest of the box is empty, or almost");
+        title.push_str("; the rest of the box is almost empty");
     }
     if every > 1 {
-        title.push_str(&format!("; one of {every} is shown"));
+        title.push_str(&format!("; one of every {every} is shown"));
     }
-    let traced = if traces.is_empty() { "" } else { " Small: where they were in earlier frames." };
+    let traced = if traces.is_empty() { "" } else { " Small dots: positions in earlier frames." };
     Picture::Drawing(Drawing {
         window,
         width: pixels,
@@ -233,7 +224,7 @@ fn state(
     .caption(if *tells_apart { traced.trim().to_owned() } else { format!("Shade: {label}.{traced}") })
 }
 
-/// Grains in slices across a long box, from its lower or left end; none where no side is much the longest.
+/// Numbers of grains in slices along a long box, from its lower or left end; none if no side is much longer than the other.
 fn slice(frame: &Frame) -> Option<Vec<f64>> {
     let [width, height] = frame.cell;
     let side = if width > LONG * height { 0 } else { 1 };
@@ -251,7 +242,7 @@ fn slice(frame: &Frame) -> Option<Vec<f64>> {
     Some(counts)
 }
 
-/// The density along a long box over time.
+/// Map of the density along a long box over time.
 fn density(
     name: &str,
     last: &Frame,
@@ -269,7 +260,7 @@ fn density(
     let rows = slices.iter().step_by(stride).map(|(_, counts)| counts.iter().map(|it| it / mean).collect());
     let [width, height] = last.cell;
     let (side, way) = if width > height { (0, "x") } else { (1, "y") };
-    let [of_length, of_time] = units(scene).at_axes();
+    let [of_length, of_time] = UnitSystem::of(scene).at_axes();
     let axis = |label: &str, unit: &str, ends| Axis::linear(label, Some(unit)).between(ends);
     Some(
         Picture::Map(Map {
@@ -279,6 +270,6 @@ fn density(
             rows: rows.collect(),
         })
         .figure("density-map", format!("{name}: density along the box over time"))
-        .caption(format!("Grains in {bins} slices across the box, over their mean.")),
+        .caption(format!("Number of grains in {bins} slices along the box, relative to the mean.")),
     )
 }

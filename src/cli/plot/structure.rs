@@ -1,29 +1,32 @@
-//! The structure that a run has summed up: a chart of each of its files, with the bars, or a map where it is one of places.
+//! Structure functions of a run: a chart of each file with error bars, or a map for functions of position.
 
+use crate::cli::display::UnitSystem;
 use crate::console::warn;
 use crate::report::figure::{Axis, Chart, Figure, Map, Picture, Series, Style};
 use std::path::Path;
 use stripmine_physics::run::{FinishedError, Function, Point, functions_of};
 use stripmine_physics::structure::{Observable, Over, Seen};
 
-/// A figure of each file that is there and has rows; says why there is none of another.
+/// Draws a figure of each structure file with rows, and warns about the others.
 ///
 /// # Errors
 /// As [`functions_of`].
-pub(super) fn figures(run: &Path) -> Result<Vec<Figure>, FinishedError> {
+pub(super) fn figures(run: &Path, units: &UnitSystem) -> Result<Vec<Figure>, FinishedError> {
     let functions = functions_of(std::iter::once(run))?;
     for Function { name, doubt, .. } in functions.iter().filter(|function| function.points.is_empty()) {
         doubt.iter().for_each(|doubt| warn(format_args!("{name}: {doubt}")));
     }
-    Ok(functions.iter().filter(|function| !function.points.is_empty()).filter_map(figure).collect())
+    let functions = functions.iter().filter(|function| !function.points.is_empty());
+    Ok(functions.filter_map(|function| figure(function, units)).collect())
 }
 
-fn axis([label, unit]: [&str; 2]) -> Axis {
-    Axis::linear(label, (!unit.is_empty()).then_some(unit))
+fn axis([label, unit]: [&str; 2], units: &UnitSystem) -> Axis {
+    Axis::linear(label, (!unit.is_empty()).then_some(units.symbol(unit).as_str()))
 }
 
-fn figure(function: &Function) -> Option<Figure> {
+fn figure(function: &Function, units: &UnitSystem) -> Option<Figure> {
     let observable = function.observable;
+    let axis = |of: [&str; 2]| axis(of, units);
     let name = observable.file.trim_end_matches(".csv").to_owned();
     let figure = match *observable.over {
         [over] => {
@@ -38,11 +41,14 @@ fn figure(function: &Function) -> Option<Figure> {
                 let number = move |point: &Point| Some(point.over[axis]).filter(|number| *number > 0.0);
                 series(function, ["along x", "along y"][axis], axis, number)
             });
-            Chart::of(Axis::linear("k", Some("1/length")), axis(observable.value))
+            Chart::of(axis(["k", "1/length"]), axis(observable.value))
                 .with(along.into_iter().filter(|series| !series.points.is_empty()))
                 .figure(name, observable.name.to_owned())
         }
-        [x, y] => map(function, [axis(x), axis(y)])?.figure(name, observable.name.to_owned()),
+        [x, y] => {
+            let axes = [x, y, observable.value].map(axis);
+            map(function, axes)?.figure(name, observable.name.to_owned())
+        }
         _ => return None,
     };
     Some(match &function.doubt {
@@ -51,12 +57,12 @@ fn figure(function: &Function) -> Option<Figure> {
     })
 }
 
-/// Whether a function is over wave vectors.
+/// Returns true for functions of wave vectors.
 fn is_of_waves(observable: &Observable) -> bool {
     matches!(observable.seen, Seen::Once { over: Over::Waves, .. })
 }
 
-/// The points of a function that have a coordinate, with their bars where these are known.
+/// Points of a function that have a coordinate, with their error bars if known.
 fn series(function: &Function, name: &str, hue: usize, of: impl Fn(&Point) -> Option<f64>) -> Series {
     let point = |point: &Point| {
         let bar = if point.bar.is_nan() { 0.0 } else { point.bar };
@@ -65,8 +71,8 @@ fn series(function: &Function, name: &str, hue: usize, of: impl Fn(&Point) -> Op
     Series::new(name, Style::Joined, hue, function.points.iter().filter_map(point).collect::<Vec<_>>())
 }
 
-/// A function of places on a whole grid, which it has row by row; none where some of its cells are missing.
-fn map(function: &Function, [x, y]: [Axis; 2]) -> Option<Picture> {
+/// Map of a function of position, stored row by row on a grid; none if cells are missing.
+fn map(function: &Function, [x, y, value]: [Axis; 3]) -> Option<Picture> {
     let points = &function.points;
     let first = points.first()?;
     let columns = points.iter().take_while(|point| point.over[1] == first.over[1]).count();
@@ -81,7 +87,7 @@ fn map(function: &Function, [x, y]: [Axis; 2]) -> Option<Picture> {
     Some(Picture::Map(Map {
         x: x.between(ends(0, 1)),
         y: y.between(ends(1, columns)),
-        value: axis(function.observable.value),
+        value,
         rows: points.chunks(columns).map(|row| row.iter().map(|point| point.mean).collect()).collect(),
     }))
 }

@@ -1,44 +1,44 @@
-//! What of a box, or of space, a picture of particles shows: little of it is empty.
+//! Window of a picture of particles: the part of a box, or of space, that contains almost all of them.
 
 use crate::statistics::quantile;
 use stripmine_physics::io::extxyz::Frame;
 
-/// Of many particles a few far away do not decide what is seen: these parts of all may lie beyond each end, in a box and in space.
+/// Fractions of many particles that may lie outside each end of the window, in a box and in space.
 const BEYOND: [f64; 2] = [0.01, 0.025];
-/// From this number on there are many.
+/// Largest number of particles that are all shown.
 const MANY: usize = 100;
-/// Around what is shown of them (parts of its length).
+/// Margin around the particles, relative to their extent.
 const AROUND: f64 = 0.1;
-/// A box is shown whole where particles take up this part of its length.
+/// Fraction of the box length, occupied by particles, above which the whole box is shown.
 const FULL: f64 = 0.6;
-/// A side of what is shown is at least this part of the other, and this many largest radii.
+/// Least ratio of the sides of the window, and its least side in radii of the largest particle.
 const FLATTEST: f64 = 0.25;
 const RADII: f64 = 20.0;
 
-/// Whether a frame has no box.
+/// Returns true if a frame has no box.
 pub(super) fn is_endless(frame: &Frame) -> bool {
     frame.cell.iter().any(|side| side.is_infinite())
 }
 
-/// Whether what leaves a frame's box along an axis comes in at the other side.
+/// Returns true if a frame's box is periodic along an axis.
 pub(super) fn is_periodic(frame: &Frame, axis: usize) -> bool {
     !is_endless(frame) && frame.periodic.is_none_or(|periodic| periodic[axis])
 }
 
-/// Whether the particles of a frame with these bounds are bodies, which have no size.
+/// Returns true if the particles of a frame with these bounds are bodies, which have no size.
 pub(super) fn is_of_points(frame: &Frame, bounds: [[f64; 2]; 2]) -> bool {
     is_endless(frame) && bounds.iter().all(|[low, high]| low.is_infinite() && high.is_infinite())
 }
 
-/// Two numbers of the scene's `domain`.
+/// Pair of numbers from the scene's `domain`.
 pub(super) fn pair(scene: &toml::Table, key: &str) -> Option<[f64; 2]> {
     let pair = scene.get("domain")?.get(key)?.as_array()?;
     let number = |value: &toml::Value| value.as_float().or(value.as_integer().map(|whole| whole as f64));
     Some([pair.first().and_then(number)?, pair.get(1).and_then(number)?])
 }
 
-/// The ends of the box along two axes (length); without end where there is none, or where particles of the frame or of `traces` are
-/// beyond it. A frame of a box that is open above does not say how wide it is; the scene does.
+/// Ends of the box along two axes (length); infinite without a box, or where particles of the frame or of `traces` are
+/// outside it. The width of a box that is open above is in the scene, not in the frame.
 pub(super) fn bounds(
     frame: &Frame,
     scene: Option<&toml::Table>,
@@ -55,13 +55,13 @@ pub(super) fn bounds(
         }
         let side = *pair(scene?, "sides")?.get(axis)?;
         let origin = pair(scene?, "origin").map_or(0.0, |origin| origin[axis]);
-        // What is open is so above.
+        // An open box is open above.
         Some([origin, if axis == 1 { f64::INFINITY } else { origin + side }])
     };
     axes.map(|axis| known(axis).unwrap_or(endless))
 }
 
-/// What is shown along two axes (length): all of a box, or the part of it, or of space, in which almost all particles are.
+/// Window along two axes (length): the whole box, or the part of it, or of space, with almost all particles.
 pub(super) fn shown(
     frame: &Frame,
     traces: &[[f64; 3]],
@@ -71,7 +71,7 @@ pub(super) fn shown(
     let all = frame.particles.all();
     let grains = frame.particles.grains();
     let seen = if grains.is_empty() { all } else { grains };
-    // The radius of a body is for viewers: it has none.
+    // Radii of bodies are only for viewers.
     let sizes = seen.iter().map(|particle| if is_of_points(frame, bounds) { 0.0 } else { particle.radius });
     let largest = sizes.fold(0.0, f64::max);
     let occupied = [0, 1].map(|which| {
@@ -84,7 +84,7 @@ pub(super) fn shown(
         let ends = [quantile(&places, beyond), quantile(&places, 1.0 - beyond)];
         let [Some(from), Some(to)] = ends else { return if is_boxed { [low, high] } else { [0.0, 1.0] } };
         let around = AROUND * (to - from) + 2.0 * largest;
-        // The floor is seen even where nothing lies on it.
+        // The floor is always shown.
         let from = if low.is_finite() && !is_boxed { low } else { (from - around).max(low) };
         let to = (to + around).min(high);
         if is_boxed && to - from > FULL * (high - low) { [low, high] } else { [from, to] }
@@ -94,7 +94,7 @@ pub(super) fn shown(
     let least = (FLATTEST * longest).max(RADII * largest);
     let mut shown = occupied;
     for (shown, bounds) in shown.iter_mut().zip(bounds) {
-        // A box that is flat itself is shown as it is.
+        // A flat box is shown as it is.
         if length(*shown) < least && *shown != bounds {
             let middle = shown[0].midpoint(shown[1]);
             *shown = [(middle - 0.5 * least).max(bounds[0]), (middle + 0.5 * least).min(bounds[1])];
@@ -141,7 +141,7 @@ mod tests {
         shown(&frame, &[], axes, bounds(&frame, None, &[], axes))
     }
 
-    /// A square of n by n places with sides of 10 and its corner at the origin.
+    /// Square of n × n positions with side 10 and its corner at the origin.
     fn square(n: usize) -> Vec<[f64; 3]> {
         let at = |i: usize| 10.0 * (i as f64 + 0.5) / n as f64;
         (0..n * n).map(|i| [at(i % n), at(i / n), at(i % 7)]).collect()
@@ -165,7 +165,7 @@ mod tests {
                 assert!(from > -3.0 && to < 13.0, "{from} {to}");
             }
         }
-        // On a line, alone, and none.
+        // On a line, a single body, and none.
         let [x, y] = seen(&[[0.0; 3], [4.0, 0.0, 0.0]], [f64::INFINITY; 2], [0, 1]);
         assert!(x[1] - x[0] < 6.0 && y[1] - y[0] >= 0.25 * (x[1] - x[0]) - 1e-12, "{x:?} {y:?}");
         for places in [&[][..], &[[3.0; 3]]] {
@@ -174,7 +174,7 @@ mod tests {
         }
     }
 
-    /// A picture of bodies is the same in any unit of length, whatever radius they are written with.
+    /// The picture of bodies does not depend on the unit of length or on their nominal radius.
     #[test]
     fn bodies_are_shown_at_their_own_scale() {
         let cross = [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.5, 0.0], [0.0, -1.5, 0.0]];
@@ -193,7 +193,7 @@ mod tests {
         }
     }
 
-    /// Where a disc is above the box of its frame there is no ceiling; where it leaves a periodic side, there is one.
+    /// A box is open above if a disc is above it; leaving a periodic side opens nothing.
     #[test]
     fn a_box_that_is_left_is_open() {
         let mut frame = frame(&[[5.0, 5.0, 0.0], [5.0, 12.0, 0.0]], [10.0, 10.0]);
@@ -203,7 +203,7 @@ mod tests {
         assert_eq!(box_of(&frame, &[[15.0, 5.0, 0.0]]), [[0.0, 10.0], [0.0, f64::INFINITY]]);
     }
 
-    /// A box that is open above shows its floor and what is above it; how wide it is, the scene says.
+    /// A box that is open above shows its floor; its width comes from the scene.
     #[test]
     fn an_open_box_shows_its_floor() {
         let frame = frame(&square(20), [f64::INFINITY; 2]);

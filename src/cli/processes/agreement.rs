@@ -1,21 +1,20 @@
-//! The first exchange between processes: whether all of them can begin, and do the same.
+//! First exchange between processes. It checks that all of them can begin, and that they do the same.
 //!
-//! Every process takes part in it once: before its first message where it begins something that all of them do, else at its end. So nobody waits for a process
-//! that has ended.
+//! Every process takes part once: before its first message of joint work, otherwise at its end. So no process waits for one that has ended.
 
 use super::{broken, of_rank};
 use crate::console::Failure;
 use serde::{Deserialize, Serialize};
 use stripmine_physics::ranks::{RankError, Ranks};
 
-/// The part of a process before its first message.
+/// State of a process before its first message.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) enum Part {
-    /// It begins what this text describes (scene and program).
+    /// Begins the work that this text describes (scene and program).
     Begins(String),
-    /// It has ended well without the others.
+    /// Has ended successfully without the others.
     Finished,
-    /// It cannot begin.
+    /// Cannot begin.
     Refused { code: u8, words: String },
 }
 
@@ -25,29 +24,29 @@ impl Part {
     }
 }
 
-/// The same on all processes.
+/// Verdict on all processes, the same on each.
 pub(super) enum Verdict {
-    /// All begin the same, have ended well, or fail for the same reason; or the first rank failed in what is its alone.
+    /// All begin the same work, have ended successfully, or fail for the same reason; or the first rank failed in work of its own.
     Own,
-    /// The failure with which all end.
+    /// Failure with which all end.
     Failed(Failure),
 }
 
-/// The verdict as the first rank announces it.
+/// Verdict as broadcast by the first rank.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Announced {
-    /// All have the same part.
+    /// All processes are in the same state.
     Alike,
-    /// A rank fails: the only one, where the others have ended well.
+    /// A rank fails. `alone` is true if the others have ended successfully.
     Failed { rank: usize, alone: bool, code: u8, words: String },
-    /// A rank does something else than the first one.
+    /// A rank does different work from the first one.
     Differs(usize),
 }
 
-/// The verdict on the parts of all ranks.
+/// Exchanges the states of all ranks and returns the verdict.
 ///
 /// # Errors
-/// [`RankError`]
+/// [`RankError`] if a rank is lost.
 pub(super) fn agreed(ranks: &dyn Ranks, part: Part) -> Result<Verdict, RankError> {
     let all = ranks.gather_messages(part)?;
     let announced = ranks.tell_message((ranks.rank() == 0).then(|| verdict(&all)))?;
@@ -57,14 +56,14 @@ pub(super) fn agreed(ranks: &dyn Ranks, part: Part) -> Result<Verdict, RankError
         Announced::Failed { rank, code, words, .. } => Verdict::Failed(of_rank(rank, code, &words)),
         Announced::Differs(rank) => Verdict::Failed(broken(
             format!(
-                "rank {rank} has another scene, other arguments, or another version of the program than rank 0"
+                "rank {rank} differs from rank 0 in its scene, its arguments or its version of the program"
             ),
-            "give all ranks the same arguments, the same files and the same program",
+            "start all ranks with the same arguments, files and program",
         )),
     })
 }
 
-/// The first rank that fails where not all do for the same reason, else the first that differs.
+/// Finds the first rank that fails, unless all fail for the same reason; otherwise the first that differs.
 fn verdict(all: &[Part]) -> Announced {
     let Some(differs) = all.iter().position(|part| *part != all[0]) else { return Announced::Alike };
     let refused = all.iter().enumerate().find_map(|(rank, part)| match part {
@@ -87,7 +86,7 @@ mod tests {
     use std::thread;
     use stripmine_physics::ranks::local;
 
-    /// Exit code and words of each of some ranks, for the part of each; nothing where they agree.
+    /// Exit code and message of each rank for the given states; none where they agree.
     fn outcomes(parts: &[&str]) -> Vec<Option<(u8, String)>> {
         let one = |ranks: local::Local, part: &str| {
             let failure = Failure::writing(part.to_owned())(ErrorKind::NotFound.into());
@@ -114,14 +113,14 @@ mod tests {
         for (parts, expected) in [
             (&["begins a", "begins a", "begins a"][..], None),
             (&["finished", "finished"], None),
-            // Every rank has the message itself.
+            // Every rank has its own message.
             (&["no scene", "no scene"], None),
             (&["begins a", "no scene"], Some((5, "rank 1: no scene"))),
             (&["no scene", "begins a", "begins a"], Some((5, "rank 0: no scene"))),
             (&["finished", "begins a", "no scene"], Some((5, "rank 2: no scene"))),
             (&["no scene", "no memory"], Some((5, "rank 0: no scene"))),
-            (&["begins a", "begins a", "begins b"], Some((4, "rank 2 has another scene"))),
-            (&["begins a", "finished"], Some((4, "rank 1 has another scene"))),
+            (&["begins a", "begins a", "begins b"], Some((4, "rank 2 differs from rank 0"))),
+            (&["begins a", "finished"], Some((4, "rank 1 differs from rank 0"))),
         ] {
             for outcome in outcomes(parts) {
                 let fits = match (&outcome, expected) {
@@ -133,7 +132,7 @@ mod tests {
                 assert!(fits, "{parts:?}: {outcome:?}");
             }
         }
-        // The first rank says itself what failed in a verb of its own; the others end with its exit code.
+        // The first rank reports its own failure; the others end with its exit code.
         let [first, other] = &outcomes(&["no scene", "finished"])[..] else { panic!("two ranks") };
         assert!(first.is_none() && other.as_ref().is_some_and(|(code, _)| *code == 5), "{first:?} {other:?}");
     }

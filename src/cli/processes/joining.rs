@@ -1,13 +1,13 @@
-//! Processes that join the others: MPI waits for all of them without end and without a word, also for one that has ended or was asked for something that it does alone.
+//! Joining the other processes, with a timeout. MPI waits silently and forever, also for a process that has ended or runs independently.
 
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::Duration;
 
-/// What is done after a time of waiting.
+/// Action taken after a waiting time.
 pub(super) type Act = Box<dyn FnOnce() + Send>;
 
-/// Does some work, and meanwhile, one after the other, what is to be done where it takes longer than some times.
+/// Runs `work`; while it runs, each action of `acts` is taken after its time, one after the other.
 pub(super) fn watched<T>(work: impl FnOnce() -> T, acts: Vec<(Duration, Act)>) -> T {
     let (working, ended) = channel::<()>();
     let watch = move || {
@@ -18,7 +18,7 @@ pub(super) fn watched<T>(work: impl FnOnce() -> T, acts: Vec<(Duration, Act)>) -
             act();
         }
     };
-    // Without a thread nobody watches.
+    // If no thread can be started, the work is not watched.
     let _ = thread::Builder::new().spawn(watch);
     let done = work();
     drop(working);
@@ -38,7 +38,7 @@ mod tests {
         Box::new(move || to.send(what).unwrap())
     }
 
-    /// Work that goes on until the last act has been done, and work that is done at once.
+    /// Work that lasts until the last action, and work that ends at once.
     #[test]
     fn what_takes_long_is_watched() {
         let (sender, said) = channel();

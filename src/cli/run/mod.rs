@@ -1,7 +1,8 @@
-//! `stripmine run`: one simulation into a folder, or several with seeds of their own.
+//! `stripmine run`: runs one simulation into a folder, or several with different seeds.
 
 mod seeds;
 
+use super::display::UnitSystem;
 use super::processes;
 use crate::console::{
     Common, Failure, MOST_THREADS, STEPS, bar, clear_progress, count_up_to, print, print_json, say, warn,
@@ -11,7 +12,7 @@ use crate::study::Case;
 use crate::study::explain::{Kept, tuned};
 use clap::Args;
 use std::path::{Path, PathBuf};
-use stripmine_physics::method::{Clock, Entry, Methods, Prepared, Purpose, prepare, vocabularies};
+use stripmine_physics::method::{Clock, Entry, Methods, Prepared, Purpose, StepLimit, prepare, vocabularies};
 use stripmine_physics::number::significant;
 use stripmine_physics::quoted;
 use stripmine_physics::ranks::{self, Crew};
@@ -21,38 +22,40 @@ use stripmine_physics::run::{
 use stripmine_physics::scene::Values;
 use stripmine_physics::signals;
 
-/// More ranks than any machine at hand has cores.
+/// Limit of `--ranks`, above the cores of any machine at hand.
 pub(super) const MOST_RANKS: u16 = MOST_THREADS;
-/// More seeds than folders that anyone looks at.
+/// Limit of `--seeds`.
 const MOST_SEEDS: u64 = 100_000;
 
-/// One simulation: observables, trajectory, summary and checkpoints in a folder
+/// Runs a scene and writes its results to a folder
+///
+/// The folder holds observables, trajectory, summary and checkpoints.
 #[derive(Args)]
 pub(super) struct RunVerb {
-    /// A preset's name, or a scene file
+    /// Preset name or scene file
     scene: String,
-    /// Overrides a value; may be given several times
+    /// Overrides a value; can be repeated
     #[arg(long = "set", value_name = "SECTION.KEY=VALUE")]
     overrides: Vec<String>,
-    /// Folder for the results; the scene's name with `.run` by default
+    /// Folder for the results; default: SCENE.run
     #[arg(long)]
     out: Option<PathBuf>,
-    /// Go on with the run in the folder; begin where there is none
+    /// Resumes the run in the folder; starts it if there is none
     #[arg(long, conflicts_with = "overwrite")]
     resume: bool,
-    /// Go on also with a run of another version, which does not promise the same bits
+    /// Also resumes a run of another version, without the guarantee of identical bits
     #[arg(long, requires = "resume")]
     other_version: bool,
-    /// Begin from the start where the folder holds a run; only what that run wrote is removed
+    /// Replaces an existing run in the folder; removes only files which that run wrote
     #[arg(long)]
     overwrite: bool,
-    /// A number of runs side by side, at most 100000, each with a seed and a folder of its own, and their means in one summary
+    /// Makes N runs side by side with different seeds, at most 100000, and averages them
     #[arg(long, value_name = "N", value_parser = |text: &str| count_up_to(MOST_SEEDS, text))]
     seeds: Option<u64>,
-    /// Ranks that share the particles of lattice MD and Langevin dynamics, each with as many threads as --threads says: the bits are those of one
+    /// Ranks that share the particles (lattice MD, Langevin), each with --threads threads; results are identical to one rank
     #[arg(long, default_value_t = 1, conflicts_with = "seeds", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_RANKS)))]
     ranks: u16,
-    /// What the scene leaves to `auto` becomes what was the fastest here: by what `explain` has kept of this scene, or of one that is alike
+    /// Sets keys that are `auto` to the fastest values that `explain` measured on this host for this or a similar scene
     #[arg(long, conflicts_with = "seeds")]
     tuned: bool,
 }
@@ -64,7 +67,7 @@ impl RunVerb {
         }
         let folder = self.folder("run");
         let vocabularies = vocabularies(methods);
-        // A run that goes on has chosen.
+        // A resumed run keeps its choices.
         let is_open = self.tuned && begins(&folder, self.existing())?;
         let given = if is_open { self.tuned(common, methods)? } else { self.overrides.clone() };
         let text = Values::text(&self.scene, &vocabularies)?;
@@ -90,7 +93,7 @@ impl RunVerb {
         })
     }
 
-    /// By whom the run is carried out.
+    /// Crew that executes the run.
     fn crew(&self, common: &Common) -> Result<Crew, Failure> {
         match (common.crew, self.ranks) {
             (Crew::Processes(_), 2..) => Err(processes::ranks_twice()),
@@ -102,7 +105,7 @@ impl RunVerb {
         }
     }
 
-    /// The run itself, and what is said of it.
+    /// Executes the run and prints its summary.
     fn carry_out(
         &self,
         (prepared, entry): (&Prepared, &'static Entry),
@@ -135,7 +138,7 @@ impl RunVerb {
                 if !common.quiet {
                     summary.warnings.iter().for_each(warn);
                 }
-                print(&text(&summary, folder))
+                print(&text(&summary, folder, &prepared.scene))
             }
             Ending::Interrupted { clock } => {
                 Err(Failure::Interrupted { moment: clock.to_string(), folder: folder.to_owned() })
@@ -144,7 +147,7 @@ impl RunVerb {
     }
 }
 
-/// Refuses ranks with more threads together than any machine at hand has cores.
+/// Rejects ranks with more than the largest number of threads in total.
 ///
 /// # Errors
 /// [`Failure::ManyThreads`]
@@ -156,19 +159,19 @@ pub(super) fn threads_of_ranks(ranks: u16, threads: usize) -> Result<(), Failure
 }
 
 impl RunVerb {
-    /// The overrides, with what `auto` becomes by what is kept.
+    /// Overrides, with the values that cached measurements choose for `auto`.
     fn tuned(&self, common: &Common, methods: Methods) -> Result<Vec<String>, Failure> {
         let case = Case::load(&self.scene, &self.overrides, methods)?;
         let found = tuned(&case, &Kept::here());
         if !common.quiet {
             match &found {
-                Err(error) => warn(format_args!("nothing is tuned: {error}")),
+                Err(error) => warn(format_args!("--tuned changes nothing: {error}")),
                 Ok(found) => match found {
                     Some(found) => {
                         say(format_args!("tuned: {}: {}", found.overrides.texts().join(", "), found.origin))
                     }
                     None => say(format_args!(
-                        "tuned: nothing is open, or nothing is kept of a scene that is alike: stripmine explain {} measures it",
+                        "tuned: nothing to change: no key is `auto`, or no similar scene was measured (stripmine explain {} measures)",
                         self.scene
                     )),
                 },
@@ -178,7 +181,7 @@ impl RunVerb {
         Ok([&self.overrides[..], &chosen].concat())
     }
 
-    /// The folder asked for, or one called after the scene.
+    /// Folder of `--out`, or one named after the scene.
     fn folder(&self, ending: &str) -> PathBuf {
         self.out.clone().unwrap_or_else(|| {
             let stem = Path::new(&self.scene).file_stem().unwrap_or_default();
@@ -186,7 +189,7 @@ impl RunVerb {
         })
     }
 
-    /// What is to become of a run that the folder holds.
+    /// Treatment of an existing run in the folder.
     fn existing(&self) -> Existing {
         match (self.resume, self.overwrite) {
             (true, _) => Existing::Resume { other_version: self.other_version },
@@ -196,26 +199,39 @@ impl RunVerb {
     }
 }
 
-/// Says what is to be expected: of the time, of a run that begins at the start.
+/// Prints what to expect of the run; the time and the start only if it is not resumed.
 fn before(prepared: &Prepared, begins: bool) {
     let of_the_time = begins.then(|| forecast::of_the_time(prepared)).flatten();
     let of_this_host = of_the_time.into_iter().chain([forecast::of_the_memory(prepared)]);
     forecast::above_limits(prepared).iter().for_each(warn);
     let of_the_start = forecast::of_the_start(prepared).filter(|_| begins);
     let facts = of_the_start.into_iter().chain(forecast::of_the_step(prepared)).chain(of_this_host);
-    for (label, words) in facts.filter_map(|fact| fact.words) {
+    let limits = &prepared.step_limits;
+    let is_shown = |name: &str| is_lowest(limits, name) || limits.iter().all(|limit| limit.name != name);
+    for (label, words) in facts.filter_map(|fact| fact.words).filter(|(label, _)| is_shown(label)) {
         say(format_args!("expected: {label}: {words}"));
     }
 }
 
-fn text(summary: &Summary, folder: &Path) -> String {
+/// Returns true for the lowest limit of the step among those with the same consequence.
+fn is_lowest(limits: &[StepLimit], name: &str) -> bool {
+    let is_higher =
+        |one: &StepLimit| limits.iter().any(|other| other.beyond == one.beyond && other.share > one.share);
+    limits.iter().any(|limit| limit.name == name && !is_higher(limit))
+}
+
+fn text(summary: &Summary, folder: &Path, scene: &str) -> String {
     let &Summary { steps, events, time, seconds, from, .. } = summary;
     let done = Clock { steps, time, events }.done();
-    let session = if from == Clock::default() { String::new() } else { format!(" (from {from} on)") };
-    let time = significant(time, 9);
-    let mut text =
-        format!("{done}, time {time}, in {seconds:.2} s{session}\nat the end: {}\n", summary.in_words);
-    text.push_str(&summary.averages.to_string());
+    let session = if from == Clock::default() { String::new() } else { format!(" (resumed at {from})") };
+    let units = UnitSystem::of(scene.parse().ok().as_ref());
+    let unit = if matches!(units, UnitSystem::Si) { " s" } else { "" };
+    let [time, seconds] = [significant(time, 9), significant(seconds, 3)];
+    let mut text = format!(
+        "{done}, time {time}{unit}, in {seconds} s of wall time{session}\nat the end: {}\n",
+        summary.in_words
+    );
+    text.push_str(&units.averages(&summary.averages).to_string());
     for Summed { name, doubt, .. } in &summary.structure {
         doubt.iter().for_each(|doubt| text.push_str(&format!("{name}: {doubt}\n")));
     }
@@ -225,6 +241,23 @@ fn text(summary: &Summary, folder: &Path) -> String {
     for reason in &summary.left_out {
         text.push_str(&format!("left out: {reason}\n"));
     }
-    text.push_str(&format!("results in {}\n", quoted::path(folder)));
+    text.push_str(&format!("results: {}\n", quoted::path(folder)));
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stripmine_physics::method::{METHODS, load};
+
+    #[test]
+    fn one_limit_is_shown_for_each_consequence() {
+        let (prepared, _) = load("two-discs", &[], METHODS).unwrap();
+        let limits = &prepared.step_limits;
+        let lowest: Vec<&StepLimit> = limits.iter().filter(|it| is_lowest(limits, it.name)).collect();
+        assert!(lowest.len() == 3 && limits.len() > 3);
+        for limit in limits {
+            assert!(lowest.iter().any(|it| it.beyond == limit.beyond && it.share >= limit.share));
+        }
+    }
 }

@@ -1,6 +1,7 @@
-//! `run --seeds`: one scene with several seeds, side by side, and what the runs say together.
+//! `run --seeds`: runs one scene with several seeds side by side, and averages over the runs.
 
 use super::RunVerb;
+use crate::cli::display::UnitSystem;
 use crate::cli::processes;
 use crate::console::{Common, Failure, SHARES, bar, clear_progress, print, print_json, say, to_json, warn};
 use crate::provenance::built;
@@ -17,6 +18,7 @@ use std::time::Instant;
 use stripmine_physics::averages::{Averages, joined};
 use stripmine_physics::io::owned_folder::{FolderKind, Holds, LOCK, OwnedFolder};
 use stripmine_physics::method::{Entry, Methods, Prepared, prepare, vocabularies};
+use stripmine_physics::number::significant;
 use stripmine_physics::quoted;
 use stripmine_physics::ranks::Crew;
 use stripmine_physics::run::{
@@ -26,9 +28,9 @@ use stripmine_physics::scene::{Fallback, Key, Reason, Value, Values, Vocabulary}
 use stripmine_physics::signals;
 use stripmine_physics::structure::{OBSERVABLES, observable};
 
-/// What the runs say together.
+/// File name of the joint summary.
 const SUMMARY: &str = "seeds.json";
-/// The folder of the runs: beside them is what they say together.
+/// Kind of the folder that holds the runs and their joint summary.
 const SEEDS: FolderKind = FolderKind {
     lock: LOCK,
     list: "seeds.files",
@@ -38,29 +40,28 @@ const SEEDS: FolderKind = FolderKind {
         is_shared: true,
     },
 };
-/// Parts of a run on the bar.
+/// Ticks of the progress bar per run.
 const PARTS: u64 = 1000;
 
-/// What runs with several seeds say together.
+/// Joint result of runs with different seeds.
 #[derive(Serialize)]
 struct Ensemble {
-    /// The mean of each quantity over all runs.
+    /// Mean of each quantity over all runs.
     averages: Averages,
-    /// Wall seconds of all together.
+    /// Wall time of all runs together (s).
     seconds: f64,
-    /// Each run.
     runs: Vec<Member>,
-    /// The functions of the structure over all runs, each in its file beside this one.
+    /// Structure functions over all runs, each stored in its own file beside this one.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     structure: Vec<Function>,
 }
 
-/// The folder of a run, and its seeds as overrides.
+/// Folder of a run, and its seeds as overrides.
 type Seeded = (PathBuf, Vec<String>);
 /// Prepares the scene with seeds.
 type WithSeeds<'s> = &'s (dyn Fn(&[String]) -> Result<(Prepared, &'static Entry), Failure> + Sync);
 
-/// A run with a seed of its own.
+/// One of several runs with different seeds.
 #[derive(Serialize)]
 struct Member {
     folder: PathBuf,
@@ -68,8 +69,8 @@ struct Member {
     averages: Averages,
 }
 
-/// The keys that seed a scene, each with the value from which its seeds count: those of the start, and of noise where it is given, or
-/// is all that is drawn.
+/// Seed keys of a scene, each with its first value: seeds of the start, and of the noise if it is given or is the only
+/// random input.
 fn seeds_of(values: &Values, vocabulary: &Vocabulary) -> Vec<(&'static Key, u64)> {
     let is_seed = |key: &&'static Key| key.name == "seed" || key.name.ends_with("_seed");
     let seed = |key: &&'static Key| match values.value(key) {
@@ -89,17 +90,17 @@ fn seeds_of(values: &Values, vocabulary: &Vocabulary) -> Vec<(&'static Key, u64)
 }
 
 impl RunVerb {
-    /// Runs the scene with a number of seeds, the scene's own the first of them.
+    /// Runs the scene with `count` seeds, beginning with the scene's own.
     pub(super) fn run_seeds(&self, count: u64, common: &Common, methods: Methods) -> Result<(), Failure> {
         let folder = self.folder("seeds");
-        // Read once, as its start file is: all seeds are of the same scene, whatever becomes of the files.
+        // The scene and its start file are read once, so that later changes of the files cannot mix scenes.
         let text = Values::text(&self.scene, &vocabularies(methods))?;
         let values = self.values(&text, &[], methods)?.sharing_start();
         let method = methods.iter().find(|method| method.vocabulary.keys.method == values.method());
         let keys = method.map_or(vec![], |method| seeds_of(&values, method.vocabulary));
         if keys.is_empty() {
             let error = values.spot(&stripmine_physics::scene::METHOD);
-            let message = "nothing of this scene is drawn at random: every seed gives the same run";
+            let message = "this scene has no random numbers: every seed gives the same run";
             return Err(Failure::Options(error.error(Reason::Unused, message).into()));
         }
         let members: Vec<Seeded> = (0..count)
@@ -112,7 +113,7 @@ impl RunVerb {
         let with_seeds = |seeds: &[String]| -> Result<_, Failure> {
             Ok(prepare(self.values(&text, seeds, methods)?.with_start_of(&values), methods)?)
         };
-        // What is wrong with the scene is said once, before anything is written.
+        // Mistakes of the scene are reported once, before anything is written.
         let (prepared, _) = with_seeds(&members[0].1)?;
         prepared.memory.fits(&self.scene)?;
         let begun = Instant::now();
@@ -122,11 +123,11 @@ impl RunVerb {
         let claimed = || -> Result<OwnedFolder, Failure> {
             let mut own = OwnedFolder::open(&folder, SEEDS, &[])?;
             own.claim(files.iter().copied(), self.overwrite)?;
-            // A summary of earlier runs says nothing of these, should they be interrupted.
+            // A summary of earlier runs would be wrong if these are interrupted.
             own.remove_own(SUMMARY)?;
             Ok(own)
         };
-        // Where runs are refused, all stays as it is.
+        // If a run is refused, nothing is changed.
         if processes::rank(common.crew) == 0 {
             members.iter().try_for_each(|(folder, _)| begins(folder, self.existing()).map(drop))?;
         }
@@ -141,7 +142,7 @@ impl RunVerb {
                 let some: Vec<_> = members.iter().skip(rank).step_by(ranks).cloned().collect();
                 side_by_side(&some).map(drop)
             })?;
-            // The first rank alone has claimed the folder, and sums up.
+            // Only the first rank has claimed the folder; it writes the summary.
             let Some(own) = own else { return Ok(()) };
             let read = |(folder, _): &Seeded| averages_of(&[Finished::read(folder, methods)?]);
             (own, members.iter().map(read).collect::<Result<_, _>>()?)
@@ -168,21 +169,23 @@ impl RunVerb {
             return print_json(&ensemble);
         }
         let Ensemble { averages, seconds, structure, .. } = &ensemble;
+        let averages = UnitSystem::of(prepared.scene.parse().ok().as_ref()).averages(averages);
         let doubt = |it: &Function| Some(format!("{}: {}\n", it.name, it.doubt.as_ref()?));
         let doubts: String = structure.iter().filter_map(doubt).collect();
         print(&format!(
-            "{count} runs with seeds of their own in {seconds:.2} s\n{averages}{doubts}results in {}\n",
+            "{count} runs with different seeds, in {} s\n{averages}{doubts}results: {}\n",
+            significant(*seconds, 3),
             quoted::path(&folder)
         ))
     }
 
-    /// The values of the scene's text, with seeds.
+    /// Values of the scene with seeds.
     fn values(&self, text: &str, seeds: &[String], methods: Methods) -> Result<Values, Failure> {
         let overrides = [self.overrides.as_slice(), seeds].concat();
         Ok(Values::parse(&self.scene, text, &overrides, &vocabularies(methods))?)
     }
 
-    /// Every run, as many at a time as there are threads and memory for; the first failure, once all have ended.
+    /// Makes all runs, as many at a time as threads and memory allow; returns the first failure once all have ended.
     fn side_by_side(
         &self,
         members: &[Seeded],
