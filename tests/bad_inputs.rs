@@ -128,3 +128,35 @@ fn bad_host_files_are_refused() {
     };
     all_are_refused("host", 15, ask, |line, column| format!("host.toml:{line}:{column}: "));
 }
+
+/// Sixty messages, spread over all tables: each paragraph has the mistake, then the expectation, then the advice.
+#[test]
+fn messages_have_three_parts() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = std::fs::read_to_string(self::folder().join("start.base")).unwrap();
+    let (mut checked, mut faults) = (0, vec![]);
+    for (kind, every, file, arguments) in [
+        ("scene", 8, "scene.toml", ["scene", "check", "scene.toml"]),
+        ("start-file", 3, "start.xyz", ["scene", "check", "scene.toml"]),
+        ("machine", 3, "machine.toml", ["table", "--machine", "machine.toml"]),
+    ] {
+        for case in cases(kind).iter().step_by(every) {
+            std::fs::write(folder.path().join("scene.toml"), &scene).unwrap();
+            std::fs::write(folder.path().join(file), &case.text).unwrap();
+            let said = stripmine(folder.path(), &arguments).stderr;
+            let said = String::from_utf8_lossy(&said).into_owned();
+            // With several mistakes, their number comes first.
+            for paragraph in said.split("\n\n").filter(|it| it.contains(".toml:") && it.contains("\n  ")) {
+                let parts = ["\n  expected: ", "\n  help: "].map(|part| paragraph.find(part));
+                if !matches!(parts, [Some(expected), Some(help)] if expected < help) {
+                    faults.push(format!("{kind}.cases:{}: {paragraph}", case.line));
+                }
+                checked += 1;
+            }
+            let lone = said.split("\n\n").filter(|it| it.contains(".toml:") && !it.trim_end().contains('\n'));
+            faults.extend(lone.map(|it| format!("{kind}.cases:{}: {it}", case.line)));
+        }
+    }
+    assert!(checked >= 60, "{checked} messages");
+    assert!(faults.is_empty(), "{} of {checked}:\n{}", faults.len(), faults.join("\n\n"));
+}

@@ -56,8 +56,8 @@ fn all_wrong_values_of_a_machine_file_are_said_at_once() {
     let out = stripmine(&["table", "--machine", &path]).code(3);
     let complaint = String::from_utf8_lossy(&out.get_output().stderr).into_owned();
     for said in [
-        "mine.toml:2:9: `title`: invalid type: integer `7`, expected a string",
-        "mine.toml:3:18: `year` is 2026.5, but must be a whole number",
+        "mine.toml:2:9: `title`: invalid type: integer `7`\n  expected: a string",
+        "mine.toml:3:18: `year` is 2026.5\n  expected: a whole number",
         "mine.toml:6:21: `start_up.default` is -20",
     ] {
         assert!(complaint.contains(said), "{said}: {complaint}");

@@ -181,12 +181,12 @@ mod tests {
         let default = r#"default = { value = 6, provenance = "assumed", note = "why not" }"#;
         for (old, new, expected) in [
             ("format = 1", "format = 2", "`format` is 2, but this program reads 1"),
-            ("value = 12.5", "value = 0", "`clock_period_ns` is 0, but must be positive"),
-            ("value = 12.5", "value = nan", "`clock_period_ns` is NaN, but must be positive"),
-            ("value = 14", "value = -14", "`start_up.divide` is -14, but must be positive"),
-            ("value = 6,", "value = inf,", "`start_up.default` is inf, but must be positive"),
-            ("value = 64", "value = 64.5", "`vector_registers.length` is 64.5, but must be a whole number"),
-            ("value = 1976", "value = -1", "`year` is -1, but must be positive"),
+            ("value = 12.5", "value = 0", "`clock_period_ns` is 0\n  expected: positive"),
+            ("value = 12.5", "value = nan", "`clock_period_ns` is NaN\n  expected: positive"),
+            ("value = 14", "value = -14", "`start_up.divide` is -14\n  expected: positive"),
+            ("value = 6,", "value = inf,", "`start_up.default` is inf\n  expected: positive"),
+            ("value = 64", "value = 64.5", "`vector_registers.length` is 64.5\n  expected: a whole number"),
+            ("value = 1976", "value = -1", "`year` is -1\n  expected: positive"),
             ("why not", " ", "the note of `start_up.default` is empty"),
             ("\"here\"\n    ", "\"\"\n    ", "the note of `expansions.divide` is empty"),
             ("divide = { value", "division = { value", "`division` is not a class of operations"),
@@ -210,7 +210,7 @@ mod tests {
             (
                 "provenance = \"derived\"",
                 "provenance = \"guessed\"",
-                "unknown variant `guessed`, expected one of `sourced`",
+                "unknown variant `guessed`\n  expected: one of `sourced`",
             ),
             ("value = 12.5, ", "", "missing field `value`"),
             ("value = 12.5", "value = \"fast\"", "`clock_period_ns.value`: invalid type"),

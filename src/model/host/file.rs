@@ -132,11 +132,11 @@ mod tests {
             HostModel::parse("bad.toml", &text.replacen(old, new, 1)).unwrap_err().to_string()
         };
         for (old, new, expected) in [
-            ("\"avx512\"", "\"purple\"", "`instruction_set` is \"purple\", but must be one of scalar, wide"),
+            ("\"avx512\"", "\"purple\"", "`instruction_set` is \"purple\"\n  expected: one of scalar, wide"),
             ("operation = ", "operations = ", "unknown field `operations`"),
             ("footprints = ", "footprint = ", "unknown field `footprint`"),
             ("format = 15", "format = 16", "`format` is 16"),
-            ("format = 15", "format = 14\npace = 1.0", "`format` is 14, but this program reads 15"),
+            ("format = 15", "format = 14\npace = 1.0", "`format` is 14\n  expected: 15"),
             ("format = 15\n", "", "missing field `format`"),
         ] {
             let said = complaint(old, new);

@@ -81,13 +81,60 @@ fn paragraph(error: &InputError) -> String {
     if let Some(Place { line, column }) = error.place {
         text.push_str(&format!(":{line}:{column}"));
     }
-    text.push_str(&format!(": {}", quoted::message(&error.message)));
-    for (what, words) in [("expected", &error.expected), ("help", &error.suggestion)] {
-        if let Some(words) = words {
+    let [default_expected, default_advice] = error.reason.defaults();
+    // Messages of parsers have the expectation behind the mistake.
+    let marks = [", expected ", "; expected ", ", but must be ", ", but this program reads "];
+    let in_message = || marks.iter().find_map(|mark| error.message.split_once(mark));
+    let (message, expected) = match (&error.expected, in_message()) {
+        (Some(expected), _) => (error.message.as_str(), expected.as_str()),
+        (None, Some((message, "nothing"))) => (message, default_expected),
+        (None, Some(parts)) => parts,
+        (None, None) => (error.message.as_str(), default_expected),
+    };
+    let advice = error.suggestion.as_deref().unwrap_or(default_advice);
+    text.push_str(&format!(": {}", quoted::message(message)));
+    for (what, words) in [("expected", expected), ("help", advice)] {
+        if !words.is_empty() {
             text.push_str(&format!("\n  {what}: {}", quoted::message(words)));
         }
     }
     text
+}
+
+impl Reason {
+    /// Expected value and advice of a mistake that states none of its own.
+    fn defaults(self) -> [&'static str; 2] {
+        match self {
+            Reason::Unreadable => [
+                "a readable file or the name of a preset",
+                "check the path; `stripmine scene list` lists the presets",
+            ],
+            Reason::Syntax => ["a TOML file in UTF-8", "correct the text at this location"],
+            Reason::System => ["a readable file", "check the path and its permissions"],
+            Reason::Format => {
+                ["a format that this program reads", "convert the file, or use the version that wrote it"]
+            }
+            Reason::Unknown => ["a known name", "correct the name, or remove the line"],
+            Reason::Type => ["a value of the right type", "change the value"],
+            Reason::Range => ["a value in the allowed range", "change the value"],
+            Reason::Missing => ["a value", "add the line"],
+            Reason::Unused => ["a key that has an effect", "remove the line"],
+            Reason::Contradiction => ["values that agree with each other", "change one of them"],
+            Reason::Override => ["section.key=value", "correct the option"],
+            Reason::StartFile => {
+                ["a start file that can be read whole", "correct the start file, or name another one"]
+            }
+            Reason::Placement => ["discs that find room", "place fewer or smaller discs, or enlarge the box"],
+            Reason::Overlap => ["discs that do not overlap", "move one of the discs"],
+            Reason::Outside => ["discs inside the box", "move the disc, or enlarge the box"],
+            Reason::Geometry => {
+                ["a box and discs that a lattice fits", "change the box, the discs or [search]"]
+            }
+            Reason::Stability => ["a stable time step", "lower integrator.dt"],
+            Reason::Memory => ["a run that fits into memory", "reduce the particles or the outputs"],
+            Reason::More => ["", ""],
+        }
+    }
 }
 
 impl InputError {
