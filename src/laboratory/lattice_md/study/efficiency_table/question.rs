@@ -72,7 +72,7 @@ impl Default for Choice {
 }
 
 impl Choice {
-    /// The same choice with BP93's program.
+    /// This choice with BP93's program.
     pub(crate) fn printed(self) -> Choice {
         let Choice { gear_values, mask, .. } = self;
         Choice { text: ProgramText::Printed, gear_values, mask, ..Choice::default() }
@@ -80,7 +80,7 @@ impl Choice {
 }
 
 impl Question {
-    /// The same scene with BP93's program.
+    /// This scene with BP93's program.
     pub(crate) fn printed(self) -> Question {
         Question { choice: self.choice.printed(), ..self }
     }
