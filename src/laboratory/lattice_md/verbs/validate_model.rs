@@ -20,7 +20,7 @@ use stripmine_physics::origin;
 /// Predicts runs that the model was not fitted to, measures them as users run them, and reports the error of each prediction
 #[derive(Args)]
 pub(super) struct ValidateModel {
-    /// Host file of `calibrate` [default: the model shipped with the program]
+    /// Host file of `calibrate` (default: the model shipped with the program)
     #[arg(long)]
     host: Option<PathBuf>,
     /// Calibrates first; the host file is written to the folder of the result
