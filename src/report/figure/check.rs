@@ -106,7 +106,7 @@ fn check_drawing(Drawing { window, width, shapes, shades, .. }: &Drawing) -> Res
     if !(*width >= SIDES[0] && width.max(height) <= SIDES[1]) {
         let [width, height] = [*width, height].map(|side| significant(side, 6));
         return Err(format!(
-            "a picture of {width} by {height} pixels cannot be drawn; expected sides of {} to {} pixels",
+            "a picture of {width} by {height} pixels cannot be drawn; expected a width of {} or more and sides of at most {}",
             SIDES[0], SIDES[1]
         ));
     }
