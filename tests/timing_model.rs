@@ -86,7 +86,7 @@ fn beyond_the_calibrated_range_nothing_is_predicted() {
 #[test]
 fn the_shipped_host_model_is_used_and_said_so_and_bad_host_files_are_refused() {
     let out = stripmine(&["validate-model", "--particles", "5000000"]).code(4);
-    assert!(String::from_utf8_lossy(&out.get_output().stderr).contains("comes with the program"));
+    assert!(String::from_utf8_lossy(&out.get_output().stderr).contains("shipped with the program"));
     let folder = tempfile::tempdir().unwrap();
     let path = file(&folder, "format = 3\n");
     let out = stripmine(&["validate-model", "--host", &path]).code(3);

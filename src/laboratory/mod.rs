@@ -1,5 +1,6 @@
-//! The laboratory: what is studied of each method beside a run, in a folder of the method's name: studies as functions from
-//! parameters to datasets, sections of the report, verbs. A method runs without a line here.
+//! The laboratory: studies of each method, in a folder of the method's name.
+//!
+//! A study is a function from parameters to datasets; it becomes an item of the report or a verb. A method runs without a line here.
 
 pub(crate) mod hard_disks;
 pub(crate) mod langevin;
@@ -16,33 +17,33 @@ use std::time::Instant;
 use stripmine_physics::method::Methods;
 use stripmine_physics::signals;
 
-/// What the laboratory has of a method.
+/// Items, verbs and measured work of one method.
 #[derive(Debug)]
 pub(crate) struct Laboratory {
     /// The method's name.
     pub method: &'static str,
-    /// What `reproduce` makes of it, in the order of the page.
+    /// Items of `reproduce`, in the order of the page.
     pub items: &'static [Item],
-    /// Verbs of its own.
+    /// Verbs that only this method has.
     pub verbs: &'static [Verb],
-    /// Studies of its own, as verbs below `chart`.
+    /// Studies that only this method has, as verbs below `chart`.
     pub(crate) charts: &'static [Verb],
-    /// Work that its studies time and that is no run of a scene.
+    /// Work timed by its studies that is not a run of a scene.
     pub works: &'static [rates::Own],
 }
 
-/// Of every method that is studied.
+/// One laboratory for every method that is studied.
 static LABORATORIES: [&Laboratory; 4] =
     [&lattice_md::LABORATORY, &hard_disks::LABORATORY, &langevin::LABORATORY, &nbody::LABORATORY];
 
-/// Those of some methods, in the order of these.
+/// Laboratories of some methods, in the order of the methods.
 pub(crate) fn laboratories(methods: Methods) -> impl Iterator<Item = &'static Laboratory> {
     methods.iter().flat_map(|method| {
         LABORATORIES.into_iter().filter(|laboratory| laboratory.method == method.vocabulary.keys.method)
     })
 }
 
-/// Writes a result of a verb that began at `start` to its folder, and says where. Returns the words of its page.
+/// Writes the result of a verb that began at `start` to its folder and reports the path. Returns the paragraphs of its page.
 fn written(
     folder: &Folder,
     (name, made): (&str, &Made),

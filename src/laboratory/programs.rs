@@ -1,4 +1,4 @@
-//! Vector programs: operations of a step by section, and clock periods by every clock.
+//! Vector programs: operations of a step by section, and clock periods by every clock model.
 
 use crate::console::Failure;
 use crate::frame::{Frame, Rows};
@@ -11,7 +11,7 @@ use stripmine_physics::method::{Counted, Prepared, VectorProgram};
 /// Machines whose clock periods an item shows.
 const MACHINES: [&str; 2] = ["cray-y-mp-el", "sx-aurora"];
 
-/// Operations of a step, and the time of a step on some machines.
+/// Operations of a step, and its time on some machines.
 pub(crate) fn counted(scene: &str, programs: &[VectorProgram], machines: &[MachineModel]) -> [Frame; 2] {
     let works: Vec<(Work, &VectorProgram)> =
         programs.iter().map(|it| (Work::of(it.program.as_ref()), it)).collect();
@@ -42,7 +42,7 @@ pub(crate) fn counted(scene: &str, programs: &[VectorProgram], machines: &[Machi
     ]
 }
 
-/// Frames of some scenes, numbered in their order, with the listing of the first program.
+/// Item with the frames of some scenes, numbered in their order, and the listing of the first program.
 pub(crate) fn made(scenes: &[(&str, Prepared)]) -> Result<Made, Failure> {
     let machines: Vec<MachineModel> =
         MACHINES.iter().map(|name| machines::preset(name)).collect::<Result<_, _>>()?;

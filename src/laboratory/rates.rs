@@ -1,8 +1,8 @@
-//! Throughput over a grid of cases, with its spread over separate processes.
+//! Throughput of a grid of cases, with its spread over separate processes.
 //!
-//! Rates of one engine on one day differ by half from process to process: memory pages and neighbours on the machine stay as they are while a
-//! process lasts. Each round over the cases is therefore a process of its own, with an order of its own. The median of the processes counts, and
-//! the range stands beside it.
+//! Rates of one engine on one day differ by half between processes, because memory pages and other load on the machine stay the same within a
+//! process. Each round over the cases therefore runs in a separate process and in a different order. Results are the median over the processes
+//! and the range.
 
 mod case;
 mod process;
@@ -16,10 +16,10 @@ use crate::results::Lab;
 use crate::statistics::median;
 use process::Failed;
 
-/// Processes that measure every case, one after the other.
+/// Number of processes that measure every case, one after the other.
 pub(crate) const PROCESSES: usize = 3;
 
-/// A figure over several processes.
+/// Value measured by several processes: median and range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Spread {
     /// Median process.
@@ -29,20 +29,20 @@ pub(crate) struct Spread {
 }
 
 impl Spread {
-    /// Of the values of processes.
+    /// Median and range of the values of the processes.
     pub(crate) fn of(values: impl Iterator<Item = f64>) -> Spread {
         let values: Vec<f64> = values.collect();
         let least = |sign: f64| sign * values.iter().map(|value| sign * value).fold(f64::INFINITY, f64::min);
         Spread { median: median(values.iter().copied()), range: [1.0, -1.0].map(least) }
     }
 
-    /// The figure in a cell, in a unit that is so many times smaller.
+    /// Returns a table cell with the value multiplied by `scale`.
     pub(crate) fn cell(self, scale: f64, decimals: usize) -> Cell {
         Cell::Spread { value: scale * self.median, range: self.range.map(|value| scale * value), decimals }
     }
 }
 
-/// A case as all processes measured it.
+/// Readings of one case from all processes.
 #[derive(Clone, Debug)]
 pub(crate) struct Measured {
     labels: Vec<(String, Cell)>,
@@ -51,7 +51,7 @@ pub(crate) struct Measured {
 }
 
 impl Measured {
-    /// A case without labels.
+    /// Makes a case without labels.
     pub(crate) fn of(readings: impl IntoIterator<Item = Reading>) -> Measured {
         Measured { labels: vec![], readings: readings.into_iter().collect() }
     }
@@ -60,34 +60,34 @@ impl Measured {
         Spread::of(self.readings.iter().map(of))
     }
 
-    /// Work in a second.
+    /// Work per second.
     pub(crate) fn rate(&self) -> Spread {
         self.each(|it| it.work / it.seconds)
     }
 
-    /// Seconds that a unit of work takes.
+    /// Seconds per unit of work.
     pub(crate) fn cost(&self) -> Spread {
         self.each(|it| it.seconds / it.work)
     }
 
-    /// Seconds that a part takes for a unit of work.
+    /// Seconds of a part per unit of work.
     pub(crate) fn part(&self, name: &str) -> Spread {
         self.each(|it| it.parts.get(name).copied().unwrap_or(0.0) / it.work)
     }
 
-    /// Operations of a kind for a unit of work.
+    /// Operations of a kind per unit of work.
     pub(crate) fn count(&self, name: &str) -> f64 {
         self.each(|it| it.counts.get(name).copied().unwrap_or(0.0) / it.work).median
     }
 
-    /// Rate over that of another case, process by process.
+    /// Ratio of the rate to that of another case, process by process.
     pub(crate) fn over(&self, other: &Measured) -> Spread {
         let rate = |it: &Reading| it.work / it.seconds;
         Spread::of(self.readings.iter().zip(&other.readings).map(|(own, other)| rate(own) / rate(other)))
     }
 }
 
-/// The rates of cases in the order of these, as a frame with their labels; every case has the labels of the first.
+/// Frame of the rates, one row per case in the given order, with the labels as columns. Every case has the labels of the first.
 pub(crate) fn frame(
     measured: &[Measured],
     (name, title): (&str, &str),
@@ -113,7 +113,7 @@ pub(crate) fn rates(lab: &Lab<'_>, cases: &[Case]) -> Result<Vec<Measured>, Fail
     })
 }
 
-/// Makes the rounds; `round` measures some cases in their order, and tells each reading.
+/// Runs the rounds; `round` measures some cases in order and passes on each reading.
 fn rounds(
     cases: &[Case],
     progress: &dyn Fn(f64),
@@ -141,7 +141,7 @@ fn rounds(
     Ok(all)
 }
 
-/// Order of the cases in a round: each begins elsewhere, and every second one runs backwards.
+/// Order of the cases in a round: each round begins at a different case, and every second one runs backwards.
 fn order(cases: usize, round: usize) -> Vec<usize> {
     let start = round * cases / PROCESSES;
     let place = |step: usize| if round % 2 == 1 { start + cases - step } else { start + step };
@@ -165,7 +165,7 @@ mod tests {
         (0..count).map(case).collect()
     }
 
-    /// Every round visits every case, in an order of its own; rows are in the order of the cases, whichever was measured first.
+    /// Every round visits every case, in a different order; rows are in the order of the cases, not of the measurements.
     #[test]
     fn rows_are_in_the_order_of_the_cases() {
         for count in [0, 1, 2, 5, 7] {
@@ -210,7 +210,7 @@ mod tests {
         }
     }
 
-    /// The case that fails is named, with the class and words of the process.
+    /// The error names the failed case and has the class and message of the process.
     #[test]
     fn a_failure_names_its_case() {
         let failed = |cases: &[&Case], heard: &mut dyn FnMut(Reading)| {
@@ -223,7 +223,7 @@ mod tests {
         assert_eq!(failure.words(), "measuring case = 1: disc 3 left the box");
     }
 
-    /// Two cases of one scene count the same work and operations, whatever their times; events go on until the clock is satisfied.
+    /// Two cases of one scene count the same work and operations, whatever their times.
     #[test]
     fn readings_count_what_was_done() {
         let discs = Overrides::new().set(&COUNT, 64_u64).set(&PACKING_FRACTION, 0.3);

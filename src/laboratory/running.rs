@@ -1,4 +1,4 @@
-//! A scene of a study that runs: by its preset and overrides, and seen by the names of what is observed.
+//! Running scenes of studies: started from a preset with overrides, observed by the names of quantities.
 
 use crate::statistics::kolmogorov_smirnov;
 use crate::study::StudyError;
@@ -8,12 +8,12 @@ use stripmine_physics::method::observed::{UnknownName, observed};
 use stripmine_physics::method::{self, Entry, METHODS, Prepared, Purpose, Quantity, Simulation, Until, load};
 use stripmine_physics::scene::Overrides;
 
-/// A preset with overrides.
+/// Prepares a preset with overrides.
 pub(crate) fn prepared(preset: &str, overrides: &Overrides) -> Result<Prepared, StudyError> {
     Ok(load(preset, &overrides.texts(), METHODS)?.0)
 }
 
-/// Does something on a number of threads.
+/// Runs `work` on a pool of `threads` threads.
 pub(crate) fn on_threads<T: Send>(
     threads: usize,
     work: impl FnOnce() -> Result<T, StudyError> + Send,
@@ -22,7 +22,7 @@ pub(crate) fn on_threads<T: Send>(
     pool.map_err(StudyError::Threads)?.install(work)
 }
 
-/// Narrows a range, at whose lower end something holds and at whose upper end it does not, by the `middle` of both until it `is_narrow`.
+/// Bisects a range whose lower end satisfies `holds` and whose upper end does not, by the `middle` of both ends, until it `is_narrow`.
 pub(crate) fn bisected<T: Copy, E>(
     mut range: [T; 2],
     is_narrow: impl Fn([T; 2]) -> bool,
@@ -36,9 +36,9 @@ pub(crate) fn bisected<T: Copy, E>(
     Ok(range)
 }
 
-/// A scene that runs.
+/// Running scene.
 pub(crate) struct Running {
-    /// The simulation, as it stands.
+    /// Simulation in its present state.
     pub simulation: Box<dyn Simulation>,
     /// The box.
     pub domain: Domain,
@@ -46,19 +46,19 @@ pub(crate) struct Running {
 }
 
 impl Running {
-    /// A preset with overrides, at its start, to be observed.
+    /// Starts a preset with overrides, with all observables.
     pub(super) fn begin(preset: &str, overrides: &Overrides) -> Result<Running, StudyError> {
         let (prepared, method) = load(preset, &overrides.texts(), METHODS)?;
         Running::of(method, &prepared, Purpose::Run)
     }
 
-    /// A preset with overrides, at its start, of which nothing is followed that the motion does not need.
+    /// Starts a preset with overrides for timing: only quantities that the motion needs are tracked.
     pub(crate) fn timed(preset: &str, overrides: &Overrides) -> Result<Running, StudyError> {
         let (prepared, method) = load(preset, &overrides.texts(), METHODS)?;
         Running::of(method, &prepared, Purpose::Measurement)
     }
 
-    /// A scene of a method, at its start.
+    /// Starts a prepared scene of a method.
     pub(super) fn of(
         method: &'static Entry,
         prepared: &Prepared,
@@ -69,22 +69,22 @@ impl Running {
         Ok(Running { simulation, domain, quantities: method.quantities })
     }
 
-    /// Goes on for some steps.
+    /// Advances by some steps.
     pub(super) fn steps(&mut self, steps: u64) -> Result<(), method::Failure> {
         self.until(Until::Steps(steps).after(&self.simulation.clock()))
     }
 
-    /// Lets some events happen.
+    /// Advances by some events.
     pub(super) fn events(&mut self, events: u64) -> Result<(), method::Failure> {
         self.until(Until::Events(events).after(&self.simulation.clock()))
     }
 
-    /// Goes on until a moment has come.
+    /// Advances to a moment.
     pub(super) fn until(&mut self, moment: Until) -> Result<(), method::Failure> {
         self.simulation.advance(&[moment], &AtomicBool::new(false))
     }
 
-    /// Probability by Kolmogorov and Smirnov that the components of the velocities are Maxwell's at a kT/m.
+    /// Probability of the Kolmogorov–Smirnov test that the velocity components have Maxwell's distribution at kT/m = `temperature`.
     pub(crate) fn maxwell(&self, temperature: f64) -> f64 {
         let particles = self.simulation.particles();
         let components = particles.grains().iter().flat_map(|it| it.planar_velocity());
@@ -92,7 +92,7 @@ impl Running {
         kolmogorov_smirnov(scaled, |x| 0.5 * libm::erfc(-x / 2f64.sqrt()))
     }
 
-    /// What is observed now, by its name.
+    /// Present values of some observables, by name.
     pub(super) fn observed<const N: usize>(&self, names: [&str; N]) -> Result<[f64; N], UnknownName> {
         observed(self.quantities, &self.simulation.observe(), names)
     }

@@ -2,10 +2,10 @@
 
 use super::Table;
 
-/// Rows of a table that a page shows; a longer one is for programs.
+/// Maximum rows of a table on the page; a longer table is only linked.
 const ROWS: usize = 8;
 
-/// The table without its notes, which the page with charts has; of a long one, where it lies in an item's folder.
+/// Renders a table without its notes, which are on the HTML page. A long table is replaced by a link to its file.
 pub(crate) fn render(table: &Table, folder: &str) -> String {
     let file = format!("{folder}/{}.csv", table.name);
     if table.rows.len() > ROWS {

@@ -1,4 +1,4 @@
-//! Reports: finished data as tables, figures and pages. Each export is one small file; none of them runs physics.
+//! Reports: finished data as tables, figures and pages. No exporter runs physics.
 
 pub mod figure;
 pub(crate) mod html;
@@ -16,7 +16,7 @@ pub use crate::frame::{Cell, Rows};
 pub(crate) use section::Chapter;
 pub use section::Section;
 
-/// Who made the items, and where: a sentence for each machine, with how many each program has made there, the most first.
+/// Sentences on the origin of the items, one for each machine, with the number of items by program, in decreasing order.
 fn origins(sections: &[Section]) -> Vec<String> {
     let made = || sections.iter().filter_map(|section| section.provenance.as_ref());
     let of_machine = |(machine, _): (String, usize)| {
@@ -28,7 +28,7 @@ fn origins(sections: &[Section]) -> Vec<String> {
     counted_alike(made().map(Provenance::of_machine)).into_iter().map(of_machine).collect()
 }
 
-/// How often each text occurs, the most frequent first.
+/// Counts equal texts, the most frequent first.
 fn counted_alike(texts: impl Iterator<Item = String>) -> Vec<(String, usize)> {
     let mut counts: Vec<(String, usize)> = vec![];
     for text in texts {

@@ -1,4 +1,4 @@
-//! The page of a reproduction in Markdown, as a repository's site shows it.
+//! Report page in Markdown, as shown on the site of a repository.
 
 #![expect(clippy::let_underscore_must_use, reason = "a string takes whatever is written")]
 
@@ -8,21 +8,20 @@ use super::{Chapter, Section, markdown};
 use crate::claims::Verdict;
 use std::fmt::Write;
 
-/// What stands near the beginning of every such page and of no other.
+/// Text near the beginning of every such page, by which our pages are recognised.
 pub(crate) const MARK: &str = "Written by `stripmine reproduce`; do not edit.";
 
-/// Letters of an item's table of conclusions that the page shows below a picture; a longer one is linked.
+/// Maximum letters of an item's first table below a picture; a longer table is omitted.
 const TABLE: usize = 560;
-/// Lines of a program's text that it shows.
+/// Maximum lines of an excerpt.
 const LINES: usize = 8;
-/// Letters of a picture's caption that it shows, in whole sentences; the rest stands on the page with charts.
+/// Maximum letters of a caption, in whole sentences; the rest is on the HTML page.
 const CAPTION: usize = 110;
 
-/// The page. Pictures and data lie in a folder for each item, which bears its name. `left_out` names items that the folder has,
-/// but of another version of the program.
+/// Renders the page. Pictures and data are in one folder per item. `left_out` names items made by another version of the program.
 pub(crate) fn render(sections: &[Section], left_out: &[String], tally: &Tally) -> String {
     let mut page = format!(
-        "# What came out\n\n{MARK} With charts to hover over and films: [index.html](index.html), one file, to be opened from a copy.\n\n",
+        "# Results\n\n{MARK} Download [index.html](index.html), a single file, for interactive charts and films.\n\n",
     );
     page.push_str(&claims(tally));
     for chapter in Chapter::ALL {
@@ -48,13 +47,13 @@ pub(crate) fn render(sections: &[Section], left_out: &[String], tally: &Tally) -
     if !left_out.is_empty() {
         let _ = write!(
             page,
-            "\nLeft out, for another version of the program made them: {}.\n",
+            "\nOmitted, because another version of the program made them: {}.\n",
             left_out.join(", ")
         );
     }
     page.push_str(
-        "\n---\n\nWhat depends on the host lies under `host/`; everything else but this page, `index.html` and the files \
-         `provenance.json` is the same everywhere, byte by byte.\n",
+        "\n---\n\nResults under `host/` depend on the host. All other files except this page, `index.html` and \
+        `provenance.json` are byte-identical on every host.\n",
     );
     page
 }
@@ -84,8 +83,7 @@ fn claims(tally: &Tally) -> String {
     text
 }
 
-/// The answer, the picture and the table of conclusions, then what was asked. All further words, pictures and tables stand on the page
-/// with charts.
+/// Renders an item: the answer, the first picture and table, then the question. All else is on the HTML page.
 fn item(section: &Section) -> String {
     let Section { name, title, question, expected, .. } = section;
     let again = section.again();
@@ -109,12 +107,12 @@ fn item(section: &Section) -> String {
     let seeds = if seeds.is_empty() { String::new() } else { format!(", seeds {}", seeds.join(", ")) };
     let _ = writeln!(
         text,
-        "{question} *Expected:* {expected}\n\n`{again}`{seeds}; [all of it](index.html#{name}), [data]({folder}/)."
+        "{question} *Expected:* {expected}\n\n`{again}`{seeds}; [details](index.html#{name}), [data]({folder}/)."
     );
     text
 }
 
-/// The first sentences of a text, one at least, and as many as have no more letters than `most`.
+/// First sentences of a text: at least one, and as many as fit into `most` letters.
 fn beginning(text: &str, most: usize) -> &str {
     let ends = text.match_indices(". ").map(|(at, _)| at + 1).chain([text.len()]);
     let (mut kept, mut ends) = (text.len(), ends.peekable());
@@ -127,7 +125,7 @@ fn beginning(text: &str, most: usize) -> &str {
     &text[..kept]
 }
 
-/// What a heading is called in links, by the rule of the common hosts: lower case, words joined by dashes.
+/// Anchor of a heading by the rule of common repository hosts: lower case, words joined by dashes.
 fn anchor(title: &str) -> String {
     title
         .chars()

@@ -1,4 +1,4 @@
-//! One item of a reproduction, before it is known on which kind of page it will be read.
+//! Items of a report, independent of the format of the page.
 
 use super::Table;
 use super::figure::Figure;
@@ -6,44 +6,44 @@ use crate::claims::{self, Judged};
 use crate::provenance::Provenance;
 use serde::{Deserialize, Serialize};
 
-/// One item of the page.
+/// Item of the page.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Section {
-    /// The item's name on the command line, and of its folder.
+    /// Name of the item on the command line, and of its folder.
     pub name: String,
-    /// What it is.
+    /// Heading of the item.
     pub title: String,
-    /// Which chapter of the report it belongs to.
+    /// Chapter of the report.
     pub(crate) chapter: Chapter,
-    /// What is asked.
+    /// Question that the item answers.
     pub question: String,
-    /// What is expected, and who says so: a source, theory, or our own aim.
+    /// Expectation and its origin: a paper, theory, or our own aim.
     pub expected: String,
-    /// What came out, in one sentence with its number.
+    /// Result, in one sentence with its number.
     pub answer: String,
-    /// What else a reader must know, a paragraph each.
+    /// Further paragraphs.
     pub(crate) details: Vec<String>,
-    /// Pictures.
+    /// Figures of the item.
     pub figures: Vec<Figure>,
     pub(crate) tables: Vec<Table>,
-    /// Some lines of a program's text, with a line that says what they are.
+    /// Caption and lines of a program listing.
     pub(crate) excerpt: Option<(String, String)>,
-    /// Moving pictures.
+    /// Film of the item.
     pub(crate) film: Option<Film>,
     /// Seeds of the random numbers.
     pub seeds: Vec<u64>,
-    /// Place among the results of the page's first screen; none if it is not among them.
+    /// Rank among the results of the page's first screen; `None` if not shown there.
     pub(crate) front: Option<u8>,
-    /// Whether anything in it depends on the host (times), and is therefore not the same everywhere.
+    /// True if anything in it, such as times, depends on the host.
     pub(crate) depends_on_host: bool,
-    /// Claims of sources and aims of ours that it answers.
+    /// Judged claims of the papers and of our own aims.
     pub claims: Vec<JudgedClaim>,
-    /// How and where it was made; known once it is written. No author of a section says it.
+    /// Command, host and time of the measurement; known once the item is written.
     pub provenance: Option<Provenance>,
 }
 
 impl Section {
-    /// A section that has only its name and title so far.
+    /// Makes a section with a name and a title only.
     pub fn new(name: &str, title: impl Into<String>) -> Section {
         Section {
             name: name.to_owned(),
@@ -65,7 +65,7 @@ impl Section {
         }
     }
 
-    /// The command that makes it again: of an item of the report that alone, of a study the whole command.
+    /// Command that reproduces the item: `reproduce` for an item of the report, the original command for a study.
     pub(crate) fn again(&self) -> String {
         match &self.provenance {
             Some(made) if !made.is_of_the_report() => made.command.clone(),
@@ -77,13 +77,13 @@ impl Section {
         }
     }
 
-    /// The folder of its files, relative to the page: what depends on the host lies apart.
+    /// Folder of the files, relative to the page. Results that depend on the host have a separate folder.
     pub fn folder(&self) -> String {
         let [everywhere, here] = Section::folders(&self.name);
         if self.depends_on_host { here } else { everywhere }
     }
 
-    /// Counts its claims by verdict, in words.
+    /// Number of claims by verdict, as text.
     pub fn outcome(&self) -> String {
         let counts = self.counts().map(|(verdict, count)| format!("{count} {}", verdict.words()));
         let counts: Vec<String> = counts.collect();
@@ -91,12 +91,12 @@ impl Section {
         if self.is_stale() { format!("{counts}; stale") } else { counts }
     }
 
-    /// Returns whether kernels or physics have changed since its results were made.
+    /// Returns true if kernels or physics have changed since the results were made.
     pub(crate) fn is_stale(&self) -> bool {
         self.provenance.as_ref().is_some_and(Provenance::is_stale)
     }
 
-    /// The verdicts of its claims, with how many have each.
+    /// Number of claims for each verdict that occurs.
     pub fn counts(&self) -> impl Iterator<Item = (claims::Verdict, usize)> {
         let count = |verdict: claims::Verdict| {
             self.claims.iter().filter(|claim| claim.verdict == verdict.words()).count()
@@ -105,55 +105,55 @@ impl Section {
         counts.filter(|(_, count)| *count > 0)
     }
 
-    /// The answer and what else there is to know, a paragraph each.
+    /// All paragraphs, beginning with the answer.
     pub fn paragraphs(&self) -> impl Iterator<Item = &str> {
         std::iter::once(&self.answer).chain(&self.details).map(String::as_str)
     }
 
-    /// The folder of an item that is the same everywhere, and of one that depends on the host.
+    /// Folders of an item: if it is the same on every host, and if it depends on the host.
     pub(crate) fn folders(name: &str) -> [String; 2] {
         [name.to_owned(), format!("host/{name}")]
     }
 }
 
-/// A chapter of the report. Items stand in the order of the chapters.
+/// Chapter of the report. Items are listed in the order of the chapters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Chapter {
-    /// Tables, figures and claims of the sources.
+    /// Tables, figures and claims of the papers.
     Sources,
-    /// What the sources do not ask.
+    /// Questions beyond the papers.
     Beyond,
-    /// Times on the host of the report that no source has.
+    /// Times on the host of the report, without a counterpart in the papers.
     Host,
 }
 
 impl Chapter {
-    /// All, in the order of the report.
+    /// All chapters in the order of the report.
     pub(crate) const ALL: [Chapter; 3] = [Chapter::Sources, Chapter::Beyond, Chapter::Host];
 
-    /// Its heading.
+    /// Heading of the chapter.
     pub(crate) const fn title(self) -> &'static str {
         match self {
-            Chapter::Sources => "What the sources contain",
-            Chapter::Beyond => "Beyond the sources",
-            Chapter::Host => "This host",
+            Chapter::Sources => "Reproduction of the papers",
+            Chapter::Beyond => "Beyond the papers",
+            Chapter::Host => "Measurements on this host",
         }
     }
 }
 
-/// A claim with its verdict, for a reader.
+/// Claim with its verdict, as text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JudgedClaim {
-    /// Name.
+    /// Identifier of the claim.
     pub id: String,
-    /// Source and place in it.
+    /// Paper and location in it.
     pub place: [String; 2],
-    /// Statement.
+    /// Statement of the claim.
     pub text: String,
-    /// Expectation.
+    /// Expected value or limit.
     pub expected: String,
-    /// Value of the result.
+    /// Measured value.
     pub value: String,
     pub verdict: String,
     /// Reference and note.
@@ -177,45 +177,45 @@ impl From<&Judged<'_>> for JudgedClaim {
     }
 }
 
-/// Discs that move, frame by frame.
+/// Film of moving discs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Film {
-    /// What it shows.
+    /// Title of the film.
     pub title: String,
-    /// The units of lengths and of times.
+    /// Units of length and of time.
     pub units: [String; 2],
-    /// Lower left and upper right corner of what is shown (length).
+    /// Lower left and upper right corner of the visible part (length).
     pub window: [[f64; 2]; 2],
-    /// The sides of the box that are seen.
+    /// Visible sides of the box.
     pub sides: Vec<Side>,
-    /// Whether gravity pulls along a long window, the way in which it is read.
+    /// True if gravity points along a long window, in reading direction.
     pub(crate) falls: bool,
-    /// Radii of the discs that move (length), in the order of every frame's discs.
+    /// Radii of the moving discs (length), in the order of the discs of every frame.
     pub radii: Vec<f64>,
-    /// Centre and radius of the discs that do not move (length).
+    /// Centre and radius of the fixed discs (length).
     pub(crate) fixed: Vec<([f64; 2], f64)>,
-    /// The frames by increasing time.
+    /// Frames by increasing time.
     pub frames: Vec<Frame>,
-    /// What the shade of a disc says, with its unit.
+    /// Quantity shown by the shade of a disc, with its unit.
     pub(crate) shade: String,
     /// Lowest and highest shade.
     pub(crate) shades: [f64; 2],
 }
 
-/// A side of a box.
+/// Side of a box.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Side {
-    /// Its ends (length).
+    /// End points (length).
     pub ends: [[f64; 2]; 2],
-    /// Whether what leaves here comes in at the other side.
+    /// True if discs that leave here re-enter at the opposite side.
     pub(crate) is_periodic: bool,
 }
 
-/// A moment of a [`Film`].
+/// Frame of a [`Film`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Frame {
-    /// When (time).
+    /// Time of the frame.
     pub time: f64,
-    /// Centre and shade of every moving disc; the shade is no number where it says nothing, the centre where there is no disc.
+    /// Centre and shade of every moving disc. A NaN shade has no meaning; a NaN centre means that the disc is absent.
     pub discs: Vec<([f64; 2], f64)>,
 }

@@ -4,15 +4,15 @@ use super::Section;
 use super::section::JudgedClaim;
 use crate::claims::{Claim, Judged, Source, Verdict};
 
-/// Claims that a report judges.
+/// Claims of a report with their verdicts.
 #[derive(Debug, Default)]
 pub struct Tally {
-    /// Claims by item; no item answers those of the last entry.
+    /// Claims with the name and title of their item; `None` for claims without an item.
     claims: Vec<(Option<(String, String)>, JudgedClaim)>,
 }
 
 impl Tally {
-    /// Collects the claims of the items of a report, and those that no item answers.
+    /// Collects the claims of the items of a report, and claims without an item.
     pub fn of(sections: &[Section], all: &[Claim]) -> Tally {
         let judged = sections.iter().flat_map(|section| {
             let item = (section.name.clone(), section.title.clone());
@@ -22,12 +22,12 @@ impl Tally {
         Tally { claims: judged.chain(open.map(|claim| (None, (&Judged::unjudged(claim)).into()))).collect() }
     }
 
-    /// Returns whether there are no claims.
+    /// Returns true if there are no claims.
     pub fn is_empty(&self) -> bool {
         self.claims.is_empty()
     }
 
-    /// A row for each source that has claims, and one for all: the name, and how many claims have which verdict.
+    /// Rows of the table of claims: the name of each source with claims, then `all`, with the number of claims by verdict.
     pub fn rows(&self) -> Vec<(&'static str, [usize; 5])> {
         let count = |source: Option<&str>| {
             Verdict::ALL.map(|verdict| {
@@ -41,7 +41,7 @@ impl Tally {
         there.chain([("all", count(None))]).collect()
     }
 
-    /// Claims that failed: the item's name and title, and the claim.
+    /// Claims that were not reproduced, with the name and title of their item.
     pub(crate) fn failed(&self) -> impl Iterator<Item = (&(String, String), &JudgedClaim)> {
         let failed = |claim: &JudgedClaim| claim.verdict == Verdict::NotReproduced.words();
         let of_items = self.claims.iter().filter_map(|(item, claim)| Some((item.as_ref()?, claim)));

@@ -1,34 +1,34 @@
-//! Tables for a terminal: no number and no word is ever broken. Where a table does not fit, its rows become records.
+//! Tables for a terminal. Numbers and words are never broken; if a table does not fit, its rows become records.
 
 use super::{Cell, Table};
 use comfy_table::presets::UTF8_HORIZONTAL_ONLY;
 use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle, Width};
 
-/// Columns of a page whose width is not said.
+/// Default width in characters.
 const PAGE: usize = 100;
-/// Columns that a table takes beside the content of a column: a blank on either side.
+/// Padding of a table column: a blank on either side.
 const BESIDE: usize = 2;
-/// Nothing is made narrower than this.
+/// Minimum width in characters.
 const NARROWEST: usize = 20;
 
-/// The table as text, no wider than `COLUMNS` says, or the terminal where there is one.
+/// Renders a table, no wider than the environment variable `COLUMNS` or the terminal.
 pub(crate) fn render(table: &Table) -> String {
     render_within(table, width())
 }
 
-/// Characters of a line: as `COLUMNS` says, or the terminal where there is one.
+/// Width in characters, from `COLUMNS` or the terminal; `None` without either.
 fn width() -> Option<usize> {
     let said = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
     let of_terminal = || comfy_table::Table::new().width().map(usize::from);
     said.filter(|&columns| columns > 0).or_else(of_terminal).map(columns)
 }
 
-/// Characters of a line of a terminal that reports a number of columns. A launcher's terminal reports none.
+/// Usable width of a terminal that reports a number of columns. The terminals of launchers report 0.
 fn columns(reported: usize) -> usize {
     if reported == 0 { PAGE } else { reported.max(NARROWEST) }
 }
 
-/// A message whose lines are broken at blanks where they are longer than a line of the terminal.
+/// Wraps the lines of a message at blanks to the width of the terminal.
 pub(crate) fn fitted(message: &str) -> String {
     fitted_within(message, width())
 }
@@ -42,7 +42,7 @@ fn fitted_within(message: &str, width: Option<usize>) -> String {
     message.lines().map(one).collect::<Vec<_>>().join("\n")
 }
 
-/// The same within a number of columns, or as wide as it is.
+/// Renders a table within a number of columns, or without a limit.
 pub(crate) fn render_within(table: &Table, width: Option<usize>) -> String {
     let rows: Vec<Vec<String>> =
         table.rows.iter().map(|row| row.iter().map(Cell::for_reading).collect()).collect();
@@ -69,7 +69,7 @@ fn longest_word(text: &str) -> usize {
 
 fn drawn(table: &Table, rows: Vec<Vec<String>>, least: &[usize], width: Option<usize>) -> String {
     let mut drawn = comfy_table::Table::new();
-    // A rule below the headings and around the table; rows stand close.
+    // Rules around the table and below the headings, none between rows.
     drawn.load_style(UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none())).set_content_arrangement(
         match width {
             Some(_) => ContentArrangement::Dynamic,
@@ -92,7 +92,7 @@ fn drawn(table: &Table, rows: Vec<Vec<String>>, least: &[usize], width: Option<u
     drawn.to_string()
 }
 
-/// A line for each cell, named by its column; a blank line between rows.
+/// Renders rows as records: one line for each cell, named by its column; a blank line between rows.
 fn records(table: &Table, rows: &[Vec<String>], width: usize) -> String {
     let one = |row: &Vec<String>| {
         let lines = table.columns.iter().zip(row).filter(|(_, text)| !text.is_empty());
@@ -101,7 +101,7 @@ fn records(table: &Table, rows: &[Vec<String>], width: usize) -> String {
     rows.iter().map(one).collect::<Vec<_>>().join("\n")
 }
 
-/// A paragraph broken at blanks; a word that is too long stays whole.
+/// Wraps a paragraph at blanks; a longer word is not broken.
 fn wrapped(text: &str, width: usize) -> String {
     let indent = text.chars().take_while(|c| *c == ' ').count();
     let (mut lines, mut line) = (String::new(), " ".repeat(indent));
@@ -152,7 +152,7 @@ mod tests {
         assert_eq!(fitted_within(message, None), message);
     }
 
-    /// Whatever the width: every number and every word of a heading in one piece, and no line wider than asked.
+    /// At any width every number and every word of a heading is unbroken, and no line is wider than requested.
     #[test]
     fn nothing_is_broken_at_any_width() {
         for width in [20, 30, 45, 60, 80, 100, 120] {

@@ -1,11 +1,11 @@
-//! Items of `reproduce` of this method, in the order of their chapters.
+//! Items of hard discs: each is a study with a page in the folder `pages`.
 
 use super::study::{
     atmosphere, collapse, complexity, cooling, fluid, masks, precision, rates, soft_hard, structure,
 };
 use crate::results::Item;
 
-/// Every item.
+/// Every item, in the order of its chapter.
 pub(super) const ITEMS: &[Item] = &[
     Item::of("hard-disks-fluid", fluid::made),
     Item::of("hard-disks-structure", structure::made),

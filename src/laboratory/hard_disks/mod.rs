@@ -1,4 +1,4 @@
-//! Event-driven hard discs, ISO99: studies, items and verbs.
+//! Laboratory of event-driven hard discs (ISO99).
 
 mod items;
 mod study;

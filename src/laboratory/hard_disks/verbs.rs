@@ -1,4 +1,4 @@
-//! The studies below `chart` that are this method's own.
+//! Studies of hard discs as verbs below `chart`.
 
 use super::study::soft_hard::{Question, soft_hard};
 use crate::console::Verb;
@@ -16,10 +16,10 @@ pub(super) const CHARTS: &[Verb] = &[Verb {
     run: |matches, common| SoftHardVerb::from_arg_matches(matches).map_err(Failure::Arguments)?.run(common),
 }];
 
-/// One granular scene by soft discs of growing stiffness and by hard ones: pressure, cooling, cost
+/// Compares one granular scene with soft discs of increasing stiffness and with hard discs: pressure, cooling, cost
 #[derive(Args)]
 struct SoftHardVerb {
-    /// Number of discs, at least
+    /// Minimum number of discs
     #[arg(long, default_value_t = 500, value_parser = clap::value_parser!(u64).range(50..=100_000))]
     particles: u64,
     /// Area of the discs over that of the box
@@ -33,7 +33,7 @@ struct SoftHardVerb {
     out: PathBuf,
 }
 
-/// A number between two hundredths.
+/// Parses a number between two bounds, given in hundredths.
 fn between<const LOW: u32, const HIGH: u32>(text: &str) -> Result<f64, String> {
     let [low, high] = [LOW, HIGH].map(|hundredths| f64::from(hundredths) / 100.0);
     match text.parse() {
@@ -44,7 +44,7 @@ fn between<const LOW: u32, const HIGH: u32>(text: &str) -> Result<f64, String> {
 
 impl SoftHardVerb {
     fn run(&self, common: &Common) -> Result<(), Failure> {
-        // Before anything takes its time.
+        // Checked before the long computation.
         let folder = Folder::open(&self.out, &["soft-hard"], false)?;
         let question = Question {
             discs: self.particles,

@@ -1,4 +1,4 @@
-//! Particles in a bath, LAN17: what is measured and shown beside a run.
+//! Laboratory of Langevin dynamics (LAN17): particles in a heat bath.
 
 mod items;
 mod study;

@@ -1,4 +1,4 @@
-//! What can be reproduced of this method: each item a study and its page.
+//! Items of lattice MD: each is a study with a page in the folder `pages`.
 
 use super::study::{
     corrector, damping, density_cost, efficiency_table, identity, ladder, listing, mask, misprints,

@@ -1,4 +1,4 @@
-//! Lattice MD of granular discs, BP93: what is measured and shown beside a run.
+//! Laboratory of lattice MD (BP93): granular discs.
 
 mod items;
 mod study;

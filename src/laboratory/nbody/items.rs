@@ -1,4 +1,4 @@
-//! Items of this method: each a study, with its page in the folder `pages`.
+//! Items of N-body dynamics: each is a study with a page in the folder `pages`.
 
 use super::study::{collapse, energy, rates};
 use crate::console::Failure;

@@ -1,4 +1,4 @@
-//! Bodies that attract each other, PWP: what is measured and shown beside a run.
+//! Laboratory of N-body dynamics (PWP): bodies that attract each other.
 
 mod items;
 mod study;

@@ -1,4 +1,4 @@
-//! A case of a grid, and its measurement in this process.
+//! Cases of a grid, and their measurement in this process.
 
 use crate::console::Failure;
 use crate::frame::Cell;
@@ -12,19 +12,19 @@ use std::time::Instant;
 use stripmine_physics::method::{self, METHODS, Purpose, load};
 use stripmine_physics::scene::Overrides;
 
-/// Work that is no run of a scene: its name, and the function that measures it.
+/// Measured work that is not a run of a scene.
 #[derive(Debug)]
 pub(crate) struct Own {
-    /// Name by which the measuring process finds it.
+    /// Name by which the measuring process identifies the work.
     pub name: &'static str,
     /// Measures the work that some parameters describe.
     pub(crate) measure: fn(&serde_json::Value) -> Result<Reading, StudyError>,
 }
 
-/// The parameters that a measuring process was given.
+/// Parses the parameters given to a measuring process.
 ///
 /// # Errors
-/// [`StudyError::Parameters`] where they are of another kind.
+/// [`StudyError::Parameters`] if they are not of the type `T`.
 pub(crate) fn given<T: DeserializeOwned>(parameters: &serde_json::Value) -> Result<T, StudyError> {
     T::deserialize(parameters).map_err(StudyError::Parameters)
 }
@@ -34,20 +34,20 @@ pub(crate) fn given<T: DeserializeOwned>(parameters: &serde_json::Value) -> Resu
 pub(crate) struct Case {
     pub(super) labels: Vec<(String, Cell)>,
     pub(super) task: Task,
-    /// Threads, where wall time counts.
+    /// Number of threads if wall time is measured; otherwise processor time is measured.
     pub(super) threads: Option<usize>,
 }
 
-/// Work of a case, which another process is told.
+/// Work of a case, as sent to another process.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) enum Task {
     Scene {
         preset: String,
         overrides: Vec<String>,
         in_events: bool,
-        /// Steps or events before the clock starts, and at least after.
+        /// Steps or events before the clock starts, and minimum number after it.
         amount: [u64; 2],
-        /// Measured seconds, at least.
+        /// Minimum measured seconds.
         seconds: f64,
     },
     Own {
@@ -59,12 +59,12 @@ pub(super) enum Task {
 }
 
 impl Case {
-    /// A scene that is timed over some steps, after others that are not.
+    /// Times a scene over some steps after a warm-up.
     pub(crate) fn steps(preset: &str, overrides: &Overrides, warm_up: u64, steps: u64) -> Case {
         Case::scene(preset, overrides, false, [warm_up, steps])
     }
 
-    /// A scene that is timed over some events, after others that are not.
+    /// Times a scene over some events after a warm-up.
     pub(crate) fn events(preset: &str, overrides: &Overrides, warm_up: u64, events: u64) -> Case {
         Case::scene(preset, overrides, true, [warm_up, events])
     }
@@ -78,20 +78,20 @@ impl Case {
         }
     }
 
-    /// Work of another kind.
+    /// Times work that is not a run of a scene.
     pub(crate) fn own(own: &'static Own, parameters: serde_json::Value) -> Case {
         let task = Task::Own { name: own.name.to_owned(), parameters, own: Some(own) };
         Case { labels: vec![], task, threads: None }
     }
 
-    /// Adds a value by which the case differs from the others: a column of the frame, and a part of its name.
+    /// Adds a label that distinguishes the case: a column of the frame and a part of its name.
     #[must_use]
     pub(crate) fn label(mut self, heading: &str, value: impl Into<Cell>) -> Case {
         self.labels.push((heading.to_owned(), value.into()));
         self
     }
 
-    /// The case with more steps or events, until they have taken at least so many seconds.
+    /// Extends the case to more steps or events until they take at least `least` seconds.
     #[must_use]
     pub(crate) fn for_seconds(mut self, least: f64) -> Case {
         if let Task::Scene { seconds, .. } = &mut self.task {
@@ -100,7 +100,7 @@ impl Case {
         self
     }
 
-    /// The case on a number of threads, timed by the clock on the wall. A case without is timed by the processor, on one thread.
+    /// Runs the case on a number of threads and measures wall time. By default a case runs on one thread and measures processor time.
     #[must_use]
     pub(crate) fn on_threads(self, threads: usize) -> Case {
         Case { threads: Some(threads), ..self }
@@ -112,13 +112,13 @@ impl Case {
         self.labels.iter().map(label).collect::<Vec<_>>().join(", ")
     }
 
-    /// Measures the case; `all` are the works that are no scenes, for a case that another process sent.
+    /// Measures the case. `all` lists the work other than scenes, for cases sent by another process.
     pub(super) fn measure(&self, all: &[&Own]) -> Result<Reading, Failure> {
         let threads = self.threads.unwrap_or(1);
         let measured = match &self.task {
             Task::Own { name, parameters, own } => {
                 let known = || all.iter().find(|it| it.name == name).copied();
-                let unknown = || io::Error::other(format!("no work is called {name}"));
+                let unknown = || io::Error::other(format!("unknown measured work `{name}`"));
                 let own = own.or_else(known).ok_or_else(unknown).map_err(Failure::writing("cases"))?;
                 on_threads(threads, || (own.measure)(parameters))
             }
@@ -147,7 +147,7 @@ fn processor() -> Box<dyn Fn() -> f64> {
     Box::new(move || begun.elapsed().as_secs_f64())
 }
 
-/// Times a scene that runs: at least so much, and for at least so many seconds.
+/// Times a running scene over at least `least` steps or events and at least `seconds`.
 fn timed(
     running: &mut Running,
     [warm_up, least]: [u64; 2],
@@ -163,7 +163,7 @@ fn timed(
     advance(running, least)?;
     let mut done = least;
     while elapsed() < seconds {
-        // As much as the rate so far asks for; the first steps may be slow.
+        // Estimated from the rate so far; the first steps may be slow.
         let more = (done as f64 * (seconds / elapsed() - 1.0)).ceil().clamp(1.0, 4.0 * done as f64) as u64;
         advance(running, more)?;
         done += more;
@@ -179,16 +179,16 @@ fn timed(
     })
 }
 
-/// One process's measurement of a case.
+/// Measurement of a case by one process.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Reading {
     /// Work done: particle-steps, events, interactions.
     pub work: f64,
-    /// Seconds that it took.
+    /// Measured seconds.
     pub seconds: f64,
-    /// Seconds of its parts, by name.
+    /// Seconds of the parts, by name.
     pub parts: BTreeMap<String, f64>,
-    /// Operations that were counted, by name.
+    /// Counted operations, by name.
     pub counts: BTreeMap<String, f64>,
 }
 
@@ -197,7 +197,7 @@ mod tests {
     use super::*;
     use stripmine_physics::scene::COUNT;
 
-    /// A clock that a test turns: work goes on until the seconds are reached.
+    /// With a clock set by the test, work continues until the seconds are reached.
     #[test]
     fn work_goes_on_until_its_seconds_are_reached() {
         thread_local!(static NOW: std::cell::Cell<f64> = const { std::cell::Cell::new(0.0) });

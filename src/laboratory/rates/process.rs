@@ -1,5 +1,4 @@
-//! One round of measurements in a process of its own: the program calls itself, and the two speak through pipes, a line of JSON for each
-//! reading.
+//! Measurements in a child process: the program calls itself, and the two processes communicate through pipes with one line of JSON per reading.
 
 use super::case::{Case, Own, Reading, Task};
 use crate::console::{Failure, print};
@@ -10,20 +9,20 @@ use std::thread;
 use stripmine_physics::reported::Class;
 use stripmine_physics::signals::INTERRUPTED;
 
-/// Class and words of a failure; no class where a signal ended a process.
+/// Class and message of a failure; no class if a signal ended the process.
 pub(super) type Failed = (Option<Class>, String);
 
 /// Verb of the measuring process.
 pub(crate) const VERB: &str = "measure-cases";
 
-/// Measures some cases in a new process of the program, in their order.
+/// Measures some cases in order in a new process of the program.
 pub(super) fn measure(program: &Path, cases: &[&Case], heard: &mut dyn FnMut(Reading)) -> Result<(), Failed> {
     let mut command = Command::new(program);
     command.args([VERB, "--quiet"]);
     answered(&mut command, cases, heard)
 }
 
-/// Asks a command for the readings of some cases.
+/// Runs a command and receives its readings of some cases.
 fn answered(command: &mut Command, cases: &[&Case], heard: &mut dyn FnMut(Reading)) -> Result<(), Failed> {
     let failed = |cause: io::Error| (Some(Class::InputOutput), format!("the measuring process: {cause}"));
     let piped = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
@@ -31,16 +30,16 @@ fn answered(command: &mut Command, cases: &[&Case], heard: &mut dyn FnMut(Readin
     let errors = child.stderr.take();
     let words = thread::spawn(move || {
         let mut words = vec![];
-        // Words that cannot be read are missing; the exit code says the rest.
+        // If the message cannot be read, the exit code still classifies the failure.
         drop(errors.map(|mut errors| errors.read_to_end(&mut words)));
         String::from_utf8_lossy(&words).into_owned()
     });
-    // The process ends where this pipe does: it is held until the process has ended by itself, or this one is gone.
+    // The child ends when this pipe closes: keep it open until the child has ended, or this process is gone.
     let mut asked = child.stdin.take();
     let cases: Vec<(&Task, Option<usize>)> = cases.iter().map(|case| (&case.task, case.threads)).collect();
     let line = serde_json::to_string(&cases).map_err(|cause| failed(cause.into()))? + "\n";
     if let Some(asked) = &mut asked {
-        // A process that is gone says why in its own words.
+        // A child that is gone reports the reason on standard error.
         drop(asked.write_all(line.as_bytes()).and_then(|()| asked.flush()));
     }
     let mut readings = 0;
@@ -51,7 +50,7 @@ fn answered(command: &mut Command, cases: &[&Case], heard: &mut dyn FnMut(Readin
     }
     let status = child.wait().map_err(failed)?;
     drop(asked);
-    // Words that could not be read are missing; the exit code says the rest.
+    // If the message could not be read, the exit code still classifies the failure.
     let words = words.join().unwrap_or_else(|_| String::new());
     match status.success() && readings == cases.len() {
         true => Ok(()),
@@ -59,7 +58,7 @@ fn answered(command: &mut Command, cases: &[&Case], heard: &mut dyn FnMut(Readin
     }
 }
 
-/// The failure of a process, by its end and its words.
+/// Failure of a process, from its exit status and message.
 fn failure(status: ExitStatus, words: &str) -> Failed {
     let code = status.code().and_then(|code| u8::try_from(code).ok());
     let class = match code {
@@ -76,17 +75,17 @@ fn failure(status: ExitStatus, words: &str) -> Failed {
     (class, said)
 }
 
-/// Measures the cases that standard input names, and prints a line for each.
+/// Measures the cases read from standard input and prints one line for each.
 ///
 /// # Errors
-/// [`Failure`] of a case; standard input that names no cases.
+/// [`Failure`] of a case, or of standard input that does not contain cases.
 pub(crate) fn serve(all: &[&Own]) -> Result<(), Failure> {
     let mut line = String::new();
     let read = io::stdin().lock().read_line(&mut line);
     let cases = read.and_then(|_| Ok(serde_json::from_str::<Vec<(Task, Option<usize>)>>(&line)?));
     let cases = cases.map_err(Failure::writing("cases on standard input"))?;
     thread::spawn(|| {
-        // The process that asked holds the other end as long as it waits.
+        // The parent holds the other end as long as it waits.
         drop(io::copy(&mut io::stdin().lock(), &mut io::sink()));
         std::process::exit(INTERRUPTED.into());
     });
@@ -112,7 +111,7 @@ mod tests {
         (outcome, heard)
     }
 
-    /// A line is a reading; class and words of a process that fails are handed on.
+    /// Each line is a reading; class and message of a failed process are passed on.
     #[test]
     fn a_process_is_heard_and_its_failure_is_handed_on() {
         let line = r#"echo '{"work": 3.0, "seconds": 1.0, "parts": {}, "counts": {}}'; "#;

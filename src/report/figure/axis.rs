@@ -1,4 +1,4 @@
-//! Axes: their ends, the positions of numbers and their marks.
+//! Axes: ends, positions of numbers, and tick marks.
 
 use super::check::no_interval;
 use super::writer::escaped;
@@ -6,34 +6,34 @@ use super::{Axis, Scale};
 use libm::{log10, pow};
 use stripmine_physics::number::ten_to;
 
-/// Part of an axis that stays free at each of its ends where they are taken from the data.
+/// Share of an axis left free at each end when its ends are fitted to the data.
 const FREE: f64 = 0.04;
-/// An axis of more decades has no marks between them.
+/// Maximum number of decades with marks in between.
 const MOST_DECADES: i32 = 5;
-/// An axis of fewer decades is marked like a linear one.
+/// Minimum number of decades for logarithmic marks; a shorter axis is marked like a linear one.
 const FEWEST_DECADES: f64 = 0.7;
-/// Distances of decades with labels, from many labels to few. At 0, numbers between decades have labels too; at -1, for a short axis with
-/// one decade on it, 3 times that decade.
+/// Distances between labelled decades, from many labels to few. 0 also labels numbers between decades; -1, for a short axis with one
+/// decade, also labels 3 times that decade.
 const STRIDES: [i32; 10] = [0, 1, 2, 3, 5, 10, 20, 50, 100, -1];
-/// Numbers of labels that steps of 1, 2 or 5 times a power of ten give at most.
+/// Maximum numbers of labels for steps of 1, 2 or 5 times a power of ten.
 const PARTS: [f64; 6] = [10.0, 5.0, 2.0, 1.0, 0.5, 0.2];
 
-/// An axis with its ends.
+/// Axis with its ends.
 #[derive(Clone, Debug)]
 pub(crate) struct Span {
-    /// Quantity and unit.
+    /// Quantity with its unit.
     pub heading: String,
-    /// Positions of numbers.
+    /// Scale of the axis.
     pub scale: Scale,
     /// First and last number.
     pub ends: [f64; 2],
 }
 
-/// A mark of an axis: its place as a part of the axis, and its label, empty for a small mark.
+/// Tick mark: position as a fraction of the axis, and label, empty for a small mark.
 pub(crate) type Mark = (f64, String);
 
 impl Span {
-    /// Fits an axis to values, or takes the ends that it has.
+    /// Fits the ends of an axis to values, unless it has limits.
     pub(super) fn new(axis: &Axis, values: impl Iterator<Item = f64>) -> Result<Span, String> {
         let ends = match (&axis.scale, axis.limits) {
             (Scale::Names(names), _) => [-0.5, names.len() as f64 - 0.5],
@@ -47,25 +47,25 @@ impl Span {
         self.scale == Scale::Logarithmic
     }
 
-    /// Ends of the axis in the numbers that have equal differences at equal distances.
+    /// Ends of the axis on a linear scale, logarithms if the axis is logarithmic.
     fn even_ends(&self) -> [f64; 2] {
         if self.is_logarithmic() { self.ends.map(log10) } else { self.ends }
     }
 
-    /// Returns the place of a value as a part of the axis. Values without a place on a logarithmic axis lie infinitely far below it.
+    /// Returns the position of a value as a fraction of the axis. Non-positive values are infinitely far below a logarithmic axis.
     pub(super) fn part(&self, value: f64) -> f64 {
         let [low, high] = self.even_ends();
         ((if self.is_logarithmic() { log10(value.max(0.0)) } else { value }) - low) / (high - low)
     }
 
-    /// Returns the value at a part of the axis.
+    /// Returns the value at a fraction of the axis.
     pub(super) fn value(&self, part: f64) -> f64 {
         let [low, high] = self.even_ends();
         let value = low + part * (high - low);
         if self.is_logarithmic() { pow(10.0, value) } else { value }
     }
 
-    /// Describes the axis between two places of a picture for scripts: scale, places of its ends, ends, heading and names.
+    /// Describes the axis between two positions of a picture for scripts: scale, positions of its ends, ends, heading and names.
     pub(crate) fn described(&self, from: f64, to: f64) -> String {
         let (scale, names) = match &self.scale {
             Scale::Linear => ("linear", String::new()),
@@ -76,7 +76,7 @@ impl Span {
         escaped(&format!("{scale} {from:.2} {to:.2} {low:.6e} {high:.6e} {}{names}", self.heading))
     }
 
-    /// Returns the marks of the axis with as many labels as its length allows. `room` is the length that a label needs.
+    /// Returns the marks of the axis with as many labels as fit. `room` returns the length that a label needs.
     pub(crate) fn marks(&self, length: f64, room: impl Fn(&str) -> f64) -> Vec<Mark> {
         if let Scale::Names(names) = &self.scale {
             return (0..).zip(names).map(|(i, name)| (self.part(f64::from(i)), name.clone())).collect();
@@ -99,7 +99,7 @@ impl Span {
         strides.chain(steps).map(inside).find(fits).unwrap_or_default()
     }
 
-    /// Marks at 1 to 9 times powers of ten, which are spelled out only where all of them are short.
+    /// Marks at 1 to 9 times powers of ten. Numbers are written in full only if all of them are short.
     fn of_decades(&self, stride: i32) -> Vec<Mark> {
         let [low, high] = self.ends.map(exponent);
         let mut marks = vec![];
@@ -123,12 +123,12 @@ impl Span {
         marks
     }
 
-    /// Marks at multiples of the power of ten in the axis' length over 1, 2 or 5 and the like, with small marks between them.
+    /// Marks at multiples of a power of ten over `parts`, with small marks in between.
     fn of_steps(&self, parts: f64) -> Vec<Mark> {
         let unit = pow(10.0, log10(self.ends[1] - self.ends[0]).floor()) / parts;
         let small = if [5.0, 0.5].contains(&parts) { 4.0 } else { 5.0 };
         let [first, last] = self.ends.map(|end| end / unit * small);
-        // An axis may be too short for numbers to tell its ends apart.
+        // The ends of a very short axis may not be distinguishable in floating point.
         let most = if last - first < 1000.0 { usize::MAX } else { 0 };
         let all = (first - 1e-9).ceil() as i64..=(last + 1e-9).floor() as i64;
         let mark = |i: f64| {
@@ -138,7 +138,7 @@ impl Span {
         all.take(most).map(|i| mark(i as f64)).collect()
     }
 
-    /// Numbers are spelled out where that is short, otherwise all have the same power of ten.
+    /// Label of a number: written in full if short, otherwise with a common power of ten.
     fn even_label(&self, number: f64) -> String {
         let largest = self.ends[0].abs().max(self.ends[1].abs());
         let common = if (1e-3..1e6).contains(&largest) { 0 } else { exponent(largest) };
@@ -150,7 +150,7 @@ impl Span {
     }
 }
 
-/// Returns the ends of the data, and a little more.
+/// Returns the range of the data with a margin.
 fn fitting(axis: &Axis, values: impl Iterator<Item = f64>) -> Result<[f64; 2], String> {
     let is_logarithmic = axis.scale == Scale::Logarithmic;
     let [low, high] = values
@@ -161,16 +161,16 @@ fn fitting(axis: &Axis, values: impl Iterator<Item = f64>) -> Result<[f64; 2], S
         return Err(no_interval(&format!("the axis `{}`", axis.label), [low, high]));
     }
     let free = match is_logarithmic {
-        // A distance that the numbers can tell apart.
+        // The range is resolved in floating point.
         _ if length > 1e-12 * low.abs().max(high.abs()) => FREE * length,
         true => log10(2.0),
         false if low == 0.0 => 1.0,
         false => 0.1 * low.abs(),
     };
     let ends = match [low - free, high + free] {
-        // Room beyond the data may be beyond all numbers.
+        // The margin may overflow.
         ends if is_logarithmic => ends.map(|end| pow(10.0, end).clamp(f64::MIN_POSITIVE, f64::MAX)),
-        // A quantity that is positive keeps a positive axis.
+        // The axis of a positive quantity stays positive.
         [below, above] => [if low > 0.0 { below.max(0.0) } else { below }, above],
     };
     if !(ends[1] - ends[0]).is_finite() {
@@ -179,12 +179,12 @@ fn fitting(axis: &Axis, values: impl Iterator<Item = f64>) -> Result<[f64; 2], S
     Ok(ends)
 }
 
-/// Returns the decade of a number; one that is a power of ten but for its last digits lies at its beginning.
+/// Returns the decade of a number. Rounding errors just below a power of ten are tolerated.
 fn exponent(number: f64) -> i32 {
     (log10(number.abs()) + 1e-9).floor() as i32
 }
 
-/// Returns a number in full, without the noise of its last digits.
+/// Returns a number in full, without rounding noise.
 fn plain(number: f64) -> String {
     let rounded: f64 = format!("{number:.9e}").parse().unwrap_or(number);
     rounded.to_string().replace('-', "−")
@@ -198,7 +198,7 @@ mod tests {
         Axis { scale, limits, ..Axis::linear("time", Some("s")) }
     }
 
-    /// The labels of an axis with room for about six.
+    /// Labels of an axis with space for about six.
     fn labels(scale: Scale, limits: [f64; 2]) -> Vec<String> {
         let span = Span::new(&axis(scale, Some(limits)), std::iter::empty()).unwrap();
         let marks = span.marks(6.0, |_| 1.0);
@@ -233,7 +233,7 @@ mod tests {
         assert_eq!(logarithmic([1e-5, 1.0]), ["10⁻⁵", "10⁻⁴", "10⁻³", "10⁻²", "10⁻¹", "1"]);
         assert_eq!(logarithmic([1e6, 5e7]), ["10⁶", "2×10⁶", "5×10⁶", "10⁷", "2×10⁷", "5×10⁷"]);
         assert_eq!(logarithmic([1.0, 20.0]), ["1", "2", "5", "10", "20"]);
-        // Of many decades every third has a label.
+        // With many decades every third has a label.
         assert_eq!(logarithmic([1e-16, 1.0]), ["10⁻¹⁵", "10⁻¹²", "10⁻⁹", "10⁻⁶", "10⁻³", "1"]);
     }
 
@@ -244,7 +244,7 @@ mod tests {
         }
     }
 
-    /// Room beyond 1e-305 and 1e305 would lie at 0 and at infinity.
+    /// A margin beyond 1e-305 and 1e305 would give 0 and infinity.
     #[test]
     fn ends_of_data_stay_numbers() {
         let of = |scale, data: [f64; 2]| Span::new(&axis(scale, None), data.into_iter());

@@ -1,8 +1,8 @@
-//! Curves and points over two axes.
+//! Charts: curves and points over two axes.
 
 use serde::Deserialize;
 
-/// A chart. Each point must have a place on both axes: a finite one, and above zero on a logarithmic axis.
+/// Chart. The coordinates of all points must be finite, and positive on a logarithmic axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chart {
     pub(crate) x: Axis,
@@ -19,7 +19,7 @@ impl Chart {
         Chart { x, y, series: vec![], bands: vec![] }
     }
 
-    /// Axis along which points spread.
+    /// Axis along which the spreads of points extend.
     pub(super) fn spreads_along(&self) -> (&Axis, Along) {
         if matches!(self.y.scale, Scale::Names(_)) { (&self.x, Along::X) } else { (&self.y, Along::Y) }
     }
@@ -48,7 +48,7 @@ impl Chart {
     }
 }
 
-/// An axis. It is fitted to its data where it has no limits.
+/// Axis. Without limits it is fitted to the data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
     pub(crate) label: String,
@@ -68,7 +68,7 @@ impl Axis {
         Axis { scale: Scale::Logarithmic, ..Axis::linear(label, unit) }
     }
 
-    /// Makes an axis of names: number 0 stands for the first.
+    /// Makes an axis of names; number 0 represents the first.
     pub fn names(label: &str, names: impl IntoIterator<Item = impl Into<String>>) -> Axis {
         Axis { scale: Scale::Names(names.into_iter().map(Into::into).collect()), ..Axis::linear(label, None) }
     }
@@ -84,7 +84,7 @@ impl Axis {
     }
 }
 
-/// Positions of numbers on an axis.
+/// Scale of an axis.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Scale {
     Linear,
@@ -93,15 +93,15 @@ pub(crate) enum Scale {
     Names(Vec<String>),
 }
 
-/// A named set of points.
+/// Named set of points.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Series {
-    /// Empty for no entry in the legend.
+    /// Name in the legend; empty for no entry.
     pub name: String,
     pub(crate) style: Style,
-    /// Index of a colour in the palette; series that belong together share one.
+    /// Index of a colour in the palette; related series share a hue.
     pub(crate) hue: usize,
-    /// By increasing x where they are joined.
+    /// Points, by increasing x if they are joined.
     pub(crate) points: Vec<Point>,
 }
 
@@ -122,19 +122,19 @@ impl Series {
 pub enum Style {
     /// A line, for a model.
     Line,
-    /// A dashed line, for a rival or a limit.
+    /// A dashed line, for a comparison or a limit.
     Dashed,
     /// Points alone, for measurements.
     Points,
-    /// Large points, for a few that stand out from curves.
+    /// Large points, to highlight a few on curves.
     Marks,
     /// Points joined by a line.
     Joined,
-    /// A dashed line on a ground between the ends of the spreads: a mean with its error.
+    /// A dashed line on a shaded area between the ends of the spreads: a mean with its error.
     Ribbon,
 }
 
-/// A point of a series. Its spread is the lowest and highest observed or credible value of y; of x on a chart with names on its y axis.
+/// Point of a series. Its spread is the lowest and highest observed or credible value of y, or of x if the y axis has names.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
     pub(crate) x: f64,
@@ -161,14 +161,14 @@ impl From<(f64, f64, [f64; 2])> for Point {
     }
 }
 
-/// A marked part of the plane: between two values, or a line at one value.
+/// Marked part of the plane: the area between two values, or a line at one value.
 ///
-/// Bands between values of x are grey, such as densities that no configuration has; those between values of y are a light ground, such as
-/// errors that are small enough.
+/// Bands between values of x are grey, for instance unreachable densities; bands between values of y are light, for instance acceptable
+/// errors.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Band {
     pub(crate) label: String,
-    /// Equal ones make a line.
+    /// Ends of the band; equal ends make a line.
     pub(crate) ends: [f64; 2],
     pub(crate) along: Along,
 }
@@ -184,7 +184,7 @@ impl Band {
         Band { along: Along::Y, ..Band::of_x(label, ends) }
     }
 
-    /// Reports if it is a line.
+    /// Returns true if the band is a line.
     pub(super) fn is_line(&self) -> bool {
         self.ends[0] == self.ends[1]
     }

@@ -1,38 +1,40 @@
-//! Faults of figures, found before they are drawn.
+//! Checks of figures before they are drawn.
 
 use super::{Axis, Chart, Drawing, Map, Picture, Scale, Shape, Tint};
 use stripmine_physics::number::significant;
 use stripmine_physics::reported::{Class, Reported};
 
-/// A figure that cannot be drawn.
+/// Figure that cannot be drawn.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("figure `{figure}`: {problem}")]
 pub struct FigureError {
     /// Name of the figure.
     pub figure: String,
-    /// Place, value and reason.
+    /// Location, value and reason.
     pub(crate) problem: String,
 }
 
 impl Reported for FigureError {
-    // A picture that cannot be drawn is a mistake of the program.
+    // A figure that cannot be drawn is a bug of the program.
     fn class(&self) -> Class {
         Class::InputOutput
     }
 }
 
-/// Least width and largest side of a drawing (pixels).
+/// Minimum width and maximum side of a drawing (pixels).
 const SIDES: [f64; 2] = [100.0, 50_000.0];
-/// Limit of a shape's size and its distance from the corner of the window (pixels): renderers count in small whole numbers.
+/// Maximum size of a shape and its maximum distance from the corner of the window (pixels), since renderers use small integers.
 const FARTHEST: f64 = 1e6;
 
-/// Finds the first fault of a picture.
+/// Returns the first fault of a picture as an error.
 pub(crate) fn check(picture: &Picture) -> Result<(), String> {
     match picture {
         Picture::Charts(panels) => {
-            let first = &panels.first().ok_or("there is nothing in it")?.1;
+            let first = &panels.first().ok_or("it has no data to draw")?.1;
             match panels.iter().find(|(_, chart)| chart.x != first.x || chart.y != first.y) {
-                Some((name, _)) => Err(format!("panel `{name}` has other axes than the first panel")),
+                Some((name, _)) => {
+                    Err(format!("the axes of panel `{name}` differ from those of the first panel"))
+                }
                 None => panels.iter().try_for_each(|(_, chart)| check_chart(chart)),
             }
         }
@@ -70,10 +72,13 @@ fn check_map(map: &Map) -> Result<(), String> {
         let Axis { label, scale, limits, .. } = axis;
         match scale {
             Scale::Names(names) if names.len() != cells => {
-                return Err(format!("the axis `{label}` has {} names for {cells} cells", names.len()));
+                return Err(format!(
+                    "the axis `{label}` has {} names; expected one for each of {cells} cells",
+                    names.len()
+                ));
             }
             Scale::Linear | Scale::Logarithmic if limits.is_none() => {
-                return Err(format!("the axis `{label}` of a map needs limits"));
+                return Err(format!("the axis `{label}` of a map has no limits; expected two"));
             }
             _ => check_axis(axis)?,
         }
@@ -81,7 +86,10 @@ fn check_map(map: &Map) -> Result<(), String> {
     check_axis(&map.value)?;
     for (j, row) in map.rows.iter().enumerate() {
         if row.len() != columns {
-            return Err(format!("row {j} has {} values, the rows before it {columns}", row.len()));
+            return Err(format!(
+                "row {j} has {} values; expected {columns} as in the previous rows",
+                row.len()
+            ));
         }
         for (i, &value) in row.iter().enumerate().filter(|(_, value)| !value.is_nan()) {
             showable(&map.value, value, || format!("the value at row {j}, column {i}"))?;
@@ -97,7 +105,10 @@ fn check_drawing(Drawing { window, width, shapes, shades, .. }: &Drawing) -> Res
     let height = width * (high - low) / (right - left);
     if !(*width >= SIDES[0] && width.max(height) <= SIDES[1]) {
         let [width, height] = [*width, height].map(|side| significant(side, 6));
-        return Err(format!("a picture of {width} by {height} pixels cannot be drawn"));
+        return Err(format!(
+            "a picture of {width} by {height} pixels cannot be drawn; expected a width of {} or more and sides of at most {}",
+            SIDES[0], SIDES[1]
+        ));
     }
     if let Some((lowest, highest, what)) = shades {
         interval(&format!("the shade `{what}`"), [*lowest, *highest])?;
@@ -113,7 +124,10 @@ fn check_drawing(Drawing { window, width, shapes, shades, .. }: &Drawing) -> Res
             let pixels = width / (right - left) * (value - low).abs();
             if pixels > FARTHEST || pixels.is_nan() {
                 let [value, pixels] = [significant(value, 6), significant(pixels, 2)];
-                return Err(format!("{} is {value}, which is {pixels} pixels on the picture", place()));
+                return Err(format!(
+                    "{} is {value}, which is {pixels} pixels on the picture; expected at most {FARTHEST}",
+                    place()
+                ));
             }
         }
     }
@@ -128,7 +142,7 @@ fn check_axis(axis: &Axis) -> Result<(), String> {
 }
 
 fn has(something: bool) -> Result<(), String> {
-    if something { Ok(()) } else { Err("there is nothing in it".to_owned()) }
+    if something { Ok(()) } else { Err("it has no data to draw".to_owned()) }
 }
 
 fn interval(place: &str, ends: [f64; 2]) -> Result<(), String> {
@@ -136,16 +150,16 @@ fn interval(place: &str, ends: [f64; 2]) -> Result<(), String> {
     if length > 0.0 && length.is_finite() { Ok(()) } else { Err(no_interval(place, ends)) }
 }
 
-/// Describes ends that are no interval.
+/// Describes ends that are not an interval.
 pub(crate) fn no_interval(place: &str, ends: [f64; 2]) -> String {
     let [low, high] = ends.map(|end| significant(end, 6));
-    format!("{place} goes from {low} to {high}, which is not upwards or too far")
+    format!("{place} goes from {low} to {high}; expected increasing ends at a finite distance")
 }
 
 fn showable(axis: &Axis, value: f64, place: impl Fn() -> String) -> Result<(), String> {
     finite(value, &place)?;
     let problem = match &axis.scale {
-        Scale::Logarithmic if value <= 0.0 => "its axis is logarithmic".to_owned(),
+        Scale::Logarithmic if value <= 0.0 => "a logarithmic axis needs positive numbers".to_owned(),
         Scale::Names(all) if value < -0.5 || value > all.len() as f64 - 0.5 => {
             format!("its axis has {} names", all.len())
         }
@@ -155,5 +169,5 @@ fn showable(axis: &Axis, value: f64, place: impl Fn() -> String) -> Result<(), S
 }
 
 fn finite(value: f64, place: impl Fn() -> String) -> Result<(), String> {
-    if value.is_finite() { Ok(()) } else { Err(format!("{} is {value}, which is not finite", place())) }
+    if value.is_finite() { Ok(()) } else { Err(format!("{} is {value}; expected a finite number", place())) }
 }

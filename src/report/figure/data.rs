@@ -1,13 +1,13 @@
-//! The numbers of a figure as a table, for programs.
+//! Numbers of a figure as a table, for programs.
 
 use super::{Axis, Chart, Figure, Map, Picture, Scale};
 use crate::report::{Cell, Table};
 
-/// Returns the table of a chart or a map, named after the figure; none for a drawing, whose shapes are not data, and for a picture that
-/// was drawn before.
+/// Returns the table of a chart or a map, named after the figure; `None` for a drawing, whose shapes are not data, and for a picture read
+/// from a file.
 ///
-/// A chart gives a row for each point: its series, x, y, and the ends of its spread; panels have their name before it. A map gives a
-/// row for each of its rows from the bottom: the middle of the row, and its values under the middles of the columns.
+/// A chart gives one row for each point: series, x, y, and the ends of its spread, preceded by the name of the panel if there are several.
+/// A map gives one row for each of its rows from the bottom: the middle of the row, and its values under the middles of the columns.
 pub(crate) fn data(figure: &Figure) -> Option<Table> {
     let (columns, rows) = match &figure.picture {
         Picture::Charts(panels) => {
@@ -34,7 +34,7 @@ fn data_name(figure: &Figure) -> String {
     format!("{}.data", figure.name)
 }
 
-/// Returns the name of the file with a figure's data, without its folder; none if it has no data.
+/// Returns the name of the file with a figure's data, without its folder; `None` if it has no data.
 pub(crate) fn data_file(figure: &Figure) -> Option<String> {
     let has_data = match &figure.picture {
         Picture::Drawing(_) => false,
@@ -48,7 +48,7 @@ fn number(value: f64) -> Cell {
     if value.is_finite() { Cell::Number(value, 6) } else { Cell::Nothing }
 }
 
-/// Returns a number of an axis, or the name that it stands for.
+/// Returns the number, or the name that it represents on an axis of names.
 fn place(axis: &Axis, value: f64) -> Cell {
     match &axis.scale {
         Scale::Names(names) => names.get(value.round() as usize).cloned().map_or(Cell::Nothing, Cell::Text),
@@ -110,7 +110,7 @@ mod tests {
             let rows = match &figure.picture {
                 Picture::Charts(panels) => panels.iter().map(|(_, chart)| points(chart)).sum(),
                 Picture::Map(map) => map.rows.len(),
-                Picture::Drawing(_) | Picture::Drawn { .. } => unreachable!("it has no data"),
+                Picture::Drawing(_) | Picture::Drawn { .. } => unreachable!("drawings have no data"),
             };
             assert_eq!(table.rows.len(), rows, "{}", figure.name);
         }

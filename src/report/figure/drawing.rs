@@ -1,4 +1,4 @@
-//! Drawings: shapes at their places, with a scale bar, gravity and shades below them.
+//! Drawings: shapes with a scale bar, the direction of gravity and a colour bar below them.
 
 use super::axis::Span;
 use super::style::{self, Colour, LINE};
@@ -7,15 +7,15 @@ use super::{Drawing, Guide, Scale, Shape, Tint, font, map};
 use std::collections::BTreeMap;
 use stripmine_physics::number::significant;
 
-/// Width of a disc's outline, in radii; and its bounds in pixels.
+/// Width of a disc's outline in radii, and its bounds in pixels.
 const RIM: f64 = 0.08;
 const RIMS: [f64; 2] = [0.4, 1.2];
-/// Discs of no more than this radius have no outline (pixels).
+/// Maximum radius of discs without an outline (pixels).
 const SMALL: f64 = 2.5;
-/// Height of the rows in which dots are sorted (tenths of a pixel).
+/// Height of the rows for sorting dots (tenths of a pixel).
 const ROW: i64 = 120;
 
-/// Draws shapes. Words and lines grow with a wide drawing: it is shown at a smaller scale.
+/// Draws shapes. In a wide drawing, which is shown at a smaller scale, words and lines are enlarged.
 pub(crate) fn draw(title: &str, drawing: &Drawing) -> Svg {
     let zoom = (drawing.width / style::ZOOMED).max(1.0);
     let margin = style::MARGIN * zoom;
@@ -27,7 +27,7 @@ pub(crate) fn draw(title: &str, drawing: &Drawing) -> Svg {
     let top = svg.size[1];
     let is_signed = drawing.shades.as_ref().is_some_and(|&(low, high, _)| style::is_signed([low, high]));
     let view = View { drawing, corner: [margin, top + height], scale, zoom, is_signed };
-    // Outlines at the edges are seen whole.
+    // Outlines at the edges are not cut off.
     let (corner, size) =
         ([margin, top].map(|it| it - 0.5 * LINE * zoom), [width, height].map(|it| it + LINE * zoom));
     svg.window(corner, size);
@@ -45,20 +45,20 @@ pub(crate) fn draw(title: &str, drawing: &Drawing) -> Svg {
     svg
 }
 
-/// A drawing on its picture.
+/// View of a drawing on a picture.
 struct View<'a> {
     drawing: &'a Drawing,
-    /// Place of the window's lower left corner.
+    /// Position of the window's lower left corner.
     corner: [f64; 2],
-    /// Pixels to a unit of the drawing.
+    /// Pixels per unit of the drawing.
     scale: f64,
     zoom: f64,
-    /// Set if shades show a sign.
+    /// True if shades show a sign.
     is_signed: bool,
 }
 
 impl View<'_> {
-    /// Adds the shapes from back to front; filled discs that follow each other are drawn together.
+    /// Adds the shapes from back to front; consecutive filled discs are drawn together.
     fn shapes(&self, svg: &mut Svg) {
         let is_dot = |shape: &Shape| matches!(shape, Shape::Disc { tint, .. } if *tint != Tint::Clear);
         let mut before = 0;
@@ -107,10 +107,10 @@ impl View<'_> {
         }
     }
 
-    /// Adds filled discs; which of them is in front makes no difference. Those of one colour and size are the round ends of the shortest
-    /// lines of that width, a sixth of the bytes of circles; outlines are larger discs behind all of them.
+    /// Adds filled discs, whose order does not matter. Discs of one colour and size are drawn as very short lines with round ends, in a sixth
+    /// of the bytes of circles; outlines are larger discs behind all of them.
     fn dots(&self, svg: &mut Svg, discs: &[Shape]) {
-        // Middles (tenths of a pixel) by layer, colour and diameter; outlines first.
+        // Centres (tenths of a pixel) by layer, colour and diameter; outlines first.
         let mut alike: BTreeMap<(bool, Colour, i64), Vec<[i64; 2]>> = BTreeMap::new();
         let tenths = |pixels: f64| (10.0 * pixels).round() as i64;
         for shape in discs {
@@ -120,7 +120,7 @@ impl View<'_> {
             let mut dot = |is_front, colour, diameter: f64| {
                 alike.entry((is_front, colour, tenths(diameter))).or_default().push(middle);
             };
-            // An outline would hide a disc of a few pixels.
+            // An outline would hide a small disc.
             let rim = if radius > SMALL * self.zoom { self.rim(radius) } else { 0.0 };
             if rim > 0.0 {
                 dot(false, style::INK, 2.0 * radius + rim);
@@ -129,12 +129,12 @@ impl View<'_> {
         }
         svg.add("<g transform=\"scale(.1)\" stroke-linecap=\"round\">");
         for ((_, colour, diameter), mut middles) in alike {
-            // Near ones follow each other, which makes the steps between them short.
+            // Nearby discs are consecutive, which keeps the steps short.
             middles.sort_by_key(|[x, y]| (y.div_euclid(ROW), *x));
             let (mut d, mut at) = (String::new(), [0, 0]);
             for [x, y] in middles {
                 let start = if d.is_empty() { 'M' } else { 'm' };
-                // Some viewers show nothing of a line without a length.
+                // Some viewers do not show lines of zero length.
                 d += &format!("{start}{} {}h1", x - at[0], y - at[1]);
                 at = [x + 1, y];
             }
@@ -143,7 +143,7 @@ impl View<'_> {
         svg.add("</g>");
     }
 
-    /// Adds a bar of a round length and the direction of gravity below the window.
+    /// Adds a scale bar of a round length and the direction of gravity below the window.
     fn guide(&self, svg: &mut Svg, guide: &Guide) {
         let (zoom, size, margin) = (self.zoom, style::LABEL * self.zoom, self.corner[0]);
         let middle = svg.size[1] + 0.5 * size;
@@ -154,7 +154,7 @@ impl View<'_> {
         };
         if let Some([x, y]) = guide.gravity {
             let centre = margin + font::width("gravity", size) + 24.0 * zoom;
-            // The arrow in steps along gravity and across it; downwards places grow.
+            // Arrow in coordinates along gravity and across it; y increases downwards.
             let [x, y] = [x, -y].map(|part| part / x.hypot(y) * zoom);
             let place = |along, across| [centre + along * x - across * y, middle + along * y + across * x];
             line(place(-14.0, 0.0), place(14.0, 0.0));
@@ -198,7 +198,7 @@ impl View<'_> {
     }
 }
 
-/// Returns the largest of 1, 2 and 5 times a power of ten that is not above a number.
+/// Returns the largest number of the form 1, 2 or 5 times a power of ten that is at most `most`.
 fn round(most: f64) -> f64 {
     let power = libm::pow(10.0, libm::log10(most).floor());
     [5.0, 2.0, 1.0].into_iter().map(|factor| factor * power).find(|it| *it <= most).unwrap_or(power)

@@ -1,13 +1,13 @@
-//! Widths of words in the pictures' font, DejaVu Sans.
+//! Widths of words in the font of the pictures, DejaVu Sans.
 
 use super::style;
 
-/// Height of a capital letter, in sizes of the letters.
+/// Height of a capital letter, in units of the font size.
 pub(crate) const CAPITAL: f64 = 0.729;
-/// Depth of letters below their line, in sizes of the letters.
+/// Depth of letters below the base line, in units of the font size.
 pub(crate) const DESCENT: f64 = 0.24;
 
-/// Letters by their width in hundredths of their size, rounded up to the next class. Any other letter may be as wide as [`WIDEST`].
+/// Letters by width in hundredths of the font size, rounded up to the next class. Any other letter counts as [`WIDEST`].
 const WIDTHS: [(u32, &str); 10] = [
     (32, "'ijlíîïIJ ,.·′ \u{a0}"),
     (40, "/:;\\|-ftι()[]!¹²³⁰⁴⁵⁶⁷⁸⁹₀₁₂₃₄₅₆₇₈₉⟨⟩⌊⌋⌈⌉″"),
@@ -22,7 +22,7 @@ const WIDTHS: [(u32, &str); 10] = [
 ];
 const WIDEST: u32 = 110;
 
-/// Returns the width of words in one line, never less than the true one.
+/// Returns an upper bound of the width of words in one line.
 pub(crate) fn width(words: &str, size: f64) -> f64 {
     let letter = |letter: char| WIDTHS.iter().find(|it| it.1.contains(letter)).map_or(WIDEST, |it| it.0);
     f64::from(words.chars().map(letter).sum::<u32>()) * size / 100.0
@@ -33,13 +33,13 @@ pub(crate) fn widest<'a>(lines: impl IntoIterator<Item = &'a String>, size: f64)
     lines.into_iter().map(|line| width(line, size)).fold(0.0, f64::max)
 }
 
-/// Returns the height of a number of lines, from the top of the first one's capitals to the depth of the last one's letters.
+/// Returns the height of a number of lines, from the capitals of the first line to the descenders of the last.
 pub(crate) fn height(lines: usize, size: f64) -> f64 {
     let lines = lines as f64;
     if lines == 0.0 { 0.0 } else { size * (CAPITAL + (lines - 1.0) * style::LINE_SPACING + DESCENT) }
 }
 
-/// Cuts words into lines that are no wider than a width; a single word may be. A no-break space is within a word.
+/// Wraps words into lines of at most a width; a single word may be wider. A no-break space does not separate words.
 pub(crate) fn wrap(words: &str, size: f64, most: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     let words = words.split(|c: char| c.is_whitespace() && c != '\u{a0}').filter(|word| !word.is_empty());
@@ -66,7 +66,7 @@ mod tests {
         let letters =
             WIDTHS.iter().flat_map(|(_, letters)| letters.chars()).chain(['ŋ', 'Œ', 'j', '数', '✓']);
         for letter in letters {
-            // Blanks at the end have no width of their own in a picture.
+            // Trailing blanks have no width in a picture.
             let text = format!(
                 "<svg xmlns=\"http://www.w3.org/2000/svg\" font-family=\"DejaVu Sans\" font-size=\"1000\">\
                  <text>|{}|</text></svg>",

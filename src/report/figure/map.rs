@@ -1,4 +1,4 @@
-//! Heat maps, and the bar that says what shades mean.
+//! Heat maps and colour bars.
 
 use super::axis::Span;
 use super::plane::{self, Plane};
@@ -8,10 +8,10 @@ use super::{Axis, Map, Scale, font};
 use std::collections::BTreeSet;
 use stripmine_physics::number::{in_tens, significant};
 
-/// Most length of a colour bar, and its thickness (pixels).
+/// Maximum length of a colour bar, and its thickness (pixels).
 const BAR: f64 = 440.0;
 const THICKNESS: f64 = 16.0;
-/// Digits of a value in its cell.
+/// Significant digits of a value in its cell.
 const DIGITS: usize = 2;
 
 pub(crate) fn draw(title: &str, map: &Map) -> Result<Svg, String> {
@@ -28,14 +28,14 @@ pub(crate) fn draw(title: &str, map: &Map) -> Result<Svg, String> {
     Ok(svg)
 }
 
-/// Returns the axis of the shades: exactly the values of the map where it has no limits.
+/// Returns the axis of the shades; without limits it spans exactly the values of the map.
 fn shades(axis: &Axis, values: impl Iterator<Item = f64> + Clone) -> Result<Span, String> {
     let [low, high] = [f64::min, f64::max].map(|it| values.clone().reduce(it).unwrap_or(f64::NAN));
     let is_exact = axis.limits.is_none() && low < high;
     if is_exact { Span::new(&axis.clone().between([low, high]), values) } else { Span::new(axis, values) }
 }
 
-/// Reports if shades show a sign.
+/// Returns true if shades show a sign.
 fn is_signed(shades: &Span) -> bool {
     shades.scale == Scale::Linear && style::is_signed(shades.ends)
 }
@@ -44,15 +44,15 @@ fn level(shades: &Span, value: f64) -> u8 {
     style::level(shades.part(value), is_signed(shades))
 }
 
-/// Adds the cells of a map. Those of one colour are one path, neighbours in a row one line of it, as wide as a cell is high; in units of
-/// cells. A line goes on under cells of higher levels, which are painted after it: a fifth fewer lines. No edge is softened, which would
-/// show as a seam.
+/// Adds the cells of a map in units of cells. Cells of one colour are one path; adjacent cells in a row are one line as wide as a cell is
+/// high. A line continues under cells of higher levels, which are painted later; this saves a fifth of the lines. Edges are not antialiased,
+/// which would show as seams.
 fn cells(svg: &mut Svg, map: &Map, shades: &Span, plane: &Plane) {
-    // Rows from above; 1 is the lowest level, 0 no value.
+    // Rows from the top; 1 is the lowest level, 0 an empty cell.
     let level = |&value: &f64| if value.is_nan() { 0 } else { 1 + u32::from(level(shades, value)) };
     let rows: Vec<Vec<u32>> = map.rows.iter().rev().map(|row| row.iter().map(level).collect()).collect();
     let [across, down] = [plane.size[0] / rows[0].len() as f64, plane.size[1] / rows.len() as f64];
-    // Lines run along the middle of their row.
+    // Lines run along the middle of the row.
     let [x, y] = [plane.corner[0], plane.corner[1] + 0.5 * down];
     svg.add(format_args!(
         "<g transform=\"translate({x:.2} {y:.2}) scale({across:.6} {down:.6})\" shape-rendering=\"crispEdges\">"
@@ -62,7 +62,7 @@ fn cells(svg: &mut Svg, map: &Map, shades: &Span, plane: &Plane) {
         let (mut d, mut at) = (String::new(), [0, 0]);
         for (j, row) in (0..).zip(&rows) {
             let mut i = 0;
-            // Between cells of lower levels, from the first cell of this level to the last.
+            // Between cells of lower levels, from the first to the last cell of this level.
             for free in row.split(|&other| other < level) {
                 let ends =
                     [free.iter().position(|&it| it == level), free.iter().rposition(|&it| it == level)];
@@ -82,7 +82,7 @@ fn cells(svg: &mut Svg, map: &Map, shades: &Span, plane: &Plane) {
     svg.add("</g>");
 }
 
-/// Adds the values of a map whose cells have room for them.
+/// Adds the values of a map if they fit into its cells.
 fn numbers(svg: &mut Svg, map: &Map, shades: &Span, plane: &Plane) {
     let text = |value: &f64| {
         if value.is_nan() { String::new() } else { in_tens(*value, DIGITS).replace('-', "−") }
@@ -104,11 +104,11 @@ fn numbers(svg: &mut Svg, map: &Map, shades: &Span, plane: &Plane) {
     }
 }
 
-/// Adds a bar with all shades below a picture: its marks, or its ends and its middle where it is short, and its heading.
+/// Adds a colour bar below a picture, with a heading and tick marks; a short bar shows its ends and middle.
 pub(crate) fn bar(svg: &mut Svg, shades: &Span, zoom: f64) {
     let [picture, top] = svg.size;
     let (size, margin, is_signed) = (style::LABEL * zoom, style::MARGIN * zoom, is_signed(shades));
-    // Numbers at the bar's ends stand out.
+    // Numbers at the ends extend beyond the bar.
     let width = (picture - 5.0 * margin).min(BAR * zoom);
     let (left, top, height) = (0.5 * (picture - width), top + margin, THICKNESS * zoom);
     let stop = |part| (part, style::shade(style::level(part, is_signed)));

@@ -1,4 +1,4 @@
-//! Figures: charts, heat maps and drawings as data, written as SVG and PNG.
+//! Figures as data: charts, heat maps and drawings, written as SVG and PNG.
 
 mod axis;
 mod chart;

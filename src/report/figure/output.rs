@@ -1,4 +1,4 @@
-//! SVG and PNG of a figure. The PNG, for papers and slides, is the SVG as `resvg` draws it.
+//! SVG and PNG of a figure. The PNG, for papers and slides, is the SVG rendered by `resvg`.
 
 use super::check::check;
 use super::{Figure, FigureError, Picture, drawing, map, plot};
@@ -6,12 +6,12 @@ use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree, fontdb::Database};
 use std::sync::{Arc, LazyLock};
 
-/// Dots of a PNG to a pixel.
+/// Dots of a PNG per pixel.
 const DOTS: f64 = 2.0;
-/// Most dots of a picture: as many as fit in 400 MB.
+/// Maximum dots of a picture, which take 400 MB.
 const MOST_DOTS: f64 = 1e8;
 
-/// The one font, which is part of the program: no picture depends on the fonts of a machine.
+/// Font embedded in the program, so that pictures do not depend on the fonts of a machine.
 static FONTS: LazyLock<Arc<Database>> = LazyLock::new(|| {
     let mut fonts = Database::new();
     fonts.load_font_data(dejavu::sans::regular().to_vec());
@@ -21,7 +21,7 @@ static FONTS: LazyLock<Arc<Database>> = LazyLock::new(|| {
 /// Draws a figure as SVG.
 ///
 /// # Errors
-/// When the figure cannot be drawn.
+/// [`FigureError`] if the figure cannot be drawn.
 pub fn svg(figure: &Figure) -> Result<String, FigureError> {
     let failed = |problem| FigureError { figure: figure.name.clone(), problem };
     check(&figure.picture).map_err(failed)?;
@@ -34,24 +34,25 @@ pub fn svg(figure: &Figure) -> Result<String, FigureError> {
     Ok(drawn.map_err(failed)?.finish(figure))
 }
 
-/// Draws a figure as PNG, with two dots to a pixel.
+/// Draws a figure as PNG, with two dots per pixel.
 ///
 /// # Errors
-/// When the figure cannot be drawn, or has too many dots.
+/// [`FigureError`] if the figure cannot be drawn or has too many dots.
 pub(crate) fn png(figure: &Figure) -> Result<Vec<u8>, FigureError> {
     let failed = |problem: String| FigureError { figure: figure.name.clone(), problem };
     let tree = tree(&svg(figure)?).map_err(failed)?;
     let size = tree.size();
     let [across, down] = [size.width(), size.height()].map(|side| (f64::from(side) * DOTS).ceil());
     let picture = if across * down > MOST_DOTS { None } else { Pixmap::new(across as u32, down as u32) };
-    let mut picture =
-        picture.ok_or_else(|| failed(format!("a picture of {across} by {down} dots is too large")))?;
+    let mut picture = picture.ok_or_else(|| {
+        failed(format!("a picture of {across} by {down} dots is too large; the maximum is {MOST_DOTS} dots"))
+    })?;
     let dots = DOTS as f32;
     resvg::render(&tree, Transform::from_scale(dots, dots), &mut picture.as_mut());
     picture.encode_png().map_err(|error| failed(error.to_string()))
 }
 
-/// Reads a vector picture.
+/// Parses an SVG picture.
 pub(super) fn tree(text: &str) -> Result<Tree, String> {
     let options = Options { fontdb: FONTS.clone(), ..Options::default() };
     Tree::from_str(text, &options).map_err(|error| error.to_string())

@@ -1,8 +1,8 @@
-//! Pictures and the words beside them.
+//! Pictures with their names, titles and captions.
 
 use super::chart::{Axis, Chart};
 
-/// A picture with a name for files, one line that says what it shows, and further notes for the reader.
+/// Picture with a name for files, a title and a caption.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
     pub(crate) name: String,
@@ -11,20 +11,20 @@ pub struct Figure {
     pub(crate) picture: Picture,
 }
 
-/// The content of a figure.
+/// Content of a figure.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Picture {
-    /// Curves and points over two axes: a chart without a name, or several beside each other, on the same axes and with one legend.
+    /// Curves and points over two axes: one chart without a name, or several side by side with the same axes and one legend.
     Charts(Vec<(String, Chart)>),
-    /// A number for each place of a grid, as a colour.
+    /// Heat map: a colour for the value of each cell of a grid.
     Map(Map),
-    /// Discs, cells and words at their places.
+    /// Drawing of discs, cells and words.
     Drawing(Drawing),
-    /// A picture that was drawn before and is read from its file.
+    /// Picture read from a file.
     Drawn {
-        /// The file's text.
+        /// Contents of the file.
         svg: String,
-        /// Set if a table of its data lies beside the file.
+        /// True if the item has a table of its data.
         has_data: bool,
     },
 }
@@ -49,7 +49,7 @@ impl Figure {
         Figure { caption: caption.into(), ..self }
     }
 
-    /// Returns whether there is anything to see: a chart without a point is none.
+    /// Returns true if there is anything to draw; false for a chart without points.
     pub(crate) fn has_points(&self) -> bool {
         let has = |chart: &Chart| chart.series.iter().any(|series| !series.points.is_empty());
         match &self.picture {
@@ -58,7 +58,7 @@ impl Figure {
         }
     }
 
-    /// Names in the legend of a chart.
+    /// Entries of the legend.
     pub fn legend(&self) -> Vec<&str> {
         let charts: Vec<&Chart> = match &self.picture {
             Picture::Charts(panels) => panels.iter().map(|(_, chart)| chart).collect(),
@@ -78,42 +78,42 @@ impl Figure {
     }
 }
 
-/// A heat map, such as the density over place and time.
+/// Heat map, such as the density by position and time.
 ///
-/// The limits of its axes are the outer edges of the outermost cells; an axis of names needs none.
+/// The limits of its axes are the outer edges of the outermost cells; an axis of names needs no limits.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Map {
     pub(crate) x: Axis,
     pub(crate) y: Axis,
-    /// The quantity that colours show.
+    /// Quantity shown by colours.
     pub(crate) value: Axis,
-    /// `rows[j][i]`: the value at row j (from the bottom) and column i. All rows are equally long. NaN leaves a cell empty.
+    /// `rows[j][i]`: value in row j (from the bottom) and column i. All rows have the same length. NaN leaves a cell empty.
     pub(crate) rows: Vec<Vec<f64>>,
 }
 
-/// A drawing in its own coordinates: x to the right, y upwards.
+/// Drawing in its own coordinates: x to the right, y upwards.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Drawing {
     /// Lower left and upper right corner of the visible part.
     pub(crate) window: [[f64; 2]; 2],
     /// Width of the picture (pixels); its height follows from the window.
     pub(crate) width: f64,
-    /// Shapes from back to front. They are not stored with a section: its picture is.
+    /// Shapes from back to front. An item stores the picture, not the shapes.
     pub(crate) shapes: Vec<Shape>,
-    /// Lowest and highest value of the shades, and their quantity with its unit; none where shades mean nothing.
+    /// Lowest and highest value of the shades, and their quantity with its unit; `None` if shades have no meaning.
     pub(crate) shades: Option<(f64, f64, String)>,
-    /// Scale bar and gravity below the drawing; none where the coordinates mean nothing.
+    /// Scale bar and gravity below the drawing; `None` if the coordinates have no unit.
     pub(crate) guide: Option<Guide>,
 }
 
-/// Unit and direction of gravity in a drawing's coordinates.
+/// Unit of length, and direction of gravity in a drawing's coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Guide {
     pub unit: String,
     pub gravity: Option<[f64; 2]>,
 }
 
-/// A shape of a drawing.
+/// Shape of a drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Shape {
     Disc {
@@ -121,7 +121,7 @@ pub(crate) enum Shape {
         radius: f64,
         tint: Tint,
     },
-    /// A box with an outline, from its lower left to its upper right corner.
+    /// Outlined box, from its lower left to its upper right corner.
     Rectangle {
         corners: [[f64; 2]; 2],
         tint: Tint,
@@ -129,7 +129,7 @@ pub(crate) enum Shape {
     Line {
         ends: [[f64; 2]; 2],
     },
-    /// Words with capitals of a height, in the drawing's coordinates.
+    /// Words whose capitals have a given height in the drawing's coordinates.
     Text {
         centre: [f64; 2],
         height: f64,
@@ -138,7 +138,7 @@ pub(crate) enum Shape {
 }
 
 impl Shape {
-    /// Opposite corners of the box around it.
+    /// Opposite corners of the bounding box.
     pub(super) fn extent(&self) -> [[f64; 2]; 2] {
         match *self {
             Shape::Disc { centre: [x, y], radius: most, .. }
@@ -150,14 +150,14 @@ impl Shape {
     }
 }
 
-/// A filling.
+/// Fill of a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Tint {
     Clear,
-    /// Light grey, for parts that do not move.
+    /// Light grey, for fixed parts.
     Still,
     /// Index of a colour in the palette.
     Hue(usize),
-    /// A part of the way from the lowest (0) to the highest shade (1).
+    /// Fraction between the lowest (0) and the highest shade (1).
     Shade(f64),
 }

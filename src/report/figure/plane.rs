@@ -1,38 +1,38 @@
-//! Planes between two axes, one or several beside each other, with their marks and headings.
+//! Planes between two axes, one or several side by side, with tick marks and headings.
 
 use super::axis::{Mark, Span};
 use super::writer::{END, MIDDLE, Svg, at, stroke, tenths};
 use super::{Scale, font, style};
 
-/// Length of a mark with a label, of a small mark, and the distance from a mark to its label (pixels).
+/// Length of a labelled mark, length of a small mark, and distance from a mark to its label (pixels).
 const MARK: f64 = 6.0;
 const SMALL_MARK: f64 = 3.0;
 const TO_LABEL: f64 = 4.0;
-/// Distance of planes, and of headings from labels (pixels).
+/// Distance between planes, and between headings and labels (pixels).
 const GAP: f64 = 14.0;
-/// Distance of lines of words (pixels).
+/// Distance between lines of words (pixels).
 const LINE: f64 = style::LABEL * style::LINE_SPACING;
 
-/// A plane between two axes.
+/// Plane between two axes.
 pub(crate) struct Plane {
-    /// The horizontal axis.
+    /// Horizontal axis.
     pub x: Span,
-    /// The vertical axis.
+    /// Vertical axis.
     pub y: Span,
-    /// Its upper left corner (pixels).
+    /// Upper left corner (pixels).
     pub corner: [f64; 2],
     /// Width and height (pixels).
     pub size: [f64; 2],
 }
 
 impl Plane {
-    /// Returns the place of a point on the picture.
+    /// Returns the position of a point on the picture.
     pub(super) fn place(&self, x: f64, y: f64) -> [f64; 2] {
         let Plane { corner: [left, top], size: [width, height], .. } = self;
         [left + width * self.x.part(x), top + height * (1.0 - self.y.part(y))]
     }
 
-    /// Adds things on the plane; what reaches beyond it is cut off. `more` are further attributes.
+    /// Adds elements clipped to the plane. `more` are further attributes.
     pub(super) fn fill(&self, svg: &mut Svg, more: &str, add: impl FnOnce(&mut Svg)) {
         let ([left, top], [width, height]) = (self.corner, self.size);
         let [x, y] = [self.x.described(left, left + width), self.y.described(top + height, top)];
@@ -42,7 +42,7 @@ impl Plane {
         svg.add("</g>\n</svg>");
     }
 
-    /// Adds frame, grid and marks, and the labels of those axes that show them.
+    /// Adds frame, grid and marks, and the labels of the axes in `shows`.
     fn axes(&self, svg: &mut Svg, [x_marks, y_marks]: [&[Mark]; 2], shows: [bool; 2], is_turned: bool) {
         let ([left, top], [width, height], size) = (self.corner, self.size, style::LABEL);
         let (bottom, right, half) = (top + height, left + width, 0.5 * size * font::CAPITAL);
@@ -78,10 +78,10 @@ impl Plane {
     }
 }
 
-/// Words above a plane: its name, empty for none, and labels with their places as parts of the x axis.
+/// Words above a plane: its name, possibly empty, and labels with their positions as fractions of the x axis.
 pub(crate) type Head<'a> = (&'a str, Vec<(f64, &'a str)>);
 
-/// Places labels above a plane of a width so that none lies on another: row from below, middle and words of each.
+/// Places labels above a plane of a width without overlaps: row from below, middle and words of each.
 fn rows<'a>(labels: &[(f64, &'a str)], width: f64) -> Vec<(usize, f64, &'a str)> {
     let mut ends: Vec<f64> = vec![];
     let place = |&(part, words): &(f64, _)| {
@@ -95,7 +95,7 @@ fn rows<'a>(labels: &[(f64, &'a str)], width: f64) -> Vec<(usize, f64, &'a str)>
     labels.iter().map(place).collect()
 }
 
-/// Draws axes for a plane below each head. The picture's height so far is where they begin.
+/// Draws axes for a plane below each head, starting at the present height of the picture.
 pub(crate) fn draw(svg: &mut Svg, x: &Span, y: &Span, heads: &[Head]) -> Vec<Plane> {
     let size = style::LABEL;
     let columns = [1, 1, 2, 3, 2].get(heads.len()).copied().unwrap_or(3);
@@ -106,13 +106,13 @@ pub(crate) fn draw(svg: &mut Svg, x: &Span, y: &Span, heads: &[Head]) -> Vec<Pla
     let y_marks = y.marks(height, |_| 2.0 * LINE);
     let widest = |marks: &[Mark]| font::widest(marks.iter().map(|mark| &mark.1), size);
     let heading = font::wrap(&y.heading, size, height.max(style::PLOT_HEIGHT));
-    // Planes lie on whole pixels.
+    // Planes are aligned to whole pixels.
     let left = style::MARGIN + LINE * heading.len() as f64 + widest(&y_marks) + TO_LABEL + MARK + TO_LABEL;
     let (left, begin) = (left.ceil(), svg.size[1].ceil());
     let gaps = GAP * (columns - 1) as f64;
     let width = |right: f64| ((style::WIDTH - left - right - gaps) / columns as f64).floor();
     let marks = |width| x.marks(width, |label| (font::width(label, size) + 1.2 * size).max(3.5 * size));
-    // Half of the last number stands out.
+    // Half of the last number extends beyond the axis.
     let is_named = matches!(x.scale, Scale::Names(_));
     let beyond = if is_named { 0.0 } else { 0.5 * widest(&marks(width(style::MARGIN))) };
     let width = width(style::MARGIN + beyond.min(2.5 * style::MARGIN));

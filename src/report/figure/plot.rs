@@ -1,4 +1,4 @@
-//! Charts, one or several beside each other.
+//! Charts, one or several side by side.
 
 use super::axis::Span;
 use super::plane::{self, Head, Plane};
@@ -6,19 +6,19 @@ use super::style::{self, Colour, Look};
 use super::writer::{Svg, at};
 use super::{Along, Axis, Band, Chart, Scale, Series, font, series};
 
-/// Width of a line that marks a value (pixels).
+/// Width of a line marking a value (pixels).
 const LINE: f64 = 1.6;
-/// Width of a sample, and the distances from it to its words and from them to the next sample (pixels).
+/// Width of a legend sample, distance to its words, and distance from the words to the next sample (pixels).
 const LENGTH: f64 = 40.0;
 const TO_WORDS: f64 = 8.0;
 const BESIDE: f64 = 18.0;
-/// Distance of entries from each other, and of the first from the picture above (pixels).
+/// Vertical distance between legend entries, and from the picture to the first entry (pixels).
 const BETWEEN: f64 = 9.0;
 
 /// Draws charts with the axes of the first and one legend.
 pub(crate) fn draw(title: &str, panels: &[(String, Chart)]) -> Result<Svg, String> {
     let charts = || panels.iter().map(|panel| &panel.1);
-    // Points, their spreads and the ends of bands along an axis.
+    // Values along an axis: points, their spreads and the ends of bands.
     let values = |along: Along, axis: &Axis| {
         let mut all = vec![];
         for chart in charts() {
@@ -37,7 +37,7 @@ pub(crate) fn draw(title: &str, panels: &[(String, Chart)]) -> Result<Svg, Strin
     let [x, y] = panels.first().map(|(_, chart)| [&chart.x, &chart.y]).ok_or("there are no panels")?;
     let (x, y) = (Span::new(x, values(Along::X, x))?, Span::new(y, values(Along::Y, y))?);
 
-    // A series of several panels has one look, and one entry in the legend.
+    // A series in several panels has one look and one legend entry.
     let (mut all, mut of_panels) = (Vec::<&Series>::new(), vec![]);
     for chart in charts() {
         let before = all.len();
@@ -56,7 +56,7 @@ pub(crate) fn draw(title: &str, panels: &[(String, Chart)]) -> Result<Svg, Strin
     for ((plane, chart), seen) in planes.iter().zip(charts()).zip(&of_panels) {
         plane.fill(&mut svg, "", |svg| {
             bands(chart).for_each(|(band, colour)| area(svg, plane, band, colour));
-            // Grounds below, then curves, markers on top, whichever series they belong to.
+            // Shaded areas of all series at the bottom, then curves, markers on top.
             for add in [series::ground, series::curve, series::points] {
                 seen.iter().for_each(|&(index, series)| add(svg, plane, &looks[index], series));
             }
@@ -79,7 +79,7 @@ pub(crate) fn draw(title: &str, panels: &[(String, Chart)]) -> Result<Svg, Strin
     Ok(svg)
 }
 
-/// Returns the labels of a chart's vertical lines, with their places, from the left.
+/// Returns the labels of a chart's vertical lines with their positions, from the left.
 fn labels<'a>(chart: &'a Chart, x: &Span) -> Vec<(f64, &'a str)> {
     let lines = chart.bands.iter().filter(|band| band.along == Along::X && band.is_line());
     let placed = lines.map(|band| (x.part(band.ends[0]), band.label.as_str()));
@@ -88,7 +88,7 @@ fn labels<'a>(chart: &'a Chart, x: &Span) -> Vec<(f64, &'a str)> {
     labels
 }
 
-/// Returns the bands of a chart with their colours: of those along y, one upon another, the first is the lightest.
+/// Returns the bands of a chart with their colours. Bands along y overlap, and the first is the lightest.
 fn bands(chart: &Chart) -> impl Iterator<Item = (&Band, Colour)> {
     let mut before = 0;
     chart.bands.iter().map(move |band| match band.along {
@@ -101,7 +101,7 @@ fn bands(chart: &Chart) -> impl Iterator<Item = (&Band, Colour)> {
     })
 }
 
-/// Adds the visible part of a band, with its meaning.
+/// Adds the visible part of a band, with its label.
 fn area(svg: &mut Svg, plane: &Plane, band: &Band, colour: Colour) {
     let axis = if band.along == Along::X { &plane.x } else { &plane.y };
     let ([left, top], [width, height]) = (plane.corner, plane.size);
@@ -120,15 +120,15 @@ fn area(svg: &mut Svg, plane: &Plane, band: &Band, colour: Colour) {
     }
 }
 
-/// Look of a sample.
+/// Legend sample.
 enum Sample {
-    /// A curve or markers.
+    /// Curve or markers.
     Series(Look),
-    /// A ground of a height (pixels).
+    /// Shaded area of a height (pixels).
     Ground(Colour, f64),
 }
 
-/// Adds a legend below a picture, in as many columns as have room for the words.
+/// Adds a legend below a picture, in as many columns as the words allow.
 fn legend(svg: &mut Svg, entries: &[(&String, Sample)]) {
     let width = svg.size[0] - 2.0 * style::MARGIN + BESIDE;
     let wrapped = |columns: usize| {

@@ -1,18 +1,18 @@
-//! Series on a plane: curves, error bars, markers; and their samples in a legend.
+//! Series on a plane: curves, error bars and markers, and their samples in a legend.
 
 use super::plane::Plane;
 use super::style::{CURVE, Look, MARKERS, PAPER, has_markers, is_scattered};
 use super::writer::{Svg, bends, stroke, tenths, through};
 use super::{Point, Scale, Series, Style};
 
-/// Size of a mark over that of a point.
+/// Size ratio of large marks to points.
 const LARGE: &str = "1.8";
-/// Half the width of the ends of an error bar (pixels). A script of the page knows it.
+/// Half the width of the caps of an error bar (pixels). The script `tips.js` uses the same value.
 const CAP: f64 = 4.5;
-/// Height of a ground's sample in a legend (pixels).
+/// Height of the legend sample of a shaded area (pixels).
 pub(crate) const GROUND: f64 = 15.0;
 
-/// Adds the ground between the ends of the spreads of a ribbon.
+/// Adds the shaded area between the ends of the spreads of a ribbon.
 pub(crate) fn ground(svg: &mut Svg, plane: &Plane, look: &Look, series: &Series) {
     let end = |which: usize| {
         let ends = series.points.iter().filter_map(move |it| Some((it.x, it.spread?[which])));
@@ -24,7 +24,7 @@ pub(crate) fn ground(svg: &mut Svg, plane: &Plane, look: &Look, series: &Series)
     }
 }
 
-/// Adds the curve of a series, if it has one. It bears the series' name where no markers do.
+/// Adds the curve of a series, if it has one. The curve carries the series' name if there are no markers.
 pub(crate) fn curve(svg: &mut Svg, plane: &Plane, look: &Look, series: &Series) {
     if is_scattered(look.style) || series.points.len() < 2 {
         return;
@@ -38,7 +38,7 @@ pub(crate) fn curve(svg: &mut Svg, plane: &Plane, look: &Look, series: &Series) 
     }
 }
 
-/// Adds the error bars and markers of a series, with its name. A single point has a marker in any case, and no marker is cut.
+/// Adds the error bars and markers of a series, with its name. A single point always has a marker, and no marker is cut off.
 pub(crate) fn points(svg: &mut Svg, plane: &Plane, look: &Look, series: &Series) {
     let mut bars = String::new();
     for &Point { x, y, spread } in series.points.iter().filter(|_| look.style != Style::Ribbon) {
@@ -70,7 +70,7 @@ pub(crate) fn points(svg: &mut Svg, plane: &Plane, look: &Look, series: &Series)
     });
 }
 
-/// Adds a sample for a legend, from a place to the right.
+/// Adds a legend sample that extends to the right of a position.
 pub(crate) fn sample(svg: &mut Svg, look: &Look, [left, y]: [f64; 2], length: f64) {
     let [x, y, half, right] = [left, y, 0.5 * length, left + length].map(tenths);
     let d = format!("M{x} {y}h{half}h{half}");
@@ -92,8 +92,8 @@ fn line(svg: &mut Svg, look: &Look, more: &str, d: &str) {
     svg.path(&format!("{stroke}{}{more}", if look.dash.is_empty() { "" } else { &dash }), d);
 }
 
-/// Defines the marker of a look and returns its name, which says how it looks: pictures on one page share it. Full and hollow ones have a
-/// rim, so that markers upon each other can be counted.
+/// Defines the marker of a look and returns its name. The name encodes the appearance, because pictures on one page share markers. Markers
+/// have a rim, so that overlapping ones can be counted.
 fn marker(svg: &mut Svg, look: &Look) -> String {
     let Look { colour, marker, is_hollow, .. } = *look;
     let (fill, rim, width) = if is_hollow { (PAPER, colour, 1.6) } else { (colour, PAPER, 0.7) };

@@ -1,10 +1,9 @@
-//! House style, one for every picture. Series differ by hue, marker and dash at once, so that they stay apart for every kind
-//! of colour vision and in grey print.
+//! Style of all pictures. Series differ in hue, marker and dash, so that they are distinguishable with any colour vision and in grey print.
 
 use super::chart::{Series, Style};
 use std::fmt;
 
-/// A colour, as `0xrrggbb`.
+/// Colour as `0xrrggbb`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Colour(pub u32);
 
@@ -28,20 +27,20 @@ impl fmt::Display for Colour {
     }
 }
 
-/// The paper.
+/// Background.
 pub(crate) const PAPER: Colour = Colour(0xffffff);
 /// Axes, words and outlines.
 pub(crate) const INK: Colour = Colour(0x1a1a1a);
 /// Lines of the grid.
 pub(crate) const GRID: Colour = Colour(0xe2e2e2);
-/// Lines that mark a place on an axis.
+/// Lines that mark a value on an axis.
 pub(crate) const MARK: Colour = Colour(0x787878);
-/// Light grounds, one upon another.
+/// Overlapping light areas.
 pub(crate) const GROUNDS: [Colour; 2] = [Colour(0xecf2f7), Colour(0xd4e3ef)];
-/// Parts that do not move.
+/// Fixed parts.
 pub(crate) const STILL: Colour = Colour(0xd0d0d0);
 
-/// Pairs of a colour on white paper and its replacement on dark paper.
+/// Pairs of a colour on a white background and its replacement on a dark background.
 const DARK: [(Colour, Colour); 8] = [
     (PAPER, Colour(0x18181a)),
     (INK, Colour(0xe4e4e2)),
@@ -53,7 +52,7 @@ const DARK: [(Colour, Colour); 8] = [
     (STILL, Colour(0x545456)),
 ];
 
-/// Returns rules of a style sheet for dark paper: below elements that `within` selects, or everywhere if it is empty.
+/// Returns style rules for a dark background, below the elements selected by `within`, or everywhere if it is empty.
 pub(crate) fn dark_rules(within: &str) -> String {
     let rule = |attribute: &str, (light, dark): &(Colour, Colour)| {
         format!("{within}[{attribute}=\"{light}\"]{{{attribute}:{dark}}}")
@@ -61,7 +60,7 @@ pub(crate) fn dark_rules(within: &str) -> String {
     DARK.iter().flat_map(|pair| ["fill", "stroke"].map(|attribute| rule(attribute, pair))).collect()
 }
 
-/// Returns the colour of words on a ground. On grounds that are the same on dark paper it has no replacement there.
+/// Returns the colour of words on a coloured area. If the area has no replacement on a dark background, neither has the colour.
 pub(super) fn ink_on(ground: Colour) -> Colour {
     match ground {
         PAPER | STILL => INK,
@@ -70,17 +69,17 @@ pub(super) fn ink_on(ground: Colour) -> Colour {
     }
 }
 
-/// Okabe and Ito's colours for every kind of colour vision, those that show best on white first. Their yellow is left out: it cannot be
-/// seen on white.
+/// Okabe and Ito's colours for any colour vision, those with the best contrast to white first. Their yellow is omitted, because it is
+/// invisible on white.
 const HUES: [u32; 7] = [0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7, 0xe69f00, 0x56b4e9, 0x000000];
 
-/// Returns a colour of the palette; beyond its end it begins again.
+/// Returns a colour of the palette, which repeats after its end.
 pub(crate) fn hue(index: usize) -> Colour {
     Colour(HUES[index % HUES.len()])
 }
 
-/// Outlines of equal visual size about the origin: disc, square, triangle, diamond, cross, wedge, plus, star. There are more
-/// than hues, so that series beyond the palette's end still differ.
+/// Marker outlines of equal visual size about the origin: disc, square, triangle, diamond, cross, wedge, plus, star. There are more markers
+/// than hues, so that series beyond the end of the palette still differ.
 pub(super) const MARKERS: [&str; 8] = [
     "M-4.5 0a4.5 4.5 0 1 0 9 0a4.5 4.5 0 1 0 -9 0z",
     "M-4-4h8v8h-8z",
@@ -92,12 +91,12 @@ pub(super) const MARKERS: [&str; 8] = [
     "M0-6.3l1.6 4.1 4.4 .3-3.4 2.8 1.1 4.2-3.7-2.4-3.7 2.4 1.1-4.2-3.4-2.8 4.4-.3z",
 ];
 
-/// Dashes of lines, the first unbroken, and of dashed lines.
+/// Dash patterns of lines, the first solid, and of dashed lines.
 const LONG_DASHES: [&str; 5] = ["", "15 3", "15 3 2.5 3", "15 3 2.5 3 2.5 3", "24 3"];
 const SHORT_DASHES: [&str; 5] = ["6 4", "7 3 2 3", "3 2.5", "7 3 2 3 2 3", "10 4"];
 
-/// The look of a series: its colour, the index of its marker, the dashes and gaps of its line (pixels), empty for an unbroken one, and
-/// if its markers are outlines.
+/// Look of a series: colour, index of its marker, dashes and gaps of its line (pixels, empty for a solid line), and true for hollow
+/// markers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Look {
     pub(crate) style: Style,
@@ -107,18 +106,18 @@ pub(super) struct Look {
     pub(crate) is_hollow: bool,
 }
 
-/// Reports if points of a style stand alone, without a line.
+/// Returns true if points of a style are not joined by a line.
 pub(super) fn is_scattered(style: Style) -> bool {
     matches!(style, Style::Points | Style::Marks)
 }
 
-/// Reports if points of a style have markers.
+/// Returns true if points of a style have markers.
 pub(super) fn has_markers(style: Style) -> bool {
     is_scattered(style) || style == Style::Joined
 }
 
-/// Returns a different look for each of some series: lines of one hue differ by their dashes, markers of one hue are full,
-/// hollow, and then of another shape.
+/// Returns a distinct look for each series: lines of one hue differ in their dashes; markers of one hue are first filled, then hollow, then
+/// of another shape.
 pub(super) fn looks(all: &[&Series]) -> Vec<Look> {
     let look = |(i, series): (usize, &&Series)| {
         let is_alike = |other: &&&Series| {
@@ -140,10 +139,10 @@ pub(super) fn looks(all: &[&Series]) -> Vec<Look> {
     all.iter().enumerate().map(look).collect()
 }
 
-/// Shades of one scale. Levels from 0 on are those of magnitudes, the next as many those of signed quantities.
+/// Number of shades of a scale. The first levels are for magnitudes, the next for signed quantities.
 pub(crate) const SHADES: u8 = 128;
 
-/// Reports if shades between these ends show a sign: 0 is in the middle and has a colour of its own.
+/// Returns true if shades between these ends show a sign: 0 is in the middle and has a distinct colour.
 pub(crate) fn is_signed([low, high]: [f64; 2]) -> bool {
     low < 0.0 && low == -high
 }
@@ -153,15 +152,15 @@ pub(crate) fn levels(signed: bool) -> std::ops::RangeInclusive<u8> {
     if signed { SHADES..=2 * (SHADES - 1) + 1 } else { 0..=SHADES - 1 }
 }
 
-/// Viridis, whose equal steps look equal, in colour and in grey.
+/// Viridis, which is perceptually uniform in colour and in grey.
 const MAGNITUDE: [u32; 17] = [
     0x440154, 0x48186a, 0x472d7b, 0x424086, 0x3b528b, 0x33638d, 0x2c728e, 0x26828e, 0x21918c, 0x1fa088,
     0x28ae80, 0x3fbc73, 0x5ec962, 0x84d44b, 0xaddc30, 0xd8e219, 0xfde725,
 ];
-/// Blue below 0, orange above; 0 is a grey that shows on white.
+/// Blue below 0, orange above; 0 is a grey that is visible on white.
 const SIGNED: [u32; 5] = [0x003882, 0x3e94d6, 0xc4c4c4, 0xeb9642, 0x963800];
 
-/// Returns the colour of a level: of a magnitude from dark to bright, of a signed quantity from blue over grey to orange.
+/// Returns the colour of a level: from dark to bright for magnitudes, from blue over grey to orange for signed quantities.
 pub(crate) fn shade(level: u8) -> Colour {
     let (level, stops) = if level < SHADES { (level, &MAGNITUDE[..]) } else { (level - SHADES, &SIGNED[..]) };
     let place = f64::from(level.min(SHADES - 1)) / f64::from(SHADES - 1) * (stops.len() - 1) as f64;
@@ -172,26 +171,26 @@ pub(crate) fn shade(level: u8) -> Colour {
     Colour(channel(0) << 16 | channel(1) << 8 | channel(2))
 }
 
-/// Returns the level of a part of the way from the lowest (0) to the highest value (1).
+/// Returns the level of a fraction between the lowest (0) and the highest value (1).
 pub(crate) fn level(part: f64, signed: bool) -> u8 {
     levels(signed).start() + (part.clamp(0.0, 1.0) * f64::from(SHADES - 1)).round() as u8
 }
 
-/// Width of a picture with axes and height between the ends of an axis (pixels): letters can be read on a screen of 420 pixels.
+/// Width of a picture with axes, and height of a plane (pixels): letters are legible on a screen of 420 pixels.
 pub(super) const WIDTH: f64 = 560.0;
 pub(super) const PLOT_HEIGHT: f64 = 320.0;
-/// Width of a drawing from which on its letters and lines grow with it (pixels).
+/// Width of a drawing above which its letters and lines scale with it (pixels).
 pub(super) const ZOOMED: f64 = 720.0;
-/// Blank paper about everything (pixels).
+/// Blank margin (pixels).
 pub(super) const MARGIN: f64 = 14.0;
-/// Sizes of the letters of titles and of all others (pixels), and the distance of their lines in these sizes.
+/// Font sizes of titles and of all other words (pixels), and line spacing in units of the font size.
 pub(super) const TITLE: f64 = 18.0;
 pub(super) const LABEL: f64 = 15.0;
 pub(super) const LINE_SPACING: f64 = 1.25;
-/// Widths of curves, and of axes and outlines (pixels).
+/// Line widths of curves, and of axes and outlines (pixels).
 pub(super) const CURVE: f64 = 2.0;
 pub(super) const LINE: f64 = 1.2;
-/// Families that a viewer of an SVG may take the letters from. Widths are those of the first, which is the widest.
+/// Font families for viewers of an SVG. Widths are those of the first, which is the widest.
 pub(super) const FONTS: &str = "DejaVu Sans, Verdana, Arial, Helvetica, sans-serif";
 
 #[cfg(test)]

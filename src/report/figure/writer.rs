@@ -1,8 +1,8 @@
-//! A picture as SVG text: small enough to stand in a page, and equal from run to run. Lines of one look share a path, words of one look
-//! a group, and numbers end where nothing more can be seen.
+//! Compact and reproducible SVG text of a picture. Lines of one look share a path, words of one look share a group, and numbers are rounded to
+//! the visible precision.
 //!
-//! A `<title>` names each series, band and cell, and the plane between the axes states in `data-x` and `data-y` where numbers lie on
-//! it: a script finds the values there.
+//! A `<title>` names each series, band and cell. The plane between the axes describes its axes in `data-x` and `data-y`, from which a script
+//! reads values.
 
 #![expect(clippy::let_underscore_must_use, reason = "a string takes whatever is written")]
 
@@ -11,27 +11,27 @@ use super::{font, style};
 use std::collections::BTreeSet;
 use std::fmt::{Display, Write};
 
-/// Limit of distances from the corner (pixels): readers count in small numbers.
+/// Maximum distance from the corner (pixels), since some viewers use small number types.
 const FARTHEST: f64 = 1e6;
 /// Smallest visible bend of a line (pixels).
 const SEEN: f64 = 0.05;
 
-/// Attributes of words that are centred on their place, or end there.
+/// Attributes of words centred at their position, or ending there.
 pub(crate) const MIDDLE: &str = " text-anchor=\"middle\"";
 pub(crate) const END: &str = " text-anchor=\"end\"";
 
-/// A picture in the making.
+/// Unfinished picture.
 pub(crate) struct Svg {
     /// Width and height (pixels).
     pub size: [f64; 2],
     definitions: BTreeSet<String>,
     body: String,
-    /// Look of the words whose group is open, empty without one.
+    /// Look of the open group of words, empty without one.
     lettering: String,
 }
 
 impl Svg {
-    /// Begins a picture of a width with a title, its letters enlarged. The height is that of the title so far.
+    /// Begins a picture of a width with a title, with letters enlarged by `zoom`. The height is initially that of the title.
     pub(super) fn new(title: &str, width: f64, zoom: f64) -> Svg {
         let (size, margin) = (style::TITLE * zoom, style::MARGIN * zoom);
         let lines = font::wrap(title, size, width - 2.0 * margin);
@@ -56,30 +56,30 @@ impl Svg {
         self.add(format_args!("<path{look} d=\"{d}\"/>"));
     }
 
-    /// Begins a window, which cuts off what reaches beyond it.
+    /// Begins a window that clips its contents.
     pub(crate) fn window(&mut self, corner: [f64; 2], size: [f64; 2]) {
         let view = [corner, size].map(|it| it.map(tenths).join(" ")).join(" ");
         self.add(format_args!("<svg{} viewBox=\"{view}\">", at(corner, size)));
     }
 
-    /// Adds a definition, which has the same name in every picture.
+    /// Adds a definition, whose name is the same in every picture.
     pub(crate) fn define(&mut self, definition: String) {
         self.definitions.insert(definition);
     }
 
-    /// Adds elements with a name for readers that point at them.
+    /// Adds elements with a name, shown when the reader points at them.
     pub(crate) fn named(&mut self, name: &str, add: impl FnOnce(&mut Svg)) {
         self.add(format_args!("<g><title>{}</title>", escaped(name)));
         add(self);
         self.add("</g>");
     }
 
-    /// Adds a line of words on a place of its base line. `look` are further attributes.
+    /// Adds a line of words at a position of its base line. `look` are further attributes.
     pub(super) fn words(&mut self, at: [f64; 2], size: f64, look: &str, words: &str) {
         self.turned(at, 0, size, look, words);
     }
 
-    /// Adds a line of words that is turned about its place (degrees).
+    /// Adds a line of words rotated about its position (degrees).
     pub(crate) fn turned(&mut self, at: [f64; 2], angle: i32, size: f64, look: &str, words: &str) {
         let look = format!(" font-size=\"{}\"{look}", tenths(size));
         if look != self.lettering {
@@ -92,7 +92,7 @@ impl Svg {
         let _ = writeln!(self.body, "<text x=\"{x}\" y=\"{y}\"{turned}>{}</text>", escaped(words));
     }
 
-    /// Adds lines below each other; `top` is the upper edge of the first one's capitals. Returns the lower edge of the last.
+    /// Adds consecutive lines; `top` is the upper edge of the first line's capitals. Returns the lower edge of the last line.
     pub(crate) fn block(&mut self, lines: &[String], [x, top]: [f64; 2], size: f64, look: &str) -> f64 {
         for (i, line) in lines.iter().enumerate() {
             let base = top + size * (font::CAPITAL + i as f64 * style::LINE_SPACING);
@@ -101,7 +101,7 @@ impl Svg {
         top + font::height(lines.len(), size)
     }
 
-    /// Returns the text of a figure's picture.
+    /// Returns the SVG text of a figure.
     pub(super) fn finish(mut self, figure: &Figure) -> String {
         if !self.lettering.is_empty() {
             self.body.push_str("</g>\n");
@@ -123,31 +123,31 @@ impl Svg {
     }
 }
 
-/// Returns the attributes of a line.
+/// Returns the stroke attributes of a line.
 pub(crate) fn stroke(colour: style::Colour, width: f64) -> String {
     let width = if width == 1.0 { String::new() } else { format!(" stroke-width=\"{}\"", tenths(width)) };
     format!(" stroke=\"{colour}\"{width}")
 }
 
-/// Returns the attributes of a box: its left and upper edge, its width and its height.
+/// Returns the attributes of a box: left and upper edge, width and height.
 pub(crate) fn at(corner: [f64; 2], size: [f64; 2]) -> String {
     let ([x, y], [width, height]) = (corner.map(tenths), size.map(tenths));
     format!(" x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\"")
 }
 
-/// Returns words with the signs of XML spelled out; letters that XML does not allow become blanks.
+/// Escapes the special characters of XML; characters that XML does not allow become blanks.
 pub(crate) fn escaped(words: &str) -> String {
     let is_barred = |letter: char| letter.is_control() || ['\u{fffe}', '\u{ffff}'].contains(&letter);
     let words = words.replace(is_barred, " ").replace('&', "&amp;");
     words.replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
-/// Returns a length to a tenth of a pixel.
+/// Formats a length to a tenth of a pixel.
 pub(crate) fn tenths(pixels: f64) -> String {
     hundredths((pixels * 10.0).round() as i64 * 10)
 }
 
-/// Returns a number of hundredths without needless zeros.
+/// Formats a number of hundredths without unnecessary zeros.
 fn hundredths(number: i64) -> String {
     let text = format!("{:.2}", number as f64 / 100.0);
     let text = text.trim_end_matches('0').trim_end_matches('.');
@@ -158,8 +158,8 @@ fn hundredths(number: i64) -> String {
     }
 }
 
-/// Returns a path through places, to a hundredth of a pixel: a script of the page reads values back. A single place is a line of length
-/// 0, for programs draw no markers on less.
+/// Returns a path through positions to a hundredth of a pixel, from which a script of the page reads values. A single position is a line of
+/// length 0, because viewers need a line to draw a marker.
 pub(crate) fn through(places: &[[f64; 2]]) -> String {
     let whole = |pixels: f64| (pixels.clamp(-FARTHEST, FARTHEST) * 100.0).round() as i64;
     let mut path = String::new();
@@ -167,7 +167,7 @@ pub(crate) fn through(places: &[[f64; 2]]) -> String {
     for (i, place) in places.iter().enumerate() {
         let here = place.map(whole);
         let [right, down] = [0, 1].map(|side| hundredths(here[side] - before[side]));
-        // After the first place, each is a step from the one before it.
+        // After the first position, steps are relative.
         path.push_str(["M", "l", " "][i.min(2)]);
         let between = if down.starts_with('-') { "" } else { " " };
         let _ = write!(path, "{right}{between}{down}");
@@ -179,12 +179,12 @@ pub(crate) fn through(places: &[[f64; 2]]) -> String {
     path
 }
 
-/// Returns the places of a line without those that its straight pieces pass within [`SEEN`].
+/// Removes the positions of a line that its straight segments pass within [`SEEN`].
 pub(crate) fn bends(places: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let [first, .., last] = places else { return places.to_vec() };
     let [right, down] = [last[0] - first[0], last[1] - first[1]];
     let length = right.hypot(down);
-    // Distance of a place from the piece between both ends; from one of them where they coincide.
+    // Distance of a position from the segment between the ends, or from one end if they coincide.
     let off = |[x, y]: [f64; 2]| {
         let [x, y] = [x - first[0], y - first[1]];
         if length > 0.0 { (right * y - down * x).abs() / length } else { x.hypot(y) }

@@ -1,4 +1,4 @@
-//! What the player gets of a film.
+//! Data of a film for the player.
 
 use super::quantised::Quantised;
 use crate::report::figure::style;
@@ -6,13 +6,13 @@ use crate::report::section::{Film, Frame};
 use maud::{Markup, PreEscaped, html};
 use serde_json::{Value, json};
 
-/// Data in the page, where no script or style can be made of them: in JSON, `<` stands in strings only.
+/// Element with JSON data that cannot be interpreted as a script or style: in JSON, `<` only occurs in strings.
 pub(crate) fn embedded(id: &str, data: &Value) -> Markup {
     let text = data.to_string().replace('<', "\\u003c");
     html! { script type="application/json" id=[Some(id).filter(|id| !id.is_empty())] { (PreEscaped(text)) } }
 }
 
-/// Where the player puts a film; `instead` says where to look without it.
+/// Element for the player of a film; `instead` is shown without JavaScript.
 pub(crate) fn holder(film: &Film, instead: &Markup) -> Markup {
     html! {
         div.film data-label=(film.title) {
@@ -22,21 +22,20 @@ pub(crate) fn holder(film: &Film, instead: &Markup) -> Markup {
     }
 }
 
-/// The colours of magnitudes, and those of signed quantities, from the lowest to the highest.
+/// Colours of magnitudes and of signed quantities, from the lowest to the highest.
 pub(crate) fn shades() -> Value {
     let colours =
         |signed| style::levels(signed).map(|level| style::shade(level).to_string()).collect::<Vec<_>>();
     json!([colours(false), colours(true)])
 }
 
-/// Windows longer than this many times their width are cut into strips.
+/// Ratio of length to width above which a window is cut into strips.
 const LONG: f64 = 6.0;
 
-/// The most pixels along a film: six strips side by side on a screen of twice as many dots as pixels.
+/// Maximum pixels along a film: six strips on a screen with two dots per pixel.
 const PIXELS: f64 = 6.0 * 2200.0;
 
-/// The film, all frames of a quantity behind one another. Every frame has a place for each of the radii; a disc that a
-/// frame does not have is no number there.
+/// Data of a film, with all frames of a quantity in one array. Every frame has an entry for each radius; it is NaN for an absent disc.
 pub(crate) fn data(film: &Film) -> Value {
     let Film { units, window, sides, falls, radii, fixed, frames, shade, shades, .. } = film;
     let still =
@@ -56,12 +55,12 @@ pub(crate) fn data(film: &Film) -> Value {
         "times": frames.iter().map(|frame| frame.time).collect::<Vec<_>>(),
         "x": column(film, |disc| disc.0[0], half_a_pixel),
         "y": column(film, |disc| disc.0[1], half_a_pixel),
-        // A shade beyond an end looks like the end.
+        // Shades beyond an end look like the end.
         "shades": column(film, |disc| disc.1.clamp(shades[0], shades[1]), half_a_shade),
     })
 }
 
-/// A number of every disc in every frame, off by no more than `tolerance` if that needs no more than two bytes.
+/// Encodes a number of every disc in every frame with an error of at most `tolerance`, if two bytes suffice.
 fn column(film: &Film, number: impl Fn(&([f64; 2], f64)) -> f64, tolerance: f64) -> Quantised {
     let of_frame = |frame: &Frame| -> Vec<f64> {
         (0..film.radii.len()).map(|i| frame.discs.get(i).map_or(f64::NAN, &number)).collect()

@@ -1,11 +1,11 @@
-//! A film as a page of its own.
+//! Separate page for a film.
 
 use super::{PAGE, PLAYER, STRIPS, compact, film, head};
 use crate::report::section::Film;
 use maud::{DOCTYPE, PreEscaped, html};
 
-/// The page of a film, with lines below it that a reader must know. It plays at once, unless the reader wants no motion or the address
-/// ends in `#frame=N`, which shows that frame.
+/// Renders the page of a film with notes below it. The film plays at once, unless the reader prefers reduced motion or the address ends in
+/// `#frame=N`, which shows that frame.
 pub(crate) fn film_page(shown: &Film, notes: &[String]) -> String {
     let title = html! { title { (shown.title) } }.into_string();
     let page = html! {
@@ -19,7 +19,7 @@ pub(crate) fn film_page(shown: &Film, notes: &[String]) -> String {
                     @for note in notes {
                         p.note { (note) }
                     }
-                    p.note { "Space plays and stops, arrow keys go a frame on and back, Home and End to the ends." }
+                    p.note { "Space: play or pause. Arrow keys: next or previous frame. Home and End: first and last frame." }
                 }
                 (film::embedded("shades", &film::shades()))
                 @for script in [PAGE, STRIPS, PLAYER] {

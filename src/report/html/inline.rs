@@ -1,11 +1,11 @@
-//! A picture's file as a part of a page.
+//! SVG pictures as inline parts of a page.
 
 use maud::{Markup, PreEscaped, html};
 
-/// Where a page is narrower than such a picture, it scrolls rather than become too small to be read (pixels).
+/// Width from which a picture scrolls on a narrower page instead of becoming illegibly small (pixels).
 const WIDE: f64 = 700.0;
 
-/// A picture cut to its parts.
+/// Parts of a picture.
 pub(crate) struct Inline {
     size: String,
     definitions: String,
@@ -13,8 +13,8 @@ pub(crate) struct Inline {
 }
 
 impl Inline {
-    /// The parts of a picture as our files have it: an element a line. Title and description are left out, for they stand below the
-    /// picture, and a browser would show the title wherever one points. A picture that is not there is empty.
+    /// Splits one of our SVG files, which has one element per line. Title and description are removed: they are printed below the picture, and
+    /// a browser would show the title as a tooltip everywhere. A missing file gives an empty picture.
     pub(super) fn new(svg: &str) -> Inline {
         let between = |start: &str, end: &str| {
             svg.split_once(start).and_then(|(_, rest)| rest.split_once(end)).map_or("", |(part, _)| part)
@@ -28,7 +28,7 @@ impl Inline {
         }
     }
 
-    /// The picture of an element of this id once more, as wide as there is room.
+    /// Repeats the picture of the element `id`, scaled to the available width.
     pub(crate) fn again(&self, id: &str, title: &str) -> Markup {
         let sides: Vec<&str> = self.size.split(' ').skip(2).collect();
         let [width, height] = [0, 1].map(|at| sides.get(at).copied().unwrap_or("0"));
@@ -39,12 +39,12 @@ impl Inline {
         }
     }
 
-    /// What it uses by name, each in a line.
+    /// Definitions used by the picture, one per line.
     pub(crate) fn definitions(&self) -> impl Iterator<Item = &str> {
         self.definitions.lines()
     }
 
-    /// The picture, which an element of the page describes; `is_read` if the page's script tells values of it.
+    /// Element of the picture, described by another element. `is_read` is true if the page's script reads values from it.
     pub(crate) fn element(&self, id: &str, described_by: &str, is_read: bool) -> Markup {
         let width: f64 = self.size.split(' ').nth(2).and_then(|width| width.parse().ok()).unwrap_or(0.0);
         html! {
@@ -55,8 +55,8 @@ impl Inline {
     }
 }
 
-/// The same with no blank before a sign in the data of a path, where a sign begins a number as well: thousands of discs are drawn by
-/// steps; and all in one line.
+/// Joins all lines, and removes blanks before minus signs in the data of paths, where the sign already separates numbers. Thousands of discs
+/// are drawn as relative steps.
 fn tight(body: &str) -> String {
     const DATA: &str = " d=\"";
     let mut paths = body.split(DATA);

@@ -1,4 +1,4 @@
-//! One item of the page.
+//! Items of the HTML page.
 
 use super::film;
 use super::inline::Inline;
@@ -10,15 +10,15 @@ use crate::report::{Cell, Section, Table};
 use maud::{Markup, html};
 use stripmine_physics::number::counted;
 
-/// Pictures of an item that the page shows; further ones are linked.
+/// Maximum pictures of an item on the page; further pictures are linked.
 const FIGURES: usize = 4;
 
-/// The pictures of an item that the page shows.
+/// Pictures of an item on the page.
 pub(crate) fn pictures(section: &Section, drawn: &dyn Fn(&Section, &Figure) -> String) -> Vec<Inline> {
     section.figures.iter().take(FIGURES).map(|each| Inline::new(&drawn(section, each))).collect()
 }
 
-/// The item: the answer, the picture and the table of conclusions, what was asked; all else is folded.
+/// Renders an item: the answer, the first picture and table, the question; all else is folded.
 pub(crate) fn render(section: &Section, pictures: &[Inline]) -> Markup {
     let name = section.name.as_str();
     let mut figures = section.figures.iter().zip(pictures);
@@ -78,7 +78,7 @@ pub(crate) fn render(section: &Section, pictures: &[Inline]) -> Markup {
     }
 }
 
-/// The claims that the item answers.
+/// Table of the claims of the item.
 fn claims(section: &Section) -> Markup {
     let verdict = |words: &str| Verdict::ALL.into_iter().find(|verdict| verdict.words() == words);
     html! {
@@ -111,7 +111,7 @@ fn claims(section: &Section) -> Markup {
     }
 }
 
-/// What is folded, in words; none if nothing is.
+/// Description of the folded content; `None` if nothing is folded.
 fn folded(section: &Section) -> Option<String> {
     let words: usize = section.details.iter().map(|paragraph| paragraph.split_whitespace().count()).sum();
     let what = [
@@ -124,7 +124,7 @@ fn folded(section: &Section) -> Option<String> {
     (!what.is_empty()).then(|| what.join(", "))
 }
 
-/// A figure: its picture, and below it what a reader must know.
+/// Picture of a figure with its caption.
 fn figure(section: &Section, figure: &Figure, picture: &Inline) -> Markup {
     let id = format!("{}-{}", section.name, figure.name);
     let caption = format!("{id}-caption");
@@ -143,12 +143,12 @@ fn figure(section: &Section, figure: &Figure, picture: &Inline) -> Markup {
     }
 }
 
-/// The id of a figure's picture in the page.
+/// Id of a figure's picture in the page.
 pub(crate) fn picture_id(section: &Section, figure: &Figure) -> String {
     format!("{}-{}-picture", section.name, figure.name)
 }
 
-/// A title that begins a caption.
+/// Title at the beginning of a caption.
 fn heading(title: &str) -> Markup {
     let ends_itself = title.ends_with(['.', '?', '!']);
     html! { strong { (title) @if !ends_itself { "." } } }
@@ -164,11 +164,10 @@ fn moving(section: &Section, shown: &Film) -> Markup {
     }
 }
 
-/// Rows of a table that a page shows; a longer one is for programs.
+/// Maximum rows of a table on the page; all rows are in its file.
 const ROWS: usize = 10;
 
-/// A table in a box of its own, which scrolls where the table is wider than the page. The page has the first rows of a long
-/// one, and says where all are: in the item's folder.
+/// Table in a box that scrolls if the table is wider than the page. A long table is cut and its file is linked.
 fn table(table: &Table, folder: &str) -> Markup {
     let numeric = |i: usize| table.rows.iter().all(|row| row.get(i).is_some_and(Cell::is_number));
     html! {
@@ -196,7 +195,7 @@ fn table(table: &Table, folder: &str) -> Markup {
         @if table.rows.len() > ROWS {
             @let file = format!("{folder}/{}.csv", table.name);
             p.note {
-                "The first " (ROWS) " of " (Cell::Count(table.rows.len() as u64).for_reading()) " rows; all are in "
+                "First " (ROWS) " of " (Cell::Count(table.rows.len() as u64).for_reading()) " rows; all rows: "
                 a href=(file) { code { (file) } } "."
             }
         }
@@ -206,12 +205,12 @@ fn table(table: &Table, folder: &str) -> Markup {
     }
 }
 
-/// What a reader needs to get the item again.
+/// Command, data, seeds and provenance of an item.
 fn again(section: &Section) -> Markup {
     let seeds: Vec<String> = section.seeds.iter().map(u64::to_string).collect();
     html! {
         div.again {
-            h3 { "To get it again" }
+            h3 { "How to reproduce" }
             div.command {
                 code tabindex="0" { (section.again()) }
                 button type="button" data-copy="" { "Copy" }
@@ -223,7 +222,7 @@ fn again(section: &Section) -> Markup {
                     (seeds.join(", ")) "."
                 }
                 @if section.depends_on_host {
-                    " Times are of the host that made it; elsewhere they differ."
+                    " Times were measured on the host of this report and differ on other hosts."
                 }
             }
             @if let Some(provenance) = &section.provenance {
@@ -233,7 +232,7 @@ fn again(section: &Section) -> Markup {
     }
 }
 
-/// The folder with an item's files, which lies beside the page.
+/// Link to the folder with an item's files.
 fn folder(path: &str) -> Markup {
     html! { a href={ (path) "/" } { code { (path) "/" } } }
 }

@@ -1,4 +1,4 @@
-//! The page of a reproduction as one HTML file: charts to hover over, films to play, nothing fetched from anywhere.
+//! Report page as one HTML file with interactive charts and films. It loads nothing from elsewhere.
 
 mod film;
 mod film_page;
@@ -20,20 +20,20 @@ use words::{badge, badges, kind, prose, sign};
 
 const STYLE: &str = include_str!("page.css");
 
-/// Scripts, each of which may use those before it.
+/// Scripts of the page; each may use the previous ones.
 const SCRIPTS: [&str; 4] = [PAGE, include_str!("tips.js"), STRIPS, PLAYER];
 const PAGE: &str = include_str!("page.js");
 const STRIPS: &str = include_str!("strips.js");
 const PLAYER: &str = include_str!("player.js");
 
-/// The content policy for the browser: nothing that is not in the file itself.
+/// Content policy for the browser: only the file itself.
 const POLICY: &str =
     "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
 
-/// What stands near the beginning of every such page and of no other.
+/// Text near the beginning of every such page, by which our pages are recognised.
 pub(crate) const MARK: &str = "<title>Stripmine: what came out</title>";
 
-/// The page. `left_out` names items that another version of the program made. `drawn` gives the SVG of a figure.
+/// Renders the page. `left_out` names items made by another version of the program. `drawn` returns the SVG of a figure.
 pub(crate) fn render(
     sections: &[Section],
     left_out: &[String],
@@ -41,7 +41,7 @@ pub(crate) fn render(
     drawn: &dyn Fn(&Section, &Figure) -> String,
 ) -> String {
     let pictures: Vec<Vec<Inline>> = sections.iter().map(|section| item::pictures(section, drawn)).collect();
-    // Pictures share their markers: each is in the page once.
+    // Pictures share their markers, each of which is in the page once.
     let markers: BTreeSet<&str> = pictures.iter().flatten().flat_map(Inline::definitions).collect();
     let page = html! {
         (DOCTYPE)
@@ -62,7 +62,7 @@ pub(crate) fn render(
                         (item::render(section, pictures))
                     }
                     @if !left_out.is_empty() {
-                        p.note { "Left out, for another version of the program made them: " (left_out.join(", ")) "." }
+                        p.note { "Omitted, because another version of the program made them: " (left_out.join(", ")) "." }
                     }
                     (footer())
                 }
@@ -76,14 +76,14 @@ pub(crate) fn render(
     page.into_string()
 }
 
-/// A script without indentation and comments on lines of their own, which a page need not carry.
+/// Removes indentation and comment lines from a script.
 fn compact(script: &str) -> String {
     let is_comment = |line: &str| line.starts_with("//") || line.starts_with("/**") && line.ends_with("*/");
     let lines = script.lines().map(str::trim_start).filter(|line| !line.is_empty() && !is_comment(line));
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// What stands in the head of every page, with the element of its title.
+/// Head of every page, with the title element.
 fn head(title: &PreEscaped<&str>) -> Markup {
     html! {
         meta charset="utf-8";
@@ -95,7 +95,7 @@ fn head(title: &PreEscaped<&str>) -> Markup {
     }
 }
 
-/// Pictures where the reader's screen is dark.
+/// Style rules of pictures on a dark screen.
 fn on_dark_paper() -> String {
     format!("@media screen and (prefers-color-scheme:dark){{{}}}\n", style::dark_rules(".picture "))
 }
@@ -104,11 +104,11 @@ fn of(chapter: Chapter, sections: &[Section]) -> Vec<&Section> {
     sections.iter().filter(|section| section.chapter == chapter).collect()
 }
 
-/// The list of items at the side of a wide screen.
+/// Table of contents, at the side of a wide screen.
 fn contents(sections: &[Section]) -> Markup {
     html! {
         nav.contents aria-label="Contents" {
-            p { a href="#summary" { "What came out" } }
+            p { a href="#summary" { "Results" } }
             @for (chapter, items) in Chapter::ALL.map(|chapter| (chapter, of(chapter, sections))) {
                 @if !items.is_empty() {
                     p { (chapter.title()) }
@@ -130,21 +130,21 @@ fn contents(sections: &[Section]) -> Markup {
     }
 }
 
-/// The head of the page: what verdicts mean, and every item in a line.
+/// Head of the page: verdicts of all claims, and one line for every item.
 fn summary(sections: &[Section], pictures: &[Vec<Inline>], tally: &Tally) -> Markup {
     html! {
         header #summary {
-            h1 { "What came out" }
+            h1 { "Results" }
             p {
-                "Stripmine simulates particle systems in two dimensions and counts every vector operation of a step. This page compares it \
-                 with the four sources that it is made of, with theory, and with other programs. Each claim has a limit that was set before \
-                 the result. Written by "
+                "Stripmine simulates particle systems in two dimensions and counts every vector operation of a step. This page compares its \
+                results with the four papers that it implements, with theory, and with other programs. The limit of each claim was set before \
+                the result. Written by "
                 code { "stripmine reproduce" } "."
             }
             (claims(tally))
             (front(sections, pictures))
             details {
-                summary { "Programs, hosts and days of these results" }
+                summary { "Programs, hosts and dates of these results" }
                 @for made in super::origins(sections) {
                     p.note { (made) }
                 }
@@ -178,7 +178,7 @@ fn summary(sections: &[Section], pictures: &[Vec<Inline>], tally: &Tally) -> Mar
     }
 }
 
-/// The results of the first screen: the answer and the first picture of each.
+/// Results of the first screen: answer and first picture of each.
 fn front(sections: &[Section], pictures: &[Vec<Inline>]) -> Markup {
     let mut shown: Vec<(&Section, &Vec<Inline>)> =
         sections.iter().zip(pictures).filter(|(section, _)| section.front.is_some()).collect();
@@ -240,13 +240,13 @@ fn claims(tally: &Tally) -> Markup {
     }
 }
 
-/// What is the same everywhere.
+/// Footer of the page.
 fn footer() -> Markup {
     html! {
         footer {
             p {
-                "What depends on the host lies under " code { "host/" } "; everything else but the pages themselves and the files "
-                code { "provenance.json" } " is the same everywhere, byte by byte."
+                "Results under " code { "host/" } " depend on the host. All other files except the pages and "
+                code { "provenance.json" } " are byte-identical on every host."
             }
         }
     }

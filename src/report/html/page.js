@@ -1,11 +1,11 @@
-// What the page itself does, and numbers as people read them.
+// Behaviour of the page, and formatting of numbers.
 "use strict";
 
-/** Ten to a whole power, with raised digits. */
+/** Returns a power of ten with superscript digits. */
 const powerOfTen = (exponent) =>
   "10" + [...String(exponent)].map((digit) => (digit === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[digit])).join("");
 
-/** A number for reading, with that many digits: thousands set apart by thin blanks, a power of ten far from one. */
+/** Formats a number with significant digits: thousands separated by thin spaces, very large and small numbers with a power of ten. */
 function readable(value, digits = 4) {
   if (value === 0) return "0";
   const rounded = Number(value.toPrecision(digits));
@@ -20,7 +20,7 @@ function readable(value, digits = 4) {
   return (rounded < 0 ? "−" : "") + grouped + (fraction ? "." + fraction : "");
 }
 
-/** A new element with a class, inside another. */
+/** Makes an element with a class inside another. */
 function element(kind, className, parent) {
   const made = document.createElement(kind);
   if (className) made.className = className;
@@ -36,14 +36,14 @@ for (const button of document.querySelectorAll("[data-copy]")) {
       await navigator.clipboard.writeText(code.textContent);
       button.textContent = "Copied";
     } catch {
-      // Files opened from the disk may have no clipboard; the text is marked for the reader to copy.
+      // Files opened from disk may have no clipboard; the text is selected for the reader to copy.
       button.textContent = "Press Ctrl+C";
     }
     setTimeout(() => (button.textContent = "Copy"), 2000);
   });
 }
 
-// The list of contents marks the item one reads.
+// Marks the item in view in the table of contents.
 const marker = new IntersectionObserver(
   (entries) => {
     for (const { target, isIntersecting } of entries) {
@@ -56,5 +56,5 @@ const marker = new IntersectionObserver(
 );
 document.querySelectorAll("main > section, #summary").forEach((section) => marker.observe(section));
 
-// On paper nothing is folded.
+// Unfolds everything for printing.
 addEventListener("beforeprint", () => document.querySelectorAll("details").forEach((details) => (details.open = true)));

@@ -1,21 +1,21 @@
-// The player of films: a screen, and what one does with it by mouse and keyboard.
+// Player of films: a screen with controls for mouse and keyboard.
 "use strict";
 
-const RATES = [1, 2, 5, 10, 20, 40]; // frames a second
-const DOTS_ON_PAPER = 3; // to a pixel
+const RATES = [1, 2, 5, 10, 20, 40]; // frames per second
+const DOTS_ON_PAPER = 3; // dots per pixel in print
 
 const LOW = 480; // height of a film among text (pixels)
-const ELSE = 210; // height of all but the film on a page of its own (pixels)
-const LASTS = 20; // how long it takes there at most, if a rate allows it (seconds)
+const ELSE = 210; // height of everything but the film on a separate page (pixels)
+const LASTS = 20; // maximum duration on a separate page, if a rate allows it (seconds)
 
-/** Times as text, with as many decimals for each as the most exact one needs. */
+/** Formats times with the number of decimals that the most precise one needs. */
 function timesAsText(times, unit) {
   const decimals = times.map((time) => (String(Number(time.toPrecision(6))).split(".")[1] ?? "").length);
   const most = Math.max(0, ...decimals);
   return times.map((time) => `t = ${time.toFixed(most)}\u202f${unit}`);
 }
 
-/** A bar that says what the colours mean. */
+/** Adds a legend of the colours. */
 function colourBar(parent, { label, ends }) {
   const bar = element("div", "colour-bar", parent);
   element("span", "", bar).textContent = label + ":";
@@ -24,7 +24,7 @@ function colourBar(parent, { label, ends }) {
   element("span", "", bar).textContent = readable(ends[1], 3);
 }
 
-/** The buttons and sliders of a player. */
+/** Adds the controls of a player. */
 function filmControls(player, film, usual) {
   const controls = element("div", "controls", player);
   const button = element("button", "play", controls);
@@ -51,7 +51,7 @@ for (const holder of document.querySelectorAll(".film")) {
   const player = element("div", "player", holder);
   player.tabIndex = 0;
   player.setAttribute("role", "group");
-  const keys = "Space plays and stops, arrow keys go a frame on and back.";
+  const keys = "Space: play or pause. Arrow keys: next or previous frame.";
   player.setAttribute("aria-label", `${holder.dataset.label}. ${keys}`);
   const canvas = element("canvas", "", player);
   canvas.setAttribute("role", "img");

@@ -1,34 +1,33 @@
-//! Many numbers in few letters: one or two bytes each, in base 64.
+//! Compact encoding of many numbers: one or two bytes each, in base 64.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde::Serialize;
 
-/// Numbers between two ends: the codes from 0 to the last but one lie evenly from `low` to `high`, the last stands for no
-/// number.
+/// Numbers quantised between two ends. Codes from 0 to the last but one are evenly spaced from `low` to `high`; the last code is NaN.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(serde::Deserialize))]
 pub(crate) struct Quantised {
     low: f64,
     high: f64,
-    /// Bytes of a code, 1 or 2.
+    /// Bytes per code, 1 or 2.
     bytes: u32,
-    /// The codes, of two bytes the low one first.
+    /// Codes in base 64, little-endian.
     codes: String,
 }
 
-/// The highest code of a number; the one above it is the code of what is no number.
+/// Highest code of a number; the next code is NaN.
 fn highest(bytes: u32) -> u16 {
     (u16::MAX >> (16 - 8 * bytes)) - 1
 }
 
 impl Quantised {
-    /// The numbers, each off by no more than a 131 068th of their range. What is not finite becomes no number.
+    /// Encodes numbers with an error of at most 1/131 068 of their range. Infinite numbers become NaN.
     pub(super) fn of(numbers: &[f64]) -> Quantised {
         Quantised::in_bytes(numbers, 2)
     }
 
-    /// The numbers, each off by no more than `tolerance` where one byte does that, else as of [`of`](Self::of).
+    /// Encodes numbers in one byte each if the error is at most `tolerance`, otherwise like [`of`](Self::of).
     pub(super) fn within(numbers: &[f64], tolerance: f64) -> Quantised {
         let [low, high] =
             ends(numbers.iter().copied().filter(|number| number.is_finite())).unwrap_or_default();
@@ -50,7 +49,7 @@ impl Quantised {
     }
 }
 
-/// The lowest and the highest of some numbers; none if there are none.
+/// Smallest and largest number; `None` without numbers.
 fn ends(numbers: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
     numbers.fold(None, |ends, number| match ends {
         None => Some([number; 2]),
@@ -62,7 +61,7 @@ fn ends(numbers: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
 pub(crate) mod tests {
     use super::*;
 
-    /// What the scripts read: the twin of `numbers` in `strips.js`.
+    /// Decodes numbers like `numbers` in `strips.js`.
     pub(crate) fn read(quantised: &Quantised) -> Vec<f64> {
         let Quantised { low, high, bytes, codes } = quantised;
         let codes = STANDARD.decode(codes).unwrap();

@@ -1,20 +1,20 @@
-// Discs on a canvas. A window much longer than wide is cut into strips that lie below one another, to be read like the
-// lines of a text.
+// Drawing of discs on a canvas. A window much longer than wide is cut into strips, one below the other, to be read like the lines of a
+// text.
 "use strict";
 
-/** The colours of magnitudes, and those of signed quantities, from the lowest to the highest. */
+/** Colours of magnitudes and of signed quantities, from the lowest to the highest. */
 const [MAGNITUDES, SIGNED] = JSON.parse(document.getElementById("shades").textContent);
 
-/** The colours of shades between two ends: 0 in the middle has a colour of its own. */
+/** Returns the colours of shades between two ends; 0 in the middle has a distinct colour. */
 const shadesOf = ([low, high]) => (low < 0 && low === -high ? SIGNED : MAGNITUDES);
 
-/** The number of the shade of a value between two ends. */
+/** Returns the index of the shade of a value between two ends. */
 function shadeOf(value, [low, high]) {
   const place = high > low ? (value - low) / (high - low) : 0.5;
   return Math.round(Math.min(Math.max(place, 0), 1) * (MAGNITUDES.length - 1));
 }
 
-/** The numbers of a `Quantised` of Rust; NaN where there is none. */
+/** Decodes the numbers of a `Quantised` of Rust. */
 function numbers({ low, high, bytes, codes }) {
   const all = Uint8Array.from(atob(codes), (letter) => letter.charCodeAt(0));
   const out = new Float64Array(all.length / bytes);
@@ -26,7 +26,7 @@ function numbers({ low, high, bytes, codes }) {
   return out;
 }
 
-/** A drawing surface of a size in pixels of the page, sharp on screens with finer dots. */
+/** Sets the size of a canvas in pixels of the page, sharp on high-resolution screens. */
 function sizeCanvas(canvas, width, height, dots = window.devicePixelRatio || 1) {
   canvas.width = Math.round(width * dots);
   canvas.height = Math.round(height * dots);
@@ -37,21 +37,21 @@ function sizeCanvas(canvas, width, height, dots = window.devicePixelRatio || 1) 
   return ctx;
 }
 
-const GUTTER = 64; // room for the place where a strip begins (pixels)
-const LOWEST_STRIP = 34; // a strip lower than this shows no discs
+const GUTTER = 64; // space for the coordinate at the start of a strip (pixels)
+const LOWEST_STRIP = 34; // minimum height of a strip that shows discs (pixels)
 const MOST_STRIPS = 16;
 
-const STILL = "#b0b0b0"; // what has no shade
-const LEAST = 0.8; // radius of a disc that would not be seen (pixels)
+const STILL = "#b0b0b0"; // colour of discs without a shade
+const LEAST = 0.8; // minimum radius of a visible disc (pixels)
 
-/** Where everything lies on a canvas of a width and at most a height: a strip's height, the scale, and the way from lengths to pixels. */
+/** Returns the layout on a canvas of a width and a maximum height: height of a strip, scale, and conversion from lengths to pixels. */
 function layOut(film, width, tallest) {
   const [[left, bottom], [right, top]] = film.window;
   const [wide, high] = [right - left, top - bottom];
-  // A tall window lies down, its lower end to the right.
+  // A tall window is rotated, with its lower end to the right.
   const tall = film.long && high > wide;
   const [length, thick] = tall ? [high, wide] : [wide, high];
-  // A page that is being laid out may have no width yet.
+  // During layout the page may not have a width yet.
   const free = Math.max(film.long ? width - GUTTER : width, 1);
   let strips = 1;
   if (film.long) {
@@ -72,12 +72,12 @@ function layOut(film, width, tallest) {
     /** Distance along the long side and across it (length), from the upper left corner of the picture. */
     along: tall ? (x, y) => top - y : (x) => x - left,
     across: tall ? (x) => right - x : (x, y) => top - y,
-    /** What the axis along the long side says at a distance along it. */
+    /** Coordinate on the axis of the long side at a distance along it. */
     place: (along) => (tall ? top - along : left + along),
   };
 }
 
-/** Calls `circle(x, y, radius)` with the pixels of a disc if a strip shows a part of it. */
+/** Calls `circle(x, y, radius)` in pixels if a strip shows a part of a disc. */
 function inStrip(layout, x, y, radius, strip, circle) {
   const along = layout.along(x, y) - strip * layout.stripLength;
   if (along + radius < 0 || along - radius > layout.stripLength) return;
@@ -85,12 +85,12 @@ function inStrip(layout, x, y, radius, strip, circle) {
   circle(layout.left + along * layout.scale, layout.across(x, y) * layout.scale, seen);
 }
 
-/** What a reader of strips must know, after the arrow of gravity where it pulls along them. */
+/** Draws the hint above the strips, and the arrow of gravity if it points along them. */
 function drawHead(ctx, falls) {
   const y = 10;
   const [from, to] = falls ? [GUTTER + 48, GUTTER + 100] : [GUTTER, GUTTER - 14];
   ctx.textAlign = "left";
-  ctx.fillText("each line goes on in the next", to + 14, y);
+  ctx.fillText("each line continues in the next", to + 14, y);
   if (!falls) return;
   ctx.fillText("gravity", GUTTER, y);
   ctx.lineWidth = 1.5;
@@ -103,13 +103,13 @@ function drawHead(ctx, falls) {
   ctx.stroke();
 }
 
-/** A canvas for a film: `size(width, tallest, dots)` lays it out, `show(frame)` draws a frame. */
+/** Returns a screen for a film: `size(width, tallest, dots)` sets its layout, `show(frame)` draws a frame. */
 function filmScreen(film, canvas) {
   const radii = numbers(film.radii);
   const [xs, ys, shades] = [film.x, film.y, film.shades].map(numbers);
   const fixed = { x: numbers(film.fixed.x), y: numbers(film.fixed.y), radii: numbers(film.fixed.radii) };
   const colour = (shade) => (Number.isNaN(shade) ? STILL : shadesOf(film.shade.ends)[shadeOf(shade, film.shade.ends)]);
-  // What stays the same from frame to frame is drawn once.
+  // Parts that do not change between frames are drawn once.
   const still = document.createElement("canvas");
   let layout, ctx, width;
 
@@ -133,10 +133,10 @@ function filmScreen(film, canvas) {
       if (circle[2] > 2) onto.stroke();
     });
 
-  /** A colour of the page. */
+  /** Returns a colour of the page. */
   const ofPage = (name) => getComputedStyle(canvas).getPropertyValue(name);
 
-  /** The sides of the box, in the place of a strip: dashed where what leaves comes in at the other side. */
+  /** Draws the sides of the box within a strip; periodic sides are dashed. */
   const drawSides = (onto, strip) => {
     onto.strokeStyle = ofPage("--quiet");
     onto.lineWidth = 2;

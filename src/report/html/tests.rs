@@ -1,4 +1,4 @@
-//! The page as a whole.
+//! Tests of the whole page.
 
 use super::*;
 use crate::provenance::{Machine, Provenance};
@@ -106,7 +106,7 @@ fn nothing_in_the_data_becomes_an_element() {
     let page = page();
     assert!(!page.contains("<script>alert"), "a text was not escaped");
     assert!(page.contains("&lt;script&gt;alert(&quot;&amp;&quot;)&lt;/script&gt;"));
-    // Every script element is one of ours: opened and closed equally often, and as often as there are any.
+    // The number of script elements, opened and closed, is that of our own scripts and data.
     let data = 1 + 2;
     assert_eq!(page.matches("<script").count(), SCRIPTS.len() + data);
     assert_eq!(page.matches("</script").count(), SCRIPTS.len() + data);
@@ -120,7 +120,7 @@ fn the_fixed_parts_cannot_end_their_elements() {
 
 #[test]
 fn nothing_is_fetched() {
-    // What pictures name in the page itself.
+    // Except definitions inside the page.
     let page = page().replace("url(#", "");
     for attribute in
         ["src=", "srcset=", "action=", "poster=", "@import", "url(", "fetch(", "XMLHttpRequest", "import("]
@@ -138,7 +138,7 @@ fn nothing_is_fetched() {
 fn every_item_is_in_summary_and_contents() {
     let page = page();
     for name in ["first", "second"] {
-        // Contents, first screen, summary and the heading itself.
+        // Contents, first screen, summary and heading.
         assert_eq!(page.matches(&format!("href=\"#{name}\"")).count(), 4, "{name}");
         assert!(page.contains(&format!("<section id=\"{name}\"")));
     }
@@ -153,7 +153,7 @@ fn an_item_names_its_numbers_command_seeds_data_and_origin() {
     assert!(page.contains(
         "Made on 2026-11-24 in 1.5 s with 2 threads in 3 processes by <code>some command</code>, source commit 0123abc with changes."
     ));
-    // Once at the head, with the machine.
+    // Once in the head, with the machine.
     assert_eq!(
         page.matches("2 items made on 2026-11-24 by stripmine 1.2.3 of source commit 0123abc").count(),
         1
@@ -171,11 +171,11 @@ fn backquotes_set_code_apart_if_they_come_in_pairs() {
 fn pictures_stand_in_the_page_and_share_their_markers() {
     let page = page();
     assert_eq!(page.matches("<svg id=").count(), 4);
-    // The first screen shows one of each item again.
+    // The first screen repeats one picture per item.
     assert_eq!(page.matches("<use href=\"#").count(), 2);
     assert_eq!(page.matches("<marker id=\"m0-0072b2\"").count(), 1);
     assert_eq!(page.matches("marker:url(#m0-0072b2)").count(), 2);
-    // The browser would show it wherever one points; what names a series is read by the script.
+    // A browser would show it as a tooltip everywhere; the titles of series are read by the script.
     assert!(!page.contains("<desc>"));
     assert_eq!(page.matches("<title>").count(), 1 + 2);
 }

@@ -1,9 +1,9 @@
-// What a chart or a map says where the pointer is, or, by arrow keys, from point to point. All is read from the picture: its
-// plane says where numbers lie, titles name what is drawn.
+// Tooltips with the values of charts and maps at the pointer, or from point to point by arrow keys. All data are read from the
+// picture: its plane states the axes, titles name the series.
 "use strict";
 
-const REACH = 30; // how far from a point its values are shown (pixels of the picture)
-const STRIDE = 10; // how far an arrow key goes on a map (pixels of the picture)
+const REACH = 30; // distance from a point within which its values are shown (pixels of the picture)
+const STRIDE = 10; // step of an arrow key on a map (pixels of the picture)
 
 const [ring, tip] = ["ring", "tip"].map((name) => element("div", name, document.body));
 tip.setAttribute("role", "status");
@@ -13,7 +13,7 @@ document.addEventListener("scroll", hide, { capture: true, passive: true });
 
 const clamp = (number, low, high) => Math.max(Math.min(number, high), low);
 
-/** An axis as its plane states it. */
+/** Parses the description of an axis. */
 function axisOf(text) {
   const [scale, ...rest] = text.split(" ");
   const [from, to, low, high] = rest.slice(0, 4).map(Number);
@@ -21,7 +21,7 @@ function axisOf(text) {
   return { log: scale === "log", from, to, low, high, heading, names };
 }
 
-/** The value at a place of an axis, with the digits that a hundredth of a pixel tells; or the name there. */
+/** Returns the value at a position of an axis, with the digits resolved by a hundredth of a pixel; or the name there. */
 function valueAt({ log, from, to, low, high, names }, place) {
   const at = (pixels) => {
     const part = (pixels - from) / (to - from);
@@ -32,7 +32,7 @@ function valueAt({ log, from, to, low, high, names }, place) {
   return Math.abs(value) < step ? "0" : readable(value, clamp(Math.floor(Math.log10(Math.abs(value) / step)), 2, 5));
 }
 
-/** The corners of a path that goes on in steps from its first. */
+/** Returns the corners of a path of relative steps. */
 function corners(path) {
   const numbers = path.getAttribute("d").match(/-?(\d+\.?\d*|\.\d+)/g).map(Number);
   const [all, at] = [[], { x: 0, y: 0 }];
@@ -44,14 +44,14 @@ function corners(path) {
   return all;
 }
 
-/** The place on a piece of line that is nearest to another. */
+/** Returns the point of a line segment nearest to another point. */
 function nearestOn(a, b, { x, y }) {
   const [dx, dy] = [b.x - a.x, b.y - a.y];
   const along = clamp(((x - a.x) * dx + (y - a.y) * dy) / (dx * dx + dy * dy) || 0, 0, 1);
   return { x: a.x + along * dx, y: a.y + along * dy };
 }
 
-/** A series: its name, its places, whether these are marked, and the ends of their spreads by the place on the other side. */
+/** Reads a series: its name, its points, true if they have markers, and the ends of their spreads by position on the other axis. */
 function seriesOf(group) {
   const marks = group.querySelector("[style] > path");
   const [bars, curve] = [":is([d*=V], [d*=H])", ":not([d*=V], [d*=H])"].map((which) => group.querySelector(`:scope > path${which}`));
@@ -72,13 +72,13 @@ for (const plane of document.querySelectorAll(".picture [data-x]")) {
   const svg = plane.closest(".picture > svg");
   const { value } = plane.dataset;
   const [x, y] = [plane.dataset.x, plane.dataset.y].map(axisOf);
-  // The browser's own tips would lie upon ours.
+  // The browser's own tooltips would cover ours.
   for (const title of plane.querySelectorAll("title")) {
     title.parentElement.dataset.name = title.textContent;
     title.remove();
   }
   const series = value ? [] : [...plane.querySelectorAll("[data-name]:not(:has(> rect))")].map(seriesOf);
-  // What was measured, or lines where nothing was.
+  // Measured points, or lines without any.
   const marked = series.filter((of) => of.marked);
   const points = (marked.length ? marked : series).flatMap((of) => of.places.map((place) => ({ of, place })));
   const onScreen = (place) => new DOMPoint(place.x, place.y).matrixTransform(plane.getScreenCTM());
@@ -87,7 +87,7 @@ for (const plane of document.querySelectorAll(".picture [data-x]")) {
     const at = onScreen(place);
     [tip.hidden, ring.hidden] = [false, !ringed];
     tip.replaceChildren(...lines.map((line, i) => Object.assign(element(i ? "div" : "strong"), { textContent: line })));
-    // Beside the place, on the side where there is more room.
+    // On the side of the point with more room.
     const left = at.x < innerWidth / 2 ? at.x + 14 : at.x - 14 - tip.offsetWidth;
     const [right, down] = [innerWidth - tip.offsetWidth - 4, innerHeight - tip.offsetHeight - 4];
     tip.style.translate = `${clamp(left, 4, right)}px ${clamp(at.y - 20, 4, down)}px`;
@@ -101,7 +101,7 @@ for (const plane of document.querySelectorAll(".picture [data-x]")) {
     show([of.name, ...values(place), ...ends], place, true);
   };
   const look = (at, target) => {
-    // A marker before the line that runs past it: it is what was measured.
+    // Prefer a marker to a nearby line, because it was measured.
     const offers = series.flatMap((of) => {
       const near = of.marked ? of.places : of.places.slice(1).map((end, i) => nearestOn(of.places[i], end, at));
       return near.map((place) => ({ of, place, away: Math.hypot(place.x - at.x, place.y - at.y) + (of.marked ? 0 : 5) }));

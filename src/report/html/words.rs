@@ -4,14 +4,14 @@ use crate::claims::Verdict;
 use crate::report::Section;
 use maud::{Markup, html};
 
-/// A verdict as colour, sign and words.
+/// Badge of a verdict: colour, sign and words.
 pub(super) fn badge(verdict: Verdict) -> Markup {
     html! {
         span class={ "badge " (kind(verdict)) } { (sign(verdict)) " " (verdict.words()) }
     }
 }
 
-/// The verdicts of a section's claims, with how many have each.
+/// Badges of the verdicts of a section's claims, with their numbers.
 pub(super) fn badges(section: &Section) -> Markup {
     html! {
         @for (verdict, count) in section.counts() {
@@ -23,7 +23,7 @@ pub(super) fn badges(section: &Section) -> Markup {
     }
 }
 
-/// A verdict's name in the style sheet.
+/// Class of a verdict in the style sheet.
 pub(super) fn kind(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Reproduced => "reproduced",
@@ -34,7 +34,7 @@ pub(super) fn kind(verdict: Verdict) -> &'static str {
     }
 }
 
-/// A verdict as a sign that needs no colour.
+/// Sign of a verdict, readable without colour.
 pub(super) fn sign(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Reproduced => "✓",
@@ -45,7 +45,7 @@ pub(super) fn sign(verdict: Verdict) -> &'static str {
     }
 }
 
-/// A sentence in which backquotes set apart what a machine reads, as in the page in Markdown.
+/// Sentence with code in backquotes, as in Markdown.
 pub(super) fn prose(text: &str) -> Markup {
     let pieces: Vec<&str> = text.split('`').collect();
     let paired = pieces.len() % 2 == 1;

@@ -1,4 +1,4 @@
-//! Discs under gravity above a hot floor, without a ceiling: their density over the height, beside the barometric law.
+//! Discs under gravity above a hot floor, without a ceiling: density against height, compared with the barometric law.
 
 use crate::console::Failure;
 use crate::frame::{Cell, Rows};
@@ -13,23 +13,23 @@ use stripmine_physics::method::observed::summed_up;
 use stripmine_physics::number::counted;
 use stripmine_physics::scene::{COUNT, GRAVITY, Overrides, SIDES};
 
-/// Layers that the discs would fill, and restitution.
+/// Gases: number of layers that the discs would fill, and restitution.
 const GASES: [(f64, f64); 4] = [(0.02, 1.0), (0.2, 1.0), (1.0, 1.0), (1.0, 0.95)];
-/// Scenes of the source's look-up.
+/// Scenes for ISO99's look-up of occupied cells.
 const SCENES: [&str; 2] = ["hot-floor", "vibrating-floor"];
-/// Discs of a gas.
+/// Discs in a gas.
 const DISCS: usize = 200;
-/// Looks at a gas, a time √(kT/m)/g apart.
+/// Samples of a gas, a time √(kT/m)/g apart.
 const LOOKS: usize = 600;
-/// Bins of the profile, each of this part of the height kT/(m g), and their number.
+/// Width of the bins of the profile in units of kT/(m g), and their number.
 const BINS: (f64, usize) = (0.25, 32);
 
-/// Profile of a gas.
+/// Height profile of a gas.
 struct Profile {
     name: String,
-    /// Discs of a unit of area by height, over the barometric density on the floor.
+    /// Number density by height, over the barometric density at the floor.
     densities: Vec<Mean>,
-    /// Mean height of the centres over kT/(m g): 1 by the barometric law.
+    /// Mean height of the centres over kT/(m g): 1 in the barometric law.
     mean_height: Mean,
     /// Temperature over that of the floor.
     temperature: Mean,
@@ -37,7 +37,7 @@ struct Profile {
     highest: f64,
 }
 
-/// Follows the gases, and counts the entries of the source's look-up.
+/// Simulates the gases, and counts the entries of ISO99's look-up.
 pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let meter = Meter::new((GASES.len() + SCENES.len()) as f64, lab.progress);
     let profiles = meter.each(&GASES, profile)?;
@@ -74,7 +74,7 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     .with_seeds([1]))
 }
 
-/// A scene by the source's engine and by the fast one, and the entries of the former's look-up of occupied cells.
+/// Runs a scene with ISO99's engine and with the fast engine; returns the entries of the former's look-up of occupied cells.
 fn look_up(scene: &'static str) -> Result<(&'static str, [Running; 2], f64), StudyError> {
     let run = |engine: EngineChoice| {
         let mut gas = Running::begin(scene, &Overrides::new().set(&ENGINE, engine))?;
@@ -86,7 +86,7 @@ fn look_up(scene: &'static str) -> Result<(&'static str, [Running; 2], f64), Stu
     Ok((scene, [source, run(EngineChoice::Fast)?], entries))
 }
 
-/// Discs of diameter, mass and kT 1, and kT/(m g) of 20.
+/// Measures a gas with diameter, mass and kT of 1 and kT/(m g) of 20.
 fn profile(&(layers, restitution): &(f64, f64)) -> Result<Profile, StudyError> {
     let height = 20.0;
     let width = DISCS as f64 / layers;
@@ -114,7 +114,7 @@ fn profile(&(layers, restitution): &(f64, f64)) -> Result<Profile, StudyError> {
         }
         heights.push(height_now);
         temperatures.push(gas.observed(["kinetic"])?[0] / DISCS as f64);
-        // The barometric law has N/h of them on a unit of height at the floor.
+        // The barometric law has N/h discs per unit of height at the floor.
         let now = counts.into_iter().map(|count| count / (DISCS as f64 * BINS.0));
         densities.iter_mut().zip(now).for_each(|(course, now)| course.push(now));
     }

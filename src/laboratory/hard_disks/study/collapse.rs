@@ -1,4 +1,4 @@
-//! Where the method fails: inelastic collapse over restitution and number of discs, in a row and in the plane.
+//! Inelastic collapse by restitution and number of discs, in a row and in the plane: the limit of the method.
 
 use super::followed;
 use crate::console::Failure;
@@ -13,24 +13,24 @@ use stripmine_physics::method::Until;
 use stripmine_physics::method::hard_disks::keys::RESTITUTION;
 use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION, POSITIONS, SEED, VELOCITIES};
 
-/// Discs of the rows.
+/// Numbers of discs in a row.
 const ROWS: [u32; 7] = [3, 4, 5, 6, 8, 12, 16];
-/// Starts of a row; the largest restitution at which one of them collapses counts.
+/// Starts of a row; the result is the largest restitution at which one of them collapses.
 const STARTS: u32 = 24;
-/// How far apart the two ends of what is found are.
+/// Width of the bisected interval of the restitution.
 const RESOLUTION: f64 = 2e-4;
 /// Restitutions and numbers of discs of the map.
 const RESTITUTIONS: [f64; 9] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
 const DISCS: [u64; 6] = [16, 64, 256, 1024, 4096, 16_384];
-/// Seeds of a place of the map.
+/// Seeds at each point of the map.
 const SEEDS: u64 = 3;
-/// Collisions of a disc in the runs of the map.
+/// Collisions per disc in the runs of the map.
 const COLLISIONS: f64 = 200.0;
 /// Packing fraction of the gases of the map.
 const PACKING: f64 = 0.25;
 
-/// The restitution below which discs in a row can collapse: tan²(π/4 (1 − 2/N)), exact for three (7 − 4√3) and an estimate for more,
-/// of which each half is taken for a column that meets a wall, after Bernu and Mazighi (1990).
+/// Restitution below which discs in a row can collapse: tan²(π/4 (1 − 2/N)). Exact for three discs (7 − 4√3); for more an estimate after Bernu
+/// and Mazighi (1990) that treats each half as a column hitting a wall.
 fn of_a_row(discs: f64) -> f64 {
     if discs > 2.0 { (FRAC_PI_4 * (1.0 - 2.0 / discs)).tan().powi(2) } else { 0.0 }
 }
@@ -46,7 +46,7 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let discs: Vec<usize> = discs.into_iter().collect::<Result<_, StudyError>>()?;
     let gases = || discs.iter().zip(shares.chunks(RESTITUTIONS.len()));
     let places = gases().flat_map(|(discs, of)| of.iter().zip(RESTITUTIONS).map(move |at| (discs, at)));
-    // Discs that lie across the box, whatever their place along it: N d/L with N = ν L²/(π d²/4).
+    // Discs across the box, projected on one side: N d/L with N = ν L²/(π d²/4).
     let across = |discs: usize| (discs as f64 * PACKING / FRAC_PI_4).sqrt();
     Ok(Made::of([
         Rows::of(ROWS.iter().zip(rows))
@@ -76,7 +76,7 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     .with_seeds(1..=SEEDS))
 }
 
-/// Whether a scene collapses before its end.
+/// Returns true if a scene collapses before its end.
 fn collapses_before(
     preset: &str,
     overrides: &Overrides,
@@ -87,7 +87,7 @@ fn collapses_before(
     Ok(followed(&mut gas, end)?.is_some())
 }
 
-/// Largest restitution at which a start of a row without sides collapses, and smallest found at which none does.
+/// Largest restitution at which a start of an unbounded row collapses, and smallest restitution at which none does.
 fn row(discs: u32) -> Result<[f64; 2], StudyError> {
     let starts: Vec<Overrides> = (0..STARTS).map(|start| flying_together(discs, start)).collect();
     let some_collapses = |restitution: f64| {
@@ -103,8 +103,8 @@ fn row(discs: u32) -> Result<[f64; 2], StudyError> {
     bisected([0.001, 0.999], is_narrow, |low, high| 0.5 * (low + high), some_collapses)
 }
 
-/// Places and velocities of discs in a row: gaps of about a diameter, the faster inwards the farther out. The first start is
-/// regular and symmetric, others are drawn.
+/// Positions and velocities of discs in a row: gaps of about a diameter, speeds inwards that increase with distance from the centre. The
+/// first start is regular and symmetric, the others are random.
 fn flying_together(discs: u32, start: u32) -> Overrides {
     let mut stream = Stream::new(1, Purpose::Test, start);
     let spread = if start == 0 { 0.0 } else { 0.8 };
@@ -119,12 +119,12 @@ fn flying_together(discs: u32, start: u32) -> Overrides {
     Overrides::new().set(&POSITIONS, positions).set(&VELOCITIES, velocities)
 }
 
-/// A gas of the map.
+/// Overrides of a gas of the map.
 fn gas(discs: u64) -> Overrides {
     Overrides::new().set(&COUNT, discs).set(&PACKING_FRACTION, PACKING)
 }
 
-/// The share of the seeds with which gases collapse.
+/// Share of the seeds with which a gas collapses.
 fn share(discs: u64, restitution: f64) -> Result<f64, StudyError> {
     let mut count = 0;
     for seed in 1..=SEEDS {
@@ -145,7 +145,7 @@ mod tests {
         assert_eq!(of_a_row(2.0), 0.0);
     }
 
-    /// Three discs in a row, held against 7 − 4√3 = 0.0718.
+    /// Three discs in a row, compared with 7 − 4√3 = 0.0718.
     #[test]
     fn three_in_a_row_collapse_below_the_restitution_of_theory() {
         let [low, high] = row(3).unwrap();

@@ -1,4 +1,4 @@
-//! Cost of a collision over the number of discs: counted operations, and processor time.
+//! Cost of a collision against the number of discs: counted operations and processor time.
 
 use super::rates::{ENGINES, fluid};
 use crate::console::Failure;
@@ -9,7 +9,7 @@ use crate::provenance::Machine;
 use crate::results::{Lab, Made, Size};
 use crate::statistics::{non_negative, slope};
 
-/// Counted operations: their names, and their headings.
+/// Counted operations: names and headings.
 const COUNTED: [(&str, &str); 5] = [
     ("predictions", "predictions of a pair"),
     ("searches", "searches for the next event of a disc"),
@@ -18,40 +18,40 @@ const COUNTED: [(&str, &str); 5] = [
     ("cell_updates", "discs put into a cell"),
 ];
 
-/// Grid of a size.
+/// Measured cases of a study size.
 struct Grid {
-    /// Numbers of discs, at least.
+    /// Minimum numbers of discs.
     discs: &'static [u64],
     packing_fractions: &'static [f64],
-    /// Collisions that are measured.
+    /// Measured collisions.
     collisions: u64,
-    /// The source's way has no more discs than this.
+    /// Maximum number of discs with ISO99's algorithm.
     most_by_reference: u64,
 }
 
-/// An engine with a number of discs.
+/// Cost of an engine with a number of discs.
 struct Cost {
     engine: &'static str,
     packing_fraction: f64,
     discs: f64,
-    /// Bytes of a run.
+    /// Memory of a run in bytes.
     memory: f64,
     measured: Measured,
 }
 
-/// A logarithm of the number of discs, fitted to an engine at a packing fraction: seconds of a collision, and seconds more for each
-/// doubling.
+/// Logarithm fitted to the times of an engine at a packing fraction: seconds per collision, and additional seconds per doubling of the number
+/// of discs.
 struct Fit([f64; 2]);
 
 impl Fit {
-    /// Least squares of the relative errors; neither constant is below nothing.
+    /// Fits non-negative constants by least squares of the relative errors.
     fn of(costs: impl Iterator<Item = [f64; 2]>) -> Fit {
-        // In nanoseconds, for numbers near one.
+        // In nanoseconds, so that numbers are near 1.
         let row = |[discs, seconds]: [f64; 2]| ([1.0, discs.log2()].map(|term| 1e-9 * term / seconds), 1.0);
         Fit(non_negative(&costs.map(row).collect::<Vec<_>>()).map(|constant| 1e-9 * constant))
     }
 
-    /// Seconds of a collision.
+    /// Seconds per collision.
     fn at(&self, discs: f64) -> f64 {
         self.0[0] + self.0[1] * discs.log2()
     }
@@ -86,7 +86,7 @@ pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
             scenes.extend(grid.packing_fractions.iter().map(|&packing| (engine, packing, discs)));
         }
     }
-    // From the lattice of the start, and lists that are all as old, to discs in motion: ten collisions of each.
+    // Ten collisions per disc, to forget the initial lattice and the equal ages of all lists.
     let case = |&(engine, packing, discs): &(&str, f64, u64)| {
         let case = Case::events("hard-disks", &fluid(engine, discs, packing), 5 * discs, grid.collisions);
         case.label("engine", engine).label("ν", packing.to_string()).label("discs", discs)
@@ -136,7 +136,7 @@ pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     .with_seeds([1]))
 }
 
-/// Names and bytes of the caches of this machine that hold data.
+/// Names and sizes in bytes of this machine's data caches.
 fn caches() -> Vec<(String, f64)> {
     let cache = |text: &String| {
         let (name, size) = text.split_once(' ')?;

@@ -1,4 +1,4 @@
-//! A granular gas cools: Haff's law while it is even, and inelastic collapse where it is too dissipative.
+//! Cooling of a granular gas: Haff's law while the gas is homogeneous, and inelastic collapse at strong dissipation.
 
 use super::followed;
 use crate::console::Failure;
@@ -11,30 +11,30 @@ use stripmine_physics::method::observed::summed_up;
 use stripmine_physics::method::{self, Until};
 use stripmine_physics::scene::{COUNT, Overrides};
 
-/// Discs, at least.
+/// Minimum number of discs.
 const DISCS: u64 = 10_000;
-/// Restitutions of the gases that are followed.
+/// Restitutions of the cooling gases.
 const RESTITUTIONS: [f64; 3] = [0.99, 0.95, 0.90];
-/// Looks at a gas, half a collision of each disc apart.
+/// Samples of a gas, half a collision per disc apart.
 const LOOKS: usize = 24;
-/// Restitutions of which it is asked whether the gas collapses.
+/// Restitutions tested for collapse.
 const COLLAPSING: [f64; 4] = [0.9, 0.5, 0.3, 0.1];
-/// Contact duration that cures collapse (time).
+/// Contact duration that prevents collapse (time).
 const CURE: f64 = 1e-4;
 
-/// A gas that cools.
+/// Cooling gas.
 struct Gas {
     restitution: f64,
-    /// Collisions of a disc, time, and temperature over that of the first look, at each look.
+    /// Collisions per disc, time, and temperature over that of the first sample, for each sample.
     looks: Vec<[f64; 3]>,
-    /// Haff's time t₀ = 4/((1 − e²) ω₀), with the rate ω₀ of an elastic gas of the temperature of the first look.
+    /// Haff's time t₀ = 4/((1 − e²) ω₀), with the rate ω₀ of an elastic gas at the temperature of the first sample.
     haff_time: f64,
-    /// T₀ exp(−(1 − e²) collisions/N) at the last look.
+    /// T₀ exp(−(1 − e²) collisions/N) at the last sample.
     by_collisions: f64,
 }
 
 impl Gas {
-    /// Haff's law: the temperature over that of the first look.
+    /// Temperature by Haff's law, over that of the first sample.
     fn haff(&self, time: f64) -> f64 {
         (1.0 + time / self.haff_time).powi(-2)
     }
@@ -44,7 +44,7 @@ impl Gas {
     }
 }
 
-/// Follows gases that cool and gases that collapse.
+/// Simulates the cooling gases and the gases that may collapse.
 pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let meter = Meter::new((RESTITUTIONS.len() + COLLAPSING.len()) as f64, lab.progress);
     let gases = meter.each(&RESTITUTIONS, gas)?;
@@ -86,7 +86,7 @@ fn gas(&restitution: &f64) -> Result<Gas, StudyError> {
     let begin =
         |restitution: f64| Running::begin("cooling-gas", &scene.clone().set(&RESTITUTION, restitution));
     let names = ["time", "collisions", "temperature"];
-    // An elastic gas forgets the lattice of the start, and shows its rate.
+    // The collision rate of an elastic gas, after it has forgotten the initial lattice.
     let mut elastic = begin(1.0)?;
     let count = elastic.simulation.particles().grain_count() as f64;
     elastic.events((10.0 * count) as u64)?;
@@ -95,7 +95,7 @@ fn gas(&restitution: &f64) -> Result<Gas, StudyError> {
     let after = elastic.observed(names)?;
     let elastic_rate = 2.0 * (after[1] - collisions) / (count * (after[0] - time)) / after[2].sqrt();
     let mut gas = begin(restitution)?;
-    // A collision of each disc, and the lattice is no more.
+    // One collision per disc destroys the lattice.
     gas.events(count as u64)?;
     let first = gas.observed(names)?;
     let haff_time = 4.0 / ((1.0 - restitution * restitution) * elastic_rate * first[2].sqrt());
@@ -115,8 +115,8 @@ fn gas(&restitution: &f64) -> Result<Gas, StudyError> {
     })
 }
 
-/// Collisions of a disc: 200, or those up to a collapse; the collapse in words, and the share of the collisions that the contact duration
-/// makes elastic in a run of the same length.
+/// Collisions per disc: 200, or fewer if the gas collapses. For a collapse also its message, and the share of collisions that the contact
+/// duration makes elastic in a run of the same length.
 fn fate(&restitution: &f64) -> Result<(f64, Option<(String, f64)>), StudyError> {
     let scene = Overrides::new().set(&COUNT, DISCS).set(&RESTITUTION, restitution);
     let begin = |contact_duration: f64| {

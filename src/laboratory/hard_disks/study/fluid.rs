@@ -1,4 +1,4 @@
-//! Pressure and collision rate of the equilibrium fluid, over the packing fraction.
+//! Pressure and collision rate of the equilibrium fluid against the packing fraction.
 
 use crate::console::Failure;
 use crate::frame::{Cell, Rows};
@@ -11,11 +11,11 @@ use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
 
 /// Reference up to a packing fraction of 0.5.
 const VIRIAL: &str = "virial series, Padé [4/5] (Clisby and McCoy 2006)";
-/// Reference of denser fluids, at which the approximants of the series differ.
+/// Reference for denser fluids, where the approximants of the series differ.
 const LUDING: &str = "equation of state (Luding 2001)";
-/// Compressibility at a packing fraction of 0.5; Padé approximants of other degrees differ by 3·10⁻⁵ of it.
+/// Compressibility at a packing fraction of 0.5; Padé approximants of other degrees differ by a relative 3·10⁻⁵.
 pub(super) const Z_AT_HALF: f64 = 4.106_24;
-/// Packing fractions with their compressibility and its origin.
+/// Packing fractions with their reference compressibility and its origin.
 const KNOWN: [(f64, f64, &str); 7] = [
     (0.10, 1.236_143_6, VIRIAL),
     (0.20, 1.570_366, VIRIAL),
@@ -25,11 +25,11 @@ const KNOWN: [(f64, f64, &str); 7] = [
     (0.60, 6.452_15, LUDING),
     (0.65, 8.408_52, LUDING),
 ];
-/// Discs, at least.
+/// Minimum number of discs.
 const DISCS: u64 = 10_000;
-/// Collisions that are measured.
+/// Measured collisions.
 const COLLISIONS: u64 = 10_000_000;
-/// Parts of a run, each a measurement; their scatter and correlation give the error.
+/// Blocks of a run; the error follows from the scatter and correlation of the block means.
 const PARTS: u64 = 200;
 
 /// Luding's compressibility, Z = 1 + 2 ν g₄ with g₄ = g − ν³/(128 (1 − ν)⁴) and g = (1 − 7ν/16)/(1 − ν)².
@@ -44,17 +44,17 @@ fn henderson(nu: f64) -> f64 {
     (1.0 + nu * nu / 8.0) / ((1.0 - nu) * (1.0 - nu))
 }
 
-/// Collisions of a disc in a unit of time (diameter = m = kT = 1), by the virial theorem.
+/// Collisions of a disc per unit of time (diameter = m = kT = 1), from the virial theorem.
 pub(super) fn collision_rate(compressibility: f64) -> f64 {
     4.0 * (compressibility - 1.0) / PI.sqrt()
 }
 
-/// Compressibility of discs, by the virial of their collisions in a time.
+/// Compressibility of discs, from the virial of their collisions in a time.
 pub(super) fn compressibility(discs: f64, [virial, time]: [f64; 2], temperature: f64) -> f64 {
     1.0 + virial / (2.0 * discs * temperature * time)
 }
 
-/// Measures every packing fraction that is known.
+/// Measures every packing fraction with a reference.
 pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let states =
         Meter::new(KNOWN.len() as f64, lab.progress).each_from_last(&KNOWN, |known| measured(known.0))?;
@@ -93,7 +93,7 @@ fn measured(packing_fraction: f64) -> Result<(Mean, Mean, f64), StudyError> {
     let overrides = Overrides::new().set(&PACKING_FRACTION, packing_fraction).set(&COUNT, DISCS);
     let mut fluid = Running::begin("hard-disks", &overrides)?;
     let discs = fluid.simulation.particles().grain_count() as f64;
-    // The lattice of the start melts within some tens of collisions of each disc.
+    // The initial lattice melts within some tens of collisions per disc.
     fluid.events((100.0 * discs) as u64)?;
     let names = ["time", "virial", "collisions", "temperature", "energy_error"];
     let mut before = fluid.observed(names)?;
@@ -114,7 +114,7 @@ fn measured(packing_fraction: f64) -> Result<(Mean, Mean, f64), StudyError> {
 mod tests {
     use super::*;
 
-    /// Coefficients B₂ … B₁₀ over the powers of B₂ (Clisby and McCoy 2006, table 1); the first three are exact.
+    /// Virial series with coefficients B₂ … B₁₀ over powers of B₂ (Clisby and McCoy 2006, table 1); the first three are exact.
     fn virial_series(nu: f64) -> f64 {
         let third = 4.0 / 3.0 - 3f64.sqrt() / PI;
         let fourth = 2.0 - 4.5 * 3f64.sqrt() / PI + 10.0 / (PI * PI);

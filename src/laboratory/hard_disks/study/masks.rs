@@ -1,4 +1,4 @@
-//! The source's comparison: cost of a collision over the mask and the packing fraction; and its cost formula, fitted.
+//! ISO99's comparison of masks: cost of a collision by mask and packing fraction, and a fit of ISO99's cost formula.
 
 use super::rates::{ENGINES, fluid};
 use crate::console::Failure;
@@ -12,32 +12,32 @@ use stripmine_physics::method::hard_disks::keys::{MASK, MASKS};
 use stripmine_physics::method::hard_disks::reference::choice;
 use stripmine_physics::method::observed::summed_up;
 
-/// Discs, at least.
+/// Minimum number of discs.
 const DISCS: u64 = 2500;
-/// Terms of the source's formula.
+/// Terms of ISO99's formula.
 const TERMS: [&str; 4] = [
     "a collision",
     "a disc in the mask, for each collision",
     "a disc, for each filling",
     "a disc in the mask of a disc, for each filling",
 ];
-/// Unit of the fit: constants are a nanosecond or so.
+/// Unit of the fit: constants are of the order of a nanosecond.
 const NANO: f64 = 1e-9;
 
-/// A mask at a packing fraction.
+/// Cost of a collision with a mask at a packing fraction.
 struct Cost {
     packing_fraction: f64,
     mask: &'static str,
     places: usize,
-    /// Discs of the system, and discs in the mask, on average.
+    /// Number of discs, and mean number of discs in the mask.
     discs: f64,
     candidates: f64,
-    /// Fillings of the grid for each collision.
+    /// Fillings of the grid per collision.
     fillings: f64,
     seconds: Spread,
 }
 
-/// Packing fraction, cheapest mask, the choice of `auto`, and its cost over that of the cheapest.
+/// Packing fraction, cheapest mask, mask chosen by `auto`, and its cost over that of the cheapest.
 type Choice = (f64, &'static str, String, f64);
 
 /// Measures every mask.
@@ -120,13 +120,13 @@ fn frames(costs: &[Cost], choices: &[Choice], masks: &[(&str, Mask)]) -> [Frame;
     ]
 }
 
-/// Factors of the constants.
+/// Factors of the fitted constants.
 fn terms(cost: &Cost) -> [f64; 4] {
     let filled = cost.discs * cost.fillings;
     [1.0, cost.candidates, filled, cost.candidates * filled]
 }
 
-/// Least squares of the relative errors; no constant is below nothing.
+/// Non-negative constants from least squares of the relative errors.
 fn fit(costs: &[Cost]) -> [f64; 4] {
     let row = |cost: &Cost| (terms(cost).map(|term| NANO * term / cost.seconds.median), 1.0);
     non_negative(&costs.iter().map(row).collect::<Vec<_>>()).map(|constant| NANO * constant)
@@ -136,7 +136,7 @@ fn fit(costs: &[Cost]) -> [f64; 4] {
 mod tests {
     use super::*;
 
-    /// Costs made by the formula give its constants back.
+    /// The fit recovers the constants from costs computed with the formula.
     #[test]
     fn the_fit_returns_the_constants_of_the_formula() {
         let constants = [1e-7, 2e-9, 3e-8, 3e-9];

@@ -1,4 +1,4 @@
-//! Studies of hard discs, each a file.
+//! Studies of hard discs.
 
 pub(crate) mod atmosphere;
 pub(crate) mod collapse;
@@ -15,7 +15,7 @@ use crate::laboratory::running::Running;
 use stripmine_physics::method::hard_disks::INELASTIC_COLLAPSE;
 use stripmine_physics::method::{Failure, Until};
 
-/// Follows a gas to a moment, or to its inelastic collapse.
+/// Advances a gas to a moment or to its inelastic collapse; returns the collapse.
 fn followed(gas: &mut Running, end: Until) -> Result<Option<Failure>, Failure> {
     match gas.until(end) {
         Ok(()) => Ok(None),

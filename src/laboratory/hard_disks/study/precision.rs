@@ -1,4 +1,4 @@
-//! Speed against accuracy: the error of Z over the processor time that it takes.
+//! Speed against accuracy: error of Z against processor time.
 
 use super::fluid::{Z_AT_HALF, compressibility};
 use super::rates::{ENGINES, fluid};
@@ -13,16 +13,16 @@ use stripmine_physics::scene::SEED;
 
 /// Packing fraction.
 const PACKING: f64 = 0.5;
-/// Numbers of discs, at least.
+/// Minimum numbers of discs.
 const DISCS: [u64; 3] = [100, 1000, 10_000];
-/// Collisions after which Z is read.
+/// Numbers of collisions after which Z is sampled.
 const LOOKS: [u64; 6] = [976, 3906, 15_625, 62_500, 250_000, 1_000_000];
-/// Collisions for each disc until the lattice of the start is forgotten.
+/// Collisions per disc until the initial lattice is forgotten.
 const FORGOTTEN: u64 = 50;
-/// Seeds, each an independent run.
+/// Number of seeds, each an independent run.
 const SEEDS: u64 = 8;
 
-/// A number of discs by an engine.
+/// Results of an engine with a number of discs.
 struct Way {
     engine: &'static str,
     asked: u64,
@@ -31,7 +31,7 @@ struct Way {
     errors: Vec<Vec<f64>>,
 }
 
-/// Follows both engines with every number of discs and every seed, and measures their rates.
+/// Runs both engines with every number of discs and every seed, and measures their rates.
 pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let runs = DISCS.iter().flat_map(|&discs| ENGINES.map(|engine| (discs, engine)));
     let runs: Vec<(u64, &str, u64)> =
@@ -72,7 +72,7 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     .with_seeds(1..=SEEDS))
 }
 
-/// Number of discs, and compressibilities of a run over the known one, less 1.
+/// Number of discs, and relative errors of the compressibility of a run.
 fn errors(&(discs, engine, seed): &(u64, &str, u64)) -> Result<(usize, Vec<f64>), StudyError> {
     let mut system = Running::begin("hard-disks", &fluid(engine, discs, PACKING).set(&SEED, seed))?;
     let discs = system.simulation.particles().grain_count();

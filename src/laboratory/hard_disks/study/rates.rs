@@ -1,4 +1,4 @@
-//! Collisions a second: the fast engine and the source's, over packing fraction and number of discs.
+//! Collisions per second of the fast engine and of ISO99's, by packing fraction and number of discs.
 
 use crate::console::Failure;
 use crate::frame::Rows;
@@ -8,14 +8,14 @@ use crate::results::{Lab, Made, Size};
 use stripmine_physics::method::hard_disks::keys::ENGINE;
 use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
 
-/// The engines, by the names that scenes give them.
+/// Engines, by their names in scenes.
 pub(super) const ENGINES: [&str; 2] = ["fast", "reference"];
 /// Packing fractions.
 const PACKING_FRACTIONS: [f64; 5] = [0.10, 0.30, 0.50, 0.65, 0.70];
-/// ISO99: number of discs, and million collisions an hour at the best density.
+/// ISO99: number of discs, and million collisions per hour at the best density.
 const SOURCE: [(f64, f64); 2] = [(2500.0, 460.0), (2_500_000.0, 210.0)];
 
-/// An engine's fluid.
+/// Overrides of the fluid of an engine.
 pub(super) fn fluid(engine: &str, discs: u64, packing_fraction: f64) -> Overrides {
     let scene = Overrides::new().set(&COUNT, discs).set(&PACKING_FRACTION, packing_fraction);
     scene.set(&ENGINE, engine)
@@ -29,7 +29,7 @@ pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     };
     let scenes = sizes.iter().flat_map(|&discs| PACKING_FRACTIONS.map(|packing| (discs, packing)));
     let scenes: Vec<(u64, f64)> = scenes.collect();
-    // From the lattice of the start to moving discs: a few collisions of each, as many as take about as long as the measurement.
+    // A few collisions per disc to leave the initial lattice, for about as long as the measurement.
     let cases = scenes.iter().flat_map(|&(discs, packing)| {
         let warm_up = (10 * discs).min(2 * collisions);
         ENGINES.map(|engine| {

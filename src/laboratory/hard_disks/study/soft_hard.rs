@@ -1,4 +1,4 @@
-//! Soft against hard: one scene by lattice MD with stiffer and stiffer discs, and by hard ones.
+//! Soft discs compared with hard discs: one scene with lattice MD at increasing stiffness, and with hard discs.
 
 use super::fluid::{collision_rate, compressibility, luding};
 use crate::console::Failure;
@@ -12,9 +12,9 @@ use stripmine_physics::method::lattice_md::keys::{FRICTION, NORMAL_DAMPING, SHEA
 use stripmine_physics::method::{Until, hard_disks};
 use stripmine_physics::scene::{COUNT, DT, Overrides, PACKING_FRACTION, SEED, STEPS, TEMPERATURE};
 
-/// The scene, and how much is measured. Diameter, mass and kT are 1.
+/// Scene and size of the comparison. Diameter, mass and kT are 1.
 pub(crate) struct Question {
-    /// Discs, at least.
+    /// Minimum number of discs.
     pub discs: u64,
     /// Area of the discs over that of the box.
     pub packing_fraction: f64,
@@ -22,14 +22,14 @@ pub(crate) struct Question {
     pub(crate) restitution: f64,
     /// Stiffnesses k_N of the soft discs (kT/diameter^2.5).
     pub(crate) stiffnesses: &'static [f64],
-    /// Seeds, each an independent start.
+    /// Number of seeds, each with an independent start.
     pub seeds: u64,
-    /// Time over which the pressure is measured.
+    /// Measured time of the pressure.
     pub time: f64,
 }
 
 impl Question {
-    /// Question of the report.
+    /// Comparison in the report.
     pub(crate) const REPORT: Question = Question {
         discs: 500,
         packing_fraction: 0.5,
@@ -40,31 +40,31 @@ impl Question {
     };
 }
 
-/// Steps of a typical contact.
+/// Steps during a typical contact.
 const STEPS_A_CONTACT: f64 = 40.0;
-/// Looks at the pressure of soft discs.
+/// Samples of the pressure of soft discs.
 const LOOKS: u64 = 400;
-/// Collisions of each disc in which the gas cools, about.
+/// Approximate collisions per disc while the gas cools.
 const COOLING: f64 = 10.0;
-/// Γ(7/5), of Hertz discs' effective diameter.
+/// Γ(7/5), for the effective diameter of Hertz discs.
 const GAMMA: f64 = 0.887_263_817_503_075;
 
-/// Discs of a stiffness, or hard ones.
+/// Results of discs of one stiffness, or of hard discs.
 struct Model {
     soft: Option<Soft>,
-    /// Depth of a head-on contact of kT (diameters).
+    /// Depth of a head-on contact with energy kT (diameters).
     depth: f64,
     /// Compressibility of the elastic fluid.
     compressibility: Mean,
     /// Compressibility of hard discs of the effective diameter.
     effective: f64,
-    /// Temperature of the cooled gas over that at its start.
+    /// Temperature of the cooled gas over its initial value.
     cooled: Mean,
-    /// Processor seconds for a unit of time of the elastic fluid.
+    /// Processor seconds per unit of time of the elastic fluid.
     cost: f64,
 }
 
-/// The question of the report.
+/// Makes the item of the report.
 pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     let question = match size {
         Size::Quick => {
@@ -75,9 +75,9 @@ pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     soft_hard(&question, lab.progress)
 }
 
-/// Runs soft models from the softest on, then the hard one, with every seed.
+/// Runs the soft models from the softest to the stiffest, then the hard model, with every seed.
 pub(crate) fn soft_hard(question: &Question, progress: Progress<'_>) -> Result<Made, Failure> {
-    // A gas that keeps its temperature.
+    // From the collision rate at constant temperature.
     let cooling_time = COOLING / collision_rate(luding(question.packing_fraction));
     // Mean normal speed of impacts at kT = m = 1: √π.
     let impact_speed = std::f64::consts::PI.sqrt();
@@ -144,7 +144,7 @@ pub(crate) fn soft_hard(question: &Question, progress: Progress<'_>) -> Result<M
     .with_seeds(1..=question.seeds))
 }
 
-/// Soft discs.
+/// Parameters of soft discs.
 struct Soft {
     stiffness: f64,
     damping: f64,
@@ -152,7 +152,7 @@ struct Soft {
 }
 
 impl Soft {
-    /// Discs of a stiffness, with the damping that gives a restitution at a speed.
+    /// Finds the damping that gives a restitution at a speed.
     fn new(stiffness: f64, restitution: f64, speed: f64) -> Soft {
         let (mut low, mut high) = (0.0, 1.0);
         let is_too_elastic = |damping: f64| impact(stiffness, damping, speed).restitution > restitution;
@@ -168,10 +168,10 @@ impl Soft {
     }
 }
 
-/// Discs of the scene: soft ones, or hard ones.
+/// Discs of the scene: soft, or hard if `None`.
 struct Discs(Option<Soft>);
 
-/// Run of one seed.
+/// Results of one seed.
 struct One {
     discs: usize,
     compressibility: f64,
@@ -200,7 +200,7 @@ impl Discs {
         }
     }
 
-    /// A time, as a moment: the step that is nearest to it, where there are steps.
+    /// Moment of a time; for soft discs the nearest step.
     fn at(&self, time: f64) -> Until {
         self.0.as_ref().map_or(Until::Time(time), |it| Until::Steps((time / it.step).round() as u64))
     }
@@ -208,7 +208,7 @@ impl Discs {
     fn run(&self, question: &Question, seed: u64, cooling_time: f64) -> Result<One, StudyError> {
         let mut fluid = self.begin(question, seed, true)?;
         let (discs, area) = (fluid.simulation.particles().grain_count(), fluid.domain.area());
-        // The lattice of the start melts.
+        // The initial lattice melts.
         let melted = 0.5 * question.time;
         fluid.until(self.at(melted))?;
         let begun = cpu_time::ThreadTime::now();
@@ -222,7 +222,7 @@ impl Discs {
             fluid.until(self.at(melted + question.time * look as f64 / LOOKS as f64))?;
             if self.0.is_some() {
                 let [seen, temperature] = fluid.observed(["pressure", "temperature"])?;
-                // The pressure has the kinetic energy of N − 1 discs, for momentum is conserved; that of hard discs has all.
+                // The pressure contains the kinetic energy of N − 1 discs, because momentum is conserved; that of hard discs contains all.
                 pressure += (seen * area + temperature) / (discs as f64 * temperature);
             }
         }
@@ -243,7 +243,7 @@ impl Discs {
     }
 }
 
-/// A head-on impact of two discs of mass 1, whose effective mass is ½: Hertz with damping, no pull.
+/// Head-on impact of two discs of mass 1 (effective mass ½): Hertz law with damping, without attraction.
 fn impact(stiffness: f64, damping: f64, speed: f64) -> Impact {
     Spring::Hertz.impact(2.0 * stiffness, damping, speed)
 }
@@ -252,7 +252,7 @@ fn impact(stiffness: f64, damping: f64, speed: f64) -> Impact {
 mod tests {
     use super::*;
 
-    /// Without damping everything comes back, after 2.94 δ/v with the depth δ = (5 μ v²/(4 k))^{2/5}; with damping less.
+    /// Without damping the restitution is 1 and the duration 2.94 δ/v with the depth δ = (5 μ v²/(4 k))^{2/5}; damping lowers the restitution.
     #[test]
     fn impacts_are_those_of_hertz() {
         let Impact { restitution, duration } = impact(1e4, 0.0, 1.5);

@@ -15,44 +15,44 @@ use stripmine_physics::method::{METHODS, Purpose, Until, load};
 use stripmine_physics::near::Near;
 use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
 
-/// Packing fractions: a gas, the fluid, between fluid and crystal, the crystal.
+/// Packing fractions: dilute gas, fluid, between fluid and crystal, crystal.
 const PACKING_FRACTIONS: [f64; 4] = [0.02, 0.65, 0.71, 0.74];
-/// Discs, at least.
+/// Minimum number of discs.
 const DISCS: usize = 4096;
-/// Collisions a disc before anything is measured.
+/// Collisions per disc before the measurement.
 const SETTLING: u64 = 1500;
-/// Looks at the order, and collisions a disc between them.
+/// Samples of the order, and collisions per disc between them.
 const LOOKS: (usize, u64) = (20, 50);
-/// Collisions whose free times are kept.
+/// Collisions whose free times are recorded.
 const LOGGED: u64 = 200_000;
-/// Width of the bins of distances over the diameter, and their number.
+/// Width (diameters) and number of the bins of distances.
 const DISTANCES: (f64, usize) = (0.02, 200);
-/// Width of the bins of free times over their mean, and their number.
+/// Width (mean free times) and number of the bins of free times.
 const TIMES: (f64, usize) = (0.1, 80);
-/// Side of the part of the box that is drawn (diameters).
+/// Side of the drawn part of the box (diameters).
 const SHOWN: f64 = 30.0;
 
-/// Discs at a packing fraction.
+/// Results at one packing fraction.
 struct Structure {
     packing_fraction: f64,
     discs: usize,
     /// Global bond-orientational order |Σ ψ₆|/N, and mean |ψ₆| of a disc.
     order: [Mean; 2],
-    /// Pair correlation at the middle of each bin of distances.
+    /// Pair correlation in each bin of distances.
     correlation: Vec<f64>,
-    /// Pair correlation at contact by the virial, (Z − 1)/(2 ν).
+    /// Pair correlation at contact from the virial, (Z − 1)/(2 ν).
     contact: f64,
     /// Probability density of free times over their mean.
     free_times: Vec<f64>,
     /// Mean free time, and mean free path over the diameter.
     free: [f64; 2],
-    /// Probability by Kolmogorov and Smirnov that the velocities are Maxwell's: at the start, where all discs are equally fast, and at
+    /// Probability of the Kolmogorov–Smirnov test for Maxwell's distribution of velocities: at the start, where all speeds are equal, and at
     /// the end.
     maxwell: [f64; 2],
     picture: Picture,
 }
 
-/// Follows discs at every packing fraction, from a crystal in which all are equally fast.
+/// Simulates every packing fraction, starting from a crystal with equal speeds.
 pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let all = Meter::new(PACKING_FRACTIONS.len() as f64, lab.progress).each(&PACKING_FRACTIONS, structure)?;
     let dilute: Vec<f64> = (0..TIMES.1).map(|bin| dilute(middle(TIMES, bin))).collect();
@@ -102,7 +102,7 @@ fn middle((width, _): (f64, usize), bin: usize) -> f64 {
     (bin as f64 + 0.5) * width
 }
 
-/// A part of the box. Each disc has its place and the direction of its bonds beside that of all, from −1 to 1.
+/// Picture of a part of the box. Each disc has a position and the alignment of its bonds with the global bond order, from −1 to 1.
 fn picture(domain: Domain, discs: Vec<([f64; 2], f64)>) -> Picture {
     let sides = domain.lengths().map(|side| side.min(SHOWN));
     let shown =
@@ -123,7 +123,7 @@ fn structure(&packing_fraction: &f64) -> Result<Structure, StudyError> {
     let (scene, method) = load("melting", &overrides.texts(), METHODS)?;
     let (domain, mut start) = (scene.domain, scene.particles().clone());
     for (disc, turn) in start.all_mut().iter_mut().zip(1..) {
-        // Multiples of the golden section: directions that are even and in no order.
+        // Multiples of the golden section: directions are uniform but without order.
         let angle = TAU * (f64::from(turn) * 0.618_033_988_749_895).fract();
         disc.velocity = [2f64.sqrt() * angle.cos(), 2f64.sqrt() * angle.sin(), 0.0];
     }
@@ -134,7 +134,7 @@ fn structure(&packing_fraction: &f64) -> Result<Structure, StudyError> {
     let begin = maxwell(&running)?;
     for _ in 0..SETTLING {
         running.events(count as u64 / 2)?;
-        // Their free times are not asked for.
+        // Free times during settling are not recorded.
         running.simulation.take_events();
     }
     let names = ["time", "virial", "collisions", "temperature"];
@@ -142,7 +142,7 @@ fn structure(&packing_fraction: &f64) -> Result<Structure, StudyError> {
     let (mut order, mut pairs, mut drawn) = ([vec![], vec![]], vec![0.0; DISTANCES.1], vec![]);
     let between = before[0] * LOOKS.1 as f64 / SETTLING as f64;
     for look in 0..LOOKS.0 {
-        // At a time of its own: just after an event two discs would always touch.
+        // Sampled at a given time: right after an event two discs would always touch.
         running.until(Until::Time(before[0] + (look + 1) as f64 * between))?;
         running.simulation.take_events();
         let places: Vec<[f64; 2]> =
@@ -174,16 +174,16 @@ fn structure(&packing_fraction: &f64) -> Result<Structure, StudyError> {
         correlation: (0..DISTANCES.1).map(|bin| pairs[bin] / ideal(bin)).collect(),
         contact: (compressibility - 1.0) / (2.0 * packing_fraction),
         free_times: free_times(&running.simulation.take_events(), free_time),
-        // The mean speed of discs of m = kT = 1 is √(π/2).
+        // The mean speed of discs with m = kT = 1 is √(π/2).
         free: [free_time, free_time * (0.5 * PI * after[3]).sqrt()],
         maxwell: [begin, maxwell(&running)?],
         picture: picture(domain, drawn),
     })
 }
 
-/// ψ₆ of every disc, over its six nearest.
+/// ψ₆ of every disc, from its six nearest neighbours.
 fn bonds(domain: Domain, places: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    // Six others are within reach even in a gas.
+    // Six neighbours are within reach even in a gas.
     let reach = 3.0 * (domain.area() / places.len() as f64).sqrt();
     let near = Near::among(domain, places.iter().copied(), reach);
     let of = |own: &[f64; 2]| {
@@ -204,7 +204,7 @@ fn bonds(domain: Domain, places: &[[f64; 2]]) -> Vec<[f64; 2]> {
     places.iter().map(of).collect()
 }
 
-/// Adds every pair within reach to the bin of its distance.
+/// Counts every pair within reach in the bin of its distance.
 fn count_pairs(domain: Domain, places: &[[f64; 2]], bins: &mut [f64]) {
     let reach = 1.0 + DISTANCES.0 * DISTANCES.1 as f64;
     let near = Near::among(domain, places.iter().copied(), reach);
@@ -218,7 +218,7 @@ fn count_pairs(domain: Domain, places: &[[f64; 2]], bins: &mut [f64]) {
     }
 }
 
-/// The density of the free times in rows of collisions, over their mean.
+/// Probability density of free times over their mean, from rows of the collision log.
 fn free_times(rows: &str, mean: f64) -> Vec<f64> {
     let (width, count) = TIMES;
     let (mut bins, mut all) = (vec![0.0; count], 0.0);
@@ -233,8 +233,8 @@ fn free_times(rows: &str, mean: f64) -> Vec<f64> {
     bins.into_iter().map(|bin| bin / (all * width)).collect()
 }
 
-/// The density of free times of a dilute gas at `time` over the mean: a disc of speed v collides at the rate r(v), so that free times
-/// have the density ∫ f r² e^(−r t) dv / ∫ f r dv, with f Maxwell's and r as the mean speed relative to all others.
+/// Probability density of free times over their mean in a dilute gas. A disc of speed v collides at the rate r(v), so free times have the
+/// density ∫ f r² e^(−r t) dv / ∫ f r dv, with Maxwell's f and r proportional to the mean relative speed.
 fn dilute(time: f64) -> f64 {
     let speeds = || (0..400).map(|step| (f64::from(step) + 0.5) * 0.02);
     let weight = |v: f64| v * (-0.5 * v * v).exp() * 0.02;
@@ -246,9 +246,9 @@ fn dilute(time: f64) -> f64 {
     speeds().map(density).sum()
 }
 
-/// The mean speed of discs of m = kT = 1 relative to one of speed v: the mean of Rice's distribution, by its integral over angles.
+/// Mean speed of discs with m = kT = 1 relative to a disc of speed v: mean of Rice's distribution, integrated over angles.
 fn relative_speed(v: f64) -> f64 {
-    // √(π/2) L(−v²/2) with L = e^(x/2) ((1 − x) I₀(−x/2) − x I₁(−x/2)); e^(−y) I(y) as means over a half turn.
+    // √(π/2) L(−v²/2) with L = e^(x/2) ((1 − x) I₀(−x/2) − x I₁(−x/2)); e^(−y) I(y) are means over a half turn.
     let y = 0.25 * v * v;
     let mean =
         |of: &dyn Fn(f64) -> f64| (0..64).map(|at| of(PI * (f64::from(at) + 0.5) / 64.0)).sum::<f64>() / 64.0;
@@ -261,7 +261,7 @@ fn relative_speed(v: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// The speed relative to a disc at rest is the mean speed √(π/2), to a fast one its own; the mean over all is √2 of that at rest.
+    /// Relative to a disc at rest the speed is √(π/2), relative to a fast disc it is that disc's speed; the mean over all is √2 √(π/2).
     #[test]
     fn relative_speeds_are_those_of_gas_theory() {
         let rest = (0.5 * PI).sqrt();
@@ -274,7 +274,7 @@ mod tests {
         assert!((mean / (2f64.sqrt() * rest) - 1.0).abs() < 1e-4);
     }
 
-    /// A density has the whole 1 and the mean 1.
+    /// The density is normalised to 1 and has the mean 1.
     #[test]
     fn free_times_of_a_dilute_gas_are_a_density() {
         let times = || (0..2000).map(|at| (f64::from(at) + 0.5) * 0.01);
@@ -283,7 +283,7 @@ mod tests {
         assert!((whole - 1.0).abs() < 1e-3 && (mean - 1.0).abs() < 1e-3, "{whole} {mean}");
     }
 
-    /// A hexagonal crystal is in perfect order, and has six neighbours in its first shell.
+    /// A hexagonal crystal has perfect order and six neighbours in the first shell.
     #[test]
     fn a_crystal_is_in_order() {
         let domain = Domain::planar([0.0; 2], [10.0, 10.0 * 3f64.sqrt()], [true; 2]);

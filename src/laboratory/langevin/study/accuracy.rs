@@ -1,4 +1,4 @@
-//! Error of the step: energy, pressure and temperatures of a Lennard-Jones fluid over dt, by both integrators.
+//! Step bias: energy, pressure and temperatures of a Lennard-Jones fluid against dt, with both integrators.
 
 use super::PARTS;
 use crate::console::Failure;
@@ -15,58 +15,58 @@ use stripmine_physics::particles::{Particle, Particles};
 use stripmine_physics::scene::{DT, Overrides};
 use stripmine_physics::words::Words;
 
-/// Steps (time), nearly up to the one at which particles are lost, 0.025.
+/// Steps (time), up to just below the step at which particles are lost, 0.025.
 const STEPS: [f64; 6] = [0.005, 0.01, 0.015, 0.0175, 0.02, 0.0225];
 const SCHEMES: [SchemeKind; 2] = [SchemeKind::Stochastic, SchemeKind::Baoab];
-/// Time that is measured over.
+/// Measured time.
 const TIME: f64 = 640.0;
-/// Samples in a unit of time.
+/// Samples per unit of time.
 const SAMPLES: f64 = 4.0;
 /// Cut-off of the pairs, in diameters; a diameter, ε, the masses and kT are 1.
 const REACH: f64 = 2.5;
-/// Errors beyond their half-widths that an order is fitted through, at least, and the widest interval of an order.
+/// Minimum number of significant errors for fitting an order, and largest half-width of a reported order.
 const LEAST: usize = 3;
 const ORDER_WITHIN: f64 = 0.5;
 
-/// A fluid at a step.
+/// Measurements of the fluid with one scheme and step.
 struct Fluid {
     scheme: SchemeKind,
     dt: f64,
-    /// Energy of the pairs over the particles (energy).
+    /// Pair energy per particle (energy).
     potential: Mean,
     /// Pressure (force/length).
     pressure: Mean,
-    /// Kinetic energy a particle and dimension over that of the bath, as it is observed: by baoab after the bath.
+    /// Observed kinetic temperature over that of the bath; with baoab it is sampled after the bath.
     temperature: Mean,
-    /// The same of the velocities at the end of the step.
+    /// Temperature of the velocities at the end of the step.
     at_end: Mean,
-    /// Their difference sample by sample: by baoab the cooling of the last half of the kick.
+    /// Difference of the two, sample by sample: with baoab the cooling of the last half kick.
     cooling: Mean,
-    /// ⟨F²⟩/⟨∇²U⟩, which is kT where positions are Boltzmann's.
+    /// ⟨F²⟩/⟨∇²U⟩, which is kT for Boltzmann-distributed positions.
     configurational: Mean,
-    /// ⟨∇²U⟩ a particle and dimension (energy/length²).
+    /// ⟨∇²U⟩ per particle and dimension (energy/length²).
     curvature: Mean,
-    /// Wall seconds for a unit of time.
+    /// Wall seconds per unit of time.
     cost: f64,
-    /// Whether no particle was lost.
+    /// True if no particle was lost.
     is_whole: bool,
 }
 
 impl Fluid {
-    /// Cooling by theory: dt² kT⟨∇²U⟩/(4 m) by baoab, none by the source's scheme, whose velocities have kT at the end of the step
-    /// (exactly in a harmonic trap).
+    /// Theoretical cooling: dt² kT⟨∇²U⟩/(4 m) with baoab, zero with LAN17's scheme, whose velocities have kT at the end of the step (exactly in
+    /// a harmonic trap).
     fn foreseen(&self) -> Mean {
         let factor = if self.scheme == SchemeKind::Baoab { 0.25 * self.dt * self.dt } else { 0.0 };
         Mean { value: factor * self.curvature.value, bar: factor * self.curvature.bar }
     }
 
-    /// Standard errors between the cooling and that by theory; none by the source's scheme.
+    /// Difference of measured and theoretical cooling in standard errors; `None` with LAN17's scheme.
     fn off_theory(&self) -> Option<f64> {
         let error = self.cooling.bar.hypot(self.foreseen().bar) / student(0.95, PARTS - 1);
         (self.foreseen().value > 0.0).then(|| (self.cooling.value - self.foreseen().value) / error)
     }
 
-    /// Error of the energy, whose limit is known to its own half-width.
+    /// Error of the energy relative to the limit of short steps, including the half-width of the limit.
     fn error(&self, limit: Mean) -> Mean {
         Mean { value: self.potential.value - limit.value, bar: self.potential.bar.hypot(limit.bar) }
     }
@@ -116,15 +116,14 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     .with_seeds([1]))
 }
 
-/// Energy at dt = 0 by a line over dt² through the energies of BAOAB.
+/// Energy at dt = 0, from a linear fit in dt² to the energies of BAOAB.
 fn limit(fluids: &[Fluid]) -> Mean {
     let of = fluids.iter().filter(|fluid| fluid.scheme == SchemeKind::Baoab && fluid.is_whole);
     let points: Vec<(f64, Mean)> = of.map(|fluid| (fluid.dt.powi(2), fluid.potential)).collect();
     line(&points)[0]
 }
 
-/// Power of the step with which a scheme's error falls; none where fewer than three errors are larger than their half-widths, or where
-/// the power is hardly known.
+/// Order of a scheme's error in the step. `None` if fewer than three errors exceed their half-widths, or if the order is known too poorly.
 fn order(fluids: &[Fluid], scheme: SchemeKind, limit: Mean) -> Option<Mean> {
     let of = fluids.iter().filter(|it| it.scheme == scheme && it.is_whole);
     let seen = of.map(|it| (it.dt, it.error(limit))).filter(|(_, error)| error.value.abs() > error.bar);
@@ -134,7 +133,7 @@ fn order(fluids: &[Fluid], scheme: SchemeKind, limit: Mean) -> Option<Mean> {
     (slope.bar < ORDER_WITHIN).then_some(slope)
 }
 
-/// Height at 0 and slope of the straight line through at least two points that are known to their half-widths.
+/// Intercept and slope of the weighted least-squares line through at least two points with half-widths.
 fn line(points: &[(f64, Mean)]) -> [Mean; 2] {
     let (mut w, mut wx, mut wy, mut wxx, mut wxy) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for &(x, Mean { value: y, bar }) in points {
@@ -151,7 +150,7 @@ fn fluid(scheme: SchemeKind, dt: f64) -> Result<Fluid, StudyError> {
     let overrides = Overrides::new().set(&INTEGRATOR, scheme).set(&DT, dt);
     let mut running = Running::begin("langevin-dense", &overrides)?;
     let count = running.simulation.particles().len() as f64;
-    // The mesh melts within some units of time.
+    // The initial mesh melts within some units of time.
     let mut done = running.steps((50.0 / dt) as u64);
     let (samples, between) =
         ((SAMPLES * TIME / PARTS as f64) as usize, (1.0 / (SAMPLES * dt)).round() as u64);
@@ -191,13 +190,13 @@ fn fluid(scheme: SchemeKind, dt: f64) -> Result<Fluid, StudyError> {
     })
 }
 
-/// m⟨v²⟩ a particle and dimension, by the velocities as they stand.
+/// m⟨v²⟩ per particle and dimension, from the present velocities.
 fn kinetic(particles: &Particles) -> f64 {
     let squares = particles.all().iter().map(Particle::planar_velocity).map(|[u, v]| u * u + v * v);
     squares.sum::<f64>() / (2 * particles.len()) as f64
 }
 
-/// ⟨F²⟩ and ⟨∇²U⟩ a particle and dimension, of all pairs nearer than the cut-off.
+/// ⟨F²⟩ and ⟨∇²U⟩ per particle and dimension, over all pairs within the cut-off.
 fn forces(particles: &Particles, domain: &Domain) -> [f64; 2] {
     let places: Vec<[f64; 2]> = particles.all().iter().map(Particle::place).collect();
     let mut forces = vec![[0.0; 2]; places.len()];
@@ -211,7 +210,7 @@ fn forces(particles: &Particles, domain: &Domain) -> [f64; 2] {
             }
             let sixth = square.powi(-3);
             let repulsion = 24.0 * sixth * (2.0 * sixth - 1.0) / square;
-            // U″ + U′/r in the plane, of each of the two.
+            // U″ + U′/r in the plane, for both particles.
             curvature += 2.0 * 144.0 * sixth * (4.0 * sixth - 1.0) / square;
             for axis in 0..2 {
                 forces[first][axis] -= repulsion * way[axis];
@@ -229,8 +228,8 @@ mod tests {
     use crate::laboratory::running::prepared;
     use stripmine_physics::scene::COUNT;
 
-    /// Fluids whose energies err as `factor` dt² by BAOAB, known to `bar`, and whose velocities at the end of the step are colder than by
-    /// theory by `off`.
+    /// Fluids with BAOAB whose energies have the error `factor` dt² and the half-width `bar`. Their velocities at the end of the step are
+    /// colder than in theory by `off`.
     fn fluids(factor: f64, bar: f64, off: f64) -> Vec<Fluid> {
         let mean = |value: f64| Mean { value, bar };
         let fluid = |dt: f64| Fluid {
@@ -264,7 +263,7 @@ mod tests {
         assert!(off(0.0).abs() < 1e-9 && off(0.001) > 3.0, "{} {}", off(0.0), off(0.001));
     }
 
-    /// Height and slope of an exact line, and the bars of two points of one bar.
+    /// Intercept and slope of an exact line, and the error bars for two points with equal error bars.
     #[test]
     fn lines_go_through_their_points() {
         let at = |x: f64, bar: f64| (x, Mean { value: 3.0 - 2.0 * x, bar });
@@ -274,7 +273,7 @@ mod tests {
         assert!((height.bar - 0.1).abs() < 1e-12 && (slope.bar - 0.1 * 2f64.sqrt()).abs() < 1e-12);
     }
 
-    /// Force and curvature are those of the differences of the energy, also across the sides of the box.
+    /// Force and curvature equal finite differences of the energy, also across the sides of the box.
     #[test]
     fn forces_and_curvature_are_differences_of_the_energy() {
         let prepared = prepared("langevin-dense", &Overrides::new().set(&COUNT, 300_u64)).unwrap();

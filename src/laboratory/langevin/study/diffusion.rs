@@ -1,4 +1,4 @@
-//! Mean square displacement and velocities of particles in a bath, beside exact results.
+//! Mean square displacement and velocities of particles in a heat bath, compared with exact results.
 
 use super::PARTS;
 use crate::console::Failure;
@@ -14,9 +14,9 @@ use stripmine_physics::method::langevin::options::SchemeKind;
 use stripmine_physics::scene::{COUNT, DT, Overrides, SIDES};
 use stripmine_physics::words::Words;
 
-/// Systems of LAN17's figures 3 to 6: particles and side (length).
+/// Systems of LAN17, figures 3 to 6: particles and side (length).
 const SYSTEMS: [(u64, f64); 4] = [(1000, 50.0), (1000, 100.0), (1000, 1000.0), (40_000, 100.0)];
-/// σ of the source (length).
+/// σ of LAN17 (length).
 const DIAMETER: f64 = 0.1;
 /// Step of runs with pairs (time), their duration, and samples in each factor of ten.
 const STEP: f64 = 0.001;
@@ -24,25 +24,25 @@ const DURATION: f64 = 30.0;
 const SAMPLES: f64 = 8.0;
 /// Steps at which the temperature of free particles is measured, over m/γ.
 const STEPS: [f64; 6] = [0.01, 0.03, 0.1, 0.3, 0.6, 1.0];
-/// Half-width of 95 % over a standard error.
+/// Half-width of a 95 % interval in standard errors.
 const WIDTH: f64 = 1.96;
 
-/// ⟨r²⟩ from a thermal start, with D = kT/γ and τ = m/γ of 1.
+/// Exact ⟨r²⟩ of free particles from a thermal start, with D = kT/γ = 1 and τ = m/γ = 1.
 fn exact(time: f64) -> f64 {
     4.0 * (time - 1.0 + (-time).exp())
 }
 
-/// A system, followed.
+/// Time series of one system.
 struct Followed {
     particles: u64,
     side: f64,
     has_pairs: bool,
     times: Vec<f64>,
-    /// ⟨r²⟩ by positions as if there were no sides, and by those inside the box (length²).
+    /// ⟨r²⟩ from unwrapped positions and from positions inside the box (length²).
     square: Vec<[f64; 2]>,
-    /// Probability by Kolmogorov and Smirnov that the velocities at the end are Maxwell's.
+    /// Probability of the Kolmogorov–Smirnov test that the final velocities have Maxwell's distribution.
     maxwell: f64,
-    /// Mean square of the velocities' components at the end.
+    /// Mean square of the velocity components at the end.
     temperature: f64,
 }
 
@@ -52,14 +52,14 @@ impl Followed {
         format!("N = {}, L = {}{pairs}", self.particles, self.side)
     }
 
-    /// ⟨r²⟩ over the exact one without pairs, of the last sample at most at a time.
+    /// Ratio of ⟨r²⟩ to the exact value without pairs, at the last sample up to `time`.
     fn over_exact(&self, time: f64) -> f64 {
         let within = self.times.iter().filter(|it| **it <= time * (1.0 + 1e-9)).count();
         self.square[within - 1][0] / exact(self.times[within - 1])
     }
 
-    /// Enskog's value of it at a time: discs of diameter σ that collide have the friction 2 n σ χ √(π m kT) beside γ, with χ their
-    /// distribution function at contact (Henderson); kT = m = γ = 1.
+    /// Enskog's prediction of this ratio at a time: collisions of discs of diameter σ add the friction 2 n σ χ √(π m kT) to γ, with χ the
+    /// pair distribution at contact (Henderson); kT = m = γ = 1.
     fn by_enskog(&self, time: f64) -> f64 {
         let density = self.particles as f64 / (self.side * self.side);
         let packing = 0.25 * PI * density * DIAMETER * DIAMETER;
@@ -72,7 +72,7 @@ impl Followed {
         self.times.last().copied().unwrap_or_default()
     }
 
-    /// Standard error of a mean square over itself: that of a Gaussian vector of the plane scatters as itself.
+    /// Relative standard error of a mean square. The square of a planar Gaussian vector has a standard deviation equal to its mean.
     fn standard_error(&self) -> f64 {
         (self.particles as f64).sqrt().recip()
     }
@@ -82,7 +82,7 @@ impl Followed {
     }
 }
 
-/// Temperature of free particles over that of the bath, by a scheme and a step over m/γ.
+/// Temperature of free particles over that of the bath, with a scheme and a step in units of m/γ.
 struct Heated {
     scheme: SchemeKind,
     dt: f64,
@@ -90,7 +90,7 @@ struct Heated {
     maxwell: f64,
 }
 
-/// Follows every system.
+/// Simulates every system.
 pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let schemes = [SchemeKind::Stochastic, SchemeKind::AsPrinted, SchemeKind::Baoab];
     let cases: Vec<(SchemeKind, f64)> =
@@ -185,7 +185,7 @@ fn followed(particles: u64, side: f64, has_pairs: bool) -> Result<Followed, Stud
 fn heated(scheme: SchemeKind, dt: f64) -> Result<Heated, StudyError> {
     let overrides = Overrides::new().set(&COUNT, 4000_u64).set(&INTEGRATOR, scheme).set(&DT, dt);
     let mut running = Running::begin("langevin-free", &overrides)?;
-    // Samples five times m/γ apart.
+    // Samples are 5 m/γ apart.
     let between = (5.0 / dt).ceil() as u64;
     let mut temperatures = vec![];
     running.steps(2 * between)?;
@@ -200,7 +200,7 @@ fn heated(scheme: SchemeKind, dt: f64) -> Result<Heated, StudyError> {
 mod tests {
     use super::*;
 
-    /// Enskog: four discs of diameter 0.1 in a unit of area collide so often that they diffuse at about 0.4 of kT/γ; thin ones do not.
+    /// Enskog's theory: at four discs of diameter 0.1 per unit of area diffusion falls to about 0.4 kT/γ; a thin system is not slowed.
     #[test]
     fn collisions_slow_dense_systems_down() {
         let [dense, thin] = [(40_000, 100.0), (1000, 1000.0)].map(|(particles, side)| {

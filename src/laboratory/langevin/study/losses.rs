@@ -1,4 +1,4 @@
-//! Particles that a long step throws out of the box: how many over the step, and from which step on.
+//! Particles lost from the box at long steps: number lost against the step, and the longest step without a loss.
 
 use crate::console::Failure;
 use crate::frame::Rows;
@@ -17,19 +17,19 @@ use stripmine_physics::scene::{COUNT, DT, Overrides, SIDES, TEMPERATURE};
 /// LAN17's table: step, particles lost and interactions in [`STEPS`] steps.
 const SOURCE: [(f64, u64, u64); 4] =
     [(1.0, 19_200, 43_676), (0.1, 6393, 98_164), (0.01, 754, 91_054), (0.001, 0, 84_520)];
-/// Its particles, density (1/length²), σ (length) and steps.
+/// LAN17's particles, density (1/length²), σ (length) and steps.
 const PARTICLES: u64 = 40_000;
 const DENSITY: f64 = 4.0;
 const DIAMETER: f64 = 0.1;
 const STEPS: u64 = 100;
-/// Steps between the source's.
+/// Steps between those of LAN17.
 const FINER: [f64; 5] = [0.03, 0.005, 0.004, 0.003, 0.002];
 /// Strengths ε and temperatures kT (energy).
 const STRENGTHS: [f64; 4] = [0.1, 1.0, 10.0, 100.0];
 const TEMPERATURES: [f64; 3] = [0.1, 1.0, 10.0];
-/// One particle in so many, at the same density, is taken for other ε and kT, and its losses are counted for all.
+/// Factor by which systems with other ε and kT are smaller, at the same density; their losses are multiplied by it.
 const PART: u64 = 8;
-/// The longest step is known to this part of itself.
+/// Relative tolerance of the longest step.
 const TOLERANCE: f64 = 0.05;
 
 /// Counts losses and interactions, and searches for the longest steps without a loss.
@@ -89,13 +89,13 @@ fn overrides(particles: u64, dt: f64) -> Overrides {
     Overrides::new().set(&COUNT, particles).set(&SIDES, [side; 2]).set(&DT, dt)
 }
 
-/// The scene at a step with an ε and a kT.
+/// Overrides of the scene for a step, ε and kT.
 fn chosen(particles: u64, dt: f64, [strength, temperature]: [f64; 2]) -> Overrides {
     let scene = overrides(particles, dt).set(&STRENGTH, strength);
     scene.set(&BATH_TEMPERATURE, temperature).set(&TEMPERATURE, temperature)
 }
 
-/// Particles lost in the source's number of steps; all of them where none is left.
+/// Particles lost in LAN17's number of steps; all of them if the run fails.
 fn lost(particles: u64, overrides: &Overrides) -> Result<u64, StudyError> {
     let mut running = Running::timed("langevin-report", overrides)?;
     Ok(match running.steps(STEPS) {
@@ -104,7 +104,7 @@ fn lost(particles: u64, overrides: &Overrides) -> Result<u64, StudyError> {
     })
 }
 
-/// Losses at the steps of [`SOURCE`] by the source's scheme.
+/// Losses at the steps of [`SOURCE`] with LAN17's scheme.
 fn lost_by_choice(choice: [f64; 2]) -> Result<[u64; 4], StudyError> {
     let mut counts = [0; 4];
     for (count, (dt, ..)) in counts.iter_mut().zip(SOURCE) {
@@ -114,7 +114,7 @@ fn lost_by_choice(choice: [f64; 2]) -> Result<[u64; 4], StudyError> {
     Ok(counts)
 }
 
-/// Largest factor between some losses and the source's.
+/// Largest factor between some losses and those of LAN17.
 fn times_off(lost: [u64; 4]) -> f64 {
     let ratios = lost.iter().zip(SOURCE).map(|(lost, (_, source, _))| {
         let ratio = (*lost).max(1) as f64 / source.max(1) as f64;
@@ -123,7 +123,7 @@ fn times_off(lost: [u64; 4]) -> f64 {
     ratios.fold(1.0, f64::max)
 }
 
-/// Pairs nearer than σ from each of the two, summed over the steps of a run by the source's scheme.
+/// Pairs nearer than σ, counted from both particles and summed over the steps of a run with LAN17's scheme.
 fn interactions(overrides: &Overrides) -> Result<u64, StudyError> {
     let mut running =
         Running::timed("langevin-report", &overrides.clone().set(&INTEGRATOR, SchemeKind::Stochastic))?;
@@ -134,20 +134,20 @@ fn interactions(overrides: &Overrides) -> Result<u64, StudyError> {
         let places = particles.all().iter().map(Particle::place);
         let near = Near::among(domain, places.clone(), DIAMETER);
         let others = places.flat_map(|place| near.of(place).map(move |(_, other)| (place, other)));
-        // Each place is found by itself, too.
+        // Each position also finds itself.
         met += others.filter(|(place, other)| domain.distance(*place, *other) < DIAMETER).count();
         met -= particles.len();
     }
     Ok(met as u64)
 }
 
-/// Interactions of some particles at random places in the source's box.
+/// Expected interactions of some particles at random positions in LAN17's box.
 fn at_random(particles: u64) -> f64 {
     let area = PARTICLES as f64 / DENSITY;
     STEPS as f64 * (particles as f64).powi(2) / area * PI * DIAMETER.powi(2)
 }
 
-/// Longest step without a loss, the source's bound, and the limit by the hardest collisions (time).
+/// Longest step without a loss, LAN17's bound, and the limit from the hardest collisions (time).
 fn boundary(choice: [f64; 2]) -> Result<[f64; 3], StudyError> {
     let limits = prepared("langevin-report", &chosen(PARTICLES, 0.001, choice))?.step_limits;
     let step = |name: &str| {
@@ -176,7 +176,7 @@ mod tests {
         assert!((times_off([19_000, 6400, 20, 0]) - 37.7).abs() < 1e-9);
     }
 
-    /// The 20,800 particles that are left in the source would interact three times as often as it says.
+    /// The 20,800 particles that remain in LAN17 would interact three times as often as it reports.
     #[test]
     fn pairs_at_random_places_are_counted_from_both() {
         assert!((at_random(20_800) - 135_917.9).abs() < 0.1, "{}", at_random(20_800));

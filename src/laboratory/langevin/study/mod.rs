@@ -1,9 +1,9 @@
-//! Studies of particles in a bath.
+//! Studies of particles in a heat bath.
 
 pub(super) mod accuracy;
 pub(super) mod diffusion;
 pub(super) mod losses;
 pub(super) mod sectors;
 
-/// Parts of a run, each a measurement; their scatter gives the error.
+/// Blocks of a run; the error of a mean follows from the scatter of the block means.
 const PARTS: usize = 20;

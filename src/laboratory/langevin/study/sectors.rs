@@ -1,4 +1,4 @@
-//! Wall time over the number of sectors along a side, on one thread and on two; searches beside each other; where the time goes.
+//! Wall time against the number of sectors along a side, on one thread and on two; comparison of searches; time of the phases.
 
 use crate::console::Failure;
 use crate::frame::{Cell, Rows};
@@ -26,11 +26,11 @@ const SOURCE: [(u64, [f64; 2]); 8] = [
     (400, [4.3, 6.8]),
     (800, [5.7, 8.1]),
 ];
-/// Its particles and steps, for which times are given.
+/// LAN17's particles and steps, to which its times refer.
 const PARTICLES: f64 = 40_000.0;
 const STEPS: f64 = 100.0;
 
-/// Name of a search, and what it sets.
+/// Name of a search, and its overrides.
 type Search = (&'static str, fn(Overrides) -> Overrides);
 
 /// Searches that are compared.
@@ -42,15 +42,15 @@ const SEARCHES: [Search; 4] = [
     }),
     ("lists", |scene| scene.set(&SEARCH, By::NeighborList)),
 ];
-/// Particles of the scenes in which they are compared, and their densities N σ²/A.
+/// Particles of the scenes that compare searches, and their densities N σ²/A.
 const COMPARED: f64 = 4000.0;
 const DENSITIES: [f64; 5] = [0.05, 0.2, 0.4, 0.6, 0.7];
 
-/// Work that is no run of a scene.
+/// Measured work other than runs of scenes.
 pub(in crate::laboratory::langevin) static WORKS: [Own; 1] =
     [Own { name: "langevin-frames", measure: |_| frames() }];
 
-/// A fluid: the pair law, density N σ²/A, the search that `auto` takes, and the place of each search among the cases that serves it.
+/// Fluid with its pair law, density N σ²/A, the search chosen by `auto`, and the index of the case of each search that supports it.
 struct Fluid {
     law: PairLaw,
     density: f64,
@@ -58,7 +58,7 @@ struct Fluid {
     searches: [Option<usize>; SEARCHES.len()],
 }
 
-/// Measures every number of sectors, neighbour lists, and fluids by every search.
+/// Measures every number of sectors, neighbour lists, and fluids with every search.
 pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     let (fewest, seconds) = if size == Size::Quick { (100, 0.05) } else { (3, 0.06) };
     let counts = SOURCE.iter().filter(|(count, _)| *count >= fewest);
@@ -121,11 +121,11 @@ pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
 }
 
 impl Fluid {
-    /// Time by which `auto` is slower than the best search, relative to it.
+    /// Relative time by which `auto` is slower than the fastest search.
     fn loss(&self, all: &[Measured]) -> Option<f64> {
         let cost = |case: &Option<usize>| case.map(|case| all[case].cost().median);
         let best = self.searches.iter().filter_map(cost).fold(f64::INFINITY, f64::min);
-        // Sorted when needed is what auto does in sectors.
+        // With sectors, `auto` sorts when needed.
         let name = match self.auto.as_str() {
             "neighbor-list" => "lists",
             "sectors" => "sectors, sorted when needed",
@@ -136,7 +136,7 @@ impl Fluid {
     }
 }
 
-/// A fluid; the searches that serve it become cases.
+/// Makes a fluid and adds the searches that support it to the cases.
 fn fluid(law: PairLaw, density: f64, seconds: f64, cases: &mut Vec<Case>) -> Result<Fluid, StudyError> {
     let side = (COMPARED / density).sqrt();
     let scene = Overrides::new().set(&LAW, law).set(&COUNT, COMPARED as u64);
@@ -153,7 +153,7 @@ fn fluid(law: PairLaw, density: f64, seconds: f64, cases: &mut Vec<Case>) -> Res
     Ok(Fluid { law, density, auto, searches })
 }
 
-/// Writes the ten frames of the source's run as text.
+/// Writes the ten frames of LAN17's run as text.
 fn frames() -> Result<Reading, StudyError> {
     let running = Running::timed("langevin-report", &Overrides::new())?;
     let begun = Instant::now();
@@ -168,7 +168,7 @@ fn frames() -> Result<Reading, StudyError> {
             seed: None,
             has_raised_ids: false,
         };
-        // A sink cannot fail.
+        // Writing to a sink cannot fail.
         drop(extxyz::write(&frame, &mut std::io::sink()));
     }
     Ok(Reading { work: 1.0, seconds: begun.elapsed().as_secs_f64(), ..Reading::default() })
@@ -180,9 +180,9 @@ mod tests {
     use crate::laboratory::running::on_threads;
     use stripmine_physics::particles::Particle;
 
-    /// Positions and velocities after some steps of a number of particles in sectors, to the bit, and the positions.
+    /// Bits of positions and velocities, and the positions, after some steps with sectors or lists.
     fn moved(count: u64, per_side: Option<u64>, threads: usize) -> (Vec<[u64; 4]>, Vec<[f64; 2]>) {
-        // Dense, so that sums have many terms, whose order counts.
+        // Dense, so that sums have many terms and their order matters.
         let side = (count as f64 / 0.7).sqrt();
         let scene = Overrides::new().set(&COUNT, count).set(&SIDES, [side; 2]);
         let scene = match per_side {
@@ -203,8 +203,8 @@ mod tests {
         (all.iter().map(bits).collect(), all.iter().map(Particle::place).collect())
     }
 
-    /// Few large sectors, whose pairs all threads find together, move particles to the same bits on any number of threads, and as lists
-    /// do but for rounding; so do more and smaller ones, which threads share.
+    /// Few large sectors, whose pairs all threads find together, give identical bits on any number of threads, and agree with lists up to
+    /// rounding; so do more and smaller sectors, which are distributed over the threads.
     #[test]
     fn sectors_of_every_size_give_the_same_bits_on_any_number_of_threads() {
         let count = 5200;

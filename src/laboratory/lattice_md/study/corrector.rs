@@ -1,4 +1,4 @@
-//! Gear's corrector as printed in BP93, appendix A, and as it runs: an undamped oscillation of ten periods.
+//! Gear's corrector as printed in BP93, appendix A, and as corrected: an undamped oscillation over ten periods.
 
 use crate::console::Failure;
 use crate::frame::Rows;
@@ -6,14 +6,14 @@ use crate::results::{Lab, Made, Size};
 use std::f64::consts::TAU;
 use stripmine_kernels::integrator::gear::{Acceleration, coefficients};
 
-/// Steps of a period.
+/// Steps per period.
 const STEPS: [u32; 7] = [16, 32, 64, 128, 256, 512, 1024];
-/// Periods that are followed.
+/// Number of periods.
 const PERIODS: u32 = 10;
-/// An oscillation is lost if its energy is off by this share of itself.
+/// Relative energy error above which an oscillation is lost.
 const LOST: f64 = 0.5;
 
-/// Follows the oscillation by both correctors.
+/// Integrates the oscillation with both correctors.
 pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let runs = ["printed", "difference"].into_iter().flat_map(|corrector| {
         let of =
@@ -39,7 +39,7 @@ pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     ]))
 }
 
-/// Largest |ΔE/E| on the way, or the step at which the oscillation is lost.
+/// Largest |ΔE/E| during the run, or the step at which the oscillation is lost.
 fn followed(corrector: &str, values: usize, steps: u32) -> Result<f64, u64> {
     let dt = TAU / f64::from(steps);
     let coefficients = coefficients(values, Acceleration::OfPositions);

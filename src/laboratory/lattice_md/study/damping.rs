@@ -1,4 +1,4 @@
-//! Density waves over dissipation: the pipe over γ_N, and a control that must stay even.
+//! Density waves against dissipation: the pipe at several γ_N, and a control that must stay homogeneous.
 
 use super::pipe_flow::{Flow, elastic, flow, late};
 use crate::console::Failure;

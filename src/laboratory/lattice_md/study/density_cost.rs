@@ -1,4 +1,4 @@
-//! Clock periods of a step over the number of particles and their density, by BP93's clock: its figures 3 and 4.
+//! Clock periods of a step against particle number and density, by BP93's clock model: its figures 3 and 4.
 
 use super::StudyError;
 use super::efficiency_table::{Choice, Question, counting_model, model_of, printed_clocks, step};
@@ -18,28 +18,28 @@ use stripmine_physics::method::lattice_md::{Document, Lengths, Part, assemble, l
 use stripmine_physics::method::throughput::MeasurementError;
 use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
 
-/// Highest ρ of discs on cells as wide as their radius: touching discs in hexagonal order, `1/(2√3)`.
+/// Maximum ρ of discs on cells as wide as their radius: touching discs in hexagonal order, `1/(2√3)`.
 pub(crate) const CEILING: f64 = 0.288_675_134_594_812_9;
 
 /// LMAX of figure 3.
 const LATTICES: [usize; 3] = [1_000, 10_000, 100_000];
 
-/// ρ of figure 4; the last two lie above [`CEILING`].
+/// ρ of figure 4; the last two exceed [`CEILING`].
 pub(super) const OCCUPANCIES: [f64; 6] = [0.05, 0.1, 0.2, 0.25, 0.35, 0.5];
 
-/// Neighbour lists at a density: measured in a run, because no model knows them.
+/// Statistics of neighbour lists at a density, measured in a run because no model predicts them.
 #[derive(Clone, Copy)]
 pub(super) struct ListFigures {
     /// ρ on cells as wide as the radius.
     pub(super) occupancy: f64,
-    /// Candidates that a step tests, and those in contact, for each disc.
+    /// Candidates tested in a step, and those in contact, per disc.
     pub(super) candidates: f64,
     pub(super) contacts: f64,
     pub(super) steps_a_list: f64,
 }
 
 impl ListFigures {
-    /// Elements of a vector as long as lists, by the number of discs; none of any other length.
+    /// Elements of a vector whose length depends on lists; `None` for any other length.
     pub(super) fn length(&self, length: Length, discs: f64) -> Option<f64> {
         match length {
             Length::Candidates => Some(self.candidates * discs),
@@ -52,25 +52,25 @@ impl ListFigures {
 /// Clock periods of a step.
 struct Cost {
     particles: usize,
-    /// By BP93's formula and its NOP; BP93 has no formula for lists.
+    /// From BP93's formula and NOP; BP93 has no formula for lists.
     printed: Option<f64>,
-    /// By the same clock, from the operations counted.
+    /// By the same clock, from counted operations.
     counted: f64,
 }
 
-/// A curve over NP with LMAX or ρ fixed.
+/// Curve over NP with LMAX or ρ fixed.
 struct Curve {
     cells: Option<usize>,
     occupancy: Option<f64>,
     costs: Vec<Cost>,
 }
 
-/// The curves by the clock of the paper's machine.
+/// Computes the curves with the clock of the paper's machine.
 pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     Ok(density_cost(&machines::preset("paper")?)?)
 }
 
-/// The curves by the clock of a machine.
+/// Computes the curves with the clock of a machine.
 pub(crate) fn density_cost(machine: &MachineModel) -> Result<Made, StudyError> {
     let occupancies: Vec<f64> = OCCUPANCIES.into_iter().filter(|&occupancy| occupancy < CEILING).collect();
     let figures = side_by_side(&occupancies, |&occupancy| list_figures(occupancy))?;
@@ -119,13 +119,13 @@ fn curves(groups: &[(&str, &[Curve])]) -> Frame {
         .frame("curves", "Clock periods of a step, on a lattice of LMAX cells or at an occupancy ρ")
 }
 
-/// Curves of the lattice and of lists at the same density.
+/// Pairs of curves of the lattice and of lists at the same density.
 fn by_density<'c>(lattice: &'c [Curve], lists: &'c [Curve]) -> impl Iterator<Item = (&'c Curve, &'c Curve)> {
     let of = |lists: &Curve| lattice.iter().find(|curve| curve.occupancy == lists.occupancy);
     lists.iter().filter_map(move |lists| Some((of(lists)?, lists)))
 }
 
-/// NP from which on the lattice is cheaper than lists, between two points of the curves.
+/// NP above which the lattice is cheaper than lists, interpolated between points of the curves.
 fn break_even(lattice: &Curve, lists: &Curve) -> Option<f64> {
     let ratios = lattice.costs.iter().filter_map(|cost| {
         let rival = lists.costs.iter().find(|rival| rival.particles == cost.particles)?;
@@ -134,7 +134,7 @@ fn break_even(lattice: &Curve, lists: &Curve) -> Option<f64> {
     crossing(&ratios.collect::<Vec<_>>())
 }
 
-/// Place where a ratio falls below 1, straight in the logarithms.
+/// Value of x at which a ratio falls below 1, by log-log interpolation.
 pub(super) fn crossing(ratios: &[(f64, f64)]) -> Option<f64> {
     ratios.windows(2).find_map(|pair| {
         let [(x0, y0), (x1, y1)] = [pair[0], pair[1]].map(|(x, ratio)| (x.ln(), ratio.ln()));
@@ -142,7 +142,7 @@ pub(super) fn crossing(ratios: &[(f64, f64)]) -> Option<f64> {
     })
 }
 
-/// Power of ρ with which a number of particles changes: slope of a line through logarithms; none of fewer than two points.
+/// Power of ρ of a number of particles: slope of a line through logarithms; `None` with fewer than two points.
 pub(super) fn power(points: impl Iterator<Item = (f64, Option<f64>)>) -> Option<f64> {
     let known = points.filter_map(|(density, particles)| Some((density.ln(), particles?.ln())));
     let (densities, particles): (Vec<f64>, Vec<f64>) = known.unzip();
@@ -154,7 +154,7 @@ fn break_even_power(lattice: &[Curve], lists: &[Curve]) -> Option<f64> {
     power(by_density(lattice, lists).map(|(lattice, lists)| (density(lists), break_even(lattice, lists))))
 }
 
-/// Largest ratio of the costs of lists of different densities at one number of particles.
+/// Largest ratio of the costs of lists between densities at one number of particles.
 fn spread_by_density(lists: &[Curve]) -> Option<f64> {
     let ratios = (0..lists.first()?.costs.len()).filter_map(|at| {
         let costs = || lists.iter().filter_map(move |curve| Some(curve.costs.get(at)?.counted));
@@ -163,12 +163,12 @@ fn spread_by_density(lists: &[Curve]) -> Option<f64> {
     ratios.reduce(f64::max)
 }
 
-/// NP of every curve: five a decade.
+/// NP of every curve: five per decade.
 fn particles() -> impl Iterator<Item = usize> {
     (5..=25).map(|fifth| 10f64.powf(f64::from(fifth) / 5.0).round() as usize)
 }
 
-/// Counted operations, and the machine whose clock charges them.
+/// Counted operations, and the machine whose clock is applied.
 struct Model<'m> {
     machine: &'m MachineModel,
     choice: Choice,
@@ -177,7 +177,7 @@ struct Model<'m> {
 }
 
 impl Model<'_> {
-    /// Counts, which depend on what is modelled and not on the size of the lattice.
+    /// Counts the operations, which do not depend on the size of the lattice.
     fn of(machine: &MachineModel) -> Result<Model<'_>, StudyError> {
         let question = Question::default();
         let (programs, rival) = (step(&question)?.0, rival_ledger(&model_of(&question)?));
@@ -188,7 +188,7 @@ impl Model<'_> {
         clock.clocks(self.machine, &counts.clone().into(), n)
     }
 
-    /// A curve of the vector algorithm, with LMAX or ρ fixed.
+    /// Curve of the vector algorithm, with LMAX or ρ fixed.
     fn over_particles(&self, cells: Option<usize>, occupancy: Option<f64>) -> Result<Curve, StudyError> {
         let full = CEILING.max(occupancy.unwrap_or(0.0));
         let lattices = particles().map(|particles| {
@@ -214,8 +214,7 @@ impl Model<'_> {
         Ok(Cost { particles, printed: Some(printed.sum()), counted: counted.sum() })
     }
 
-    /// A curve of the scalar rival: every operation costs the whole depth of the pipeline. The Index belongs to the lattice and is left
-    /// out.
+    /// Curve of scalar neighbour lists: every operation costs the whole depth of the pipeline. The Index belongs to the lattice and is omitted.
     fn with_lists(&self, figures: &ListFigures) -> Curve {
         let rows: Vec<_> =
             self.rival.parts().into_iter().filter(|(part, ..)| *part != Part::Index.name()).collect();
@@ -231,7 +230,7 @@ impl Model<'_> {
         Curve { cells: None, occupancy: Some(figures.occupancy), costs: costs.collect() }
     }
 
-    /// Distance and contact of one pair.
+    /// Operations of the distance and contact test of one pair.
     fn test(&self) -> OpCounts {
         let mut test = OpCounts::default();
         let rows = self.rival.entries().iter().filter(|entry| entry.length == Length::Candidates);
@@ -240,7 +239,7 @@ impl Model<'_> {
     }
 }
 
-/// Lists of a warm gas of about a thousand discs.
+/// Measures the lists of a warm gas of about a thousand discs.
 pub(super) fn list_figures(occupancy: f64) -> Result<ListFigures, StudyError> {
     const EQUILIBRATION: u64 = 200;
     const STEPS: u64 = 1000;
@@ -284,7 +283,7 @@ mod tests {
         assert_eq!(crossing(&[(0.8, 0.9), (0.2, 0.5)]), None);
     }
 
-    /// A lattice whose step takes NP/ρ, and lists that take NP² times a power of ρ.
+    /// For a lattice step of NP/ρ and lists of NP² times a power of ρ the powers are recovered.
     #[test]
     fn powers_of_the_density_come_out() {
         let densities = [0.05, 0.1, 0.2];

@@ -1,4 +1,4 @@
-//! Lattice and neighbour lists, step by step: BP93, section 5, "no differences in the results".
+//! Comparison of lattice and neighbour lists along trajectories: BP93, section 5, "no differences in the results".
 
 use super::StudyError;
 use crate::console::Failure;
@@ -10,7 +10,7 @@ use stripmine_physics::method::lattice_md::{Document, assemble};
 use stripmine_physics::particles::Particles;
 use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
 
-/// A name, a preset with overrides, and the steps that both methods run.
+/// Name, preset, overrides, and number of steps.
 type Scene = (&'static str, &'static str, Overrides, u64);
 
 /// Steps between two comparisons.
@@ -44,7 +44,7 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     .with_seeds([1]))
 }
 
-/// Steps, and the particles by the lattice and by lists.
+/// Steps, and the particles with the lattice and with lists.
 fn compared((_, preset, overrides, steps): &Scene) -> Result<Vec<(u64, [Particles; 2])>, StudyError> {
     let start = |search: By| {
         let overrides = overrides.clone().set(&SEARCH, search).set(&EXECUTION, "chained");

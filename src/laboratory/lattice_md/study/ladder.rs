@@ -1,4 +1,4 @@
-//! Clock periods of one step by every clock, from the trivial one to chaining and memory ports.
+//! Clock periods of one step by every clock model, from the trivial one to chaining and memory ports.
 
 use super::efficiency_table::{Question, QuestionError, step};
 use crate::console::Failure;
@@ -12,7 +12,7 @@ use stripmine_physics::method::lattice_md::Part;
 /// Machines of the report.
 const MACHINES: [&str; 3] = ["cray-y-mp-el", "cray-1", "sx-aurora"];
 
-/// The default question on every machine of the report.
+/// Counts the default scene on every machine of the report.
 pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let machines = MACHINES.map(machines::preset).into_iter().collect::<Result<Vec<_>, _>>()?;
     let ladders = machines.iter().map(|machine| Ladder::of(&Question::default(), machine));
@@ -25,13 +25,13 @@ pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     Ok(Made::of(rungs.chain([summary(&ladders), meanings])))
 }
 
-/// The frames of one machine: rungs, convoys, summary.
+/// Item of one machine: rungs, convoys, summary.
 pub(crate) fn ladder(question: &Question, machine: &MachineModel) -> Result<Made, QuestionError> {
     let ladder = Ladder::of(question, machine)?;
     Ok(Made::of([ladder.rungs("ladder".into()), ladder.convoys(), summary(&[ladder])]))
 }
 
-/// The programs of a step, and the machine that is charged for them.
+/// Programs of a step, and the machine whose clock periods are counted.
 struct Ladder<'m> {
     works: Vec<(Part, Work, u64)>,
     discs: usize,
@@ -67,12 +67,12 @@ impl Ladder<'_> {
         self.parts().map(|part| self.clocks(clock, machine, part)).sum()
     }
 
-    /// Clock periods of a clock over those of the paper's.
+    /// Ratio of the clock periods of a clock to those of the paper's.
     fn of_paper(&self, clock: Clock) -> f64 {
         self.step(clock, self.machine) / self.step(Clock::Paper, self.machine)
     }
 
-    /// Share of the last rung that depends on assumed start-ups.
+    /// Share of the last rung due to assumed start-up times.
     fn assumed_share(&self) -> f64 {
         let known = self.machine.without_assumed_start_ups();
         1.0 - self.step(Clock::Ports, &known) / self.step(Clock::Ports, self.machine)

@@ -6,7 +6,7 @@ use crate::frame::{Frame, Rows};
 use crate::results::{Lab, Made, Size};
 use stripmine_physics::method::lattice_md::Part;
 
-/// The programs of a part: their instructions, and the listing.
+/// Instructions and listing of the programs of a part.
 pub(crate) fn listing(part: Part, question: &Question) -> Result<(Frame, String), QuestionError> {
     let (programs, lengths) = step(question)?;
     let (mut rows, mut text) = (vec![], String::new());
@@ -27,7 +27,7 @@ pub(crate) fn listing(part: Part, question: &Question) -> Result<(Frame, String)
     Ok((frame, text))
 }
 
-/// Lists both texts, BP93's own first.
+/// Lists BP93's program, then ours.
 pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let ours = Question::default();
     let printed = ours.printed();

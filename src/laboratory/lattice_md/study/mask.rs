@@ -1,4 +1,4 @@
-//! The neighbourhood of BP93's figure 2, and the sizes of discs that masks serve.
+//! Neighbourhood of BP93's figure 2, and the range of disc sizes that a mask covers.
 
 use crate::console::Failure;
 use crate::frame::Rows;
@@ -7,11 +7,11 @@ use crate::results::{Lab, Made, Size};
 use std::f64::consts::SQRT_2;
 use stripmine_kernels::mask::{Mask, Offset};
 
-/// Figure 2, its places in their order, and the reach of both masks.
+/// Draws figure 2 and lists its offsets in order and the reach of both masks.
 pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let (mask, wider) = (Mask::square(2), Mask::square(3));
     let places = mask.offsets();
-    // A mask of half-width h sees every contact on cells of 2R_max/h; cells of d_min/√2 hold one disc.
+    // A mask of half-width h covers every contact on cells of 2R_max/h; cells of d_min/√2 hold one disc.
     let ratio = |half: f64, penetration: f64| half * (1.0 - penetration) / SQRT_2;
     Ok(Made::of([
         Rows::of([("5×5", 2.0), ("7×7", 3.0)])
@@ -36,7 +36,7 @@ pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
 fn drawing(places: &[Offset]) -> Drawing {
     let cell = |columns: i32, rows: i32, words: String, tint| {
         let [x, y] = [columns, rows].map(f64::from);
-        // In the corner that is the farthest from the middle, where the circle does not cross it.
+        // In the corner farthest from the middle, so that the circle does not cross the number.
         let right = if columns > 0 { 0.3 } else { -0.3 };
         let up = if rows < 0 { -0.33 } else { 0.33 };
         [
@@ -48,7 +48,7 @@ fn drawing(places: &[Offset]) -> Drawing {
     for (place, number) in places.iter().zip(1_usize..) {
         shapes.extend(cell(place.columns, place.rows, number.to_string(), Tint::Clear));
     }
-    // The largest disc that these cells allow, in the middle of its cell.
+    // Largest disc that these cells allow, in the middle of its cell.
     shapes.push(Shape::Disc { centre: [0.0, 0.0], radius: 1.0, tint: Tint::Clear });
     Drawing { window: [[-2.6, -2.6], [2.6, 2.6]], width: 480.0, shapes, shades: None, guide: None }
 }

@@ -1,4 +1,4 @@
-//! The studies of this method: one file per question a user asks, each a function from parameters to a dataset.
+//! Studies of lattice MD, each a function from parameters to a dataset.
 
 pub(super) mod calibration;
 pub(super) mod corrector;

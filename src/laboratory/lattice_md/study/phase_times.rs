@@ -1,4 +1,4 @@
-//! Runs of the bench scene, timed phase by phase as runs time themselves, and how much there was to do in a step.
+//! Runs of the bench scene, timed by phase as runs time themselves, with the amount of work per step.
 
 use super::samples::Samples;
 use crate::model::host::{Amounts, HostModel, OutOfRange};
@@ -14,31 +14,31 @@ use stripmine_physics::method::lattice_md::{
 use stripmine_physics::method::throughput::MeasurementError;
 use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION, PRECISION};
 
-/// Lists of programs, the fast engine, and lists in the fast engine, among the executions.
+/// Names of executions: lists of programs, the fast engine, and lists in the fast engine.
 pub(super) const LISTS: &str = "lists";
 pub(super) const FAST: &str = "fast";
 pub(super) const FAST_LISTS: &str = "fast lists";
-/// Precisions, as scenes name them.
+/// Precisions, by their names in scenes.
 pub(super) const PRECISIONS: [&str; 3] = ["f64", "f32", "mixed"];
 
-/// Places of half a mask of 5×5 cells.
+/// Offsets of half a mask of 5×5 cells.
 const HALF_MASK: f64 = 12.0;
-/// Nanoseconds of a sample, about.
+/// Approximate nanoseconds of a sample.
 const SHORT: f64 = 100_000.0;
 
-/// A run of the bench scene.
+/// Parameters of a run of the bench scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Run {
     pub(super) particles: usize,
     /// ρ on cells as wide as the radius.
     pub(super) occupancy: f64,
     pub(super) precision: &'static str,
-    /// An execution of programs as a scene names it, [`LISTS`], [`FAST`] or [`FAST_LISTS`].
+    /// Name of an execution of programs in scenes, [`LISTS`], [`FAST`] or [`FAST_LISTS`].
     pub(super) execution: &'static str,
 }
 
 impl Run {
-    /// The scene, with further overrides.
+    /// Loads the scene with further overrides.
     pub(super) fn scene(self, further: &Overrides) -> Result<Checked, MeasurementError> {
         let scene = Overrides::new().set(&COUNT, self.particles).set(&PRECISION, self.precision);
         let scene = scene.set(&PACKING_FRACTION, PI * self.occupancy);
@@ -49,13 +49,13 @@ impl Run {
         };
         let scene = match self.has_lists() {
             true => scene.set(&SEARCH, "neighbor-list"),
-            // As the source has it; the largest cell that the geometry allows would need fewer.
+            // As in BP93; the largest cells that the geometry allows would be fewer.
             false => scene.set(&SEARCH, "lattice").set(&CELL_EDGE, 0.5),
         };
         Ok(Document::load("bench", &scene.and(further).texts())?.check()?)
     }
 
-    /// Name of the rates of a run whose work depends on the data: a lattice with few discs is searched by another algorithm.
+    /// Name of the rates of a run whose work depends on the data; `None` for programs. A sparse lattice is searched by another algorithm.
     pub(super) fn rates(self) -> Option<&'static str> {
         match self.execution {
             FAST if self.occupancy < SPARSE => Some("fast, sparse"),
@@ -64,10 +64,10 @@ impl Run {
         }
     }
 
-    /// Nanoseconds of every phase by the model of a host, where the work depends on the data.
+    /// Predicted nanoseconds of every phase for work that depends on the data.
     ///
     /// # Errors
-    /// [`OutOfRange`] where the model does not reach.
+    /// [`OutOfRange`] outside the calibrated range of the model.
     pub(super) fn predicted(self, host: &HostModel, amounts: &Amounts) -> Result<Vec<f64>, OutOfRange> {
         let method = self.rates().unwrap_or_default();
         Phase::ALL.iter().map(|phase| host.rated((method, phase.name(), self.precision), amounts)).collect()
@@ -78,32 +78,32 @@ impl Run {
     }
 }
 
-/// Programs of a step of a scene, and the lengths of its vectors.
+/// Programs of a step of a scene, and its vector lengths.
 pub(super) fn step(checked: &Checked) -> (Vec<StepProgram>, Lengths) {
     let (model, discs) = (model(checked), &checked.particles);
     let lengths = Lengths::new(&model, discs.grain_count(), discs.len());
     (programs(&model, checked.scene.machine.precision), lengths)
 }
 
-/// A run that is timed again and again.
+/// Run with its timing samples.
 pub(super) struct TimedRun {
     pub(super) run: Run,
     pub(super) checked: Checked,
-    /// Steps, and how often lists were made in them.
+    /// Number of steps, and number of list builds in them.
     steps: usize,
     made: usize,
-    /// Steps that were timed, and the sums of their list entries and contacts.
+    /// Number of timed steps, and the sums of their list entries and contacts.
     timed: usize,
     entries: usize,
     contacts: u64,
-    /// Nanoseconds a step of every phase; without the making of lists.
+    /// Nanoseconds per step of every phase, without building lists.
     phases: [Samples; Phase::ALL.len()],
-    /// Nanoseconds of each making of lists.
+    /// Nanoseconds of each list build.
     makings: Samples,
 }
 
 impl TimedRun {
-    /// Nothing measured yet.
+    /// Makes a run without samples.
     pub(super) fn new(run: Run, further: &Overrides) -> Result<TimedRun, MeasurementError> {
         Ok(TimedRun {
             run,
@@ -118,10 +118,10 @@ impl TimedRun {
         })
     }
 
-    /// Runs the scene once more from its start and times its phases, on the thread that calls.
+    /// Runs the scene from its start and times its phases, on the calling thread.
     pub(super) fn measure(&mut self) -> Result<(), MeasurementError> {
         let mut engine = assemble(&self.checked)?;
-        // Programs need warm caches only; fewer steps of many discs, but enough for lists to be rebuilt.
+        // Programs only need warm caches. Fewer steps with many discs, but enough for lists to be rebuilt.
         let (warm_up, least) = match (self.run.rates(), self.run.has_lists()) {
             (None, _) => (3, 2),
             (_, false) => ((100_000 / self.run.particles).clamp(3, 60), 2),
@@ -136,8 +136,8 @@ impl TimedRun {
         Ok(())
     }
 
-    /// Runs some steps, as a sample if they are timed: the makings of lists count in any case, for these are rare. Returns the nanoseconds
-    /// of the shortest.
+    /// Runs some steps, as a sample if they are timed. List builds are always counted, because they are rare. Returns the nanoseconds of the
+    /// shortest step.
     fn advance(&mut self, engine: &mut Grains, count: usize, is_timed: bool) -> Result<f64, Failure> {
         let made = |engine: &Grains| engine.lists().map_or(0, |(_, made)| made);
         let (mut shortest, mut making, mut upkeeps) = (f64::INFINITY, 0.0, count);
@@ -176,7 +176,7 @@ impl TimedRun {
         self.made as f64 / self.steps.max(1) as f64
     }
 
-    /// How much there was to do in a step, on average.
+    /// Mean amount of work per step.
     pub(super) fn amounts(&self) -> Amounts {
         let (lists, timed) = (self.run.has_lists(), self.timed.max(1) as f64);
         let discs = self.checked.particles.grain_count();
@@ -197,18 +197,18 @@ impl TimedRun {
         }
     }
 
-    /// Nanoseconds of a phase a step, with lists rebuilt as often as they were.
+    /// Nanoseconds of a phase per step, including list builds.
     pub(super) fn ns(&self, phase: Phase) -> f64 {
         let making = self.makings_a_step() * self.making().unwrap_or(0.0);
         self.upkeep(phase) + if phase == Phase::Index { making } else { 0.0 }
     }
 
-    /// Nanoseconds of a phase without the rebuilding of lists.
+    /// Nanoseconds of a phase per step, without list builds.
     pub(super) fn upkeep(&self, phase: Phase) -> f64 {
         self.phases[phase as usize].median().unwrap_or(0.0)
     }
 
-    /// Nanoseconds of a making of lists; none if there was none.
+    /// Nanoseconds of a list build; `None` if there was none.
     pub(super) fn making(&self) -> Option<f64> {
         self.makings.median()
     }

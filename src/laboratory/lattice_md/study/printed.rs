@@ -1,4 +1,4 @@
-//! The printed text on this host: NOP·(n + D) against wall time part by part, and whole steps from the CRAY's way to today's engine.
+//! BP93's printed program on this host: NOP·(n + D) compared with wall time by part, and whole steps from the CRAY's execution to today's engine.
 
 use super::density_cost::CEILING;
 use super::efficiency_table::{Choice, SOURCES_PARTS, counting_model};
@@ -26,15 +26,14 @@ const OCCUPANCY: f64 = 0.25;
 const CELLS: usize = 10_000;
 /// Share of the line within which it holds.
 const HOLDS: f64 = 0.1;
-/// ρ of the scene whose steps are compared.
+/// ρ of the scene for the comparison of whole steps.
 const SCENE: f64 = 0.2;
 
-/// LMAX of the measurements over n: short vectors for the line, up to the first cache; long ones for where it breaks.
+/// LMAX of the measurements over n: short vectors, up to the first-level cache, for the line; long vectors to find where it fails.
 const SHORT: [usize; 9] = [25, 49, 100, 170, 290, 500, 1000, CELLS, 100_000];
 const LONG: [usize; 5] = [2000, 5000, 30_000, 300_000, 1_000_000];
 
-/// Ways to run the scene from 1993 to today, each one change further: a name, the text, the execution, and whether cells are of the
-/// paper's size.
+/// Configurations from 1993 to today, each with one more change: name, program, execution, and true for cells of the paper's size.
 const WAYS: [(&str, ProgramText, &str, bool); 6] = [
     ("printed, eager", ProgramText::Printed, "eager", true),
     ("printed, strips of 256", ProgramText::Printed, "strip:256", true),
@@ -44,10 +43,10 @@ const WAYS: [(&str, ProgramText, &str, bool); 6] = [
     ("fast lattice", ProgramText::Ours, FAST, false),
 ];
 
-/// The fast engine among the executions.
+/// Name of the fast engine as an execution.
 const FAST: &str = "fast";
 
-/// Parts of the eager step.
+/// Measured work: the parts of an eager step.
 pub(crate) const EAGER: Own = Own {
     name: "eager-parts",
     measure: |parameters| {
@@ -57,12 +56,12 @@ pub(crate) const EAGER: Own = Own {
     },
 };
 
-/// A part of the eager step on a lattice.
+/// Times of a part of the eager step on a lattice.
 struct Timed {
     part: &'static str,
     cells: usize,
     occupancy: f64,
-    /// NP or the cells that are swept.
+    /// NP, or the number of swept cells.
     n: usize,
     nop: u64,
     /// Nanoseconds of each process.
@@ -82,24 +81,24 @@ impl Timed {
     }
 }
 
-/// NOP·(n + D) of a part on this host.
+/// Fit of NOP·(n + D) to the times of a part on this host.
 struct Fitted {
     part: &'static str,
     nop: u64,
-    /// Nanoseconds of a clock period: what an element more costs an operation. The range is over processes, and over fits that leave
-    /// out one length.
+    /// Nanoseconds of a clock period, the cost of one more element per operation. The range is over processes and over fits that leave out
+    /// one length.
     period: Spread,
-    /// D, likewise.
+    /// Pipeline depth D, with the same range.
     depth: Spread,
-    /// The longest vectors at which the line is within [`HOLDS`].
+    /// Longest vectors at which the line holds within [`HOLDS`].
     holds_to: usize,
-    /// The largest difference from the line up to there, as a share.
+    /// Largest relative difference from the line up to this length.
     worst: f64,
-    /// Measured time over that of the line at the longest vectors.
+    /// Measured time over the line at the longest vectors.
     beyond: f64,
 }
 
-/// The study.
+/// Measures the parts of the eager step and every configuration.
 pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     let (cells, occupancies, samples, discs): (Vec<usize>, &[f64], u64, usize) = match size {
         Size::Quick => (SHORT.to_vec(), &[1.0], 3, 1000),
@@ -122,7 +121,7 @@ pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
             false => scene.clone().set(&TEXT, text).set(&EXECUTION, execution),
         };
         let set = if is_narrow { set.set(&CELL_EDGE, 0.5) } else { set };
-        // Only what the fast engine does depends on the discs.
+        // Only the work of the fast engine depends on the discs.
         let warm_up = if is_fast { 200 } else { 2 };
         let steps = (200_000 / discs).clamp(4, 200) as u64;
         Case::steps("bench", &set, warm_up, steps).for_seconds(0.1).label("way", name)
@@ -148,7 +147,7 @@ pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     Ok(Made { processes: Some(rates::PROCESSES), ..made })
 }
 
-/// Discs on a share of the cells at random, one a cell, almost at rest.
+/// Discs almost at rest, in a random share of the cells, one per cell.
 fn scattered(model: &Model, occupancy: f64) -> Particles {
     let mut random = Stream::new(1, Purpose::Placement, 0);
     let mut discs = vec![];
@@ -175,8 +174,8 @@ fn scattered(model: &Model, occupancy: f64) -> Particles {
     Particles::new(discs)
 }
 
-/// Every part of an eager step on a lattice of about a number of cells: medians of the samples. Nothing in it depends on the data, so the
-/// discs need not move: the step is so short that none leaves its cell.
+/// Median times of every part of an eager step on a lattice of about `cells` cells. The time does not depend on the data, so discs need not
+/// move; the step is so short that none leaves its cell.
 fn eager(cells: usize, occupancy: f64, choice: Choice, samples: usize) -> Result<Reading, MeasurementError> {
     let model = Model { dt: 1e-9, ..counting_model(cells, choice)? };
     let particles = scattered(&model, occupancy);
@@ -187,7 +186,7 @@ fn eager(cells: usize, occupancy: f64, choice: Choice, samples: usize) -> Result
     let parts: Vec<Part> = Part::ALL.iter().copied().filter(is_there).collect();
     let mut all = vec![Samples::default(); parts.len()];
     let set = InstructionSet::best();
-    // About 20 ms a sample on short lattices; of the longest, far beyond where the line holds, one.
+    // About 20 ms per sample on short lattices; one step on the longest, far beyond the validity of the line.
     let times = (3_000_000 / (cells * 40)).clamp(1, 200);
     for _ in 0..(4_000_000 / cells / rates::PROCESSES).clamp(1, samples) {
         Samples::take_in_turns(&mut all, times, |at| {
@@ -211,7 +210,7 @@ fn eager(cells: usize, occupancy: f64, choice: Choice, samples: usize) -> Result
     Ok(reading)
 }
 
-/// The straight line through the shortest vectors, up to where it holds.
+/// Fits a straight line to the shortest vectors, up to the length at which it fails.
 fn fit(part: &'static str, timed: &[Timed]) -> Fitted {
     let mut points: Vec<&Timed> =
         timed.iter().filter(|timed| timed.part == part && timed.occupancy == OCCUPANCY).collect();
@@ -220,7 +219,7 @@ fn fit(part: &'static str, timed: &[Timed]) -> Fitted {
     let over = |line: [f64; 2], timed: &Timed| {
         timed.ns().median / (line[0] * (timed.n as f64 + line[1]) * nop as f64)
     };
-    // Through the shortest, but for the one left out.
+    // Through the shortest vectors, except one left out.
     let line = |count: usize, left_out: Option<usize>, ns: &dyn Fn(&Timed) -> f64| {
         let kept = points[..count].iter().enumerate().filter(|(at, _)| Some(*at) != left_out);
         straight(&kept.map(|(_, timed)| (timed.n as f64, ns(timed) / nop as f64)).collect::<Vec<_>>())
@@ -234,7 +233,7 @@ fn fit(part: &'static str, timed: &[Timed]) -> Fitted {
     let middle = line(held, None, &median);
     let processes = points.first().map_or(0, |timed| timed.each.len());
     let of_processes = (0..processes).map(|at| line(held, None, &|timed: &Timed| timed.each[at]));
-    // Two points have a line that says nothing of the others.
+    // A line through two points is not a test of the others.
     let without = (0..held).filter(|_| held > 3).map(|at| line(held, Some(at), &median));
     let others: Vec<[f64; 2]> = of_processes.chain(without).chain([middle]).collect();
     let spread = |at: usize| Spread { median: middle[at], ..Spread::of(others.iter().map(|line| line[at])) };
@@ -250,7 +249,7 @@ fn fit(part: &'static str, timed: &[Timed]) -> Fitted {
     }
 }
 
-/// Slope τ and D of y = τ (x + D) by least squares of the relative differences.
+/// Slope τ and D of y = τ (x + D), from least squares of the relative differences.
 fn straight(points: &[(f64, f64)]) -> [f64; 2] {
     let [mut w, mut wx, mut wxx, mut wy, mut wxy] = [0.0; 5];
     for &(x, y) in points {
@@ -266,7 +265,7 @@ fn straight(points: &[(f64, f64)]) -> [f64; 2] {
     [slope, at_zero / slope]
 }
 
-/// Time an element and operation, with the line as far as it holds; no line of a part for which none holds.
+/// Time per element and operation, with the line as far as it holds; no line for a part without a valid fit.
 fn over_vectors(timed: &[Timed], fitted: &[Fitted]) -> Frame {
     let of_part = |part: &str| fitted.iter().find(|fitted| fitted.part == part && fitted.worst <= HOLDS);
     let line = |it: &Timed| {
@@ -338,7 +337,7 @@ mod tests {
         [100, 1000, 10_000, 100_000, 1_000_000].map(one).into()
     }
 
-    /// A line that breaks at a cache is fitted below it only, and says by how much it is passed.
+    /// A line that fails beyond a cache is fitted below it only, and the excess beyond it is reported.
     #[test]
     fn the_fit_ends_where_the_line_breaks() {
         let slow = |n| if n > 50_000 { 3.0 } else { 1.0 };
@@ -350,7 +349,7 @@ mod tests {
         assert!((fitted.beyond - 3.0).abs() < 1e-6 && fitted.worst < 1e-9);
     }
 
-    /// No line is drawn of a part for which none holds.
+    /// No line is drawn for a part without a valid fit.
     #[test]
     fn a_line_that_fails_is_not_drawn() {
         let drawn = |timed: &[Timed]| {

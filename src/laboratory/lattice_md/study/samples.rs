@@ -1,27 +1,27 @@
-//! Times of pieces of work: samples of each, taken in turns over the whole measurement, so that a disturbance affects all alike. The median
-//! counts, which is what a user meets.
+//! Timing samples of several pieces of work. Samples are taken in turns over the whole measurement, so that a disturbance affects all equally.
+//! Results are medians, which are what a user typically observes.
 
 use crate::statistics::{median, quantile};
 use std::time::Instant;
 
-/// Samples from which on their spread is known.
+/// Minimum number of samples for a spread.
 const QUARTERS: usize = 4;
 
-/// The samples of one piece of work (ns).
+/// Samples of one piece of work (ns).
 #[derive(Clone, Debug, Default)]
 pub(super) struct Samples(Vec<f64>);
 
 impl Samples {
-    /// Adds one.
+    /// Adds a sample.
     pub(super) fn push(&mut self, ns: f64) {
         self.0.push(ns);
     }
 
-    /// Takes one more of each of some works that are done one after the other, `times` times in a row, as the parts of a step are: each
-    /// finds the caches as the others leave them. A first round fills the caches.
+    /// Adds one sample per piece of work, averaged over `times` rounds. The pieces run one after the other, like the parts of a step, so each
+    /// finds the caches as left by the others. A first untimed round fills the caches.
     ///
     /// # Errors
-    /// Error of a work; then none has a sample more.
+    /// Error of a piece of work; then no sample is added.
     pub(super) fn take_in_turns<E>(
         all: &mut [Samples],
         times: usize,
@@ -40,12 +40,12 @@ impl Samples {
         Ok(())
     }
 
-    /// The median; none without samples.
+    /// Median; `None` without samples.
     pub(super) fn median(&self) -> Option<f64> {
         (!self.0.is_empty()).then(|| median(self.0.iter().copied()))
     }
 
-    /// Half the range of the middle half, as a share of the median; none of too few samples.
+    /// Half the interquartile range over the median; `None` with too few samples.
     pub(super) fn spread(&self) -> Option<f64> {
         let mut rising = self.0.clone();
         rising.sort_by(f64::total_cmp);
@@ -53,7 +53,7 @@ impl Samples {
         (rising.len() >= QUARTERS).then(|| Some(0.5 * (high? - low?) / middle?))?
     }
 
-    /// Relative difference of the medians of the samples of even and of odd number; none of too few samples.
+    /// Relative difference between the medians of the even and the odd samples; `None` with too few samples.
     pub(super) fn disagreement(&self) -> Option<f64> {
         let half = |from: usize| median(self.0.iter().skip(from).step_by(2).copied());
         (self.0.len() >= QUARTERS).then(|| half(0).max(half(1)) / half(0).min(half(1)) - 1.0)
@@ -74,7 +74,7 @@ mod tests {
         assert!(samples.spread().unwrap() > 0.0);
     }
 
-    /// The spread of one sample is not 0, but unknown.
+    /// The spread of few samples is unknown, not 0.
     #[test]
     fn few_samples_have_no_spread() {
         let mut samples = Samples::default();
@@ -86,7 +86,7 @@ mod tests {
         assert_eq!((samples.spread(), samples.disagreement()), (Some(0.0), Some(0.0)));
     }
 
-    /// A work that fails is no sample.
+    /// Failed work adds no sample.
     #[test]
     fn works_that_fail_are_not_timed() {
         let mut all = vec![Samples::default(); 2];

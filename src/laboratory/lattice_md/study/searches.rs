@@ -1,4 +1,4 @@
-//! Which search is the fastest where: rates over particles, density, search, precision and threads, beside the methods of 1993.
+//! Fastest neighbour search: rates by particles, density, search, precision and threads, compared with the methods of 1993.
 
 use super::density_cost::{crossing, power};
 use crate::console::Failure;
@@ -16,35 +16,35 @@ use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION, PRECISION};
 use stripmine_physics::words::Words;
 
 const F64: &str = "f64";
-/// Precisions, the first of which is measured everywhere.
+/// Precisions; the first is measured everywhere.
 const PRECISIONS: [&str; 3] = [F64, "mixed", "f32"];
-/// Searches of today, as scenes name them. The lattice comes first.
+/// Searches of today by their names in scenes; the lattice is first.
 const TODAY: [&str; 3] = ["lattice", "neighbor-list", "sectors"];
 const EAGER: &str = "printed lattice, eager";
 const CHAINED: &str = "lattice, chained";
 const ALL_PAIRS: &str = "printed lists of all pairs";
-/// Methods of 1993, and the lattice's programs as compiled loops.
+/// Methods of 1993, and the lattice's programs as compiled loops (`CHAINED`).
 const PAPER: [&str; 3] = [EAGER, CHAINED, ALL_PAIRS];
 
-/// Grid of a size.
+/// Measured cases of a study size.
 struct Grid {
-    /// Discs and packing fractions, falling, of the searches of today.
+    /// Discs and decreasing packing fractions for the searches of today.
     discs: &'static [usize],
     packing_fractions: &'static [f64],
-    /// Discs of which all precisions are compared; none of 0.
+    /// Number of discs at which all precisions are compared; 0 for none.
     compared: usize,
-    /// Discs and packing fractions of several threads.
+    /// Discs and packing fractions for runs on several threads.
     threads: (&'static [usize], &'static [f64]),
-    /// Discs of the methods of 1993 at the highest occupancy, and their occupancies at [`MIDDLE`] discs.
+    /// Discs for the methods of 1993 at the highest occupancy, and occupancies at [`MIDDLE`] discs.
     paper: (&'static [usize], &'static [f64]),
-    /// Discs and occupancies between which lattice and lists of 1993 break even.
+    /// Discs and occupancies for the break-even of lattice and lists of 1993.
     break_even: (&'static [usize], &'static [f64]),
-    /// Seconds of a measurement, at least.
+    /// Minimum seconds of a measurement.
     seconds: f64,
 }
 
 const MIDDLE: usize = 1000;
-/// Highest occupancy of the methods of 1993, on cells as wide as the radius.
+/// Highest occupancy for the methods of 1993, on cells as wide as the radius.
 const DENSE: f64 = 0.25;
 
 const QUICK: Grid = Grid {
@@ -67,14 +67,14 @@ const FULL: Grid = Grid {
     seconds: 0.06,
 };
 
-/// A case of the grid.
+/// Case of the grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Place {
     search: &'static str,
     precision: &'static str,
-    /// Threads, where wall time counts.
+    /// Number of threads if wall time is measured; otherwise processor time is measured.
     threads: Option<usize>,
-    /// Discs asked for.
+    /// Requested number of discs.
     discs: usize,
     packing_fraction: f64,
 }
@@ -103,7 +103,7 @@ impl Place {
         }
     }
 
-    /// Steps before the clock starts, and at least after: lists are remade several times, and a lattice takes every step alike.
+    /// Steps before the clock starts, and minimum number after it. Lists are rebuilt several times; with a lattice all steps are equal.
     fn steps(self) -> [u64; 2] {
         let most = |particle_steps: usize| (particle_steps / self.discs) as u64;
         match self.search {
@@ -115,7 +115,7 @@ impl Place {
 
     fn case(self, seconds: f64) -> Case {
         let [warm_up, steps] = self.steps();
-        // As it was asked for.
+        // Occupancy as requested.
         let occupancy = (1e6 * self.packing_fraction / PI).round() / 1e6;
         let case = Case::steps("bench", &self.scene(), warm_up, steps)
             .for_seconds(seconds)
@@ -135,7 +135,7 @@ fn fast(scene: Overrides) -> Overrides {
     scene.set(&ENGINE, EngineChoice::Fast).set(&INTEGRATOR, IntegratorKind::VelocityVerlet)
 }
 
-/// Every place of a grid, each once.
+/// All distinct cases of a grid.
 fn places(grid: &Grid, threads: usize) -> Vec<Place> {
     let crossed = |searches: &[&'static str], discs: &[usize], fractions: &[f64]| {
         let of = |search, discs| fractions.iter().map(move |&phi| Place::of(search, discs, phi));
@@ -165,13 +165,13 @@ fn places(grid: &Grid, threads: usize) -> Vec<Place> {
     once
 }
 
-/// Rates of a grid.
+/// Measured rates of a grid.
 struct Measurements<'g> {
     grid: &'g Grid,
     all: Vec<(Place, Measured)>,
 }
 
-/// The study.
+/// Measures every case of the grid.
 pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     let grid = if size == Size::Quick { &QUICK } else { &FULL };
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
@@ -194,13 +194,13 @@ impl Measurements<'_> {
         self.all.iter().find(|(known, _)| *known == place).map(|(_, measured)| measured)
     }
 
-    /// Discs and rising packing fractions of the searches of today, one thread, in double precision.
+    /// Discs and increasing packing fractions of the searches of today on one thread in double precision.
     fn grid(&self) -> impl Iterator<Item = (usize, f64)> {
         let fractions = self.grid.packing_fractions;
         self.grid.discs.iter().flat_map(move |&discs| fractions.iter().rev().map(move |&phi| (discs, phi)))
     }
 
-    /// Searches of today at a place, the fastest first.
+    /// Searches of today for a number of discs and a packing fraction, the fastest first.
     fn ranked(&self, discs: usize, packing_fraction: f64) -> Vec<(&'static str, &Measured)> {
         let each = |search| Some((search, self.at(Place::of(search, discs, packing_fraction))?));
         let mut all: Vec<_> = TODAY.into_iter().filter_map(each).collect();
@@ -208,7 +208,7 @@ impl Measurements<'_> {
         all
     }
 
-    /// Time by each search over that by the fastest.
+    /// Time with each search over that with the fastest.
     fn lost(&self) -> Frame {
         let rows = TODAY.into_iter().flat_map(|search| self.grid().map(move |place| (search, place)));
         let rows = rows.filter_map(|(search, (discs, phi))| {
@@ -223,7 +223,7 @@ impl Measurements<'_> {
             .frame("lost", "Time lost by each search")
     }
 
-    /// The fastest search, and the one that `auto` takes.
+    /// Fastest search, and the choice of `auto`.
     fn fastest(&self) -> Result<Frame, StudyError> {
         let mut rows = vec![];
         for (discs, phi) in self.grid() {
@@ -244,7 +244,7 @@ impl Measurements<'_> {
             .frame("fastest", "Fastest search and choice of auto, million particle-steps a second"))
     }
 
-    /// Packing fractions from which on the lattice is faster than its best rival.
+    /// Packing fractions above which the lattice is faster than the best other search.
     fn crossings(&self) -> Frame {
         let of_f64 = self.grid.discs.iter().map(|&discs| (F64, discs));
         let others = PRECISIONS[1..].iter().map(|&precision| (precision, self.grid.compared));
@@ -267,7 +267,7 @@ impl Measurements<'_> {
             .frame("crossings", "Packing fraction from which on the lattice is the fastest")
     }
 
-    /// Discs from which on the lattice's programs are faster than lists of all pairs, and the power of ρ with which they change.
+    /// Numbers of discs above which the lattice's programs are faster than lists of all pairs, and their power of ρ.
     fn break_even(&self) -> [Frame; 2] {
         let (discs, occupancies) = self.grid.break_even;
         let rows = occupancies.iter().map(|rho| {
@@ -288,7 +288,7 @@ impl Measurements<'_> {
         ]
     }
 
-    /// Gain of threads.
+    /// Speed-up by threads.
     fn threads(&self, threads: usize) -> Frame {
         let single = self.all.iter().filter(|(place, _)| place.threads == Some(1) && threads > 1);
         let rows = single.filter_map(|(place, alone)| {
@@ -312,7 +312,7 @@ mod tests {
     use crate::frame::Value;
     use crate::laboratory::running::prepared;
 
-    /// Every scene of both sizes is accepted, and none is measured twice.
+    /// Every case of both sizes is a valid scene, and no case occurs twice.
     #[test]
     fn every_place_of_the_grids_is_a_scene() {
         for (grid, count) in [(&QUICK, 21), (&FULL, 161)] {
@@ -324,7 +324,7 @@ mod tests {
         }
     }
 
-    /// Rates that follow known costs give the break-even of these costs: 1/ρ.
+    /// Rates computed from known costs give the break-even of these costs, 1/ρ.
     #[test]
     fn the_break_even_follows_from_the_rates() {
         let reading = |seconds: f64| rates::Reading { work: 1.0, seconds, ..rates::Reading::default() };

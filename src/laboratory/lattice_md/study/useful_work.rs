@@ -10,7 +10,7 @@ use stripmine_kernels::isa::OpClass;
 use stripmine_kernels::ledger::{Ledger, Length};
 use stripmine_physics::method::lattice_md::{Part, ledger, rival_ledger};
 
-/// Counts; the contacts are those of a warm gas.
+/// Counts operations; the contacts are those of a warm gas.
 pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let occupancies = [0.01, 0.025].into_iter().chain(OCCUPANCIES);
     let reachable: Vec<f64> = occupancies.filter(|&occupancy| occupancy < CEILING).collect();
@@ -28,16 +28,16 @@ pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     Ok(Made::of([frame]).with_seeds([1]))
 }
 
-/// Share of operations on contacts: of the lattice's forces and step, of the lists' forces and step. Every execution of the lattice
-/// visits every place of every cell. Making the lists is not counted.
+/// Share of operations on contacts: lattice forces, lattice step, list forces, list step. Every execution of the lattice visits every
+/// offset of every cell. Building the lists is not counted.
 fn shares(figures: ListFigures) -> Result<[f64; 4], StudyError> {
     let question = Question { occupancy: figures.occupancy, ..Question::default() };
     let (programs, lengths) = step(&question)?;
     let discs = question.particles as f64;
     let contacts = figures.contacts * discs;
     let lattice = ledger(&programs);
-    // Operations of a place of the mask, without those of a cell. The law adds to its sums in a section of the same name as the one
-    // that stores them.
+    // Operations of an offset of the mask, without those of a cell. The law adds to its sums in a section with the name of the section that
+    // stores them.
     let places = 24.0;
     let of_places: u64 = lattice
         .entries()
@@ -74,7 +74,7 @@ mod tests {
     fn a_lattice_of_touching_discs_visits_mostly_empty_places() {
         let figures = ListFigures { occupancy: 0.25, candidates: 6.0, contacts: 4.0, steps_a_list: 10.0 };
         let [lattice_forces, _, list_forces, list_step] = shares(figures).unwrap();
-        // Four of 24 places at a quarter of the cells, less what is done once a cell and in the halo.
+        // Four of 24 offsets at a quarter of the cells, minus the work done once per cell and in the halo.
         let most = 4.0 * 0.25 / 24.0;
         assert!(lattice_forces < most && lattice_forces > 0.8 * most, "{lattice_forces}");
         assert!(list_forces > 0.5 && list_step < list_forces, "{list_forces} {list_step}");

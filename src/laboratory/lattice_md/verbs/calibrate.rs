@@ -1,4 +1,4 @@
-//! `stripmine calibrate`: how long this host's operations take.
+//! `stripmine calibrate`: times of this host's operations.
 
 use crate::console::{Common, Failure, clear_progress, print, print_json, progress, say, warn};
 use crate::laboratory::lattice_md::study::calibration::calibrate;
@@ -8,36 +8,36 @@ use std::path::PathBuf;
 use stripmine_physics::io::replace::{may_put, put, try_beside};
 use stripmine_physics::signals;
 
-/// Measures this host's operations and caches, in whatever state it is, and writes a host file that says which
+/// Measures this host's operations and caches, and writes a host file that also records the state of the machine
 #[derive(Args)]
 pub(super) struct CalibrateVerb {
-    /// The host file
+    /// Host file to write
     #[arg(long, default_value = "host.toml")]
     out: PathBuf,
-    /// Write over a file that is there
+    /// Overwrite an existing file
     #[arg(long)]
     force: bool,
-    /// Seconds that it takes, about
+    /// Approximate duration in seconds
     #[arg(long, default_value_t = SECONDS, value_parser = clap::value_parser!(u16).range(10..=3600))]
     seconds: u16,
 }
 
-/// Seconds that a calibration takes, about.
+/// Approximate duration of a calibration in seconds.
 pub(super) const SECONDS: u16 = 75;
 
 impl CalibrateVerb {
     pub(super) fn run(&self, common: &Common) -> Result<(), Failure> {
         may_put(&self.out, self.force, "--force writes over it, --out elsewhere")?;
-        // A place that cannot be written is found before minutes of measuring.
+        // An unwritable location is found before minutes of measuring.
         try_beside(&self.out).map_err(self.failed())?;
         let bar = progress(common, "calibrate");
         let model = calibrate(self.seconds.into(), |share| bar.set_position((1e3 * share) as u64))?;
         clear_progress();
         if !model.measured.was_quiet() {
-            warn(format_args!("the machine was {}; the host file says so", model.measured.state));
+            warn(format_args!("the machine was {}; the host file records this", model.measured.state));
         }
         let text = model.to_toml().map_err(io::Error::other).map_err(self.failed())?;
-        // Before anything is printed: the reader of that may close the pipe.
+        // Written before anything is printed: the reader of the output may close the pipe.
         signals::whole(|| put(&self.out, &text, self.force)).map_err(self.failed())?;
         if !common.quiet {
             say(format_args!("written: {}", self.out.display()));
@@ -47,7 +47,7 @@ impl CalibrateVerb {
         }
         let measured = &model.measured;
         print(&format!(
-            "{}, {}: measured in {:.0} s on a machine that was {}. Programs deviate from their prices by {:.1} % (the median).\n",
+            "{}, {}: measured in {:.0} s on a machine that was {}. The median deviation of programs from the model is {:.1} %.\n",
             model.title,
             model.instruction_set,
             measured.seconds,

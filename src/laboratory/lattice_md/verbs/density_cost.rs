@@ -1,4 +1,4 @@
-//! `stripmine chart density-cost`: cost over density, as data and charts.
+//! `stripmine chart density-cost`: cost against density, as data and charts.
 
 use crate::console::{Common, Failure, clear_progress, print, print_json, progress};
 use crate::laboratory::lattice_md::study::density_cost::density_cost;
@@ -10,7 +10,7 @@ use clap::Args;
 use std::path::PathBuf;
 use std::time::Instant;
 
-/// BP93, figures 3 and 4, by the paper's clock of a machine, and the fastest search measured here; `reproduce --only searches` measures more
+/// Draws BP93's figures 3 and 4 with the clock model of a machine, and measures the fastest search here; `reproduce --only searches` measures more
 #[derive(Args)]
 pub(super) struct DensityCostVerb {
     #[arg(long, default_value = "paper", help = super::table::machine_help())]
@@ -23,7 +23,7 @@ pub(super) struct DensityCostVerb {
 impl DensityCostVerb {
     pub(super) fn run(&self, common: &Common) -> Result<(), Failure> {
         let machine = machines::find(&self.machine)?;
-        // Before anything takes its time.
+        // Checked before the long computation.
         let folder = Folder::open(&self.out, &["cost", "searches"], false)?;
         let bar = progress(common, "chart");
         let start = Instant::now();

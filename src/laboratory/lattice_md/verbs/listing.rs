@@ -1,4 +1,4 @@
-//! `stripmine listing`: the vector instructions of a part.
+//! `stripmine listing`: vector instructions of a part of the step.
 
 use crate::console::{Common, Failure, print, print_json};
 use crate::laboratory::lattice_md::study::efficiency_table::Question;
@@ -8,7 +8,7 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use stripmine_physics::method::lattice_md::Part;
 
-/// The vector instructions of a part of the step, as an assembly listing
+/// Prints the vector instructions of a part of the step, as an assembly listing
 #[derive(Args)]
 pub(super) struct ListingVerb {
     #[arg(value_parser = part_parser())]
@@ -17,11 +17,11 @@ pub(super) struct ListingVerb {
     scene: Question,
 }
 
-/// Accepts the parts there are; clap lists them where another is asked for.
+/// Parser of the existing parts; clap lists them for any other name.
 fn part_parser() -> impl TypedValueParser<Value = Part> {
     let values = Part::ALL.iter().map(|part| PossibleValue::new(part.name()).help(part.meaning()));
     PossibleValuesParser::new(values).map(|name| {
-        // The parser admits names of the list only.
+        // The parser only admits names of the list.
         Part::ALL.iter().copied().find(|part| part.name() == name).unwrap_or(Part::Forces)
     })
 }

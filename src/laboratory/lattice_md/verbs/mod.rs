@@ -1,4 +1,4 @@
-//! The verbs that are this method's own: what its programs cost, by count, by clock and by measurement.
+//! Verbs of lattice MD: cost of its programs by count, by clock model and by measurement.
 
 mod calibrate;
 mod density_cost;

@@ -1,4 +1,4 @@
-//! `stripmine table`: the efficiency table, and the ladder of clocks.
+//! `stripmine table`: efficiency table, and ladder of clock models.
 
 use super::print_made;
 use crate::console::{Common, Failure};
@@ -7,22 +7,22 @@ use crate::laboratory::lattice_md::study::ladder::ladder;
 use crate::model::machines;
 use clap::Args;
 
-/// BP93's efficiency table: NOP as printed and as counted, vector lengths, clock periods
+/// Prints BP93's efficiency table: NOP as printed and as counted, vector lengths, clock periods
 #[derive(Args)]
 pub(super) struct TableVerb {
     #[command(flatten)]
     scene: Question,
     #[arg(long, default_value = "paper", help = machine_help())]
     machine: String,
-    /// Instead: the clock periods of a step by every clock, from the trivial one to chaining and memory ports
+    /// Prints the clock periods of a step by every clock model instead, from the trivial one to chaining and memory ports
     #[arg(long)]
     ladder: bool,
 }
 
-/// What `--machine` takes.
+/// Help of the option `--machine`.
 pub(super) fn machine_help() -> String {
     let names: Vec<_> = machines::names().collect();
-    format!("Machine whose clock is asked: {}, or the path of a machine file (.toml)", names.join(", "))
+    format!("Machine of the clock model: {}, or the path of a machine file (.toml)", names.join(", "))
 }
 
 impl TableVerb {

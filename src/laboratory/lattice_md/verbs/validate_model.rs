@@ -1,4 +1,4 @@
-//! `stripmine validate-model`: the host model against wall time.
+//! `stripmine validate-model`: comparison of the host model with wall time.
 
 use super::calibrate::SECONDS;
 use super::print_made;
@@ -17,13 +17,13 @@ use std::time::Instant;
 use stripmine_kernels::InstructionSet;
 use stripmine_physics::origin;
 
-/// Predicts runs that nothing was fitted to, measures them as users run them, and says how far off each prediction was
+/// Predicts runs that the model was not fitted to, measures them as users run them, and reports the error of each prediction
 #[derive(Args)]
 pub(super) struct ValidateModel {
-    /// Host file of `calibrate`; without one, the model that comes with the program
+    /// Host file of `calibrate` (default: the model shipped with the program)
     #[arg(long)]
     host: Option<PathBuf>,
-    /// Calibrate just before; the host file lies in the folder of the result
+    /// Calibrates first; the host file is written to the folder of the result
     #[arg(long, conflicts_with = "host")]
     calibrate: bool,
     /// Numbers of particles
@@ -33,7 +33,7 @@ pub(super) struct ValidateModel {
     /// Occupancies, on cells as wide as the radius
     #[arg(long, value_delimiter = ',', default_values_t = [0.072, 0.168], value_parser = occupancy)]
     occupancies: Vec<f64>,
-    /// Seconds that the runs take, about; each is made once at least
+    /// Approximate duration of the runs in seconds; each runs at least once
     #[arg(long, default_value_t = 120, value_parser = clap::value_parser!(u16).range(1..))]
     seconds: u16,
     /// Folder for the result as data, tables and figures
@@ -41,24 +41,24 @@ pub(super) struct ValidateModel {
     out: Option<PathBuf>,
 }
 
-/// An occupancy that discs which touch can have on cells as wide as their radius.
+/// Parses an occupancy that touching discs can reach on cells as wide as their radius.
 fn occupancy(text: &str) -> Result<f64, String> {
     let most = DENSEST / std::f64::consts::PI;
     match text.parse() {
         Ok(occupancy) if occupancy > 0.0 && occupancy < most => Ok(occupancy),
-        _ => Err(format!("a number above 0 and below {most:.3}, where discs fill the plane")),
+        _ => Err(format!("expected a number above 0 and below {most:.3}, the closest packing of discs")),
     }
 }
 
-/// Packing fraction beyond which the scenes of the test cannot be made.
+/// Packing fraction above which the scenes cannot be generated.
 const DENSEST: f64 = 0.907;
 
-/// Rounds over all runs at most.
+/// Maximum number of rounds over all runs.
 const ROUNDS: usize = 12;
-/// Share of the progress for a calibration just before.
+/// Share of the progress for a preceding calibration.
 const CALIBRATION: f64 = 0.4;
 
-/// The model of a host file, or the one that comes with the program; whose it is.
+/// Model of a host file, or the model shipped with the program; and a description of its origin.
 fn host_model(file: Option<&Path>, common: &Common) -> Result<(HostModel, String), Failure> {
     let note = |warns: bool, words: fmt::Arguments<'_>| match common.quiet {
         true => (),
@@ -70,7 +70,9 @@ fn host_model(file: Option<&Path>, common: &Common) -> Result<(HostModel, String
         let title = &model.title;
         note(
             false,
-            format_args!("no --host: using the model that comes with the program, of {title}; see calibrate"),
+            format_args!(
+                "no --host given: using the model shipped with the program, of {title}; `stripmine calibrate` makes one for this host"
+            ),
         );
         let whose = format!("the shipped model of {title}");
         return Ok((model, whose));
@@ -98,7 +100,7 @@ impl ValidateModel {
             rounds: ROUNDS,
             seconds: self.seconds.into(),
         };
-        // Before anything takes its time.
+        // Checked before the long computation.
         let folder = self.out.as_ref().map(|out| Folder::open(out, &["validation"], false)).transpose()?;
         let (start, bar) = (Instant::now(), progress(common, "validate-model"));
         let show = |share: f64| bar.set_position((1e3 * share) as u64);

@@ -1,4 +1,4 @@
-//! A cold sphere that falls in on itself.
+//! Collapse of a cold sphere of bodies.
 
 use crate::console::Failure;
 use crate::frame::{Cell, Rows};
@@ -13,7 +13,7 @@ use stripmine_physics::method::nbody::keys::{COUNT, SEED};
 use stripmine_physics::particles::{Particle, Particles};
 use stripmine_physics::scene::Overrides;
 
-/// Bodies of a sphere, and how many of them are drawn and filmed.
+/// Bodies of a sphere, and the numbers of them drawn and filmed.
 const BODIES: usize = 2048;
 const SHOWN: usize = 700;
 const FILMED: usize = 300;
@@ -22,23 +22,23 @@ const SEEDS: [u64; 4] = [1, 2, 3, 4];
 /// Samples, and steps between them.
 const SAMPLES: u64 = 320;
 const BETWEEN: u64 = 8;
-/// Bound bodies are sought from this time on, when they have swung several times.
+/// Time after which bound bodies are determined, after several oscillations.
 const LATE: f64 = 6.0;
-/// Free fall of a uniform sphere of radius and mass 1.
+/// Free-fall time of a uniform sphere of radius and mass 1.
 const FREE_FALL: f64 = PI / (2.0 * SQRT_2);
 /// Drawings by name and time.
 const DRAWN: [(&str, f64); 3] = [("bodies-0-0", 0.0), ("bodies-1-1", FREE_FALL), ("bodies-3-0", 3.0)];
 /// Half the side of the film's window, and the time at which the film ends.
 const WINDOW: f64 = 1.5;
 const FILM_END: f64 = 4.0;
-/// Share of the bodies within a drawing.
+/// Share of the bodies inside a drawing.
 const SEEN: f64 = 0.9;
 /// Speed of the darkest shade.
 const FASTEST: f64 = 3.0;
 /// Radius of a body in the film.
 const RADIUS: f64 = 0.015;
 
-/// The sphere at a moment; speeds of the first bodies with their positions along x and y.
+/// State of the sphere at a moment; of the first bodies, positions along x and y and speeds.
 struct Moment {
     time: f64,
     /// Kinetic over potential energy.
@@ -49,13 +49,13 @@ struct Moment {
     bodies: Vec<([f64; 2], f64)>,
 }
 
-/// The bodies that are bound at a moment.
+/// Bound bodies at a moment.
 struct Bound {
     time: f64,
     share: f64,
-    /// Their kinetic over their potential energy, about their own mean motion.
+    /// Kinetic over potential energy, relative to the mean motion of the bound bodies.
     virial_ratio: f64,
-    /// Their kinetic energy over Σ r·F, Clausius' virial, which is the potential energy where nothing is softened.
+    /// Kinetic energy over Σ r·F, Clausius' virial, which equals the potential energy without softening.
     clausius_ratio: f64,
 }
 
@@ -66,7 +66,7 @@ struct Sphere {
 }
 
 impl Sphere {
-    /// The moment at which half of the mass is nearest to the centre.
+    /// Time and radius at the minimum of the half-mass radius.
     fn closest(&self) -> [f64; 2] {
         let moments = self.moments.iter().map(|it| [it.time, it.half_mass_radius]);
         moments.min_by(|a, b| a[1].total_cmp(&b[1])).unwrap_or([f64::NAN; 2])
@@ -78,7 +78,7 @@ impl Sphere {
     }
 }
 
-/// Follows a sphere of each seed.
+/// Simulates a sphere for each seed.
 pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let all = Meter::new(SEEDS.len() as f64, lab.progress).each(&SEEDS, |&seed| sphere(seed))?;
     let mean = |of: &dyn Fn(&Sphere) -> f64, decimals: usize| {
@@ -134,7 +134,7 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     Ok(made)
 }
 
-/// Bodies at the moment nearest to a time, within a window that holds most of them.
+/// Drawing of the bodies at the moment nearest to a time, in a window that contains most of them.
 fn drawing(moments: &[Moment], time: f64) -> Drawing {
     let nearest = moments.iter().min_by(|a, b| (a.time - time).abs().total_cmp(&(b.time - time).abs()));
     let bodies = nearest.map_or(&[][..], |it| &it.bodies);
@@ -156,7 +156,7 @@ fn drawing(moments: &[Moment], time: f64) -> Drawing {
     }
 }
 
-/// Every other moment; bodies beyond the window stay at its rim.
+/// Film of every other moment; bodies beyond the window are drawn at its rim.
 fn film(sphere: &Sphere) -> Film {
     let frames = sphere.moments.iter().filter(|it| it.time <= FILM_END).step_by(2).map(|it| Frame {
         time: it.time,
@@ -205,9 +205,9 @@ fn sphere(seed: u64) -> Result<Sphere, StudyError> {
     Ok(Sphere { seed, bound: late, moments })
 }
 
-/// Removes bodies of positive energy until none is left.
+/// Bound bodies: those with positive energy are removed repeatedly until none is left.
 fn bound(time: f64, particles: &Particles) -> Bound {
-    // As the preset has it.
+    // Value of the preset.
     const SOFTENING: f64 = 0.03;
     let mut inside: Vec<&Particle> = particles.all().iter().collect();
     loop {

@@ -1,4 +1,4 @@
-//! What integrators do to the energy of an orbit: the error over the step and the cost, and where the orbit is lost.
+//! Energy error of integrators on a Kepler orbit: against step and cost, and the step at which the orbit is lost.
 
 use crate::console::Failure;
 use crate::frame::{Cell, Frame, Rows};
@@ -11,22 +11,22 @@ use stripmine_physics::method::nbody::starts::ORBIT;
 use stripmine_physics::scene::{DT, Overrides};
 use stripmine_physics::words::Words;
 
-/// Orbits that are followed.
+/// Simulated orbits.
 const ORBITS: u64 = 100;
-/// Steps of an orbit in the table of errors.
+/// Steps per orbit in the table of errors.
 const STEPS: [u64; 4] = [64, 256, 1024, 4096];
-/// Eccentricities at which it is looked for where orbits are lost.
+/// Eccentricities for the fewest steps that keep an orbit.
 const ECCENTRICITIES: [f64; 5] = [0.0, 0.3, 0.5, 0.7, 0.9];
-/// An orbit is lost where the energy is off by more than this part of itself, or positive.
+/// Relative energy error above which an orbit is lost.
 const LOST: f64 = 0.5;
-/// Looks at an orbit, at most.
+/// Maximum number of samples per orbit.
 const LOOKS: u64 = 256;
-/// Errors below this are rounding.
+/// Errors below this value are rounding.
 const ROUNDING: f64 = 1e-12;
-/// Most steps of an orbit that are tried.
+/// Maximum number of steps per orbit that is tried.
 const MOST: u64 = 16_384;
 
-/// The largest |ΔE/E| by `python3 tests/references/orbit.py`, by steps of an orbit; the last of Gear's is rounding.
+/// Largest |ΔE/E| from `python3 tests/references/orbit.py`, by steps per orbit; the last value of Gear's scheme is rounding.
 const KNOWN: [(SchemeName, [f64; 4]); 6] = [
     (SchemeName::DampedEuler, [0.23, 3.9e-2, 8.9e-3, 2.2e-3]),
     (SchemeName::Leapfrog, [2.7e-2, 1.6e-3, 1.0e-4, 6.4e-6]),
@@ -36,15 +36,15 @@ const KNOWN: [(SchemeName, [f64; 4]); 6] = [
     (SchemeName::Gear6, [0.24, 2.6e-5, 4.0e-9, f64::NAN]),
 ];
 
-/// An orbit by a scheme.
+/// Result of an orbit with one scheme and step.
 struct Orbit {
     scheme: SchemeName,
     steps: u64,
-    /// Evaluations of the forces an orbit.
+    /// Evaluations of the forces per orbit.
     evaluations: f64,
-    /// The largest |ΔE/E|; none where the orbit was lost.
+    /// Largest |ΔE/E|; `None` if the orbit was lost.
     error: Option<f64>,
-    /// The largest momentum and change of the angular momentum on the way.
+    /// Largest momentum and largest change of the angular momentum during the run.
     drift: [f64; 2],
 }
 
@@ -59,7 +59,7 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let schemes: Vec<SchemeName> = SchemeName::ALL.iter().map(|(scheme, _)| *scheme).collect();
     let orbits: Vec<(SchemeName, u64)> =
         STEPS.iter().flat_map(|&steps| schemes.iter().rev().map(move |&scheme| (scheme, steps))).collect();
-    // These two lose every orbit.
+    // Both Euler schemes lose every orbit.
     let kept = schemes
         .iter()
         .rev()
@@ -98,14 +98,14 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     ]))
 }
 
-/// The largest |ΔE/E| of the reference.
+/// Largest |ΔE/E| of the reference program.
 fn known(scheme: SchemeName, steps: u64) -> Option<f64> {
     let column = STEPS.iter().position(|&known| known == steps)?;
     let (_, errors) = KNOWN.iter().find(|(known, _)| *known == scheme)?;
     Some(errors[column])
 }
 
-/// Errors by scheme and steps, with the order between the two shortest steps whose errors are no rounding.
+/// Errors by scheme and steps, with the order from the two shortest steps whose errors are not rounding.
 fn errors(orbits: &[Orbit], schemes: impl Iterator<Item = SchemeName>) -> Frame {
     let of = |scheme: SchemeName, steps: u64| {
         orbits.iter().find(|it| it.scheme == scheme && it.steps == steps).and_then(|it| it.error)
@@ -136,7 +136,7 @@ fn errors(orbits: &[Orbit], schemes: impl Iterator<Item = SchemeName>) -> Frame 
     )
 }
 
-/// The energy now. Published errors are relative to the energy itself, which an orbit's is far from losing.
+/// Present total energy. Published errors are relative to it, since the energy of an orbit is far from zero.
 fn energy(running: &Running) -> Result<f64, StudyError> {
     let [kinetic, potential] = running.observed(["kinetic", "potential"])?;
     Ok(kinetic + potential)
@@ -148,7 +148,7 @@ fn orbit(scheme: SchemeName, steps: u64) -> Result<Orbit, StudyError> {
     let (turning, start) = (running.observed(names)?[1], energy(&running)?);
     let (mut largest, mut drift, before) = (0.0f64, [0.0f64; 2], running.simulation.work());
     let mut done = Ok(());
-    // Energy and momenta are looked at so often that the passage of the centre has a dozen looks.
+    // Frequent enough for a dozen samples during the pericentre passage.
     let between = steps.div_ceil(LOOKS);
     for _ in 0..ORBITS * steps / between {
         done = running.steps(between);
@@ -159,12 +159,12 @@ fn orbit(scheme: SchemeName, steps: u64) -> Result<Orbit, StudyError> {
         largest = largest.max(error.abs());
         drift = [drift[0].max(momentum), drift[1].max((angular - turning).abs())];
     }
-    // Two bodies: work is four for an evaluation.
+    // With two bodies an evaluation counts as work 4.
     let evaluations = (running.simulation.work() - before) / 4.0 / ORBITS as f64;
     Ok(Orbit { scheme, steps, evaluations, error: done.is_ok().then_some(largest), drift })
 }
 
-/// Whether an orbit is kept.
+/// Returns true if an orbit is kept.
 fn keeps(scheme: SchemeName, steps: u64, eccentricity: f64) -> Result<bool, StudyError> {
     let mut running = Running::timed("kepler", &overrides(scheme, steps, eccentricity))?;
     let start = energy(&running)?;
@@ -180,7 +180,7 @@ fn keeps(scheme: SchemeName, steps: u64, eccentricity: f64) -> Result<bool, Stud
     Ok(true)
 }
 
-/// Fewest steps of an orbit that keep it; none where the most that are tried do not.
+/// Fewest steps per orbit that keep it; `None` if [`MOST`] steps do not.
 fn edge(scheme: SchemeName, eccentricity: f64) -> Result<Option<u64>, StudyError> {
     let (mut low, mut high) = (4, 8);
     while !keeps(scheme, high, eccentricity)? {
@@ -194,7 +194,7 @@ fn edge(scheme: SchemeName, eccentricity: f64) -> Result<Option<u64>, StudyError
     Ok(Some(bisected([low, high], is_narrow, u64::midpoint, loses)?[1]))
 }
 
-/// Steps of an orbit, damping, and the energy after ten orbits over that of the start; none where bodies are at no finite place before.
+/// Steps per orbit, damping, and the energy after ten orbits over its initial value; `None` if positions become infinite.
 fn damped_orbit(steps: u64, damping: f64) -> Result<(u64, f64, Option<f64>), StudyError> {
     let overrides = overrides(SchemeName::DampedEuler, steps, 0.5).set(&DAMPING, damping);
     let mut running = Running::timed("kepler", &overrides)?;

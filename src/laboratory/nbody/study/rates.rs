@@ -1,4 +1,4 @@
-//! Interactions a second, and errors of the forces.
+//! Interactions per second, and force errors.
 
 use crate::console::Failure;
 use crate::frame::Rows;
@@ -20,7 +20,7 @@ use stripmine_physics::particles::{Particle, Particles};
 use stripmine_physics::scene::{DT, Overrides, PRECISION, Precision};
 use stripmine_physics::words::Words;
 
-/// Precision of the forces, and how roots are formed.
+/// Combinations of force precision and root arithmetic.
 const WAYS: [(Precision, ArithmeticKind); 5] = [
     (Precision::Mixed, ArithmeticKind::Raw),
     (Precision::Mixed, ArithmeticKind::Estimated),
@@ -28,18 +28,18 @@ const WAYS: [(Precision, ArithmeticKind); 5] = [
     (Precision::F64, ArithmeticKind::Estimated),
     (Precision::F64, ArithmeticKind::Exact),
 ];
-/// Bodies whose forces are compared with the sum as it is written.
+/// Number of bodies whose forces are compared with direct summation.
 const SAMPLED: usize = 512;
-/// Softening of the spheres whose forces are compared, and of those whose energy is followed (length).
+/// Softening for the comparison of forces, and for the energy error (length).
 const SHARP: f64 = 0.01;
 const SOFTENED: f64 = 0.05;
-/// Threads compared.
+/// Compared numbers of threads.
 const THREADS: [usize; 2] = [1, 2];
 
-/// Work that is no run of a scene: evaluations of all forces.
+/// Measured work other than runs of scenes: evaluations of all forces.
 pub(in crate::laboratory::nbody) static WORKS: [Own; 1] = [Own { name: "nbody-forces", measure: forces }];
 
-/// Measures every way.
+/// Measures every combination.
 pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     let (counts, seconds): (&[usize], f64) =
         if size == Size::Quick { (&[1024], 0.05) } else { (&[1024, 4096, 16_384], 0.1) };
@@ -95,7 +95,7 @@ pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     .with_seeds([1]))
 }
 
-/// The scene of a way, and a Plummer sphere.
+/// Scene of a combination, and its Plummer sphere.
 fn sphere(count: usize, way: usize) -> (Scene, Bodies) {
     let (precision, arithmetic) = WAYS[way];
     let mut scene = Scene { softening: SHARP, precision, arithmetic, ..Scene::default() };
@@ -104,7 +104,7 @@ fn sphere(count: usize, way: usize) -> (Scene, Bodies) {
     (scene, all)
 }
 
-/// Times evaluations of the forces: number of bodies, place among [`WAYS`], seconds at least.
+/// Times evaluations of the forces. Parameters: number of bodies, index into [`WAYS`], minimum seconds.
 fn forces(parameters: &serde_json::Value) -> Result<Reading, StudyError> {
     let (count, way, least): (usize, usize, f64) = given(parameters)?;
     let (scene, all) = sphere(count, way);
@@ -122,8 +122,8 @@ fn forces(parameters: &serde_json::Value) -> Result<Reading, StudyError> {
     Ok(Reading { work: f64::from(sweeps) * (count as f64).powi(2), seconds, ..Reading::default() })
 }
 
-/// Largest error of an acceleration over the largest acceleration, of the kernel for masses as it sees them, and with the rounding of
-/// masses where forces are in single precision; and whether two threads give the bits of one.
+/// Largest error of an acceleration over the largest acceleration: first for masses in the kernel's precision, then including the rounding of
+/// masses to single precision. Also true if two threads give the bits of one.
 fn errors(count: usize, way: usize) -> Result<([f64; 2], bool), StudyError> {
     let (scene, all) = sphere(count, way);
     let on = |threads: usize| {
@@ -140,7 +140,7 @@ fn errors(count: usize, way: usize) -> Result<([f64; 2], bool), StudyError> {
     let [one, two] = [on(1)?, on(2)?];
     let error = |is_rounded: bool| {
         let (mut largest, mut worst) = (0.0_f64, 0.0_f64);
-        // Some bodies, spread over all.
+        // Evenly spaced sample of the bodies.
         for body in (0..count).step_by((count / SAMPLED).max(1)) {
             let expected = written_down(&all, body, scene.softening, is_rounded);
             for (axis, expected) in expected.into_iter().enumerate() {
@@ -153,8 +153,8 @@ fn errors(count: usize, way: usize) -> Result<([f64; 2], bool), StudyError> {
     Ok(([error(scene.precision != Precision::F64), error(false)], one == two))
 }
 
-/// The acceleration of a body, its partners one after the other and summed with the digits that additions lose (Neumaier);
-/// masses rounded to single precision first, where a kernel sees them so.
+/// Acceleration of a body by direct summation with Neumaier's compensation. If `is_rounded`, masses are first rounded to single precision as
+/// in the kernel.
 fn written_down(all: &Bodies, body: usize, softening: f64, is_rounded: bool) -> [f64; 3] {
     let seen = |value: f64| if is_rounded { f64::from(value as f32) } else { value };
     let mut sums = [[0.0_f64; 2]; 3];
@@ -174,7 +174,7 @@ fn written_down(all: &Bodies, body: usize, softening: f64, is_rounded: bool) -> 
     sums.map(|[sum, lost]| sum + lost)
 }
 
-/// Kinetic energy and that of the pairs, in double precision.
+/// Kinetic plus pair energy in double precision.
 fn energy(particles: &Particles, softening: f64) -> Result<f64, StudyError> {
     let all = particles.all();
     let mass: Vec<f64> = all.iter().map(|body| body.mass).collect();
@@ -185,7 +185,7 @@ fn energy(particles: &Particles, softening: f64) -> Result<f64, StudyError> {
     Ok(kinetic + potential)
 }
 
-/// |ΔE/E| of a Plummer sphere that a leapfrog moves, after two units of time of so many steps each.
+/// |ΔE/E| of a Plummer sphere with leapfrog after two units of time of `steps` steps each.
 fn energy_error((precision, arithmetic): (Precision, ArithmeticKind), steps: u64) -> Result<f64, StudyError> {
     let machine = Overrides::new().set(&PRECISION, precision).set(&ROOTS, arithmetic);
     let overrides = machine.set(&DT, 1.0 / steps as f64).set(&SOFTENING, SOFTENED);

@@ -1,4 +1,4 @@
-//! What must hold for every picture, as `resvg` sees it.
+//! Properties of every picture, as rendered by `resvg`.
 
 pub(crate) mod samples;
 
@@ -6,7 +6,7 @@ use super::output::tree;
 use super::{Axis, Chart, Drawing, Figure, Map, Picture, Point, Scale, Style, svg};
 use resvg::usvg::{Group, Node};
 
-/// Left, upper, right and lower end of every line of words.
+/// Every line of words with its left, upper, right and lower end.
 fn words(figure: &Figure) -> Vec<(String, [f32; 4])> {
     fn of(group: &Group, all: &mut Vec<(String, [f32; 4])>) {
         for node in group.children() {
@@ -26,7 +26,7 @@ fn words(figure: &Figure) -> Vec<(String, [f32; 4])> {
     all
 }
 
-/// The boxes between the ends of the axes, or the window of a drawing.
+/// Boxes between the ends of the axes, or the window of a drawing.
 fn plots(figure: &Figure) -> Vec<[f64; 4]> {
     let text = svg(figure).unwrap();
     let of = |part: &str| {
@@ -44,13 +44,13 @@ fn plot(figure: &Figure) -> [f64; 4] {
     plots(figure)[0]
 }
 
-/// Where the picture has markers on the plane between the axes, as `resvg` draws them.
+/// Positions of the markers on the plane between the axes, as drawn by `resvg`.
 fn marked(figure: &Figure) -> Vec<[f64; 2]> {
     fn of(group: &Group, all: &mut Vec<[f64; 2]>) {
         for node in group.children() {
             match node {
                 Node::Group(group) => of(group, all),
-                // Only markers are moved to where they are.
+                // Only markers are positioned by a translation.
                 Node::Path(path) if path.abs_transform().tx > 1.0 => {
                     let at = path.abs_transform();
                     all.push([at.tx, at.ty].map(f64::from));
@@ -61,7 +61,7 @@ fn marked(figure: &Figure) -> Vec<[f64; 2]> {
     }
     let mut all = Vec::new();
     of(tree(&svg(figure).unwrap()).unwrap().root(), &mut all);
-    // Those of the legend lie below the plane; the one marker of a single point is both the first and the last of its line.
+    // Legend markers are below the plane; the marker of a single point is drawn at both ends of its line.
     let bottom = plot(figure)[3];
     all.retain(|[_, y]| *y <= bottom);
     all.dedup();
@@ -79,7 +79,7 @@ fn chart_of(picture: &mut Picture) -> &mut Chart {
     }
 }
 
-/// The samples, and charts that press for room.
+/// Samples and crowded charts.
 fn pressing() -> Vec<Figure> {
     let mut all = samples::all();
     let mut crowded = samples::logarithmic();
@@ -122,7 +122,7 @@ fn all_words_are_on_the_picture_and_none_upon_others() {
 #[test]
 fn no_words_lie_on_the_data() {
     for figure in pressing() {
-        // Words are a drawing's own, and those of few cells lie within their cells.
+        // Drawings and the cells of small maps contain words themselves.
         if matches!(figure.picture, Picture::Drawing(_)) || figure.name == "few-cells" {
             continue;
         }
@@ -159,7 +159,7 @@ fn data_outside_of_given_limits_are_cut_off() {
     drawn.x.limits = Some([10.0, 1000.0]);
     drawn.y.limits = Some([1e-7, 1e-6]);
     drawn.series.iter_mut().for_each(|series| series.points.push(Point::at(1e300, 1e-300)));
-    // Curves may leave the window that cuts them off; markers may not, for half of one says nothing.
+    // Curves may leave the window that clips them; markers may not, because half a marker is misleading.
     let [left, top, right, bottom] = plot(&figure);
     let all = marked(&figure);
     assert!(!all.is_empty());
@@ -192,7 +192,7 @@ fn a_drawing_is_not_distorted() {
         let Picture::Drawing(drawing) = &figure.picture else { unreachable!() };
         let [left, top, right, bottom] = plot(&figure);
         let [[west, south], [east, north]] = drawing.window;
-        // The rim about the window is less than two pixels for each 900 of the width.
+        // The rim around the window is less than two pixels per 900 pixels of the width.
         let rim = 2.0 * (drawing.width / 900.0).max(1.0);
         let height = (right - left) * (north - south) / (east - west);
         assert!((bottom - top - height).abs() < rim, "{}", figure.name);
@@ -222,17 +222,17 @@ fn faults_are_named() {
     let of_chart = |spoil: fn(&mut Picture)| fault(samples::logarithmic(), spoil);
     assert_eq!(
         of_chart(|picture| chart_of(picture).series[1].points[2].y = f64::NAN),
-        "figure `logarithmic`: y of point 2 of `CRAY's way, measured` is NaN, which is not finite"
+        "figure `logarithmic`: y of point 2 of `CRAY's way, measured` is NaN; expected a finite number"
     );
     assert_eq!(
         of_chart(|picture| chart_of(picture).series[1].points[2].x = 0.0),
-        "figure `logarithmic`: x of point 2 of `CRAY's way, measured` is 0, but its axis is logarithmic"
+        "figure `logarithmic`: x of point 2 of `CRAY's way, measured` is 0, but a logarithmic axis needs positive numbers"
     );
     assert!(
         of_chart(|picture| chart_of(picture).series[1].points[0].spread = Some([-1.0, 1.0]))
             .contains("spread")
     );
-    assert!(of_chart(|picture| chart_of(picture).series.clear()).ends_with("there is nothing in it"));
+    assert!(of_chart(|picture| chart_of(picture).series.clear()).ends_with("it has no data to draw"));
     assert!(of_chart(|picture| chart_of(picture).bands[0].ends = [2.0, 1.0]).contains("from 2 to 1"));
     assert!(of_chart(|picture| chart_of(picture).x.limits = Some([-1.0, 1.0])).contains("logarithmic"));
 
@@ -243,11 +243,17 @@ fn faults_are_named() {
         }
         svg(&figure).unwrap_err().problem
     };
-    assert_eq!(of_map(|map| map.y.limits = None), "the axis `Time` of a map needs limits");
-    assert_eq!(of_map(|map| map.rows[3].truncate(119)), "row 3 has 119 values, the rows before it 120");
-    assert_eq!(of_map(|map| map.rows.clear()), "there is nothing in it");
-    assert!(of_map(|map| map.rows[0][0] = f64::INFINITY).ends_with("is inf, which is not finite"));
-    assert!(of_map(|map| map.x = Axis::names("x", ["a", "b"])).ends_with("has 2 names for 120 cells"));
+    assert_eq!(of_map(|map| map.y.limits = None), "the axis `Time` of a map has no limits; expected two");
+    assert_eq!(
+        of_map(|map| map.rows[3].truncate(119)),
+        "row 3 has 119 values; expected 120 as in the previous rows"
+    );
+    assert_eq!(of_map(|map| map.rows.clear()), "it has no data to draw");
+    assert!(of_map(|map| map.rows[0][0] = f64::INFINITY).ends_with("is inf; expected a finite number"));
+    assert!(
+        of_map(|map| map.x = Axis::names("x", ["a", "b"]))
+            .ends_with("has 2 names; expected one for each of 120 cells")
+    );
     assert!(
         of_map(|map| {
             map.value = Axis { scale: Scale::Logarithmic, ..map.value.clone() };
@@ -264,8 +270,8 @@ fn faults_are_named() {
         svg(&figure).unwrap_err().problem
     };
     assert!(of_drawing(|drawing| drawing.width = 1.0).starts_with("a picture of 1 by"));
-    assert!(of_drawing(|drawing| drawing.window[1][1] = -9.0).contains("not upwards"));
-    assert!(of_drawing(|drawing| drawing.window[0][0] = f64::NAN).contains("not upwards"));
+    assert!(of_drawing(|drawing| drawing.window[1][1] = -9.0).contains("expected increasing ends"));
+    assert!(of_drawing(|drawing| drawing.window[0][0] = f64::NAN).contains("expected increasing ends"));
 
     let of_panels = |spoil: fn(&mut Vec<(String, Chart)>)| {
         let mut figure = samples::panels();
@@ -274,10 +280,10 @@ fn faults_are_named() {
         }
         svg(&figure).unwrap_err().problem
     };
-    assert_eq!(of_panels(Vec::clear), "there is nothing in it");
+    assert_eq!(of_panels(Vec::clear), "it has no data to draw");
     assert_eq!(
         of_panels(|panels| panels[1].1.x.unit = Some("m".into())),
-        "panel `7×7` has other axes than the first panel"
+        "the axes of panel `7×7` differ from those of the first panel"
     );
     let of_names = fault(samples::names(), |picture| chart_of(picture).series[0].points[0].x = 7.0);
     assert!(of_names.ends_with("x of point 0 of `measured` is 7, but its axis has 7 names"), "{of_names}");

@@ -1,10 +1,10 @@
-//! A figure of each kind, for the tests of everything that draws.
+//! Sample figures of each kind, for tests.
 
 use super::super::{
     Axis, Band, Chart, Drawing, Figure, Guide, Map, Picture, Point, Series, Shape, Style, Tint,
 };
 
-/// All of them.
+/// All samples.
 pub(crate) fn all() -> Vec<Figure> {
     vec![
         logarithmic(),
@@ -60,7 +60,7 @@ pub(crate) fn logarithmic() -> Figure {
     )
 }
 
-/// Three curves over linear axes.
+/// Three curves with linear axes.
 pub(crate) fn linear() -> Figure {
     let grid = |count: u32| (0..=count).map(move |i| 0.9 * f64::from(i) / f64::from(count));
     let friction = grid(90).map(|x| (x, (6.0 * x).sin() * 20.0 + 22.0 * x));
@@ -75,7 +75,7 @@ pub(crate) fn linear() -> Figure {
     figure("linear", "Flow through the pipe", single(chart))
 }
 
-/// Density waves.
+/// Map of density waves.
 pub(crate) fn map() -> Figure {
     let value = |i: usize, j: usize| {
         let (x, t) = (i as f64 / 120.0, j as f64 / 80.0);
@@ -92,7 +92,7 @@ pub(crate) fn map() -> Figure {
     figure("map", "Grains bunch up: density over place and time", Picture::Map(picture))
 }
 
-/// Two charts on one pair of axes, with lines that mark places.
+/// Panels with common axes and lines that mark values.
 pub(crate) fn panels() -> Figure {
     let chart = |factor: f64| {
         let curve = |power: f64| {
@@ -114,7 +114,7 @@ pub(crate) fn panels() -> Figure {
     figure("panels", "Time of a collision by mask", Picture::Charts(all.to_vec()))
 }
 
-/// Points that belong to names.
+/// Points on a horizontal axis of names.
 pub(crate) fn names() -> Figure {
     let maps = [
         "two-discs",
@@ -133,7 +133,7 @@ pub(crate) fn names() -> Figure {
     figure("names", "Edge over theory", single(chart))
 }
 
-/// Points that belong to names on the vertical axis.
+/// Points on a vertical axis of names.
 pub(crate) fn named_rows() -> Figure {
     let Picture::Charts(mut charts) = names().picture else { unreachable!() };
     let Chart { x, y, mut series, .. } = charts.remove(0).1;
@@ -144,7 +144,7 @@ pub(crate) fn named_rows() -> Figure {
     figure("named-rows", "Edge over theory", single(chart))
 }
 
-/// Few cells, with values in them and one without.
+/// Map of a few cells, one of them empty.
 pub(crate) fn few_cells() -> Figure {
     let rows = (0..5).map(|j| {
         (0..6).map(|i| if i + j == 9 { f64::NAN } else { 1.03 * f64::from(1 + i * j * j) }).collect()
@@ -158,7 +158,7 @@ pub(crate) fn few_cells() -> Figure {
     figure("few-cells", "Time lost by the wrong choice", Picture::Map(map))
 }
 
-/// A neighbourhood with numbers in its cells.
+/// Neighbourhood with numbers in its cells.
 pub(crate) fn mask() -> Figure {
     let mut shapes = Vec::new();
     let mut number = 0;
@@ -182,12 +182,12 @@ pub(crate) fn mask() -> Figure {
     figure("mask", "The 24 neighbours of a cell, in the order of their turn", Picture::Drawing(picture))
 }
 
-/// A piece of a pipe, with walls of discs and grains that spin.
+/// Piece of a pipe, with walls of discs and spinning grains.
 pub(crate) fn pipe() -> Figure {
     pipe_of("pipe", 30, 900.0, "Grains in a piece of the pipe")
 }
 
-/// A whole pipe, a hundred times as long as wide.
+/// Whole pipe, a hundred times as long as wide.
 pub(crate) fn long_pipe() -> Figure {
     pipe_of("long-pipe", 1000, 3600.0, "The whole pipe, a hundred times as long as wide")
 }
@@ -202,7 +202,7 @@ fn pipe_of(name: &str, columns: u32, width: f64, title: &str) -> Figure {
     }
     for i in 0..columns {
         for j in 0..10 {
-            // Any numbers between 0 and 1 that repeat.
+            // Arbitrary repeating numbers between 0 and 1.
             let [a, b, c] = [7, 11, 13].map(|k| f64::from((i * 37 + j * 101 + 17) * k % 97) / 96.0);
             let centre = [f64::from(i) + 0.5 + 0.1 * a, 0.95 + 0.85 * f64::from(j) + 0.1 * b];
             shapes.push(Shape::Disc { centre, radius: 0.32 + 0.1 * c, tint: Tint::Shade(a) });

@@ -1,31 +1,31 @@
-//! Fits in relative errors: what is far from the fit was disturbed, and weighs less.
+//! Robust least-squares fits of relative errors: points far from the fit were disturbed and have less weight.
 
 use crate::statistics::non_negative;
 
-/// A time, and what it is charged for.
+/// Measured time, and the amounts of work that it consists of.
 pub(super) struct Row<const N: usize> {
-    /// How much of each unknown.
+    /// Amount of work for each unknown cost.
     pub(super) features: [f64; N],
-    /// Nanoseconds measured.
+    /// Measured nanoseconds.
     pub(super) ns: f64,
 }
 
 impl<const N: usize> Row<N> {
-    /// Nanoseconds by these unknowns.
+    /// Predicted nanoseconds.
     pub(super) fn said(&self, unknowns: &[f64; N]) -> f64 {
         self.features.iter().zip(unknowns).map(|(feature, cost)| feature * cost).sum::<f64>()
     }
 
-    /// How far off these are, as the logarithm of a ratio.
+    /// Error of the prediction, as the magnitude of the logarithm of the ratio.
     pub(super) fn deviation(&self, unknowns: &[f64; N]) -> f64 {
         (self.said(unknowns) / self.ns).ln().abs()
     }
 }
 
-/// Rounds in which what is far from the fit weighs less and less.
+/// Number of rounds that reweight the points.
 const ROUNDS: usize = 6;
 
-/// The unknowns, none below zero, that suit all rows best, each in its relative error.
+/// Fits non-negative unknowns to all rows, weighted by relative errors.
 pub(super) fn suited<const N: usize>(rows: &[Row<N>]) -> [f64; N] {
     let mut unknowns: Option<[f64; N]> = None;
     for _ in 0..ROUNDS {

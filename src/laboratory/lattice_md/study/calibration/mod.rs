@@ -1,5 +1,5 @@
-//! How long do this host's operations take? The programs of drill scenes, of up to 4 million cells, are timed in every execution, and
-//! a host model is fitted to the times.
+//! Calibration of a host model: programs of drill scenes of up to 4 million cells are timed in every execution, and the model is fitted to the
+//! times.
 
 mod fit;
 mod programs;
@@ -19,15 +19,15 @@ use stripmine_kernels::backend::tape::register_shape;
 use stripmine_physics::method::throughput::MeasurementError;
 use stripmine_physics::origin::{host, load_average};
 
-/// Shortest vectors: of fewer elements nothing but the start of a pass counts.
+/// Shortest vectors: with fewer elements the start of a pass dominates.
 const SHORTEST: usize = 8;
-/// Seconds that fitting takes about, which are kept back.
+/// Approximate seconds reserved for fitting.
 const FITTING: f64 = 5.0;
-/// Share of the time for drill scenes of work that depends on the data.
+/// Share of the time for drill scenes whose work depends on the data.
 const SCENES: f64 = 0.4;
 
-/// Measures this host on one thread for about some seconds, whatever else the machine is doing, and fits its model. What has to be
-/// measured at all is measured once, whatever that takes. `progress` gets the share that is done.
+/// Measures this host on one thread for about `seconds`, whatever else the machine is doing, and fits its model. Everything required is
+/// measured at least once, regardless of the time. `progress` receives the completed share.
 ///
 /// # Errors
 /// [`StudyError`] if the processor lacks the instruction set, or a drill scene breaks.
@@ -40,7 +40,7 @@ fn measured(seconds: f64, progress: &dyn Fn(f64)) -> Result<HostModel, Measureme
     let shapes = [register_shape::<f64>(set)?, register_shape::<f32>(set)?];
     let (mut programs, mut scenes) = (Programs::new()?, Scenes::new()?);
     let (end, mut of_scenes) = ((seconds - FITTING).max(1.0), Duration::ZERO);
-    // Drills and scenes in turns, so that all see the same machine.
+    // Programs and scenes alternate, so that both are measured under the same conditions.
     for number in 0.. {
         programs.sweep(set, number)?;
         if of_scenes < begun.elapsed().mul_f64(SCENES) {
@@ -92,7 +92,7 @@ fn measured(seconds: f64, progress: &dyn Fn(f64)) -> Result<HostModel, Measureme
     })
 }
 
-/// The median of the values that are known; none where most are not.
+/// Median of the known values; `None` if most are unknown.
 fn middle_of_most(values: impl Iterator<Item = Option<f64>>) -> Option<f64> {
     let all: Vec<Option<f64>> = values.collect();
     let known: Vec<f64> = all.iter().copied().flatten().filter(|value| value.is_finite()).collect();

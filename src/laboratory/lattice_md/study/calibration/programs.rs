@@ -1,4 +1,4 @@
-//! The programs of a step on drill scenes of many sizes, one after the other, by the interpreter and as compiled loops.
+//! Timing of the programs of a step on drill scenes of many sizes, with the interpreter and as compiled loops.
 
 use super::fit::Row;
 use crate::laboratory::lattice_md::study::phase_times::{PRECISIONS, Run, step};
@@ -13,10 +13,10 @@ use stripmine_physics::method::lattice_md::{Arrays, StepProgram, model};
 use stripmine_physics::method::throughput::MeasurementError;
 use stripmine_physics::scene::{self, Overrides, SEED, TEMPERATURE};
 
-/// Cells of the largest drill scene, about.
+/// Approximate number of cells of the largest drill scene.
 pub(super) const LONGEST: usize = 4_000_000;
 
-/// NP and ρ of the drill scenes: lattices of 600 to 400 000 cells, some with many discs and some with few.
+/// NP and ρ of the drill scenes: lattices of 600 to 400 000 cells, some dense and some sparse.
 const SCENES: [(usize, f64); 12] = [
     (70, 0.12),
     (480, 0.21),
@@ -32,10 +32,10 @@ const SCENES: [(usize, f64); 12] = [
     (24_000, 0.06),
 ];
 
-/// A scene as large as vectors may be, in one precision.
+/// Scene with the longest vectors, in one precision.
 const LARGEST: (usize, f64) = (30_000, 30_000.0 / LONGEST as f64);
 
-/// How they are executed; strips whose registers lie in the first and in the second level, and of which none leaves elements over.
+/// Timed executions; registers of the strips fit into the first-level and second-level caches, and no strip leaves a remainder.
 const EXECUTIONS: [Execution; 5] = [
     Execution::Chained,
     Execution::Eager,
@@ -44,28 +44,28 @@ const EXECUTIONS: [Execution; 5] = [
     Execution::Strip(1024),
 ];
 
-/// Elements of the longest vectors of a sample of the interpreter and of loops, about, and steps at most.
+/// Approximate number of elements per sample of the interpreter and of loops, and maximum number of steps.
 const INTERPRETED_ELEMENTS: usize = 20_000;
 const LOOP_ELEMENTS: usize = 100_000;
 const MOST: usize = 8;
 
-/// The element types of lanes.
+/// Element types of lanes.
 pub(super) const LANES: [&str; 2] = ["f64", "f32"];
 
-/// Footprints of the levels: about those of caches, and beyond.
+/// Footprints of the memory levels: approximately those of caches, and beyond.
 const KIB: f64 = 1024.0;
 pub(super) const FOOTPRINTS: [f64; 5] =
     [32.0 * KIB, 256.0 * KIB, 2048.0 * KIB, 16_384.0 * KIB, 131_072.0 * KIB];
 
-/// Prices of a kind of execution on lanes of one element type: four, and a byte's at each footprint.
+/// Number of fitted costs of a kind of execution on lanes of one element type: four, and one per byte at each footprint.
 pub(super) const PRICES: usize = 4 + FOOTPRINTS.len();
 
 /// Arrays of either precision.
 trait Laid {
     fn memory(&mut self) -> Memory<'_>;
 
-    /// Lays them out again, at other addresses. Whether rows conflict in the first-level cache depends on these: with some
-    /// layouts the predictor took 256 ns, with most 160. Longer rows come from farther away in any case.
+    /// Moves the arrays to other addresses. Conflicts of rows in the first-level cache depend on them: with some layouts the predictor took
+    /// 256 ns, with most 160 ns. Longer rows come from higher levels anyway.
     fn elsewhere(&mut self);
 }
 
@@ -79,18 +79,18 @@ impl<S: Precision, P: Precision> Laid for Arrays<S, P> {
     }
 }
 
-/// The programs of one model in one precision.
+/// Programs of one model in one precision, with their samples.
 struct Step {
     programs: Vec<StepProgram>,
     ranges: Vec<Range<usize>>,
     arrays: Box<dyn Laid>,
-    /// Of every program, by execution.
+    /// Samples of every program, by execution.
     samples: [Vec<Samples>; EXECUTIONS.len()],
 }
 
 impl Step {
     fn new((particles, occupancy): (usize, f64), precision: &'static str) -> Result<Step, MeasurementError> {
-        // No drill depends on what the one before has left: the discs are at rest.
+        // The discs are at rest, so no drill depends on the previous one.
         let at_rest = Overrides::new().set(&TEMPERATURE, 0.0).set(&SEED, 7_u64);
         let checked = Run { particles, occupancy, precision, execution: "chained" }.scene(&at_rest)?;
         let (model, discs, (programs, lengths)) = (model(&checked), &checked.particles, step(&checked));
@@ -106,8 +106,8 @@ impl Step {
         })
     }
 
-    /// One more sample of the programs one after the other, as in a step, by every execution. The longest vectors would take most of the
-    /// time: they take part in every n-th sweep only.
+    /// Takes one sample of the programs in the order of a step, with every execution. Long vectors are only measured in every n-th sweep, since
+    /// they would take most of the time.
     fn sweep(&mut self, set: InstructionSet, number: usize) -> Result<(), ProgramError> {
         let longest = self.ranges.iter().map(ExactSizeIterator::len).max().unwrap_or(1).max(1);
         let turn = match longest {
@@ -131,7 +131,7 @@ impl Step {
         Ok(())
     }
 
-    /// What its programs on lanes of an element type are charged for by a kind of execution, and how long they took.
+    /// Charges and times of the programs on lanes of an element type, with a kind of execution.
     fn rows(&self, (lane, is_chained): (&str, bool), shape: ([f64; 3], usize)) -> Vec<Row<PRICES>> {
         let lengths = self.ranges.iter().map(ExactSizeIterator::len);
         let programs: Vec<(Outlines, usize)> =
@@ -153,21 +153,21 @@ impl Step {
     }
 }
 
-/// Every program to be measured, and the arrays they run on.
+/// All measured programs with their arrays.
 pub(super) struct Programs(Vec<Step>);
 
 impl Programs {
-    /// Lays out the drill scenes.
+    /// Places the drill scenes in memory.
     pub(super) fn new() -> Result<Programs, MeasurementError> {
         let scenes = SCENES.into_iter();
         let of = |place| PRECISIONS.map(|precision| Step::new(place, precision));
         scenes.flat_map(of).chain([Step::new(LARGEST, "f32")]).collect::<Result<_, _>>().map(Programs)
     }
 
-    /// One more sample of all.
+    /// Takes one sample of all programs.
     ///
     /// # Errors
-    /// [`ProgramError`] if one cannot be run.
+    /// [`ProgramError`] if a program cannot be run.
     pub(super) fn sweep(&mut self, set: InstructionSet, number: usize) -> Result<(), ProgramError> {
         self.0.iter_mut().try_for_each(|step| step.sweep(set, number))
     }
@@ -177,7 +177,7 @@ impl Programs {
         self.0.iter().flat_map(|step| step.samples.iter().flatten())
     }
 
-    /// What all programs on lanes of an element type are charged for by a kind of execution, and how long they took.
+    /// Charges and times of all programs on lanes of an element type, with a kind of execution.
     pub(super) fn rows(&self, of: (&str, bool), shape: ([f64; 3], usize)) -> Vec<Row<PRICES>> {
         self.0.iter().flat_map(|step| step.rows(of, shape)).collect()
     }

@@ -1,4 +1,4 @@
-//! Work whose amount depends on the data: the fast engine and the neighbour lists, on drill scenes of their own.
+//! Timing of work that depends on the data: the fast engine and neighbour lists, on separate drill scenes.
 
 use super::fit::{Row, suited};
 use crate::laboratory::lattice_md::study::phase_times::{FAST, FAST_LISTS, LISTS, PRECISIONS, Run, TimedRun};
@@ -9,16 +9,16 @@ use stripmine_physics::method::lattice_md::Phase;
 use stripmine_physics::method::throughput::MeasurementError;
 use stripmine_physics::scene::{Overrides, SEED};
 
-/// NP of the drill scenes: close enough to each other that no level of memory ends unseen between two of them.
+/// NP of the drill scenes, close enough that every boundary of a memory level is resolved.
 const PARTICLES: [usize; 6] = [60, 220, 900, 3300, 11_000, 32_000];
-/// ρ of the drill scenes, of every second NP these and of the others those; the first is sparse.
+/// ρ of the drill scenes, alternating between consecutive NP; the first is sparse.
 const OCCUPANCIES: [[f64; 3]; 2] = [[0.05, 0.12, 0.26], [0.07, 0.17, 0.22]];
 
-/// Every drill scene, and whether something was measured of it.
+/// All drill scenes, each with true once it has been measured.
 pub(super) struct Scenes(Vec<(TimedRun, bool)>);
 
 impl Scenes {
-    /// Nothing measured yet.
+    /// Makes all drill scenes, without measurements.
     pub(super) fn new() -> Result<Scenes, MeasurementError> {
         let (mut scenes, seed) = (vec![], Overrides::new().set(&SEED, 11_u64));
         for (particles, occupancies) in PARTICLES.into_iter().zip(OCCUPANCIES.iter().cycle()) {
@@ -34,7 +34,7 @@ impl Scenes {
         Ok(Scenes(scenes))
     }
 
-    /// Runs once more every scene of which there is nothing yet, and of the others those for which there is time until `end`.
+    /// Measures every scene without a measurement, and others as long as there is time until `end`.
     pub(super) fn sweep(&mut self, end: Instant) -> Result<(), MeasurementError> {
         for (scene, is_measured) in &mut self.0 {
             if !*is_measured || Instant::now() < end {
@@ -45,12 +45,12 @@ impl Scenes {
         Ok(())
     }
 
-    /// Fewest and most discs.
+    /// Smallest and largest number of discs.
     pub(super) fn discs(&self) -> [f64; 2] {
         [PARTICLES[0], PARTICLES[PARTICLES.len() - 1]].map(|discs| discs as f64)
     }
 
-    /// The rates of the methods.
+    /// Fitted rates of the methods.
     pub(super) fn rates(&self) -> BTreeMap<String, Rates> {
         let mut methods = BTreeMap::<String, Rates>::new();
         for method in ["fast", "fast, sparse", "fast lists", "lists"] {
@@ -76,14 +76,14 @@ impl Scenes {
     }
 }
 
-/// What each unit takes, by the amounts of runs and the nanoseconds that they took; none where there is no such work.
+/// Cost of each unit, fitted to amounts and nanoseconds of runs; `None` without such work.
 fn units(done: impl Iterator<Item = (Amounts, f64)>) -> Option<Units> {
     let rows = done.filter(|(_, ns)| *ns > 0.0);
     let rows: Vec<_> = rows.map(|(amounts, ns)| Row { features: amounts.values(), ns }).collect();
     (!rows.is_empty()).then(|| suited(&rows))
 }
 
-/// The units that a phase can depend on: others would only fit the noise.
+/// Units that a phase can depend on; others would only fit the noise.
 fn charged(phase: Phase, amounts: &Amounts) -> Amounts {
     let Amounts { steps, discs, cells, candidates, contacts, .. } = *amounts;
     let none = Amounts { steps, discs, ..Amounts::default() };
@@ -98,7 +98,7 @@ fn charged(phase: Phase, amounts: &Amounts) -> Amounts {
 mod tests {
     use super::*;
 
-    /// Runs that scatter by a factor of a thousand, as on a busy machine, count by most of them; a unit without work costs nothing.
+    /// The majority determines the fit even if runs scatter by a factor of a thousand, as on a busy machine. A unit without work costs nothing.
     #[test]
     fn scattered_runs_do_not_drive_units_away() {
         let done = |(at, scatter): (usize, f64)| {

@@ -1,7 +1,7 @@
-//! Ways of counting: every combination of counted operations and of forms of Gear's scheme, beside BP93's four numbers.
+//! Counting conventions: all combinations of counted operations and of forms of Gear's scheme, compared with BP93's four numbers.
 //!
-//! BP93 prints 59, 12, 1656 = 24 · 69 and 54, and neither a program nor a rule of counting. No way counts changes between numbers
-//! and index vectors: a word of a CRAY is both.
+//! BP93 prints 59, 12, 1656 = 24 · 69 and 54, but neither a program nor a rule of counting. No convention counts conversions between
+//! numbers and indices, because a CRAY word serves as both.
 
 use super::question::{Question, QuestionError, model_of, step};
 use crate::frame::{Frame, Rows};
@@ -10,32 +10,32 @@ use stripmine_kernels::mask::Mask;
 use stripmine_physics::method::lattice_md::{Part, ledger, programs};
 use stripmine_physics::scene::Precision;
 
-/// BP93's numbers: predictor, index, a place of the mask, corrector.
+/// BP93's numbers: predictor, index, one offset of the mask, corrector.
 const PRINTED: [u64; 4] = [59, 12, 69, 54];
 /// Names of the four numbers.
 const NUMBERS: [&str; 4] = ["predictor", "index", "a place", "corrector"];
-/// Choices of a way: how Gear's scheme is written, then operations that count beside arithmetic.
+/// Choices of a convention: the form of Gear's scheme, then the operations counted in addition to arithmetic.
 ///
-/// Derivatives may be scaled by δt^k/k!, and the rotation's row may begin with the angle or the angular velocity. Folded constants
-/// are a factor for each term, cells numbered from the corner, and no change of scale.
+/// Derivatives may be scaled by δt^k/k!, and the row of the rotation may begin with the angle or the angular velocity. With folded
+/// constants each term has one factor, cells are numbered from the corner, and nothing is rescaled.
 const CHOICES: [&str; 8] =
     ["scaled", "with angle", "constants folded", "loads", "stores", "gathers, scatters", "shifts", "gravity"];
 
-/// A way of counting: values of Gear's scheme, and a choice for each of [`CHOICES`].
+/// Counting convention: values of Gear's scheme, and a choice for each of [`CHOICES`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Way(u64, [bool; CHOICES.len()]);
 
-/// The printed text by all of its operations.
+/// Convention that counts all operations of the printed program.
 const EVERYTHING: [bool; CHOICES.len()] = [false, true, true, true, true, true, true, true];
 
-/// The four numbers by a way of counting, beside the printed ones.
+/// The four numbers by a convention, and their differences from BP93's.
 #[derive(Clone, Copy, PartialEq)]
 struct Counted {
     way: Way,
     counts: [u64; 4],
-    /// Counts less the printed numbers.
+    /// Counts minus the printed numbers.
     off: [i64; 4],
-    /// The largest of these as a share of the printed number.
+    /// Largest relative difference.
     worst: f64,
 }
 
@@ -45,8 +45,10 @@ impl Counted {
     }
 }
 
-/// Counts the printed text in every way. Returns the nearest ways, those with the most exact numbers, and the printed text with all of
-/// its operations; and how many ways there are, give each number, give all four, and the most numbers that one way gives.
+/// Counts the printed program by every convention.
+///
+/// The frame has the nearest conventions, those with the most exact numbers, and the count of all operations. The numbers are: all
+/// conventions, those that give each of the four numbers, those that give all four, and the most numbers given by one.
 pub(super) fn conventions(question: &Question) -> Result<(Frame, [usize; 7]), QuestionError> {
     let texts = Texts::of(question)?;
     let ways = (4..=6).flat_map(|values| {
@@ -75,7 +77,7 @@ pub(super) fn conventions(question: &Question) -> Result<(Frame, [usize; 7]), Qu
     Ok((frame, [all.len(), predictor, index, place, corrector, of(&|it| it.exact() == 4), most]))
 }
 
-/// Differences in words.
+/// Description of the differences.
 fn residual(counted: &&Counted) -> String {
     let off = NUMBERS.iter().zip(counted.off).filter(|(_, off)| *off != 0);
     let words: Vec<String> = off
@@ -84,7 +86,7 @@ fn residual(counted: &&Counted) -> String {
     if words.is_empty() { "nothing".to_owned() } else { words.join(", ") }
 }
 
-/// Recorded operations of the printed text.
+/// Recorded operations of the printed program.
 struct Texts {
     index: Vec<(&'static str, OpCounts)>,
     places: u64,
@@ -121,7 +123,7 @@ impl Texts {
         };
         let of = |all: &OpCounts| all.filtered(counts).total();
         let index = self.index.iter().filter(|(section, _)| !(folded && *section == "i of (2)"));
-        // One more place, with its operands and its three sums; a sum in memory is loaded, added to and stored.
+        // One more offset, with its operands and its three sums; a sum in memory is loaded, added to and stored.
         let each = (of(&self.all_places) - of(&self.one_place)) / (self.places - 1);
         let once = |class| self.one_place.of_class(class);
         let operands = if loads { once(OpClass::Load) + once(OpClass::Store) } else { 0 };
@@ -142,9 +144,9 @@ impl Texts {
     }
 }
 
-/// Arithmetic, loads, stores and gathers of Gear's predictor or corrector for the three freedoms of a disc.
+/// Arithmetic, loads, stores and gathers of Gear's predictor or corrector for the three degrees of freedom of a disc.
 fn gear(Way(values, [scaled, angle, folded, ..]): Way, corrects: bool) -> [u64; 4] {
-    // A change of scale, and a constant of its own at each term.
+    // A rescaling, and a separate constant for each term.
     let (rescaled, apart) = (u64::from(scaled && !folded), u64::from(!scaled && !folded));
     let row = |values: u64| match corrects {
         false => {
@@ -168,7 +170,7 @@ mod tests {
         Question { choice: choice.printed(), ..Question::default() }
     }
 
-    /// The scheme as it is counted here is the one that runs, where a way is that of the printed text or of ours.
+    /// For the conventions of the printed program and of ours, the counts here equal those of the programs that run.
     #[test]
     fn counted_schemes_are_those_that_run() {
         for gear_values in 4..=6 {
@@ -183,10 +185,10 @@ mod tests {
                     let [mut counted, mut loads, stores, gathers] = gear(way, corrects);
                     if corrects {
                         counted += 1; // Gravity.
-                        // A row here loads the discs' cells; those that run load them once. A scaled row here loads r'' twice.
+                        // Each row here loads the discs' cells, whereas the programs load them once. A scaled row here loads r'' twice.
                         loads -= 2 + 3 * u64::from(scaled);
                     } else if scaled {
-                        loads -= 3; // Velocities are at hand there.
+                        loads -= 3; // Velocities are already loaded there.
                     }
                     let class = |class| run.of_class(class);
                     assert_eq!(
@@ -199,7 +201,7 @@ mod tests {
         }
     }
 
-    /// By hand: a place of the printed text has 58 computing operations, 8 shifted copies and 3 sums.
+    /// Counted by hand, an offset of the printed program has 58 computing operations, 8 shifted copies and 3 sums.
     #[test]
     fn a_place_of_the_printed_text_counted_by_hand() {
         let texts = Texts::of(&question(5)).unwrap();

@@ -1,4 +1,4 @@
-//! Vector operations and clock periods of a step, by BP93's count (section 3) and by those of recorded programs.
+//! Vector operations and clock periods of a step, by BP93's count (section 3) and from recorded programs.
 
 mod conventions;
 mod question;
@@ -19,29 +19,29 @@ use stripmine_kernels::printed::EQUATIONS;
 use stripmine_physics::method::lattice_md::{Lengths, Model, Part, ledger, programs};
 use stripmine_physics::scene::Precision;
 
-/// Parts of BP93's table, and its counts of them (NOP). BP93 has no entry for the lattice vectors, nor for parts that are ours alone.
+/// Parts of BP93's table. BP93 has no entry for the lattice vectors, nor for parts that only our program has.
 pub(crate) const SOURCES_PARTS: [Part; 4] = [Part::Predictor, Part::Index, Part::Forces, Part::Corrector];
 const PRINTED: [u64; 4] = [59, 12, 1656, 54];
 
-/// BP93's count of a part.
+/// BP93's NOP of a part.
 pub(crate) fn printed_nop(part: Part) -> Option<u64> {
     SOURCES_PARTS.iter().position(|it| *it == part).map(|at| PRINTED[at])
 }
 
 /// Clock periods of a part by BP93's formula and its NOP.
 pub(crate) fn printed_clocks(part: Part, machine: &MachineModel, discs: u64, cells: u64) -> Option<f64> {
-    // Operations of no particular kind: sums, which every machine has.
+    // Additions stand for operations of any kind, because every machine has them.
     let mut counts = OpCounts::default();
     (0..printed_nop(part)?).for_each(|_| counts.record(Op::Add));
     Some(Clock::Paper.clocks(machine, &counts.into(), if part == Part::Forces { cells } else { discs }))
 }
 
-/// The default question on the machine of the paper.
+/// Counts the default scene on the machine of the paper.
 pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     Ok(efficiency_table(&Question::default(), &machines::preset("paper")?)?)
 }
 
-/// Programs of a text, counted.
+/// Counted programs of a text.
 struct Counted<'m> {
     ledger: Ledger,
     lengths: Lengths,
@@ -58,7 +58,7 @@ impl Counted<'_> {
         self.lengths.range(length).len() as u64
     }
 
-    /// Parts over vectors of one length each: name, operations, length, clock periods.
+    /// Parts, each with one vector length: name, operations, length, clock periods.
     fn rows(&self, clock: Clock) -> impl Iterator<Item = (&'static str, OpCounts, Length, f64)> {
         self.ledger.parts().into_iter().map(move |(part, length, counts)| {
             let clocks = clock.clocks(self.machine, &Work::from(counts.clone()), self.n(length));
@@ -66,7 +66,7 @@ impl Counted<'_> {
         })
     }
 
-    /// Operations and clock periods of a part, or of the step; none of a part that the text lacks.
+    /// Operations and clock periods of a part, or of the step; `None` for a part that the program lacks.
     fn sums(&self, part: Option<Part>) -> (Option<u64>, Option<f64>) {
         let rows = self.rows(Clock::Paper).filter(|(name, ..)| part.is_none_or(|part| part.name() == *name));
         let (nop, clocks) =
@@ -75,7 +75,7 @@ impl Counted<'_> {
     }
 }
 
-/// The efficiency table of a question on a machine.
+/// Efficiency table of a scene on a machine.
 pub(crate) fn efficiency_table(question: &Question, machine: &MachineModel) -> Result<Made, QuestionError> {
     let source_question = question.printed();
     let texts = [Counted::of(&source_question, machine)?, Counted::of(question, machine)?];
@@ -134,7 +134,7 @@ pub(crate) fn efficiency_table(question: &Question, machine: &MachineModel) -> R
     ]))
 }
 
-/// Operations of each section once and at a place, by sweeps over all places and over one.
+/// Operations of each section per cell and per offset, from sweeps over all offsets and over one.
 fn force_sections(question: &Question, name: &str, title: &str) -> Result<Frame, QuestionError> {
     let tally = |model: &Model| -> Vec<(&'static str, OpCounts)> {
         let forces = programs(model, Precision::F64).into_iter().filter(|step| step.part == Part::Forces);
@@ -145,7 +145,7 @@ fn force_sections(question: &Question, name: &str, title: &str) -> Result<Frame,
     let all = tally(&model);
     let one = tally(&Model { mask: Mask::one_place(), ..model });
     let shifts = |counts: &OpCounts| counts.of_class(OpClass::Shift);
-    // Section; operations of a place, of these shifts, once a cell, in all.
+    // Section; operations per offset, shifts among these, operations per cell, total.
     let mut rows: Vec<(&str, [u64; 4])> = vec![];
     for (section, counts) in &all {
         let of_one = one.iter().find(|(name, _)| name == section).map(|(_, counts)| counts);
@@ -200,7 +200,7 @@ fn classes(ledgers: [&Ledger; 2]) -> Frame {
     rows.cells(both("step"), |&class| total(class)).frame("operation_classes", "Counted operations by class")
 }
 
-/// The scene of the question, and scenes that need less or more.
+/// The given scene, and simpler and more expensive scenes.
 fn savings(question: &Question, machine: &MachineModel) -> Result<Frame, QuestionError> {
     let asked = question.choice;
     let variants = [

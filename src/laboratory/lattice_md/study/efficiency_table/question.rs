@@ -1,4 +1,4 @@
-//! Questions that an efficiency table answers: a number of particles, an occupancy, and what is modelled.
+//! Scenes of efficiency tables: number of particles, occupancy, and modelled features.
 
 use crate::study::StudyError;
 use clap::Args;
@@ -14,35 +14,35 @@ use stripmine_physics::reported::{Class, Reported};
 use stripmine_physics::scene::Precision;
 use stripmine_physics::words::Words;
 
-/// A scene whose operations are counted: options of verbs.
+/// Scene whose operations are counted, as options of verbs.
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct Question {
     /// Number of particles NP
     #[arg(long, default_value_t = 1000)]
     pub(crate) particles: usize,
-    /// Occupancy of the lattice: particles for each cell, above 0 and at most 1
+    /// Occupancy of the lattice: particles per cell, above 0 and at most 1
     #[arg(long, default_value_t = 0.25)]
     pub(crate) occupancy: f64,
     #[command(flatten)]
     pub(crate) choice: Choice,
 }
 
-/// Parts of the method that a scene needs. BP93's programs have friction, different discs and absolute positions.
+/// Features of the method that a scene needs. BP93's program has friction, different discs and absolute positions.
 #[derive(Args, Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Choice {
-    /// Programs: ours, or the source's own as printed
+    /// Program: ours, or BP93's as printed
     #[arg(long, default_value = "ours", value_parser = text_parser())]
     pub(crate) text: ProgramText,
-    /// Leave out friction, and with it rotation
+    /// Omit friction and rotation
     #[arg(long, conflicts_with = "text")]
     pub(crate) frictionless: bool,
-    /// All discs alike: radius and mass are numbers, not vectors
+    /// Equal discs: radius and mass are scalars, not vectors
     #[arg(long, conflicts_with = "text")]
     pub(crate) equal_discs: bool,
     /// Values of Gear's scheme
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u8).range(4..=6))]
     pub(crate) gear_values: u8,
-    /// Width of the mask: 5 (24 places) or 7 (48)
+    /// Width of the mask: 5 (24 offsets) or 7 (48 offsets)
     #[arg(long, default_value = "5", value_parser = PossibleValuesParser::new(["5", "7"]).map(|it| if it == "7" { 7_u32 } else { 5 }))]
     pub(crate) mask: u32,
     /// Positions relative to the cell instead of the origin
@@ -63,7 +63,7 @@ impl Default for Question {
     }
 }
 
-/// Everything that the source models, by our programs.
+/// All features of BP93, with our program.
 impl Default for Choice {
     fn default() -> Self {
         let (text, [frictionless, equal_discs, cell_relative]) = (ProgramText::Ours, [false; 3]);
@@ -72,7 +72,7 @@ impl Default for Choice {
 }
 
 impl Choice {
-    /// The choice with the source's own programs.
+    /// This choice with BP93's program.
     pub(crate) fn printed(self) -> Choice {
         let Choice { gear_values, mask, .. } = self;
         Choice { text: ProgramText::Printed, gear_values, mask, ..Choice::default() }
@@ -80,20 +80,20 @@ impl Choice {
 }
 
 impl Question {
-    /// The question to the source's own programs.
+    /// This scene with BP93's program.
     pub(crate) fn printed(self) -> Question {
         Question { choice: self.choice.printed(), ..self }
     }
 }
 
-/// A scene that has no table.
+/// Scene without an efficiency table.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum QuestionError {
-    #[error("an occupancy lies above 0 and at most at 1 (one disc a cell), not at {0}")]
+    #[error("the occupancy is {0}; it must be above 0 and at most 1 (one disc per cell)")]
     Occupancy(f64),
     #[error("a step needs at least one particle")]
     NoParticles,
-    #[error("{particles} particles at occupancy {occupancy} make no lattice: {cause}")]
+    #[error("no lattice exists for {particles} particles at occupancy {occupancy}: {cause}")]
     Shape { particles: usize, occupancy: f64, cause: ShapeError },
 }
 
@@ -109,9 +109,9 @@ impl From<QuestionError> for StudyError {
     }
 }
 
-/// A model with `choice` on a nearly square, periodic lattice of about `cells` cells.
+/// Model with `choice` on a nearly square, periodic lattice of about `cells` cells.
 ///
-/// Parameters that change no operation count are arbitrary.
+/// Parameters that do not affect operation counts are arbitrary.
 pub(crate) fn counting_model(cells: usize, choice: Choice) -> Result<Model, ShapeError> {
     let columns = ((cells as f64).sqrt().round() as usize).max(1);
     let rows = cells.div_ceil(columns);
@@ -160,7 +160,7 @@ pub(crate) fn model_of(question: &Question) -> Result<Model, QuestionError> {
     counting_model(cells, choice).map_err(|cause| QuestionError::Shape { particles, occupancy, cause })
 }
 
-/// The programs of a step, and how long their vectors are, for a question.
+/// Programs of a step and their vector lengths.
 pub(crate) fn step(question: &Question) -> Result<(Vec<StepProgram>, Lengths), QuestionError> {
     let model = model_of(question)?;
     let lengths = Lengths::new(&model, question.particles, question.particles);

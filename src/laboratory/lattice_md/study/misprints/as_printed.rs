@@ -1,27 +1,27 @@
-//! The contact law with one of BP93's misprints: for this study, never for a run.
+//! Contact law with one of BP93's misprints, for this study only.
 //!
-//! It is written equation by equation, apart from the law that runs ([`granular`](stripmine_kernels::law::granular)), which has no
-//! place for a mistake on purpose. Without a misprint the two are one law: `without_a_misprint_this_law_is_ours` in `tests.rs`.
+//! The law is written equation by equation, separately from the law of runs ([`granular`](stripmine_kernels::law::granular)), which contains no
+//! deliberate errors. Without a misprint the two laws agree: `without_a_misprint_this_law_is_ours` in `tests.rs`.
 
 use stripmine_kernels::isa::{Predicate, Vector};
 use stripmine_kernels::law::granular::Contact;
 use stripmine_kernels::law::{Axis, Env, Field, Law, Sum};
 
-/// An equation of BP93's contact law that does not work as printed. A test of `tests.rs` decides each.
+/// Misprinted equations of BP93's contact law. `tests.rs` has a test for each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Misprint {
-    /// (10)–(11): the shear force acts along (n_y, −n_x), while torque (12) and slip (13) are made for (−n_y, n_x), which we take.
+    /// (10)–(11): the shear force acts along (n_y, −n_x), but torque (12) and slip (13) assume (−n_y, n_x), which we use.
     Tangent,
-    /// (14): a vector is added to a scalar, and even its normal component has the sign that feeds energy in. We subtract it.
+    /// (14): a vector is added to a scalar, and its normal component has the sign that adds energy. We subtract it.
     NormalDamping,
-    /// (15): the smaller of a signed number and the Coulomb bound, so that a negative force has no bound. We bound the magnitude.
+    /// (15): the minimum of a signed number and the Coulomb bound, so a negative force is unbounded. We bound the magnitude.
     CoulombBound,
-    /// (16): scalars are added to a vector, and the spins have signs for which gears slip. We subtract both.
+    /// (16): scalars are added to a vector, and the signs of the spins let rolling discs slip. We subtract both.
     Slip,
 }
 
 impl Misprint {
-    /// The number of the equation in BP93, its form as printed and its form as it runs.
+    /// Number of the equation in BP93, printed form and corrected form.
     pub(super) const fn words(self) -> [&'static str; 3] {
         match self {
             Misprint::Tangent => {
@@ -42,11 +42,11 @@ impl Misprint {
     }
 }
 
-/// BP93 (4)–(17) with at most one equation as printed, for rough discs that may differ: separating discs may pull, and arms are radii.
+/// BP93 (4)–(17) with at most one misprinted equation, for different rough discs. Separating discs may attract, and lever arms are radii.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct AsPrinted {
     pub(super) contact: Contact,
-    /// The equation that is as printed; none for the law that runs.
+    /// Misprinted equation; `None` for the corrected law.
     pub(super) misprint: Option<Misprint>,
 }
 
@@ -72,7 +72,7 @@ impl Law<2> for AsPrinted {
         env.own_position()
     }
 
-    /// BP93 (4)–(17); see [`Misprint`] for what is as printed.
+    /// BP93 (4)–(17); see [`Misprint`] for the deviations.
     fn pair<E: Env<2>>(&self, env: E, place: E::Place, own: &[E::V; 2]) {
         let number = |value: f64| env.uniform(value);
         let (zero, one) = (number(0.0), number(1.0));

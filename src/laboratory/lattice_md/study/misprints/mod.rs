@@ -1,4 +1,4 @@
-//! Each misprint of BP93's contact law: pairs of discs under the law as printed and under the law that runs.
+//! Misprints of BP93's contact law: pairs of discs under the printed law and under the corrected law.
 
 mod as_printed;
 #[cfg(test)]
@@ -14,27 +14,26 @@ use stripmine_kernels::law::spring::Spring;
 use stripmine_kernels::noise::{Purpose, Stream};
 use stripmine_kernels::sweep::pair::Pair;
 
-/// A quantity that tells the printed law from the one that runs.
+/// Quantity that distinguishes the printed law from the corrected law.
 struct Finding {
     misprint: Misprint,
     quantity: &'static str,
-    /// Parameters of the law, and of the pair where it has some.
+    /// Parameters of the law and, if any, of the pair.
     setting: String,
-    /// "equal to" or "at most" a number, where the law is right.
+    /// Correct value: "equal to" or "at most" a number.
     right: (&'static str, f64),
-    /// By the printed form and by ours.
+    /// Values with the printed law and with the corrected law.
     by: [f64; 2],
 }
 
-/// Energy, kinetic and elastic, at a time of the head-on collision: with (14) as printed, with ours, and with ours undamped, by which
-/// the integrator is judged.
+/// Time and kinetic plus elastic energy of the head-on collision: with (14) as printed, with the corrected law, and with the corrected law
+/// without damping, which tests the integrator.
 type Energy = [f64; 4];
 
-/// |F_S| / (μ|F_N|) of a contact at a slip velocity, with (15) as printed and with ours.
+/// Slip velocity and |F_S| / (μ|F_N|) of a contact, with (15) as printed and with the corrected law.
 type CoulombRatio = [f64; 3];
 
-/// BP93's stiffness and friction, damping weak enough for discs of mass 1 to bounce, and its form of the law: separating discs may
-/// pull.
+/// BP93's stiffness and friction, with damping weak enough for discs of mass 1 to bounce. As in BP93, separating discs may attract.
 const CONTACT: Contact = Contact {
     spring: Spring::Hertz,
     stiffness: 100.0,
@@ -44,33 +43,33 @@ const CONTACT: Contact = Contact {
     cohesionless: false,
     arm: ContactArm::Radius,
 };
-/// Damping so weak that (14) as printed adds a small part of the energy in a collision.
+/// Damping so weak that (14) as printed adds only a small part of the energy in a collision.
 const HEAD_ON: Contact = Contact { normal_damping: 0.175, shear_damping: 0.0, friction: 0.0, ..CONTACT };
-/// Slips reach the Coulomb bound in the middle of their range.
+/// Slip velocities reach the Coulomb bound in the middle of their range.
 const SLIDING: Contact = Contact { shear_damping: 10.0, ..CONTACT };
-/// Spins change a lot, and nothing else takes energy.
+/// Spins change strongly, and only shear damping dissipates energy.
 const OBLIQUE: Contact = Contact { normal_damping: 0.0, shear_damping: 40.0, friction: 5.0, ..CONTACT };
 
-/// Steps of the Runge–Kutta method in a unit of time.
+/// Steps of the Runge–Kutta method per unit of time.
 const STEPS: usize = 10_000;
-/// Steps of the head-on collision: it is over by then.
+/// Steps of the head-on collision, enough for the discs to separate.
 const HEAD_ON_STEPS: usize = 7_000;
-/// Steps between the moments that are kept of it.
+/// Steps between the recorded moments.
 const MOMENT: usize = 50;
-/// Steps of the oblique collision.
+/// Steps of the oblique collision, enough for the discs to separate.
 const OBLIQUE_STEPS: usize = 12_000;
 /// Distance of the two lines of flight.
 const OBLIQUE_OFFSET: f64 = 1.4;
-/// Largest slip velocity that is tried, to either side.
+/// Largest slip velocity in either direction.
 const LARGEST_SLIP: f64 = 2.0;
-/// Slips tried on either side.
+/// Number of slip velocities in either direction.
 const SLIPS: i32 = 40;
-/// Random pairs.
+/// Number of random pairs.
 const PAIRS: usize = 500;
-/// Their seed.
+/// Seed of the random pairs.
 const SEED: u64 = 1993;
 
-/// Tries every misprint.
+/// Tests every misprint.
 pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let (head_on, sliding) = (head_on(), sliding());
     let findings = Rows::of(findings(&head_on, &sliding))
@@ -110,7 +109,7 @@ fn findings(head_on: &[Energy], sliding: &[CoulombRatio]) -> [Finding; 6] {
             exact,
             [off_the_rule(&printed(Tangent, CONTACT)), off_the_rule(&ours(CONTACT))],
         ),
-        // Discs that have parted hold no elastic energy.
+        // Separated discs have no elastic energy.
         finding(
             NormalDamping,
             "kinetic energy after a frictionless head-on collision",
@@ -154,7 +153,7 @@ fn setting(contact: Contact) -> String {
     format!("k_N = {stiffness}, γ_N = {normal_damping}, γ_S = {shear_damping}, μ = {friction}")
 }
 
-/// The largest of the values; no number if one of them is none.
+/// Largest magnitude; NaN if a value is NaN or there is none.
 fn largest(values: impl Iterator<Item = f64>) -> f64 {
     values.map(f64::abs).max_by(f64::total_cmp).unwrap_or(f64::NAN)
 }
@@ -163,12 +162,12 @@ fn printed(misprint: Misprint, contact: Contact) -> AsPrinted {
     AsPrinted { contact, misprint: Some(misprint) }
 }
 
-/// The law that runs, for discs that may differ.
+/// Corrected law for different discs.
 fn ours(contact: Contact) -> Granular<true, false> {
     Granular { contact, disc: Disc { radius: f64::NAN, inverse_mass: f64::NAN } }
 }
 
-/// Largest error of d(L_orbital + L_spin)/dt = −ξ F_S, where the torque on the own disc is −R F_S.
+/// Largest error of d(L_orbital + L_spin)/dt = −ξ F_S, with −R F_S the torque on the first disc.
 fn off_the_rule<L: Law<2>>(law: &L) -> f64 {
     let mut random = Stream::new(SEED, Purpose::Placement, 0);
     let pairs = (0..PAIRS).map(|_| Pair::random(&mut random));
@@ -179,7 +178,7 @@ fn off_the_rule<L: Law<2>>(law: &L) -> f64 {
     }))
 }
 
-/// Elastic energy of a contact, ⅖ k_N ξ^{5/2}: written here apart, because it judges the laws.
+/// Elastic energy of a contact, ⅖ k_N ξ^{5/2}. Independent of the laws, because it judges them.
 fn elastic_energy(pair: &Pair, stiffness: f64) -> f64 {
     let depth = pair.depth().max(0.0);
     0.4 * stiffness * (depth * depth * depth.sqrt())
@@ -201,7 +200,7 @@ fn head_on() -> Vec<Energy> {
     (0..printed.len()).map(|at| [time(at), printed[at], damped[at], undamped[at]]).collect()
 }
 
-/// Discs that touch, the first of them moving along the tangent.
+/// Touching discs, the first of which moves along the tangent.
 fn slide(slip: f64) -> Pair {
     let mut pair = Pair::touching();
     pair.bodies[0].velocity = pair.tangent().map(|component| slip * component);

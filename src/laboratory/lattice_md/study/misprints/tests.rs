@@ -1,15 +1,14 @@
-//! Each of the source's four misprints fails a test of its own, which the law that runs passes; and the findings of the
-//! study say so.
+//! Each of BP93's four misprints fails a test that the corrected law passes, and the study reports the same.
 
 use super::*;
 
-/// Pairs in contact, drawn at random.
+/// Random pairs in contact.
 fn random_pairs(seed: u64, count: usize) -> impl Iterator<Item = Pair> {
     let mut random = Stream::new(seed, Purpose::Test, 0);
     (0..count).map(move |_| Pair::random(&mut random))
 }
 
-/// The control of the tests below: with no equation as printed, the law is ours.
+/// Control of the tests below: without a misprint this law equals the corrected law.
 #[test]
 fn without_a_misprint_this_law_is_ours() {
     let (ours, theirs) = (ours(CONTACT), AsPrinted { contact: CONTACT, misprint: None });
@@ -27,7 +26,7 @@ fn energies<L: Law<2>>(law: &L, offset: f64, stiffness: Option<f64>) -> (f64, f6
     let before = pair.kinetic_energy();
     let mut total = before;
     for now in pair.trajectory(law, 1e-4).take(30_001) {
-        // Where the caller says the stiffness, energy including the elastic part must never grow.
+        // With a given stiffness the energy including the elastic part must never grow.
         if let Some(stiffness) = stiffness {
             let energy = now.kinetic_energy() + elastic_energy(&now, stiffness);
             assert!(energy <= total + 1e-10, "energy grew from {total} to {energy}");
@@ -39,8 +38,8 @@ fn energies<L: Law<2>>(law: &L, offset: f64, stiffness: Option<f64>) -> (f64, f6
     (before, pair.kinetic_energy())
 }
 
-/// (14) as printed feeds energy in: a frictionless head-on collision ends faster than it began. Ours ends
-/// slower, and without damping as fast.
+/// (14) as printed adds energy: a frictionless head-on collision ends faster than it began. With the corrected law it ends slower, and
+/// without damping equally fast.
 #[test]
 fn printed_14_makes_kinetic_energy_grow_in_a_head_on_collision() {
     let contact =
@@ -55,8 +54,8 @@ fn printed_14_makes_kinetic_energy_grow_in_a_head_on_collision() {
     assert!((undamped - before).abs() < 1e-6, "{undamped}");
 }
 
-/// (15) as printed bounds a force that is positive and lets a negative one grow: a sliding contact breaks the
-/// Coulomb bound for v_t > 0, keeps it for v_t < 0, and is not its own mirror image.
+/// (15) as printed bounds only positive forces: a sliding contact violates the Coulomb bound for v_t > 0, satisfies it for v_t < 0, and
+/// is not mirror symmetric.
 #[test]
 fn printed_15_bounds_one_side_only() {
     let contact = Contact { shear_damping: 1000.0, cohesionless: false, ..CONTACT };
@@ -79,7 +78,7 @@ fn printed_15_bounds_one_side_only() {
     }
 }
 
-/// (16) as printed lets a gear pair slip and equal spins not.
+/// (16) as printed gives slip for rolling discs and none for equal spins.
 #[test]
 fn printed_16_makes_a_gear_pair_slip() {
     let contact = Contact { cohesionless: false, ..CONTACT };
@@ -95,7 +94,7 @@ fn printed_16_makes_a_gear_pair_slip() {
     assert!(shear(rubbing).1.abs() > 0.5);
 }
 
-/// (16) as printed makes energy grow in an oblique collision without normal damping; ours loses some.
+/// (16) as printed adds energy in an oblique collision without normal damping; the corrected law dissipates.
 #[test]
 fn printed_16_makes_energy_grow_in_an_oblique_collision() {
     let contact =
@@ -107,8 +106,8 @@ fn printed_16_makes_energy_grow_in_an_oblique_collision() {
     assert!(ours < 0.99 * before, "{ours}");
 }
 
-/// (10)–(11) as printed, with the tangent (n_y, −n_x), give the pair −(2(R_i + R_j) − ξ) F_S of angular
-/// momentum where the rule is −ξ F_S.
+/// (10)–(11) as printed, with the tangent (n_y, −n_x), change the angular momentum of the pair by −(2(R_i + R_j) − ξ) F_S instead of
+/// −ξ F_S.
 #[test]
 fn printed_10_and_11_break_the_rule_of_angular_momentum() {
     let contact = Contact { cohesionless: false, ..CONTACT };
@@ -117,7 +116,7 @@ fn printed_10_and_11_break_the_rule_of_angular_momentum() {
     for pair in random_pairs(10, 500) {
         let depth = pair.depth();
         let [first, second] = pair.bodies.map(|body| body.radius);
-        // The shear force proper: the torque on the first disc is −R F_S in either law.
+        // The torque on the first disc is −R F_S in either law.
         let shear = -pair.sums(&printed)[0][2] / first;
         let arms = 2.0 * (first + second) - depth;
         assert!((pair.angular_momentum_rate(&printed) + arms * shear).abs() < 1e-12);
@@ -130,9 +129,9 @@ fn printed_10_and_11_break_the_rule_of_angular_momentum() {
     assert!(largest > 1.0);
 }
 
-/// Rounding of a value that is right.
+/// Rounding error of a correct value.
 const ROUNDING: f64 = 1e-9;
-/// Smallest error that a table shows.
+/// Smallest error visible in a table.
 const VISIBLE: f64 = 0.01;
 
 #[test]
@@ -148,7 +147,7 @@ fn every_printed_form_fails_and_ours_holds() {
     }
 }
 
-/// From 0.500 to 0.536 as printed; ours never rises, and without damping the energy comes back.
+/// As printed the energy rises from 0.500 to 0.536; with the corrected law it never rises, and without damping it is conserved.
 #[test]
 fn printed_14_feeds_energy_into_a_head_on_collision() {
     let head_on = head_on();
@@ -177,7 +176,7 @@ fn collisions_are_over_when_they_are_judged() {
     }
 }
 
-/// For v_t > 0 the printed form leaves the bound, for v_t < 0 it is ours; below the bound both are viscous.
+/// For v_t > 0 the printed form exceeds the bound, for v_t < 0 it equals the corrected form; below the bound both are viscous.
 #[test]
 fn printed_15_leaves_the_bound_on_one_side_only() {
     let sliding = sliding();

@@ -1,17 +1,17 @@
-//! The cases of a validation, and how far off their predictions are.
+//! Cases of a validation, and the errors of their predictions.
 
 use super::EXECUTIONS;
 use crate::frame::{Frame, Rows};
 use crate::statistics::quantile;
 
-/// The name of a whole step among the phases.
+/// Name of a whole step among the phases.
 const STEP: &str = "step";
-/// The name of a program of a law that nothing was calibrated on.
+/// Name of a program of a law without calibration.
 pub(super) const STRANGER: &str = "law";
-/// How many of the worst cases are named.
+/// Number of worst cases in the table.
 const NAMED: usize = 12;
 
-/// A phase of a step of one run, a whole step, or a program of a law that nothing was calibrated on.
+/// Phase of a step of one run, a whole step, or a program of a law without calibration.
 #[derive(Clone, Debug)]
 pub(super) struct Case {
     /// Precision, NP and ρ; or the law and the length of the vectors.
@@ -25,25 +25,25 @@ pub(super) struct Case {
 }
 
 impl Case {
-    /// A whole step of its phases; none of none.
+    /// Whole step as the sum of its phases; `None` without phases.
     pub(super) fn step(phases: &[Case]) -> Option<Case> {
         let sum = |of: fn(&Case) -> f64| phases.iter().map(of).sum::<f64>();
         let (predicted, measured) = (sum(|case| case.predicted), sum(|case| case.measured));
         Some(Case { phase: STEP, predicted, measured, ..phases.first()?.clone() })
     }
 
-    /// The error, relative to what was measured.
+    /// Error relative to the measured time.
     fn error(&self) -> f64 {
         self.predicted / self.measured - 1.0
     }
 
-    /// Returns whether its work depends on the data.
+    /// Returns true if the work depends on the data.
     fn depends_on_data(&self) -> bool {
         EXECUTIONS.contains(&(self.execution, None))
     }
 }
 
-/// The errors group by group, the worst cases, and all of them.
+/// Frames of the errors by group, of the worst cases, and of all cases.
 pub(super) fn frames(cases: &[Case]) -> [Frame; 3] {
     let of = |errors: &[f64], share| 100.0 * quantile(errors, share).unwrap_or(f64::NAN);
     let mut worst: Vec<&Case> = cases.iter().collect();
@@ -72,7 +72,7 @@ pub(super) fn frames(cases: &[Case]) -> [Frame; 3] {
     ]
 }
 
-/// Groups of cases with the magnitudes of their errors in rising order.
+/// Groups of cases with the sorted magnitudes of their errors.
 fn groups(cases: &[Case]) -> Vec<(String, Vec<f64>)> {
     let mut groups = vec![];
     let mut group = |what: String, keep: &dyn Fn(&Case) -> bool| {

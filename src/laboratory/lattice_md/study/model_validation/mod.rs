@@ -1,5 +1,5 @@
-//! How good is the host model? Predicted against measured: whole steps of moving discs and their phases, timed as runs time them, and
-//! programs of laws that nothing was calibrated on.
+//! Validation of the host model: predicted and measured times of whole steps of moving discs, of their phases, and of programs of laws without
+//! calibration.
 
 mod errors;
 mod strangers;
@@ -21,17 +21,17 @@ use stripmine_physics::method::lattice_md::{Part, Phase};
 use stripmine_physics::reported::{Class, Reported};
 use stripmine_physics::scene::Overrides;
 
-/// How much is measured.
+/// Size of a validation.
 pub(crate) struct Effort {
     pub(crate) particles: Vec<usize>,
     /// ρ on cells as wide as the radius.
     pub(crate) occupancies: Vec<f64>,
-    /// Rounds over all runs at most, and seconds that they take about; one is made in any case.
+    /// Maximum number of rounds over all runs, and approximate total seconds; at least one round is made.
     pub(crate) rounds: usize,
     pub(crate) seconds: f64,
 }
 
-/// What is run, as scenes name it; programs with their execution.
+/// Names of the measured executions; programs also with their [`Execution`].
 const EXECUTIONS: [(&str, Option<Execution>); 7] = [
     ("eager", Some(Execution::Eager)),
     ("strip:64", Some(Execution::Strip(64))),
@@ -42,7 +42,7 @@ const EXECUTIONS: [(&str, Option<Execution>); 7] = [
     (LISTS, None),
 ];
 
-/// A run or a program outside what was calibrated.
+/// Run or program outside the calibrated range.
 #[derive(Debug, thiserror::Error)]
 #[error("{case}: {cause}")]
 struct NoPrediction {
@@ -62,7 +62,7 @@ impl Reported for NoPrediction {
     }
 }
 
-/// The shipped model on few runs, or, in full, a model calibrated just before on more of them.
+/// Validates the shipped model on a few runs, or in full a freshly calibrated model on more runs.
 ///
 /// # Errors
 /// [`StudyError`] if this host cannot be calibrated or a scene breaks.
@@ -80,15 +80,15 @@ pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     Ok(model_validation(&host, whose, &effort, |share| progress(0.5 + 0.5 * share))?)
 }
 
-/// Title of the model that was calibrated here.
+/// Description of a model calibrated on this host.
 pub(crate) fn calibrated_now(host: &HostModel) -> String {
     format!("the model of this host, {}, calibrated just before", host.title)
 }
 
-/// Predicts by a model, called `whose`, and measures, on one thread. `progress` gets the share that is done.
+/// Predicts with a model, described by `whose`, and measures on one thread. `progress` receives the completed share.
 ///
 /// # Errors
-/// [`StudyError`] if a scene breaks or lies outside what was calibrated; the latter before anything is run.
+/// [`StudyError`] if a scene breaks or lies outside the calibrated range; the latter before any run.
 pub(crate) fn model_validation(
     host: &HostModel,
     whose: String,
@@ -96,7 +96,7 @@ pub(crate) fn model_validation(
     progress: impl Fn(f64) + Sync,
 ) -> Result<Made, StudyError> {
     let runs: Vec<Run> = runs(effort).collect();
-    // Before discs are placed: large scenes take their time.
+    // Before discs are placed, which takes long in large scenes.
     for run in &runs {
         host.admits(run.particles).map_err(NoPrediction::of(name(run)))?;
         if run.rates().is_some() {
@@ -112,7 +112,7 @@ pub(crate) fn model_validation(
     on_threads(1, || {
         let (start, mut done) = (Instant::now(), 0);
         let spent = || start.elapsed().as_secs_f64() / effort.seconds;
-        // A round as long as those before must end in time.
+        // The next round, if as long as the previous ones, must end in time.
         while done == 0 || done < effort.rounds && spent() * (1.0 + 1.0 / done as f64) <= 1.0 {
             let all = scenes.len() as f64;
             for (scene, at) in scenes.iter_mut().zip(1..) {
@@ -158,7 +158,7 @@ fn name(run: &Run) -> String {
     format!("{}, {}", run.execution, place(run))
 }
 
-/// Nanoseconds of every phase by the model.
+/// Predicted nanoseconds of every phase.
 fn predicted(host: &HostModel, scene: &TimedRun) -> Result<Vec<f64>, StudyError> {
     let run = scene.run;
     let named = EXECUTIONS.iter().find(|(name, _)| *name == run.execution);
@@ -176,7 +176,7 @@ fn predicted(host: &HostModel, scene: &TimedRun) -> Result<Vec<f64>, StudyError>
             Phase::Index => &[Part::Index, Part::Lattice],
             Phase::Forces => &[Part::Forces],
             Phase::Correct => &[Part::Corrector],
-            // Only the fast engine has it, which has no programs.
+            // Only in the fast engine, which has no programs.
             Phase::CorrectPredict | Phase::Halo => &[],
         };
         let own = outlined.iter().filter(|(part, ..)| parts.contains(part));
@@ -185,7 +185,7 @@ fn predicted(host: &HostModel, scene: &TimedRun) -> Result<Vec<f64>, StudyError>
     Phase::ALL.iter().map(of_phase).collect::<Result<_, _>>().map_err(NoPrediction::of(name(&run)))
 }
 
-/// The phases of a run and the whole step.
+/// Cases of the phases of a run and of the whole step.
 fn measured(host: &HostModel, scene: &TimedRun) -> Result<Vec<Case>, StudyError> {
     let phases = Phase::ALL.iter().zip(predicted(host, scene)?).map(|(&phase, predicted)| Case {
         place: place(&scene.run),

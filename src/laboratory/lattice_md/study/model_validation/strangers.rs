@@ -1,4 +1,4 @@
-//! Programs of laws that nothing was calibrated on: a model that needs a number for every program would have none for these.
+//! Programs of laws without calibration, to test that the model does not need a fitted number for every program.
 
 use super::errors::{Case, STRANGER};
 use super::{EXECUTIONS, NoPrediction};
@@ -16,14 +16,14 @@ use stripmine_kernels::sweep::lattice::{Coordinates, Frame, LatticeShape};
 use stripmine_kernels::{InstructionSet, Program, Runnable};
 use stripmine_physics::method::throughput::MeasurementError;
 
-/// Elements of the vectors, about: in the caches and beyond.
+/// Approximate lengths of the vectors: in the caches and beyond.
 const LENGTHS: [usize; 3] = [600, 8000, 100_000];
-/// Samples of each.
+/// Samples per program.
 const SAMPLES: usize = 5;
-/// Elements of a sample, about.
+/// Approximate number of elements per sample.
 const ELEMENTS: usize = 30_000;
 
-/// Every law over vectors of every length, by every execution of programs.
+/// Measures every law with vectors of every length and with every execution of programs.
 pub(super) fn strangers(host: &HostModel) -> Result<Vec<Case>, StudyError> {
     let mut cases = vec![];
     for n in LENGTHS {
@@ -45,7 +45,7 @@ pub(super) fn strangers(host: &HostModel) -> Result<Vec<Case>, StudyError> {
     Ok(cases)
 }
 
-/// A program over `n` elements from `first` on, by every execution; arrays that it reads and writes have `length` elements each.
+/// Runs a program over `n` elements starting at `first` with every execution. All arrays have `length` elements.
 fn ran(
     host: &HostModel,
     name: &str,
@@ -68,7 +68,7 @@ fn ran(
     let cases = programs.map(|(execution, how)| {
         let predicted = host.program(&outlines, n, how, &around);
         let predicted = predicted.map_err(NoPrediction::of(execution.to_owned()))?;
-        // Each by itself: another execution would leave other caches.
+        // Separately, because another execution would change the contents of the caches.
         let mut samples = [Samples::default()];
         for _ in 0..SAMPLES {
             let run = |_| program.run(&memory, first..first + n, how, InstructionSet::best());

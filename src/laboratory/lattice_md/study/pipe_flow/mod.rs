@@ -1,4 +1,4 @@
-//! Grains that fall through a pipe: BP93, section 4, figures 5 and 6.
+//! Grains falling through a pipe: BP93, section 4, figures 5 and 6.
 
 mod pictures;
 
@@ -19,23 +19,23 @@ use stripmine_physics::scene::{DT, GRAVITY, Overrides, PACKING_FRACTION, SEED, S
 
 /// Time between two samples (s), as in figure 6.
 const STRIDE: f64 = 0.05;
-/// Bins of the Fano factor, in mean radii.
+/// Bin width for the Fano factor, in mean radii.
 const FANO_BIN: f64 = 20.0;
-/// Bins of the map of density, in mean radii.
+/// Bin width of the density map, in mean radii.
 const MAP_BIN: f64 = 5.0;
 /// Shortest wavelength of waves, in mean radii.
 const SHORTEST_WAVE: f64 = 80.0;
 /// Steps of the control: 2 s.
 const CONTROL: u64 = 40_000;
-/// Rows of a map that a picture resolves; a line has twice as many points.
+/// Number of rows of a map resolved by a picture; a line has twice as many points.
 const ROWS: usize = 120;
 
-/// Two fifths of the pipe.
+/// Simulates two fifths of the pipe.
 pub(crate) fn short(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     Ok(Runs::of("pipe-small", &Overrides::new(), &[1], false, lab)?.made())
 }
 
-/// The whole pipe, with snapshots as in figure 6.
+/// Simulates the whole pipe, with snapshots as in figure 6.
 pub(crate) fn whole(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let runs = Runs::of("pipe", &Overrides::new(), &[1, 2], true, lab)?;
     let (drawn, made) = (&runs.flows[0], runs.made());
@@ -43,42 +43,42 @@ pub(crate) fn whole(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     Ok(made.with_picture("figure_6", pictures::snapshots(drawn)).with_film(pictures::film(drawn)))
 }
 
-/// The whole pipe with fewer grains.
+/// Simulates the whole pipe with fewer grains.
 pub(crate) fn thin(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let thin = Overrides::new().set(&PACKING_FRACTION, 0.35);
     Ok(Runs::of("pipe", &thin, &[1, 2], false, lab)?.made())
 }
 
-/// An elastic gas without gravity in a pipe, a control without waves. Its contacts need the shorter step (s).
+/// Overrides for a control without waves: an elastic gas without gravity. Its contacts need the shorter step (s).
 pub(super) fn elastic(pipe: &Overrides) -> Overrides {
     let gas = pipe.clone().set(&GRAVITY, [0.0; 2]).set(&NORMAL_DAMPING, 0.0).set(&SHEAR_DAMPING, 0.0);
     gas.set(&FRICTION, 0.0).set(&DT, 5e-5)
 }
 
-/// A run.
+/// Time series and results of a run.
 #[derive(Default)]
 pub(super) struct Flow {
     seed: u64,
     grains: usize,
     /// Length of the pipe (m).
     length: f64,
-    /// Times of the samples, the start first (s).
+    /// Times of the samples, beginning with the start (s).
     times: Vec<f64>,
     /// Variance over mean of the grains in bins of [`FANO_BIN`] radii, at each sample.
     pub fano: Vec<f64>,
-    /// Strongest Fourier amplitude at wavelengths from [`SHORTEST_WAVE`] radii on, at each sample.
+    /// Strongest Fourier amplitude at wavelengths of at least [`SHORTEST_WAVE`] radii, at each sample.
     pub(crate) strongest_mode: Vec<f64>,
     /// Mean velocity along the pipe at each sample (m/s).
     pub flow: Vec<f64>,
     /// Grains in bins of [`MAP_BIN`] radii, at each sample.
     density: Vec<Vec<u32>>,
-    /// Directions of the waves in the last half of the run: forth is the way grains fall.
+    /// Spectral power by direction in the last half of the run; forth is the direction of gravity.
     directions: Directions,
-    /// Deepest penetration beyond the scene's `max_penetration` (fraction of the sum of the radii).
+    /// Largest penetration that exceeds the scene's `max_penetration` (fraction of the sum of the radii).
     deepest: f64,
     /// CRC-32 of the final state, by id.
     checksum: String,
-    /// Grains at each sample, if they are to be drawn.
+    /// Grains at each sample, if they are drawn.
     frames: Vec<Particles>,
 }
 
@@ -87,10 +87,9 @@ pub(super) fn late(course: &[f64]) -> Mean {
     Mean::of_course(&course[course.len() - course.len() / 2..])
 }
 
-/// Runs a pipe. `progress` gets the share that is done.
+/// Runs a pipe. `progress` receives the completed share.
 ///
-/// The run uses neighbour lists: they give the lattice's trajectory to the bit (item `identity`), in a third of the time for so small
-/// a scene.
+/// The run uses neighbour lists: they give bits identical to the lattice's (item `identity`) in a third of the time for such a small scene.
 pub(super) fn flow(
     scene: &str,
     overrides: &Overrides,
@@ -137,7 +136,7 @@ pub(super) fn flow(
     Ok(flow)
 }
 
-/// Runs that differ by their seed, and the control.
+/// Runs with different seeds, and the control.
 struct Runs {
     title: String,
     flows: Vec<Flow>,
@@ -212,7 +211,7 @@ impl Runs {
             flows.iter().map(|flow| of(&flow.directions)).fold(f64::INFINITY, f64::min)
         };
         let beyond_gas = |power: fn(&Directions) -> f64| least(&power) / power(&control.directions);
-        // Waves of the same strength that run against gravity alone also have some power with gravity, because they grow and decay.
+        // Waves of equal amplitude that move only against gravity also have some power with gravity, because they grow and decay.
         let one_wave = least(&|it| it.forth / it.of_one_wave[1]);
         Rows::of([()])
             .count("grains", |()| flows[0].grains)

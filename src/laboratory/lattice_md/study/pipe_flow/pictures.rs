@@ -1,19 +1,19 @@
-//! Drawings of a pipe: figures 5 and 6, the density over time, and the film.
+//! Pictures of a pipe: figures 5 and 6, the density map, and the film.
 
 use super::{Flow, ROWS};
 use crate::report::figure::{Axis, Drawing, Guide, Map, Picture, Shape, Tint};
 use crate::report::section::{Film, Frame};
 use stripmine_physics::particles::{Kind, Particle, Particles};
 
-/// Time from which on snapshots are drawn (s).
+/// Time of the first snapshot (s).
 const FROM: f64 = 10.0;
-/// Snapshots that are drawn.
+/// Number of drawn snapshots.
 const SNAPSHOTS: usize = 14;
-/// Frames of the film.
+/// Number of frames of the film.
 const FRAMES: usize = 24;
-/// Rim speeds (m/s) at the ends of the shades.
+/// Rim speed (m/s) at the ends of the shade scale.
 const SPIN: f64 = 1.0;
-/// Name of the shades.
+/// Label of the shade scale.
 const SHADE: &str = "rim speed ΩR (m/s)";
 
 fn shape(disc: &Particle, offset: [f64; 2], tint: Tint) -> Shape {
@@ -22,18 +22,18 @@ fn shape(disc: &Particle, offset: [f64; 2], tint: Tint) -> Shape {
     Shape::Disc { centre: [x + offset[0], y + offset[1]], radius: disc.radius, tint }
 }
 
-/// Half the height of the pipe with its walls.
+/// Half the height of the pipe including the walls.
 fn half_height(particles: &Particles) -> f64 {
     particles.all().iter().map(|disc| disc.position[1].abs() + disc.radius).fold(0.0, f64::max)
 }
 
-/// A drawing in metres; gravity acts along the pipe, which is drawn lying.
+/// Drawing in metres. The pipe is drawn horizontally, with gravity to the right.
 fn drawing(window: [[f64; 2]; 2], shapes: Vec<Shape>, shades: Option<(f64, f64, String)>) -> Picture {
     let guide = Some(Guide { unit: "m".into(), gravity: Some([1.0, 0.0]) });
     Picture::Drawing(Drawing { window, width: 1200.0, shapes, shades, guide })
 }
 
-/// Figure 5: the densest stretch of the pipe at the end, every disc with its spin.
+/// Figure 5: densest stretch of the pipe at the end, every disc with its spin.
 pub(super) fn piece(flow: &Flow) -> Picture {
     let (length, particles) = (flow.length.min(1.2), &flow.frames[flow.frames.len() - 1]);
     let (half, counts) = (half_height(particles), &flow.density[flow.density.len() - 1]);
@@ -44,7 +44,7 @@ pub(super) fn piece(flow: &Flow) -> Picture {
     let left = start as f64 * width;
     let shapes = particles.all().iter().flat_map(|disc| {
         let spin = (0.5 + 0.5 * disc.omega * disc.radius / SPIN).clamp(0.0, 1.0);
-        // Discs that leave on the right return on the left.
+        // Discs that leave on the right re-enter on the left.
         [0.0, flow.length].map(|turn| shape(disc, [turn - left, 0.0], Tint::Shade(spin)))
     });
     let inside = |shape: &Shape| match shape {
@@ -55,13 +55,13 @@ pub(super) fn piece(flow: &Flow) -> Picture {
     drawing(window, shapes.filter(inside).collect(), Some((-SPIN, SPIN, SHADE.into())))
 }
 
-/// Samples from which on snapshots are drawn.
+/// Times and states of the first `most` samples from [`FROM`].
 fn shown(flow: &Flow, most: usize) -> impl Iterator<Item = (f64, &Particles)> {
     let first = flow.times.partition_point(|&time| time < FROM - 1e-9);
     flow.times.iter().copied().zip(&flow.frames).skip(first).take(most)
 }
 
-/// Figure 6: the whole pipe, sample after sample, the first at the bottom.
+/// Figure 6: snapshots of the whole pipe, the earliest at the bottom.
 pub(super) fn snapshots(flow: &Flow) -> Picture {
     let half = half_height(&flow.frames[0]);
     let pitch = (2.6 * half).max(flow.length / 32.0);
@@ -80,7 +80,7 @@ pub(super) fn snapshots(flow: &Flow) -> Picture {
     drawing([[-left, -0.6 * pitch], [1.01 * flow.length, (rows - 0.4) * pitch]], shapes, None)
 }
 
-/// Density over place and time.
+/// Density by position and time.
 pub(super) fn map(flow: &Flow) -> Picture {
     let stride = flow.density.len().div_ceil(ROWS);
     let bins = flow.density[0].len();
@@ -99,12 +99,12 @@ pub(super) fn map(flow: &Flow) -> Picture {
     })
 }
 
-/// With four decimals: more are not visible.
+/// Rounds to four decimals, since more are not visible.
 fn rounded(value: f64) -> f64 {
     (1e4 * value).round() / 1e4
 }
 
-/// The snapshots as a film.
+/// Film of the snapshots.
 pub(super) fn film(flow: &Flow) -> Film {
     let start = &flow.frames[0];
     let half = half_height(start);

@@ -1,4 +1,4 @@
-//! The energy of undamped discs without friction, which changes by the integrator or the precision alone.
+//! Energy of undamped discs without friction, which changes only by the integrator or the precision.
 
 use super::gas::{Gas, SEEDS, place};
 use crate::frame::{Cell, Frame, Rows};
@@ -13,24 +13,23 @@ use stripmine_physics::method::lattice_md::options::{EngineChoice, IntegratorKin
 use stripmine_physics::observe::Observation;
 use stripmine_physics::scene::{DT, PRECISION};
 
-/// Discs, at least.
+/// Minimum number of discs.
 const PARTICLES: usize = 400;
-/// Packing fraction: nearly a solid, where every disc is in contact nearly always. A thin gas makes its errors in its few
-/// contacts only.
+/// Packing fraction of a near solid, in which nearly every disc is always in contact. In a thin gas errors arise only in the few contacts.
 const PACKING_FRACTION: f64 = 0.84;
 /// Steps of a run.
 const STEPS: u64 = 100_000;
 /// Steps between two samples of the energy.
 const STRIDE: u64 = 500;
-/// Steps before the first sample: Gear's scheme begins without the higher derivatives and takes some steps to find them.
+/// Steps before the first sample: Gear's scheme starts without higher derivatives and needs some steps to build them up.
 const SETTLING: u64 = 500;
-/// Precisions that are compared.
+/// Compared precisions.
 const PRECISIONS: [&str; 3] = ["f64", "mixed", "f32"];
 
-/// A name, the values of Gear's scheme (none of velocity Verlet), and the time step.
+/// Name, values of Gear's scheme (`None` for velocity Verlet), and time step.
 type Stepping = (&'static str, Option<u64>, f64);
 
-/// Integrators with their steps.
+/// Compared integrators and steps.
 const STEPPINGS: [Stepping; 4] = [
     ("velocity Verlet", None, 0.005),
     ("Gear, 6 values", Some(6), 0.005),
@@ -38,16 +37,15 @@ const STEPPINGS: [Stepping; 4] = [
     ("Gear, 6 values", Some(6), 0.0025),
 ];
 
-/// A case over its seeds. Deviations of the energy are relative to its value at the first sample.
+/// Statistics of a case over its seeds. Deviations of the energy are relative to its value at the first sample.
 struct OverSeeds {
-    /// Mean times since the first sample of windows that widen with them, and the root of the mean square deviation over the seeds and the
-    /// samples of each.
+    /// Mean time since the first sample and RMS deviation over seeds and samples, for windows that widen with time.
     deviations: Vec<(f64, f64)>,
-    /// Largest magnitude of a run's deviation, deviation at its end, and change over the run by a straight line of least squares.
+    /// Largest deviation of a run, deviation at its end, and drift over the run by a least-squares line.
     spreads: [Spread; 3],
 }
 
-/// Every case, and the deviations over time. `progress` gets the share that is done.
+/// Frames of every case and of the deviations over time. `progress` receives the completed share.
 pub(super) fn frames(progress: Progress<'_>) -> Result<[Frame; 2], StudyError> {
     let cases: Vec<(Stepping, &str)> =
         STEPPINGS.iter().flat_map(|&stepping| PRECISIONS.map(|precision| (stepping, precision))).collect();
@@ -76,7 +74,7 @@ pub(super) fn frames(progress: Progress<'_>) -> Result<[Frame; 2], StudyError> {
     ])
 }
 
-/// Statistics over the runs of a case with a step `dt`.
+/// Statistics over the runs of a case with the step `dt`.
 fn over_seeds(dt: f64, runs: &[Vec<f64>]) -> OverSeeds {
     let samples = runs.iter().map(Vec::len).min().unwrap_or(0);
     let times: Vec<f64> = (1..=samples).map(|sample| (sample as u64 * STRIDE) as f64 * dt).collect();
@@ -99,14 +97,14 @@ fn over_seeds(dt: f64, runs: &[Vec<f64>]) -> OverSeeds {
     }
 }
 
-/// Ranges that follow each other up to `count`, each about a third of where it ends.
+/// Consecutive ranges up to `count`, each with a length of about a third of its end.
 fn windows(count: usize) -> impl Iterator<Item = Range<usize>> {
     let next = |start: usize| start..(start + start / 2 + 1);
     let all = std::iter::successors(Some(next(0)), move |window| Some(next(window.end)));
     all.take_while(move |window| window.start < count).map(move |window| window.start..window.end.min(count))
 }
 
-/// Deviations of the energy of one run, at every sample after the first.
+/// Energy deviations of one run at every sample after the first.
 fn deviations(
     (_, values, dt): Stepping,
     precision: &str,
@@ -146,7 +144,7 @@ mod tests {
         assert_eq!(windows(0).count(), 0);
     }
 
-    /// By hand: two seeds, four samples.
+    /// Two seeds and four samples, computed by hand.
     #[test]
     fn figures_are_over_seeds_and_windows() {
         let runs = [vec![1.0, -1.0, 3.0, 4.0], vec![1.0, 1.0, -3.0, -4.0]];
@@ -156,8 +154,7 @@ mod tests {
         assert!((drift.highest - 1.3 * 4.0).abs() < 1e-12, "{drift:?}");
     }
 
-    /// No precision lets the energy run away, a smaller step keeps it better, and the precision asked for is the one
-    /// that runs.
+    /// The energy stays bounded in every precision, a smaller step conserves it better, and the runs use the requested precision.
     #[test]
     fn energy_is_kept_in_every_precision() {
         let of = |stepping, precision| deviations(stepping, precision, 1, 3000).unwrap();

@@ -1,4 +1,4 @@
-//! Errors of the forces on one configuration, over the size of the box.
+//! Force errors on one configuration of discs, against the size of the box.
 
 use super::gas::{Gas, PACKING_FRACTIONS, place};
 use crate::frame::{Frame, Rows};
@@ -8,10 +8,10 @@ use stripmine_physics::method::lattice_md::keys::ENGINE;
 use stripmine_physics::observe::contacts;
 use stripmine_physics::scene::PRECISION;
 
-/// A name, `machine.precision`, `machine.engine` and the origin of positions.
+/// Name, `machine.precision`, `machine.engine` and the origin of positions.
 type Variant = (&'static str, &'static str, &'static str, Coordinates);
 
-/// Variants that are compared with the fast engine in f64; programs are chained.
+/// Variants compared with the fast engine in f64; programs are chained.
 const VARIANTS: [Variant; 7] = [
     ("mixed, fast", "mixed", "fast", CellRelative),
     ("f32, fast", "f32", "fast", CellRelative),
@@ -25,18 +25,18 @@ const VARIANTS: [Variant; 7] = [
 /// Numbers of discs.
 const PARTICLES: [usize; 3] = [1000, 10_000, 100_000];
 
-/// Errors of the variants on one configuration.
+/// Force errors of the variants on one configuration of discs.
 struct Configuration {
     packing_fraction: f64,
     discs: usize,
     /// Longer side of the box (diameters).
     side: f64,
     contacts: f64,
-    /// Root of the mean square error of a disc's force, and the largest error, over the root of the mean square of the forces.
+    /// RMS error and largest error of the force on a disc, over the RMS force.
     errors: [[f64; 2]; VARIANTS.len()],
 }
 
-/// Every variant on every configuration. `progress` gets the share that is done.
+/// Frame of every variant on every configuration. `progress` receives the completed share.
 pub(super) fn frame(progress: impl Fn(f64)) -> Result<Frame, StudyError> {
     let mut all = Vec::new();
     for packing_fraction in PACKING_FRACTIONS {
@@ -79,7 +79,7 @@ fn on_one_configuration(packing_fraction: f64, count: usize) -> Result<Configura
     })
 }
 
-/// Root of the mean square of the errors of forces, and the largest, over that of the exact ones.
+/// RMS error and largest error of forces, over the RMS exact force.
 fn errors(exact: &[[f64; 3]], approximate: &[[f64; 3]]) -> [f64; 2] {
     let square = |[x, y, _]: [f64; 3]| x * x + y * y;
     let squares = exact.iter().map(|&force| square(force)).sum::<f64>();
@@ -99,7 +99,7 @@ mod tests {
         assert!((largest - 0.1).abs() < 1e-15 && (rms - 0.1 / 2f64.sqrt()).abs() < 1e-15, "{rms} {largest}");
     }
 
-    /// In fewer digits the errors are those of the digits, in any box; from the box's corner they grow with it.
+    /// In lower precision errors do not depend on the size of the box, unless positions are relative to its corner.
     #[test]
     fn errors_do_not_depend_on_the_box_but_from_its_corner() {
         let [small, large] = [400, 6400].map(|count| on_one_configuration(0.84, count).unwrap());

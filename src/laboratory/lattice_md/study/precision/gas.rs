@@ -1,4 +1,4 @@
-//! The bench scene of these comparisons.
+//! Bench scene of the precision studies.
 
 use crate::laboratory::lattice_md::study::StudyError;
 use stripmine_kernels::sweep::lattice::Coordinates;
@@ -11,27 +11,27 @@ use stripmine_physics::observe::Scenery;
 use stripmine_physics::particles::Particles;
 use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION, SEED};
 
-/// Packing fractions: nearly a solid, and a gas.
+/// Packing fractions of a near solid and of a gas.
 pub(super) const PACKING_FRACTIONS: [f64; 2] = [0.84, 0.3];
-/// Seeds of what is averaged.
+/// Seeds of the averages.
 pub(super) const SEEDS: [u64; 3] = [1, 2, 3];
-/// Steps in f64 before anything is compared: the start on a lattice has no contacts.
+/// Steps in f64 before comparisons, because the start on a lattice has no contacts.
 pub(super) const EQUILIBRATION: u64 = 1000;
 
-/// A running bench scene.
+/// Running bench scene.
 pub(super) struct Gas {
     pub(super) method: Grains,
     pub(super) scenery: Scenery,
 }
 
 impl Gas {
-    /// The bench scene with overrides, from `discs` where given.
+    /// Starts the bench scene with overrides, from `discs` if given.
     pub(super) fn begin(overrides: &Overrides, discs: Option<&Particles>) -> Result<Gas, StudyError> {
         Gas::seen_from(Coordinates::CellRelative, overrides, discs)
     }
 
-    /// The same with positions from the cell or from the corner of the box, also where `scene check` rejects single precision that
-    /// loses motion.
+    /// Starts with positions relative to the cell or to the corner of the box, even if `scene check` rejects single precision because
+    /// particles would stop moving.
     pub(super) fn seen_from(
         coordinates: Coordinates,
         overrides: &Overrides,
@@ -45,7 +45,7 @@ impl Gas {
         Ok(Gas { method: assemble(&checked)?, scenery: Scenery::of(&model(&checked)) })
     }
 
-    /// The same after [`EQUILIBRATION`] steps in f64 with velocity Verlet.
+    /// State after [`EQUILIBRATION`] steps in f64 with velocity Verlet.
     pub(super) fn equilibrated(overrides: &Overrides) -> Result<Particles, StudyError> {
         let fast = overrides.clone().set(&ENGINE, EngineChoice::Fast);
         let mut gas = Gas::begin(&fast.set(&INTEGRATOR, IntegratorKind::VelocityVerlet), None)?;
@@ -58,7 +58,7 @@ impl Gas {
     }
 }
 
-/// Number of discs, density and seed, as overrides.
+/// Overrides for the number of discs, the packing fraction and the seed.
 pub(super) fn place(count: usize, packing_fraction: f64, seed: u64) -> Overrides {
     let scene = Overrides::new().set(&COUNT, count).set(&PACKING_FRACTION, packing_fraction);
     scene.set(&SEED, seed).set(&SEARCH, By::Lattice)

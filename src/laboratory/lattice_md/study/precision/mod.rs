@@ -1,6 +1,6 @@
-//! Forces, energy and trajectories in f32 and in mixed precision.
+//! Forces, energy and trajectories in f32 and in mixed precision, on the bench scene.
 //!
-//! All of it runs the bench scene. Nothing depends on the host: an engine gives the same bits everywhere.
+//! Results do not depend on the host: an engine gives the same bits everywhere.
 
 mod energy;
 mod forces;
@@ -11,9 +11,9 @@ use crate::console::Failure;
 use crate::results::{Lab, Made, Size};
 use gas::SEEDS;
 
-/// Errors of forces, energies of undamped gases, and divergence of trajectories.
+/// Measures force errors, energies of undamped gases, and divergence of trajectories.
 pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    // Shares of the time, about.
+    // Approximate shares of the time.
     let (forces_end, trajectories_end) = (0.3, 0.4);
     let forces = forces::frame(|share| (lab.progress)(forces_end * share))?;
     let trajectories = trajectories::frames()?;

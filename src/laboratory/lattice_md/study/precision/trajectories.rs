@@ -1,4 +1,4 @@
-//! Divergence of trajectories of one start in different precisions: collisions multiply every error.
+//! Divergence of trajectories from one start in different precisions: collisions amplify every error.
 
 use super::gas::{Gas, PACKING_FRACTIONS, SEEDS, place};
 use crate::frame::{Cell, Frame, Rows};
@@ -9,7 +9,7 @@ use stripmine_physics::method::lattice_md::keys::{ENGINE, INTEGRATOR};
 use stripmine_physics::method::lattice_md::options::IntegratorKind;
 use stripmine_physics::scene::{self, Overrides, PRECISION};
 
-/// Discs, at least.
+/// Minimum number of discs.
 const PARTICLES: usize = 400;
 /// Time step.
 const DT: f64 = 0.005;
@@ -17,23 +17,23 @@ const DT: f64 = 0.005;
 const STEPS: u64 = 8000;
 /// Steps between two samples.
 const STRIDE: u64 = 100;
-/// Name, precision and engine of the runs beside the fast engine in f64; programs are chained.
+/// Name, precision and engine of the runs compared with the fast engine in f64; programs are chained.
 const RIVALS: [[&str; 3]; 3] =
     [["f64, programs", "f64", "programs"], ["mixed", "mixed", "fast"], ["f32", "f32", "fast"]];
-/// Multiple of its first value beyond which a distance grows because trajectories part, not because rounding goes on.
+/// Multiple of the first distance above which growth is due to diverging trajectories, not to further rounding.
 const PARTED: f64 = 10.0;
-/// Distance (diameters) up to which the growth is exponential: beyond it discs collide with other partners.
+/// Distance (diameters) up to which growth is exponential; beyond it discs collide with different partners.
 const LOST: f64 = 0.02;
 
-/// Every variant, and its distances over time.
+/// Frames of every variant and of its distances over time.
 pub(super) fn frames() -> Result<[Frame; 2], StudyError> {
     let starts: Vec<(f64, u64)> =
         PACKING_FRACTIONS.iter().flat_map(|&fraction| SEEDS.map(|seed| (fraction, seed))).collect();
     let runs =
         side_by_side(&starts, |&(fraction, seed)| distances(&place(PARTICLES, fraction, seed), STEPS))?;
     let times: Vec<f64> = (1..=STEPS / STRIDE).map(|sample| (sample * STRIDE) as f64 * DT).collect();
-    // Packing fraction, variant; root of the mean square distance between a disc and its twin, over discs and seeds, at each sample; rate
-    // of the exponential growth from PARTED on and up to LOST.
+    // Packing fraction; variant; RMS distance between a disc and its twin over discs and seeds, at each sample; rate of exponential growth
+    // between PARTED and LOST.
     let mut all = vec![];
     for (fraction, runs) in PACKING_FRACTIONS.iter().zip(runs.chunks(SEEDS.len())) {
         for (rival, [variant, ..]) in RIVALS.into_iter().enumerate() {
@@ -63,7 +63,7 @@ pub(super) fn frames() -> Result<[Frame; 2], StudyError> {
     ])
 }
 
-/// Root of the mean square distance between the discs of each variant and those of the reference, at every sample.
+/// RMS distance between the discs of each variant and of the reference, at every sample.
 fn distances(place: &Overrides, steps: u64) -> Result<[Vec<f64>; RIVALS.len()], StudyError> {
     let discs = Gas::equilibrated(place)?;
     let begin = |[_, precision, engine]: [&str; 3]| {
@@ -92,7 +92,7 @@ fn distances(place: &Overrides, steps: u64) -> Result<[Vec<f64>; RIVALS.len()], 
     Ok(distances)
 }
 
-/// Rate of exponential growth while a distance is neither rounding nor loss.
+/// Rate of exponential growth of a distance between the limits set by [`PARTED`] and [`LOST`].
 fn growth(times: &[f64], distances: &[f64]) -> f64 {
     let first = distances.first().copied().unwrap_or(0.0);
     let points = times.iter().zip(distances).skip_while(|(_, distance)| **distance <= PARTED * first);
@@ -114,7 +114,7 @@ mod tests {
         assert_eq!(growth(&[], &[]), 0.0);
     }
 
-    /// Trajectories part the sooner the lower the precision, and begin with an error of its size.
+    /// Trajectories diverge earlier at lower precision, starting from an error of the size of rounding.
     #[test]
     fn trajectories_part_in_the_order_of_their_precision() {
         let [double, mixed, single] = distances(&place(PARTICLES, 0.84, 1), 200).unwrap();
