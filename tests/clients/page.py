@@ -2,13 +2,13 @@
 
     python page.py PAGE.html [PICTURES_FOLDER]
 
-Needs the package `playwright`, and Chromium: playwright's own, or one that is installed (CHROMIUM names another).
-Where one of them cannot be had, the check says SKIPPED and why, and exits with 0.
+Needs the package `playwright`, and Chromium: playwright's own, or an installed one (CHROMIUM gives its path).
+If one of them is missing, the check prints SKIPPED with the reason and exits with 0.
 
-Every picture must be seen, what is folded opened, in both widths, in the dark, on paper and without scripts, and have colours; every chart and
-map must say values at the pointer and by the keyboard; every film must play, by the button and by the keyboard. Exits with 1
-if one does not, if the page asks the network for anything, complains on the console, or is wider than the screen. With a
-folder, pictures of the page as wide, narrow, both in the dark, printed and without scripts are left there.
+Every picture must be visible and have colours, with folded parts opened, in both widths, in dark mode, on paper and without scripts. Every chart
+and map must show values at the pointer and by the keyboard. Every film must play, by the button and by the keyboard. Exits with 1
+if one does not, if the page requests anything from the network, logs an error to the console, or is wider than the screen. With a
+folder, saves pictures of the page there: wide, narrow, both in dark mode, printed and without scripts.
 """
 
 import os

@@ -1,14 +1,14 @@
-"""Holds the accelerations of bodies against those of REBOUND.
+"""Compares the accelerations of bodies with those of REBOUND.
 
     python rebound_forces.py STRIPMINE
 
-Needs the package `rebound`; where it is not installed, the check says SKIPPED and exits with 0.
+Needs the package `rebound`; if it is not installed, the check prints SKIPPED and exits with 0.
 
-The program moves a softened Plummer sphere by one step of explicit Euler with dt = 1, from rest where positions do not change: so the
-new velocities are the accelerations, to the last bit that a trajectory has. REBOUND computes those of the same positions with the same
-softening; so does Python, with sums that are rounded once (`math.fsum`), which says whose the difference is. Exits with 1 if one of
-ours is off that by more than 4 units of the last place of the largest, in double precision, or off REBOUND by more than 4 units more
-than REBOUND is off it.
+The program moves a softened Plummer sphere by one step of explicit Euler with dt = 1, from rest, without changing positions. The
+new velocities are then the accelerations, to the last bit of a trajectory. REBOUND computes those of the same positions with the same
+softening. Python computes them with sums rounded once (`math.fsum`), which shows where a difference comes from. Exits with 1 if one of
+ours differs from these sums by more than 4 units of the last place of the largest, in double precision, or from REBOUND by over 4 units more
+than REBOUND differs from the sums.
 """
 
 import math

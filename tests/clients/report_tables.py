@@ -2,9 +2,9 @@
 
     python report_tables.py REPORT_FOLDER
 
-Each folder with a `datapackage.json` (Frictionless) names its files and their columns: those must be there, all of them, with the types
-that are named, and no file may be left out. Without pandas the check says SKIPPED and exits with 0; with 1 if a table is not as it is
-described.
+Each folder with a `datapackage.json` (Frictionless) names its files and their columns: each table must have exactly these columns, with the described
+types, and every file must be described. Without pandas the check prints SKIPPED and exits with 0. Exits with 1 if a table differs from its
+description.
 """
 
 import json

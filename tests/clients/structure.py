@@ -1,13 +1,13 @@
-"""Holds what a run sums up of the structure against `freud`, `MDAnalysis` and sums by hand, in boxes of every kind.
+"""Compares the structure functions of runs with `freud`, `MDAnalysis` and naive sums, in boxes of every kind.
 
     python structure.py STRIPMINE
 
-Needs the packages `freud-analysis`, `MDAnalysis`, `gsd` and `numpy`; where one is not installed, the check says SKIPPED and exits with 0.
+Needs the packages `freud-analysis`, `MDAnalysis`, `gsd` and `numpy`; if one is not installed, the check prints SKIPPED and exits with 0.
 
-Each scene writes 64 rows and 64 frames at the same moments, in blocks of two; the second half of the blocks counts. g(r) is held against pairs counted by
-freud over those of an ideal gas found here, psi6 against freud, displacements against MDAnalysis, the rest against sums over the frames. Prints the largest
-difference of each function in each box. Exits with 1 where one differs by more than 1e-9 of its largest value; 1e-4 where freud or GSD
-work in single precision, 5e-3 where a pair may be in the next bin, 2e-2 where an ideal gas between wall discs is found by random numbers.
+Each scene writes 64 rows and 64 frames at the same moments, in blocks of two; the second half of the blocks is sampled. g(r) is compared with pairs counted
+by freud over those of an ideal gas computed here, psi6 with freud, displacements with MDAnalysis, the rest with sums over the frames. Prints the largest
+difference of each function in each box. Exits with 1 if one differs by more than 1e-9 of its largest value; 1e-4 where freud or GSD
+use single precision, 5e-3 where a pair may fall in the next bin, 2e-2 where the ideal gas between wall discs comes from random numbers.
 """
 
 import json
