@@ -17,14 +17,14 @@ import sys
 import tempfile
 from pathlib import Path
 
-# Units of the last place of the largest acceleration.
+# In units of the last place of the largest acceleration.
 ALLOWED = 4.0
 BODIES = 512
 SOFTENING = 0.05
 
 
 def frames(path):
-    """Rows of each frame: id, position, velocity and mass."""
+    """Yields the rows of each frame: id, position, velocity and mass."""
     lines = path.read_text().splitlines()
     at = 0
     while at < len(lines):
@@ -39,7 +39,7 @@ def frames(path):
 
 
 def summed_once(places, masses):
-    """Accelerations whose sums are rounded once."""
+    """Accelerations with exact sums, rounded once."""
     found = []
     for here in places:
         terms = [[], [], []]
@@ -81,7 +81,7 @@ def main(stripmine):
         simulation.softening = SOFTENING
         for _, place, _, mass in first:
             simulation.add(m=mass, x=place[0], y=place[1], z=place[2])
-        # One evaluation of the forces, without a step.
+        # Evaluates the forces once, without a step.
         simulation.integrator = "leapfrog"
         simulation.dt = 1e-300
         simulation.steps(1)

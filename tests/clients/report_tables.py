@@ -13,7 +13,7 @@ from pathlib import Path
 
 
 def complaints_of(folder, pandas):
-    """What is wrong with the tables of a folder."""
+    """Yields the mistakes in the tables of a folder."""
     package = json.loads((folder / "datapackage.json").read_text())
     described = set()
     for resource in package["resources"]:
@@ -29,7 +29,7 @@ def complaints_of(folder, pandas):
             is_number = pandas.api.types.is_numeric_dtype(table[field["name"]])
             is_empty = table[field["name"]].isna().all()
             if not is_empty and is_number != (field["type"] != "string"):
-                yield f"{file}: {field['name']} is read as {table[field['name']].dtype}, and said to be {field['type']}"
+                yield f"{file}: {field['name']} is read as {table[field['name']].dtype}, described as {field['type']}"
     for file in sorted(folder.glob("*.csv")):
         if file.name not in described:
             yield f"{file} is not described"
