@@ -35,30 +35,30 @@ from provenance import git, is_traceable
 from report import contest, result, same, shown, write
 
 SOURCE = "https://github.com/FSmallenburg/EDMD"
-# Those of its Makefile.
+# Flags of its Makefile.
 FLAGS = ["-Ofast", "-funroll-loops", "-march=native"]
 UNIT = "million collisions a second of processor time, one thread"
 PACKING_FRACTIONS = [0.1, 0.3, 0.5, 0.65, 0.7]
 PARTICLES = [2500, 250_000]
-# Where memory is compared: a size of the source's, at one density.
+# Memory is compared at the size of the paper, at one density.
 LARGEST, LARGEST_FRACTION = 2_500_000, 0.5
 SHELLS = [1.2, 1.3, 1.4, 1.5, 1.7, 1.85, 2.0, 2.25, 2.5, 3.0, 4.0, 6.0]
 BLOCKS = [0.3, 1, 3, 10, 30]
 HORIZONS = [1, 4, 16]
-# Shells beyond one that reaches less than this part of the best rate are not tried.
+# Larger shells are skipped after one that reaches less than this part of the best rate.
 MUCH_SLOWER = 0.8
 # Lengths of a disc's array of neighbours.
 NEIGHBOURS = [8, 12, 16, 24, 32, 48, 64, 96, 128, 192]
-# By how much of its excess over 1 the rivals' Z may differ.
+# Largest difference of Z between the rivals, relative to its excess over 1.
 WITHIN = 0.02
-# Seconds that nothing here takes.
+# Time limit in seconds, which no call reaches.
 LONGEST = 1200
 
 Setting = collections.namedtuple("Setting", "shell block horizon")
 
 
 def checkout(folder, asked):
-    """The checkout that was asked for, or a clone."""
+    """The given checkout, or a clone."""
     if asked is None:
         call = ["git", "clone", "--quiet", "--depth", "1", SOURCE, str(folder / "edmd")]
         try:
@@ -81,7 +81,7 @@ def run(call):
 
 
 class Edmd:
-    """The rival in two dimensions; a program for every shell and length of the arrays of neighbours."""
+    """EDMD in two dimensions; one program for every shell and length of the arrays of neighbours."""
 
     def __init__(self, source, folder):
         self.folder, self.single = folder, source / "Single"
@@ -92,7 +92,7 @@ class Edmd:
         (folder / "planar.c").write_text(planar(self.single))
 
     def build(self):
-        """How it is compiled."""
+        """Compiler and flags."""
         return f"Single in two dimensions, {run([self.compiler, '--version']).splitlines()[0]} {' '.join(FLAGS)}"
 
     def program(self, shell, neighbours):
@@ -103,7 +103,7 @@ class Edmd:
         return made
 
     def measured(self, system, setting, seed, collisions):
-        """A measurement by the shortest arrays of neighbours that suffice."""
+        """Measures with the shortest arrays of neighbours that suffice."""
         particles, fraction = system
         for neighbours in NEIGHBOURS:
             call = [self.program(setting.shell, neighbours), particles, fraction, seed, setting.block, setting.horizon]
@@ -116,7 +116,7 @@ class Edmd:
         raise SystemExit(f"error: EDMD with {particles} discs at {fraction}, {setting}: {said(done.stderr + done.stdout)}")
 
     def tuned(self, system, shells, collisions):
-        """The fastest setting: of the shells, then of the blocks, then of the horizons."""
+        """Finds the fastest setting: first the shell, then the block, then the horizon."""
         rates = {}
 
         def tried(setting):
@@ -135,7 +135,7 @@ class Edmd:
 
 
 def equilibration(collisions):
-    """As `stripmine bench` has it."""
+    """Equilibration as in `stripmine bench`."""
     return max(200, collisions // 10)
 
 
@@ -144,7 +144,7 @@ def rate(found):
 
 
 def amount(particles):
-    """Collisions of a measurement: enough for Z to settle with few discs, and some for every disc with many."""
+    """Collisions of a measurement: enough for a precise Z with few discs, and several for every disc with many."""
     return min(max(2_000_000, 40 * particles), 10_000_000)
 
 
@@ -155,9 +155,9 @@ def ours(stripmine, particles, fraction, collisions):
 
 
 def held(edmd, asked, particles, fraction):
-    """A density and size: the contest, what both must agree in, the memory of both, our instructions."""
+    """Measures a density and size: the contest, the checks of agreement, the memory of both, our instruction set."""
     collisions = amount(particles)
-    # Ours has as many discs as its lattice has places; the rival has as many.
+    # Our lattice of the start rounds the number of discs; the rival gets the same number.
     system = (ours(asked.stripmine, particles, fraction, 1000)["particles"], fraction)
     setting = edmd.tuned(system, SHELLS[::2] if asked.quick else SHELLS, collisions // 4)
     theirs, own = [], []
@@ -178,7 +178,7 @@ def held(edmd, asked, particles, fraction):
 
 
 def of_the_report(edmd, parts):
-    """The contests as the report has them, with the memory at the largest size."""
+    """The contests in the format of the report, with the memory at the largest size."""
     contests, agreement, memory, sets = zip(*parts)
     largest = max(it["particles"] for it in memory)
     found = result("EDMD", edmd.version, edmd.build(), sets[0], UNIT, list(contests), list(agreement))
@@ -205,7 +205,7 @@ def main():
         print(f"skipped: there is no {asked.stripmine}: cargo build --release")
         return 0
     if hasattr(os, "sched_setaffinity"):
-        # Whatever is started from here stays there too.
+        # Child processes inherit the core.
         os.sched_setaffinity(0, {max(os.sched_getaffinity(0)) if asked.core is None else asked.core})
     sizes = asked.particles or (PARTICLES[:1] if asked.quick else PARTICLES)
     systems = list(itertools.product(sizes, asked.packing_fraction))
@@ -224,7 +224,7 @@ def main():
         for particles, fraction in systems:
             print(f"packing fraction {fraction}, {particles} discs", file=sys.stderr, flush=True)
             parts.append(held(edmd, asked, particles, fraction))
-            # What is there is written, whatever becomes of the rest.
+            # Intermediate results are written, in case a later measurement fails.
             found = of_the_report(edmd, parts)
             if asked.out:
                 write(asked.out, found)

@@ -55,7 +55,7 @@ def arguments():
 
 
 def of_the_report(held, build):
-    """The contests as the report has them."""
+    """The contests in the format of the report."""
     contests, agreement, sets = [], [], set()
     for it in held:
         rival, system = it["lammps"], f"granular discs, packing fraction {it['packing_fraction']:.2f}"
@@ -63,7 +63,7 @@ def of_the_report(held, build):
             sets.add(own["instruction_set"])
             way = f"{own['what']} {own['precision']} {own['integrator']}"
             contests.append(contest(system, it["particles"], way, own["rates"], rival["rates"]))
-            # Chaos parts them soon: temperatures and contacts agree as samples of one gas do.
+            # Trajectories soon diverge chaotically: temperatures and contacts agree as samples of one gas.
             agreement.append(same(f"{system}, {it['particles']}, {way}: kT", own["temperature"], rival["temperature"], 1e-4))
         if it["apart"] is not None:
             agreement.append(same(f"{system}, {it['particles']}: farthest apart after 300 steps", it["apart"], 0.0, 1e-6))
@@ -95,7 +95,7 @@ def main():
                 results.append(contest.held(ways))
             except (Refused, subprocess.TimeoutExpired) as why:
                 print(f"  left out: {why}", file=sys.stderr)
-            # What is there is written, whatever becomes of the rest.
+            # Intermediate results are written, in case a later measurement fails.
             if results and asked.out:
                 write(asked.out, of_the_report(results, build))
     if results:

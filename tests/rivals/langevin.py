@@ -74,7 +74,7 @@ def main():
         rows = [dict(zip(names, map(float, line.split(",")))) for line in lines[1:]]
         rows = [row for row in rows if row["time"] > 100]
         def mean(of):
-            # Rows are not independent: parts of a hundred are.
+            # Rows are correlated; parts of a hundred rows are independent.
             values = [of(row) for row in rows]
             parts = [statistics.fmean(values[at : at + 100]) for at in range(0, len(values) - 99, 100)]
             return [statistics.fmean(parts), statistics.stdev(parts) / len(parts) ** 0.5]
@@ -82,7 +82,7 @@ def main():
                  "temp": mean(lambda row: row["temperature"])}
     theirs_fluid = lammps(IN_LAMMPS, "fluid", 20, 20_000, 5)
     words = {"pe": "energy a particle", "press": "pressure", "temp": "kinetic temperature"}
-    # Of two means with their standard errors.
+    # Two means with their standard errors.
     agreement = [
         same(f"Lennard-Jones fluid, {words[name]}", own, theirs_fluid[name][0], 3 * (error**2 + theirs_fluid[name][1] ** 2) ** 0.5)
         for name, (own, error) in fluid.items()

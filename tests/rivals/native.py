@@ -21,7 +21,7 @@ PACKAGES = ["GRANULAR", "OPT"]
 
 
 def debian(folder):
-    """Debian's source package, unpacked."""
+    """Downloads and unpacks Debian's source package."""
     listed = pathlib.Path("/etc/apt/sources.list.d/stripmine-sources.sources")
     for known in sorted(pathlib.Path("/etc/apt/sources.list.d").glob("*.sources")):
         listed.write_text(known.read_text().replace("Types: deb\n", "Types: deb-src\n"))

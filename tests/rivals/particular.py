@@ -23,12 +23,12 @@ from provenance import is_traceable
 from report import contest, result, shown, write
 
 CRATE = pathlib.Path(__file__).with_name("particular")
-# Ours by the precision of theirs.
+# Our precision for each of theirs.
 OURS = {"f32": "mixed", "f64": "f64"}
 
 
 def built():
-    """The rival's program."""
+    """Builds the rival's program and returns its path."""
     folder = pathlib.Path(tempfile.gettempdir()) / "stripmine-particular"
     variables = dict(os.environ, RUSTFLAGS="-C target-cpu=native", CARGO_TARGET_DIR=str(folder))
     call = ["cargo", "build", "--release", "--quiet", "--locked"]
@@ -46,7 +46,7 @@ def answer(call):
 
 
 def held(rival, stripmine, bodies, precision, rounds):
-    """Alternating runs; rates in 10⁹ a second."""
+    """Runs both in turns; rates in 10⁹ a second."""
     ours, theirs, error = [], [], 0.0
     for _ in range(rounds):
         found = answer([rival, bodies, precision, 2])
