@@ -99,8 +99,8 @@ def main(stripmine):
         worst[engine] = off(ours, expected), off(ours, theirs), off(theirs, expected)
     for engine, (own, apart, rival) in worst.items():
         print(
-            f"{engine}: off the sum rounded once by {own:.2f} units of the last place of the largest, off REBOUND {rebound.__version__} "
-            f"by {apart:.2f}; REBOUND off that sum by {rival:.2f}"
+            f"{engine}: differs from the sum rounded once by {own:.2f} units of the last place of the largest, from REBOUND {rebound.__version__} "
+            f"by {apart:.2f}; REBOUND differs from that sum by {rival:.2f}"
         )
     held = all(own <= ALLOWED and apart <= ALLOWED + rival for own, apart, rival in worst.values())
     return 0 if held else 1

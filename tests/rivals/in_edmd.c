@@ -1,9 +1,9 @@
-/* The side of EDMD: appended to its text in two dimensions by edmd.py, and prints one line of JSON.
+/* EDMD's part of the comparison: edmd.py appends it to the planar source; it prints one line of JSON.
 
        PROGRAM DISCS PACKING_FRACTION SEED BLOCK HORIZON EQUILIBRATION COLLISIONS
 
-   Discs of mass and diameter 1 with kT = 1. A block of the calendar is BLOCK/N long, all of them together HORIZON. Z is of the
-   whole run, as ours is. */
+   Discs of mass and diameter 1 with kT = 1. A block of the calendar is BLOCK/N long, all of them together HORIZON. Z is averaged
+   over the whole run, as ours is. */
 
 #include <time.h>
 

@@ -1,4 +1,4 @@
-"""The side of LAMMPS: runs inside a Python that has it, called by lammps.py, and prints one line of JSON.
+"""LAMMPS's part of the comparison: runs inside a Python that has it, called by lammps.py, and prints one line of JSON.
 
     python -I in_lammps.py measure START.data SKIN EQUILIBRATION STEPS     processor seconds of STEPS steps, and the state after
     python -I in_lammps.py build                                           what this LAMMPS is

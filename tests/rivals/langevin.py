@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Stripmine against LAMMPS on particles in a bath, in alternating runs on one core. Optional: no test needs it.
+"""Compares Stripmine with LAMMPS on particles in a bath, in alternating runs on one core. Optional: no test needs it.
 
     python3 tests/rivals/langevin.py [--out FOLDER] [--rounds 3] [--python PYTHON]
 
 The first call makes a virtual environment among this machine's temporary files and installs `lammps` and `mpich` from the Python
-package index; where that is not possible the script says so and ends without an error.
+package index; if that is not possible the script reports it and ends without an error.
 
-Speed: the source's system, 40 000 particles with WCA pairs at 4 in a unit of area, dt = 0.001, `pair_style lj/cut`, `fix nve` and
-`fix langevin`. Rates are per second of processor time of one thread; LAMMPS has the fastest of three skins. Physics: energy a
-particle and pressure of a Lennard-Jones fluid of density 0.7 at kT = 1, dt = 0.005, cut off at 2.5 and shifted, by both.
+Speed: the system of LAN17, 40 000 particles with WCA pairs at 4 in a unit of area, dt = 0.001, `pair_style lj/cut`, `fix nve` and
+`fix langevin`. Rates are per second of processor time of one thread; LAMMPS uses the fastest of three skins. Physics: energy a
+particle and pressure of a Lennard-Jones fluid of density 0.7 at kT = 1, dt = 0.005, cut off at 2.5 and shifted, with both.
 """
 
 import argparse

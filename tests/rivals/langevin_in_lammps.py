@@ -1,6 +1,6 @@
-"""The side of LAMMPS: particles in a bath, inside a Python that has it; called by langevin.py, prints one line of JSON.
+"""LAMMPS's part of the comparison of particles in a bath: runs inside a Python that has it, called by langevin.py, and prints one line of JSON.
 
-    python -I langevin_in_lammps.py rate PARTICLES SKIN STEPS      processor seconds of STEPS steps of the source's system
+    python -I langevin_in_lammps.py rate PARTICLES SKIN STEPS      processor seconds of STEPS steps of LAN17's system
     python -I langevin_in_lammps.py fluid STEPS LOOKS SEED         means over LOOKS × STEPS steps of a Lennard-Jones fluid
 """
 

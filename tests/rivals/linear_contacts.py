@@ -1,5 +1,5 @@
-"""Oblique collisions of two discs with a linear spring, viscous damping and Coulomb's bound by LAMMPS's `gran/hooke`: the table
-that `tests/physics.rs` holds `law.kind = "linear"` against.
+"""Oblique collisions of two discs with a linear spring, viscous damping and Coulomb's bound, computed by LAMMPS's `gran/hooke`:
+`tests/physics.rs` compares `law.kind = "linear"` with this table.
 
     python tests/rivals/linear_contacts.py > tests/rivals/linear_contacts.csv
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A Python with LAMMPS built for this processor, as a rival at its best. Optional: no test needs it.
+"""Builds a Python with LAMMPS compiled for this processor, as the fastest rival. Optional: no test needs it.
 
     python3 tests/rivals/native.py FOLDER [--source CHECKOUT]
     python3 tests/rivals/lammps.py --python FOLDER/bin/python

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Stripmine against the Rust crate `particular` on softened gravity of every pair, in alternating runs on one core. Optional: no
+"""Compares Stripmine with the Rust crate `particular` on softened gravity of every pair, in alternating runs on one core. Optional: no
 test needs it.
 
     python3 tests/rivals/particular.py [--out FOLDER] [--rounds 3] [--stripmine PROGRAM]
 
 Builds `tests/rivals/particular` for this processor (`-C target-cpu=native`, link-time optimisation) in a folder among this
-machine's temporary files; where the crate cannot be had the script says so and ends without an error. Rates are directed
-interactions a second, N² counted, of one thread: the crate's by sweeps over bodies that rest, ours by whole leapfrog steps of
-bodies that move. Both have Plummer spheres with softening 0.01.
+machine's temporary files; if the crate is not available the script reports it and ends without an error. Rates are directed
+interactions a second, N² counted, of one thread: for the crate by sweeps over bodies at rest, for ours by whole leapfrog steps of
+moving bodies. Both use Plummer spheres with softening 0.01.
 """
 
 import argparse
@@ -71,7 +71,7 @@ def main():
     try:
         rival = built()
     except OSError as why:
-        print(f"skipped: the crate cannot be had here: {why}")
+        print(f"skipped: the crate is not available: {why}")
         return
     contests = [held(rival, asked.stripmine, bodies, precision, asked.rounds) for bodies in asked.bodies for precision in OURS]
     unit = "10⁹ directed interactions a second, one thread"

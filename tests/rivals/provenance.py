@@ -1,4 +1,4 @@
-"""Where results come from, whether they may be written over committed ones, and the folder they are written to."""
+"""Provenance of results, the check that they may replace committed ones, and the folder that they are written to."""
 
 import datetime
 import functools
