@@ -73,7 +73,7 @@ fn all_are_refused(
             case.words.iter().chain(&place).filter(|words| !said.contains(words.as_str())).collect();
         if output.status.code() != Some(3) || !output.stdout.is_empty() || !missing.is_empty() {
             wrong.push(format!(
-                "line {}: ends with {:?}, does not say {missing:?}\n{said}",
+                "line {}: ends with {:?}, lacks {missing:?}\n{said}",
                 case.line,
                 output.status.code()
             ));

@@ -127,7 +127,7 @@ fn lists_and_order_are_the_same_on_any_number_of_threads() {
             pool.install(|| {
                 let mut gas = simulate(precision, &start, Contacts::Fast(search), fast());
                 advance(&mut gas, 5);
-                assert!(gas.lists().is_none_or(|(_, made)| made > 1), "lists are made again");
+                assert!(gas.lists().is_none_or(|(_, made)| made > 1), "lists must be rebuilt");
                 (bits(&gas), gas.lists())
             })
         };
@@ -174,7 +174,7 @@ fn threads_and_instructions_give_the_same_bits_and_so_does_going_on() {
         second.restore(37, first.totals(), &first.columns()).unwrap();
         assert!(second.particles() == first.particles());
         advance(&mut second, STEPS - 37);
-        assert!(bits(&second) == scalar, "{search:?}: a run that goes on differs");
+        assert!(bits(&second) == scalar, "{search:?}: a resumed run differs");
     }
 }
 
@@ -210,7 +210,7 @@ fn conflicts_are_resolved_beside_the_lattice() {
         let mut second = simulate(Precision::F64, &start, Contacts::Fast(resolve), fast());
         second.restore(111, first.totals(), &first.columns()).unwrap();
         advance(&mut second, 189);
-        assert!(bits(&second) == bits(&resolved), "a run that goes on differs");
+        assert!(bits(&second) == bits(&resolved), "a resumed run differs");
         assert_eq!(second.totals(), resolved.totals());
         let begin = Grains::start;
         let (model, particles) = start.clone();
@@ -268,7 +268,7 @@ fn wide_sizes_are_for_sectors_and_lists() {
         kick(&mut expected, &forces);
     }
     let moved = differences(&model, &checked.particles, &expected);
-    assert!(moved[0] > 0.5 && moved[1] > 0.1, "the discs must have moved and met: {moved:?}");
+    assert!(moved[0] > 0.5 && moved[1] > 0.1, "the discs must have moved and collided: {moved:?}");
     for kind in ["sectors", "neighbor-list"] {
         let checked = load(&[&few[..], &[&format!("search.by={kind}")]].concat()).unwrap();
         let mut method = stripmine_physics::method::lattice_md::assemble(&checked).unwrap();

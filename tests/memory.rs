@@ -14,7 +14,7 @@ fn peak(arguments: &[String]) -> u64 {
                        print(r.getrusage(r.RUSAGE_CHILDREN).ru_maxrss); sys.exit(code)";
     let mut command = Command::new("python3");
     command.args(["-I", "-S", "-c", ASK, env!("CARGO_BIN_EXE_stripmine")]).args(arguments);
-    let output = command.output().expect("there is a Python");
+    let output = command.output().expect("Python is installed");
     assert!(output.status.success(), "{arguments:?} ends with {:?}", output.status);
     String::from_utf8(output.stdout).unwrap().trim().parse::<u64>().unwrap() * 1024
 }

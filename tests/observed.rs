@@ -98,7 +98,7 @@ fn a_row_says_what_the_naive_sums_say() {
                     let off = (row[column(name)] - expected).abs();
                     assert!(
                         off <= 2e-11 * scale,
-                        "{scene} {way:?} {steps}: {name} is off by {off} of {scale}"
+                        "{scene} {way:?} {steps}: {name} differs by {off}, scale {scale}"
                     );
                 }
             }

@@ -201,7 +201,7 @@ fn a_chart_has_the_mean_of_the_summary_and_its_transient() {
     let quantities = summary["averages"]["quantities"].as_array().unwrap();
     let known = quantities.iter().find(|it| it["quantity"] == "potential").unwrap();
     let [mean, bar, cut] = ["mean", "bar", "equilibrated_at"].map(|key| known[key].as_f64().unwrap());
-    assert!(cut > 0.0, "a run without a transient shows nothing here");
+    assert!(cut > 0.0, "the run must have a transient");
 
     let svg = fs::read_to_string(plots.join("potential.svg")).unwrap();
     // Scale, both ends in pixels, both in values.

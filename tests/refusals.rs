@@ -92,7 +92,7 @@ fn discs_in_one_cell_meet_in_lists() {
         (method.particles(), method.totals())
     };
     let (sectors, deep) = run(ENGINES[3].1);
-    assert!(deep.deepest > 0.3, "they must come deep: {deep:?}");
+    assert!(deep.deepest > 0.3, "they must overlap deeply: {deep:?}");
     for (name, engine) in [ENGINES[4], ENGINES[5]] {
         let (lists, also_deep) = run(engine);
         for (a, b) in sectors.all().iter().zip(lists.all()) {

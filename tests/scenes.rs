@@ -48,7 +48,7 @@ fn bad_scenes_are_refused_as_they_say() {
                 _ => words.clone(),
             };
             if !said.contains(&words) {
-                complaints.push(format!("does not say {words:?}"));
+                complaints.push(format!("lacks {words:?}"));
             }
         }
         let named = said.contains(path) || !overrides.is_empty();

@@ -120,7 +120,7 @@ fn a_run_ends_when_a_mean_is_known_well_enough() {
     // The run is complete.
     ends_with(&run(folder, "whole", &[&wanted[..], &["--resume"]].concat()), 0, &[]);
     assert_eq!(bytes("parts", "thermo.csv"), bytes("whole", "thermo.csv"));
-    // A time limit that is reached first.
+    // A limit of events that is reached first.
     let short =
         ["--set", "run.events=20000", "--set", r#"run.until={ quantity = "compressibility", error = 1e-4 }"#];
     let output = run(folder, "short", &short);

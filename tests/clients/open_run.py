@@ -85,7 +85,7 @@ def read_frames(path):
                 raise Wrong(f"{path.name}: Properties={keys['Properties']}")
             rows = sorted((file.readline().split() for _ in range(int(count))), key=lambda row: int(row[4]))
             if len({row[4] for row in rows}) != int(count) or any(len(row) != 17 for row in rows):
-                raise Wrong(f"{path.name}: ids that are not unique, or rows that are not whole")
+                raise Wrong(f"{path.name}: duplicate ids or incomplete rows")
             numbers = [[float(field) for field in row[1:]] for row in rows]
             lattice = [float(number) for number in keys["Lattice"].split()]
             yield Frame(
@@ -139,7 +139,7 @@ def frames_are(run, count):
 def with_json(run):
     def summary(path):
         def refuse(word):
-            raise Wrong(f"{word} is no JSON")
+            raise Wrong(f"{word} is not valid JSON")
 
         with open(path) as file:
             content = json.load(file, parse_constant=refuse)
@@ -226,7 +226,7 @@ def with_ase(run):
             atoms = ase.io.read(path, format="lammps-data", units="metal")
         except RuntimeError as error:
             if 'Style "sphere" not supported' in str(error):
-                raise Limit("it reads no atom_style sphere") from error
+                raise Limit("atom_style sphere is not supported") from error
             raise
         frame, whole = run.frame_of_data()
         if whole:
@@ -526,7 +526,7 @@ def with_lammps(run):
 
     def dump(path):
         if run.data() is None:
-            raise Limit("it needs a data file beside the dump")
+            raise Limit("the dump needs a data file")
         machine = started(run.frames[-1])
         for frame in run.frames:
             machine.command(f"read_dump {path} {frame.step} x y vx vy replace yes box no")

@@ -36,17 +36,17 @@ COLOURED = """canvas => {
 LACKING = """svg => {
     const [box, ink] = [svg.getBoundingClientRect(), getComputedStyle(svg).fill];
     const ground = getComputedStyle(svg.querySelector(":scope > rect")).fill;
-    if (box.width < 100 || box.height < 50 || !svg.checkVisibility()) return "is not to be seen";
+    if (box.width < 100 || box.height < 50 || !svg.checkVisibility()) return "is not visible";
     const light = colour => colour.match(/\\d+/g).slice(0, 3).map(Number).reduce((sum, part) => sum + part) / 765;
-    if (Math.abs(light(ink) - light(ground)) < 0.7) return "cannot be read";
-    if (Math.abs(light(ground) - light(getComputedStyle(document.body).backgroundColor)) > 0.1) return "glares";
+    if (Math.abs(light(ink) - light(ground)) < 0.7) return "has too little contrast";
+    if (Math.abs(light(ground) - light(getComputedStyle(document.body).backgroundColor)) > 0.1) return "has another background than the page";
     for (const text of svg.querySelectorAll("text")) {
         const at = text.getBoundingClientRect();
         const beyond = Math.max(box.left - at.left, at.right - box.right, box.top - at.top, at.bottom - box.bottom);
         if (beyond > 1) return `cuts off "${text.textContent}" by ${beyond.toFixed(1)} pixels`;
     }
     for (const [, name] of svg.innerHTML.matchAll(/url\\(#([^)]+)\\)/g)) {
-        if (!document.getElementById(name)) return `names a marker that is not there: ${name}`;
+        if (!document.getElementById(name)) return `refers to a missing marker: ${name}`;
     }
 }"""
 # Points on curves, marks and cells, in pixels of the window.
@@ -87,7 +87,7 @@ def open_page(browser, address, width, complaints, **options):
 
     def requested(request):
         if request.url != address and not request.url.startswith(("data:", "blob:")):
-            complaints.append(f"asks for {request.url}")
+            complaints.append(f"requests {request.url}")
 
     page.on("request", requested)
     page.goto(address)
@@ -119,16 +119,16 @@ def check_tips(page, svg):
             # A band's tooltip has no values; a point's or a cell's has one for each axis.
             if len(lines) >= 3:
                 break
-    demand(len(lines) >= 3, "the pointer reads nothing")
-    demand(not any("NaN" in line or "undefined" in line for line in lines), f"the tip says {lines}")
+    demand(len(lines) >= 3, "no tooltip at the pointer")
+    demand(not any("NaN" in line or "undefined" in line for line in lines), f"the tooltip shows {lines}")
     beyond = page.evaluate("""() => { const at = document.querySelector(".tip").getBoundingClientRect();
         return at.left < 0 || at.right > innerWidth || at.top < 0 || at.bottom > innerHeight; }""")
-    demand(not beyond, "the tip lies beyond the window")
+    demand(not beyond, "the tooltip extends beyond the window")
     page.mouse.move(0, 0)
-    demand(not shown(page), "the tip stays where nothing is")
+    demand(not shown(page), "the tooltip remains away from the data")
     svg.focus()
     page.keyboard.press("ArrowRight")
-    demand(len(shown(page)) >= 3, "the keyboard reads nothing")
+    demand(len(shown(page)) >= 3, "no tooltip by the keyboard")
     svg.evaluate("svg => svg.blur()")
     return " | ".join(lines)
 
@@ -237,8 +237,8 @@ def check(browser, path, folder):
         dark = open_page(browser, address, width, complaints, color_scheme="dark")
         dark.wait_for_timeout(300)
         keep(dark, folder, f"{name}-dark")
-        look(dark, f"{name}, in the dark", complaints)
-        accessible(dark, f"{name}, in the dark", complaints)
+        look(dark, f"{name}, in dark mode", complaints)
+        accessible(dark, f"{name}, in dark mode", complaints)
         plain = open_page(browser, address, width, complaints, java_script_enabled=False)
         keep(plain, folder, f"{name}-without-scripts")
         look(plain, f"{name}, without scripts", complaints)

@@ -39,7 +39,7 @@ pub(crate) fn fuzz_with(
     assert!(!seeds.is_empty());
     let bounded = |input: &[u8]| {
         let taken = allocations::counted(|| read(input));
-        assert!(taken <= most, "{taken} bytes were taken for an input of {}", input.len());
+        assert!(taken <= most, "{taken} bytes were allocated for an input of {}", input.len());
     };
     seeds.iter().for_each(|seed| bounded(seed));
     let config = Config { cases, failure_persistence: None, max_shrink_iters: 2000, ..Config::default() };

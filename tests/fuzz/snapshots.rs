@@ -120,7 +120,7 @@ fn forged_snapshots_are_refused_or_gone_on_with() {
             }
             let mut without = whole();
             without.columns.remove(at);
-            assert!(!taken_up(prepared, clock, without), "{what}: without {name} it is taken up");
+            assert!(!taken_up(prepared, clock, without), "{what}: accepted without {name}");
         }
         for name in whole().counters.into_keys() {
             println!("{what}: {name}");
@@ -131,7 +131,7 @@ fn forged_snapshots_are_refused_or_gone_on_with() {
             }
             let mut without = whole();
             without.counters.remove(&name);
-            assert!(!taken_up(prepared, clock, without), "{what}: without {name} it is taken up");
+            assert!(!taken_up(prepared, clock, without), "{what}: accepted without {name}");
         }
         for forged in clocks(clock) {
             println!("{what}: {forged:?}");

@@ -158,7 +158,7 @@ fn a_resumed_trajectory_is_that_of_one_run() {
         for bytes in [whole, &grown[number], &grown[more], &torn] {
             fs::write(&path, bytes).unwrap();
             let mut file = resumed(&path, &header(), mark).unwrap();
-            assert!(&fs::read(&path).unwrap() == bytes, "nothing is changed before it is cut");
+            assert!(&fs::read(&path).unwrap() == bytes, "the file must not change before it is truncated");
             file.cut().unwrap();
             assert_eq!(Frames::open(&path).unwrap().frame_count(), number as u64);
             for step in number as u64..MANY {
@@ -358,7 +358,7 @@ fn damage_of_a_grown_index_never_passes() {
                 file.cut().unwrap();
                 file.write(frame(3)).unwrap();
                 file.mark().unwrap();
-                assert!(fs::read(&path).unwrap() == whole, "byte {place} passes");
+                assert!(fs::read(&path).unwrap() == whole, "a change of byte {place} is accepted");
                 fs::write(&path, &bytes).unwrap();
             }
         }

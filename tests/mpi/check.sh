@@ -94,7 +94,7 @@ for _ in $(seq 100); do
     sleep 0.1
 done
 [[ ! -e three/seeds.json ]] || bad "seeds.json of earlier runs stays next to new ones"
-kill -0 "$launched" 2>/dev/null || bad "seeds of a long time end at once"
+kill -0 "$launched" 2>/dev/null || bad "a long run with seeds ends at once"
 kill "$launched" 2>/dev/null || true
 wait "$launched" || true
 echo "seeds: the same runs on 1 and 3 ranks"

@@ -52,7 +52,7 @@ fn seen(simulation: &dyn Simulation) -> Seen {
 
 /// Tests `times` as many scenes of each method as the quick share; returns the numbers of runs and of resumptions.
 pub fn hold(times: usize) -> [usize; 2] {
-    let folder = tempfile::tempdir().expect("there is room");
+    let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("scene.toml");
     let mut stream = Stream::new(53, Of::Test, 0);
     let mut held = [0; 2];
@@ -61,7 +61,7 @@ pub fn hold(times: usize) -> [usize; 2] {
         let ways = ways(entry, &CHOICES);
         for _ in 0..count * times {
             let text = scene(&mut stream);
-            fs::write(&path, &text).expect("there is room");
+            fs::write(&path, &text).expect("a temporary folder");
             for way in &ways {
                 let Ok((prepared, _)) = load(path.to_str().expect("a plain path"), way, METHODS) else {
                     continue;

@@ -162,7 +162,7 @@ fn number<T: std::str::FromStr>(text: &str) -> T
 where
     T::Err: std::fmt::Debug,
 {
-    text.parse().unwrap_or_else(|error| panic!("`{text}` is no number: {error:?}"))
+    text.parse().unwrap_or_else(|error| panic!("`{text}` is not a number: {error:?}"))
 }
 
 /// Columns and rows of a table.

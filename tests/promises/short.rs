@@ -31,7 +31,7 @@ pub fn shortened(methods: Methods, entry: &'static Entry, preset: &str) -> Vec<S
         Until::Events(events) => format!("run.events={}", events / 100),
         Until::Time(time) => format!("run.time={:?}", time / 8.0),
     });
-    let short = prepared(&overrides).expect("it is a scene that is short");
+    let short = prepared(&overrides).expect("a shortened scene");
     let (clock, ..) = end_of(&short);
     let every = |parts: f64| match short.schedule.rows {
         Every::Time(_) => format!("{:?}", clock.time / parts),
@@ -48,7 +48,7 @@ pub fn shortened(methods: Methods, entry: &'static Entry, preset: &str) -> Vec<S
 /// Final state of a scene run without files: clock, particles, and their positions.
 pub fn end_of(prepared: &Prepared) -> (Clock, Particles, Vec<[f32; 3]>) {
     let mut simulation = prepared.start(Purpose::Run).expect("it starts");
-    simulation.advance(&[prepared.schedule.until], &AtomicBool::new(false)).expect("it does not break");
+    simulation.advance(&[prepared.schedule.until], &AtomicBool::new(false)).expect("it does not fail");
     (simulation.clock(), simulation.particles(), simulation.per_particle().positions())
 }
 

@@ -146,8 +146,8 @@ impl Case {
     }
 
     fn hold(&self, methods: Methods, command: fn() -> Command, extent: Extent) -> Held {
-        let folder = tempfile::tempdir().expect("there is room");
-        let (prepared, _) = load(self.preset, &self.overrides, methods).expect("it was a scene before");
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let (prepared, _) = load(self.preset, &self.overrides, methods).expect("a valid scene");
         let path = folder.path().join("whole");
         let (_, words) = self.session(&prepared, &path, None);
         let mut held = Held { runs: 1, sessions: 1, ..Held::default() };
@@ -399,7 +399,7 @@ impl Case {
 
     /// Checks that `compare` finds a scene equal to itself.
     fn itself(&self, command: fn() -> Command) {
-        let against = self.overrides.last().expect("it was made short");
+        let against = self.overrides.last().expect("an override");
         let mut compare = self.command(command, &["compare"]);
         let found = self.output(compare.args(["--json", "--against", against]));
         let found: Value = serde_json::from_str(&found).expect("JSON");

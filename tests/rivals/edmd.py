@@ -88,7 +88,7 @@ class Edmd:
         self.version = git(source, "describe", "--always", "--dirty", "--abbrev=12") or "of no commit"
         self.compiler = next(filter(None, map(shutil.which, ("gcc", "clang"))), None)
         if self.compiler is None:
-            raise Unavailable("there is neither gcc nor clang")
+            raise Unavailable("neither gcc nor clang is installed")
         (folder / "planar.c").write_text(planar(self.single))
 
     def build(self):
@@ -189,20 +189,20 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--edmd", type=pathlib.Path, help=f"a checkout of {SOURCE}")
     parser.add_argument("--packing-fraction", type=float, nargs="+", default=PACKING_FRACTIONS)
-    parser.add_argument("--particles", type=int, nargs="+", help="at least; by default also as many as the source has, at one density")
+    parser.add_argument("--particles", type=int, nargs="+", help="lower bounds; by default also the number of the paper, at one density")
     parser.add_argument("--rounds", type=int, help="3 by default, 2 if quick")
     parser.add_argument("--quick", action="store_true", help="the smaller size, two rounds, fewer shells")
-    parser.add_argument("--core", type=int, help="of both; the last one by default")
+    parser.add_argument("--core", type=int, help="core for both; by default the last one")
     parser.add_argument("--stripmine", default="target/release/stripmine")
     parser.add_argument("--out", type=pathlib.Path, help="folder for contests.json")
     asked = parser.parse_args()
     asked.rounds = asked.rounds or (2 if asked.quick else 3)
     if asked.out and not is_traceable(asked.out):
-        print(f"error: the results in {asked.out} are committed, but this checkout has changes that are in no commit", file=sys.stderr)
+        print(f"error: the results in {asked.out} are committed, but this checkout has uncommitted changes", file=sys.stderr)
         print("  help: commit them and build again, or choose another --out", file=sys.stderr)
         return 2
     if not pathlib.Path(asked.stripmine).exists():
-        print(f"skipped: there is no {asked.stripmine}: cargo build --release")
+        print(f"skipped: {asked.stripmine} does not exist: cargo build --release")
         return 0
     if hasattr(os, "sched_setaffinity"):
         # Child processes inherit the core.
@@ -230,7 +230,7 @@ def main():
                 write(asked.out, found)
     print(shown(found))
     for it in found["memory"]:
-        print(f"memory, {it['system']}, {it['particles']}: {it['ours'] / 1e6:.0f} beside {it['theirs'] / 1e6:.0f} MB")
+        print(f"memory, {it['system']}, {it['particles']}: {it['ours'] / 1e6:.0f} and {it['theirs'] / 1e6:.0f} MB")
     return 0
 
 

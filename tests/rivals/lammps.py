@@ -44,10 +44,10 @@ def arguments():
     parser.add_argument("--what", nargs="+", default=["lattice"], help="lattice, neighbor-list, sectors")
     parser.add_argument("--precision", nargs="+", default=["f64"], help="f64, f32, mixed")
     parser.add_argument("--integrator", nargs="+", default=["velocity-verlet"], help="velocity-verlet, gear4, gear5, gear6")
-    parser.add_argument("--execution", default="fast", help="of the lattice")
+    parser.add_argument("--execution", default="fast", help="execution of the lattice")
     parser.add_argument("--rounds", type=int, default=3)
-    parser.add_argument("--steps", type=int, help="of a measurement; about a second by default, at least 200")
-    parser.add_argument("--skin", type=float, nargs="+", default=[0.3], help="of LAMMPS's lists; the fastest one counts")
+    parser.add_argument("--steps", type=int, help="steps of a measurement; by default about a second, at least 200")
+    parser.add_argument("--skin", type=float, nargs="+", default=[0.3], help="skins of LAMMPS's lists; the fastest is used")
     parser.add_argument("--stripmine", default="target/release/stripmine")
     parser.add_argument("--python", help="a Python that has LAMMPS")
     parser.add_argument("--out", type=pathlib.Path, help="folder for contests.json")
@@ -73,11 +73,11 @@ def of_the_report(held, build):
 def main():
     asked = arguments()
     if asked.out and not is_traceable(asked.out):
-        print(f"error: the results in {asked.out} are committed, but this checkout has changes that are in no commit", file=sys.stderr)
+        print(f"error: the results in {asked.out} are committed, but this checkout has uncommitted changes", file=sys.stderr)
         print("  help: commit them and build again, or choose another --out", file=sys.stderr)
         return 2
     if not pathlib.Path(asked.stripmine).exists():
-        print(f"skipped: there is no {asked.stripmine}: cargo build --release")
+        print(f"skipped: {asked.stripmine} does not exist: cargo build --release")
         return 0
     try:
         python, variables = environment(asked.python)

@@ -43,11 +43,11 @@ def main():
     parser.add_argument("--out", type=pathlib.Path, help="folder for contests.json")
     asked = parser.parse_args()
     if asked.out and not is_traceable(asked.out):
-        raise SystemExit(f"error: the results in {asked.out} are committed, but this checkout has changes that are in no commit")
+        raise SystemExit(f"error: the results in {asked.out} are committed, but this checkout has uncommitted changes")
     try:
         python, variables = environment(asked.python)
     except Unavailable as error:
-        print(f"no LAMMPS here: {error}")
+        print(f"skipped: LAMMPS is not available: {error}")
         return
     def lammps(script, *words):
         return json.loads(run([python, "-I", str(script), *map(str, words)], variables).strip().splitlines()[-1])

@@ -67,7 +67,7 @@ def main():
     parser.add_argument("--out", type=pathlib.Path, help="folder for contests.json")
     asked = parser.parse_args()
     if asked.out and not is_traceable(asked.out):
-        sys.exit(f"error: the results in {asked.out} are committed, but this checkout has changes that are in no commit")
+        sys.exit(f"error: the results in {asked.out} are committed, but this checkout has uncommitted changes")
     try:
         rival = built()
     except OSError as why:

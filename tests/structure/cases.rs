@@ -24,7 +24,7 @@ fn structure(names: &[&str]) -> String {
     format!("output.structure={names:?}")
 }
 
-/// Sixteen discs on a lattice of 3 × 6: S = 16 at wave vectors along an axis that are multiples of its period's, and 0 at every other one.
+/// Sixteen discs on a lattice of 3 × 6: S = 16 at multiples of the lattice's wave vector along each axis, and 0 at every other wave vector.
 #[test]
 fn waves_of_a_rectangular_lattice_are_at_its_periods() {
     let folder = tempfile::tempdir().unwrap();
