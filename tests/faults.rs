@@ -178,7 +178,7 @@ fn spoilt(scene: usize, path: &Path, shim: &Path, random: &mut Random) -> (Strin
     }
 }
 
-/// Whatever fails, the exit code is a documented one. A run that can be resumed gives the same bits; only files damaged from outside
+/// Faults of any kind end with a documented exit code. A run that can be resumed gives the same bits; only files damaged from outside
 /// prevent this.
 #[test]
 #[ignore = "long: cargo test --release --test faults -- --ignored"]

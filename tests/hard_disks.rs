@@ -158,7 +158,7 @@ fn events_that_come_late_come() {
     }
 }
 
-/// Without any future event, time still passes with both engines; a number of events is refused when the scene is checked, or when
+/// Time passes with both engines if no event can happen; a number of events is refused when the scene is checked, or when
 /// no further event can happen.
 #[test]
 fn where_nothing_happens_time_passes() {

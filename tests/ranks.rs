@@ -300,11 +300,11 @@ fn random_scenes_have_the_bits_of_one_rank() {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Fault {
     None,
-    /// Ends after this number of broadcasts from the first process.
+    /// Ends after a number of broadcasts from the first process.
     Ends(usize),
-    /// Then sends the first process a message that lacks a byte.
+    /// Sends the first process a message that lacks a byte, after this number.
     CutsOff(usize),
-    /// Then reads a message of the first process without its last byte.
+    /// Reads a message of the first process without its last byte, after this number.
     Mishears(usize),
 }
 

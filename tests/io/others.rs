@@ -1,4 +1,4 @@
-//! The same two discs as different programs write them: every unambiguous spelling is read.
+//! Two discs as different programs write them: every unambiguous spelling is read.
 
 use stripmine_physics::io::extxyz::{Frame, Frames};
 

@@ -35,7 +35,7 @@ fn runs_of_few_particles_resume() {
     assert!(runs > 200 && resumed > 3 * runs, "{runs} runs, resumed {resumed} times");
 }
 
-/// Like [`runs_of_few_particles_resume`], for many more scenes.
+/// Resumes many more scenes than [`runs_of_few_particles_resume`].
 #[test]
 #[ignore = "long: cargo test --release --test promises -- --ignored --nocapture"]
 fn many_runs_of_few_particles_resume() {

@@ -62,7 +62,7 @@ pub fn gas(least: usize, packing_fraction: f64, seed: u64) -> (Model, Particles)
     (model, particles)
 }
 
-/// The same gas for BP93's own program, which has no clamp and measures positions from the origin.
+/// The gas of [`gas`] for BP93's own program, which has no clamp and measures positions from the origin.
 pub fn printed_gas(least: usize, packing_fraction: f64, seed: u64) -> (Model, Particles) {
     let (model, particles) = gas(least, packing_fraction, seed);
     let contact = Contact { cohesionless: false, ..model.contact };
