@@ -1,9 +1,8 @@
-//! Bad inputs of every kind, a line each, in `tests/bad/*.cases`: an input that is right, what is changed in it, and what must
-//! be said about that.
+//! Bad inputs of every kind, one a line, in `tests/bad/*.cases`: a valid input, one change to it, and the words its error must contain.
 //!
-//! A line is `BASE: OLD => NEW :: words :: words`. `NEW` takes the place of the first line of the base that begins with `OLD`;
-//! with `~>` in place of the arrow, of the first `OLD` in the text. The mark `‸` in `NEW` is where the error must point, and is
-//! taken out; `\n` is a line end. Bases are files beside, called `BASE.base`. Lines that begin with `#` say what follows.
+//! A line is `BASE: OLD => NEW :: words :: words`. `NEW` replaces the first line of the base that begins with `OLD`; with `~>`
+//! instead of the arrow, it replaces the first `OLD` in the text. The mark `‸` in `NEW` is where the error must point, and is
+//! removed; `\n` is a line end. Bases are files in the same folder, called `BASE.base`. Lines that begin with `#` are headings.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -11,7 +10,7 @@ use std::process::{Command, Output};
 struct Case {
     line: usize,
     text: String,
-    /// Line and column at which the error must point.
+    /// Line and column where the error must point.
     place: Option<(usize, usize)>,
     words: Vec<String>,
 }
@@ -31,7 +30,7 @@ fn case(line: usize, text: &str) -> Case {
     let mut parts = text.split(" :: ");
     let change = parts.next().unwrap();
     let words: Vec<String> = parts.map(str::to_owned).collect();
-    assert!(!words.is_empty(), "line {line} expects nothing");
+    assert!(!words.is_empty(), "line {line} has no expected words");
     let (base, change) = change.split_once(": ").unwrap();
     let whole = change.contains(" => ");
     let (old, new) = change.split_once(if whole { " => " } else { " ~> " }).unwrap();
@@ -55,7 +54,7 @@ fn case(line: usize, text: &str) -> Case {
     Case { line, text: marked.replace('‸', ""), place, words }
 }
 
-/// Every case of a table ends with exit code 3 and says what and where; `ask` puts the question, `place` writes a place.
+/// Checks that every case of a table ends with exit code 3 and the expected words; `ask` runs the command, `place` formats a location.
 fn all_are_refused(
     kind: &str,
     least: usize,
@@ -74,7 +73,7 @@ fn all_are_refused(
             case.words.iter().chain(&place).filter(|words| !said.contains(words.as_str())).collect();
         if output.status.code() != Some(3) || !output.stdout.is_empty() || !missing.is_empty() {
             wrong.push(format!(
-                "line {}: ends with {:?}, does not say {missing:?}\n{said}",
+                "line {}: ends with {:?}, lacks {missing:?}\n{said}",
                 case.line,
                 output.status.code()
             ));
@@ -120,7 +119,7 @@ fn bad_machine_files_are_refused() {
 fn bad_host_files_are_refused() {
     let host = stripmine::model::host::default_model().unwrap().to_toml().unwrap();
     let ask = |folder: &Path, change: &str| {
-        // The base is too long to be kept twice: the text of a case is the change, old and new.
+        // The base is long and is not kept twice: the text of a case is the change, old and new.
         let (old, new) = change.trim_end().split_once('\n').unwrap();
         assert!(host.contains(old), "{old}");
         std::fs::write(folder.join("host.toml"), host.replacen(old, new, 1)).unwrap();

@@ -1,4 +1,4 @@
-//! Claims of the sources against the committed report: each is judged by what is committed, and no limit is newer than its result.
+//! Claims of the papers compared with the committed report: the report decides each claim, and no limit is newer than its result.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -15,7 +15,7 @@ fn judged(claim: &Claim) -> Option<(&str, &Claim)> {
     Some((claim.item.as_deref()?, claim))
 }
 
-/// The names of tables and columns in claims exist in the committed report.
+/// Tables and columns named by claims exist in the committed report.
 #[test]
 fn every_claim_is_judged_by_the_committed_report() {
     let (all, folder) = (claims::all().unwrap(), Folder::of_another(&root().join("reports")));
@@ -33,8 +33,8 @@ fn every_claim_is_judged_by_the_committed_report() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Limits are set before the result that they judge: by the dates of both, and, where git has the commit of the result, by the claims
-/// of that commit.
+/// Limits are set before the result they judge: by the dates of both and, where git has the result's commit, by the claims of that
+/// commit.
 #[test]
 fn no_limit_is_newer_than_its_result() {
     let (all, folder) = (claims::all().unwrap(), Folder::of_another(&root().join("reports")));
@@ -56,7 +56,7 @@ fn no_limit_is_newer_than_its_result() {
     assert!(newer.is_empty(), "{}", newer.join("\n"));
 }
 
-/// The claims of a file at a commit; none where git does not have it.
+/// Claims of a file at a commit; `None` if git lacks it.
 fn then(commit: &str, file: &str) -> Option<Vec<Claim>> {
     let path = format!("{commit}:claims/{file}");
     let shown = Command::new("git").arg("-C").arg(root()).args(["show", &path]).output().ok()?;
@@ -64,7 +64,7 @@ fn then(commit: &str, file: &str) -> Option<Vec<Claim>> {
     claims::read(file, &text).ok()
 }
 
-/// A claim that was changed keeps its earlier limit: its text in the file grows, and nothing of it is edited.
+/// A changed claim keeps its earlier limit: its text in the file grows, and nothing is edited away.
 #[test]
 fn a_changed_limit_keeps_the_one_before() {
     for claim in claims::all().unwrap() {

@@ -1,4 +1,4 @@
-//! The command as a user meets it: data on standard output, everything else on standard error, exit codes.
+//! The command as a user sees it: data on standard output, everything else on standard error, exit codes.
 
 use assert_cmd::Command;
 use serde_json::Value;
@@ -15,7 +15,7 @@ fn json(arguments: &[&str]) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-/// The printed column is the source's, the counted one the program's, and both clocks are NOP·(n + D).
+/// The printed column has the counts of the paper, the counted one those of the program, and both clocks are NOP·(n + D).
 #[test]
 fn the_table_holds_the_printed_counts_and_the_paper_clock() {
     let table = json(&["table", "--particles", "2000", "--occupancy", "0.25", "--json"]);
@@ -53,7 +53,7 @@ fn listings_and_table_count_the_same() {
     }
 }
 
-/// The source's own text is benched by its name, and the programs of a scene that runs it are named by its equations.
+/// BP93's own program is benched by its name, and a scene that runs it lists its programs by equation.
 #[test]
 fn the_printed_text_is_benched_and_named_by_its_equations() {
     for (arguments, text) in [(&["--text", "printed"][..], "printed"), (&[], "ours")] {
@@ -73,7 +73,7 @@ fn the_printed_text_is_benched_and_named_by_its_equations() {
     }
 }
 
-/// Whatever finds contacts in a run of a preset, the programs of the lattice are counted, and where the run has others that is said.
+/// Lattice programs are counted for every preset with contacts, and a note is shown if the run itself uses another search.
 #[test]
 fn every_preset_with_contacts_on_a_lattice_is_counted() {
     let mut said_so = 0;
@@ -101,7 +101,7 @@ fn every_preset_with_contacts_on_a_lattice_is_counted() {
     assert_eq!(stripmine(&["scene", "programs", "hard-disks"]).status.code(), Some(2));
 }
 
-/// What a scene does not need is not executed.
+/// Operations that a scene does not need are not executed.
 #[test]
 fn simpler_scenes_cost_less() {
     let table = json(&["table", "--json"]);
@@ -116,7 +116,7 @@ fn simpler_scenes_cost_less() {
     assert!(!listing.contains("omega") && !listing.contains("torque"));
 }
 
-/// Unknown names exit with 2 and say which there are; impossible questions say what is wrong with them.
+/// Unknown names exit with 2 and list the known ones; impossible values are named.
 #[test]
 fn bad_usage_exits_with_2_and_helps() {
     for (arguments, words) in [
@@ -139,7 +139,7 @@ fn bad_usage_exits_with_2_and_helps() {
     }
 }
 
-/// The files of a folder but those that say when and where, by name.
+/// Files of a folder by name, except those with dates and hosts.
 fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap());
     let files =
@@ -147,7 +147,7 @@ fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     files.filter(|(name, _)| name != "provenance.json").collect()
 }
 
-/// Results go where they were asked for, and two runs write the same bytes.
+/// Results are written to the requested folder, and two runs write the same bytes.
 #[test]
 fn reproduce_writes_the_same_twice() {
     let folder = tempfile::tempdir().unwrap();
@@ -169,7 +169,7 @@ fn reproduce_writes_the_same_twice() {
     assert!(page.contains("1\u{202f}656"));
 }
 
-/// A single item renews itself and leaves the others, on the disk and on the pages.
+/// Making one item again leaves the others unchanged, on disk and on the pages.
 #[test]
 fn single_items_keep_the_rest() {
     let folder = tempfile::tempdir().unwrap();
@@ -186,7 +186,7 @@ fn single_items_keep_the_rest() {
     }
 }
 
-/// Completions and the manual page know every verb; a page of a verb that there is not names those there are.
+/// Completions and the manual page know every verb; for an unknown verb, `man` lists the known ones.
 #[test]
 fn completions_and_manual_know_the_verbs() {
     let text = |arguments: &[&str]| String::from_utf8(stripmine(arguments).stdout).unwrap();
@@ -201,7 +201,7 @@ fn completions_and_manual_know_the_verbs() {
     assert!(String::from_utf8_lossy(&output.stderr).contains("reproduce"));
 }
 
-/// A folder that cannot be written is an input/output failure with its name.
+/// An unwritable folder is an input/output failure that names it.
 #[test]
 fn an_unwritable_folder_exits_with_5() {
     let folder = tempfile::tempdir().unwrap();
@@ -212,7 +212,7 @@ fn an_unwritable_folder_exits_with_5() {
     assert!(String::from_utf8_lossy(&output.stderr).contains("below"));
 }
 
-/// A word that is nearly right, or right in another place, is answered with what was meant.
+/// A misspelt word, or one that belongs elsewhere, is answered with the intended one.
 #[test]
 fn mistaken_words_are_answered_with_what_was_meant() {
     for (arguments, code, meant) in [
@@ -237,11 +237,11 @@ fn mistaken_words_are_answered_with_what_was_meant() {
         let output = stripmine(arguments);
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(code), "{arguments:?}: {said}");
-        assert!(said.contains(meant), "{arguments:?} is not answered with {meant}: {said}");
+        assert!(said.contains(meant), "{arguments:?} is not answered by {meant}: {said}");
     }
 }
 
-/// On several numbers of threads in turn: the same bits, and of every phase the part that does not gain.
+/// A bench on several numbers of threads gives the same bits and reports the serial part of every phase.
 #[test]
 fn a_bench_on_several_numbers_of_threads_tells_what_does_not_gain() {
     let bench = ["bench", "lattice", "--particles", "6000", "--steps", "20", "--repeats", "2", "--quiet"];

@@ -1,5 +1,5 @@
-//! Every verb with what it cannot do: the exit code of the contract, words on standard error, and, with `--json`, the failure as
-//! one document on standard output.
+//! Every verb with requests that it cannot carry out: the documented exit code, a message on standard error, and, with `--json`, the failure as one
+//! document on standard output.
 
 use assert_cmd::Command;
 use serde_json::Value;
@@ -10,7 +10,7 @@ fn stripmine(folder: &Path, arguments: &[&str]) -> Output {
     Command::cargo_bin("stripmine").unwrap().current_dir(folder).args(arguments).output().unwrap()
 }
 
-/// What the cases find in their folder: files that are no text, and a file where a folder should be.
+/// Fills the folder of the cases: files that are not valid text, and a file where a folder should be.
 fn prepare(folder: &Path) {
     let write = |name: &str, bytes: &[u8]| std::fs::write(folder.join(name), bytes).unwrap();
     write("file", b"mine");
@@ -139,7 +139,7 @@ fn every_verb_refuses_with_its_exit_code_in_words_and_as_data() {
     assert_eq!(std::fs::read(folder.join("file")).unwrap(), b"mine");
 }
 
-/// A number of threads in the environment is bounded as that of `--threads`, which comes before it.
+/// `RAYON_NUM_THREADS` has the same bounds as `--threads`, which takes precedence.
 #[test]
 fn threads_of_the_environment_are_bounded() {
     let folder = tempfile::tempdir().unwrap();
@@ -165,7 +165,7 @@ fn threads_of_the_environment_are_bounded() {
     }
 }
 
-/// What broke a simulation is there as data: kind, moment, particles, values, wherever the verb met it.
+/// A broken simulation is reported as data, with kind, moment, particles and values, whichever verb ran it.
 #[test]
 fn failures_of_the_physics_are_data() {
     let folder = tempfile::tempdir().unwrap();
@@ -181,7 +181,7 @@ fn failures_of_the_physics_are_data() {
     assert!(details["values"]["penetration"].as_f64() > details["values"]["limit"].as_f64());
 }
 
-/// A scene's mistakes are all said, each with its place; the first of them is the error.
+/// All mistakes of a scene are reported, each with its location; the first of them is the error.
 #[test]
 fn mistakes_of_a_scene_have_their_places_as_data() {
     let folder = tempfile::tempdir().unwrap();
@@ -197,8 +197,9 @@ fn mistakes_of_a_scene_have_their_places_as_data() {
     }
 }
 
-/// What standard output does not take is an input/output failure, for help and version too; a reader that closes the pipe is
-/// none; and a full or closed standard error changes no exit code.
+/// Data that standard output rejects is an input/output failure, also for help and version; a reader that closes the pipe is not; and a full or
+/// closed
+/// standard error changes no exit code.
 #[cfg(target_os = "linux")]
 #[test]
 fn full_and_closed_outputs_end_in_exit_codes() {
@@ -242,7 +243,7 @@ fn full_and_closed_outputs_end_in_exit_codes() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// A file that reaches the limit of its size is an input/output failure, not a death by a signal.
+/// A file that reaches the size limit is an input/output failure, not a death by a signal.
 #[cfg(unix)]
 #[test]
 fn the_limit_of_file_sizes_ends_in_an_exit_code() {
@@ -260,7 +261,7 @@ fn the_limit_of_file_sizes_ends_in_an_exit_code() {
     }
 }
 
-/// A checkpoint that is whole but says what cannot be, of every method: exit code 6, and the file.
+/// A checkpoint that is intact but has impossible contents ends with exit code 6 and names the file, for every method.
 #[test]
 fn forged_checkpoints_end_with_6() {
     use stripmine_physics::io::checkpoint::{Checkpoint, Column};
@@ -297,8 +298,8 @@ fn forged_checkpoints_end_with_6() {
     }
 }
 
-/// Variables of launchers do not keep verbs from working that start nothing; a run among several processes is refused where they could
-/// not speak to each other.
+/// Variables of launchers do not affect verbs that start no simulation; a run among several processes is refused if the processes could not
+/// communicate.
 #[test]
 fn launchers_are_asked_for_what_starts_something() {
     const LAUNCHERS: [[(&str, &str); 2]; 3] = [
@@ -338,14 +339,14 @@ fn launchers_are_asked_for_what_starts_something() {
             }
         }
     }
-    // A batch script of Slurm, where srun has started nothing.
+    // A batch script of Slurm, without srun.
     let mut command = Command::cargo_bin("stripmine").unwrap();
     command.current_dir(folder.path()).args(run).args(["--out", "alone"]).env("SLURM_NTASKS", "8");
     assert!(command.env("SLURM_PROCID", "0").output().unwrap().status.success());
 }
 
-/// A number of threads in the environment that cannot be is refused with the variable; without a number, or with one on the command line, it does
-/// not matter.
+/// An impossible number of threads in the environment is refused and the variable is named; an empty value, or `--threads` on the command line,
+/// makes it irrelevant.
 #[test]
 fn threads_of_the_environment_have_a_bound() {
     let folder = tempfile::tempdir().unwrap();
@@ -371,7 +372,7 @@ fn threads_of_the_environment_have_a_bound() {
     }
 }
 
-/// Runs with several seeds that end before their time leave no summary of the runs that they write over.
+/// Runs with several seeds that fail leave no summary of the runs they overwrite.
 #[test]
 fn a_summary_of_seeds_goes_with_its_runs() {
     let folder = tempfile::tempdir().unwrap();
@@ -379,7 +380,7 @@ fn a_summary_of_seeds_goes_with_its_runs() {
     let summary = folder.path().join("all/seeds.json");
     let whole = stripmine(folder.path(), &begin);
     assert!(whole.status.success() && summary.is_file(), "{}", String::from_utf8_lossy(&whole.stderr));
-    // Discs so soft that they pass into each other.
+    // Discs so soft that they pass through each other.
     let broken = ["--overwrite", "--set", "law.stiffness=1e-3"];
     let output = stripmine(folder.path(), &[&begin[..], &broken].concat());
     assert_eq!(output.status.code(), Some(4), "{}", String::from_utf8_lossy(&output.stderr));

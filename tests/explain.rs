@@ -1,4 +1,4 @@
-//! Plans as a user meets them.
+//! `explain` as a user sees it.
 
 use assert_cmd::cargo::CommandCargoExt;
 use serde_json::Value;
@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-/// `explain` in a folder, where it also keeps what it measures.
+/// Runs `explain` in a folder that also holds its cache.
 fn explain(folder: &Path, arguments: &[&str]) -> Output {
     let mut command = Command::cargo_bin("stripmine").unwrap();
     command.current_dir(folder).env("XDG_CACHE_HOME", folder.join("cache")).arg("explain");
@@ -25,7 +25,7 @@ fn plan(output: &Output) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-/// A gas whose trials take no time.
+/// A gas whose trials take no noticeable time.
 const GAS: [&str; 5] = ["hard-disks", "--set", "particles.count=100", "--seconds", "1"];
 
 #[test]
@@ -47,7 +47,7 @@ fn a_plan_is_written_carried_out_and_reaches_its_error() {
     let summary: Value = serde_json::from_slice(&fs::read(folder.join("out/summary.json")).unwrap()).unwrap();
     let all = summary["averages"]["quantities"].as_array().unwrap();
     let z = all.iter().find(|it| it["quantity"] == "compressibility").unwrap();
-    // One of its runs: the error is that of all seeds.
+    // A run of the first seed only: the planned error is that of all seeds together.
     let allowed = 2.5 * 0.02 * mean * found["seeds"].as_f64().unwrap().sqrt();
     assert!(z["says"] == "mean" && (z["mean"].as_f64().unwrap() - mean).abs() < allowed, "{z:#}");
 }
@@ -65,7 +65,7 @@ fn what_was_measured_is_kept_for_this_host_and_may_be_forgotten() {
     assert_eq!(again["mean"], found["mean"]);
     let ratio = again["time"].as_f64().unwrap() / found["time"].as_f64().unwrap();
     assert!(ratio > 1.5 && ratio < 4.01, "{ratio}");
-    // What another processor measured is not used.
+    // Measurements of another processor are not used.
     let kept: Vec<_> = fs::read_dir(folder.join("cache/stripmine/explain")).unwrap().collect();
     let [file] = kept.as_slice() else { panic!("{kept:?}") };
     let file = file.as_ref().unwrap().path();
@@ -78,7 +78,7 @@ fn what_was_measured_is_kept_for_this_host_and_may_be_forgotten() {
     assert!(!file.exists());
 }
 
-/// A file that is there is refused before trials, whatever it is; with --overwrite a link is replaced, not followed, and what is no file stays.
+/// An existing file is refused before any trial, whatever its type. With --overwrite a link is replaced, not followed; pipes and folders stay.
 #[cfg(unix)]
 #[test]
 fn a_plan_is_not_written_over_what_is_there() {
@@ -118,12 +118,13 @@ fn a_plan_is_not_written_over_what_is_there() {
     assert!(fs::read_to_string(folder.join("link.toml")).unwrap().starts_with("# Plan by stripmine explain"));
     assert_eq!(fs::read_to_string(folder.join("mine.txt")).unwrap(), "mine");
     assert!(fs::metadata(folder.join("pipe")).unwrap().file_type().is_fifo());
-    // Nothing temporary is left.
+    // No temporary file is left.
     let names: Vec<_> = fs::read_dir(folder).unwrap().map(|it| it.unwrap().file_name()).collect();
     assert_eq!(names.len(), 7, "{names:?}");
 }
 
-/// A cache that cannot be read or written is warned of, and costs no plan: a file in its place, a pipe or an endless device under the name of what was kept.
+/// A cache that cannot be read or written causes a warning, and the plan is still made: a file instead of its folder, or a pipe or an endless device
+/// instead of a cached file.
 #[cfg(unix)]
 #[test]
 fn an_unusable_cache_costs_no_plan() {
@@ -156,12 +157,12 @@ fn an_unusable_cache_costs_no_plan() {
         fs::remove_file(&kept).unwrap();
         make(&kept);
         warned(&begin(folder));
-        // It is kept again in the place of that.
+        // The measurements are cached again in its place.
         assert!(fs::symlink_metadata(&kept).unwrap().is_file());
     }
 }
 
-/// A folder that a variable names relative to wherever one is, is none.
+/// A relative XDG_CACHE_HOME is ignored.
 #[test]
 fn a_relative_cache_folder_is_ignored() {
     let folder = tempfile::tempdir().unwrap();
@@ -174,12 +175,12 @@ fn a_relative_cache_folder_is_ignored() {
     assert_eq!(fs::read_dir(home.join(".cache/stripmine/explain")).unwrap().count(), 1);
 }
 
-/// Quantities without scatter are kept too: infinitely many degrees of freedom are found again.
+/// Quantities without scatter are cached too, including infinitely many degrees of freedom.
 #[test]
 fn what_does_not_vary_is_found_again() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    // The temperature of elastic hard discs is constant, and the energy of two bodies should be.
+    // The temperature of elastic hard discs is constant; the energy of two bodies is conserved.
     for (scene, quantity) in [("hard-disks", "temperature"), ("kepler", "energy_error")] {
         let asked = [scene, "--of", quantity, "--json"];
         let found = plan(&explain(folder, &[&asked[..], &["--seconds", "1"]].concat()));
@@ -212,7 +213,7 @@ fn only_what_was_kept_is_forgotten() {
     assert!(mine.iter().all(|(name, text)| fs::read_to_string(cache.join(name)).unwrap() == *text));
 }
 
-/// A scene is read once: trials, the plan and its file are of what it was at the beginning.
+/// A scene is read once: trials, plan and plan file use the scene as it was at the start.
 #[test]
 fn a_scene_that_changes_meanwhile_is_that_of_the_beginning() {
     let folder = tempfile::tempdir().unwrap();
@@ -227,7 +228,7 @@ fn a_scene_that_changes_meanwhile_is_that_of_the_beginning() {
         .args(["--error", "5%", "--write", "plan.toml"])
         .stderr(std::process::Stdio::piped());
     let mut running = command.spawn().unwrap();
-    // Its first words are said once it has read the scene.
+    // The first message comes after the scene is read.
     let mut said = std::io::BufReader::new(running.stderr.take().unwrap());
     std::io::BufRead::read_line(&mut said, &mut String::new()).unwrap();
     fs::write(&scene, "none").unwrap();
@@ -236,7 +237,7 @@ fn a_scene_that_changes_meanwhile_is_that_of_the_beginning() {
     assert!(fs::read_to_string(folder.join("plan.toml")).unwrap().contains("hard-disks"));
 }
 
-/// A plan of more than a minute is not carried out where nobody can be asked, but printed.
+/// A plan that takes more than a minute is printed but not carried out if no terminal can confirm it.
 #[test]
 fn a_long_plan_is_carried_out_only_if_the_user_says_so() {
     let folder = tempfile::tempdir().unwrap();
@@ -251,8 +252,9 @@ fn a_long_plan_is_carried_out_only_if_the_user_says_so() {
     ends_with(&explain(folder, &["hard-disks", "--yes"]), 2, &["--analyze"]);
 }
 
-/// What `auto` becomes by what is kept of a scene that is alike is said, stands in the resolved scene, and is what a resumption goes on with; nothing that
-/// the scene states is changed, and a scene that is not alike is run as ever.
+/// Values that `auto` takes from cached measurements of a similar scene are reported, written to the resolved scene, and used by a resumption. Keys
+/// that the
+/// scene sets stay as they are, and a scene without similar measurements runs as usual.
 #[test]
 fn a_run_may_be_tuned_by_what_was_measured_of_a_scene_that_is_alike() {
     let folder = tempfile::tempdir().unwrap();
@@ -268,7 +270,7 @@ fn a_run_may_be_tuned_by_what_was_measured_of_a_scene_that_is_alike() {
         let scene = fs::read_to_string(folder.join("out/scene.toml")).unwrap();
         (String::from_utf8_lossy(&output.stderr).into_owned(), scene)
     };
-    // The cheapest way of what is kept.
+    // The cheapest cached configuration.
     let kept = fs::read_dir(folder.join("cache/stripmine/explain")).unwrap().next().unwrap().unwrap().path();
     let kept: Value = serde_json::from_slice(&fs::read(kept).unwrap()).unwrap();
     let is_own = |way: &&Value| {
@@ -304,7 +306,7 @@ fn what_should_keep_its_value_gets_the_step_that_keeps_it() {
     let all = summary["averages"]["quantities"].as_array().unwrap();
     let error = all.iter().find(|it| it["quantity"] == "energy_error").unwrap();
     assert!(error["says"] == "kept" && error["farthest"].as_f64().unwrap() <= 1e-6, "{error:#}");
-    // The scene's own leapfrog is not that good.
+    // The scene's own leapfrog is less accurate.
     let own = found["own"]["error"]["most"].as_f64().unwrap();
     assert!(own > 1e-5, "{own}");
 }
@@ -331,7 +333,7 @@ fn what_cannot_be_planned_is_refused() {
     );
 }
 
-/// A window of a fall: from rest at one height h, the mean kinetic energy over a window from t to T is m g² (T³ − t³)/(6 (T − t)) before anything is hit.
+/// A window of a free fall: from rest, the mean kinetic energy over a window from t to T is m g² (T³ − t³)/(6 (T − t)) before any impact.
 #[test]
 fn a_window_is_averaged_over() {
     let folder = tempfile::tempdir().unwrap();
@@ -353,14 +355,14 @@ fn a_window_is_averaged_over() {
         explain(folder.path(), &asked)
     };
     let found = plan(&at(["1", "2"]));
-    // Two discs of mass 1, so light that they fall for as long as trials may take.
+    // Two discs of mass 1; gravity is so weak that they fall for as long as trials may take.
     let expected = 1e-16 * 2.0 * (8.0 - 1.0) / 6.0;
     let [mean, bar] = [0, 1].map(|place| found["mean"][place].as_f64().unwrap());
     assert!((mean - expected).abs() < 0.01 * expected + bar && found["time"] == 2.0, "{found:#}");
     ends_with(&at(["2", "1"]), 2, &["is not a time window", "--window 2 8"]);
 }
 
-/// Trials that are stopped leave a journal, with which the same command goes on; what is measured then is kept, and the journal goes.
+/// Stopped trials leave a journal, from which the same command resumes; then the measurements are cached and the journal is removed.
 #[cfg(unix)]
 #[test]
 fn trials_that_were_stopped_go_on() {
@@ -381,7 +383,7 @@ fn trials_that_were_stopped_go_on() {
     }
     Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
     let ended = child.wait_with_output().unwrap();
-    // On a busy machine it may have come to its end.
+    // On a busy machine the command may have finished first.
     let code = ended.status.code();
     if code == Some(130) {
         assert!(runs() >= 3);
@@ -392,7 +394,7 @@ fn trials_that_were_stopped_go_on() {
     assert_eq!((journals(), runs()), (vec![], 0));
 }
 
-/// What changes all along has no mean that a run comes to; what is asked for is that over the whole run, by runs from starts of their own.
+/// A quantity that changes all the time has no stationary mean: `explain` estimates the mean over the whole run, from runs with different starts.
 #[test]
 fn what_changes_all_along_is_meant_over_the_whole_run() {
     let folder = tempfile::tempdir().unwrap();
@@ -414,7 +416,7 @@ fn what_changes_all_along_is_meant_over_the_whole_run() {
     let found = plan(&explain(folder, &[&falling[..], &asked, &["--analyze", "--json"]].concat()));
     assert!(found["is_whole"] == true && found["time"] == 0.3, "{found:#}");
     let [mean, bar] = [0, 1].map(|place| found["mean"][place].as_f64().unwrap());
-    // Grains fall some centimetres, and have less than the energy of that for a part of the time.
+    // Grains fall some centimetres, and have less than that energy for part of the time.
     let most = 30.0 * 1e-6 * 9.81 * 0.15;
     assert!((0.001 * most..most).contains(&mean) && bar < 0.5 * mean, "{mean} {bar}");
     let rows = found["analyzed"].as_array().unwrap();
@@ -436,7 +438,7 @@ fn a_plan_for_a_time_has_the_least_error_that_it_allows() {
         assert!(likely <= seconds && likely > 0.5 * seconds, "{likely} of {seconds}");
     }
     let [short, long] = [short, long].map(|found| found["expected"]["most"].as_f64().unwrap());
-    // The root of four times the time.
+    // Twice the error: the square root of four times the time.
     assert!((1.5..3.0).contains(&(short / long)), "{short} {long}");
     let quick = explain(folder, &[&GAS[..], &["--time", "1e-7"]].concat());
     ends_with(
@@ -450,7 +452,7 @@ fn a_plan_for_a_time_has_the_least_error_that_it_allows() {
     ends_with(&explain(folder, &["hard-disks", "--time", "1", "--error", "1%"]), 2, &["cannot be used with"]);
 }
 
-/// Errors fall with the time, and the biases of steps are beside; `work-precision` of a mean is the same chart.
+/// Errors fall with cost, and the biases of steps are shown with them; `work-precision` of a mean is the same chart.
 #[test]
 fn the_error_of_a_mean_is_charted_over_its_cost() {
     let folder = tempfile::tempdir().unwrap();

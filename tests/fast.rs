@@ -1,5 +1,5 @@
-//! Whole simulations in the fast engine: those of programs but for rounding, the same bits however they are run, and
-//! every failure found as there.
+//! Whole simulations in the fast engine: they agree with the programs except for rounding, have the same bits in every configuration, and
+//! find every failure in the same step.
 
 mod support;
 
@@ -21,7 +21,7 @@ use support::{CONTACT, advance, arena, fast, gas, grain, simulate};
 
 const LATTICE: FastSearch = FastSearch::Lattice(OnConflict::Stop);
 
-/// All ways of finding contacts.
+/// All contact searches of the fast engine.
 const SEARCHES: [FastSearch; 3] = [LATTICE, FastSearch::Sectors, FastSearch::Lists { skin: 0.15 }];
 
 const SCHEMES: [Scheme; 4] = [
@@ -41,7 +41,7 @@ fn bits(method: &Grains) -> Vec<(String, Vec<u64>)> {
     method.columns().into_iter().map(|(name, column)| (name, bits(column))).collect()
 }
 
-/// Largest difference of positions (length), across the box, and of velocities.
+/// Largest differences of positions (length), with the nearest image, and of velocities.
 fn differences(model: &Model, a: &Particles, b: &Particles) -> [f64; 2] {
     let mut largest = [0.0_f64; 2];
     for (a, b) in a.all().iter().zip(b.all()) {
@@ -112,7 +112,7 @@ fn walls_gravity_and_a_shaken_floor_are_the_faithful_ones() {
     }
 }
 
-/// Enough discs for making lists and sorting to be cut into pieces.
+/// Enough discs that building lists and sorting are split among threads.
 #[test]
 fn lists_and_order_are_the_same_on_any_number_of_threads() {
     let mut start = gas(40_000, 0.3, 5);
@@ -127,7 +127,7 @@ fn lists_and_order_are_the_same_on_any_number_of_threads() {
             pool.install(|| {
                 let mut gas = simulate(precision, &start, Contacts::Fast(search), fast());
                 advance(&mut gas, 5);
-                assert!(gas.lists().is_none_or(|(_, made)| made > 1), "lists are made again");
+                assert!(gas.lists().is_none_or(|(_, made)| made > 1), "lists must be rebuilt");
                 (bits(&gas), gas.lists())
             })
         };
@@ -140,7 +140,7 @@ fn lists_and_order_are_the_same_on_any_number_of_threads() {
 
 #[test]
 fn threads_and_instructions_give_the_same_bits_and_so_does_going_on() {
-    // Long enough for lists to be made again.
+    // Long enough for lists to be rebuilt.
     const STEPS: u64 = 60;
     let (lattice, [_, sectors, lists]) = (LATTICE, SEARCHES);
     for (search, packing_fraction, precision) in [
@@ -174,11 +174,11 @@ fn threads_and_instructions_give_the_same_bits_and_so_does_going_on() {
         second.restore(37, first.totals(), &first.columns()).unwrap();
         assert!(second.particles() == first.particles());
         advance(&mut second, STEPS - 37);
-        assert!(bits(&second) == scalar, "{search:?}: a run that goes on differs");
+        assert!(bits(&second) == scalar, "{search:?}: a resumed run differs");
     }
 }
 
-/// Cells so wide that many hold two discs and some three: the few beside the lattice feel the same forces.
+/// Cells so wide that many hold two discs and some three: the discs that the lattice has no cell for feel the same forces.
 #[test]
 fn conflicts_are_resolved_beside_the_lattice() {
     for (scheme, edge) in [(Scheme::VelocityVerlet, 1.0), (Scheme::Gear(GearValues::Five), 1.2)] {
@@ -204,13 +204,13 @@ fn conflicts_are_resolved_beside_the_lattice() {
         let scalar = run(resolve, InstructionSet::Scalar);
         assert!(bits(&scalar) == bits(&resolved));
         assert_eq!(scalar.totals(), resolved.totals());
-        // Which of two discs has a shared cell is a matter of the state, not of its history.
+        // The choice of the disc that keeps a shared cell depends on the state only, not on its history.
         let mut first = simulate(Precision::F64, &start, Contacts::Fast(resolve), fast());
         advance(&mut first, 111);
         let mut second = simulate(Precision::F64, &start, Contacts::Fast(resolve), fast());
         second.restore(111, first.totals(), &first.columns()).unwrap();
         advance(&mut second, 189);
-        assert!(bits(&second) == bits(&resolved), "a run that goes on differs");
+        assert!(bits(&second) == bits(&resolved), "a resumed run differs");
         assert_eq!(second.totals(), resolved.totals());
         let begin = Grains::start;
         let (model, particles) = start.clone();
@@ -221,7 +221,7 @@ fn conflicts_are_resolved_beside_the_lattice() {
     }
 }
 
-/// All pairs of elastic discs, by the book.
+/// Forces of all pairs of elastic discs, from the textbook formula.
 fn naive_forces(model: &Model, discs: &Particles) -> Vec<[f64; 2]> {
     let mut forces = vec![[0.0; 2]; discs.len()];
     for (i, a) in discs.all().iter().enumerate() {
@@ -239,7 +239,7 @@ fn naive_forces(model: &Model, discs: &Particles) -> Vec<[f64; 2]> {
     forces
 }
 
-/// Sizes that no lattice holds, against velocity Verlet by the book.
+/// Size ratios that no lattice can hold, compared with a textbook velocity Verlet.
 #[test]
 fn wide_sizes_are_for_sectors_and_lists() {
     const STEPS: u64 = 1000;
@@ -268,7 +268,7 @@ fn wide_sizes_are_for_sectors_and_lists() {
         kick(&mut expected, &forces);
     }
     let moved = differences(&model, &checked.particles, &expected);
-    assert!(moved[0] > 0.5 && moved[1] > 0.1, "the discs must have moved and met: {moved:?}");
+    assert!(moved[0] > 0.5 && moved[1] > 0.1, "the discs must have moved and collided: {moved:?}");
     for kind in ["sectors", "neighbor-list"] {
         let checked = load(&[&few[..], &[&format!("search.by={kind}")]].concat()).unwrap();
         let mut method = stripmine_physics::method::lattice_md::assemble(&checked).unwrap();
@@ -294,7 +294,7 @@ fn momentum_is_conserved_to_rounding() {
     assert!(seen.kinetic < 0.99 * first.kinetic, "the gas must have collided and cooled");
 }
 
-/// Undamped: velocity Verlet in the fast engine keeps the energy as well as Gear's scheme in programs.
+/// Without damping, velocity Verlet in the fast engine conserves energy as well as Gear's scheme in the programs.
 #[test]
 fn energy_is_kept_over_ten_thousand_steps() {
     let drift = |scheme: Scheme, contacts: Contacts| {
@@ -320,7 +320,7 @@ fn energy_is_kept_over_ten_thousand_steps() {
     assert!(gear < 1e-3, "{gear:e}");
 }
 
-/// What breaks breaks in the same step, with the same discs, as with programs.
+/// A simulation fails in the same step and with the same discs as with the programs.
 #[test]
 fn failures_are_found_in_their_step() {
     let lost = [
@@ -342,7 +342,7 @@ fn failures_are_found_in_their_step() {
         start
     };
     let cases = [arena([16, 16], false, &lost), with(0.4), nan, with(0.99)];
-    // Two discs in one cell break the lattice only.
+    // Two discs in one cell are an error for the lattice only.
     let runs = SEARCHES.into_iter().flat_map(|search| {
         let apply = if search == LATTICE { 4 } else { 3 };
         cases.iter().take(apply).cloned().map(move |start| (search, start))

@@ -1,7 +1,7 @@
-//! Kills and faults at random moments, in the long suite: whatever happens to a run, going on with it gives the bits of the run
-//! that nothing happened to, or is refused with a code of the contract.
+//! Kills and faults at random moments, in the long suite: a run that is resumed afterwards gives the bits of an undisturbed run,
+//! or is refused with a documented exit code.
 //!
-//! `STRIPMINE_KILLS` and `STRIPMINE_FAULTS` say how many (1000 each), `STRIPMINE_SEED` which (1).
+//! `STRIPMINE_KILLS` and `STRIPMINE_FAULTS` set their numbers (1000 each), `STRIPMINE_SEED` their seed (1).
 #![cfg(unix)]
 
 use assert_cmd::cargo::CommandCargoExt;
@@ -12,7 +12,7 @@ use std::process::{Command, Output, Stdio};
 use std::time::Duration;
 use stripmine_kernels::noise::{Purpose, Stream};
 
-/// Small scenes of every method with a state of its own kind.
+/// Small scenes of every method with its own kind of state.
 const SCENES: [&[&str]; 4] = [
     &["two-discs", "--set", "machine.execution=chained"],
     &["two-discs", "--set", "search.by=neighbor-list", "--set", "machine.execution=chained"],
@@ -20,10 +20,10 @@ const SCENES: [&[&str]; 4] = [
     &["pipe-small", "--set", "search.by=neighbor-list", "--set", "machine.engine=fast"],
 ];
 
-/// The files that the physics alone decides.
+/// Files that depend on the physics only.
 const BITS: [&str; 3] = ["thermo.csv", "trajectory.xyz", "dump.lammpstrj"];
 
-/// The exit codes of the contract.
+/// Documented exit codes.
 const CONTRACT: [i32; 7] = [0, 2, 3, 4, 5, 6, 130];
 
 fn from_environment(name: &str, default: u64) -> u64 {
@@ -42,7 +42,7 @@ impl Random {
     }
 }
 
-/// The arguments of a run that goes on, or begins.
+/// Arguments of a run that starts or resumes.
 fn arguments(scene: usize, folder: &Path) -> Vec<String> {
     let steps = if SCENES[scene][0] == "two-discs" { "run.steps=1500" } else { "run.steps=150" };
     let common = ["--set", steps, "--set", "run.thermo_every=10", "--set", "run.snapshot_every=40"];
@@ -67,7 +67,7 @@ fn said(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// The bits of runs that nothing happens to.
+/// Files of undisturbed runs.
 fn whole(folder: &Path) -> Vec<[Vec<u8>; 3]> {
     let one = |scene| {
         let path = folder.join(format!("whole{scene}"));
@@ -78,7 +78,7 @@ fn whole(folder: &Path) -> Vec<[Vec<u8>; 3]> {
     (0..SCENES.len()).map(one).collect()
 }
 
-/// Killed at random moments and gone on with until it is done, a run leaves the bits of one that was not.
+/// A run that is killed at random moments and resumed until it is complete leaves the bits of an undisturbed one.
 #[test]
 #[ignore = "long: cargo test --release --test faults -- --ignored"]
 fn kills_change_no_bit() {
@@ -114,7 +114,7 @@ fn kills_change_no_bit() {
     println!("{killed} kills in {sessions} sessions of {runs} runs");
 }
 
-/// The library that makes calls fail.
+/// Builds the library that makes calls fail.
 fn shim(folder: &Path) -> PathBuf {
     let library = folder.join("shim.so");
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/faults/shim.c");
@@ -127,7 +127,7 @@ fn shim(folder: &Path) -> PathBuf {
     library
 }
 
-/// A session to which something happens; its name and how it ended.
+/// Runs a session with one random fault; returns the fault's name and the session's output.
 fn spoilt(scene: usize, path: &Path, shim: &Path, random: &mut Random) -> (String, Output) {
     const ERRORS: [&str; 5] = ["0", "5", "13", "28", "122"];
     match random.below(4) {
@@ -178,8 +178,8 @@ fn spoilt(scene: usize, path: &Path, shim: &Path, random: &mut Random) -> (Strin
     }
 }
 
-/// Whatever fails, the exit is one of the contract; what can be gone on with gives the same bits, and only what was damaged
-/// from outside cannot.
+/// Faults of any kind end with a documented exit code. A run that can be resumed gives the same bits; only files damaged from outside
+/// prevent this.
 #[test]
 #[ignore = "long: cargo test --release --test faults -- --ignored"]
 fn faults_lose_nothing() {
@@ -202,7 +202,7 @@ fn faults_lose_nothing() {
             assert!(bits(&path) == whole[scene], "{about}: exit 0 with other bits");
         }
         let damaged = name.starts_with(path.to_str().unwrap());
-        // Some faults come one after the other before the run is gone on with undisturbed.
+        // Some faults follow each other before an undisturbed session.
         if !damaged && random.below(2) == 0 && code != 0 {
             continue;
         }

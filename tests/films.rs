@@ -1,4 +1,4 @@
-//! A film of a run shows what its trajectory has, and says what it leaves out.
+//! Films of runs: they show the contents of the trajectory, and state what they leave out.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -14,7 +14,7 @@ fn stripmine(folder: &Path, arguments: &[&str]) -> Output {
     command.current_dir(folder).args(arguments).stdin(Stdio::null()).output().unwrap()
 }
 
-/// A run of a preset into the folder of its name.
+/// Runs a preset into the folder of its name.
 fn run(folder: &Path, preset: &str, sets: &[&str]) {
     let sets = sets.iter().flat_map(|set| ["--set", set]);
     let arguments: Vec<&str> = ["run", preset, "--quiet"].into_iter().chain(sets).collect();
@@ -22,7 +22,7 @@ fn run(folder: &Path, preset: &str, sets: &[&str]) {
     assert!(output.status.success(), "{preset}: {}", String::from_utf8_lossy(&output.stderr));
 }
 
-/// The page of a film, and the film in it.
+/// Page of a film, and the film's data in it.
 fn film(folder: &Path, preset: &str, color: &str) -> (String, Value) {
     let output = stripmine(folder, &["plot", preset, "--film", "--color", color, "--overwrite"]);
     assert!(output.status.success(), "{preset}: {}", String::from_utf8_lossy(&output.stderr));
@@ -32,7 +32,7 @@ fn film(folder: &Path, preset: &str, color: &str) -> (String, Value) {
     (page, film)
 }
 
-/// The numbers of a column, and by how much they may be off.
+/// Numbers of a column, and their largest rounding error.
 fn column(column: &Value) -> (Vec<f64>, f64) {
     let [low, high, bytes] = ["low", "high", "bytes"].map(|key| column[key].as_f64().unwrap());
     let codes = STANDARD.decode(column["codes"].as_str().unwrap()).unwrap();
@@ -50,7 +50,8 @@ fn trajectory(folder: &Path, preset: &str) -> Vec<Frame> {
     frames.map(Result::unwrap).collect()
 }
 
-/// Times, places, speeds and walls of a film are those of the trajectory; a share of the places, at most, is beyond the picture.
+/// Checks that times, positions, speeds and walls of a film are those of the trajectory; at most a given share of the positions is outside the
+/// picture.
 fn is_as_written(folder: &Path, preset: &str, most_beyond: f64) {
     let (page, film) = film(folder, preset, "speed");
     assert!(!page.contains("src=") && !page.contains("http://") && !page.contains("https://"), "{preset}");
@@ -81,7 +82,7 @@ fn is_as_written(folder: &Path, preset: &str, most_beyond: f64) {
     assert!(f64::from(beyond) <= most_beyond * xs.len() as f64, "{preset}: {beyond} of {}", xs.len());
     let walls = frames[0].particles.all().iter().filter(|it| it.kind == Kind::Wall).count();
     assert_eq!(column(&film["fixed"]["radii"]).0.len(), walls, "{preset}");
-    // To 16 bits of what is shown.
+    // Rounded to 16 bits of the shown range.
     let [[left, _], [right, _]]: [[f64; 2]; 2] = serde_json::from_value(film["window"].clone()).unwrap();
     assert!(x_off < 1e-5 * (right - left), "{preset}");
 }
@@ -99,11 +100,11 @@ fn films_of_every_method_are_as_their_trajectories() {
     {
         is_as_written(folder, preset, most_beyond);
     }
-    // A box has sides, bodies in space have none, and of both the film says how they are seen.
+    // A box has sides, bodies in space have none; the film states how both are seen.
     let (page, shown) = film(folder, "hard-disks", "psi6");
     assert_eq!(shown["sides"].as_array().unwrap().len(), 4);
     assert!(page.contains("periodic sides") && shown["shade"]["ends"] == serde_json::json!([0.0, 1.0]));
-    // The crystal of the start is in order, and melts.
+    // The crystal of the start is ordered, and melts.
     assert!(column(&shown["shades"]).0.iter().all(|order| (-1e-9..=1.0 + 1e-9).contains(order)));
     let orders = column(&shown["shades"]).0;
     let discs = orders.len() / shown["times"].as_array().unwrap().len();
@@ -112,7 +113,7 @@ fn films_of_every_method_are_as_their_trajectories() {
     assert!(first > 0.9 && last < 0.8, "{first} {last}");
     let (page, shown) = film(folder, "plummer", "id");
     assert!(shown["sides"].as_array().unwrap().is_empty() && page.contains("Seen along z"));
-    // What there is not is refused, with what there is.
+    // An unavailable colour is refused, with the available ones.
     for (preset, color) in
         [("plummer", "psi6"), ("hard-disks", "spin"), ("hard-disks", "colour"), ("plummer", "force")]
     {
@@ -147,7 +148,7 @@ fn a_film_of_nothing_or_of_one_frame_says_so() {
     assert!(
         page.contains("The trajectory has only one frame") && shown["times"].as_array().unwrap().len() == 1
     );
-    // More than fits in: every fourth frame, and every third particle.
+    // Frames and particles beyond the limits: every fourth frame, and every third particle.
     let moment = |at: usize| first.replacen("Time=0.0", &format!("Time={at}.0"), 1);
     fs::write(&file, (0..3100).map(moment).collect::<String>()).unwrap();
     let (page, shown) = film(folder, "two-discs", "speed");

@@ -1,4 +1,4 @@
-//! Whose folder it is: what this program did not write it neither writes over nor removes, and it is alone where it writes.
+//! Ownership of folders: the program neither overwrites nor removes files that it did not write, and one process at a time writes to a folder.
 
 use assert_cmd::cargo::CommandCargoExt;
 use std::collections::BTreeMap;
@@ -29,7 +29,7 @@ fn succeed(mut command: Command) {
     assert!(output.status.success(), "{}", said(&output));
 }
 
-/// That the command is refused with this code and all of these words.
+/// Checks that the command is refused with this code and all of these words.
 fn refused(mut command: Command, code: i32, words: &[&str]) {
     let output = command.output().unwrap();
     assert_eq!(output.status.code(), Some(code), "{}", said(&output));
@@ -38,7 +38,7 @@ fn refused(mut command: Command, code: i32, words: &[&str]) {
     }
 }
 
-/// Every file below a folder, links by where they lead.
+/// Every file below a folder; links by their targets.
 fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut all = BTreeMap::new();
     for entry in fs::read_dir(folder).unwrap() {
@@ -61,7 +61,7 @@ fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
 
 const ALL_WAYS: [&[&str]; 3] = [&[], &["--resume"], &["--overwrite"]];
 
-/// A folder that is no run's is refused with what stands in it, in every way to begin, and stays as it was.
+/// A folder that no run wrote is refused with its contents, however a run begins, and stays as it was.
 #[test]
 fn a_foreign_folder_is_left_alone() {
     let folder = tempfile::tempdir().unwrap();
@@ -79,7 +79,7 @@ fn a_foreign_folder_is_left_alone() {
     }
 }
 
-/// Names of others' files are said without what a terminal would obey.
+/// Names of foreign files are printed without control characters of the terminal.
 #[cfg(unix)]
 #[test]
 fn names_are_said_plainly() {
@@ -96,7 +96,7 @@ fn names_are_said_plainly() {
     }
 }
 
-/// `--out .` beside one's own scene: the scene is still there.
+/// `--out .` in the folder of a user's scene leaves the scene there.
 #[test]
 fn a_scene_is_not_run_over() {
     let folder = tempfile::tempdir().unwrap();
@@ -110,7 +110,7 @@ fn a_scene_is_not_run_over() {
     }
 }
 
-/// A run's folder holds what its list says, no more; `--overwrite` removes that and nothing else.
+/// A run's folder holds exactly the files of its list; `--overwrite` removes those and nothing else.
 #[test]
 fn only_what_a_run_wrote_is_removed() {
     let folder = tempfile::tempdir().unwrap();
@@ -139,7 +139,7 @@ fn only_what_a_run_wrote_is_removed() {
     assert!(!after.contains_key("run.checkpoint.previous"));
 }
 
-/// A file that came into a run's folder from elsewhere is not written over, though a run could have one of that name.
+/// A foreign file in a run's folder is not overwritten, even if it has a name that the run writes.
 #[test]
 fn a_file_that_the_run_did_not_write_is_in_the_way() {
     let folder = tempfile::tempdir().unwrap();
@@ -178,7 +178,7 @@ fn links_are_not_followed() {
     assert_eq!(fs::read(&thesis).unwrap(), b"mine");
 }
 
-/// A list that says what it cannot say is refused, and nothing is removed by it.
+/// A list with impossible names is refused, and nothing is removed.
 #[test]
 fn a_list_of_other_names_is_refused() {
     let folder = tempfile::tempdir().unwrap();
@@ -201,10 +201,10 @@ fn a_list_of_other_names_is_refused() {
     }
 }
 
-/// No disc leaves a box that is periodic.
+/// With periodic sides no disc leaves the box.
 const PERIODIC: &str = "domain.periodic=[true, true]";
 
-/// A run that lasts until it is killed.
+/// Starts a run that lasts until it is killed.
 fn endless(folder: &Path) -> Child {
     let mut command = run(
         folder,
@@ -217,7 +217,7 @@ fn endless(folder: &Path) -> Child {
     child
 }
 
-/// A second process hears which one writes there; when that one is killed, however, the folder is free.
+/// A second process is told which process writes to the folder; after that one is killed, the folder is free.
 #[test]
 fn one_process_writes_into_a_folder() {
     let folder = tempfile::tempdir().unwrap();
@@ -242,7 +242,7 @@ fn reproduce(folder: &Path) -> Command {
     stripmine(&["reproduce", "--only", "mask", "--out", folder.to_str().unwrap()])
 }
 
-/// Results are written where nothing is, or over results; a folder or page of another's is left alone.
+/// Results are written to an empty folder, or over results; foreign folders and pages are left alone.
 #[test]
 fn results_replace_results_only() {
     let folder = tempfile::tempdir().unwrap();
@@ -297,8 +297,7 @@ fn results_replace_results_only() {
     }
 }
 
-/// What sessions that were killed have left of their temporary folders goes with the next one; a folder of another's that is
-/// called so stays.
+/// Temporary folders left by killed sessions are removed by the next session; a foreign folder with such a name stays.
 #[test]
 fn leftovers_of_results_are_cleared_away() {
     let folder = tempfile::tempdir().unwrap();
@@ -340,7 +339,7 @@ fn links_among_results_are_not_followed() {
     }
 }
 
-/// The committed results are ones that this program goes on with.
+/// The program recognises the committed results as its own.
 #[test]
 fn committed_results_are_known_as_ours() {
     let folder = tempfile::tempdir().unwrap();
@@ -364,7 +363,7 @@ fn committed_results_are_known_as_ours() {
     }
 }
 
-/// Every verb that has an `--out`, with a file of the user's where its own would be: it is refused by name and stays.
+/// For every verb with `--out`: a user's file with the name of an output is refused by name and stays.
 #[test]
 fn no_verb_writes_over_what_it_did_not_write() {
     let folder = tempfile::tempdir().unwrap();
@@ -397,7 +396,7 @@ fn no_verb_writes_over_what_it_did_not_write() {
     let mut command = stripmine(&["calibrate"]);
     command.args(["--out", file.to_str().unwrap()]);
     refused(command, 2, &["host.toml", "--force"]);
-    // All there are: a verb with an --out that is not tried here fails this.
+    // The list is complete: a verb with an --out that is not tried here fails this.
     let tried = ["run", "plot", "reproduce", "chart stability", "chart work-precision", "chart density-cost"];
     let more = ["chart soft-hard", "chart accuracy", "validate-model", "calibrate"];
     let tried = [&tried[..], &more].concat();
@@ -421,7 +420,7 @@ fn no_verb_writes_over_what_it_did_not_write() {
     }
 }
 
-/// Pictures are drawn again where they were drawn before, and over another's only where that is asked for.
+/// Pictures replace earlier pictures of ours; foreign files are replaced only on request.
 #[test]
 fn pictures_are_written_over_where_they_are_ours() {
     let folder = tempfile::tempdir().unwrap();

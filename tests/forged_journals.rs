@@ -1,4 +1,4 @@
-//! Journals of studies whose lines have their right checksums and values that no run gives: they are measured again, and nothing panics.
+//! Journals of studies whose lines have valid checksums and impossible values: they are measured again, and nothing panics.
 
 use crc32fast::Hasher;
 use serde_json::{Value, json};
@@ -6,10 +6,10 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// A change of a value.
+/// Change of a value.
 type Forgery<'f> = &'f dyn Fn(&Value) -> Value;
 
-/// The exit code and what is said of a study in a folder.
+/// Runs a study in a folder; returns its exit code and standard error.
 fn study(arguments: &[&str], out: &Path) -> (Option<i32>, String) {
     let mut command = Command::new(env!("CARGO_BIN_EXE_stripmine"));
     command.args(arguments).args(["--quiet", "--out"]).arg(out).stdin(Stdio::null());
@@ -17,7 +17,7 @@ fn study(arguments: &[&str], out: &Path) -> (Option<i32>, String) {
     (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
 }
 
-/// A value with each number, list, table and word of it changed.
+/// Copy of a value with each of its numbers, lists, tables and words changed.
 fn changed(value: &Value, number: &dyn Fn(f64) -> Value, shorter: bool) -> Value {
     let below = |value: &Value| changed(value, number, shorter);
     match value {
@@ -31,7 +31,7 @@ fn changed(value: &Value, number: &dyn Fn(f64) -> Value, shorter: bool) -> Value
     }
 }
 
-/// The journal with the value of every line changed, and its checksum made right: CRC-32 of the digest and of what is behind the checksum.
+/// Copy of a journal with every line's value changed and its checksum updated: CRC-32 of the digest and of the text after the checksum.
 fn forged(journal: &str, change: &dyn Fn(&Value) -> Value) -> String {
     let mut lines = journal.lines();
     let heading = lines.next().unwrap();
@@ -44,7 +44,7 @@ fn forged(journal: &str, change: &dyn Fn(&Value) -> Value) -> String {
         sum.update(text.as_bytes());
         format!("{{\"checksum\":\"{:08x}\",{text}\n", sum.finalize())
     };
-    // What is not changed is written as it stands: the rules above are those of the program.
+    // Checks the format assumed above against a line of the program.
     let first = lines.clone().next().unwrap();
     let same: Value = serde_json::from_str(first).unwrap();
     assert!(first.contains(&format!("\"key\":{}", same["key"])), "{first}");
@@ -103,7 +103,7 @@ fn forged_lines_are_measured_again() {
         for (forgery, change) in forgeries {
             fs::write(&journal, forged(&own, change)).unwrap();
             let (code, said) = study(arguments, &out);
-            // A forged rate may leave too little time for anything.
+            // A forged rate may leave too little time for any run.
             assert!([Some(0), Some(2), Some(4)].contains(&code), "{name}, {forgery}: {code:?} {said}");
             assert!(!said.contains("panicked"), "{name}, {forgery}: {said}");
         }

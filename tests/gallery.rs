@@ -1,11 +1,11 @@
-//! The gallery shows what its scenes give: every scene runs and is drawn as its page says, and its figures are the report's.
+//! The gallery matches its scenes: every scene runs and is drawn with the commands of the page.
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// Pictures are read on a page: no larger each, and all together (bytes).
+/// Size limits in bytes of each picture and of all together, since they are read on one page.
 const LARGEST: u64 = 150_000;
 const ALL: u64 = 1_200_000;
 
@@ -17,7 +17,7 @@ fn page() -> String {
     fs::read_to_string(root().join("docs/gallery.md")).unwrap()
 }
 
-/// The arguments of the page's commands of a verb.
+/// Arguments of the page's commands with a verb.
 fn commands(verb: &str) -> Vec<Vec<String>> {
     let begin = format!("stripmine {verb} ");
     let text = page();
@@ -25,7 +25,7 @@ fn commands(verb: &str) -> Vec<Vec<String>> {
     lines.map(|line| line.split(' ').map(str::to_owned).collect()).collect()
 }
 
-/// The names of the files of a kind in the gallery's folder.
+/// Names of the files of a type in the gallery's folder.
 fn files(kind: &str) -> BTreeSet<String> {
     let entries = fs::read_dir(root().join("docs/gallery")).unwrap().map(|entry| entry.unwrap().path());
     let names = entries.filter(|path| path.extension().is_some_and(|it| it == kind));
@@ -51,7 +51,7 @@ fn every_scene_has_a_picture_of_a_size_to_be_read() {
     assert!(all <= ALL, "{all} bytes");
 }
 
-/// The page's commands, a few steps long.
+/// The page's commands, shortened to a few steps.
 #[test]
 fn every_scene_runs_and_is_drawn() {
     let folder = tempfile::tempdir().unwrap();
@@ -63,7 +63,7 @@ fn every_scene_runs_and_is_drawn() {
     for words in commands("run") {
         let file = root().join(&words[0]);
         let text = fs::read_to_string(&file).unwrap();
-        // No command of the page takes more: what it says is what is run here.
+        // The page's commands have no further arguments, so this is the whole command.
         assert_eq!(words.len(), 1, "{words:?}");
         let is_of_events = text.contains("kind = \"hard-disks\"");
         let short = if is_of_events { "run.events=500" } else { "run.steps=10" };
@@ -77,8 +77,8 @@ fn every_scene_runs_and_is_drawn() {
     }
 }
 
-/// Each picture has a lesson with a number and the run's time; a link leads to an item of the report. Numbers of the report are cells of it
-/// (`tests/numbers.rs`).
+/// Each picture has a lesson with a number and the run's time; a link leads to an item of the report. `tests/numbers.rs` checks
+/// numbers quoted from the report.
 #[test]
 fn lessons_have_numbers_and_run_times() {
     let pages = fs::read_dir(root().join("pages")).unwrap().map(|page| page.unwrap().path());

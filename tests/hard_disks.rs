@@ -1,4 +1,4 @@
-//! Event-driven hard discs, as a user meets them: physics against outside values, resumption, and what is refused.
+//! Event-driven hard discs as a user sees them: physics compared with published values, resumption, and refusals.
 
 #[path = "hard_disks/sums.rs"]
 mod sums;
@@ -24,7 +24,7 @@ fn run(scene: &str, out: &Path, more: &[&str]) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-/// The columns of thermo.csv by name.
+/// Column of thermo.csv by name.
 fn column(folder: &Path, name: &str) -> Vec<f64> {
     let text = fs::read_to_string(folder.join("thermo.csv")).unwrap();
     let mut lines = text.lines();
@@ -32,8 +32,8 @@ fn column(folder: &Path, name: &str) -> Vec<f64> {
     lines.map(|line| line.split(',').nth(place).unwrap().parse().unwrap()).collect()
 }
 
-/// Z and the collision rate of a fluid at ν = 0.50 and 0.30, measured with two independent codes (the figures of the specification
-/// of ISO99: Z = 4.1094 and 2.0632, ω = 7.017 and 2.3995), from the second half of a run of 2·10⁵ collisions: to 2 %.
+/// Z and the collision rate of a fluid at ν = 0.50 and 0.30 agree to 2 % with two independent codes (values of the specification
+/// of ISO99: Z = 4.1094 and 2.0632, ω = 7.017 and 2.3995), from the second half of a run of 2·10⁵ collisions.
 #[test]
 fn the_pressure_of_a_fluid_is_that_of_other_programs() {
     let folder = tempfile::tempdir().unwrap();
@@ -57,7 +57,7 @@ fn the_pressure_of_a_fluid_is_that_of_other_programs() {
     }
 }
 
-/// A mixture of two kinds grows to a packing fraction that no random placement reaches, and the source's engine follows it.
+/// A mixture of two kinds is compressed to a packing fraction that random placement cannot reach, and ISO99's engine gives the same run.
 #[test]
 fn two_kinds_of_discs_are_compressed() {
     let folder = tempfile::tempdir().unwrap();
@@ -79,12 +79,12 @@ fn two_kinds_of_discs_are_compressed() {
     let [source, fast] = ["reference", "fast"].map(ended);
     assert_eq!(source, fast);
     assert!(fast.1[fast.1.len() - 1] > 3000.0, "{:?}", fast.1);
-    // 386 discs, half of them of either kind.
+    // 386 discs, half of them of each kind.
     let area = 193.0 * std::f64::consts::PI * (0.25 + 0.49);
     assert!((area / (24.0 * 24.0) - 0.78).abs() < 0.002);
 }
 
-/// Haff's law, T = T₀ exp(−(1 − e²) collisions/N), as long as the gas is even: to 3 % over four collisions a disc.
+/// Haff's law, T = T₀ exp(−(1 − e²) collisions/N), holds to 3 % over four collisions a disc, while the gas is homogeneous.
 #[test]
 fn a_cooling_gas_follows_haffs_law() {
     let folder = tempfile::tempdir().unwrap();
@@ -92,7 +92,7 @@ fn a_cooling_gas_follows_haffs_law() {
     let summary = run("cooling-gas", &out, &["--set", "run.events=5000", "--set", "run.thermo_every=0.05"]);
     let count = summary["discs"].as_f64().unwrap();
     let (collisions, temperature) = (column(&out, "collisions"), column(&out, "temperature"));
-    // The lattice of the start is no gas yet: from one collision a disc on.
+    // The lattice of the start is not yet a gas: from one collision a disc on.
     let begun = collisions.iter().position(|collisions| *collisions > count).unwrap();
     assert!(temperature.len() > begun + 5);
     for (now, found) in collisions.iter().zip(&temperature).skip(begun) {
@@ -101,7 +101,7 @@ fn a_cooling_gas_follows_haffs_law() {
     }
 }
 
-/// Whatever the engine, the mask and the instructions: the same bits, up to the end.
+/// Engine, mask and instruction set do not change a bit, up to the end of the run.
 #[test]
 fn engines_and_masks_change_no_bit() {
     let folder = tempfile::tempdir().unwrap();
@@ -132,11 +132,11 @@ fn listed(folder: &Path, domain: &str, positions: &str, velocities: &str, more: 
     scene.to_str().unwrap().to_owned()
 }
 
-/// However long nothing happens, what happens then is waited for, whatever is written meanwhile and by whichever engine.
+/// Events that happen very late are found by both engines, however many rows are written before them.
 #[test]
 fn events_that_come_late_come() {
     let folder = tempfile::tempdir().unwrap();
-    // A disc winds round the box and comes nearer to the other by so little each time.
+    // A disc winds round the box and approaches the other by a small amount each time.
     for (engine, rise) in [("fast", 2e-6), ("reference", 1e-4)] {
         let (when, lateral) = (9.0 / rise, format!("[[0.0, 0.0], [1.0, {rise:?}]]"));
         let set = |every: f64| {
@@ -158,8 +158,8 @@ fn events_that_come_late_come() {
     }
 }
 
-/// Where nothing will ever happen a time passes all the same, by both engines; events are refused when the scene is checked, or when
-/// no more can come.
+/// Time passes with both engines if no event can happen; a number of events is refused when the scene is checked, or when
+/// no further event can happen.
 #[test]
 fn where_nothing_happens_time_passes() {
     let folder = tempfile::tempdir().unwrap();
@@ -185,14 +185,14 @@ fn where_nothing_happens_time_passes() {
             );
         }
     }
-    // At rest above a floor discs fall.
+    // Discs at rest above a floor fall.
     let domain = "sides = [20.0, 20.0]\nperiodic = [true, false]\ngravity = [0.0, -1.0]";
     let scene = listed(folder.path(), domain, "[[5.0, 5.0]]", "[[0.0, 0.0]]", "[run]\nevents = 3");
     run(&scene, &folder.path().join("fall"), &[]);
 }
 
-/// A disc that slides on a floor bounces for ever once its bounces are made elastic: with the contact duration that makes them
-/// elastic so late that no run ends, that is said, by both engines of the same event; with a longer one it goes on.
+/// A disc that slides on a floor bounces for ever once its bounces are elastic. If the contact duration makes them elastic so late that
+/// the run cannot end, both engines report the same event; with a longer duration the run continues.
 #[test]
 fn a_disc_that_comes_to_rest_is_named() {
     let folder = tempfile::tempdir().unwrap();
@@ -208,7 +208,7 @@ fn a_disc_that_comes_to_rest_is_named() {
         assert_eq!(failed.status.code(), Some(4), "{}", said(&failed));
         let summary: Value = serde_json::from_slice(&fs::read(out.join("summary.json")).unwrap()).unwrap();
         assert_eq!(summary["failure"]["kind"], "resting");
-        // The frame that the message speaks of is there.
+        // The frame that the message refers to exists.
         let frames = fs::read_to_string(out.join("trajectory.xyz")).unwrap();
         let last = frames.lines().rfind(|line| line.starts_with("Lattice")).unwrap();
         let time = summary["failure"]["when"]["time"].as_f64().unwrap();
@@ -222,7 +222,7 @@ fn a_disc_that_comes_to_rest_is_named() {
     assert_eq!(said[0], said[1]);
 }
 
-/// The log has a row for each event, with the momentum that changed hands, and is cut and gone on with on resumption.
+/// The log has a row for each event, with the exchanged momentum; it is cut and continued on resumption.
 #[test]
 fn every_collision_is_logged() {
     let folder = tempfile::tempdir().unwrap();
@@ -259,7 +259,7 @@ fn every_collision_is_logged() {
     for row in whole.lines().skip(1) {
         let number = |name: &str| of(row, name).parse::<f64>().unwrap();
         let (time, disc, partner) = (number("time"), of(row, "disc"), of(row, "partner"));
-        // Unit masses and diameters: a disc of speed below 6 gives no more than its momentum twice.
+        // Unit masses and diameters: a disc of speed below 6 transfers at most twice its momentum.
         assert!(number("impulse_x").hypot(number("impulse_y")) < 12.0);
         let before = last.insert(disc, time).unwrap_or(0.0);
         assert!((number("free_time") - (time - before)).abs() < 1e-9);
@@ -277,7 +277,7 @@ fn every_collision_is_logged() {
     assert!(seen > 1000 && sides > 50, "{seen} {sides}");
 }
 
-/// Discs that grow come to a packing fraction of 0.85, in every direction the same; where they jam, that is said.
+/// Discs are compressed to a packing fraction of 0.85, isotropically; jamming is reported.
 #[test]
 fn dense_starts_are_grown() {
     let folder = tempfile::tempdir().unwrap();
@@ -302,7 +302,7 @@ fn dense_starts_are_grown() {
     assert!(said(&jammed).contains("jam at a packing fraction"), "{}", said(&jammed));
 }
 
-/// Three discs between two others in a line, very dissipative: they collide without end, and that is said with the pair.
+/// Three very dissipative discs in a line collide without end; this is reported with the pair.
 #[test]
 fn inelastic_collapse_is_found_out_and_cured() {
     let folder = tempfile::tempdir().unwrap();
@@ -375,8 +375,8 @@ fn what_cannot_be_is_refused_with_what_may_be() {
     refused(&list("[[0.3, 5.0], [5.9, 5.0]]"), &[], 3, &["reaches beyond a side"]);
 }
 
-/// A thermal wall draws with a seed of its own where the start has none: runs with several seeds differ, the same seed gives the same run, and a run
-/// that continues from a state does not get back what the wall gave before.
+/// A thermal wall has its own seed if the start has none: runs with different seeds differ, the same seed gives the same run, and a run
+/// that starts from a state draws other numbers than the run before.
 #[test]
 fn a_thermal_wall_has_a_seed() {
     let folder = tempfile::tempdir().unwrap();
@@ -399,17 +399,17 @@ fn a_thermal_wall_has_a_seed() {
         rows(&out)
     };
     assert_eq!(one("default", &[]), seeds[0]);
-    // Joins tell runs apart by it.
+    // Joins identify runs by this seed.
     assert!(
         fs::read_to_string(folder.path().join("default/scene.toml")).unwrap().contains("\nnoise_seed = 1\n")
     );
     assert_eq!(one("two", &["--set", "law.noise_seed=2"]), seeds[1]);
-    // The written scene says the seed, and gives the same run.
+    // The written scene contains the seed, and gives the same run.
     let written = out.join("seed-3").join("scene.toml");
     let again = folder.path().join("again");
     run(written.to_str().unwrap(), &again, &[]);
     assert_eq!(rows(&again), seeds[2]);
-    // Another state draws other numbers: the kinetic energies that the wall gives first are not those of before.
+    // Another state draws other numbers: the first kinetic energies after the wall differ.
     let moved = one("moved", &["--set", "particles.velocities=[[1.0, 0.3], [0.0, -0.40000001]]"]);
     assert!(moved != seeds[0]);
     let kinetic = |text: &str| -> Vec<f64> {
@@ -422,7 +422,7 @@ fn a_thermal_wall_has_a_seed() {
         .filter(|(a, b)| (a / b - 1.0).abs() < 1e-6)
         .count();
     assert!(near < 60, "{near} of 101 rows are those of before");
-    // A generated start gives its own seed to the wall, unless the scene says another.
+    // A generated start passes its own seed to the wall, unless the scene sets another.
     let error = stripmine(&[
         "run",
         scene,

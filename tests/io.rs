@@ -1,4 +1,4 @@
-//! Files in and out: what is written is read to the same bits, and nothing else is read at all.
+//! Files in and out: written files are read back to the same bits, and anything else is rejected.
 
 #[path = "io/bad_frames.rs"]
 mod bad_frames;
@@ -20,7 +20,7 @@ mod others;
 use stripmine_physics::io::extxyz::{Frame, write};
 use stripmine_physics::particles::{Kind, Particle, Particles};
 
-/// A grain and a wall disc, of numbers that are hard to print.
+/// A grain and a wall disc with numbers that are hard to print.
 fn frame(step: u64) -> Frame {
     let grain = Particle {
         id: 7,
@@ -55,7 +55,7 @@ fn text(frame: &Frame) -> String {
 struct Random(u64);
 
 impl Random {
-    /// Below `limit`.
+    /// Random index below `limit`.
     fn below(&mut self, limit: usize) -> usize {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;

@@ -1,4 +1,4 @@
-//! Particles in a bath, as a user meets them: exact results of diffusion, equal searches, losses, resumption, what is refused.
+//! Particles in a bath as a user sees them: exact results of diffusion, equal searches, losses, resumption, refusals.
 
 use serde_json::Value;
 use std::fs;
@@ -28,7 +28,7 @@ fn run(scene: &str, out: &Path, sets: &[&str], more: &[&str]) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-/// The columns of thermo.csv by name.
+/// Column of thermo.csv by name.
 fn column(folder: &Path, name: &str) -> Vec<f64> {
     let text = fs::read_to_string(folder.join("thermo.csv")).unwrap();
     let mut lines = text.lines();
@@ -36,14 +36,14 @@ fn column(folder: &Path, name: &str) -> Vec<f64> {
     lines.map(|line| line.split(',').nth(place).unwrap().parse().unwrap()).collect()
 }
 
-/// The last frame: a line for each particle, and its numbers.
+/// Text of the last frame, with a line for each particle.
 fn last_frame(folder: &Path) -> String {
     let text = fs::read_to_string(folder.join("trajectory.xyz")).unwrap();
     text[text.rfind("Lattice").unwrap()..].to_owned()
 }
 
 /// ⟨r²⟩ of free particles is 4 D (t − τ (1 − e^(−t/τ))) from a thermal start and 4 D (t − 2 τ (1 − e^(−t/τ)) + (τ/2)(1 − e^(−2t/τ)))
-/// from rest, with D = kT/γ and τ = m/γ: of 20 000 particles to five standard errors, at all times; the temperature likewise.
+/// from rest, with D = kT/γ and τ = m/γ. For 20 000 particles it agrees to five standard errors at all times; so does the temperature.
 #[test]
 fn free_particles_diffuse_as_the_exact_result_has_it() {
     let folder = tempfile::tempdir().unwrap();
@@ -65,7 +65,7 @@ fn free_particles_diffuse_as_the_exact_result_has_it() {
                 "rest" => 4.0 * diffusion * (time - 2.0 * tau * once + 0.5 * tau * twice),
                 _ => 4.0 * diffusion * (time - tau * once),
             };
-            // The square of a Gaussian vector of the plane scatters as itself; dt = 0.01 adds up to 1 % in the first steps.
+            // The standard deviation of the square of a planar Gaussian vector equals its mean; dt = 0.01 adds up to 1 % in the first steps.
             let bar = 5.0 * exact / f64::sqrt(count) + 0.01 * exact;
             assert!((found - exact).abs() < bar, "{name} at {time}: {found} {exact}");
         }
@@ -74,9 +74,9 @@ fn free_particles_diffuse_as_the_exact_result_has_it() {
     }
 }
 
-/// The fluid of the preset at a step that is long for it: by either scheme the temperature is that of the bath. By baoab it is that
-/// of the velocities after the bath: those at the end of the step, in the trajectory, are colder by dt²⟨F²⟩/(4 m), here 1.07 % as
-/// measured over ten times as long.
+/// The preset's fluid with a step that is long for it: both schemes have the temperature of the bath. For baoab it is that
+/// of the velocities after the bath; those at the end of the step, in the trajectory, are colder by dt²⟨F²⟩/(4 m), which is 1.07 %
+/// as measured over ten times as long.
 #[test]
 fn the_temperature_of_a_dense_fluid_is_that_of_the_bath() {
     let folder = tempfile::tempdir().unwrap();
@@ -89,7 +89,7 @@ fn the_temperature_of_a_dense_fluid_is_that_of_the_bath() {
         let mean = |rows: &[f64]| rows.iter().sum::<f64>() / rows.len() as f64;
         let late = mean(&rows[rows.len() / 6..]);
         assert!((late - 1.0).abs() < 0.006, "{kind}: {late}");
-        // m⟨v²⟩/2 of the frames, of which there is one at every fifth row.
+        // m⟨v²⟩/2 of the frames; every fifth row has a frame.
         let text = fs::read_to_string(out.join("trajectory.xyz")).unwrap();
         let squares: Vec<f64> = text
             .lines()
@@ -106,8 +106,8 @@ fn the_temperature_of_a_dense_fluid_is_that_of_the_bath() {
     }
 }
 
-/// The noise has a seed of its own: other seeds are other trajectories of one start, equal ones the same bits, also of listed
-/// particles and those of a file, and through the scene that a run writes down. Without it the noise follows the start's seed.
+/// The noise has its own seed: other seeds give other trajectories from one start, equal seeds the same bits, also for listed
+/// particles, for those of a file, and through the scene that a run writes. Without it the noise follows the start's seed.
 #[test]
 fn the_noise_has_a_seed_of_its_own() {
     let folder = tempfile::tempdir().unwrap();
@@ -127,7 +127,7 @@ fn the_noise_has_a_seed_of_its_own() {
     assert_ne!(five, plain);
     let (_, _, seed) = began("follows", "langevin-free", &["particles.count=50", "particles.seed=9"]);
     assert_eq!(seed, 9);
-    // A resolved scene that is run with another seed of the start has other noise as well.
+    // A resolved scene run with another seed of the start has other noise too.
     let resolved = folder.path().join("source/scene.toml").display().to_string();
     assert_eq!(began("again", &resolved, &["particles.seed=9"]).2, 9);
     let bath = "format = 2\nunits = \"reduced\"\n[method]\nkind = \"langevin\"\n[domain]\nsides = [50.0, 50.0]\n[law]\nkind = \"none\"\n\
@@ -154,7 +154,7 @@ fn the_noise_has_a_seed_of_its_own() {
     }
 }
 
-/// In an empty box there are hardly more sectors than particles: a step costs what the particles cost, by every search and in every
+/// Empty boxes have hardly more sectors than particles: the cost of a step depends on the particles, for every search and
 /// precision, and the pairs are the same.
 #[test]
 fn empty_boxes_cost_what_their_particles_cost() {
@@ -187,7 +187,7 @@ fn empty_boxes_cost_what_their_particles_cost() {
     }
 }
 
-/// Friction by the velocity of the step before heats to kT/(1 − γ dt/2m), by that after half a kick not.
+/// Friction by the velocity of the previous step heats to kT/(1 − γ dt/2m); by that after half a kick it does not.
 #[test]
 fn the_scheme_as_printed_heats() {
     let folder = tempfile::tempdir().unwrap();
@@ -200,14 +200,14 @@ fn the_scheme_as_printed_heats() {
         let late = column(&out, "temperature").split_off(20);
         late.iter().sum::<f64>() / late.len() as f64
     };
-    // 80 looks at 2000 particles, 4 times the time m/γ apart: 0.25 %.
+    // 80 samples of 2000 particles, separated by 4 times the time m/γ: 0.25 %.
     for (kind, expected) in [("baoab", 1.0), ("stochastic", 1.0), ("as-printed", 1.25)] {
         let found = temperature(kind);
         assert!((found / expected - 1.0).abs() < 0.0125, "{kind}: {found}");
     }
 }
 
-/// The searches find the same pairs: particles of a dense scene lie on each other after 40 steps, to rounding.
+/// All searches find the same pairs: after 40 steps of a dense scene the positions agree to rounding.
 #[test]
 fn searches_agree_and_threads_sets_and_resumption_change_no_bit() {
     let folder = tempfile::tempdir().unwrap();
@@ -240,7 +240,7 @@ fn searches_agree_and_threads_sets_and_resumption_change_no_bit() {
     }
     let lists = ["search.by=neighbor-list"];
     assert_eq!(frame("parts", &lists, &["7", "29", "40"], &[]), whole);
-    // What a run says of itself is that of a run in one piece as well, also where lists were made in every part.
+    // The summary of a run in parts is that of a run in one piece, also if lists were built in every part.
     let said = |name: &str, parts: &[&str]| {
         let out = folder.path().join(name);
         let mut summary = Value::Null;
@@ -266,8 +266,8 @@ fn searches_agree_and_threads_sets_and_resumption_change_no_bit() {
     assert_eq!(frame("source-parts", &source, &["7", "29", "40"], &["--threads", "1"]), whole);
 }
 
-/// A step that is too long throws particles out: the run stops with the number and a step that would do; where losses are allowed it
-/// goes on, counts and lists them, also across a resumption, and the rest stays finite.
+/// A step that is too long makes particles leave the box: the run stops, reports their number and suggests a step. With losses allowed the
+/// run continues, counts and lists them, also across a resumption, and the rest stays finite.
 #[test]
 fn losses_are_counted_listed_and_survived() {
     let folder = tempfile::tempdir().unwrap();
@@ -302,7 +302,7 @@ fn losses_are_counted_listed_and_survived() {
                 let row: Vec<f64> = row.split(',').map(|number| number.parse().unwrap()).collect();
                 let named = ["particle", "step", "x", "y"].map(|name| loss[name].as_f64().unwrap());
                 assert_eq!(named[..2], row[2..4]);
-                // Numbers of JSON are read to the last place or two.
+                // Numbers of JSON are read to the last digit or two.
                 (2..4).for_each(|along| {
                     assert!((named[along] - row[2 + along]).abs() <= 1e-15 * row[2 + along].abs(), "{loss}");
                 });
@@ -324,14 +324,14 @@ fn losses_are_counted_listed_and_survived() {
         assert_eq!(rows.lines().count() as u64, lost + 1);
         assert_eq!(last_frame(&out).lines().count() as u64, 4001 - lost);
         assert_eq!(column(&out, "lost").last().copied(), Some(lost as f64));
-        // Every frame of positions has all particles of the start; what is lost is no number.
+        // Every DCD frame has all particles of the start; positions of lost ones are NaN.
         let dcd = fs::read(out.join("trajectory.dcd")).unwrap();
         let (heading, frame) = (196, 56 + 3 * (8 + 4 * 4000));
         assert_eq!((dcd.len() - heading) % frame, 0);
         let last = &dcd[dcd.len() - 3 * (8 + 4 * 4000) + 4..][..4 * 4000];
         let absent = last.chunks(4).filter(|x| f32::from_le_bytes((*x).try_into().unwrap()).is_nan());
         assert_eq!(absent.count() as u64, lost);
-        // A frame with an index has those that are left, as the text has them; it says nothing of the seed.
+        // A GSD frame has the remaining particles, as the text does, but no seed.
         let text: Vec<_> = extxyz::Frames::open(out.join("trajectory.xyz"))
             .unwrap()
             .map(|frame| extxyz::Frame { seed: None, ..frame.unwrap() })
@@ -342,7 +342,7 @@ fn losses_are_counted_listed_and_survived() {
         (rows, last_frame(&out), dcd, fs::read(out.join("trajectory.gsd")).unwrap(), counted)
     };
     assert_eq!(events("parts", &["33", "71", "100"]), events("whole", &["100"]));
-    // Without rows the summary alone lists them, and is what the words point to.
+    // Without rows only the summary lists them, and the message refers to it.
     let silent = [&allowed[..], &["output.losses=false", "run.steps=71"]].concat();
     let summary = run("langevin-report", &folder.path().join("silent"), &silent, &[]);
     let said = summary["warnings"].to_string();
@@ -401,7 +401,7 @@ fn what_cannot_be_is_refused_with_what_may_be() {
     assert!(warned.status.success() && text.contains("beyond √(2 m r_c/F) = 0.030584"), "{text}");
 }
 
-/// Free particles that cross the box several times in a step: they run, and their displacements are those in a box that none of them crosses, by
+/// Free particles that cross the box several times in a step: they run, and their displacements are those in a wide box that none crosses, for
 /// every search and on three ranks. ⟨r²⟩ is 4 D (t − τ) to five standard errors.
 #[test]
 fn free_particles_cross_the_box_in_a_step() {
@@ -439,7 +439,7 @@ fn free_particles_cross_the_box_in_a_step() {
     }
 }
 
-/// What is lost by pairs is said with a step that would do; where the step is within all limits, with the way and the side.
+/// Losses caused by pairs are reported with a suggested step; if the step is within all limits, with the displacement and the side of the box.
 #[test]
 fn losses_are_said_with_what_would_help() {
     let folder = tempfile::tempdir().unwrap();
@@ -462,7 +462,7 @@ fn losses_are_said_with_what_would_help() {
     ];
     let message = said("far", &far);
     assert!(message.contains("lost") && message.contains("farther than the side 50 of the box"), "{message}");
-    // By hand: the side over the velocity that is named, along x.
+    // By hand: the side over the reported velocity, along x.
     let number = |before: &str| -> f64 {
         let rest = message.split(before).nth(1).unwrap_or_else(|| panic!("{message}"));
         rest.split([',', ' ']).next().unwrap().parse().unwrap()
@@ -471,8 +471,8 @@ fn losses_are_said_with_what_would_help() {
     assert!((step * velocity.abs() / 50.0 - 1.0).abs() < 5e-3, "{message}");
 }
 
-/// A run from the last frame of another one has new noise, from a file and from a list: the velocities of both after the same number of
-/// steps are uncorrelated. Runs of one start are the same, and another noise_seed gives other noise.
+/// A run from the last frame of another one has new noise, from a file and from a list: after the same number of
+/// steps the velocities of both are uncorrelated. Runs from one start are the same, and another noise_seed gives other noise.
 #[test]
 fn a_run_from_a_frame_does_not_repeat_the_noise() {
     let folder = tempfile::tempdir().unwrap();
@@ -520,7 +520,7 @@ fn a_run_from_a_frame_does_not_repeat_the_noise() {
         assert_eq!(last_frame(&outs[0]), last_frame(&outs[1]), "{name}");
         all.push(velocities(&outs[0]));
     }
-    // File and list are the same state but for the digits of a file, and draw alike or not at all alike.
+    // File and list are the same state except for the precision of the file; their noise is either the same or uncorrelated.
     for (a, b) in [(0, 1), (0, 2), (0, 3), (1, 2)] {
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
         let correlation = dot(&all[a], &all[b]) / (dot(&all[a], &all[a]) * dot(&all[b], &all[b])).sqrt();
@@ -528,7 +528,7 @@ fn a_run_from_a_frame_does_not_repeat_the_noise() {
     }
 }
 
-/// Without friction there is no bath: momentum stays, and a single free particle has no temperature; with it, kT is half of m v².
+/// Without friction there is no bath: momentum is conserved, and a single free particle has no temperature; with it, kT is half of m v².
 #[test]
 fn the_temperature_counts_what_the_bath_moves() {
     let folder = tempfile::tempdir().unwrap();
@@ -547,7 +547,7 @@ fn the_temperature_counts_what_the_bath_moves() {
     let one = ["particles.positions=[[2.0, 3.0]]", "particles.velocities=[[1.0, 2.0]]"];
     assert_eq!(rows("one", &one), 5.0);
     assert!(rows("one-free", &[&one[..], &["law.drag=0"]].concat()).is_nan());
-    // Σ m v² = 2 (1 + 4 + 1) = 12; less the mean motion, 2 · 2 (0² + 1²) = 4, it is 8.
+    // Σ m v² = 2 (1 + 4 + 1) = 12; without the mean motion, 2 · 2 (0² + 1²) = 4, it is 8.
     let two =
         ["particles.positions=[[2.0, 3.0], [5.0, 5.0]]", "particles.velocities=[[1.0, 2.0], [-1.0, 0.0]]"];
     assert_eq!(rows("two", &two), 12.0 / 4.0);
@@ -560,8 +560,8 @@ fn yukawa(distance: f64) -> f64 {
     if distance < 2.5 { uncut(distance) - uncut(2.5) } else { 0.0 }
 }
 
-/// Two Yukawa particles: at rest, 1.2 apart, energy and pressure are those of the formula, with r F = U (κ r + 1); without friction the error
-/// of the energy in a collision goes with dt².
+/// Two Yukawa particles at rest, 1.2 apart, have the energy and pressure of the formula, with r F = U (κ r + 1); without friction the error
+/// of the energy in a collision is proportional to dt².
 #[test]
 fn two_yukawa_particles_are_those_of_the_formula() {
     let folder = tempfile::tempdir().unwrap();
@@ -602,8 +602,8 @@ fn two_yukawa_particles_are_those_of_the_formula() {
     assert!(worst[0] < 5e-3 && worst.windows(2).all(|it| (3.6..4.4).contains(&(it[0] / it[1]))), "{worst:?}");
 }
 
-/// The pressure of a thin Yukawa fluid, P = ρ kT (1 + B₂ ρ + B₃ ρ²) with virial coefficients by quadrature: what pairs add to it within 2.5 %,
-/// of which B₄ is half a percent and chance as much.
+/// Pressure of a thin Yukawa fluid, P = ρ kT (1 + B₂ ρ + B₃ ρ²) with virial coefficients by quadrature: the contribution of pairs agrees within
+/// 2.5 %, of which B₄ is half a percent and the statistical error as much.
 #[test]
 fn a_thin_yukawa_fluid_has_the_pressure_of_its_virial_coefficients() {
     const PARTS: usize = 60;

@@ -25,7 +25,7 @@ fn agree(precision: Precision, start: &(Model, Particles), rebuild: Rebuild, ste
     for _ in 0..10 {
         advance(&mut lattice, steps / 10);
         advance(&mut list, steps / 10);
-        // Lists keep beside it where they were made.
+        // Lists also store the positions of their last rebuild.
         let of_list = list.columns();
         let same = |column| of_list.contains(column);
         assert!(lattice.columns().iter().all(same), "they differ after {} steps", lattice.steps());
@@ -56,7 +56,7 @@ fn trajectories_of_the_printed_text_are_equal_to_the_bit() {
     agree(Precision::F64, &printed_gas(400, 0.84, 7), Rebuild::AllPairs, 2_000);
 }
 
-/// Every execution of the printed text, on every instruction set, is the same run; ours is it but for rounding.
+/// All executions of BP93's own program, on every instruction set, give the same run; our program agrees except for rounding.
 #[test]
 fn the_printed_text_runs_the_same_by_every_execution_and_beside_ours() {
     const STEPS: u64 = 200;
@@ -89,7 +89,7 @@ fn the_printed_text_runs_the_same_by_every_execution_and_beside_ours() {
     assert!(moved > 0.05, "collisions must have happened: {moved}");
 }
 
-/// Fixed and moving walls, a closed side, gravity: the small pipe by both texts.
+/// The small pipe with both programs: fixed and moving walls, a closed side, gravity.
 #[test]
 fn the_pipe_of_the_printed_text_is_ours_but_for_rounding() {
     use stripmine_physics::method::lattice_md::{Document, assemble};

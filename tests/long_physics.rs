@@ -1,7 +1,7 @@
-//! Density waves in the pipe, against what was tried before (`lattice-md.md`, "The application"): flow, depth, Fano
+//! Density waves in the pipe, compared with earlier trials (`lattice-md.md`, "The application"): flow, depth, Fano
 //! factor, with error bars over seeds.
 //!
-//! With `STRIPMINE_REPORTS` set, the figures go to `reports/physics/pipe_small.md`.
+//! With `STRIPMINE_REPORTS` set, writes the numbers to `reports/physics/pipe_small.md`.
 
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use std::f64::consts::SQRT_2;
@@ -13,18 +13,18 @@ use stripmine_physics::method::lattice_md::{assemble, model};
 use stripmine_physics::observe::{Observation, Scenery, contacts, waves};
 use stripmine_physics::particles::Particles;
 
-/// Enough for the largest penetration, an extreme whose scatter few seeds underestimate: seeds 1 to 6 have 0.0561 ± 0.0006, seeds 1 to 24
+/// Enough seeds for the largest penetration, an extreme whose scatter few seeds underestimate: seeds 1 to 6 have 0.0561 ± 0.0006, seeds 1 to 24
 /// 0.0596 ± 0.0009.
 const SEEDS: u64 = 24;
 /// Mean radius (m).
 const RADIUS: f64 = 0.01;
 
-/// One run of `pipe-small`.
+/// Time series of one run of `pipe-small`.
 #[derive(Clone, Debug, Default)]
 struct Pipe {
     /// Mean velocity in each tenth of the run (m/s).
     flow: Vec<f64>,
-    /// Deepest penetration of all steps.
+    /// Largest penetration of all steps.
     deepest: f64,
     /// Smallest distance of centres with a grain, of every tenth step, in √2 R_max.
     closest: f64,
@@ -60,7 +60,7 @@ fn run(seed: u64, time: f64, overrides: &[&str]) -> Pipe {
     let mut all = vec![format!("particles.seed={seed}")];
     all.extend(overrides.iter().map(|&text| text.to_owned()));
     let mut checked = Document::load("pipe-small", &all).unwrap().check().unwrap();
-    // Only now, so that the lattice stays what the scene makes it: every contact deeper than this is followed.
+    // Set only after the check, so that the lattice of the scene stays: contacts deeper than this are recorded.
     checked.scene.law.max_penetration = 0.01;
     let mut method = assemble(&checked).unwrap();
     let scenery = Scenery::of(&model(&checked));
@@ -121,7 +121,7 @@ static ELASTIC: LazyLock<Vec<Pipe>> = LazyLock::new(|| {
 });
 static LONG: LazyLock<Pipe> = LazyLock::new(|| run(1, 12.0, &[]));
 
-/// A figure over the seeds.
+/// Mean of a number over the seeds, with its error and range.
 #[derive(Clone, Copy)]
 struct Over {
     mean: f64,
@@ -137,7 +137,7 @@ impl Over {
     }
 
     fn agrees(&self, other: &Over) -> bool {
-        // Seven figures are compared.
+        // Seven numbers are compared.
         (self.mean - other.mean).abs() < 4.0 * self.error.hypot(other.error)
     }
 }
@@ -176,7 +176,7 @@ fn figure(pipes: &[Pipe], which: usize) -> Over {
 fn the_pipe_flows_and_clusters_as_tried() {
     let pipes = &*PIPES;
     assert!(figure(pipes, START).range[1] < 0.25, "{}", figure(pipes, START));
-    // Waves in every run.
+    // Every run has waves.
     assert!(figure(pipes, LATE).range[0] > 1.0, "{}", figure(pipes, LATE));
     for (which, [low, high]) in [(FLOW, [0.80, 0.90]), (DEEPEST, [0.058, 0.068]), (LATE, [2.6, 4.6])] {
         let Over { mean, error, .. } = figure(pipes, which);
@@ -211,7 +211,7 @@ fn weak_damping_and_an_elastic_gas_make_no_waves() {
 fn the_figures_are_reported() {
     let tried = ["0.80–0.90", "0.058–0.068", "≥ 1.08", "0.10", "3.5 (2.6–4.6)", "0.029", "0.24"];
     let mut text = format!(
-        "# pipe-small against what was tried\n\nMean ± standard error over {SEEDS} seeds (smallest–largest), 2 s. \
+        "# pipe-small compared with earlier trials\n\nMean ± standard error over {SEEDS} seeds (smallest–largest), 2 s. \
          Counts in 16 bins of 20.25 R_0 (324 R_0 is no whole number of 20 R_0), population variance.\n\n\
          | figure | spec | ours | ours, dt/2 | γ_N = 100 | elastic gas |\n|---|---|---|---|---|---|\n"
     );

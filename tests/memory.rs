@@ -1,4 +1,4 @@
-//! The memory that a run takes is what the check said it would take.
+//! Memory of runs: it agrees with the estimate of `scene check`.
 #![cfg(target_os = "linux")]
 
 use std::path::Path;
@@ -6,15 +6,15 @@ use std::process::{Command, Stdio};
 use stripmine_physics::method::{METHODS, load};
 use stripmine_physics::ranks::Crew;
 
-/// The most memory that a process had at one time (bytes), once it has ended well. Asked of a small process that begins it: one that a
-/// large process begins is said to have had as much as that at least.
+/// Peak memory (bytes) of a process that ends successfully. A small process starts it and measures: a child of a
+/// large process would be reported with at least the memory of its parent.
 fn peak(arguments: &[String]) -> u64 {
     const ASK: &str = "import resource as r, subprocess as s, sys; \
                        code = s.call(sys.argv[1:], stdout=s.DEVNULL, stderr=s.DEVNULL); \
                        print(r.getrusage(r.RUSAGE_CHILDREN).ru_maxrss); sys.exit(code)";
     let mut command = Command::new("python3");
     command.args(["-I", "-S", "-c", ASK, env!("CARGO_BIN_EXE_stripmine")]).args(arguments);
-    let output = command.output().expect("there is a Python");
+    let output = command.output().expect("Python is installed");
     assert!(output.status.success(), "{arguments:?} ends with {:?}", output.status);
     String::from_utf8(output.stdout).unwrap().trim().parse::<u64>().unwrap() * 1024
 }
@@ -22,10 +22,10 @@ fn peak(arguments: &[String]) -> u64 {
 /// Bytes of a frame of a hundred thousand particles.
 const FRAME: f64 = 8.8e6;
 
-/// For the ways of a hundred thousand discs, begun and gone on with: either takes at most 5 % more than foreseen, and the one that
-/// takes more at most 5 % and a frame less.
-/// A frame is room for the thread that writes frames: whether it still holds one frame when the next is made
-/// depends on the moment, and what is foreseen counts both.
+/// Configurations of a hundred thousand discs, begun and resumed: each takes at most 5 % more than estimated, and the larger of the two at most 5 %
+/// and
+/// a frame less. The frame is a margin for the thread that writes frames: it may or may not still hold one frame when the next is
+/// made, and the estimate counts both.
 #[test]
 fn a_run_takes_the_memory_that_was_foreseen() {
     judged_by(&[
@@ -37,7 +37,7 @@ fn a_run_takes_the_memory_that_was_foreseen() {
     ]);
 }
 
-/// The same for the others.
+/// Further configurations.
 #[test]
 #[ignore = "long: cargo test --test memory -- --ignored"]
 fn other_ways_take_the_memory_that_was_foreseen() {
@@ -55,7 +55,7 @@ fn judged_by(ways: &[&[&str]]) {
     judged(&said);
 }
 
-/// The same for the ways of twelve thousand bodies.
+/// Configurations of twelve thousand bodies.
 #[test]
 fn bodies_take_the_memory_that_was_foreseen() {
     let mut said = Vec::new();
@@ -65,7 +65,7 @@ fn bodies_take_the_memory_that_was_foreseen() {
         &["machine.engine=programs"],
     ] {
         let sets = [sets, &["particles.count=12000"]].concat();
-        // A frame, and what the program itself takes more or less, which counts where so little is taken.
+        // A frame, and the variation of the program's own memory, which matters for such small runs.
         said.push(foreseen_and_taken("plummer", &sets, 0.25 * FRAME));
     }
     judged(&said);
@@ -76,18 +76,18 @@ fn judged(said: &[(bool, String)]) {
     assert!(off.is_empty(), "{off:#?} of {said:#?}");
 }
 
-/// Whether a run takes what was foreseen, begun and gone on with, and both in words; `frame` is what one more frame takes (bytes).
-/// What the program itself takes is left out on both sides, by a run of a few bodies: how much of its file is in memory
-/// is the system's choice, and differs by several megabytes between hosts.
+/// Returns true if a begun and a resumed run take the estimated memory, with a description; `frame` is the size of one more frame (bytes).
+/// The program's own memory, measured with a run of a few bodies, is subtracted on both sides: the system chooses how much of the executable
+/// is in memory, and this differs by several megabytes between hosts.
 fn foreseen_and_taken(preset: &str, sets: &[&str], frame: f64) -> (bool, String) {
     foreseen_and_taken_by(preset, sets, frame, [1, 2])
 }
 
-/// The same of a run that is begun up to the first of two ends, and gone on with up to the second.
+/// Like [`foreseen_and_taken`], for a run that is begun up to the first of two ends and resumed up to the second.
 fn foreseen_and_taken_by(preset: &str, sets: &[&str], frame: f64, ends: [u32; 2]) -> (bool, String) {
     let itself = needed_and_most("plummer", &["particles.count=64"], [1, 2]);
     let mut all = needed_and_most(preset, sets, ends);
-    // Where the system takes back what is seldom used, less is seen than was taken: the larger of two tries counts.
+    // A system that reclaims rarely used memory shows too small a peak: the larger of two tries counts.
     if all.0 - itself.0 > 1.05 * (all.1 - itself.1) + frame {
         all.1 = all.1.max(needed_and_most(preset, sets, ends).1);
     }
@@ -96,10 +96,10 @@ fn foreseen_and_taken_by(preset: &str, sets: &[&str], frame: f64, ends: [u32; 2]
     (fits, format!("{sets:?}: {needed} foreseen, {most} taken; the program itself {itself:?}"))
 }
 
-/// Bytes by which what the program itself takes may differ from what is foreseen for it.
+/// Bytes by which the program's own memory may differ from its estimate.
 const PROGRAM: f64 = 12.0e6;
 
-/// Bytes that a run was said to need, and the most that it took, begun or gone on with.
+/// Estimated bytes of a run, and its peak memory, begun or resumed.
 fn needed_and_most(preset: &str, sets: &[&str], ends: [u32; 2]) -> (f64, f64) {
     let folder = tempfile::tempdir().unwrap();
     let until = if preset == "hard-disks" { "run.events" } else { "run.steps" };
@@ -109,7 +109,7 @@ fn needed_and_most(preset: &str, sets: &[&str], ends: [u32; 2]) -> (f64, f64) {
             sets.iter().copied().chain([end.as_str()]).flat_map(|set| ["--set".to_owned(), set.to_owned()]);
         words.iter().map(|&word| word.to_owned()).chain(sets).collect::<Vec<String>>()
     };
-    // Not asked in this process: what it holds counts in the memory of its children while they begin.
+    // `scene check` runs in another process: memory held by this one counts in its children while they start.
     let check = with_sets(&["scene", "check", preset, "--json"], ends[1]);
     let checked = Command::new(env!("CARGO_BIN_EXE_stripmine")).args(check).output().unwrap();
     let checked: serde_json::Value = serde_json::from_slice(&checked.stdout).unwrap();
@@ -119,7 +119,7 @@ fn needed_and_most(preset: &str, sets: &[&str], ends: [u32; 2]) -> (f64, f64) {
     (checked["memory"]["needed"].as_u64().unwrap() as f64, taken[0].max(taken[1]) as f64)
 }
 
-/// Discs on several ranks of one process, to a tenth below: what allocators of several threads keep is not foreseen to the byte.
+/// Discs on several ranks of one process, to a tenth below: the memory kept by allocators of several threads cannot be estimated to the byte.
 #[test]
 fn ranks_take_the_memory_that_was_foreseen() {
     for (search, ranks) in [("lattice", 2), ("lattice", 4), ("neighbor-list", 4)] {
@@ -143,7 +143,7 @@ fn ranks_take_the_memory_that_was_foreseen() {
     }
 }
 
-/// Particles in a bath by every search.
+/// Particles in a bath with every search.
 #[test]
 fn particles_in_a_bath_take_the_memory_that_was_foreseen() {
     let mut said = Vec::new();
@@ -154,7 +154,7 @@ fn particles_in_a_bath_take_the_memory_that_was_foreseen() {
     judged(&said);
 }
 
-/// Discs at earlier rows, which are kept for displacements, and what is found at snapshots.
+/// Discs at earlier rows, stored for displacements, and functions sampled at snapshots.
 #[test]
 fn looks_at_the_structure_take_the_memory_that_was_foreseen() {
     let mut said = Vec::new();
@@ -172,7 +172,7 @@ fn looks_at_the_structure_take_the_memory_that_was_foreseen() {
     judged(&said);
 }
 
-/// Hard discs by both engines; three times as many, three frames.
+/// Hard discs with both engines; three times as many, so three frames.
 #[test]
 fn hard_discs_take_the_memory_that_was_foreseen() {
     let ways = ["machine.engine=fast", "machine.engine=reference"];
@@ -181,7 +181,7 @@ fn hard_discs_take_the_memory_that_was_foreseen() {
     judged(&said);
 }
 
-/// A start takes memory for its particles, not for the box: of two milliard places of a mesh a thousand are drawn.
+/// A start takes memory for its particles, not for the box: a thousand positions are drawn from a mesh of two milliard.
 #[test]
 fn an_empty_box_takes_no_memory() {
     let check = ["scene", "check", "langevin-free", "--set", "domain.sides=[4600, 4600]"].map(str::to_owned);
@@ -189,8 +189,8 @@ fn an_empty_box_takes_no_memory() {
     assert!(taken < 64_000_000, "{taken} bytes");
 }
 
-/// Under a limit of the address space or of the data a run is refused, with the limit in words, or comes to its end: it is not
-/// aborted in its midst, whatever the limit.
+/// Under a limit of the address space or of the data, a run either is refused with a message that names the limit, or completes: it is not
+/// aborted half-way, whatever the limit.
 #[test]
 fn limits_of_the_process_are_asked() {
     let folder = tempfile::tempdir().unwrap();
@@ -235,7 +235,7 @@ fn limits_of_the_process_are_asked() {
     }
 }
 
-/// Verbs under limits of the address space: at each they come to their end, or end in words with a documented exit code; no signal ends them.
+/// Verbs under limits of the address space: each completes, or fails with a message and a documented exit code; no signal ends it.
 #[test]
 fn no_limit_of_memory_aborts_a_verb() {
     let folder = tempfile::tempdir().unwrap();
@@ -273,7 +273,7 @@ fn no_limit_of_memory_aborts_a_verb() {
     ] {
         for mebibytes in [60, 80, 120, 200, 400, 4000] {
             let (code, said) = under(Some(mebibytes), words);
-            // 127: the loader says that the program itself does not fit with the libraries of MPI.
+            // 127: the loader reports that the program does not fit with the libraries of MPI.
             let is_loader = cfg!(feature = "mpi") && code == Some(127);
             let is_told = matches!(code, Some(3 | 5)) && said.contains("memory") || is_loader;
             let is_told = is_told && mebibytes < 4000;
@@ -285,8 +285,8 @@ fn no_limit_of_memory_aborts_a_verb() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// Measurements and comparisons ask for memory too, before they take it: these do not fit into 300 MiB, with some 700 bytes a disc
-/// and, to compare, two runs at once.
+/// Measurements and comparisons check memory before they allocate it: these do not fit into 300 MiB, with some 700 bytes a disc
+/// and, for a comparison, two runs at once.
 #[test]
 fn every_verb_that_simulates_asks_for_memory() {
     let folder = tempfile::tempdir().unwrap();
@@ -308,7 +308,7 @@ fn every_verb_that_simulates_asks_for_memory() {
     }
 }
 
-/// Bytes of the process while it refuses: a tenth of a gigabyte is far below what it was asked for.
+/// Memory of the process while it refuses: a tenth of a gigabyte is far below the request.
 #[test]
 fn what_does_not_fit_is_refused_before_it_is_made() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! Bodies, as a user meets them: orbits against exact results, what is conserved, resumption, threads, what is refused.
+//! Bodies as a user sees them: orbits compared with exact results, conservation, resumption, threads, refusals.
 
 use serde_json::Value;
 use std::f64::consts::TAU;
@@ -28,7 +28,7 @@ fn run(scene: &str, out: &Path, sets: &[&str], more: &[&str]) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-/// The columns of thermo.csv by name.
+/// Column of thermo.csv by name.
 fn column(folder: &Path, name: &str) -> Vec<f64> {
     let text = fs::read_to_string(folder.join("thermo.csv")).unwrap();
     let mut lines = text.lines();
@@ -46,7 +46,7 @@ fn last_frame(folder: &Path) -> Vec<Vec<f64>> {
     lines[lines.len() - count..].iter().map(numbers).collect()
 }
 
-/// After ten whole orbits bodies are where they began, off by what the order of the scheme has: n times as many steps make the error n^order
+/// After ten whole orbits bodies return to their start, with an error of the scheme's order: n times as many steps make the error n^order
 /// times smaller.
 #[test]
 fn orbits_close_and_errors_fall_with_the_order() {
@@ -67,7 +67,7 @@ fn orbits_close_and_errors_fall_with_the_order() {
         ((x - 0.25).powi(2) + y * y).sqrt()
     };
     for (kind, steps, order) in [
-        // At the point where it began the first-order part of its error comes back with it.
+        // At the point of its start the first-order part of the error vanishes.
         ("damped-euler", 4096, 2.0),
         ("leapfrog", 512, 2.0),
         ("yoshida-4", 512, 4.0),
@@ -86,8 +86,8 @@ fn orbits_close_and_errors_fall_with_the_order() {
     }
 }
 
-/// Momentum is rounding, the centre stays, angular momentum too, by every scheme but those that are made to fail; the figure of eight
-/// comes back after its period.
+/// Momentum, centre and angular momentum are conserved up to rounding by every scheme except those that are meant to fail; the figure of eight
+/// closes after its period.
 #[test]
 fn what_gravity_conserves_is_conserved() {
     let folder = tempfile::tempdir().unwrap();
@@ -111,7 +111,7 @@ fn what_gravity_conserves_is_conserved() {
     assert!((end[0][0] - 0.970_004_36).abs() < 1e-5 && (end[0][1] + 0.243_087_53).abs() < 1e-5, "{end:?}");
 }
 
-/// The same bits for any threads, instruction set and interruption where arithmetic is exact.
+/// Bits do not depend on threads, instruction set and interruption, for exact arithmetic.
 #[test]
 fn threads_sets_and_resumption_change_no_bit() {
     let folder = tempfile::tempdir().unwrap();
@@ -123,7 +123,7 @@ fn threads_sets_and_resumption_change_no_bit() {
             let resumed: &[&str] = if number > 0 { &["--resume"] } else { &[] };
             run("plummer", &out, &all, &[more, resumed].concat());
         }
-        // Of the observables too, which are sums over all bodies.
+        // Also the observables, which are sums over all bodies.
         let seen = ["kinetic", "potential", "energy_error"].map(|name| column(&out, name));
         [last_frame(&out), seen.to_vec()].concat()
     };
@@ -139,7 +139,7 @@ fn threads_sets_and_resumption_change_no_bit() {
             let instructions = format!("machine.instruction_set={instructions}");
             let sets = [set.as_str(), &instructions];
             let out = folder.path().join("asked");
-            // As many bodies as below: of very few the reference engine takes over, which needs no such instructions.
+            // As many bodies as below: for very few the reference engine takes over, which does not need such instructions.
             let checked = begin(
                 "plummer",
                 &out,
@@ -182,7 +182,7 @@ fn what_cannot_be_is_refused_and_what_breaks_is_said() {
         (&["particles.generate=plummer", "particles.count=1"], &["particles.count"]),
         (&["machine.precision=f32"], &["mixed"]),
         (&["output.lammps_dump=true"], &["needs a box"]),
-        // What would be left out without a word.
+        // Settings that would otherwise be ignored silently.
         (
             &["machine.engine=reference", "machine.precision=mixed"],
             &["machine.precision", "double precision only"],
@@ -209,8 +209,8 @@ fn what_cannot_be_is_refused_and_what_breaks_is_said() {
     assert!(said(&lost).contains("have become unbound"), "{}", said(&lost));
 }
 
-/// Two ways of one scene beside each other: exact arithmetic has the same bits on two instruction sets; the sum as it is written rounds
-/// otherwise, and that is said with the moment.
+/// Two configurations of one scene side by side: exact arithmetic has the same bits on two instruction sets; the sum as written rounds
+/// differently, and the first difference is reported with its moment.
 #[test]
 fn ways_are_compared() {
     let compare = |more: &[&str]| -> Value {
@@ -231,7 +231,7 @@ fn ways_are_compared() {
     assert!(apart > 0.0 && apart < 1e-12, "{apart}");
 }
 
-/// Few bodies are summed pair by pair, many swept; the choice is said and kept, and a run goes on with it.
+/// Few bodies are summed pair by pair, many are swept; the choice is reported and stored, and a resumed run keeps it.
 #[test]
 fn the_engine_is_chosen_by_the_number_of_bodies() {
     let folder = tempfile::tempdir().unwrap();
@@ -246,7 +246,7 @@ fn the_engine_is_chosen_by_the_number_of_bodies() {
     }
 }
 
-/// A run in parts has the counts and the largest error of one in one piece.
+/// A run in parts has the counts and the largest error of a run in one piece.
 #[test]
 fn a_run_in_parts_counts_as_one_in_one_piece() {
     let folder = tempfile::tempdir().unwrap();
@@ -266,7 +266,8 @@ fn a_run_in_parts_counts_as_one_in_one_piece() {
     assert_eq!(ended("parts", &["5", "64", "99", "130"]), whole);
 }
 
-/// The limit of the step by hand, 2π (1 − e)^{3/2}/20 = 0.111072 at e = 1/2: as a multiple of a shorter step, and a warning of one beyond twice the limit.
+/// Limit of the step by hand, 2π (1 − e)^{3/2}/20 = 0.111072 at e = 1/2: reported as a multiple of a shorter step, with a warning beyond twice the
+/// limit.
 #[test]
 fn the_step_is_held_against_its_limit() {
     let folder = tempfile::tempdir().unwrap();
@@ -290,8 +291,8 @@ fn the_step_is_held_against_its_limit() {
     }
 }
 
-/// Two bodies so light that they fly straight, from ±1 at speed 1 in steps of a half: after six steps they are at ±4, and on the way at every
-/// multiple of a half, wherever a sweep may keep the entries that are no bodies.
+/// Two very light bodies fly straight, from ±1 at speed 1 in steps of a half. After six steps they are at ±4, and pass every
+/// multiple of a half, wherever a sweep stores its entries that are no bodies.
 #[test]
 fn light_bodies_fly_straight() {
     let folder = tempfile::tempdir().unwrap();

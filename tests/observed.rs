@@ -1,4 +1,4 @@
-//! What is observed of granular discs: the same sums by every engine, in every order of work, and in one piece or gone on with.
+//! Observables of granular discs: the same sums with every engine, in every order of work, in one piece or resumed.
 
 use rand::RngExt;
 use serde_json::{Map, Value};
@@ -13,7 +13,7 @@ use stripmine_physics::method::{METHODS, Purpose, Simulation, Until, load};
 use stripmine_physics::observe::{Observation, Scenery};
 use stripmine_physics::particles::{Kind, Particle, Particles, in_space};
 
-/// Overrides.
+/// Overrides of a scene.
 type Sets<'a> = &'a [&'a str];
 
 fn owned(sets: &[Sets<'_>]) -> Vec<String> {
@@ -33,13 +33,13 @@ fn scenery(scene: &str, sets: &[Sets<'_>]) -> Scenery {
     Scenery::of(&model(&Document::load(scene, &owned(sets)).unwrap().check().unwrap()))
 }
 
-/// The place of a quantity in a row.
+/// Index of a quantity in a row.
 fn column(name: &str) -> usize {
     let quantities = stripmine_physics::method::lattice_md::ENTRY.quantities;
     quantities.iter().position(|quantity| quantity.name == name).unwrap()
 }
 
-/// Every way of stepping granular discs.
+/// All configurations that advance granular discs.
 const WAYS: [Sets<'static>; 8] = [
     &["machine.engine=fast", "search.by=lattice"],
     &["machine.engine=fast", "search.by=sectors"],
@@ -51,7 +51,7 @@ const WAYS: [Sets<'static>; 8] = [
     &["machine.engine=programs", "search.by=neighbor-list"],
 ];
 
-/// Scenes with damping, friction, spins, walls that rest and walls that move, gravity along a periodic side, and none of these; and
+/// Scenes with damping, friction, spins, fixed and moving walls, gravity along a periodic side, and with none of these; and
 /// dense ones, on whose lattice registers of cells are compared.
 const SCENES: [(&str, Sets<'static>); 5] = [
     ("pipe-small", &[]),
@@ -61,7 +61,7 @@ const SCENES: [(&str, Sets<'static>); 5] = [
     ("bench", &["particles.count=800", "integrator.kind=velocity-verlet", "law.cohesionless=false"]),
 ];
 
-/// A row against the naive sums over the particles as they stand.
+/// A row compared with naive sums over the current particles.
 #[test]
 fn a_row_says_what_the_naive_sums_say() {
     for (scene, of_scene) in SCENES {
@@ -75,7 +75,7 @@ fn a_row_says_what_the_naive_sums_say() {
                 let particles = simulation.particles();
                 let naive = Observation::of(steps, simulation.clock().time, &particles, &scenery);
                 assert_eq!(row[column("contacts")], naive.contacts as f64, "{scene} {way:?} {steps}");
-                // What sums up to next to nothing is off by the rounding of what it sums up.
+                // The error of a sum that nearly cancels is the rounding of its terms.
                 let count = particles.grain_count() as f64;
                 let energy = naive.kinetic + naive.elastic + naive.rotational;
                 let mass: f64 = particles.grains().iter().map(|grain| grain.mass).sum();
@@ -98,7 +98,7 @@ fn a_row_says_what_the_naive_sums_say() {
                     let off = (row[column(name)] - expected).abs();
                     assert!(
                         off <= 2e-11 * scale,
-                        "{scene} {way:?} {steps}: {name} is off by {off} of {scale}"
+                        "{scene} {way:?} {steps}: {name} differs by {off}, scale {scale}"
                     );
                 }
             }
@@ -110,7 +110,7 @@ fn bits(row: &[f64]) -> Vec<u64> {
     row.iter().map(|value| value.to_bits()).collect()
 }
 
-/// Neither threads nor instructions change a bit, with more discs than one thread is left with.
+/// Threads and instructions do not change a bit, with more discs than a single thread handles.
 #[test]
 fn no_thread_and_no_instruction_changes_a_row() {
     for way in &WAYS[..5] {
@@ -133,13 +133,13 @@ fn no_thread_and_no_instruction_changes_a_row() {
     }
 }
 
-/// What a summary says, less what is of a session only.
+/// The summary without entries that belong to the session only.
 fn of_the_run(simulation: &dyn Simulation) -> (Map<String, Value>, String) {
     (simulation.summary(), simulation.in_words())
 }
 
-/// Gone on with, at once and after more steps, everything that is said is said as of one piece: grains that have crossed periodic
-/// sides have not crossed them again, counters have not begun again.
+/// A resumed run, at once and after more steps, reports the same as a run in one piece: grains that have crossed periodic
+/// sides are not counted again, and counters do not restart.
 #[test]
 fn what_is_gone_on_with_says_what_one_piece_says() {
     let more: [Sets<'_>; 3] = [
@@ -170,7 +170,7 @@ fn what_is_gone_on_with_says_what_one_piece_says() {
     }
 }
 
-/// Lists that the engine of all methods makes are counted on.
+/// Counters of lists continue in the engine shared by all methods.
 #[test]
 fn lists_are_counted_on_by_other_methods() {
     let sets = owned(&[&["search.by=neighbor-list", "run.steps=200"]]);
@@ -191,7 +191,7 @@ fn lists_are_counted_on_by_other_methods() {
     assert!(whole.summary()["lists_made"].as_u64() > Some(2));
 }
 
-/// A disc on the lower rim of a periodic side has crossed nothing, wherever rounding finds it.
+/// A disc on the lower rim of a periodic side has not crossed it, wherever rounding places it.
 #[test]
 fn a_disc_on_the_rim_has_crossed_nothing() {
     for origin in ["0.0", "0.1", "-0.7", "1e3", "-3.3", "0.3"] {
@@ -221,7 +221,7 @@ fn a_disc_on_the_rim_has_crossed_nothing() {
     }
 }
 
-/// What is observed is a phase of its own, and is looked at once however many ask.
+/// Observation has its own phase, and is carried out once for any number of callers.
 #[test]
 fn a_moment_is_observed_once() {
     let mut simulation = begin("dense-gas", &[]);
@@ -238,7 +238,7 @@ fn a_moment_is_observed_once() {
     assert_eq!(simulation.phases()["observe"], once);
 }
 
-/// The pressure of discs and walls at random, by the formula written out: (K + ½ Σ F_N |r_i − r_j|)/A over the contacts between grains, with
+/// Pressure of random discs and walls, by the explicit formula: (K + ½ Σ F_N |r_i − r_j|)/A over the contacts between grains, with
 /// their kinetic energy K about the mean motion along x, which is periodic, F_N = max(k_N ξ^{3/2} − γ_N M_eff (v_i − v_j)·n, 0).
 #[test]
 fn the_pressure_is_that_of_the_formula() {
@@ -297,11 +297,11 @@ fn the_pressure_is_that_of_the_formula() {
         assert!((seen.pressure / expected - 1.0).abs() < 1e-12, "{} instead of {expected}", seen.pressure);
         by_damping += (virial / undamped - 1.0).abs();
     }
-    assert!(by_damping > 0.1, "damping has a part in it");
+    assert!(by_damping > 0.1, "damping must contribute");
 }
 
 /// Temperatures by hand: masses 1 and 3 with velocities (1, 2) and (−1, 0) have Σ m v² = (4, 4) and Σ m v = (−2, 2), a mean motion of
-/// 1 along each axis. Along periodic axes that is no heat and one of two degrees of freedom is left; along closed ones all count.
+/// 1 along each axis. Along periodic axes it is no heat, and one of two degrees of freedom is left; along closed axes all count.
 #[test]
 fn temperatures_count_the_degrees_of_freedom() {
     let disc = |id, position, velocity, mass| Particle {
@@ -330,7 +330,7 @@ fn temperatures_count_the_degrees_of_freedom() {
         let seen = Observation::of(0, 0.0, &Particles::new(discs.to_vec()), &scenery);
         [seen.temperature, seen.pressure * 90.0]
     };
-    // The temperature, and the kinetic energy that presses.
+    // The temperature, and the kinetic energy that enters the pressure.
     for (periodic, temperature, kinetic) in [
         ([true, true], (3.0 + 3.0) / 2.0, 3.0),
         ([true, false], (3.0 + 4.0) / 3.0, 3.5),
@@ -343,7 +343,7 @@ fn temperatures_count_the_degrees_of_freedom() {
             "{periodic:?}: {found} {pressing}"
         );
     }
-    // A single one in a closed box has m v²/2 for each axis, in a periodic one no temperature.
+    // A single disc has m v²/2 for each axis in a closed box, and no temperature in a periodic one.
     let one = &two[..1];
     assert_eq!(seen(one, [false, false])[0], 2.5);
     assert_eq!(seen(one, [true, false])[0], 4.0);

@@ -1,9 +1,9 @@
-//! Text from outside in messages: whatever stands in a file, a name or an argument, a terminal shows it and does not obey it.
+//! Foreign text in messages: control characters in files, names and arguments never reach the terminal.
 
 use assert_cmd::Command;
 use std::path::Path;
 
-/// What would colour, delete, turn around or hide text.
+/// Sequences that would colour, delete, reverse or hide text.
 const NASTY: [&str; 6] =
     ["\u{1b}[31m", "\u{7}\u{8}", "\u{9b}2J", "exe\u{202e}txt", "\u{2066}a\u{2069}", "a\u{200b}\u{feff}b"];
 
@@ -13,7 +13,7 @@ fn said(arguments: &[&str], folder: &Path) -> (Option<i32>, String) {
     (output.status.code(), String::from_utf8(output.stderr).unwrap())
 }
 
-/// Nothing but what is seen, and line ends.
+/// True if a text has only visible characters and line ends.
 fn is_clean(text: &str) -> bool {
     let hidden = |c: char| {
         c.is_control() && c != '\n'
@@ -100,8 +100,8 @@ fn no_message_carries_what_a_terminal_obeys() {
     }
 }
 
-/// Names of files and folders, columns of tables and scenes come back on standard output, as words and as data, without what a
-/// terminal obeys; data reads back to the same.
+/// Names of files and folders, columns of tables and scenes appear on standard output, as words and as data, without control
+/// characters; data reads back to the same.
 #[test]
 fn standard_output_carries_none_either() {
     let folder = tempfile::tempdir().unwrap();
@@ -134,7 +134,7 @@ fn standard_output_carries_none_either() {
             assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
             assert!(is_clean(&text), "{arguments:?}: {text:?}");
             let is_data = arguments.iter().any(|it| it == "--json");
-            // Spelled out, not left out.
+            // Escaped, not left out.
             let spelled = if is_data { "\\u" } else { "\\u{" };
             assert!(!names || text.contains(spelled), "{arguments:?}: {text}");
             if is_data && names {
@@ -165,7 +165,7 @@ fn standard_output_carries_none_either() {
     }
 }
 
-/// A checkpoint whose names are no names, and a folder that is called so.
+/// Checkpoints and folders with control characters in their names.
 #[test]
 fn no_message_of_a_checkpoint_does_either() {
     use stripmine_physics::io::checkpoint::{CheckpointError, Fault, Kept};
@@ -180,7 +180,7 @@ fn no_message_of_a_checkpoint_does_either() {
     }
 }
 
-/// What never ends, waits for a writer or is no file at all is refused before it is opened.
+/// Endless devices, pipes without a writer and folders are refused before they are opened.
 #[cfg(unix)]
 #[test]
 fn what_is_no_ordinary_file_is_refused() {
@@ -215,7 +215,7 @@ fn what_is_no_ordinary_file_is_refused() {
     }
 }
 
-/// No verb waits at a pipe that lies where it looks for a file of its own: it refuses, or goes on without.
+/// No verb blocks on a pipe at the name of one of its files: it refuses, or continues without the file.
 #[cfg(unix)]
 #[test]
 fn no_verb_waits_at_a_pipe() {
@@ -288,7 +288,7 @@ fn no_verb_waits_at_a_pipe() {
     }
 }
 
-/// Files of other kinds and broken ones may hold mistakes without end: the first are named, the rest counted.
+/// Files of other types and broken ones may hold any number of mistakes: the first are named, the rest counted.
 #[test]
 fn many_mistakes_are_counted() {
     use stripmine_physics::method::lattice_md::Scene;
@@ -312,7 +312,7 @@ fn many_mistakes_are_counted() {
     }
 }
 
-/// The column of an item is found without counting from the beginning of its line.
+/// The column of an item is found without counting from the start of its line.
 #[test]
 fn a_long_line_is_read_in_time_that_grows_with_its_length() {
     use stripmine_physics::method::lattice_md::Document;
@@ -341,7 +341,7 @@ fn threads_are_as_many_as_make_sense() {
     assert!(text.contains("1..=1024"), "{text}");
 }
 
-/// Of discs that all lie on one heap, pairs are counted to a bound and the deepest named.
+/// Overlaps of discs in one heap are counted up to a bound, and the deepest is named.
 #[test]
 fn a_heap_of_discs_is_refused_without_counting_it_out() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,5 +1,5 @@
-//! Physics of whole simulations: what is conserved, what a collision gives back, what friction may do, that threads
-//! and instructions change nothing, and that what breaks is found in its step.
+//! Physics of whole simulations: conservation, rebound and friction of collisions, independence of threads
+//! and instructions, and failures found in their step.
 
 mod support;
 
@@ -48,8 +48,8 @@ fn energy_error(values: GearValues, dt: f64, time: f64) -> [f64; 2] {
     [square.sqrt(), most]
 }
 
-/// Soft discs press as hard ones of their effective diameter do, d = 1 − ∫ exp(−u/T) dξ (Barker and Henderson), to the
-/// first order in their softness. Henderson's equation of state is good to 0.3 % at this density.
+/// The pressure of soft discs is that of hard ones of their effective diameter, d = 1 − ∫ exp(−u/T) dξ (Barker and Henderson), to
+/// first order in their softness. Henderson's equation of state is accurate to 0.3 % at this density.
 #[test]
 fn the_pressure_of_soft_discs_is_that_of_hard_ones_of_their_effective_diameter() {
     let mut start = gas(400, 0.40, 5);
@@ -70,7 +70,7 @@ fn the_pressure_of_soft_discs_is_that_of_hard_ones_of_their_effective_diameter()
         .collect();
     let mean = |of: &dyn Fn(&Observation) -> f64| seen.iter().map(of).sum::<f64>() / seen.len() as f64;
     let (count, temperature) = (gas.particles().grains().len() as f64, mean(&|seen| seen.temperature));
-    // The kinetic energy of count − 1 discs presses, for momentum is conserved.
+    // The kinetic energy of count − 1 discs enters, since momentum is conserved.
     let compressibility = (mean(&|seen| seen.pressure) * area + temperature) / (count * temperature);
     let gamma = 0.887_263_817_503_075; // Γ(7/5)
     let diameter = 1.0 - gamma * (temperature / (0.4 * CONTACT.stiffness)).powf(0.4);
@@ -80,7 +80,7 @@ fn the_pressure_of_soft_discs_is_that_of_hard_ones_of_their_effective_diameter()
     assert!((compressibility / henderson - 1.0).abs() < 0.015, "{compressibility} {henderson}");
 }
 
-/// Undamped Hertz collisions converge at about dt^2.2, with any scheme: the force has half a derivative too few.
+/// Energy of undamped Hertz collisions converges at about dt^2.2 with any scheme: the force has half a derivative too few.
 #[test]
 fn energy_of_an_undamped_gas_converges_with_the_time_step() {
     for values in GearValues::ALL {
@@ -126,7 +126,7 @@ const RADII: [f64; 2] = [0.5, 0.46];
 const MASSES: [f64; 2] = [1.0, 0.7];
 const EFFECTIVE: f64 = MASSES[0] * MASSES[1] / (MASSES[0] + MASSES[1]);
 
-/// Two discs that touch after that many steps, meeting at `normal`, sliding past each other at `shear`.
+/// Two discs that touch after a number of steps, approaching at `normal` and sliding past each other at `shear`.
 fn pair(contact: Contact, dt: f64, steps: f64, [normal, shear]: [f64; 2]) -> (Model, Particles) {
     let x = 4.0 + RADII[0] + RADII[1] + steps * normal * dt;
     // In the frame of the centre of mass.
@@ -150,7 +150,7 @@ fn apart(discs: &[Particle]) -> (f64, [f64; 2], [f64; 2]) {
     (RADII[0] + RADII[1] - distance, n, [v[0] * n[0] + v[1] * n[1], v[1] * n[0] - v[0] * n[1]])
 }
 
-/// How a collision ends: overlap and speed of separation at the end, and how long they touched, if they parted.
+/// Overlap and speed of separation at the end of a collision, and the duration of contact if the discs separated.
 #[derive(Debug, Clone, Copy)]
 struct End {
     overlap: f64,
@@ -179,7 +179,7 @@ fn simulated(contact: Contact, dt: f64, speed: f64, time: f64) -> End {
     }
 }
 
-/// M x'' = k x^1.5 − γ M v of the pair by Runge and Kutta's fourth order in tiny steps: nothing of the program is used.
+/// Solves M x'' = k x^1.5 − γ M v of the pair by fourth-order Runge–Kutta in tiny steps, independently of the program.
 fn integrated(contact: Contact, speed: f64, time: f64) -> End {
     let Contact { stiffness: k, normal_damping: gamma, cohesionless, .. } = contact;
     // x is the overlap, u its rate.
@@ -209,7 +209,7 @@ fn hertz_time(stiffness: f64, speed: f64) -> f64 {
     3.218 * (EFFECTIVE * EFFECTIVE / (stiffness * stiffness * speed)).powf(0.2)
 }
 
-/// Damped collisions converge at first order only: the damping jumps at the touch, which falls into a step.
+/// Damped collisions converge at first order only: the damping jumps at first contact, which falls inside a step.
 #[test]
 fn collisions_restitute_as_an_integration_of_its_own_says() {
     println!("speed gamma clamped |  restitution, integrated |  duration, integrated");
@@ -263,7 +263,7 @@ fn undamped_collisions_last_as_long_as_hertz_says() {
     }
 }
 
-/// How fast an undamped collision gives back all its speed as the time step shrinks: rms over where in a step it
+/// Convergence of the rebound speed of an undamped collision with the time step: rms over the phase of the step at which it
 /// begins.
 #[test]
 fn an_undamped_collision_converges_at_more_than_second_order() {
@@ -309,7 +309,7 @@ fn oblique(contact: Contact, normal: f64, shear: f64) -> ([f64; 2], [f64; 2], Pa
             break;
         }
         let [fx, fy, torque] = collision.forces()[0];
-        // The torque is −R F_S whatever the normal of the predicted positions was.
+        // The torque is −R F_S for any normal of the predicted positions.
         let shear = -torque / RADII[0];
         let push = (fx * fx + fy * fy - shear * shear).max(0.0).sqrt();
         assert!(shear.abs() <= contact.friction * push * (1.0 + 1e-6) + 1e-9, "{shear} against {push}");
@@ -323,8 +323,8 @@ fn oblique(contact: Contact, normal: f64, shear: f64) -> ([f64; 2], [f64; 2], Pa
     ([px * n[0] + py * n[1], py * n[0] - px * n[1]], [slip(before.all()), slip(after.all())], after)
 }
 
-/// Oblique collisions with a linear spring are those of LAMMPS's `gran/hooke`: places, velocities and spins, after steps 25 times as
-/// long as its.
+/// Oblique collisions with a linear spring agree with LAMMPS's `gran/hooke` in positions, velocities and spins, with steps 25 times as
+/// long.
 #[test]
 fn linear_contacts_are_those_of_lammps() {
     let table = include_str!("rivals/linear_contacts.csv").lines().filter(|line| !line.starts_with('#'));
@@ -353,7 +353,7 @@ fn linear_contacts_are_those_of_lammps() {
             let after = &row[12 * (disc.id as usize - 1) + 7..][..5];
             let ours = [disc.position, disc.velocity].map(|[x, y, _]| [x, y]).concat();
             for (ours, theirs) in ours.iter().chain([&disc.omega]).zip(after) {
-                // LAMMPS's box is a whole number of ours.
+                // LAMMPS's box is a whole multiple of ours.
                 let off = ours - theirs;
                 let off = off - side * (off / side).round();
                 assert!(off.abs() < 2e-4, "{ours} {theirs} of {after:?}");
@@ -374,10 +374,10 @@ fn friction_is_coulombs_where_surfaces_slide_and_less_where_they_roll() {
         println!("sliding at {shear}: drag/push {:.5}, slip {before:.4} to {after:.4}", drag / push);
         assert!((drag / push + before.signum() * 0.3).abs() < 0.003, "{drag} {push}");
         assert!(after / before > 0.3, "it must slide to the end: {before} to {after}");
-        // 1 + 1/0.5 = 3 surfaces' worth of inertia against the momentum exchanged.
+        // The inertia of 1 + 1/0.5 = 3 surfaces against the exchanged momentum.
         assert!((after - before - 3.0 * drag / EFFECTIVE).abs() < 0.02, "{before} {after} {drag}");
 
-        // Between the two: less than Coulomb's.
+        // Between the two cases: below the Coulomb bound.
         let weak = Contact { shear_damping: 1.0, ..stiff };
         let ([push, drag], [before, _], _) = oblique(weak, 0.2, shear);
         println!("viscous at {shear}: drag/push {:.5}", drag / push);
@@ -391,7 +391,7 @@ fn friction_is_coulombs_where_surfaces_slide_and_less_where_they_roll() {
         assert!(after.abs() < 1e-3 * shear.abs(), "{after}");
         assert!(drag.abs() < 5.0 * push);
         let spins = RADII[0] * discs.all()[0].omega + RADII[1] * discs.all()[1].omega;
-        // Of the slip two thirds become spin.
+        // Two thirds of the slip become spin.
         assert!((spins / before - 2.0 / 3.0).abs() < 0.02, "{spins} {before}");
     }
 }
@@ -431,9 +431,9 @@ fn threads_and_instructions_give_the_same_bits() {
     }
 }
 
-// ---- what breaks ----------------------------------------------------------------------------------------
+// ---- failures -------------------------------------------------------------------------------------------
 
-/// Steps until it breaks, which it does in step `at`.
+/// Steps until the failure, which must occur in step `at`.
 fn breaks(start: &(Model, Particles), most: u64, kind: FailureKind, at: u64) -> Failure {
     let mut method = lattice(start);
     for _ in 0..most {
@@ -443,10 +443,10 @@ fn breaks(start: &(Model, Particles), most: u64, kind: FailureKind, at: u64) -> 
             return failure;
         }
     }
-    panic!("nothing broke in {most} steps");
+    panic!("no failure in {most} steps");
 }
 
-/// The ids of the discs that a failure names, in order.
+/// Sorted ids of the discs that a failure names.
 fn ids(failure: &Failure) -> Vec<u32> {
     let mut ids: Vec<u32> = failure.culprits.iter().map(|culprit| culprit.id).collect();
     ids.sort_unstable();
@@ -464,7 +464,7 @@ fn a_velocity_that_is_no_number_stops_the_first_step() {
 
 #[test]
 fn a_disc_that_leaves_a_closed_box_is_named_in_its_step() {
-    // 0.3025 to go at 0.005 a step.
+    // A distance of 0.3025 remains, at 0.005 a step.
     let discs = [
         grain(7, [2.0, 2.0], [0.0; 2], 0.5, 1.0),
         grain(31, [7.6975, 5.25], [1.0, 0.1], 0.5, 1.0),
@@ -476,7 +476,7 @@ fn a_disc_that_leaves_a_closed_box_is_named_in_its_step() {
     assert!((first.position[0] - 8.0025).abs() < 1e-9, "{first}");
 }
 
-/// Two discs that hardly feel each other, closing in by 0.04 a step.
+/// Two discs that hardly repel each other, approaching by 0.04 a step.
 fn ghosts(stop_penetration: f64) -> (Model, Particles) {
     let discs = [
         grain(5, [2.02, 3.25], [4.0, 0.0], 0.5, 1.0),
@@ -500,7 +500,7 @@ fn a_contact_beyond_the_limit_names_both_discs_in_its_step() {
 
 #[test]
 fn two_discs_in_one_cell_are_named_in_their_step() {
-    // Step 49 takes the second from 3.01 to 2.99, into the cell where the first is at 2.985.
+    // Step 49 takes the second disc from 3.01 to 2.99, into the cell of the first at 2.985.
     let mut start = ghosts(0.999);
     start.1.all_mut()[0].position[0] = 2.005;
     let failure = breaks(&start, 100, FailureKind::CONFLICT, 49);

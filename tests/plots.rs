@@ -1,4 +1,4 @@
-//! A run is looked at without another program.
+//! Plots of runs, without another program.
 
 use std::fs;
 use std::process::{Command, Output, Stdio};
@@ -8,7 +8,7 @@ fn stripmine(arguments: &[&str]) -> Output {
     command.args(arguments).stdin(Stdio::null()).output().unwrap()
 }
 
-/// The terminal has a line for each quantity that changes; what cannot be drawn is refused with what can.
+/// The terminal shows a line for each quantity that changes; an unknown column is refused with the known ones.
 #[test]
 fn runs_are_seen_in_the_terminal() {
     let folder = tempfile::tempdir().unwrap();
@@ -30,7 +30,7 @@ fn runs_are_seen_in_the_terminal() {
     assert_eq!(stripmine(&["plot", folder.path().join("none").to_str().unwrap()]).status.code(), Some(5));
 }
 
-/// What a run wrote may have been changed: whatever stands there, pictures or an exit code, never a panic.
+/// Files of a run may have been edited: any contents give pictures or an exit code, never a panic.
 #[test]
 fn a_run_that_was_changed_is_drawn_or_refused() {
     let folder = tempfile::tempdir().unwrap();
@@ -92,7 +92,7 @@ fn a_run_that_was_changed_is_drawn_or_refused() {
     );
 }
 
-/// The frames of a trajectory with another value of a property, for its first particle or for all.
+/// Frames of a trajectory with another value of a property, for the first particle or for all.
 fn frames_with(frames: &str, property: &str, value: &str, all: bool) -> String {
     let (mut place, mut is_done) = (0..0, false);
     let mut with_it = |line: &str| {
@@ -118,7 +118,7 @@ fn frames_with(frames: &str, property: &str, value: &str, all: bool) -> String {
     frames.lines().map(&mut with_it).collect()
 }
 
-/// Extreme but finite numbers of particles, in every colour: pictures, or an exit code, never a panic.
+/// Extreme but finite numbers of particles, with every colour: pictures, or an exit code, never a panic.
 #[test]
 fn extreme_particles_are_drawn_or_refused_in_every_colour() {
     let folder = tempfile::tempdir().unwrap();
@@ -148,7 +148,7 @@ fn extreme_particles_are_drawn_or_refused_in_every_colour() {
     }
 }
 
-/// The folder of a run by the name of its scene.
+/// A run's folder is found by the name of its scene.
 #[test]
 fn a_run_is_found_by_the_name_of_its_scene() {
     let folder = tempfile::tempdir().unwrap();
@@ -183,8 +183,8 @@ fn between<'t>(text: &'t str, from: &str, to: &str) -> &'t str {
     text.split_once(from).unwrap_or_else(|| panic!("no {from}")).1.split_once(to).unwrap().0
 }
 
-/// The ribbon of a mean lies where `summary.json` has the mean and its bar, and begins where the transient ends, up to which the
-/// picture is shaded.
+/// The ribbon of a mean is drawn at the mean and error bar of `summary.json` and begins at the end of the transient, which is shaded in the
+/// picture.
 #[test]
 fn a_chart_has_the_mean_of_the_summary_and_its_transient() {
     let folder = tempfile::tempdir().unwrap();
@@ -201,7 +201,7 @@ fn a_chart_has_the_mean_of_the_summary_and_its_transient() {
     let quantities = summary["averages"]["quantities"].as_array().unwrap();
     let known = quantities.iter().find(|it| it["quantity"] == "potential").unwrap();
     let [mean, bar, cut] = ["mean", "bar", "equilibrated_at"].map(|key| known[key].as_f64().unwrap());
-    assert!(cut > 0.0, "a run without a transient shows nothing here");
+    assert!(cut > 0.0, "the run must have a transient");
 
     let svg = fs::read_to_string(plots.join("potential.svg")).unwrap();
     // Scale, both ends in pixels, both in values.
@@ -226,17 +226,18 @@ fn a_chart_has_the_mean_of_the_summary_and_its_transient() {
     let [from, _, width, ..] = numbers(shaded.split_once("x=").unwrap().1)[..] else { panic!("{shaded}") };
     near(x(from), 0.0, 0.1 * second);
     near(x(from + width), cut, 0.2 * second);
-    // What has no mean says why.
+    // A quantity without a mean states the reason.
     let svg = fs::read_to_string(plots.join("msd.svg")).unwrap();
     assert!(!svg.contains("fill-opacity") && svg.contains("still changing"), "{svg}");
 }
 
-/// Bodies in any unit of length: as many dots, at the places of the same picture, and radii in the trajectory that other programs can draw.
+/// Bodies in any unit of length give the same number of dots at the same positions of the picture, and radii in the trajectory that other programs
+/// can draw.
 #[test]
 fn bodies_in_any_unit_of_length_are_drawn_alike() {
     let folder = tempfile::tempdir().unwrap();
     let drawn = |name: &str, unit: f64| {
-        // Four that turn on a cross: speeds and masses that keep their periods the same in every unit.
+        // Four bodies revolve on a cross: speeds and masses keep their periods the same in every unit.
         let [x, y, v] = [1.0, 1.5, 0.3].map(|number| number * unit);
         let mass = unit.powi(3);
         let bodies = format!(
@@ -264,7 +265,7 @@ fn bodies_in_any_unit_of_length_are_drawn_alike() {
             radius / unit,
         )
     };
-    // Dots are paths: a width, and behind each move a line of length 1.
+    // Dots are paths: a width, and after each move a line of length 1.
     let dots = |svg: &str| -> Vec<[f64; 3]> {
         let paths = svg.split("<path stroke=").skip(1).map(|path| path.split("/>").next().unwrap());
         let mut dots = vec![];
@@ -281,7 +282,7 @@ fn bodies_in_any_unit_of_length_are_drawn_alike() {
     };
     let (one, radius) = drawn("one", 1.0);
     let expected = dots(&one);
-    // Four bodies, each with an outline, and where they were: at the start, and where they are.
+    // Four bodies with outlines, and their traces: at the start and at the end.
     assert_eq!(expected.len(), 2 * 4 + 2 * 4, "{expected:?}");
     for (name, unit) in [("nanometres", 1e-9), ("au", 1.496e11)] {
         let (svg, of_a_body) = drawn(name, unit);

@@ -1,4 +1,4 @@
-//! The same bits on any number of ranks.
+//! Independence of the bits from the number of ranks.
 
 use rand::RngExt;
 use std::cell::RefCell;
@@ -14,14 +14,14 @@ use stripmine_physics::method::{Entry, METHODS, Prepared, Purpose, RANK_ENDED, S
 use stripmine_physics::ranks::{self, Crew, Parcel, RankError, Ranks, local};
 use stripmine_physics::run::{Ending, Existing, Job, RunError, run};
 
-/// A scene of several bands, and how many steps of it are made.
+/// A scene of several bands, with its number of steps.
 struct Scene {
     preset: &'static str,
     overrides: &'static [&'static str],
     steps: u64,
 }
 
-/// Hot discs, which go many rows: nearly all of them come to another rank.
+/// Hot discs, which cross many rows: nearly all of them move to another rank.
 const HOT: &[&str] = &[
     "particles.generate=mesh",
     "particles.spacing=1.3",
@@ -35,7 +35,7 @@ const HOT: &[&str] = &[
 
 const SCENES: &[Scene] = &[
     Scene { preset: "bench", overrides: HOT, steps: 5000 },
-    // Of several sizes.
+    // Several sizes.
     Scene {
         preset: "bench",
         overrides: &[
@@ -51,7 +51,7 @@ const SCENES: &[Scene] = &[
         ],
         steps: 800,
     },
-    // Moving walls, friction, an end that is closed.
+    // Moving walls, friction, a closed side.
     Scene {
         preset: "shaken-box",
         overrides: &[
@@ -73,7 +73,7 @@ const SCENES: &[Scene] = &[
         ],
         steps: 500,
     },
-    // So long a step that particles are thrown out, and the run goes on without them.
+    // Steps so long that particles are lost and the run continues without them.
     Scene {
         preset: "langevin-dense",
         overrides: &["domain.sides=[12.0, 140.0]", "integrator.dt=0.03", "run.most_lost=1000", "run.time=9"],
@@ -81,7 +81,7 @@ const SCENES: &[Scene] = &[
     },
 ];
 const SEARCHES: [&str; 3] = ["lattice", "sectors", "neighbor-list"];
-/// The long test has all numbers up to eight.
+/// The long test uses all numbers up to eight.
 const RANKS: [usize; 3] = [2, 3, 7];
 
 impl Scene {
@@ -92,7 +92,7 @@ impl Scene {
     }
 }
 
-/// What there is to be seen of a run now and then, and what stopped it.
+/// Samples of a run, and the failure that stopped it.
 #[derive(Debug, Default, PartialEq)]
 struct Seen {
     observed: Vec<Vec<u64>>,
@@ -104,17 +104,17 @@ struct Seen {
     failure: Option<(u64, String, Vec<u32>)>,
 }
 
-/// How often it is looked at a run: also where lists have just been made, or discs dealt out again.
+/// Number of samples of a run; some follow directly after lists are rebuilt or discs are redistributed.
 const LOOKS: u64 = 60;
-/// Every so-many-th look is at all that there is.
+/// Interval of the samples that contain the whole state.
 const WHOLE: u64 = 15;
 
-/// A run on some ranks; why it does not begin.
+/// Samples of a run on a number of ranks, or the reason why it cannot start.
 fn seen(prepared: &Prepared, ranks: usize, steps: u64) -> Result<Seen, String> {
     ranks::over(Crew::Threads(ranks), || seen_as_begun(prepared, steps))
 }
 
-/// As [`seen`], by the ranks of the current crew.
+/// Like [`seen`], on the ranks of the current crew.
 fn seen_as_begun(prepared: &Prepared, steps: u64) -> Result<Seen, String> {
     let mut simulation = prepared.start(Purpose::Run).map_err(|failure| failure.to_string())?;
     let mut seen = Seen::default();
@@ -141,7 +141,7 @@ fn seen_as_begun(prepared: &Prepared, steps: u64) -> Result<Seen, String> {
     Ok(seen)
 }
 
-/// The first that differs, in a sentence.
+/// First difference, in words.
 fn difference(alone: &Seen, together: &Seen) -> Option<String> {
     for (part, (a, b)) in alone.snapshots.iter().zip(&together.snapshots).enumerate() {
         let columns = a.columns.iter().zip(&b.columns);
@@ -166,7 +166,7 @@ fn bits_are_those_of_one_rank() {
             let more = [format!("search.by={search}"), format!("machine.precision={precision}")];
             let prepared = match scene.prepared(&more) {
                 Ok(prepared) => prepared,
-                // Sectors find no discs of several sizes, and only granular scenes have lattices and mixed precision.
+                // Sectors do not support several sizes, and only granular scenes have lattices and mixed precision.
                 Err(why) if why.contains("search.by") || why.contains("machine.precision") => continue,
                 Err(why) => panic!("{} {number} {search} {precision}: {why}", scene.preset),
             };
@@ -186,7 +186,7 @@ fn bits_are_those_of_one_rank() {
     assert!(compared >= 25, "{compared}");
 }
 
-/// At step 207 a disc is on the rim of its cell to the last bit of f32: all ranks must leave it in this cell.
+/// At step 207 a disc is on the rim of its cell to the last bit of f32: all ranks must place it in the same cell.
 #[test]
 fn a_disc_on_a_rim_is_in_one_cell() {
     let more = [
@@ -204,7 +204,7 @@ fn a_disc_on_a_rim_is_in_one_cell() {
     assert_eq!(difference(&alone, &seen(&prepared, 8, 220).unwrap()), None);
 }
 
-/// A state goes on with on another number of ranks.
+/// A state can be resumed on another number of ranks.
 #[test]
 fn a_run_goes_on_with_on_another_number_of_ranks() {
     for (scene, search) in SCENES.iter().zip(SEARCHES.into_iter().cycle()).take(5) {
@@ -229,7 +229,7 @@ fn a_run_goes_on_with_on_another_number_of_ranks() {
     }
 }
 
-/// Bodies are dealt out by rows of all pairs.
+/// Bodies are distributed by rows of all pairs.
 #[test]
 fn bodies_have_the_bits_of_one_rank() {
     for more in [
@@ -249,7 +249,7 @@ fn bodies_have_the_bits_of_one_rank() {
     assert!(seen(&kepler, 2, 1).unwrap_err().contains("only machine.engine = \"fast\""));
 }
 
-/// More ranks than bands are refused with the most that the scene takes.
+/// More ranks than bands are refused, with the largest number that the scene allows.
 #[test]
 fn too_many_ranks_are_refused() {
     let prepared = SCENES[0].prepared(&["search.by=sectors".to_owned()]).unwrap();
@@ -257,7 +257,7 @@ fn too_many_ranks_are_refused() {
     assert!(why.contains("12 ranks are more than the 9 bands") && why.contains("at most 9 ranks"), "{why}");
 }
 
-/// Random scenes of both methods, whatever comes of them.
+/// Random scenes of both methods, including those that fail.
 #[test]
 #[ignore = "long: cargo test --release --test ranks -- --ignored --nocapture"]
 fn random_scenes_have_the_bits_of_one_rank() {
@@ -300,15 +300,15 @@ fn random_scenes_have_the_bits_of_one_rank() {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Fault {
     None,
-    /// Ends when the first process has told it something so often.
+    /// Ends after a number of broadcasts from the first process.
     Ends(usize),
-    /// Then sends a message to the first process that lacks a byte.
+    /// Sends the first process a message that lacks a byte, after this number.
     CutsOff(usize),
-    /// Then reads a message of the first process without its last byte.
+    /// Reads a message of the first process without its last byte, after this number.
     Mishears(usize),
 }
 
-/// A thread of this test that takes part as a process does.
+/// A thread of this test that acts as a process.
 #[derive(Clone)]
 struct Process {
     ranks: Arc<Mutex<local::Local>>,
@@ -365,7 +365,7 @@ impl Ranks for Process {
     }
 }
 
-/// Does the work of the first of several processes, while the others take their part in a scene.
+/// Runs a closure as the first of several processes, while the others take part in a scene.
 fn as_processes<R>(prepared: &Prepared, faults: &[Fault], first: impl FnOnce() -> R) -> R {
     let count = faults.len();
     let begin = |ranks: local::Local, fault: Fault| {
@@ -378,7 +378,7 @@ fn as_processes<R>(prepared: &Prepared, faults: &[Fault], first: impl FnOnce() -
         for (ranks, fault) in all {
             scope.spawn(move || {
                 begin(ranks, fault);
-                // A process that is not the first gets no simulation, but the reason why it has no other part.
+                // Other processes get no simulation, but the reason why their part ended.
                 let _ = catch_unwind(AssertUnwindSafe(|| {
                     ranks::over(Crew::Processes(join), || prepared.start(Purpose::Run).map(drop))
                 }));
@@ -392,7 +392,7 @@ fn as_processes<R>(prepared: &Prepared, faults: &[Fault], first: impl FnOnce() -
     })
 }
 
-/// A run of a scene into a folder, as the first of several processes.
+/// Runs a scene into a folder, as the first of several processes.
 fn run_as_processes(
     (prepared, entry): (&Prepared, &'static Entry),
     faults: &[Fault],
@@ -402,14 +402,14 @@ fn run_as_processes(
     as_processes(prepared, faults, || run(job, folder, existing, &AtomicBool::new(false), |_, _| {}, |_| {}))
 }
 
-/// Scenes of every engine that ranks share, with the length of the run.
+/// Scenes of every engine that supports ranks, with the length of the run.
 const WRITTEN: [(&str, &[&str]); 4] = [
     ("bench", &["run.steps=40", "search.by=lattice"]),
     ("bench", &["run.steps=40", "search.by=neighbor-list"]),
     ("langevin-dense", &["domain.sides=[12.0, 280.0]", "integrator.dt=0.002", "run.time=0.08"]),
     ("plummer", &["particles.count=700", "run.steps=40"]),
 ];
-/// Rows, frames and checkpoints that they write.
+/// Settings of their rows, frames and checkpoints.
 const OUTPUT: [&str; 4] =
     ["run.thermo_every=4", "run.snapshot_every=8", "run.checkpoint_every=12", "output.trajectory=true"];
 
@@ -419,7 +419,7 @@ fn written((preset, more): (&'static str, &'static [&'static str])) -> (Prepared
     load(preset, &sets.collect::<Vec<_>>(), METHODS).unwrap()
 }
 
-/// The rows and frames of a folder, in lines.
+/// Lines of the rows and frames in a folder.
 fn lines(folder: &Path) -> [Vec<String>; 2] {
     ["thermo.csv", "trajectory.xyz"].map(|file| {
         let text = fs::read_to_string(folder.join(file)).unwrap();
@@ -427,8 +427,8 @@ fn lines(folder: &Path) -> [Vec<String>; 2] {
     })
 }
 
-/// A rank that ends, or whose message is damaged, ends the run at whatever message that is, with an error that names the rank. What was
-/// written before is the beginning of what a whole run writes, and the run is gone on with from its checkpoint.
+/// A rank that ends, or a damaged message of a rank, ends the run at any message, with an error that names the rank. Files written
+/// before are the beginning of a complete run's, and the run resumes from its checkpoint.
 #[test]
 fn a_lost_rank_ends_the_run_and_is_named() {
     for scene in WRITTEN {
@@ -470,7 +470,7 @@ fn a_lost_rank_ends_the_run_and_is_named() {
     }
 }
 
-/// A simulation that has lost a rank gives no numbers, and no state to go on with.
+/// A simulation that has lost a rank returns no numbers, and no state to resume from.
 #[test]
 fn nothing_is_seen_without_a_rank() {
     for scene in WRITTEN {
@@ -491,7 +491,7 @@ fn nothing_is_seen_without_a_rank() {
     }
 }
 
-/// Processes have the bits of one, also where they begin again without particles that were thrown out.
+/// Several processes give the bits of one, also when they restart without lost particles.
 #[test]
 fn processes_have_the_bits_of_one() {
     for scene in [&SCENES[1], &SCENES[5]] {

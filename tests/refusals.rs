@@ -1,5 +1,5 @@
-//! What a method cannot do right is refused or said: every way of finding contacts, in every precision, against what is known
-//! of the motion.
+//! Requests that a method cannot carry out correctly are refused or reported: every contact search, in every precision, compared with
+//! known motions.
 
 use std::sync::atomic::AtomicBool;
 use stripmine_physics::method::lattice_md::{Checked, Document};
@@ -8,7 +8,7 @@ use stripmine_physics::method::lattice_md::{assemble, assemble_following_energy,
 use stripmine_physics::method::{Culprit, Failure, FailureKind, METHODS, Purpose, Until, load};
 use stripmine_physics::observe::{Observation, Scenery};
 
-/// Every engine by the overrides that choose it.
+/// Every engine, with the overrides that choose it.
 const ENGINES: [(&str, &[&str]); 6] = [
     ("chained lattice", &["machine.execution=chained"]),
     ("eager lattice", &["machine.execution=eager"]),
@@ -40,7 +40,7 @@ fn observe(checked: &Checked, method: &Grains) -> Observation {
     Observation::of(method.steps(), method.time(), &method.particles(), &Scenery::of(&model(checked)))
 }
 
-/// The step of a failure, and the first particle that it names.
+/// Step of a failure, and the first particle that it names.
 fn step_and_first(failure: &Failure) -> (u64, Culprit) {
     (failure.at.expect("a moment").steps, failure.culprits[0])
 }
@@ -58,7 +58,7 @@ fn discs(sides: [f64; 2], positions: &str, velocities: &str, dt: f64) -> String 
     )
 }
 
-/// The box is the scene's, also where no whole number of cells fills it: every engine finds a disc beyond the same side, in
+/// The box is that of the scene, also if its sides are not multiples of a cell: every engine finds a disc beyond the same side, in
 /// the same step.
 #[test]
 fn a_thin_box_ends_where_the_scene_says() {
@@ -77,7 +77,7 @@ fn a_thin_box_ends_where_the_scene_says() {
     assert!(found.iter().all(|step| *step == found[0]), "{found:?}");
 }
 
-/// Two discs so soft that they come into one cell of the lattice, which lists do not mind.
+/// Two discs so soft that they enter one cell of the lattice; lists handle them.
 #[test]
 fn discs_in_one_cell_meet_in_lists() {
     let scene =
@@ -92,7 +92,7 @@ fn discs_in_one_cell_meet_in_lists() {
         (method.particles(), method.totals())
     };
     let (sectors, deep) = run(ENGINES[3].1);
-    assert!(deep.deepest > 0.3, "they must come deep: {deep:?}");
+    assert!(deep.deepest > 0.3, "they must overlap deeply: {deep:?}");
     for (name, engine) in [ENGINES[4], ENGINES[5]] {
         let (lists, also_deep) = run(engine);
         for (a, b) in sectors.all().iter().zip(lists.all()) {
@@ -109,7 +109,7 @@ fn discs_in_one_cell_meet_in_lists() {
     }
 }
 
-/// A warm gas whose discs come into one cell now and then keeps its energy in lists.
+/// A warm gas whose discs sometimes share a cell conserves its energy with lists.
 #[test]
 fn a_hot_gas_keeps_its_energy_in_lists() {
     let checked =
@@ -121,7 +121,7 @@ fn a_hot_gas_keeps_its_energy_in_lists() {
     assert!((after / before - 1.0).abs() < 1e-4, "{before} {after}");
 }
 
-/// Single precision moves a disc as far as it flies, however large the box and wherever it is.
+/// Single precision moves a disc by its full displacement, for any size of box and any position.
 #[test]
 fn single_precision_loses_no_motion() {
     for (length, x, speed) in [(10_000.0, 5000.0, 0.09), (10_000.0, 9000.0, 0.11), (1000.0, 700.0, 0.01)] {
@@ -149,7 +149,7 @@ fn single_precision_loses_no_motion() {
     }
 }
 
-/// Across every periodic side, in either direction, single precision goes where double precision goes.
+/// Single and double precision agree across every periodic side, in either direction.
 #[test]
 fn single_precision_crosses_sides_as_double_does() {
     for (velocity, (name, engine)) in
@@ -201,14 +201,14 @@ fn single_precision_from_the_origin_is_refused_where_it_loses_motion() {
     assert!(said.contains("cell-relative") && said.contains("up to 6e-5"), "{said}");
     let near = discs([5.0, 4.0], "[[1.0, 2.0]]", "[[1.0, 0.0]]", 0.005);
     assert!(checked(&near, &[&absolute]).warnings.iter().all(|warning| warning.key != "machine.precision"));
-    // Cells help no longer where discs hardly move: rounding takes up to 5e-8 of a place, these steps are 2.5e-8 and 1e-7 long.
+    // Cell-relative coordinates no longer help slow discs: positions are rounded by up to 5e-8, and these steps move 2.5e-8 and 1e-7.
     let slow = |speed: &str| discs([5.0, 4.0], "[[1.0, 2.0]]", &format!("[[{speed}, 0.0]]"), 0.005);
     assert!(refused(&slow("5e-6"), &["machine.precision=f32"]).contains("single precision"));
     let warned = checked(&slow("2e-5"), &[&["machine.precision=f32"]]).warnings;
     assert!(warned.iter().any(|warning| warning.key == "machine.precision"), "{warned:?}");
 }
 
-/// What contacts dissipate is counted where it happens: rare rows change nothing, and every engine counts the same.
+/// Dissipation is counted in every contact and step: rare rows change nothing, and all engines agree.
 #[test]
 fn dissipation_is_counted_and_the_balance_closes() {
     let run = |engine: &[&str], steps: u64| -> (Totals, f64) {
@@ -238,7 +238,7 @@ fn dissipation_is_counted_and_the_balance_closes() {
     assert_eq!(method.totals().dissipated, 0.0);
 }
 
-/// Grains that fall through a periodic side again and again, and a floor that shakes.
+/// Grains that fall through a periodic side repeatedly, and a shaken floor.
 #[test]
 fn work_of_gravity_and_walls_is_counted() {
     for (scene, steps, tolerance) in [("pipe-small", 4000, 0.02), ("shaken-box", 4000, 0.02)] {
@@ -272,7 +272,7 @@ fn work_of_gravity_and_walls_is_counted() {
     }
 }
 
-/// A corrector that takes a disc across a periodic side is no fall of a whole period: the balance of energy holds in that step.
+/// A correction that moves a disc across a periodic side does not count as a fall by a whole period: energy is balanced in that step.
 #[test]
 fn corrections_across_a_side_are_no_work() {
     const STEP: u64 = 12;
@@ -293,7 +293,7 @@ fn corrections_across_a_side_are_no_work() {
     };
     for (name, engine) in ENGINES {
         let (there, error) = seen(engine, 0.0);
-        // The prediction is on the other side of one of the two.
+        // The prediction is on the other side in one of the two cases.
         for beside in [-1e-8, 1e-8] {
             let (_, across) = seen(engine, there - 12.0 + beside);
             assert!((across - error).abs() < 1e-6, "{name}: {across}, and {error} elsewhere");
@@ -301,7 +301,7 @@ fn corrections_across_a_side_are_no_work() {
     }
 }
 
-/// A grain that falls through a periodic side counts at once, not when a search next asks where it is.
+/// A grain that falls through a periodic side is counted in that step, not when a search next wraps its position.
 #[test]
 fn the_balance_has_no_jump_where_a_grain_crosses_a_side() {
     let quantities = METHODS[0].quantities;
@@ -312,14 +312,14 @@ fn the_balance_has_no_jump_where_a_grain_crosses_a_side() {
         let mut simulation = prepared.start(Purpose::Run).unwrap();
         for step in 1..=1300 {
             simulation.advance(&[Until::Steps(step)], &AtomicBool::new(false)).unwrap();
-            // A period of the pipe is worth 3.2e-5 J to a grain.
+            // A fall by the length of the pipe is 3.2e-5 J for a grain.
             let error = simulation.observe()[balance];
             assert!(error.abs() < 1e-6, "{search}, step {step}: {error}");
         }
     }
 }
 
-/// A disc that leaves through an open side for a moment is noticed in that step, by lists too.
+/// A disc that leaves through an open side and returns is detected in the same step, also with lists.
 #[test]
 fn a_disc_that_returns_has_left() {
     let scene = discs([20.0, 20.0], "[[10.0, 19.9], [10.0, 5.0]]", "[[0.0, 1.0], [0.1, 0.0]]", 0.005)
@@ -342,7 +342,7 @@ fn a_disc_that_returns_has_left() {
     }
 }
 
-/// A disc that becomes so fast that it could pass through others is caught in that step, or counted.
+/// A disc fast enough to pass through others is detected in that step, or counted.
 #[test]
 fn steps_that_are_too_long_are_caught() {
     let scene = discs([12.0, 9.0], "[[1.0, 1.0], [7.0, 5.0]]", "[[0.1, 0.0], [0.0, 0.1]]", 0.01)
@@ -380,14 +380,14 @@ fn too_few_steps_a_contact_are_refused() {
     assert!(said.contains("steps: with fewer than 3"), "{said}");
 }
 
-/// Cells so wide that the search would miss contacts, for its single precision.
+/// Cells so wide that single precision makes the search miss contacts.
 #[test]
 fn cells_too_wide_for_the_search_are_refused() {
     let resolve = ["machine.engine=fast", "search.by=lattice", "search.on_conflict=resolve"];
     let scene = discs([1e5, 1e5], "[[4.0, 5.0], [7.0, 5.0]]", "[[1.0, 0.0], [0.0, 0.0]]", 1e-3);
     let said = refused(&scene, &[&resolve[..], &["search.cell_edge=1e4"]].concat());
     assert!(said.contains("single precision") && said.contains("at most 8"), "{said}");
-    // The widest that is allowed finds every contact.
+    // The largest allowed cells find every contact.
     let packed = ["particles.count=400", "particles.temperature=0.05", "machine.precision=f64"];
     let run = |engine: &[&str]| {
         let checked = checked("dense-gas", &[&packed, engine]);
@@ -400,7 +400,7 @@ fn cells_too_wide_for_the_search_are_refused() {
     assert!((wide.energy() / sectors.energy() - 1.0).abs() < 1e-9);
 }
 
-/// Positions that no number resolves, wherever they come from.
+/// Positions far from the origin that numbers cannot resolve.
 #[test]
 fn positions_too_coarse_for_their_distance_are_refused() {
     let scene = discs([12.0, 9.0], "[[1e12, 1.0], [1e12, 5.0]]", "[[0.0, 0.0], [0.0, 0.1]]", 0.01)
@@ -408,7 +408,7 @@ fn positions_too_coarse_for_their_distance_are_refused() {
     assert!(refused(&scene, &[]).contains("too coarse"));
 }
 
-/// Lists in boxes that are narrow, and skins for which a box has no room: found when a scene is checked.
+/// Lists in narrow boxes, and skins too large for a box, are refused when a scene is checked.
 #[test]
 fn boxes_without_room_for_lists_are_refused_when_checked() {
     let lists = ["search.by=neighbor-list", "machine.engine=fast"];
@@ -416,10 +416,10 @@ fn boxes_without_room_for_lists_are_refused_when_checked() {
     advance(&mut method, 50);
     let said = refused("dense-gas", &[&lists[..], &["particles.count=64", "search.skin=4.0"]].concat());
     assert!(said.contains("no room for three sectors"), "{said}");
-    // Where no skin is asked for, the box decides.
+    // Without a given skin, the box decides.
     let small = discs([4.0, 3.2], "[[1.0, 1.0]]", "[[0.1, 0.0]]", 0.005);
     advance(&mut assemble(&checked(&small, &[&lists])).unwrap(), 10);
-    // What passes the check starts: small boxes of every size, with every search.
+    // Scenes that pass the check start: small boxes of every size, with every search.
     for sides in (0..60).map(|n| [2.6 + 0.07 * f64::from(n), 2.6 + 0.11 * f64::from(n % 13)]) {
         let scene = discs(sides, "[[1.0, 1.0]]", "[[0.1, 0.0]]", 0.005);
         for (name, engine) in ENGINES {
@@ -431,7 +431,7 @@ fn boxes_without_room_for_lists_are_refused_when_checked() {
     }
 }
 
-/// What a start file says of wall discs and is not used is said.
+/// Unused velocities of wall discs in a start file are reported.
 #[test]
 fn velocities_of_wall_discs_are_not_dropped_in_silence() {
     let folder = tempfile::tempdir().unwrap();
@@ -457,7 +457,7 @@ fn velocities_of_wall_discs_are_not_dropped_in_silence() {
     assert_eq!(checked.particles.all()[1].velocity, [0.0; 3]);
 }
 
-/// Sums that no number holds stop a run: no `inf` stands in a table.
+/// Sums that overflow stop a run: no `inf` is written to a table.
 #[test]
 fn sums_that_overflow_are_failures() {
     let folder = tempfile::tempdir().unwrap();

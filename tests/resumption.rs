@@ -1,4 +1,4 @@
-//! Going on with a run: the same run to the bit, or a reason why not.
+//! Resumption of runs: the same run to the bit, or a refusal with its reason.
 
 use assert_cmd::cargo::CommandCargoExt;
 use serde_json::Value;
@@ -43,7 +43,7 @@ fn notes(folder: &Path) -> Vec<String> {
     summary["notes"].as_array().unwrap().iter().map(|note| note.as_str().unwrap().to_owned()).collect()
 }
 
-/// The files that the physics alone decides.
+/// Files that depend on the physics only.
 const BITS: [&str; 5] =
     ["thermo.csv", "trajectory.xyz", "trajectory.dcd", "trajectory.gsd", "dump.lammpstrj"];
 
@@ -51,7 +51,7 @@ fn bits(folder: &Path) -> [Vec<u8>; 5] {
     BITS.map(|name| fs::read(folder.join(name)).unwrap())
 }
 
-/// A folder, and the bits of a run of 100 steps, uninterrupted.
+/// A folder, and the files of an uninterrupted run of 100 steps.
 fn folder_and_bits() -> (tempfile::TempDir, PathBuf, [Vec<u8>; 5]) {
     let folder = tempfile::tempdir().unwrap();
     let whole = folder.path().join("whole");
@@ -60,7 +60,7 @@ fn folder_and_bits() -> (tempfile::TempDir, PathBuf, [Vec<u8>; 5]) {
     (folder, path, bits)
 }
 
-/// The last state is a frame though it is not due, once though it is, and not where the run went on.
+/// The final state is a frame even if none is due, only once if one is, and is removed when the run resumes.
 #[test]
 fn the_last_state_is_a_frame_once() {
     let folder = tempfile::tempdir().unwrap();
@@ -85,7 +85,7 @@ fn the_last_state_is_a_frame_once() {
         succeed(&run(&path, last, &snapshots));
         assert_eq!(steps(&path), expected);
         let before = bits(&path);
-        // Done already: nothing changes. To more steps: the last frame is cut off again where it is not due.
+        // Complete: nothing changes. With more steps: the last frame is removed again if none is due.
         succeed(&run(&path, last, &[&snapshots[..], &["--resume"]].concat()));
         assert!(bits(&path) == before);
         succeed(&run(&path, 90, &[&snapshots[..], &["--resume"]].concat()));
@@ -93,14 +93,14 @@ fn the_last_state_is_a_frame_once() {
         succeed(&run(&whole, 90, &[&snapshots[..], &["--overwrite"]].concat()));
         assert!(bits(&path) == bits(&whole));
     }
-    // Frames of other steps from now on: none is there twice.
+    // Frames at other steps from now on: none occurs twice.
     let path = folder.path().join("changed");
     succeed(&run(&path, 60, &[]));
     succeed(&run(&path, 60, &["--resume", "--set", "run.snapshot_every=0"]));
     assert_eq!(steps(&path), [0, 30, 60]);
 }
 
-/// Other masses in the start file than at the beginning are another run.
+/// A start file with other masses makes another run.
 #[test]
 fn the_contents_of_the_start_file_belong_to_a_run() {
     let folder = tempfile::tempdir().unwrap();
@@ -131,7 +131,7 @@ fn the_contents_of_the_start_file_belong_to_a_run() {
     succeed(&go(&longer));
 }
 
-/// Changes what a checkpoint says of its program.
+/// Changes a checkpoint's statement about its program.
 fn forge(folder: &Path, change: impl FnOnce(&mut Checkpoint)) {
     let path = folder.join("run.checkpoint");
     let mut checkpoint = Checkpoint::read(&path).unwrap();
@@ -139,7 +139,7 @@ fn forge(folder: &Path, change: impl FnOnce(&mut Checkpoint)) {
     checkpoint.write_atomically(&path).unwrap();
 }
 
-/// Another version that promises the same bits goes on and says so; one that does not is refused, unless asked to.
+/// A version that promises the same bits resumes with a note; any other is refused unless allowed.
 #[test]
 fn another_version_is_said_or_refused() {
     let (_folder, path, whole) = folder_and_bits();
@@ -156,12 +156,12 @@ fn another_version_is_said_or_refused() {
     refused(&run(&path, 100, &["--resume"]), 2, &["--other-version", "bits"]);
     assert!(bits(&path) == before);
     succeed(&run(&path, 100, &["--resume", "--other-version"]));
-    // What an earlier session said is still known.
+    // Notes of an earlier session are kept.
     assert!(notes(&path).len() == 2 && notes(&path)[1].contains("does not promise"), "{:?}", notes(&path));
     assert!(bits(&path) == whole);
 }
 
-/// More steps done than asked for.
+/// Fewer steps than are already done.
 #[test]
 fn fewer_steps_than_done_are_refused() {
     let folder = tempfile::tempdir().unwrap();
@@ -172,7 +172,7 @@ fn fewer_steps_than_done_are_refused() {
     assert!((bits(&path), summary(&path)) == before);
 }
 
-/// Rows and frames of before the checkpoint that are missing or changed: exit code 6, and nothing is touched.
+/// Rows and frames before the checkpoint that are missing or changed: exit code 6, and the files are not changed.
 #[test]
 fn damaged_files_are_refused() {
     let (_folder, path, whole) = folder_and_bits();
@@ -181,7 +181,7 @@ fn damaged_files_are_refused() {
         let file = path.join(name);
         let kept = fs::read(&file).unwrap();
         let mut flipped = kept.clone();
-        // Of the last frame or row: the middle of a short GSD file is index that nothing uses yet, and is cleared when it goes on.
+        // A byte of the last frame or row: the middle of a short GSD file is unused index, which is cleared on resumption.
         flipped[kept.len() - 20] ^= 1;
         let first_line = kept.iter().position(|&byte| byte == b'\n').unwrap() + 1;
         for (damaged, words) in
@@ -199,7 +199,7 @@ fn damaged_files_are_refused() {
     assert!(bits(&path) == whole);
 }
 
-/// What was written after the checkpoint may be torn anywhere, also within the first words of a dump's frame.
+/// Data after the checkpoint may be torn anywhere, also within the first words of a dump's frame.
 #[test]
 fn what_is_torn_after_the_checkpoint_is_mended() {
     let (_folder, path, whole) = folder_and_bits();
@@ -217,7 +217,7 @@ fn what_is_torn_after_the_checkpoint_is_mended() {
     assert!(bits(&path) == whole);
 }
 
-/// The older checkpoint serves where the newest is missing, and that is said, on the spot and at the end.
+/// The older checkpoint is used if the newest is missing; this is reported at once and at the end.
 #[test]
 fn a_fallback_to_the_older_checkpoint_is_said() {
     let (_folder, path, whole) = folder_and_bits();
@@ -230,7 +230,7 @@ fn a_fallback_to_the_older_checkpoint_is_said() {
     assert!(bits(&path) == whole);
 }
 
-/// `--resume` begins where there is nothing, and again where there is no checkpoint yet; another scene is refused there too.
+/// `--resume` starts a run in an empty folder, and starts again if there is no checkpoint yet; another scene is still refused.
 #[test]
 fn resuming_before_the_first_checkpoint_begins() {
     let (_folder, path, whole) = folder_and_bits();
@@ -250,7 +250,7 @@ fn resuming_before_the_first_checkpoint_begins() {
     assert!(bits(&path) == whole);
 }
 
-/// Files that something else removes while a run writes are missed at the next checkpoint, not at the end of all time.
+/// Files removed by others during a run are noticed at the next checkpoint, not only at the end.
 #[cfg(unix)]
 #[test]
 fn files_removed_meanwhile_are_missed() {
@@ -267,7 +267,7 @@ fn files_removed_meanwhile_are_missed() {
     }
 }
 
-/// What was chosen when a run began stays chosen, also where another choice would be made today.
+/// Choices made at the start of a run are kept, even if another choice would be made now.
 #[test]
 fn a_choice_stays() {
     let folder = tempfile::tempdir().unwrap();
@@ -278,7 +278,7 @@ fn a_choice_stays() {
     assert!(scene.contains("by = \"sectors\"") && scene.contains("engine = \"fast\""), "{scene}");
 }
 
-/// A start file of nine particles on a grid, and a scene of a bath beside it.
+/// Writes a start file of nine particles on a grid, and a scene of a bath that uses it.
 fn write_start(folder: &Path) {
     let row =
         |id: usize| format!("Si {} {} 0 {id} 0.5 0.25 0 0.5 1 0 0 0\n", 3 * (id % 3) + 1, 3 * (id / 3) + 1);
@@ -293,7 +293,7 @@ fn write_start(folder: &Path) {
     fs::write(folder.join("scene.toml"), scene).unwrap();
 }
 
-/// A folder that is moved with its start file goes on: the file is known by what it holds, wherever it is.
+/// A folder moved together with its start file resumes: the file is identified by its contents.
 #[test]
 fn a_run_is_moved_with_its_start_file() {
     let folder = tempfile::tempdir().unwrap();
@@ -313,7 +313,7 @@ fn a_run_is_moved_with_its_start_file() {
         write_start(at);
     }
     succeed(&stripmine(&scratch, &["run", "scene.toml"]));
-    // At one place: the run that was never moved.
+    // The reference is a run that was never moved.
     succeed(&stripmine(&scratch, &["run", "scene.toml", "--set", "run.steps=80", "--out", "whole.run"]));
     fs::rename(&scratch, &home).unwrap();
     succeed(&stripmine(&home, &goes_on));
@@ -321,7 +321,7 @@ fn a_run_is_moved_with_its_start_file() {
     assert!(table(&home.join("scene.run")) == table(&home.join("whole.run")));
     let written = fs::read_to_string(home.join("scene.run/scene.toml")).unwrap();
     assert!(written.contains("file = \"../start.xyz\"\n# discs of this file: SHA-256 "), "{written}");
-    // The scene that the run has written is one to start from, too.
+    // The scene written by the run can be started from, too.
     fs::remove_dir_all(home.join("whole.run")).unwrap();
     succeed(&stripmine(&home, &["run", "scene.run/scene.toml", "--out", "again.run"]));
     assert!(table(&home.join("again.run")) == table(&home.join("scene.run")));
@@ -329,7 +329,7 @@ fn a_run_is_moved_with_its_start_file() {
         &home,
         &["run", "scene.run/scene.toml", "--out", "again.run", "--resume", "--set", "run.steps=90"],
     ));
-    // Runs from copies of one file are joined; of another file they are not.
+    // Runs from copies of one file can be joined; runs from another file cannot.
     succeed(&stripmine(&copy, &["run", "scene.toml", "--set", "law.noise_seed=2", "--set", "run.steps=80"]));
     succeed(&stripmine(folder.path(), &["average", "home/scene.run", "copy/scene.run"]));
     let start = fs::read_to_string(copy.join("start.xyz")).unwrap().replace("0.25", "0.125");
@@ -345,14 +345,14 @@ fn a_run_is_moved_with_its_start_file() {
         2,
         &["have different scenes", "# discs of this file"],
     );
-    // Far from its run a start file keeps its place.
+    // The path of a start file far from its run is absolute.
     let far = folder.path().join("far/away/from/it");
     fs::create_dir_all(&far).unwrap();
     let out = far.join("scene.run");
     succeed(&stripmine(&home, &["run", "scene.toml", "--out", out.to_str().unwrap()]));
     let written = fs::read_to_string(out.join("scene.toml")).unwrap();
     assert!(written.contains("/home/start.xyz\"\n# discs"), "{written}");
-    // A beginning without a checkpoint is held against the contents, too.
+    // A start without a checkpoint is also checked against the contents.
     fs::remove_file(copy.join("scene.run/run.checkpoint")).unwrap();
     drop(fs::remove_file(copy.join("scene.run/run.checkpoint.previous")));
     fs::write(copy.join("start.xyz"), start.replace("0.125", "0.25")).unwrap();

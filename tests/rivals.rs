@@ -1,4 +1,4 @@
-//! The script of the rivals, as far as it runs without them.
+//! The scripts that measure rivals, as far as they run without them.
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -30,14 +30,14 @@ fn committed_results_are_refused_to_a_changed_checkout() {
     git(&["init", "--quiet"]);
     git(&["add", "src", "tests"]);
     git(&["commit", "--quiet", "--message", "all"]);
-    // There is no program to measure: what is not refused ends without a result and without an error.
+    // No program is measured: a call that is not refused ends without a result and without an error.
     let asked = |out: &str| {
         let call = ["-B", "tests/rivals/lammps.py", "--stripmine", "none", "--out", out];
         run("python3", checkout.path(), &call)
     };
     let code = |done: &Output| done.status.code();
     assert_eq!(code(&asked("src/study/rivals/measured")), Some(0));
-    // Results that are being made are no change of what they depend on.
+    // Results are not sources: writing them does not count as a change.
     std::fs::write(at("src/study/rivals/measured/contests.json"), "1").unwrap();
     assert_eq!(code(&asked("src/study/rivals/measured")), Some(0));
     std::fs::write(at("src/lib.rs"), "// changed").unwrap();

@@ -1,4 +1,4 @@
-//! Runs as a user meets them: folders, resumption, interruption, failures.
+//! Runs as a user sees them: folders, resumption, interruption, failures.
 
 use assert_cmd::cargo::CommandCargoExt;
 use serde_json::Value;
@@ -37,10 +37,10 @@ fn succeed(output: Output) {
     assert!(output.status.success(), "{}", said(&output));
 }
 
-/// The files that the physics alone decides.
+/// Files that depend on the physics only.
 const BITS: [&str; 3] = ["thermo.csv", "trajectory.xyz", "dump.lammpstrj"];
 
-/// The same bytes for any number of threads and every way of execution.
+/// A run has the same bytes for any number of threads and every execution.
 #[test]
 fn a_run_is_the_same_for_threads_and_executions() {
     let folder = tempfile::tempdir().unwrap();
@@ -66,7 +66,7 @@ fn a_run_is_the_same_for_threads_and_executions() {
     }
 }
 
-/// The fast engine: the same bytes for any number of threads and any instructions, and after going on.
+/// A run with the fast engine has the same bytes for any number of threads, any instruction set, and after a resumption.
 #[test]
 fn a_fast_run_is_the_same_for_threads_and_instructions_and_goes_on() {
     let folder = tempfile::tempdir().unwrap();
@@ -94,7 +94,7 @@ fn a_fast_run_is_the_same_for_threads_and_instructions_and_goes_on() {
     }
 }
 
-/// Interrupted or terminated, a run writes a checkpoint, exits with 130, and goes on to the same bits.
+/// An interrupted or terminated run writes a checkpoint, exits with 130, and resumes with the same bits.
 #[cfg(unix)]
 #[test]
 fn an_interrupted_run_goes_on() {
@@ -109,7 +109,7 @@ fn an_interrupted_run_goes_on() {
         arguments.extend(steps);
         arguments.extend(existing);
         let mut child = stripmine(&arguments).stderr(std::process::Stdio::piped()).spawn().unwrap();
-        // The signal comes at any moment after the run has begun; whether it hits the middle or not, the bits agree.
+        // The signal comes at a random moment after the start; whether or not it stops the run, the bits agree.
         while !stopped.join("thermo.csv").exists() {
             std::thread::yield_now();
         }
@@ -125,7 +125,7 @@ fn an_interrupted_run_goes_on() {
     }
 }
 
-/// A folder with a run is not touched unless asked; another scene is not gone on with.
+/// A folder with a run is not changed unless asked; another scene is not resumed.
 #[test]
 fn a_folder_with_a_run_is_respected() {
     let folder = tempfile::tempdir().unwrap();
@@ -135,7 +135,7 @@ fn a_folder_with_a_run_is_respected() {
     let before = read(&run, "thermo.csv");
     let again = pipe(&run, &steps);
     assert_eq!((again.status.code(), said(&again).contains("--resume")), (Some(2), true), "{}", said(&again));
-    // Before anything is computed, a forecast for example.
+    // Refused before anything is computed, such as the forecast.
     let loud = output(&[&["run", "pipe-small", "--out", run.to_str().unwrap()][..], &steps].concat());
     assert!(loud.status.code() == Some(2) && !said(&loud).contains("expected"), "{}", said(&loud));
     let other = pipe(&run, &[&steps[..], &["--resume", "--set", "law.friction=0.3"]].concat());
@@ -145,7 +145,7 @@ fn a_folder_with_a_run_is_respected() {
     assert!(read(&run, "thermo.csv") == before);
 }
 
-/// A damaged checkpoint is refused with exit code 6; the older one is kept and serves.
+/// A damaged checkpoint is refused with exit code 6; the older one is kept and can be used.
 #[test]
 fn a_corrupt_checkpoint_is_refused_and_the_older_one_kept() {
     let folder = tempfile::tempdir().unwrap();
@@ -167,7 +167,7 @@ fn a_corrupt_checkpoint_is_refused_and_the_older_one_kept() {
     succeed(pipe(&run, &[&steps[..], &["--resume"]].concat()));
 }
 
-/// The naive scale of the paper's numbers fails as the specification says: it is caught and named.
+/// The naive scale of the paper's numbers fails as the specification predicts, and the failure is named.
 #[test]
 fn pipe_as_printed_is_caught_and_named() {
     let folder = tempfile::tempdir().unwrap();
@@ -187,7 +187,7 @@ fn pipe_as_printed_is_caught_and_named() {
     assert!(frames.contains(&format!("step={step}")), "the state of the failing step is written");
 }
 
-/// What outside programs read from `bench --json`.
+/// Keys of `bench --json` that outside programs read.
 #[test]
 fn bench_prints_what_it_promises() {
     let programs = &["predict", "index", "forces", "correct"][..];
@@ -252,7 +252,7 @@ fn bench_prints_what_it_promises() {
     }
 }
 
-/// No method writes checkpoints more often than the wall clock asks for, unless its scene does.
+/// No method writes checkpoints more often than the default wall-clock interval, unless its scene asks for it.
 #[test]
 fn checkpoints_are_written_by_the_wall_clock() {
     for preset in METHODS.iter().flat_map(|method| method.vocabulary.presets) {
@@ -268,7 +268,7 @@ fn checkpoints_are_written_by_the_wall_clock() {
     }
 }
 
-/// The seeds of a run are of one scene, which is read once with its start file: both may go while they run.
+/// All seeds of a run use one scene, read once with its start file: both files may be removed while they run.
 #[test]
 fn seeds_are_of_the_scene_of_the_beginning() {
     let folder = tempfile::tempdir().unwrap();
@@ -294,7 +294,7 @@ fn seeds_are_of_the_scene_of_the_beginning() {
     write();
     succeed(inside(&[&seeds[..], &["whole"]].concat()).output().unwrap());
     let mut running = inside(&[&seeds[..], &["changed"]].concat()).spawn().unwrap();
-    // One seed after the other: the first has begun.
+    // One seed follows the other: the first has started.
     while !folder.join("changed/seed-1").exists() {
         assert!(running.try_wait().unwrap().is_none());
         std::thread::yield_now();

@@ -1,4 +1,4 @@
-//! Scenes as a user meets them: presets, round trips, overrides, and every bad file with the error it carries.
+//! Scenes as a user sees them: presets, round trips, overrides, and every bad file with its expected error.
 
 use assert_cmd::Command;
 use std::collections::BTreeSet;
@@ -21,7 +21,7 @@ fn bad_scenes() -> Vec<PathBuf> {
     files
 }
 
-/// Every bad scene is refused with exit code 3, and says where and why as its leading comments demand: `# expect:
+/// Every bad scene is refused with exit code 3, and its error has the location and words of the leading comments: `# expect:
 /// line L column C`, `# expect: words`; `# set: section.key=value` is an override to check it with.
 #[test]
 fn bad_scenes_are_refused_as_they_say() {
@@ -48,7 +48,7 @@ fn bad_scenes_are_refused_as_they_say() {
                 _ => words.clone(),
             };
             if !said.contains(&words) {
-                complaints.push(format!("does not say {words:?}"));
+                complaints.push(format!("lacks {words:?}"));
             }
         }
         let named = said.contains(path) || !overrides.is_empty();
@@ -62,7 +62,7 @@ fn bad_scenes_are_refused_as_they_say() {
     assert!(wrong.is_empty(), "{} of {}:\n\n{}", wrong.len(), files.len(), wrong.join("\n\n"));
 }
 
-/// Presets stand up to the check; the one that is there to fail is warned about, for its softness.
+/// Presets pass the check; the one that is meant to fail has a warning about its softness.
 #[test]
 fn presets_pass_the_check() {
     for preset in ENTRY.vocabulary.presets {
@@ -85,7 +85,7 @@ fn presets_pass_the_check() {
     }
 }
 
-/// The pipe is the one of the table "A complete set that was tried".
+/// The pipe has the numbers of the table "A complete set that was tried".
 #[test]
 fn the_pipe_is_built_as_tried() {
     for (name, grains, walls) in [("pipe", 596, 600), ("pipe-small", 238, 240)] {
@@ -105,7 +105,7 @@ fn the_pipe_is_built_as_tried() {
         for disc in discs.grains() {
             assert!((disc.mass - 1e-6 * (disc.radius / 0.01).powi(2)).abs() < 1e-18);
         }
-        // Started evenly: counts in bins of 20 radii vary far less than Poisson's.
+        // An even start: counts in bins of 20 radii vary far less than Poisson's.
         let bins = (checked.domain.length(0) / 0.2) as usize;
         let mut counts = vec![0.0; bins];
         discs.grains().iter().for_each(|disc| counts[(disc.position[0] / 0.2) as usize % bins] += 1.0);
@@ -115,7 +115,7 @@ fn the_pipe_is_built_as_tried() {
     }
 }
 
-/// The source's own cells, d = R_max, are 736 × 8.
+/// BP93's cells, d = R_max, are 736 × 8.
 #[test]
 fn the_cells_of_the_source_can_be_asked_for() {
     let scene = Scene::load("pipe").unwrap().with_overrides(&["search.cell_edge=0.011"]).unwrap();
@@ -125,20 +125,20 @@ fn the_cells_of_the_source_can_be_asked_for() {
     assert!(fewest.shape.cells() < geometry.shape.cells());
 }
 
-/// Keys that no preset and no scene of the gallery gives, each with why it is there.
+/// Keys that no preset and no scene of the gallery sets, each with its purpose.
 const NOT_SHOWN: [(&str, &str); 35] = [
-    ("integrator.damping", "the friction of the source's integrator, which the item of energies varies"),
-    ("integrator.on_long_step", "a run goes on through rare discs that are too fast; thermo.csv counts them"),
-    ("law.contact_arm", "contacts as LAMMPS has them, for comparison"),
+    ("integrator.damping", "the friction of the paper's integrator, which the item of energies varies"),
+    ("integrator.on_long_step", "a run continues with rare too-fast discs, which thermo.csv counts"),
+    ("law.contact_arm", "contacts as in LAMMPS, for comparison"),
     ("law.gravitational_constant", "units in which G is not 1"),
     ("law.inertia", "spheres that move in a plane; studies of stability vary it"),
     ("law.max_penetration", "soft contacts; studies of stability vary it"),
     ("law.noise_seed", "independent replicas of one start"),
     ("law.screening", "charges in a solvent, which repel over a screening length"),
-    ("law.stop_penetration", "soft contacts, beside max_penetration"),
+    ("law.stop_penetration", "soft contacts, together with max_penetration"),
     ("law.wall_restitution", "walls of another material"),
     ("machine.arithmetic", "fast inverse roots, which the item of rates compares"),
-    ("machine.coordinates", "positions as the source has them; the study of precision compares them"),
+    ("machine.coordinates", "positions as in the paper; the study of precision compares them"),
     ("machine.instruction_set", "the same bits on other processors"),
     ("output.collisions", "free flights and impulses, which the item of structure reads"),
     ("output.dcd", "for programs that read DCD"),
@@ -147,24 +147,24 @@ const NOT_SHOWN: [(&str, &str); 35] = [
     ("output.lammps_dump", "for programs that read dumps"),
     ("output.losses", "no table where many particles may be lost"),
     ("output.structure_share", "all rows and snapshots of a small system"),
-    ("output.trajectory", "no text where another format is written"),
+    ("output.trajectory", "no text if another format is written"),
     ("particles.expansion", "a sphere or shell that expands"),
     ("particles.file", "a start from another program, or from a frame"),
     ("particles.mass_ratio", "two bodies of different masses"),
     ("particles.second_radius", "binary mixtures, which do not crystallise"),
     ("particles.second_share", "the composition of binary mixtures"),
-    ("run.most_lost", "losses as in the source, which the item of losses counts"),
+    ("run.most_lost", "losses as in the paper, which the item of losses counts"),
     ("run.until", "a run that ends at a target error"),
-    ("search.cell_edge", "cells of the source, which studies of searches compare"),
-    ("search.mask", "masks of the sources, which the item of masks compares"),
+    ("search.cell_edge", "cells of the paper, which studies of searches compare"),
+    ("search.mask", "masks of the papers, which the item of masks compares"),
     ("search.on_conflict", "cells that hold several discs"),
-    ("search.rebuild", "lists by all pairs, as the source makes them"),
-    ("search.sectors", "sectors of the source's size"),
+    ("search.rebuild", "lists by all pairs, as in the paper"),
+    ("search.sectors", "sectors of the paper's size"),
     ("search.skin", "lists that are tuned by hand"),
-    ("search.sort", "sorting at every step, as the source does"),
+    ("search.sort", "sorting at every step, as in the paper"),
 ];
 
-/// A key that no scene of ours shows has a reason to be there, and no other key is listed.
+/// A key that no scene of ours sets has a stated purpose, and no other key is listed.
 #[test]
 fn every_key_is_shown_or_has_a_reason() {
     let gallery = std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/gallery")).unwrap();
@@ -187,7 +187,7 @@ fn every_key_is_shown_or_has_a_reason() {
     assert!(NOT_SHOWN.iter().all(|(_, why)| why.split(' ').count() > 3));
 }
 
-/// A scene that `to_toml` writes is read as an equal one, for every preset and for scenes that use every other key.
+/// A scene written by `to_toml` is read back as an equal one, for every preset and for scenes that use every other key.
 #[test]
 fn scenes_survive_being_written() {
     let two = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes/bad/two.xyz");
@@ -233,7 +233,7 @@ fn scenes_survive_being_written() {
     }
 }
 
-/// An override replaces a value, drops what excludes it and what another choice leaves without meaning.
+/// An override replaces a value, and drops values that it excludes or makes meaningless.
 #[test]
 fn overrides_take_the_place_of_rivals() {
     let load = |name: &str, overrides: &[&str]| {
@@ -244,22 +244,22 @@ fn overrides_take_the_place_of_rivals() {
     assert_eq!((scene.run.steps, scene.law.contact.friction), (50, 0.0));
     assert!(matches!(scene.start, Start::Pipe { amount: stripmine_physics::scene::Amount::Count(7), .. }));
     assert_eq!(load("pipe", &["run.time=0.01"]).unwrap().run.steps, 100);
-    // The later of two rivals is not guessed.
+    // Two overrides that exclude each other are an error.
     assert!(load("pipe", &["run.time=0.01", "run.steps=3"]).is_err());
-    // A hexagonal start needs both, so that they are no rivals there.
+    // A hexagonal start needs both, so there they do not exclude each other.
     let bench = load("bench", &["particles.count=500", "integrator.values=6"]).unwrap();
     let Start::Hexagonal { count, packing_fraction, .. } = bench.start else { panic!() };
     assert_eq!((count, packing_fraction, bench.integrator.scheme), (500, 0.6, Scheme::Gear(GearValues::Six)));
     // Numbers, words with and without quotes.
     let scene = load("pipe", &["machine.precision=f32", "machine.coordinates=\"absolute\""]).unwrap();
     assert_eq!(scene.machine.precision, stripmine_physics::scene::Precision::F32);
-    // An override mends a mistake of the file.
+    // An override corrects a mistake of the file.
     let preset = ENTRY.vocabulary.presets.iter().find(|preset| preset.name == "two-discs").unwrap();
     let broken = preset.text.replace("dt = 1e-3", "dt = -1");
     assert!(Scene::parse("broken", &broken).is_err());
 }
 
-/// A start file is read beside its scene.
+/// The path of a start file is relative to its scene.
 #[test]
 fn start_files_are_read_beside_the_scene() {
     let folder = tempfile::tempdir().unwrap();
@@ -274,7 +274,7 @@ fn start_files_are_read_beside_the_scene() {
     assert!(checked.alike);
 }
 
-/// Ids from 0 are raised by one, and a warning says so; of ids from 1 nothing is said.
+/// Ids from 0 are raised by one, with a warning; ids from 1 cause none.
 #[test]
 fn ids_that_are_raised_are_said() {
     let folder = tempfile::tempdir().unwrap();
@@ -308,7 +308,7 @@ fn ids_that_are_raised_are_said() {
     }
 }
 
-/// Whatever is cut off or flipped in a scene, the answer is a scene or errors, never a panic.
+/// A truncated or altered scene gives a scene or errors, never a panic.
 #[test]
 fn damaged_scenes_never_panic() {
     for preset in ENTRY.vocabulary.presets {
@@ -338,7 +338,7 @@ fn damaged_scenes_never_panic() {
     assert!(Scene::parse("deep", &deep).is_err());
 }
 
-/// Numbers at the ends of what can be written: a scene or errors, in finite time and memory.
+/// Numbers at the ends of the number format give a scene or errors, in finite time and memory.
 #[test]
 fn extreme_numbers_never_panic() {
     for (preset, few) in [
@@ -369,7 +369,7 @@ fn extreme_numbers_never_panic() {
     }
 }
 
-/// Scenes that are nowhere, are no text, or are not allowed.
+/// Scenes that do not exist, are not text, or are not readable.
 #[test]
 fn scenes_that_cannot_be_read_are_named() {
     let folder = tempfile::tempdir().unwrap();
@@ -391,7 +391,7 @@ fn scenes_that_cannot_be_read_are_named() {
     assert_eq!(errors.0[0].reason, Reason::Unreadable);
 }
 
-/// The verbs print what they are asked for, as text and as data.
+/// The verbs of scenes print text and data.
 #[test]
 fn the_verbs_print_presets_keys_and_checks() {
     let json = |arguments: &[&str]| -> serde_json::Value {
@@ -424,7 +424,7 @@ fn the_verbs_print_presets_keys_and_checks() {
     assert!(warned.status.success());
     assert!(String::from_utf8_lossy(&warned.stderr).contains("presses it 0.1"));
     assert!(stripmine(&["scene", "check", "pipe-as-printed", "--quiet"]).stderr.is_empty());
-    // 1.36 times the limit of a dense packing: a single contact at the typical speed bears √3 times it.
+    // 1.36 times the limit of a dense packing, but below that of a single contact at the typical speed, which is √3 times larger.
     let borne = stripmine(&["scene", "check", "pipe-small", "--set", "integrator.dt=2e-4"]);
     assert!(borne.status.success() && !String::from_utf8_lossy(&borne.stderr).contains("warning"));
     let refused = stripmine(&["scene", "check", "pipe", "--set", "law.friction=-1", "--json"]);
@@ -446,7 +446,7 @@ fn the_verbs_print_presets_keys_and_checks() {
     }
 }
 
-/// What is not given follows from what is: the cut of radii from their spread, wall discs from the grains.
+/// Defaults follow from given values: the cut of radii from their spread, wall discs from the grains.
 #[test]
 fn values_that_are_not_given_follow_from_others() {
     let scene = |spread: f64| {
@@ -469,7 +469,7 @@ fn values_that_are_not_given_follow_from_others() {
     assert!((list.wall_radius - 0.45).abs() < 1e-15 && list.radii == [0.5] && list.velocities == [[0.0; 2]]);
 }
 
-/// What a run writes as its scene, and a plan, is a scene: of every preset of every method.
+/// Scenes that a run writes are valid scenes, for every preset of every method.
 #[test]
 fn resolved_scenes_are_scenes() {
     let folder = tempfile::tempdir().unwrap();
@@ -484,7 +484,7 @@ fn resolved_scenes_are_scenes() {
     }
 }
 
-/// A grain that flies, or falls, out of an open side before the end of the run is warned of. By hand: from x = 3 at speed 1 to 12, and from y = 4
+/// A warning is given if a grain flies, or falls, out of an open side before the end of the run. By hand: from x = 3 at speed 1 to 12, and from y = 4
 /// by gt²/2 to 0.
 #[test]
 fn open_sides_that_hold_nothing_back_are_warned_of() {
@@ -512,7 +512,7 @@ fn open_sides_that_hold_nothing_back_are_warned_of() {
     }
 }
 
-/// Sentences keep their digits in any unit of length: discs of 1.25 nm in a box of 40 nm × 30 nm, in metres.
+/// Facts keep their precision in any unit of length: discs of 1.25 nm in a box of 40 nm × 30 nm, in metres.
 #[test]
 fn facts_keep_their_digits_in_any_unit_of_length() {
     let small = [

@@ -1,4 +1,4 @@
-//! Interrupted and terminated, every verb ends with exit code 130 and leaves nothing half written.
+//! Signals: every interrupted or terminated verb ends with exit code 130 and leaves no partial files.
 #![cfg(unix)]
 
 use assert_cmd::cargo::CommandCargoExt;
@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
 use std::time::Duration;
 
-/// A command that has begun, its handlers installed.
+/// Starts a command and waits until its signal handlers are installed.
 fn begun(folder: &Path, arguments: &[&str]) -> Child {
     let mut command = Command::cargo_bin("stripmine").unwrap();
     command.current_dir(folder).args(arguments).stdout(Stdio::piped()).stderr(Stdio::piped());
@@ -16,7 +16,7 @@ fn begun(folder: &Path, arguments: &[&str]) -> Child {
     child
 }
 
-/// Where the system does not say which signals are caught, some time does.
+/// Waits a fixed time on systems that do not report the caught signals.
 fn wait_for_handlers(process: u32) {
     const INTERRUPT: u64 = 1 << 1;
     let status = Path::new("/proc").join(process.to_string()).join("status");
@@ -41,7 +41,7 @@ fn said(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// A run that is still placing, checking or starting has nothing to lose, and ends before it has written anything.
+/// A run that is interrupted while it places, checks or starts ends before it has written anything.
 #[test]
 fn a_run_that_only_starts_ends_without_a_trace() {
     let folder = tempfile::tempdir().unwrap();
@@ -57,7 +57,7 @@ fn a_run_that_only_starts_ends_without_a_trace() {
     }
 }
 
-/// Verbs that only measure end as they are, say so, and print nothing that looks like a result.
+/// Interrupted measurements end with a message, and print nothing that looks like a result.
 #[test]
 fn measurements_end_without_a_result() {
     let folder = tempfile::tempdir().unwrap();
@@ -89,7 +89,7 @@ fn measurements_end_without_a_result() {
     }
 }
 
-/// Interrupted at any moment, `reproduce` leaves whole items, those that were finished, and pages over them.
+/// Interrupted at any moment, `reproduce` leaves the finished items whole, and pages that show them.
 #[test]
 fn finished_items_are_kept_whole() {
     let folder = tempfile::tempdir().unwrap();
@@ -120,7 +120,7 @@ fn finished_items_are_kept_whole() {
     }
 }
 
-/// A run that was started to outlive its terminal does.
+/// A run started with an ignored hangup survives it.
 #[test]
 fn an_ignored_hangup_stays_ignored() {
     let folder = tempfile::tempdir().unwrap();

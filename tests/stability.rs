@@ -1,4 +1,4 @@
-//! Where methods work, what a run is warned of, and what is said before it: as a user meets it.
+//! Maps of stability, warnings of runs, and forecasts before them, as a user sees them.
 
 use serde_json::Value;
 use std::fs;
@@ -22,7 +22,7 @@ fn succeeds(output: &Output) -> Value {
 fn map(scene: &str, out: &Path, more: &[&str]) -> Output {
     let begin = ["chart", "stability", scene, "--json", "--out", out.to_str().unwrap()];
     let size = if more.contains(&"--size") { &[][..] } else { &["--size", "6"] };
-    // With time for the whole scene: the extent of a map must not depend on how fast the machine is at this moment.
+    // A budget for the whole scene: the extent of a map must not depend on the momentary speed of the machine.
     let rest = ["--seeds", "2", "--tolerance", "0.2", "--budget", "3000"];
     stripmine(&[&begin[..], size, &rest, more].concat())
 }
@@ -31,7 +31,7 @@ fn classes(data: &Value) -> Vec<&str> {
     data["cells"].as_array().unwrap().iter().map(|cell| cell["class"].as_str().unwrap()).collect()
 }
 
-/// Two discs that fly side by side and never meet.
+/// A scene of two discs that fly side by side and never collide.
 fn apart(folder: &Path) -> PathBuf {
     let text = r#"format = 2
 units = "reduced"
@@ -72,8 +72,9 @@ fn a_scene_that_is_stable_everywhere_shows_no_failure() {
     }
 }
 
-/// Within a factor: contacts are no springs, and accuracy may end sooner. Without friction, whose drag needs more than a single
-/// contact to grow errors.
+/// The edge of stability agrees with theory within a factor: contacts are not springs, and accuracy may end sooner. Without friction, whose drag
+/// needs
+/// more than a single contact to amplify errors.
 #[test]
 fn what_works_ends_where_theory_says() {
     let folder = tempfile::tempdir().unwrap();
@@ -126,7 +127,7 @@ fn maps_that_cannot_be_are_refused_with_what_may_be() {
     );
 }
 
-/// Without `--over` the first is varied that the scene has a value of; a method without steps is refused, and the help says so.
+/// Without `--over` the first parameter is varied for which the scene has a value; a method without steps is refused, as the help states.
 #[test]
 fn every_method_with_steps_has_a_map_without_an_axis() {
     let folder = tempfile::tempdir().unwrap();
@@ -147,7 +148,7 @@ fn every_method_with_steps_has_a_map_without_an_axis() {
     assert!(String::from_utf8_lossy(&help.stdout).contains("Scenes of hard-disks have no time step"));
 }
 
-/// Discs so soft that they pass through each other, whatever the step.
+/// Discs so soft that they pass through each other at any step.
 #[test]
 fn a_scene_that_fails_at_every_step_says_what_was_tried() {
     let folder = tempfile::tempdir().unwrap();
@@ -195,7 +196,7 @@ fn a_run_says_what_is_wrong_with_it_and_nothing_of_a_good_one() {
     assert_eq!(checks(&of(still, &sets)), [] as [&str; 0]);
 }
 
-/// What was seen is in the checkpoint: a run that is resumed says what one in a piece says.
+/// Checks are part of the checkpoint: a resumed run reports the same as a run in one piece.
 #[test]
 fn a_resumed_run_says_the_same() {
     let folder = tempfile::tempdir().unwrap();
@@ -234,7 +235,7 @@ fn what_is_to_be_expected_is_said_before_a_run() {
     let limits = facts["step_limits"].as_array().unwrap();
     let share =
         |name: &str| limits.iter().find(|limit| limit["name"] == name).unwrap()["share"].as_f64().unwrap();
-    // Six values are unstable in the dense plug of this pipe, four are not.
+    // Six values are unstable in the dense plug of this pipe, four are stable.
     assert!(
         share("dense packing") < 1.0 && share("dense packing") > 0.3 && share("mask") < 0.1,
         "{limits:?}"

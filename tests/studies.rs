@@ -1,4 +1,4 @@
-//! Studies that any method joins: speed against accuracy, as a user meets it.
+//! Studies for all methods: speed against accuracy, as a user sees them.
 
 use serde_json::Value;
 use std::fs;
@@ -88,7 +88,7 @@ fn scenes_without_an_answer_are_refused_with_what_was_tried() {
     refused(&["--machine", "cray-9"], 2, &["cray-9", "cray-1"]);
 }
 
-/// Trajectories of shaken grains part at once: the command names a chart that answers.
+/// Trajectories of shaken grains diverge at once: the command names a chart that can be made.
 #[test]
 fn a_scene_without_comparable_positions_is_refused_with_what_to_ask() {
     let folder = tempfile::tempdir().unwrap();
@@ -99,7 +99,7 @@ fn a_scene_without_comparable_positions_is_refused_with_what_to_ask() {
     assert!(said.contains("stripmine chart accuracy shaken-box --of temperature"), "{said}");
 }
 
-/// A case as the program sends it to a process of its own that measures.
+/// A case in the format that the program sends to a measuring process.
 fn case(events: u64, discs: u64) -> Value {
     let overrides = [format!("particles.count={discs}")];
     let amount = [0, events];
@@ -109,7 +109,7 @@ fn case(events: u64, discs: u64) -> Value {
     serde_json::json!([{ "Scene": scene }, null])
 }
 
-/// A measuring process prints a line for each case, and ends at the first that fails, with the exit code of its failure.
+/// A measuring process prints a line for each case, and ends at the first failure with its exit code.
 #[test]
 fn a_process_measures_the_cases_of_its_input() {
     let mut child = command(&["measure-cases", "--quiet"]);
@@ -129,7 +129,7 @@ fn a_process_measures_the_cases_of_its_input() {
     assert!(said(&output).starts_with("error: "), "{}", said(&output));
 }
 
-/// A measuring process ends at once where the program that asked is gone.
+/// A measuring process ends at once when the program that started it is gone.
 #[test]
 fn a_measuring_process_ends_with_its_program() {
     let mut child = command(&["measure-cases", "--quiet"]);

@@ -1,4 +1,4 @@
-//! The timing model on the command line: files of one's own, bad ones, and questions beyond what was calibrated.
+//! The timing model on the command line: machine files of users, bad files, and requests beyond the calibrated range.
 
 use assert_cmd::Command;
 

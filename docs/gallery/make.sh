@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Makes the pictures of docs/gallery.md by the commands that stand there; the runs take 70 s of processor time.
+# Makes the pictures of docs/gallery.md with the commands of that page; the runs take 70 s of processor time.
 #
 #   docs/gallery/make.sh [FOLDER]
 #
-# The program is the release build of this checkout, or STRIPMINE. Runs and all their pictures are left in FOLDER, and go with it where none is given.
+# Uses the release build of this checkout, or STRIPMINE. Keeps runs and all their pictures in FOLDER; without one they are deleted at the end.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 export STRIPMINE=${STRIPMINE:-$here/../../target/release/stripmine}
@@ -11,7 +11,7 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 folder=$(mkdir -p "${1:-$scratch}" && cd "${1:-$scratch}" && pwd)
 
-# The commands name scenes from the root of the checkout, and runs from where they stand.
+# The commands name scenes relative to the root of the checkout, and runs relative to the current folder.
 cd "$folder"
 grep -E '^stripmine (run|plot) ' "$here/../gallery.md" | while read -r _ verb what rest; do
     case $verb in

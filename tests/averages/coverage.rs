@@ -1,4 +1,4 @@
-//! How often bars hold the truth: runs of all methods, one by one, joined, and ended by `until`.
+//! Coverage of error bars: runs of all methods, alone, joined, and ended by `until`.
 
 use super::{averages, ends_with, of, stripmine};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
@@ -6,31 +6,32 @@ use std::sync::atomic::AtomicBool;
 use stripmine_physics::averages::{Averages, Estimate, Outcome, Rows, joined};
 use stripmine_physics::method::{METHODS, Purpose, load};
 
-/// What a quantity must be.
+/// Reference value of a quantity.
 #[derive(Clone, Copy)]
 enum Truth {
-    /// By theory.
+    /// Known from theory.
     Known(f64),
-    /// By a run so many times as long, with a seed of its own.
+    /// The mean of a run this many times as long, with its own seed.
     LongRun(f64),
-    /// By the mean over all runs, where the start of each decides it a little.
+    /// The mean over all runs: the start of each run affects its mean a little.
     AllRuns,
-    /// Nothing: it has no mean.
+    /// The quantity has no mean.
     Never,
-    /// The runs are too short for it.
+    /// The runs are too short for a mean.
     TooShort,
 }
 
-/// Runs of a scene with seeds of their own, and what is known of its quantities.
+/// Runs of a scene with different seeds, and the reference values of its quantities.
 struct System {
     preset: &'static str,
     overrides: &'static [&'static str],
     truths: &'static [(&'static str, Truth)],
 }
 
-/// Systems of all methods. Most begin far from what they come to: particles at another temperature, lattices that melt, discs of one speed, grains at rest.
+/// Systems of all methods. Most start far from their stationary state: particles at another temperature, lattices that melt, discs of one speed,
+/// grains at rest.
 ///
-/// Grains are of one size: sizes that are drawn make another system of each seed, with a mean of its own.
+/// Grains have one size: drawn sizes make a different system of each seed, with its own mean.
 const SYSTEMS: [System; 12] = [
     System {
         preset: "langevin-free",
@@ -42,7 +43,7 @@ const SYSTEMS: [System; 12] = [
         ],
         truths: &[("temperature", Truth::Known(1.0)), ("msd", Truth::Never)],
     },
-    // Ten particles are soon known to 8 %.
+    // The temperature of ten particles is soon known to 8 %.
     System {
         preset: "langevin-free",
         overrides: &["particles.count=10", "run.time=200", "run.thermo_every=10"],
@@ -53,7 +54,7 @@ const SYSTEMS: [System; 12] = [
         overrides: &["particles.count=64", "run.events=20000", "run.thermo_every=0.1"],
         truths: &[("compressibility", Truth::LongRun(200.0))],
     },
-    // Few discs: many rows have no collision.
+    // With few discs, many rows have no collision.
     System {
         preset: "hard-disks",
         overrides: &["particles.count=6", "run.events=10000", "run.thermo_every=0.1"],
@@ -64,7 +65,7 @@ const SYSTEMS: [System; 12] = [
         overrides: &["particles.count=100", "run.events=10000", "run.thermo_every=0.25"],
         truths: &[("temperature", Truth::Never), ("collisions", Truth::Never)],
     },
-    // Two particles that meet now and then: u(r) over the canonical ensemble, by quadrature.
+    // Two particles that collide now and then: u(r) over the canonical ensemble, by quadrature.
     System {
         preset: "langevin-free",
         overrides: &[
@@ -119,13 +120,13 @@ const SYSTEMS: [System; 12] = [
         ],
         truths: &[("temperature", Truth::LongRun(50.0)), ("gravitational", Truth::LongRun(50.0))],
     },
-    // A pipe of a fifth of pipe-small's length: its waves outlive the run.
+    // A pipe of a fifth of pipe-small's length: the correlation time of its waves exceeds the run.
     System {
         preset: "pipe-small",
         overrides: &["domain.sides=[0.648, 0.088]", "particles.radius_spread=0.0", "run.time=4"],
         truths: &[("flow", Truth::TooShort), ("contacts", Truth::TooShort)],
     },
-    // A tenth of its length, with room for every start.
+    // A tenth of its length, so that every start fits.
     System {
         preset: "pipe-small",
         overrides: &[
@@ -143,29 +144,29 @@ const SYSTEMS: [System; 12] = [
 ];
 
 const SEEDS: u64 = 200;
-/// The first of them, none of those by which anything was chosen.
+/// First seed; none of these seeds was used to choose a parameter.
 const FIRST_SEED: u64 = 1000;
-/// The part of the runs that have a mean, at least.
+/// Smallest share of the runs that must report a mean.
 const LEAST: f64 = 0.4;
-/// The part of the runs that may have a mean where there is none, and where runs are too short for it.
+/// Largest share of runs that may report a mean where none exists, and where runs are too short for it.
 const NEVER: f64 = 0.01;
 const SELDOM: f64 = 0.1;
-/// Runs in a join.
+/// Numbers of runs in a join.
 const JOINED: [usize; 4] = [2, 3, 4, 8];
 
-/// Whether a share is that of 92 to 98 %, within two standard errors of a share of so many independent ones.
+/// True if a share is 92 to 98 %, within two standard errors for `count` independent runs.
 fn is_as_claimed(share: f64, count: f64) -> bool {
     let beyond = |limit: f64| 2.0 * (limit * (1.0 - limit) / count).sqrt();
     (0.92 - beyond(0.92)..=0.98 + beyond(0.98)).contains(&share)
 }
 
-/// So many seeds of runs.
+/// Consecutive seeds from [`FIRST_SEED`].
 fn seeds(count: u64) -> impl ParallelIterator<Item = u64> {
     (FIRST_SEED..FIRST_SEED + count).into_par_iter()
 }
 
 impl System {
-    /// The averages of a run so many times as long.
+    /// Averages of a run `times` as long as the preset's.
     fn averages(&self, seed: u64, times: f64) -> Averages {
         let longer = |text: &&str| match text.split_once('=') {
             Some((key @ ("run.time" | "run.events"), length)) => {
@@ -191,12 +192,12 @@ impl System {
     }
 }
 
-/// The outcome of a quantity.
+/// Outcome of one quantity.
 fn outcome(averages: &Averages, quantity: &str) -> Outcome {
     averages.quantities.iter().find(|it| it.quantity == quantity).unwrap().outcome
 }
 
-/// The means among some outcomes, and the share of them whose bar holds a truth.
+/// Means among some outcomes, and the share of them whose error bar covers the truth.
 fn held(outcomes: impl Iterator<Item = Outcome>, truth: f64) -> (Vec<Estimate>, f64) {
     let mean = |outcome| if let Outcome::Mean(estimate) = outcome { Some(estimate) } else { None };
     let found: Vec<Estimate> = outcomes.filter_map(mean).collect();
@@ -205,7 +206,7 @@ fn held(outcomes: impl Iterator<Item = Outcome>, truth: f64) -> (Vec<Estimate>, 
     (found, share)
 }
 
-/// Systems in the first of the two tests, which take about as long.
+/// Number of systems in the first of the two tests; both take about as long.
 const FLUIDS: usize = 8;
 
 #[test]
@@ -220,8 +221,9 @@ fn bars_of_95_percent_hold_the_truth_of_grains_and_bodies() {
     hold_the_truth(&SYSTEMS[FLUIDS..]);
 }
 
-/// Bars hold the truth in 92 to 98 of 100 runs, and so do those of 2, 3, 4 and 8 runs joined, whatever the method. Hardly a run of a system that changes for ever,
-/// or one that its waves outlive, has a mean.
+/// Error bars cover the truth in 92 to 98 of 100 runs for every method, and so do those of 2, 3, 4 and 8 joined runs. A mean is hardly ever reported
+/// for a
+/// system that never becomes stationary or whose waves outlive the run.
 fn hold_the_truth(systems: &[System]) {
     let mut wrong = vec![];
     let mut joins = [[0.0; 2]; JOINED.len()];
@@ -233,7 +235,7 @@ fn hold_the_truth(systems: &[System]) {
         let count = found.len() as f64;
         let over = |of: &dyn Fn(&Estimate) -> f64| found.iter().map(of).sum::<f64>() / count;
         println!(
-            "{name}: {} of {SEEDS} have a mean, {share:.3} hold {truth:.6}; mean {:.6}, bar {:.2} of the scatter, {:.0} samples",
+            "{name}: {} of {SEEDS} have a mean, {share:.3} cover {truth:.6}; mean {:.6}, bar {:.2} of the scatter, {:.0} samples",
             found.len(),
             over(&|it| it.mean),
             over(&|it| it.bar) / (1.96 * over(&|it| (it.mean - truth).powi(2)).sqrt()),
@@ -269,7 +271,7 @@ fn hold_the_truth(systems: &[System]) {
                 Truth::Never | Truth::TooShort => {
                     let most = if matches!(truth, Truth::Never) { NEVER } else { SELDOM };
                     let (found, _) = held(runs.iter().map(|run| outcome(run, quantity)), 0.0);
-                    println!("{name}: {} of {SEEDS} have a mean, where none is known", found.len());
+                    println!("{name}: {} of {SEEDS} have a mean, although none exists", found.len());
                     if found.len() as f64 > most * SEEDS as f64 {
                         wrong.push((name, f64::NAN, found.len() as f64));
                     }
@@ -279,20 +281,20 @@ fn hold_the_truth(systems: &[System]) {
             let (found, share) = held(runs.iter().map(|run| outcome(run, quantity)), truth);
             check(&mut wrong, name, &found, share, truth);
             for (at, count) in JOINED.into_iter().enumerate() {
-                // Each run is in as many joins as there are runs in one.
+                // Each run is part of as many joins as a join has runs.
                 let join = |first: usize| {
                     let members = (0..count).map(|number| runs[(first + 37 * number) % runs.len()].clone());
                     outcome(&joined(&members.collect::<Vec<_>>()), quantity)
                 };
                 let (found, share) = held((0..runs.len()).map(join), truth);
-                println!("  {count} joined: {share:.3} of {} hold it", found.len());
+                println!("  {count} joined: {share:.3} of {} cover it", found.len());
                 joins[at][0] += share * found.len() as f64;
                 joins[at][1] += found.len() as f64;
             }
         }
     }
     for (count, [held, all]) in JOINED.into_iter().zip(joins) {
-        println!("{count} joined, all systems: {:.3} of {all} hold the truth", held / all);
+        println!("{count} joined, all systems: {:.3} of {all} cover the truth", held / all);
         if !is_as_claimed(held / all, all / count as f64) {
             wrong.push((format!("{count} joined"), held / all, all));
         }
@@ -300,7 +302,7 @@ fn hold_the_truth(systems: &[System]) {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// Collisions in runs of energies of their own: the bar of a run is for its own energy, that of a join for all of them.
+/// Collision rates of runs with different energies: a run's error bar is for its own energy, a join's for all energies.
 #[test]
 #[ignore = "long: cargo test --release --test averages -- --ignored"]
 fn joined_bars_hold_the_mean_over_energies() {
@@ -319,15 +321,15 @@ fn joined_bars_hold_the_mean_over_energies() {
             outcome(&joined(&members), "collision_rate")
         });
         let (found, share) = held(joins, truth);
-        println!("{count} joined: {share:.3} of {} hold {truth:.4}", found.len());
+        println!("{count} joined: {share:.3} of {} cover {truth:.4}", found.len());
         assert!(is_as_claimed(share, found.len() as f64), "{count}: {share}");
     }
 }
 
-/// Runs whose scatter tells how long a target takes, to 11 % (one standard error).
+/// Number of runs whose scatter gives the time a target takes, to 11 % (one standard error).
 const RUNS: u32 = 160;
 
-/// Runs that end by `until` end within 30 % of the time that the target takes, which the scatter over their seeds tells.
+/// Runs that end by `until` end within 30 % of the time the target takes, as computed from the scatter over their seeds.
 #[test]
 #[ignore = "long: cargo test --release --test averages -- --ignored"]
 fn until_ends_where_the_target_is_reached() {
@@ -352,7 +354,7 @@ fn until_ends_where_the_target_is_reached() {
         let (count, length) = (runs.len() as f64, |run: &[f64; 2]| run[1]);
         let mean = runs.iter().map(|run| run[0]).sum::<f64>() / count;
         let middle = runs.iter().map(length).sum::<f64>() / count;
-        // A mean over a time t has the variance D/t.
+        // The variance of a mean over a time t is D/t.
         let scatter = runs.iter().map(|run| (run[0] - mean).powi(2) * run[1]).sum::<f64>() / (count - 1.0);
         let needed = scatter * (1.96 / (0.01 * percent * mean)).powi(2);
         let near = runs.iter().filter(|run| (run[1] / needed - 1.0).abs() < 0.3).count();
@@ -363,7 +365,7 @@ fn until_ends_where_the_target_is_reached() {
     }
 }
 
-/// Of runs that end by `until`, as many hold the truth as of others, although each ends with a bar that happens to be short.
+/// Runs that end by `until` cover the truth as often as others, although each ends when its error bar happens to be short.
 #[test]
 #[ignore = "long: cargo test --release --test averages -- --ignored"]
 fn until_holds_the_truth_as_often_as_it_says() {
@@ -383,7 +385,7 @@ fn until_holds_the_truth_as_often_as_it_says() {
             (mean - 1.0).abs() <= bar
         });
         let share = held.count() as f64 / SEEDS as f64;
-        println!("until {error}: {share:.3} hold");
+        println!("until {error}: {share:.3} cover the truth");
         assert!(is_as_claimed(share, SEEDS as f64), "{error}: {share}");
     }
 }

@@ -1,4 +1,4 @@
-//! Averages of runs, as a user meets them: at the end of a run, of its files, of several runs, and as the end of a run.
+//! Averages as a user sees them: at the end of a run, from its files, over several runs, and as a run's stopping criterion.
 
 mod coverage;
 
@@ -8,7 +8,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-/// A gas of hard discs, so short that its tests take no time.
+/// A gas of hard discs whose runs take no noticeable time.
 const GAS: [&str; 4] = ["--set", "run.thermo_every=0.05", "--set", "particles.count=100"];
 
 fn stripmine(folder: &Path, arguments: &[&str]) -> Output {
@@ -31,7 +31,7 @@ fn averages(folder: &Path, out: &str) -> Value {
     serde_json::from_str::<Value>(&text).unwrap()["averages"].clone()
 }
 
-/// What is said of a quantity.
+/// Entry of a quantity in the averages.
 fn of<'a>(averages: &'a Value, name: &str) -> &'a Value {
     let all = averages["quantities"].as_array().unwrap();
     all.iter().find(|it| it["quantity"] == name).unwrap()
@@ -52,12 +52,12 @@ fn a_run_ends_with_means_and_their_errors() {
     let z = of(&found, "compressibility");
     let [mean, bar, samples] = ["mean", "bar", "independent_samples"].map(|name| z[name].as_f64().unwrap());
     assert!(z["says"] == "mean" && z["of"] == "intervals" && samples > 100.0, "{z:#}");
-    // Of scaled particle theory in two dimensions, Z = 1/(1 − ν)², good to 2 % at ν = 0.5.
+    // Scaled particle theory in two dimensions: Z = 1/(1 − ν)², accurate to 2 % at ν = 0.5.
     assert!((mean - 4.0).abs() < 0.2 && bar < 0.1, "{mean} {bar}");
     assert_eq!(of(&found, "kinetic")["says"], "constant");
     assert_eq!(of(&found, "energy_error")["says"], "kept");
     assert_eq!(of(&found, "collisions")["unit"], "1/time");
-    // The same of the run's files.
+    // `average` reports the same from the run's files.
     let again = stripmine(folder.path(), &["average", "a", "--json"]);
     assert_eq!(serde_json::from_slice::<Value>(&again.stdout).unwrap(), found);
     let table = stripmine(folder.path(), &["average", "a", "--csv"]);
@@ -86,7 +86,7 @@ fn runs_with_seeds_of_their_own_are_joined_and_others_refused() {
     }
     let output = stripmine(folder, &["average", "a", "b", "--json"]);
     let joined: Value = serde_json::from_slice(&output.stdout).unwrap();
-    // The system is closed: each run has an energy of its own, and is one sample. By hand, of two means.
+    // The system is closed: each run has its own energy and is one sample. Expected values by hand, from two means.
     let [a, b] = ["a", "b"].map(|out| of(&averages(folder, out), "collision_rate")["mean"].as_f64().unwrap());
     let rate = |name: &str| of(&joined, "collision_rate")[name].as_f64().unwrap();
     assert!(joined["runs"] == 2 && rate("freedoms") == 1.0, "{joined:#}");
@@ -112,15 +112,15 @@ fn a_run_ends_when_a_mean_is_known_well_enough() {
     let z = of(&found, "compressibility");
     let [mean, bar] = ["mean", "bar"].map(|name| z[name].as_f64().unwrap());
     assert!(bar <= 0.02 * mean && bar > 0.01 * mean, "{mean} {bar}");
-    // In two sessions, the first of which ends before: the same rows, and the same end.
+    // In two sessions, of which the first stops early: the same rows and the same end.
     ends_with(&run(folder, "parts", &["--set", "run.events=3000"]), 0, &[]);
     ends_with(&run(folder, "parts", &[&wanted[..], &["--resume"]].concat()), 0, &[]);
     let bytes = |out: &str, file: &str| fs::read(folder.join(out).join(file)).unwrap();
     assert_eq!(bytes("parts", "thermo.csv"), bytes("whole", "thermo.csv"));
-    // Nothing is left to do.
+    // The run is complete.
     ends_with(&run(folder, "whole", &[&wanted[..], &["--resume"]].concat()), 0, &[]);
     assert_eq!(bytes("parts", "thermo.csv"), bytes("whole", "thermo.csv"));
-    // A bound that comes first.
+    // A limit of events that is reached first.
     let short =
         ["--set", "run.events=20000", "--set", r#"run.until={ quantity = "compressibility", error = 1e-4 }"#];
     let output = run(folder, "short", &short);
@@ -144,7 +144,7 @@ fn seeds_make_an_ensemble() {
     let folders: Vec<&str> =
         found["runs"].as_array().unwrap().iter().map(|run| run["folder"].as_str().unwrap()).collect();
     assert_eq!(folders, members);
-    // What the verb says of the same folders; and one of them alone is the run of its seed.
+    // `average` reports the same from these folders, and each folder equals a single run of its seed.
     let joined = stripmine(folder, &[&["average"], &members[..], &["--json"]].concat());
     assert_eq!(serde_json::from_slice::<Value>(&joined.stdout).unwrap(), found["averages"]);
     ends_with(&run(folder, "two", &["--set", "run.events=5000", "--set", "particles.seed=2"]), 0, &[]);
@@ -157,7 +157,7 @@ fn seeds_make_an_ensemble() {
     ends_with(&output, 2, &["this scene has no random numbers"]);
 }
 
-/// Two particles in a bath that meet in some runs only: nothing is known where they have not, and no run is left out of a join.
+/// Two particles in a bath that collide in some runs only: runs without a collision report no mean, and no run is left out of a join.
 #[test]
 fn what_has_not_happened_yet_is_not_known() {
     let folder = tempfile::tempdir().unwrap();
@@ -195,7 +195,7 @@ fn what_has_not_happened_yet_is_not_known() {
     assert!(first["says"] == last["says"] && first["says"] != "constant", "{first:#} {last:#}");
     let samples = |it: &Value| it["independent_samples"].as_f64().unwrap();
     assert!((samples(&last) - samples(&first)).abs() < 1e-9, "{first:#} {last:#}");
-    // Rows so close that hard discs have not met between them.
+    // Rows so close that no hard discs collide between them.
     let target = r#"run.until={ quantity = "compressibility", error = "1%" }"#;
     let close = [
         "run",
@@ -211,7 +211,7 @@ fn what_has_not_happened_yet_is_not_known() {
     ends_with(&output, 4, &["run.events=100 is over"]);
 }
 
-/// Starts of one noise become one run in a bath.
+/// Different starts with the same noise converge to one run in a bath.
 #[test]
 fn runs_with_one_noise_are_not_joined() {
     let folder = tempfile::tempdir().unwrap();
@@ -232,7 +232,7 @@ fn runs_with_one_noise_are_not_joined() {
     ends_with(&stripmine(folder, &["average", "a", "d"]), 0, &[]);
 }
 
-/// Particles that begin at 50 000 times the temperature of their bath have come to it within ten units of time: the mean is that of the bath.
+/// Particles that start at 50 000 times the temperature of their bath equilibrate within ten time units: the mean is that of the bath.
 #[test]
 fn a_transient_of_a_few_rows_is_cut_off() {
     let folder = tempfile::tempdir().unwrap();
@@ -257,7 +257,7 @@ fn a_transient_of_a_few_rows_is_cut_off() {
     }
 }
 
-/// The temperature of a disc in a periodic box, whose motion is the mean motion, is that of nothing.
+/// A single disc in a periodic box moves with the mean motion, so its temperature is undefined.
 #[test]
 fn what_is_not_defined_is_said_in_words() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,11 +1,11 @@
-"""Holds the means and statistical inefficiencies of runs against those that `pymbar` finds in the same rows.
+"""Compares the means and statistical inefficiencies of runs with those that `pymbar` finds in the same rows.
 
     python averages.py STRIPMINE
 
-Needs the packages `pymbar` and `numpy`; where one is not installed, the check says SKIPPED and exits with 0.
+Needs the packages `pymbar` and `numpy`; if one is not installed, the check prints SKIPPED and exits with 0.
 
-Rows from the end of our transient on: the mean is the same to nine digits, and the inefficiency of 16 waves between 0.4 and 2.5 times theirs, which is
-three standard errors of ours. Exits with 1 where one is not. Theirs is at least 1, ours also less. The end of the transient is printed beside pymbar's.
+For rows after the end of our transient, the means must agree to nine digits, and our inefficiency, from 16 waves, must be 0.4 to 2.5 times pymbar's, which
+is three standard errors of ours. Exits with 1 if one does not. Theirs is at least 1, ours may be smaller. Also prints the end of the transient of both.
 """
 
 import csv
@@ -41,9 +41,9 @@ def main(stripmine):
             name = ours["quantity"]
             if ours["says"] != "mean" or ours["of"] != "values":
                 continue
-            # The first row is the start, and no value.
+            # The first row is the start and does not count.
             series = numpy.array([float(row[name]) for row in rows])[1:]
-            # Ours are means over blocks of rows where there are many.
+            # Ours are means over blocks of rows in long runs.
             kept = series[times[1:] > ours["equilibrated_at"] * (1 + 1e-9)]
             theirs = timeseries.statistical_inefficiency(kept, mintime=3)
             start, *_ = timeseries.detect_equilibration(series, nskip=max(1, len(series) // 100))

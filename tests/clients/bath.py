@@ -1,11 +1,11 @@
-"""Asks `physical_validation` whether the kinetic energy of particles in a bath has the distribution of the canonical ensemble.
+"""Checks with `physical_validation` that the kinetic energy of particles in a bath has the distribution of the canonical ensemble.
 
     python bath.py STRIPMINE
 
-Needs the package `physical_validation`; where it is not installed, the check says SKIPPED and exits with 0.
+Needs the package `physical_validation`; if it is not installed, the check prints SKIPPED and exits with 0.
 
-By each integrator a Lennard-Jones fluid of 1120 particles, density 0.7, kT = 1. Looks are 5 units of time apart, so that they are nearly
-independent with a drag of 1. Exits with 1 where the Kolmogorov–Smirnov p-value of the distribution is below 0.001.
+Runs a Lennard-Jones fluid of 1120 particles, density 0.7, kT = 1, with each integrator. Samples are 5 units of time apart, so that they are
+nearly independent with a drag of 1. Exits with 1 if the Kolmogorov–Smirnov p-value of the distribution is below 0.001.
 """
 
 import subprocess
@@ -57,7 +57,7 @@ def main(stripmine):
         rows = [dict(zip(names, map(float, line.split(",")))) for line in lines[1:]]
         kinetic = numpy.array([row["kinetic"] for row in rows if row["time"] > 50])
         particles = 1120
-        # The package counts three degrees of freedom a particle: a third is taken away.
+        # The package counts three degrees of freedom for each particle; a third is removed.
         system = SystemData(
             natoms=particles,
             nconstraints=particles,

@@ -17,19 +17,19 @@ import warnings
 from pathlib import Path
 from typing import NamedTuple
 
-# Relative error of numbers that a program keeps in single precision.
+# Relative error of numbers that a program stores in single precision.
 SINGLE = 1e-6
-# Of numbers that it converts to its own units and that are converted back here, or reads to the last digit but one.
+# Relative error of numbers that a program converts to its own units and this file converts back, or that it reads to the last digit but one.
 CONVERTED = 1e-12
 EXACT = 0.0
 
 
 class Wrong(Exception):
-    """A file that is refused or read as something else."""
+    """A file that is rejected or read with other contents."""
 
 
 class Limit(Exception):
-    """A file that a program does not claim to read."""
+    """A file that a program does not claim to support."""
 
 
 class Frame(NamedTuple):
@@ -44,7 +44,7 @@ class Frame(NamedTuple):
 
 
 class Run:
-    """The files of a run, as read here."""
+    """The files of a run, as this file reads them."""
 
     def __init__(self, folder):
         self.folder = folder
@@ -54,7 +54,7 @@ class Run:
         self.table = [[float(field) for field in row] for row in rows]
 
     def path(self, *patterns):
-        """The only file of one of the patterns; none if there is none."""
+        """The only file that matches one of the patterns, or None."""
         found = sorted(path for pattern in patterns for path in self.folder.glob(pattern))
         if len(found) > 1:
             raise Wrong(f"more than one of {', '.join(patterns)}: {', '.join(path.name for path in found)}")
@@ -67,7 +67,7 @@ class Run:
         return self.path("*.data", "*.lmp")
 
     def frame_of_data(self):
-        """The frame that the data file was written with, and whether the trajectory has just that step."""
+        """The frame of the data file's step and True; or the last frame and False if the trajectory lacks that step."""
         with open(self.data()) as file:
             found = re.search(r"timestep = (\d+)", file.readline())
         same = [frame for frame in self.frames if found and frame.step == int(found[1])]
@@ -75,7 +75,7 @@ class Run:
 
 
 def read_frames(path):
-    """Extended XYZ as stripmine promises to write it, and nothing else."""
+    """Reads extended XYZ exactly as stripmine specifies it."""
     with open(path) as file:
         while count := file.readline():
             comment = file.readline()
@@ -85,7 +85,7 @@ def read_frames(path):
                 raise Wrong(f"{path.name}: Properties={keys['Properties']}")
             rows = sorted((file.readline().split() for _ in range(int(count))), key=lambda row: int(row[4]))
             if len({row[4] for row in rows}) != int(count) or any(len(row) != 17 for row in rows):
-                raise Wrong(f"{path.name}: ids that are not unique, or rows that are not whole")
+                raise Wrong(f"{path.name}: duplicate ids or incomplete rows")
             numbers = [[float(field) for field in row[1:]] for row in rows]
             lattice = [float(number) for number in keys["Lattice"].split()]
             yield Frame(
@@ -133,13 +133,13 @@ def frames_are(run, count):
     return f"{count} frames"
 
 
-# Each program: its files, and for each what opens and compares it and says what it saw.
+# Each program: its files, and for each file a function that opens and compares it and returns a summary.
 
 
 def with_json(run):
     def summary(path):
         def refuse(word):
-            raise Wrong(f"{word} is no JSON")
+            raise Wrong(f"{word} is not valid JSON")
 
         with open(path) as file:
             content = json.load(file, parse_constant=refuse)
@@ -171,7 +171,7 @@ def with_pandas(run):
         content = pandas.read_csv(path, float_precision="round_trip")
         same("columns", list(content.columns), run.header)
         same("rows", content.to_numpy(dtype=float), run.table)
-        # Events number the rows of a method without steps: there may be none between two rows.
+        # Methods without steps count rows by events: there may be no event between two rows.
         steps, has_events = content["step"], "events" in content
         if not steps.is_monotonic_increasing or not (has_events or steps.is_unique):
             raise Wrong("steps do not increase")
@@ -200,7 +200,7 @@ def with_ase(run):
                 same(name, atoms.arrays[name], columns[name])
             same("position", atoms.positions, columns["position"])
             same("masses", atoms.get_masses(), columns["mass"])
-            # It has velocities from momenta, which round once.
+            # ASE computes velocities from momenta, which rounds once.
             same("velocity", atoms.get_velocities(), columns["velocity"], CONVERTED)
             same("box", atoms.cell.diagonal(), frame.sides)
             same("pbc", atoms.pbc, frame.periodic)
@@ -210,7 +210,7 @@ def with_ase(run):
         return frames_are(run, len(frames))
 
     def dump(path):
-        # ASE puts the atoms in the order of their ids, which it does not keep, and takes the units for `metal`.
+        # ASE sorts the atoms by id without keeping the ids, and assumes `metal` units.
         frames = ase.io.read(path, index=":", format="lammps-dump-text")
         for atoms, frame in zip(frames, run.frames):
             velocity = convert(atoms.get_velocities(), "velocity", "ASE", "metal")
@@ -226,7 +226,7 @@ def with_ase(run):
             atoms = ase.io.read(path, format="lammps-data", units="metal")
         except RuntimeError as error:
             if 'Style "sphere" not supported' in str(error):
-                raise Limit("it reads no atom_style sphere") from error
+                raise Limit("atom_style sphere is not supported") from error
             raise
         frame, whole = run.frame_of_data()
         if whole:
@@ -261,7 +261,7 @@ def with_mdanalysis(run):
         )
         for now, frame in zip(universe.trajectory, run.frames):
             same("id", universe.atoms.ids, frame.columns["id"])
-            # Positions are given from the corner of the box.
+            # Positions are relative to the corner of the box.
             same("position", now.positions + frame.origin, frame.columns["position"], 2 * SINGLE)
             same("velocity", now.velocities, frame.columns["velocity"], SINGLE)
             same("radius", now.data["radius"], frame.columns["radius"], SINGLE)
@@ -285,7 +285,7 @@ def with_mdanalysis(run):
         return f"{len(universe.atoms)} atoms"
 
     def positions(path):
-        # The file names no particles: they are in the order of the start, which is that of the first frame.
+        # The file has no particle ids: particles are in the order of the start, which is that of the first frame.
         universe = MDAnalysis.Universe.empty(len(run.frames[0].columns["id"]), trajectory=True)
         universe.load_new(str(path), format="DCD", convert_units=False)
         ids = next(iter(file_order(run.path("trajectory.xyz"))))
@@ -296,7 +296,7 @@ def with_mdanalysis(run):
         return frames_are(run, len(universe.trajectory))
 
     def with_box(path):
-        # Its reader of XYZ knows no box: names come from there, places and the box from the DCD file beside it.
+        # MDAnalysis reads no box from XYZ: names come from there, positions and the box from the DCD file next to it.
         universe = MDAnalysis.Universe(str(run.path("trajectory.xyz")), str(path), format="DCD", convert_units=False)
         same("species", sorted(universe.atoms.names), sorted(run.frames[0].columns["species"]))
         for now, frame in zip(universe.trajectory, run.frames):
@@ -304,7 +304,7 @@ def with_mdanalysis(run):
         return positions(path)
 
     def indexed(path):
-        # Its reader of GSD knows no velocities; positions are from the centre of the box.
+        # MDAnalysis reads no velocities from GSD; positions are relative to the centre of the box.
         universe = MDAnalysis.Universe(str(path))
         columns = run.frames[0].columns
         same("species", universe.atoms.names, in_file_order(run, columns["species"]))
@@ -321,13 +321,13 @@ def with_mdanalysis(run):
 
 
 def from_centre(frame):
-    """Positions as GSD has them."""
+    """Positions relative to the centre of the box, as in GSD."""
     centre = [low + side / 2 for low, side in zip(frame.origin, frame.sides)]
     return [[x - centre[0], y - centre[1], z] for x, y, z in frame.columns["position"]]
 
 
 def in_file_order(run, column):
-    """A column, which is in the order of the ids, in that of the start."""
+    """Reorders a column from the order of the ids to that of the start."""
     places = {number: place for place, number in enumerate(run.frames[0].columns["id"])}
     return [column[places[number]] for number in next(iter(file_order(run.path("trajectory.xyz"))))]
 
@@ -337,7 +337,7 @@ def with_gsd(run):
     import gsd.pygsd
 
     def compare(trajectory):
-        # Backwards: each frame by its number.
+        # Backwards: random access to each frame.
         for number in reversed(range(len(trajectory))):
             now, frame = trajectory[number], run.frames[number]
             now.validate()
@@ -375,7 +375,7 @@ def with_gsd(run):
         with gsd.hoomd.open(path) as frames:
             compare(frames)
             version = ".".join(str(number) for number in frames.file.schema_version)
-        # A reader of its own, in Python.
+        # gsd's second reader, in pure Python.
         with open(path, "rb") as file:
             said = compare(gsd.hoomd.HOOMDTrajectory(gsd.pygsd.GSDFile(file)))
         return f"{said}, schema {version}"
@@ -397,7 +397,7 @@ def with_freud(run):
                 query = found.query(now.particles.position, {"r_max": radius, "exclude_ii": True})
                 counts.append(len(query.toNeighborList()))
                 freud.density.RDF(bins=20, r_max=radius).compute(now)
-        # It takes every box as periodic.
+        # freud treats every box as periodic.
         points, sides = from_centre(run.frames[-1]), run.frames[-1].sides
         pairs = 0
         for i, one in enumerate(points):
@@ -430,7 +430,7 @@ def with_hoomd(run):
 
 
 def file_order(path):
-    """The ids of each frame of a trajectory in the order of its rows."""
+    """Yields the ids of each frame of a trajectory in the order of its rows."""
     with open(path) as file:
         while count := file.readline():
             file.readline()
@@ -526,7 +526,7 @@ def with_lammps(run):
 
     def dump(path):
         if run.data() is None:
-            raise Limit("it needs a data file beside the dump")
+            raise Limit("the dump needs a data file")
         machine = started(run.frames[-1])
         for frame in run.frames:
             machine.command(f"read_dump {path} {frame.step} x y vx vy replace yes box no")
@@ -557,13 +557,13 @@ PROGRAMS = [
 
 
 def verdict(name, opener, run):
-    """One line for a program, and whether it failed."""
+    """Returns one line for a program, and True if it failed."""
     try:
         importlib.import_module(name)
         files = opener(run)
     except Wrong as error:
         return f"{name}: FAILED ({error})", True
-    except Exception as error:  # a package may fail to load in any way of its own
+    except Exception as error:  # importing a package may raise anything
         return f"{name}: SKIPPED ({type(error).__name__}: {error})", False
     words, failed = [], False
     for path, opens in files:
@@ -573,14 +573,14 @@ def verdict(name, opener, run):
             words.append(f"{path.name} OK ({opens(path)})")
         except Limit as limit:
             words.append(f"{path.name} SKIPPED ({limit})")
-        except Exception as error:  # whatever a program throws at a file is its verdict on it
+        except Exception as error:  # any exception of a program counts as a rejected file
             what = str(error) if isinstance(error, Wrong) else f"{type(error).__name__}: {error}"
             words.append(f"{path.name} FAILED ({' '.join(what.split())})")
             failed = True
     try:
         name += " " + importlib.metadata.version(name)
     except importlib.metadata.PackageNotFoundError:
-        # Of Python's own library, or a package of another name.
+        # Part of Python's own library, or a package of another name.
         name += " " + getattr(importlib.import_module(name), "__version__", "")
     return f"{name}: {'FAILED' if failed else 'OK'}: {', '.join(words) or 'no file for it'}", failed
 

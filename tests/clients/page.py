@@ -2,13 +2,13 @@
 
     python page.py PAGE.html [PICTURES_FOLDER]
 
-Needs the package `playwright`, and Chromium: playwright's own, or one that is installed (CHROMIUM names another).
-Where one of them cannot be had, the check says SKIPPED and why, and exits with 0.
+Needs the package `playwright`, and Chromium: playwright's own, or an installed one (CHROMIUM gives its path).
+If one of them is missing, the check prints SKIPPED with the reason and exits with 0.
 
-Every picture must be seen, what is folded opened, in both widths, in the dark, on paper and without scripts, and have colours; every chart and
-map must say values at the pointer and by the keyboard; every film must play, by the button and by the keyboard. Exits with 1
-if one does not, if the page asks the network for anything, complains on the console, or is wider than the screen. With a
-folder, pictures of the page as wide, narrow, both in the dark, printed and without scripts are left there.
+Every picture must be visible and have colours, with folded parts opened, in both widths, in dark mode, on paper and without scripts. Every chart
+and map must show values at the pointer and by the keyboard. Every film must play, by the button and by the keyboard. Exits with 1
+if one does not, if the page requests anything from the network, logs an error to the console, or is wider than the screen. With a
+folder, saves pictures of the page there: wide, narrow, both in dark mode, printed and without scripts.
 """
 
 import os
@@ -17,11 +17,11 @@ import sys
 from pathlib import Path
 
 WIDTHS = {"wide": 1400, "narrow": 420}
-# Coloured dots of a canvas: an empty picture has none, and measured marks may cover each other all but one.
+# Fewest coloured dots of a drawn canvas: an empty picture has none, and measured marks may cover each other almost completely.
 FEWEST_DOTS = 50
-# The whole page is a picture of some 50 000 lines (milliseconds).
+# Time limit in milliseconds: the whole page is a picture of some 50 000 lines.
 SCREENSHOT = 120_000
-# Marks and fillings have colours; axes, grid and texts are grey, and grounds behind the marks are pale.
+# Marks and fills have colours; axes, grid and labels are grey, and backgrounds behind the marks are pale.
 COLOURED = """canvas => {
     const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
     let dots = 0;
@@ -31,25 +31,25 @@ COLOURED = """canvas => {
     }
     return dots;
 }"""
-# What a reader may find wrong with a picture as it lies on the page, or nothing: all of it must be there, its words apart from its
-# ground and its ground that of the page, none of them cut off, and every marker that it names defined.
+# Returns a reader's complaint about a picture, or nothing: it must be visible, its text must contrast with its background, the background must be
+# that of the page, no text may be cut off, and every marker it refers to must be defined.
 LACKING = """svg => {
     const [box, ink] = [svg.getBoundingClientRect(), getComputedStyle(svg).fill];
     const ground = getComputedStyle(svg.querySelector(":scope > rect")).fill;
-    if (box.width < 100 || box.height < 50 || !svg.checkVisibility()) return "is not to be seen";
+    if (box.width < 100 || box.height < 50 || !svg.checkVisibility()) return "is not visible";
     const light = colour => colour.match(/\\d+/g).slice(0, 3).map(Number).reduce((sum, part) => sum + part) / 765;
-    if (Math.abs(light(ink) - light(ground)) < 0.7) return "cannot be read";
-    if (Math.abs(light(ground) - light(getComputedStyle(document.body).backgroundColor)) > 0.1) return "glares";
+    if (Math.abs(light(ink) - light(ground)) < 0.7) return "has too little contrast";
+    if (Math.abs(light(ground) - light(getComputedStyle(document.body).backgroundColor)) > 0.1) return "has another background than the page";
     for (const text of svg.querySelectorAll("text")) {
         const at = text.getBoundingClientRect();
         const beyond = Math.max(box.left - at.left, at.right - box.right, box.top - at.top, at.bottom - box.bottom);
         if (beyond > 1) return `cuts off "${text.textContent}" by ${beyond.toFixed(1)} pixels`;
     }
     for (const [, name] of svg.innerHTML.matchAll(/url\\(#([^)]+)\\)/g)) {
-        if (!document.getElementById(name)) return `names a marker that is not there: ${name}`;
+        if (!document.getElementById(name)) return `refers to a missing marker: ${name}`;
     }
 }"""
-# Places on curves, marks and cells, in pixels of the window.
+# Points on curves, marks and cells, in pixels of the window.
 MARKS = """svg => [...svg.querySelectorAll("[data-x] path")].flatMap(path => {
     const length = path.getTotalLength();
     const onScreen = part => path.getPointAtLength(part * length).matrixTransform(path.getScreenCTM());
@@ -67,31 +67,31 @@ def demand(held, complaint):
 
 
 def browser_of(playwright):
-    """A browser, or the reason why there is none."""
+    """Returns a browser and None, or None and the reason."""
     reasons = []
     names = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
     installed = os.environ.get("CHROMIUM") or next(filter(None, map(shutil.which, names)), None)
     for path in (None, installed) if installed else (None,):
         try:
             return playwright.chromium.launch(executable_path=path, args=["--no-sandbox"]), None
-        except Exception as error:  # playwright has no narrower class for a browser that is not there
+        except Exception as error:  # playwright raises no narrower class for a missing browser
             reasons.append(str(error).strip().splitlines()[0])
     return None, "; ".join(reasons)
 
 
 def open_page(browser, address, width, complaints, **options):
-    """The page in a window of a width; what it should not do is added to the complaints."""
+    """Opens the page in a window of a width; errors and requests to other addresses are added to the complaints."""
     page = browser.new_context(viewport={"width": width, "height": 800}, **options).new_page()
     page.on("console", lambda said: said.type == "error" and complaints.append(f"console: {said.text}"))
     page.on("pageerror", lambda error: complaints.append(f"script: {error}"))
 
     def requested(request):
         if request.url != address and not request.url.startswith(("data:", "blob:")):
-            complaints.append(f"asks for {request.url}")
+            complaints.append(f"requests {request.url}")
 
     page.on("request", requested)
     page.goto(address)
-    # What is folded is read as well.
+    # Folded parts are checked too.
     page.evaluate("document.querySelectorAll('details').forEach(details => { details.open = true; })")
     return page
 
@@ -101,13 +101,13 @@ def name_of(picture):
 
 
 def shown(page):
-    """The tip's lines, if there is one."""
+    """Lines of the visible tooltip, or an empty list."""
     tip = page.query_selector(".tip:not([hidden])")
     return tip.inner_text().splitlines() if tip else []
 
 
 def check_tips(page, svg):
-    """A chart or a map says values at the pointer, none away from it, and values by the keyboard."""
+    """A chart or a map shows values at the pointer, none away from it, and values by the keyboard."""
     svg.scroll_into_view_if_needed()
     page.wait_for_timeout(50)
     lines = []
@@ -116,19 +116,19 @@ def check_tips(page, svg):
         if 0 <= x < window["width"] and 0 <= y < window["height"]:
             page.mouse.move(x, y)
             lines = shown(page)
-            # A band's tip has no values; a point's or a cell's has one for each axis.
+            # A band's tooltip has no values; a point's or a cell's has one for each axis.
             if len(lines) >= 3:
                 break
-    demand(len(lines) >= 3, "the pointer reads nothing")
-    demand(not any("NaN" in line or "undefined" in line for line in lines), f"the tip says {lines}")
+    demand(len(lines) >= 3, "no tooltip at the pointer")
+    demand(not any("NaN" in line or "undefined" in line for line in lines), f"the tooltip shows {lines}")
     beyond = page.evaluate("""() => { const at = document.querySelector(".tip").getBoundingClientRect();
         return at.left < 0 || at.right > innerWidth || at.top < 0 || at.bottom > innerHeight; }""")
-    demand(not beyond, "the tip lies beyond the window")
+    demand(not beyond, "the tooltip extends beyond the window")
     page.mouse.move(0, 0)
-    demand(not shown(page), "the tip stays where nothing is")
+    demand(not shown(page), "the tooltip remains away from the data")
     svg.focus()
     page.keyboard.press("ArrowRight")
-    demand(len(shown(page)) >= 3, "the keyboard reads nothing")
+    demand(len(shown(page)) >= 3, "no tooltip by the keyboard")
     svg.evaluate("svg => svg.blur()")
     return " | ".join(lines)
 
@@ -160,7 +160,7 @@ def check_film(page, picture):
 
 
 def check_pictures(page):
-    """A line for every picture that answers, and how many of them failed."""
+    """Prints a line for every interactive picture and returns the number of failures."""
     failures = 0
     for kind, selector in (("chart", ".picture > svg[tabindex]"), ("film", ".film")):
         for picture in page.query_selector_all(selector):
@@ -182,12 +182,12 @@ def check_pictures(page):
 
 
 def widest(page):
-    """How much of the page lies beyond the right edge of the screen (pixels)."""
+    """Width of the page beyond the right edge of the screen (pixels)."""
     return page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
 
 
 def look(page, how, complaints, on_screen=True):
-    """Every picture is there and can be read; nothing lies beyond the screen."""
+    """Checks that every picture is visible and readable and that nothing extends beyond the screen."""
     pictures = page.query_selector_all(".picture > svg")
     if not pictures:
         complaints.append(f"{how}: no pictures")
@@ -205,13 +205,13 @@ def keep(page, folder, name):
 
 
 def accessible(page, how, complaints):
-    """What axe finds: a program that knows what readers with other senses and hands need."""
+    """Adds the violations found by axe, a checker of accessibility."""
     try:
         from axe_playwright_python.sync_playwright import Axe
     except ImportError:
         print("axe: SKIPPED (no axe-playwright-python)")
         return
-    # It is put into the page, whose policy lets no script in from elsewhere.
+    # axe is injected into the page, whose policy allows no scripts from elsewhere.
     found = Axe().run(page).response["violations"]
     for violation in found:
         places = ", ".join(str(node["target"][0]) for node in violation["nodes"][:3])
@@ -237,8 +237,8 @@ def check(browser, path, folder):
         dark = open_page(browser, address, width, complaints, color_scheme="dark")
         dark.wait_for_timeout(300)
         keep(dark, folder, f"{name}-dark")
-        look(dark, f"{name}, in the dark", complaints)
-        accessible(dark, f"{name}, in the dark", complaints)
+        look(dark, f"{name}, in dark mode", complaints)
+        accessible(dark, f"{name}, in dark mode", complaints)
         plain = open_page(browser, address, width, complaints, java_script_enabled=False)
         keep(plain, folder, f"{name}-without-scripts")
         look(plain, f"{name}, without scripts", complaints)

@@ -3,9 +3,9 @@
 #
 #   tests/clients/page.sh PAGE.html [ENVIRONMENT_FOLDER [PICTURES_FOLDER]]
 #
-# Needs Python 3, Chromium, and, for the first time, a network for the package that drives it; skipped where one of them
-# cannot be had. The package goes into a virtual environment: in ENVIRONMENT_FOLDER, to be used again, or else in a
-# temporary folder.
+# Needs Python 3, Chromium, and, the first time, a network for the package that drives it; skipped if one of them is
+# missing. The package is installed in a virtual environment: in ENVIRONMENT_FOLDER, for reuse, or else in a temporary
+# folder.
 set -euo pipefail
 
 if [[ $# -lt 1 || $# -gt 3 || ! -f $1 ]]; then

@@ -1,14 +1,14 @@
-"""Holds the accelerations of bodies against those of REBOUND.
+"""Compares the accelerations of bodies with those of REBOUND.
 
     python rebound_forces.py STRIPMINE
 
-Needs the package `rebound`; where it is not installed, the check says SKIPPED and exits with 0.
+Needs the package `rebound`; if it is not installed, the check prints SKIPPED and exits with 0.
 
-The program moves a softened Plummer sphere by one step of explicit Euler with dt = 1, from rest where positions do not change: so the
-new velocities are the accelerations, to the last bit that a trajectory has. REBOUND computes those of the same positions with the same
-softening; so does Python, with sums that are rounded once (`math.fsum`), which says whose the difference is. Exits with 1 if one of
-ours is off that by more than 4 units of the last place of the largest, in double precision, or off REBOUND by more than 4 units more
-than REBOUND is off it.
+The program moves a softened Plummer sphere by one step of explicit Euler with dt = 1, from rest, without changing positions. The
+new velocities are then the accelerations, to the last bit of a trajectory. REBOUND computes those of the same positions with the same
+softening. Python computes them with sums rounded once (`math.fsum`), which shows where a difference comes from. Exits with 1 if one of
+ours differs from these sums by more than 4 units of the last place of the largest, in double precision, or from REBOUND by over 4 units more
+than REBOUND differs from the sums.
 """
 
 import math
@@ -17,14 +17,14 @@ import sys
 import tempfile
 from pathlib import Path
 
-# Units of the last place of the largest acceleration.
+# In units of the last place of the largest acceleration.
 ALLOWED = 4.0
 BODIES = 512
 SOFTENING = 0.05
 
 
 def frames(path):
-    """Rows of each frame: id, position, velocity and mass."""
+    """Yields the rows of each frame: id, position, velocity and mass."""
     lines = path.read_text().splitlines()
     at = 0
     while at < len(lines):
@@ -39,7 +39,7 @@ def frames(path):
 
 
 def summed_once(places, masses):
-    """Accelerations whose sums are rounded once."""
+    """Accelerations with exact sums, rounded once."""
     found = []
     for here in places:
         terms = [[], [], []]
@@ -81,7 +81,7 @@ def main(stripmine):
         simulation.softening = SOFTENING
         for _, place, _, mass in first:
             simulation.add(m=mass, x=place[0], y=place[1], z=place[2])
-        # One evaluation of the forces, without a step.
+        # Evaluates the forces once, without a step.
         simulation.integrator = "leapfrog"
         simulation.dt = 1e-300
         simulation.steps(1)
@@ -99,8 +99,8 @@ def main(stripmine):
         worst[engine] = off(ours, expected), off(ours, theirs), off(theirs, expected)
     for engine, (own, apart, rival) in worst.items():
         print(
-            f"{engine}: off the sum rounded once by {own:.2f} units of the last place of the largest, off REBOUND {rebound.__version__} "
-            f"by {apart:.2f}; REBOUND off that sum by {rival:.2f}"
+            f"{engine}: differs from the sum rounded once by {own:.2f} units of the last place of the largest, from REBOUND {rebound.__version__} "
+            f"by {apart:.2f}; REBOUND differs from that sum by {rival:.2f}"
         )
     held = all(own <= ALLOWED and apart <= ALLOWED + rival for own, apart, rival in worst.values())
     return 0 if held else 1

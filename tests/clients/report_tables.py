@@ -2,9 +2,9 @@
 
     python report_tables.py REPORT_FOLDER
 
-Each folder with a `datapackage.json` (Frictionless) names its files and their columns: those must be there, all of them, with the types
-that are named, and no file may be left out. Without pandas the check says SKIPPED and exits with 0; with 1 if a table is not as it is
-described.
+Each folder with a `datapackage.json` (Frictionless) names its files and their columns: each table must have exactly these columns, with the described
+types, and every file must be described. Without pandas the check prints SKIPPED and exits with 0. Exits with 1 if a table differs from its
+description.
 """
 
 import json
@@ -13,7 +13,7 @@ from pathlib import Path
 
 
 def complaints_of(folder, pandas):
-    """What is wrong with the tables of a folder."""
+    """Yields the mistakes in the tables of a folder."""
     package = json.loads((folder / "datapackage.json").read_text())
     described = set()
     for resource in package["resources"]:
@@ -29,7 +29,7 @@ def complaints_of(folder, pandas):
             is_number = pandas.api.types.is_numeric_dtype(table[field["name"]])
             is_empty = table[field["name"]].isna().all()
             if not is_empty and is_number != (field["type"] != "string"):
-                yield f"{file}: {field['name']} is read as {table[field['name']].dtype}, and said to be {field['type']}"
+                yield f"{file}: {field['name']} is read as {table[field['name']].dtype}, described as {field['type']}"
     for file in sorted(folder.glob("*.csv")):
         if file.name not in described:
             yield f"{file} is not described"

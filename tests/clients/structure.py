@@ -1,13 +1,13 @@
-"""Holds what a run sums up of the structure against `freud`, `MDAnalysis` and sums by hand, in boxes of every kind.
+"""Compares the structure functions of runs with `freud`, `MDAnalysis` and naive sums, in boxes of every kind.
 
     python structure.py STRIPMINE
 
-Needs the packages `freud-analysis`, `MDAnalysis`, `gsd` and `numpy`; where one is not installed, the check says SKIPPED and exits with 0.
+Needs the packages `freud-analysis`, `MDAnalysis`, `gsd` and `numpy`; if one is not installed, the check prints SKIPPED and exits with 0.
 
-Each scene writes 64 rows and 64 frames at the same moments, in blocks of two; the second half of the blocks counts. g(r) is held against pairs counted by
-freud over those of an ideal gas found here, psi6 against freud, displacements against MDAnalysis, the rest against sums over the frames. Prints the largest
-difference of each function in each box. Exits with 1 where one differs by more than 1e-9 of its largest value; 1e-4 where freud or GSD
-work in single precision, 5e-3 where a pair may be in the next bin, 2e-2 where an ideal gas between wall discs is found by random numbers.
+Each scene writes 64 rows and 64 frames at the same moments, in blocks of two; the second half of the blocks is sampled. g(r) is compared with pairs counted
+by freud over those of an ideal gas computed here, psi6 with freud, displacements with MDAnalysis, the rest with sums over the frames. Prints the largest
+difference of each function in each box. Exits with 1 if one differs by more than 1e-9 of its largest value; 1e-4 where freud or GSD
+use single precision, 5e-3 where a pair may fall in the next bin, 2e-2 where the ideal gas between wall discs comes from random numbers.
 """
 
 import json
@@ -18,7 +18,7 @@ from pathlib import Path
 
 OPEN = ("vibrating-floor", "hot-floor")  # presets without a ceiling
 LOOKS = 64
-BLOCK = 2  # looks of a block: 64 looks in at most 32 blocks
+BLOCK = 2  # samples of a block: 64 samples in at most 32 blocks
 HARD = {"particles.generate": '"random"', "run.time": 32.0, "run.snapshot_every": 0.5, "run.thermo_every": 0.5}
 BOXES = {
     "square": ("hard-disks", HARD | {"domain.sides": "[20.0, 20.0]", "particles.count": 150}),
@@ -45,7 +45,7 @@ FUNCTIONS = {
 
 
 def mixture():
-    """A scene of 54 small discs and 6 that are twelve times as large, of which none overlap."""
+    """A scene of 54 small discs and 6 discs twelve times as large, without overlaps."""
     import random
 
     random.seed(1)
@@ -69,7 +69,7 @@ def mixture():
 
 
 def frames(path, numpy):
-    """Of each frame: box, periodic sides, and places, velocities, radii and masses of grains and walls."""
+    """Box, periodic sides, and positions, velocities, radii and masses of grains and walls of each frame."""
     lines = path.read_text().splitlines()
     at = 0
     while at < len(lines):
@@ -94,12 +94,12 @@ def frames(path, numpy):
 
 
 class Box:
-    """The frames of a run that count, and naive sums over them."""
+    """The sampled frames of a run, and naive sums over them."""
 
     def __init__(self, folder, numpy, freud, has_open_top):
         self.np, self.freud, self.has_open_top = numpy, freud, has_open_top
         taken = list(frames(folder / "trajectory.xyz", numpy))
-        # The first is the start, and the last moment is there once.
+        # The first frame is the start, and the last moment occurs once.
         assert len(taken) == LOOKS + 1, f"{len(taken)} frames"
         self.all = taken[1:]
         self.counted = self.all[LOOKS // 2 :]
@@ -108,7 +108,7 @@ class Box:
         self.radius, self.mass = first["radius"][self.grains], first["mass"][self.grains]
         self.walls = first["at"][~self.grains], first["radius"][~self.grains]
         self.start = first["at"][self.grains]
-        # What discs above an open top need room for.
+        # The box that discs above an open top need.
         self.room = self.sides.copy()
         if has_open_top:
             self.room[1] = 2 * max(frame["at"][:, 1].max() for frame in taken) + self.sides[1]
@@ -117,7 +117,7 @@ class Box:
         return [frame[name][self.grains] for frame in self.counted]
 
     def shifted(self, places):
-        """As freud has them: around the middle of its box."""
+        """Positions relative to the middle of the box, as in freud."""
         points = self.np.zeros((len(places), 3))
         points[:, :2] = places - self.origin - 0.5 * self.room
         return points
@@ -128,7 +128,7 @@ class Box:
         return box
 
     def ways(self, places):
-        """From each disc to each other one, by the nearest image."""
+        """Vectors from each disc to each other one, by the nearest image."""
         ways = places[None, :, :] - places[:, None, :]
         for axis in range(2):
             if self.periodic[axis]:
@@ -136,7 +136,7 @@ class Box:
         return ways
 
     def ideal(self, edges):
-        """The chance of a pair of an ideal gas to be in each bin, between closed sides and wall discs: by pairs at random."""
+        """Probability that a pair of an ideal gas is in each bin, between closed sides and wall discs: by random pairs."""
         np = self.np
         if all(self.periodic):
             return np.pi * np.diff(edges**2) / self.sides.prod()
@@ -159,7 +159,7 @@ class Box:
                     if self.periodic[axis]:
                         ways[:, :, axis] -= self.sides[axis] * np.round(ways[:, :, axis] / self.sides[axis])
                 inside &= (np.hypot(ways[:, :, 0], ways[:, :, 1]) > sizes[None, :] + radii[:, None]).all(axis=1)
-                # A channel along x: what is beyond its walls is not reached.
+                # In a channel along x, positions beyond the walls cannot be reached.
                 low, high = self.start[:, 1].min(), self.start[:, 1].max()
                 below, above = places[places[:, 1] < low, 1], places[places[:, 1] > high, 1]
                 inside &= (at[:, 1] > below.max()) & (at[:, 1] < above.min())
@@ -173,13 +173,13 @@ class Box:
         edges = np.arange(len(ours) + 1) * width
         counts = np.zeros(len(ours))
         for places in self.of_grains("at"):
-            # Below an open top a bin has so few pairs that one, moved by freud's single precision, is two percent.
+            # Below an open top a bin has so few pairs that one pair, moved by freud's single precision, is two percent.
             if edges[-1] < 0.499 * min(self.sides) and not self.has_open_top:
                 rdf = self.freud.density.RDF(len(ours), edges[-1])
                 rdf.compute((self.freud_box(), self.freud_box().wrap(self.shifted(places))))
                 counts += rdf.bin_counts / 2
             else:
-                # Freud does not go as far as half a side.
+                # freud's range ends below half a side.
                 distances = np.hypot(*np.moveaxis(self.ways(places), 2, 0))
                 counts += np.histogram(distances[np.triu_indices(len(places), 1)], edges)[0]
         pairs = len(self.radius) * (len(self.radius) - 1) / 2
@@ -187,14 +187,14 @@ class Box:
             return self.above_floor(ours, counts, edges)
         ideal = self.ideal(edges)
         if not all(self.periodic):
-            # Bins of a tenth of a diameter, for the ideal gas is one of random numbers.
+            # Bins of a tenth of a diameter, since the ideal gas is computed from random numbers.
             join = lambda values: values[: len(values) // 5 * 5].reshape(-1, 5).sum(axis=1)
             areas = np.diff(edges**2)
             return join(ours[:, 1] * areas) / join(areas), join(counts) / (len(self.counted) * pairs * join(ideal))
         return ours[:, 1], counts / (len(self.counted) * pairs * ideal)
 
     def above_floor(self, ours, counts, edges):
-        """Over discs that stay at their heights and are anywhere along the floor: the density of differences of two uniform places."""
+        """Pair density of discs with their own heights and uniform positions along the floor: that of the difference of two uniform numbers."""
         np, pairs = self.np, self.np.zeros(len(ours))
         upper = np.triu_indices(len(self.radius), 1)
         rooms = self.sides[0] - 2 * self.radius * (not self.periodic[0])
@@ -203,7 +203,7 @@ class Box:
         def nearer(along):
             if self.periodic[0]:
                 return 2 * along / self.sides[0]
-            # Places of the first that the second reaches, in the middle and at both ends.
+            # Positions of the first disc that the second reaches, in the middle and at both ends.
             steps = (np.arange(64) + 0.5) / 64
             ways = along[:, None] * steps[None, :]
             overlap = np.clip(0.5 * (one + other)[:, None] - ways, 0, np.minimum(one, other)[:, None])
@@ -240,7 +240,7 @@ class Box:
                 points = self.freud_box().wrap(self.shifted(places))
                 order = hexatic.compute((self.freud_box(), points), neighbors={"num_neighbors": 6}).particle_order
             else:
-                # In narrow boxes freud takes several images of a disc.
+                # In narrow boxes freud counts several images of a disc.
                 distances = np.hypot(ways[:, :, 0], ways[:, :, 1])
                 nearest = np.argsort(distances, axis=1)[:, 1 : count + 1]
                 angles = np.arctan2(ways[:, :, 1], ways[:, :, 0])
@@ -264,7 +264,7 @@ class Box:
             top, bottom = np.zeros(100), np.zeros(100)
             for frame in self.counted[BLOCK * block : BLOCK * (block + 1)]:
                 at, v = frame["at"][self.grains], frame["v"][self.grains]
-                # What is above an open top is in no slice.
+                # Discs above an open top are in no slice.
                 slices = np.minimum((at[:, axis] - self.origin[axis]) / width, 100 if is_high else 99).astype(int)
                 sums = lambda weights: np.bincount(slices, weights, minlength=101)[:100]
                 count, mass = sums(np.ones(len(at))), sums(self.mass)
@@ -285,7 +285,7 @@ class Box:
         return ours[:, 1], (tops.sum(axis=0)[slices] / bottoms.sum(axis=0)[slices])
 
     def over_lags(self, ours, of):
-        """Means over the blocks of the second half but the last: lags of 0 to the length of a block begin in it."""
+        """Means over the blocks of the second half except the last: lags from 0 to the length of a block begin in a block."""
         np, whole = self.np, LOOKS // BLOCK - 1
         found = []
         for lag in range(len(ours)):
@@ -322,7 +322,7 @@ class Box:
 
 
 def differences(stripmine, scene, settings, numpy, freud, folder):
-    """The largest difference of each function over its largest value."""
+    """Yields the largest difference of each function, relative to its largest value."""
     if scene.endswith(".toml"):
         (folder / scene).write_text(mixture())
         scene = str(folder / scene)

@@ -1,5 +1,5 @@
-/* Lets one call that writes fail: the FAULT_AT-th of this process, with the error FAULT_ERROR; FAULT_STICKS: and every one after
-   it, as on a full disk. FAULT_ERROR 0 is a short write. Standard streams are left alone. */
+/* Makes one writing call fail: the FAULT_AT-th of this process, with the error FAULT_ERROR; with FAULT_STICKS every later one
+   too, as on a full disk. FAULT_ERROR 0 is a short write. Standard streams are not affected. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>

@@ -1,4 +1,4 @@
-//! Free flight of discs: the smallest method there can be. One entry, and every verb knows it.
+//! Free flight of discs: the smallest possible method, whose single entry is all that the verbs need.
 
 use serde_json::{Map, Value, json};
 use std::path::Path;
@@ -53,7 +53,7 @@ pub static ENTRY: Entry = Entry {
     trials: Some(&TRIALS),
 };
 
-/// The one way there is: steps of any length end in the same place.
+/// The only configuration: steps of any length end in the same state.
 static TRIALS: Trials = Trials {
     step: &DT,
     references: [&[("integrator", "drift")], &[("integrator", "drift")]],
@@ -180,7 +180,7 @@ impl Startable for Flight {
     }
 }
 
-/// Discs under way.
+/// State of the flying discs.
 struct Flying {
     domain: Domain,
     elapsed: Elapsed,
@@ -209,7 +209,7 @@ impl SteppedState for Flying {
     }
 }
 
-/// The law of free flight. Nothing is kept beside the discs.
+/// The law of free flight; it has no state except the discs.
 struct Free;
 
 impl Stepwise for Free {

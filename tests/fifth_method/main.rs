@@ -1,7 +1,7 @@
-//! A method is one folder and one line of a list: a method that only this test knows is a scene's, runs, goes on, is
-//! observed, measured and documented by the verbs as they are.
+//! A method is one folder and one line of a list: the unchanged verbs read the scenes of a method that only this test contains,
+//! and run, resume, observe, measure and document it.
 //!
-//! The test is its own command: with the environment variable set it carries out its arguments with that list of methods.
+//! The test is its own command: with an environment variable set, it carries out its arguments with that list of methods.
 
 #[path = "../promises/files.rs"]
 mod files;
@@ -113,7 +113,7 @@ fn it_is_studied() {
     let study = ["chart", "work-precision", "drift", "--out", &out, "--budget", "1", "--json"];
     let found = data(&study);
     let runs = found["runs"].as_array().expect("there are runs");
-    // Free flight is exact with any step, but for rounding.
+    // Free flight is exact for any step, except for rounding.
     let error = |run: &serde_json::Value| run["position_rms"].as_f64();
     assert!(
         runs.len() > 4 && runs.iter().all(|run| error(run).is_some_and(|error| error < 1e-9)),

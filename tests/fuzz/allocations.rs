@@ -1,4 +1,4 @@
-//! What a piece of work takes from the allocator: the same on every machine, unlike the time.
+//! Bytes requested from the allocator: unlike the time, the same on every machine.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -10,24 +10,24 @@ thread_local! {
 struct Counting;
 
 fn count(bytes: usize) {
-    // A thread that ends has no counter any more.
+    // A thread that ends no longer has a counter.
     let _ = TAKEN.try_with(|taken| taken.set(taken.get() + bytes as u64));
 }
 
-// SAFETY: the system's allocator does all of it.
+// SAFETY: every call is forwarded to the system's allocator.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         count(layout.size());
-        // SAFETY: handed on.
+        // SAFETY: forwarded.
         unsafe { System.alloc(layout) }
     }
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        // SAFETY: handed on.
+        // SAFETY: forwarded.
         unsafe { System.dealloc(pointer, layout) }
     }
     unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
         count(size.saturating_sub(layout.size()));
-        // SAFETY: handed on.
+        // SAFETY: forwarded.
         unsafe { System.realloc(pointer, layout, size) }
     }
 }
@@ -35,7 +35,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Bytes that this thread has asked for in all while it worked.
+/// Total number of bytes that this thread requested during the work.
 pub(crate) fn counted(work: impl FnOnce()) -> u64 {
     let before = TAKEN.get();
     work();

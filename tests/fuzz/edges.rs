@@ -1,4 +1,4 @@
-//! Every numeric key of every method with values at the ends of the number format: the scene is refused, or its run comes to an end.
+//! Every numeric key of every method with values at the ends of the number format: the scene is refused, or its run ends.
 
 use std::sync::atomic::AtomicBool;
 use stripmine_physics::method::{Clock, Every, METHODS, Prepared, Purpose, Simulation, Until, load};
@@ -19,7 +19,7 @@ const SCENES: &[(&str, &[&str])] = &[
 
 const NUMBERS: [&str; 6] = ["0", "-1", "1e-300", "1e300", "nan", "inf"];
 
-/// Most collisions, rows, snapshots and checkpoints of a run that ends, with room for estimates of the start.
+/// Largest number of collisions, rows, snapshots or checkpoints of a run that ends, with a margin for estimates from the start.
 const MOST: f64 = 1e18;
 /// Memory (bytes) up to which a case is run.
 const MEMORY: u64 = 1 << 30;
@@ -32,7 +32,7 @@ fn texts(key: &Key) -> Vec<String> {
     }
 }
 
-/// Runs a scene for two rows; whether it took all of them.
+/// Runs a scene for two rows; returns true if it completed both.
 fn two_rows(prepared: &Prepared, what: &str) -> bool {
     let Ok(mut simulation) = prepared.start(Purpose::Run) else { return false };
     let takes = |simulation: &mut dyn Simulation| {
@@ -46,7 +46,7 @@ fn two_rows(prepared: &Prepared, what: &str) -> bool {
     all
 }
 
-/// Holds what is left of a run against what any machine can do, as far as what was done so far tells.
+/// Checks that any machine can finish the rest of a run, as far as its first rows tell.
 fn comes_to_an_end(prepared: &Prepared, now: Clock, what: &str) {
     let schedule = prepared.schedule;
     let time = match schedule.until {
@@ -95,7 +95,7 @@ fn keys_at_the_ends_of_the_number_format_are_refused_or_end() {
     assert!(refused > 500 && ran > 200, "{refused} refused, {ran} ran");
 }
 
-/// The sentence names the key, its value and the bound.
+/// The message names the key, its value and the bound.
 #[test]
 fn runs_without_an_end_are_refused_with_the_bound() {
     for (preset, sets, words) in [

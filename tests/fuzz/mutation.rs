@@ -3,7 +3,7 @@
 use proptest::collection::vec;
 use proptest::prelude::{Strategy, prop_oneof};
 
-/// A change. Places are parts of the whole, so that they mean something in any input.
+/// Change of an input. Positions are fractions of the length, so that they are valid in any input.
 #[derive(Clone, Debug)]
 pub(crate) enum Mutation {
     Flip {
@@ -21,12 +21,12 @@ pub(crate) enum Mutation {
         at: u16,
         what: usize,
     },
-    /// In place of the number that stands there or behind.
+    /// Replaces the number at or after a position.
     Number {
         at: u16,
         what: usize,
     },
-    /// In place of the number its product with another.
+    /// Replaces a number by its product with a factor.
     Scale {
         at: u16,
         by: usize,
@@ -147,7 +147,7 @@ pub(crate) fn some() -> impl Strategy<Value = Vec<Mutation>> {
     vec(any(), 1..6)
 }
 
-/// One to three changes after most of which an input still is one.
+/// One to three changes that leave most inputs valid.
 pub(crate) fn gentle() -> impl Strategy<Value = Vec<Mutation>> {
     let at = || proptest::prelude::any::<u16>();
     let scale = || (at(), 0..FACTORS.len()).prop_map(|(at, by)| Mutation::Scale { at, by });

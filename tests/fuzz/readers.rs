@@ -34,7 +34,7 @@ fn scenes_are_read_or_refused() {
     fuzz(&scenes(), cases(3000), 64 * MEGABYTE, read_scene);
 }
 
-/// Overrides are texts of their own: every key with what stands in other places.
+/// Overrides: every key with mutated values.
 #[test]
 fn overrides_are_read_or_refused() {
     let seeds: Vec<Vec<u8>> =
@@ -60,13 +60,13 @@ fn frames_are_read_or_refused() {
             let mut written = Vec::new();
             extxyz::write(&frame, &mut written).unwrap();
             let again = Frames::new(Cursor::new(written), "again.xyz").next().unwrap().unwrap();
-            // Ids that were raised are written as they are now.
+            // Raised ids are written as they are now.
             assert_eq!(again, extxyz::Frame { has_raised_ids: false, ..frame });
         }
     });
 }
 
-/// A trajectory with an index: damage to its heading and index, and to its chunks.
+/// A trajectory with an index: damage to its header, index and chunks.
 #[test]
 fn trajectories_are_read_or_refused() {
     let folder = tempfile::tempdir().unwrap();
@@ -106,7 +106,7 @@ fn machine_files_are_read_or_refused() {
     });
 }
 
-/// A host model with few entries, so that mutations meet every kind of entry.
+/// A host model with few entries, so that mutations hit every kind of entry.
 fn small_host() -> Vec<u8> {
     let mut model = default_model().unwrap();
     model.rates.retain(|name, _| name == "fast");
@@ -119,7 +119,7 @@ fn host_files_are_read_or_refused() {
     fuzz(&seeds, cases(500), 256 * MEGABYTE, |bytes| {
         match HostModel::parse("fuzz.toml", &String::from_utf8_lossy(bytes)) {
             Ok(model) => {
-                // Numbers are written with few digits: what is written once is read again as it is.
+                // Numbers are written with limited precision: the second round trip is exact.
                 let written = HostModel::parse("again.toml", &model.to_toml().unwrap()).unwrap();
                 assert_eq!(HostModel::parse("again.toml", &written.to_toml().unwrap()).unwrap(), written);
             }
@@ -148,7 +148,7 @@ fn checkpoint() -> Vec<u8> {
     std::fs::read(path).unwrap()
 }
 
-/// Sets length and checksums right, as far as there are any: what a checksum would catch is not all that can be wrong.
+/// Corrects length and checksums where present, so that mutations reach the checks behind the checksums.
 fn sealed(bytes: &[u8]) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
     if bytes.len() < 28 {

@@ -1,4 +1,4 @@
-//! Mutated scenes that are checked, and run for a few steps.
+//! Mutated scenes that are checked and run for a few steps.
 
 use crate::mutation::gentle;
 use crate::readers::scenes;
@@ -7,7 +7,7 @@ use std::cell::Cell;
 use stripmine_physics::method::lattice_md::{Document, Scene, assemble, memory};
 use stripmine_physics::scene::{Amount, Grains, Lining, Start};
 
-/// Whether a scene has few discs and few cells, so that a case takes no time.
+/// True if a scene has few discs and few cells, so that a case takes no noticeable time.
 fn is_small(scene: &Scene) -> bool {
     const MOST: f64 = 300.0;
     let sides = scene.domain.sides.unwrap_or([1.0; 2]);
@@ -23,7 +23,7 @@ fn is_small(scene: &Scene) -> bool {
         Start::Hexagonal { count, .. } => *count as f64 <= MOST,
         Start::Mesh { amount, grains, .. } => few(amount, grains),
         Start::Random { amount, grains } => few(amount, grains),
-        // Growing takes its time.
+        // Compression takes too long.
         Start::Compressed { .. } => false,
         Start::Pipe { amount, grains, lining, .. } | Start::Box { amount, grains, lining, .. } => {
             few(amount, grains) && lined(lining)
@@ -31,7 +31,7 @@ fn is_small(scene: &Scene) -> bool {
     }
 }
 
-/// Runs the scene if it is one; whether it took all its steps.
+/// Runs the text if it is a valid scene; returns true if it completed all its steps.
 fn run(bytes: &[u8]) -> bool {
     let text = String::from_utf8_lossy(bytes);
     let Ok(document) = Document::parse("scene.toml", &text, &[]) else { return false };
@@ -53,7 +53,7 @@ fn run(bytes: &[u8]) -> bool {
     true
 }
 
-/// Small scenes of every method: presets are too large to be run thousands of times.
+/// Small scenes of every method; presets are too large for thousands of runs.
 fn small_scenes() -> Vec<Vec<u8>> {
     let mut scenes = Vec::new();
     for preset in ["pipe-small", "shaken-box", "dense-gas", "two-discs", "bench"] {
@@ -80,6 +80,6 @@ fn small_scenes_are_run_or_refused() {
     let (cases, ran) = (cases(300), Cell::new(0));
     fuzz_with(gentle(), &seeds, cases, 1 << 32, |bytes| ran.set(ran.get() + u32::from(run(bytes))));
     println!("{} of {cases} took all their steps", ran.get());
-    // Were they all refused, nothing would be tried.
+    // If all were refused, nothing would be tested.
     assert!(ran.get() > cases / 4);
 }

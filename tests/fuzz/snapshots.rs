@@ -1,12 +1,12 @@
-//! Snapshots of every method with one column or counter put in place of another: refused, or gone on with as a run that ends.
+//! Snapshots of every method with one column or counter replaced by another: refused, or resumed as a run that ends.
 //!
-//! A checkpoint whose checksums are right may still say anything; what it says is all that a simulation takes up.
+//! A checkpoint with valid checksums may still contain anything, and a simulation takes its whole state from it.
 
 use std::sync::atomic::AtomicBool;
 use stripmine_physics::io::checkpoint::{Column, Counter};
 use stripmine_physics::method::{Clock, METHODS, Prepared, Purpose, Simulation, Snapshot, Until, load};
 
-/// Scenes that are small, of every method and every way to run it: preset, overrides, and how far they go.
+/// Small scenes of every method and every engine: preset and overrides.
 const SCENES: &[(&str, &[&str])] = &[
     ("pipe-small", &["machine.engine=fast", "search.by=lattice", "particles.count=20"]),
     (
@@ -30,14 +30,14 @@ const SCENES: &[(&str, &[&str])] = &[
 
 /// Steps before the snapshot, and after it.
 const STEPS: u64 = 12;
-/// Events before it, and after it.
+/// Events before the snapshot, and after it.
 const EVENTS: u64 = 300;
 
-/// Advances by some steps or events, whatever the method has.
+/// Advances by some steps or events, depending on the method.
 fn advance(simulation: &mut dyn Simulation) -> bool {
     let clock = simulation.clock();
     let until = [Until::Steps(clock.steps + STEPS), Until::Events(clock.events + EVENTS)];
-    // A method of steps has no events and the other way round.
+    // A method with steps has no events, and vice versa.
     simulation.advance(&until, &AtomicBool::new(false)).is_ok()
 }
 
@@ -48,7 +48,7 @@ fn started(prepared: &Prepared) -> Box<dyn Simulation> {
 const REALS: [f64; 9] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, -1e300, 5e-324, 1e9, -1.0, 0.5];
 const WHOLES: [u64; 5] = [u64::MAX, u64::MAX / 2, 1 << 53, u32::MAX as u64, 0];
 
-/// What may stand in the place of a column: one value or all of them another, fewer, more, none, of another type.
+/// Replacements of a column: one or all values changed, fewer values, more, none, or another type.
 fn columns(column: &Column) -> Vec<Column> {
     fn of<T: Copy>(values: &[T], hostile: &[T], made: impl Fn(Vec<T>) -> Column) -> Vec<Column> {
         let mut all = vec![made(vec![]), made(values[..values.len() / 2].to_vec())];
@@ -85,7 +85,7 @@ fn clocks(clock: Clock) -> Vec<Clock> {
     times.into_iter().chain(steps).chain(events).filter(|it| *it != clock).collect()
 }
 
-/// Takes up a snapshot and goes on; whether it was taken up.
+/// Restores a snapshot and continues; returns true if the snapshot was accepted.
 fn taken_up(prepared: &Prepared, clock: Clock, snapshot: Snapshot) -> bool {
     let mut simulation = started(prepared);
     if let Err(why) = simulation.restore(clock, snapshot) {
@@ -120,7 +120,7 @@ fn forged_snapshots_are_refused_or_gone_on_with() {
             }
             let mut without = whole();
             without.columns.remove(at);
-            assert!(!taken_up(prepared, clock, without), "{what}: without {name} it is taken up");
+            assert!(!taken_up(prepared, clock, without), "{what}: accepted without {name}");
         }
         for name in whole().counters.into_keys() {
             println!("{what}: {name}");
@@ -131,7 +131,7 @@ fn forged_snapshots_are_refused_or_gone_on_with() {
             }
             let mut without = whole();
             without.counters.remove(&name);
-            assert!(!taken_up(prepared, clock, without), "{what}: without {name} it is taken up");
+            assert!(!taken_up(prepared, clock, without), "{what}: accepted without {name}");
         }
         for forged in clocks(clock) {
             println!("{what}: {forged:?}");

@@ -1,4 +1,4 @@
-//! Sums that every event adds to: temperature, compressibility and energy against values worked out elsewhere.
+//! Sums over events: temperature, compressibility and energy compared with independently computed values.
 
 use super::{column, listed, run, said, stripmine};
 use serde_json::Value;
@@ -10,15 +10,15 @@ fn average<'s>(summary: &'s Value, name: &str) -> &'s Value {
     all.iter().find(|it| it["quantity"] == name).unwrap()
 }
 
-/// The closing words of a run.
+/// Closing words of a run.
 fn words(scene: &str, out: &Path, more: &[&str]) -> String {
     let output = stripmine(&[&["run", scene, "--quiet", "--out", out.to_str().unwrap()], more].concat());
     assert!(output.status.success(), "{}", said(&output));
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// Z of a gas that cools to about a half within a row, against sums over rows eighty times as close, with the temperature between two of them
-/// as their mean; between the times 1 and 5 it is 1.77 (theory: 1 + (1 + e)/2 (Z of elastic discs − 1) = 1.75).
+/// Z of a gas that cools to about a half within a row, compared with sums over rows eighty times as close, whose temperature is the mean of
+/// both ends; between the times 1 and 5 it is 1.77 (theory: 1 + (1 + e)/2 (Z of elastic discs − 1) = 1.75).
 #[test]
 fn rows_of_a_cooling_gas_are_means_over_their_time() {
     let folder = tempfile::tempdir().unwrap();
@@ -47,13 +47,13 @@ fn rows_of_a_cooling_gas_are_means_over_their_time() {
     }
     let [early, _] = of(20, 100);
     assert!((early - 1.77).abs() < 0.05, "{early}");
-    // The closing words are of all the time.
+    // The closing words cover the whole run.
     let said = words("cooling-gas", &folder.path().join("words"), &["--set", "run.time=8"]);
     let z = said.split("since the start: compressibility ").nth(1).unwrap().split(',').next().unwrap();
     assert!((z.parse::<f64>().unwrap() - of(0, 160)[0]).abs() < 2e-3, "{said}");
 }
 
-/// Between walls nothing of the momentum stays: the kinetic energy is N kT. The values are sums by hand over the velocities.
+/// Between walls no component of the momentum is conserved: the kinetic energy is N kT. Expected values are sums by hand over the velocities.
 #[test]
 fn between_walls_all_degrees_of_freedom_count() {
     let folder = tempfile::tempdir().unwrap();
@@ -86,7 +86,7 @@ fn between_walls_all_degrees_of_freedom_count() {
     }
 }
 
-/// One disc over a wall of kT = 2 has that temperature, along both axes: to four standard errors. In a periodic box it has none.
+/// One disc over a wall of kT = 2 has that temperature along both axes, to four standard errors. In a periodic box it has none.
 #[test]
 fn a_single_disc_has_a_temperature_where_something_is_thermal() {
     let folder = tempfile::tempdir().unwrap();
@@ -101,7 +101,7 @@ fn a_single_disc_has_a_temperature_where_something_is_thermal() {
     let found = average(&summary, "temperature");
     let [mean, bar] = ["mean", "bar"].map(|name| found[name].as_f64().unwrap_or(f64::NAN));
     assert!((mean - 2.0).abs() < 2.0 * bar && bar < 0.4, "{found}");
-    // By hand at the start: (1 + 0.09)/2, though the box is periodic along x.
+    // By hand at the start: (1 + 0.09)/2, although the box is periodic along x.
     assert_eq!(column(&folder.path().join("hot"), "temperature")[0], 0.545);
     assert!(column(&folder.path().join("hot"), "compressibility").iter().all(|&z| z == 1.0));
     let scene =
@@ -113,7 +113,7 @@ fn a_single_disc_has_a_temperature_where_something_is_thermal() {
     assert!(column(&out, "compressibility").iter().all(|&z| z == 1.0));
 }
 
-/// Error of the energy where it is kept, lost in collisions, given by a hot and by a moving floor, and under gravity: rounding.
+/// Error of the energy is rounding if energy is conserved, lost in collisions, supplied by a hot or a moving floor, and under gravity.
 #[test]
 fn the_error_of_the_energy_is_rounding_in_every_scene() {
     let folder = tempfile::tempdir().unwrap();
@@ -140,12 +140,12 @@ fn the_error_of_the_energy_is_rounding_in_every_scene() {
         let out = folder.path().join(name);
         let summary = run(&scene, &out, &[]);
         let error = column(&out, "energy_error");
-        // Rounding of 2000 events; the larger energies of a hot floor are tens of times those at the start.
+        // Rounding of 2000 events; a hot floor gives energies tens of times those at the start.
         assert!(error.iter().all(|error| error.abs() < 1e-10), "{name}: {error:?}");
         let kept = average(&summary, "energy_error");
         assert!(kept["farthest"].as_f64().unwrap() < 1e-10, "{name}: {kept}");
         if name == "elastic" {
-            // By hand: m g y of both, and half of v².
+            // By hand: m g y of both discs, and half of v².
             assert!((column(&out, "gravitational")[0] - 9.8).abs() < 1e-14);
             assert!((column(&out, "kinetic")[0] - 0.19).abs() < 1e-14);
             assert!(column(&out, "work").iter().all(|&work| work == 0.0));
@@ -159,7 +159,7 @@ fn the_error_of_the_energy_is_rounding_in_every_scene() {
     }
 }
 
-/// Two discs of mass 1 head on at speed 1 with e = 1/2: 1 − e² of the energy of 1 is lost.
+/// Two discs of mass 1 collide head on at speed 1 with e = 1/2 and lose 1 − e² of the energy of 1.
 #[test]
 fn work_is_what_collisions_take() {
     let folder = tempfile::tempdir().unwrap();
@@ -175,13 +175,13 @@ fn work_is_what_collisions_take() {
     assert_eq!(column(&out, "work"), [0.0, 0.0, -0.75, -0.75]);
     assert_eq!(column(&out, "kinetic"), [1.0, 1.0, 0.25, 0.25]);
     assert_eq!(column(&out, "energy_error"), [0.0; 4]);
-    // Up to the collision at 1.5 kT is 1 (one of two discs moves along x about the centre), then 1/4; the virial is 1.5 μ v d = 1.5.
+    // kT is 1 up to the collision at 1.5 (one of two discs moves along x about the centre), then 1/4; the virial is 1.5 μ v d = 1.5.
     let z = column(&out, "compressibility");
     assert!((z[2] - (1.0 + 1.5 / (2.0 * 2.0 * (0.5 * 1.0 + 0.5 * 0.25)))).abs() < 1e-14, "{z:?}");
 }
 
-/// Discs of a crystal that overlap by the digits of their positions are made smaller by as much, with a word; what overlaps deeper is refused with
-/// the number.
+/// Discs of a crystal that overlap by the precision of their positions are shrunk by as much, with a note; deeper overlaps are refused with
+/// their size.
 #[test]
 fn overlaps_of_the_last_digit_are_taken() {
     let folder = tempfile::tempdir().unwrap();
@@ -198,7 +198,7 @@ fn overlaps_of_the_last_digit_are_taken() {
     };
     let begin = |by: f64| begin_at(by, 0.0);
     let check = |scene: &str| stripmine(&["scene", "check", scene]);
-    // Beyond a closed side by 4e-9 of a radius of 1/2.
+    // Beyond a closed side by 4e-9, for a radius of 1/2.
     let checked = check(&begin_at(0.0, 4e-9));
     let text = said(&checked) + &String::from_utf8_lossy(&checked.stdout);
     assert!(checked.status.success() && text.contains("in 1 places, by up to 8e-9 of their radii"), "{text}");
@@ -226,8 +226,8 @@ fn overlaps_of_the_last_digit_are_taken() {
     }
 }
 
-/// Discs over a hot wall, whose temperature comes and goes: a mean over rows of 1/2, of 5 or of 30 is that of all impulses over the integral of the
-/// temperature, here by rows a tenth apart. The mean of 3000 independent times is known to 0.3 %, the four differ by far less.
+/// Over a hot wall the temperature fluctuates. Mean compressibilities over rows of 1/2, 5 or 30 equal all impulses over the integral of the
+/// temperature, here from rows a tenth apart. The mean of 3000 independent times is known to 0.3 %; the four agree far better.
 #[test]
 fn the_mean_compressibility_does_not_depend_on_the_rows() {
     let folder = tempfile::tempdir().unwrap();
@@ -249,7 +249,7 @@ fn the_mean_compressibility_does_not_depend_on_the_rows() {
     let expected = 1.0 + virial[virial.len() - 1] / (2.0 * 24.0 * integral);
     let varies =
         temperature.iter().map(|kt| (kt / (integral / 3000.0) - 1.0).powi(2)).sum::<f64>() / 30_001.0;
-    // kT of 48 degrees of freedom of a gas at one temperature varies by 2/48.
+    // kT of 48 degrees of freedom of a gas at one temperature has a variance of 2/48.
     assert!((0.03..0.06).contains(&varies), "{varies}");
     for every in ["0.5", "5", "30"] {
         let z = &rows(every)[2][1..];

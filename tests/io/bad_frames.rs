@@ -1,4 +1,4 @@
-//! Extended XYZ that is wrong: each text carries the places and the words of its error.
+//! Invalid extended XYZ: each text with the whole error, including its location.
 
 use crate::{frame, text};
 use std::fs;
@@ -8,7 +8,7 @@ const LATTICE: &str = r#"Lattice="4 0 0 0 5 0 0 0 1""#;
 const PROPERTIES: &str = "Properties=species:S:1:pos:R:3:id:I:1:velo:R:3:radius:R:1:mass:R:1:omega:R:3";
 const ROW: &str = "Si 1 2 0 1 0 0 0 0.5 1 0 0 0";
 
-/// `LATTICE`, `PROPERTIES` and `ROW` stand for those above; the second is the whole error.
+/// Pairs of a text and its whole error; `LATTICE`, `PROPERTIES` and `ROW` stand for the constants above.
 const CASES: &[(&str, &str)] = &[
     // No frames.
     ("", "bad.xyz:1: the file is empty; expected the number of discs"),
@@ -199,7 +199,7 @@ fn every_mistake_is_named_with_its_place() {
     }
 }
 
-/// The first frame is right, but the line after it begins none.
+/// The first frame is valid, but the line after it does not begin a frame.
 #[test]
 fn a_count_that_is_too_small_is_seen_with_the_first_frame_too() {
     let error = error_of(write_out("1\nLATTICE PROPERTIES\nROW\nROW\n").as_bytes(), Which::First);
@@ -244,7 +244,7 @@ fn a_missing_file_is_a_matter_of_the_system() {
     assert!(error.to_string().starts_with("/no/such/file.xyz: cannot be read: "));
 }
 
-/// Formats that are no text are known by their first bytes.
+/// Binary formats are recognised by their first bytes.
 #[test]
 fn binary_formats_are_named() {
     for (bytes, name) in [

@@ -1,4 +1,4 @@
-//! Checkpoints that are whole: every bit comes back, replacing one is all or nothing.
+//! Intact checkpoints: every bit is read back, and replacing one is all or nothing.
 
 use std::fs;
 use std::path::Path;
@@ -6,7 +6,7 @@ use stripmine_physics::io::checkpoint::{
     Checkpoint, Column, Counter, Kept, Latest, NAME, WriteError, previous, read_latest,
 };
 
-/// Small, with every kind of content.
+/// A small checkpoint with every kind of content.
 pub fn checkpoint(step: u64) -> Checkpoint {
     let texts = |pairs: &[(&str, &str)]| {
         pairs.iter().map(|(name, text)| ((*name).to_owned(), (*text).to_owned())).collect()
@@ -58,7 +58,7 @@ fn everything_comes_back() {
     assert!(read.column("y").is_none());
 }
 
-/// Signalling and other NaNs, negative zero, denormals: bits, not values.
+/// Signalling and other NaNs, negative zero, denormals: bits, not values, are kept.
 #[test]
 fn all_bits_of_floats_come_back() {
     let wide = [0x7ff0_0000_0000_0001, 0xfff8_dead_beef_cafe, 1 << 63, 1, u64::MAX, 0x7ff0_0000_0000_0000];
@@ -102,7 +102,7 @@ fn replacing_keeps_the_one_before_and_nothing_else() {
     }
 }
 
-/// Killed after the newest got its second name, before the new one took its place.
+/// A kill after the newest checkpoint got its second name and before the new one replaced it.
 #[test]
 fn a_kill_between_the_two_renamings_loses_nothing() {
     let folder = tempfile::tempdir().unwrap();
@@ -115,7 +115,7 @@ fn a_kill_between_the_two_renamings_loses_nothing() {
     assert_eq!(Checkpoint::read(previous(&path)).unwrap().step, 1);
 }
 
-/// What others have put at names that could be foreseen is neither followed nor written over.
+/// Foreign files at predictable names are neither followed nor overwritten.
 #[cfg(unix)]
 #[test]
 fn no_link_is_followed() {
@@ -138,7 +138,7 @@ fn a_write_that_fails_leaves_the_old_one() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(NAME);
     checkpoint(1).write_atomically(&path).unwrap();
-    // A folder in the place of the older one.
+    // A folder at the name of the older one.
     fs::create_dir(previous(&path)).unwrap();
     let error = checkpoint(2).write_atomically(&path).unwrap_err();
     assert!(error.to_string().contains("run.checkpoint: keeping the checkpoint"), "{error}");

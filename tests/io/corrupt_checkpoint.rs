@@ -1,11 +1,11 @@
-//! Checkpoints that are not whole: each is refused, with what is wrong and where.
+//! Damaged checkpoints: each is refused, and the error names the fault and its byte.
 
 use crate::Random;
 use crate::checkpoint::{bytes, checkpoint};
 use std::fs;
 use stripmine_physics::io::checkpoint::{Checkpoint, CheckpointError, Fault};
 
-/// Reads bytes as the file of a checkpoint.
+/// Reads bytes as a checkpoint file.
 struct Reader(tempfile::TempDir);
 
 impl Reader {
@@ -25,7 +25,7 @@ impl Reader {
 
 const HEADER: usize = 28;
 
-/// Where sections begin.
+/// Offsets of the sections.
 fn sections(bytes: &[u8]) -> Vec<usize> {
     let mut starts = vec![HEADER];
     while let Some(&start) = starts.last().filter(|&&start| start < bytes.len()) {
@@ -36,7 +36,7 @@ fn sections(bytes: &[u8]) -> Vec<usize> {
     starts
 }
 
-/// Makes all checksums right again, as a program with a mistake in it would.
+/// Recomputes all checksums, as a faulty program would write them.
 fn with_right_checksums(mut bytes: Vec<u8>, starts: &[usize]) -> Vec<u8> {
     let mut hasher = crc32fast::Hasher::new();
     let mut from = 0;
@@ -48,7 +48,7 @@ fn with_right_checksums(mut bytes: Vec<u8>, starts: &[usize]) -> Vec<u8> {
     bytes
 }
 
-/// Overwrites bytes and makes the checksums right.
+/// Overwrites bytes and recomputes the checksums.
 fn forged(at: usize, new: &[u8]) -> Vec<u8> {
     let mut bytes = bytes(&checkpoint(3));
     let starts = sections(&bytes);
@@ -117,21 +117,21 @@ fn other_files_and_other_versions_are_told_apart() {
     assert!(error.to_string().contains("has format version 2, but this program reads version 1 (at byte 8)"));
 }
 
-/// Lengths that no file can have, with checksums that are right: refused before memory is asked for.
+/// Impossible lengths with valid checksums are refused before memory is allocated.
 #[test]
 fn absurd_lengths_are_refused() {
     let (whole, reader) = (bytes(&checkpoint(3)), Reader::new());
     let starts = sections(&whole);
     for absurd in [u64::MAX - 1, 1 << 62, 1 << 40, whole.len() as u64] {
         let new = absurd.to_le_bytes();
-        // Of the state, of its scene, how many entries its origin has; of a column's name, how many values.
+        // Lengths of the state, of its scene, number of entries of its origin; of a column's name, number of its values.
         let (state, column) = (starts[0], starts[1]);
         let origin = state + 12 + 16 + 8 + checkpoint(3).scene.len();
         for at in [state + 4, state + 12 + 16, origin, column + 12, column + 12 + 8 + 1 + 1] {
             let error = reader.error(&forged(at, &new));
             assert!(matches!(error.fault, Fault::Length { .. }), "{at}: {error}");
         }
-        // Of the file.
+        // Length of the file.
         let error = reader.error(&forged(16, &(absurd + 1).to_le_bytes()));
         assert!(matches!(error.fault, Fault::Truncated { promised, .. } if promised == Some(absurd + 1)));
     }
@@ -154,7 +154,7 @@ fn content_without_meaning_is_refused() {
         let error = reader.error(&forged(at, new)).to_string();
         assert!(error.contains(words), "{error}");
     }
-    // Two columns of one name.
+    // Two columns with the same name.
     let mut twice = checkpoint(3);
     twice.columns[1].0 = "y".to_owned();
     let mut bytes = bytes(&twice);
@@ -164,7 +164,7 @@ fn content_without_meaning_is_refused() {
     assert!(matches!(error.fault, Fault::Repeated { ref name, .. } if name == "x"), "{error}");
 }
 
-/// Any damage, with checksums right or not, ends in an error or a checkpoint, never in a panic.
+/// Any damage, with valid checksums or not, gives an error or a checkpoint, never a panic.
 #[test]
 fn no_bytes_make_the_reader_panic() {
     let (whole, folder) = (bytes(&checkpoint(3)), tempfile::tempdir().unwrap());

@@ -1,4 +1,4 @@
-//! Extended XYZ that is right.
+//! Valid extended XYZ.
 
 use crate::{Random, frame, text};
 use std::fs;
@@ -26,7 +26,7 @@ fn bits(frame: &Frame) -> Vec<u64> {
     all
 }
 
-/// The format as the command line's description promises it.
+/// The format as documented in the help of the command.
 #[test]
 fn a_frame_is_written_as_promised() {
     let expected = "2
@@ -38,8 +38,8 @@ W 1e+300 2.0 0.0 4294967295 5e-324 -1.7976931348623157e+308 0.0 0.5 1e+16 0.0 0.
     assert_eq!(text(&frame(4)), expected);
 }
 
-/// Each of the columns under the name that a program looks for: `pos` second for MDAnalysis, `velo` and `mass` for OVITO, `masses`
-/// and `momenta`, their product, for ASE. What was written before there were the latter is still read.
+/// Each program finds its columns by name: `pos` second for MDAnalysis, `velo` and `mass` for OVITO, `masses` and `momenta`, their
+/// product, for ASE. Files from before the latter two existed are still read.
 #[test]
 fn every_program_finds_its_columns() {
     let written = text(&frame(3));
@@ -107,7 +107,7 @@ fn the_first_the_last_or_all_frames_are_read() {
     assert_eq!(Frames::open(&path).unwrap().collect::<Result<Vec<_>, _>>().unwrap(), all);
 }
 
-/// Columns in any order, columns we do not know, keys we do not know, other ends of lines.
+/// Columns in any order, unknown columns, unknown keys, other line ends.
 #[test]
 fn columns_stand_in_any_order_beside_others() {
     let ours = "1\nProperties=species:S:1:pos:R:3:id:I:1:velo:R:3:radius:R:1:mass:R:1:omega:R:3 \
@@ -139,7 +139,7 @@ fn boundaries_come_in_all_spellings() {
     }
 }
 
-/// A file without species, as the description of a scene's start file allows.
+/// A file without species, as the documentation of start files allows.
 #[test]
 fn without_species_all_are_grains() {
     let text = text(&frame(0)).replace("species:S:1:", "").replace("\nSi ", "\n").replace("\nW ", "\n");
@@ -154,7 +154,7 @@ fn grains_come_before_wall_discs() {
     assert_eq!(frames(&swapped).unwrap()[0], frame(0));
 }
 
-/// Whatever the bytes, an error with a place or frames whose numbers hold what is promised.
+/// Any bytes give an error with a location, or frames with valid numbers.
 #[test]
 fn no_bytes_make_the_reader_panic() {
     let whole = [text(&frame(1)), text(&frame(2))].concat().into_bytes();
@@ -205,7 +205,7 @@ fn no_bytes_make_the_reader_panic() {
     assert!(read > 1000);
 }
 
-/// Bodies in space have no box, and a depth; they come back to the bit where one asks for such, and nowhere else.
+/// Bodies in space have no box, and a depth; they are read back to the bit on request, and rejected otherwise.
 #[test]
 fn space_without_a_box_is_read_back() {
     let folder = tempfile::tempdir().unwrap();

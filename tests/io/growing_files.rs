@@ -1,4 +1,4 @@
-//! Files that a resumed run goes on with.
+//! Files that a resumed run appends to.
 
 use crate::{frame, text};
 use std::fs;
@@ -42,7 +42,7 @@ impl PerParticle for Nothing {
     }
 }
 
-/// Adds a row of a step.
+/// Appends the row of a step.
 fn append(table: &mut Table, step: u64, row: &[f64]) -> io::Result<()> {
     let header = header(COLUMNS);
     let mut moment = RunMoment::new(&header, &Nothing, (step, step, 0.0));
@@ -50,7 +50,7 @@ fn append(table: &mut Table, step: u64, row: &[f64]) -> io::Result<()> {
     table.write(Table::entry(&moment).expect("there is a row"))
 }
 
-/// A table of some rows; the mark is after the first `marked` of them.
+/// Writes a table of some rows; the mark is after the first `marked` of them.
 fn table(path: &Path, marked: usize, steps: &[u64]) -> Mark {
     let _ = fs::remove_file(path);
     let mut table = begun(path);
@@ -65,7 +65,7 @@ fn table(path: &Path, marked: usize, steps: &[u64]) -> Mark {
     mark
 }
 
-/// A run that is interrupted and resumed leaves the same bytes as one that is not, whatever stands after the mark.
+/// A run that is interrupted and resumed leaves the same bytes as an uninterrupted one, whatever follows the mark.
 #[test]
 fn a_resumed_table_is_the_table_of_one_run() {
     let (_folder, path) = folder_and("thermo.csv");
@@ -85,7 +85,7 @@ fn a_resumed_table_is_the_table_of_one_run() {
     }
 }
 
-/// What was there at the mark must be there still: missing and changed bytes are refused, and nothing is changed.
+/// Bytes before the mark must still be there: missing and changed bytes are refused, and the file is not changed.
 #[test]
 fn what_is_missing_or_changed_before_the_mark_is_refused() {
     let (_folder, path) = folder_and("thermo.csv");
@@ -133,7 +133,7 @@ fn a_row_of_another_width_is_refused() {
     assert_eq!(error.to_string(), "a row of 1 numbers for 2 columns after `step`");
 }
 
-/// Frames, torn anywhere after the mark.
+/// Frames that are torn anywhere after the mark.
 #[test]
 fn resumed_frames_are_those_of_one_run() {
     let (_folder, path) = folder_and("trajectory.xyz");
@@ -154,7 +154,7 @@ fn resumed_frames_are_those_of_one_run() {
     }
 }
 
-/// Nothing that is there already is written over, and no link is followed.
+/// No existing file is overwritten, and no link is followed.
 #[cfg(unix)]
 #[test]
 fn neither_files_nor_links_are_written_over() {
@@ -170,7 +170,7 @@ fn neither_files_nor_links_are_written_over() {
     assert_eq!(fs::read_to_string(&path).unwrap(), "whole");
 }
 
-/// What others do to the file while it is written is noticed when it is to be on the disk.
+/// Changes by others while the file is written are noticed when it is synced to disk.
 #[cfg(unix)]
 #[test]
 fn a_file_removed_replaced_or_changed_meanwhile_is_noticed() {

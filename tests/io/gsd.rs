@@ -1,4 +1,4 @@
-//! Trajectories with an index.
+//! GSD trajectories, which have an index.
 
 use crate::Random;
 use std::fs;
@@ -12,7 +12,7 @@ use stripmine_physics::io::sink::Sink;
 use stripmine_physics::particles::{Kind, Particle, Particles};
 use tempfile::TempDir;
 
-/// A run that logs two quantities.
+/// Header of a run that logs two quantities.
 fn header() -> RunHeader {
     logging(vec!["energy", "lost"])
 }
@@ -25,7 +25,7 @@ fn resumed(path: &Path, header: &RunHeader, mark: Mark) -> Result<Writer, Growin
     Writer::resume(path.to_owned(), header, mark, &mut vec![])
 }
 
-/// Frames of which the index has no room where it first is, nor where it next is.
+/// Number of frames that makes the index move twice.
 const MANY: u64 = 200;
 
 fn folder_and_path() -> (TempDir, PathBuf) {
@@ -48,7 +48,7 @@ fn disc(id: u32, step: u64) -> Particle {
     }
 }
 
-/// Five discs; from step 30 on one is lost, from step 50 on one turns.
+/// Five discs; one is lost from step 30 on, one rotates from step 50 on.
 fn plane(step: u64) -> LoggedFrame {
     let ids = (1..=5).filter(|id| *id != 2 || step < 30);
     let mut particles = Particles::new(ids.map(|id| disc(id, step)).collect());
@@ -69,7 +69,7 @@ fn plane(step: u64) -> LoggedFrame {
     LoggedFrame { frame: frame.into(), images: vec![], values: vec![step as f64, f64::NAN] }
 }
 
-/// Two bodies in space that fly apart.
+/// Two bodies in space that move apart.
 fn space(step: u64) -> LoggedFrame {
     let far = 1.5 + step as f64;
     let body = |id, z| Particle { kind: Kind::Grain, position: [far, -far, z], ..disc(id, step) };
@@ -80,7 +80,7 @@ fn space(step: u64) -> LoggedFrame {
     LoggedFrame { frame: frame.into(), images: vec![[1, -2], [0, step as i32]], values }
 }
 
-/// A file that grows up to a number of frames: its bytes and its mark without frames, after the first, and so on.
+/// Writes a file of `count` frames; returns its bytes and its mark without frames, after the first, and so on.
 fn written(path: &Path, of: fn(u64) -> LoggedFrame, count: u64) -> (Vec<Vec<u8>>, Vec<Mark>) {
     let _ = fs::remove_file(path);
     let mut file = Writer::begin(path.to_owned(), &header()).unwrap();
@@ -110,7 +110,7 @@ fn frames_come_back_by_their_numbers() {
     }
 }
 
-/// Other programs want all particles inside: a box without a ceiling is doubled until it holds them, in that frame alone.
+/// Other programs require all particles inside the box: a box without a ceiling is doubled until it holds them, in that frame only.
 #[test]
 fn every_disc_is_in_the_box() {
     let (_folder, path) = folder_and_path();
@@ -121,7 +121,7 @@ fn every_disc_is_in_the_box() {
     };
     let (grown, marks) = written(&path, high, 3);
     let heights = |frame: usize| {
-        // Behind the step comes the box, where it differs from the first one.
+        // The box follows the step if it differs from the first frame's.
         let at = marks[frame].bytes as usize + 8;
         f32::from_le_bytes(grown[3][at + 4..at + 8].try_into().unwrap())
     };
@@ -130,14 +130,14 @@ fn every_disc_is_in_the_box() {
     assert_eq!(Frames::open(&path).unwrap().frame(1).unwrap().unwrap().cell, [10.0 / 3.0, 8.0]);
 }
 
-/// What readers of the schema do with a chunk that is left out: they take that of the first frame if it has as many rows. What is
-/// left out is what has not changed.
+/// Readers of the schema replace a missing chunk by that of the first frame if it has as many rows. Only chunks that differ from the
+/// first frame are written.
 #[test]
 fn what_stays_as_it_was_is_written_once() {
     let (_folder, path) = folder_and_path();
     let (_, marks) = written(&path, plane, 60);
     let lengths: Vec<u64> = marks.windows(2).map(|two| two[1].bytes - two[0].bytes).collect();
-    // Step, time and two quantities; in single precision six numbers a disc, in double four.
+    // Step, time and two quantities; for each disc six numbers in single precision and four in double.
     let moving = |discs: u64| 4 * 8 + (12 * discs).next_multiple_of(8) * 2 + 32 * discs;
     assert!(lengths[1..30].iter().all(|&it| it == moving(5)), "{lengths:?}");
     assert!(lengths[30] > moving(4) && lengths[50] == lengths[30], "{lengths:?}");
@@ -158,7 +158,7 @@ fn a_resumed_trajectory_is_that_of_one_run() {
         for bytes in [whole, &grown[number], &grown[more], &torn] {
             fs::write(&path, bytes).unwrap();
             let mut file = resumed(&path, &header(), mark).unwrap();
-            assert!(&fs::read(&path).unwrap() == bytes, "nothing is changed before it is cut");
+            assert!(&fs::read(&path).unwrap() == bytes, "the file must not change before it is truncated");
             file.cut().unwrap();
             assert_eq!(Frames::open(&path).unwrap().frame_count(), number as u64);
             for step in number as u64..MANY {
@@ -170,17 +170,17 @@ fn a_resumed_trajectory_is_that_of_one_run() {
     }
 }
 
-/// Killed at any byte: what is there is whole frames, all of them or all but the last.
+/// Killed at any byte, the file consists of whole frames: all of them, or all but the last.
 #[test]
 fn a_killed_trajectory_is_of_whole_frames() {
     let (_folder, path) = folder_and_path();
-    // The frame that makes the first index move is among them.
+    // Includes the frame that makes the index move for the first time.
     let (grown, _) = written(&path, plane, MANY);
     let moved = grown.iter().position(|bytes| bytes[8..16] != grown[0][8..16]).unwrap();
     for count in [3, moved] {
         let (before, after) = (&grown[count - 1], &grown[count]);
         let index = |bytes: &[u8]| u64::from_le_bytes(bytes[8..16].try_into().unwrap()) as usize;
-        // In the order in which it is written: the end with the new index, the heading, the end, the entries.
+        // In the order of writing: the end with the new index, the header, the end, the entries.
         let moves = index(before) != index(after);
         let capacity = u64::from_le_bytes(after[16..24].try_into().unwrap()) as usize;
         let data = if moves { index(after) + 32 * capacity } else { before.len() };
@@ -191,7 +191,7 @@ fn a_killed_trajectory_is_of_whole_frames() {
         }
         let ends = (data..=after.len()).step_by(5).map(|end| after[..end].to_vec());
         states.extend(ends.map(|mut bytes| {
-            // The entries of the last frame are not there yet.
+            // The entries of the last frame are not written yet.
             let used = (0..).find(|entry| {
                 let at = index(after) + 32 * entry;
                 after[at..at + 8] == (count as u64 - 1).to_le_bytes() && after[at + 16..at + 24] != [0; 8]
@@ -210,7 +210,7 @@ fn a_killed_trajectory_is_of_whole_frames() {
     }
 }
 
-/// What was there at the mark must be there still: any other byte of heading, names, entries or chunks is refused, and nothing is changed.
+/// Bytes before the mark must still be there: a change in header, names, entries or chunks is refused, and the file is not changed.
 #[test]
 fn what_is_missing_or_changed_before_the_mark_is_refused() {
     let (_folder, path) = folder_and_path();
@@ -228,7 +228,7 @@ fn what_is_missing_or_changed_before_the_mark_is_refused() {
     let index = u64::from_le_bytes(whole[8..16].try_into().unwrap()) as usize;
     let unused = index + 32 * (0..).find(|entry| whole[index + 32 * entry..][..32] == [0; 32]).unwrap();
     let end = index + 32 * 1024;
-    // Where the index is may have been written after the mark.
+    // The position of the index may have been written after the mark.
     for place in (0..8).chain(24..unused).chain(end..whole.len()) {
         let mut bytes = whole.clone();
         bytes[place] ^= 1;
@@ -240,7 +240,7 @@ fn what_is_missing_or_changed_before_the_mark_is_refused() {
     assert!(resumed(&path, &header(), mark).unwrap_err().to_string().contains("is missing"));
 }
 
-/// Damaged and foreign files are refused with their place.
+/// Damaged and foreign files are refused with the location of the mistake.
 #[test]
 fn other_files_are_refused_with_their_place() {
     let (_folder, path) = folder_and_path();
@@ -291,7 +291,7 @@ fn other_files_are_refused_with_their_place() {
         damaged[at..at + bytes.len()].copy_from_slice(bytes);
         assert!(first(&damaged).contains(words), "{words}: {}", first(&damaged));
     }
-    // A chunk of another name in the place of one that is needed, and one with fewer rows.
+    // A chunk with another name instead of a required one, and one with fewer rows.
     for (name, at, byte, words) in [
         ("log/time", 28, 10, "frame 0, log/time: there is no such chunk"),
         (
@@ -312,8 +312,8 @@ fn other_files_are_refused_with_their_place() {
     }
 }
 
-/// A file whose index has moved, with any byte before the end of its last entry changed: resumption is refused. The empty rest of the
-/// index is written anew.
+/// In a file whose index has moved, a change of any byte up to the end of the last entry makes resumption fail. The unused rest of the
+/// index is written again.
 #[test]
 fn damage_of_a_grown_index_never_passes() {
     let (_folder, path) = folder_and_path();
@@ -335,7 +335,7 @@ fn damage_of_a_grown_index_never_passes() {
     let open = || fs::OpenOptions::new().write(true).open(&path).unwrap();
     for place in (0..first + 32 * 1024).chain(next..next + 32 * room) {
         let is_unused = place >= next + 32 * used;
-        // One byte of an unused entry stands for the others.
+        // A sample of the bytes of unused entries is enough.
         if is_unused && place % 97 > 0 {
             continue;
         }
@@ -358,14 +358,14 @@ fn damage_of_a_grown_index_never_passes() {
                 file.cut().unwrap();
                 file.write(frame(3)).unwrap();
                 file.mark().unwrap();
-                assert!(fs::read(&path).unwrap() == whole, "byte {place} passes");
+                assert!(fs::read(&path).unwrap() == whole, "a change of byte {place} is accepted");
                 fs::write(&path, &bytes).unwrap();
             }
         }
     }
 }
 
-/// A file that is long by holes alone is refused before memory is taken for them.
+/// A file that is long only because of holes is refused before memory is allocated for them.
 #[test]
 fn holes_take_no_memory() {
     let (_folder, path) = folder_and_path();
@@ -380,7 +380,7 @@ fn holes_take_no_memory() {
     };
     let names = (1_u64 << 34).to_le_bytes();
     assert!(sparse(&[(32, &names)]).contains("byte 32: expected a list of names of at most 4 MiB"));
-    // As many particles as there can be, and their types in the hole.
+    // The largest possible number of particles, whose types are in the hole.
     let entry = |name: &str| {
         let names = std::str::from_utf8(&whole[256..index]).unwrap();
         let name = names.split('\0').position(|it| it == name).unwrap() as u16;

@@ -1,4 +1,4 @@
-//! LAMMPS files, word for word.
+//! LAMMPS files, compared word for word.
 
 use crate::frame;
 use stripmine_physics::io::lammps::{write_data, write_dump};
@@ -22,7 +22,7 @@ ITEM: ATOMS id type x y z vx vy vz omegaz radius mass
     assert_eq!(String::from_utf8(out).unwrap(), expected);
 }
 
-/// The mass comes back from density and diameter as LAMMPS computes it.
+/// LAMMPS computes the mass from density and diameter; it is the original one.
 #[test]
 fn a_data_file_is_written_word_for_word() {
     let mut out = Vec::new();

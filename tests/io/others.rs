@@ -1,11 +1,11 @@
-//! One configuration as different programs write it: what is plainly said is read.
+//! Two discs as different programs write them: every unambiguous spelling is read.
 
 use stripmine_physics::io::extxyz::{Frame, Frames};
 
 const LATTICE: &str = r#"Lattice="20.0 0.0 0.0 0.0 20.0 0.0 0.0 0.0 1.0" pbc="T T F""#;
 const OURS: &str = "Properties=species:S:1:pos:R:3:id:I:1:velo:R:3:radius:R:1:mass:R:1:omega:R:3";
 
-/// Heading and rows of the same two discs.
+/// Program, comment line and rows of the same two discs.
 const CASES: [(&str, &str, &str); 12] = [
     (
         "as this program writes it",
@@ -51,7 +51,7 @@ const CASES: [(&str, &str, &str); 12] = [
         "Si 1.5D+00 2 0 1 -0.25D+00 1.0D0 0 5d-1 2 0 0 0\nSi 0.5D01 2 0 2 3 0 0 0.5D+00 2 0 0 0",
     ),
     (
-        "ends of lines of Windows",
+        "line ends of Windows",
         "LATTICE OURS\r",
         "Si 1.5 2 0 1 -0.25 1 0 0.5 2 0 0 0\r\nSi 5 2 0 2 3 0 0 0.5 2 0 0 0\r",
     ),

@@ -1,4 +1,4 @@
-//! Lines of code that rooms may have.
+//! Budgets of modules: their largest numbers of lines.
 
 use std::fs;
 use std::path::Path;
@@ -12,7 +12,7 @@ struct Budgets {
     room: Vec<Room>,
 }
 
-/// A folder or file, and the lines that it may have without tests.
+/// A folder or file, and its largest number of lines without tests.
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Room {
@@ -22,7 +22,7 @@ struct Room {
     raised: Vec<Raise>,
 }
 
-/// A budget that was made larger.
+/// Increase of a budget, with its reason.
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Raise {
@@ -30,7 +30,7 @@ struct Raise {
     reason: String,
 }
 
-/// Lines of the Rust files below a path, without unit tests.
+/// Number of lines of the Rust files below a path, without unit tests.
 fn lines(path: &Path) -> usize {
     if path.is_file() {
         let is_test = path.ends_with("tests.rs") || path.extension().is_none_or(|it| it != "rs");
@@ -54,13 +54,13 @@ fn rooms_keep_to_their_budgets() {
         let (count, budget) =
             (lines(&root().join(path)), budget + raised.iter().map(|it| it.by).sum::<usize>());
         if count > budget {
-            over.push(format!("{path} has {count} lines, and {budget} are its budget"));
+            over.push(format!("{path} has {count} lines; its budget is {budget}"));
         }
     }
     assert!(over.is_empty(), "{}; budgets are in tests/map/budgets.toml", over.join("; "));
 }
 
-/// Every room of the crates that is a folder has a budget, and a crate whose rooms are all files has one.
+/// Every top folder of a crate has a budget, and so has a crate whose modules are all files.
 #[test]
 fn every_room_has_a_budget() {
     let budgets: Budgets = toml::from_str(&text("tests/map/budgets.toml")).unwrap();

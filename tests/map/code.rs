@@ -1,4 +1,4 @@
-//! The crates as files and the arrows between them: who names whom, in `use` or by a path in the text, through re-exports.
+//! Files of the crates and the arrows between them, from `use` declarations and paths in the code, through re-exports.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -14,7 +14,7 @@ pub struct Crate {
     pub short: &'static str,
 }
 
-/// From the lowest to the highest: a crate uses those before it only.
+/// Crates from the lowest to the highest: each uses only those before it.
 pub const CRATES: [Crate; 4] = [
     Crate { name: "stripmine_kernels", folder: "kernels/src", short: "kernels" },
     Crate { name: "stripmine_physics", folder: "kernels/physics/src", short: "physics" },
@@ -29,17 +29,17 @@ impl Crate {
         *within.max_by_key(|it| it.folder.len()).unwrap()
     }
 
-    /// The room of one of its files: the folder or the file that it lies in or is, below the crate's own.
+    /// The room of a file: the top folder or file of the crate that contains it.
     pub fn room(self, path: &str) -> &str {
         let within = path.strip_prefix(self.folder).unwrap().trim_start_matches('/');
         within.split('/').next().unwrap().trim_end_matches(".rs")
     }
 }
 
-/// A module that is a file: the crate's name and the modules to it.
+/// A module that is a file: the crate's name and the path of modules.
 type Module = Vec<String>;
 
-/// A source file, without what is compiled for tests only.
+/// A source file, without code compiled for tests only.
 #[derive(Debug)]
 struct Source {
     path: String,
@@ -48,7 +48,7 @@ struct Source {
 }
 
 impl Source {
-    /// A path whose first name a `use` binds, with what that stands for.
+    /// Resolves the first name of a path if a `use` binds it.
     fn in_full(&self, path: Vec<String>) -> Vec<String> {
         match self.uses.iter().find(|it| it.name == path[0]) {
             Some(bound) => [&bound.path[..], &path[1..]].concat(),
@@ -63,7 +63,7 @@ pub struct Code {
     sources: BTreeMap<Module, Source>,
 }
 
-/// One file names another, each by its path from the root of the repository.
+/// The user and the used file, each by its path from the root of the repository.
 pub type Arrow = (String, String);
 
 impl Code {
@@ -76,11 +76,11 @@ impl Code {
         Self { sources }
     }
 
-    /// Names of other crates that files take something from by `use`, each with its file.
+    /// Names of other crates in `use` declarations, each with its file.
     pub fn foreign(&self) -> BTreeSet<(&str, &str)> {
         let mut found = BTreeSet::new();
         for (module, source) in &self.sources {
-            // A name alone is a macro's, which is in scope.
+            // A single name is a macro's, which is in scope.
             for path in source.uses.iter().map(|it| &it.path).filter(|path| path.len() > 1) {
                 if self.resolve(module, path).is_none() {
                     found.insert((source.path.as_str(), path[0].as_str()));
@@ -90,7 +90,7 @@ impl Code {
         found
     }
 
-    /// All arrows between files. What a file only hands on (`pub use`) is the arrow of those who name it.
+    /// All arrows between files. A re-export (`pub use`) becomes an arrow of the files that use it.
     pub fn arrows(&self) -> BTreeSet<Arrow> {
         let mut arrows = BTreeSet::new();
         for (module, source) in &self.sources {
@@ -108,7 +108,7 @@ impl Code {
         arrows
     }
 
-    /// The file in which the thing is that a path names, seen from a module; nothing for what is of other crates.
+    /// The file that defines the target of a path, seen from a module; `None` for items of other crates.
     fn resolve(&self, from: &Module, path: &[String]) -> Option<Module> {
         let (first, rest) = path.split_first()?;
         let start = match first.as_str() {
@@ -124,7 +124,7 @@ impl Code {
         Some(self.walk(start, rest))
     }
 
-    /// Goes down a path: into modules, and to where a name comes from that a module has from elsewhere.
+    /// Follows a path down into modules, and through names that a module re-exports.
     fn walk(&self, at: Module, path: &[String]) -> Module {
         let Some((first, rest)) = path.split_first() else { return at };
         if first == "super" {
@@ -142,7 +142,7 @@ impl Code {
     }
 }
 
-/// Reads a folder's files as modules below one, each with the folder of its name.
+/// Reads the files of a folder as modules below one, each with the folder of its name.
 fn read_folder(root: &Path, folder: &Path, module: &[String], sources: &mut BTreeMap<Module, Source>) {
     let mut paths: Vec<_> =
         fs::read_dir(root.join(folder)).unwrap().map(|entry| entry.unwrap().path()).collect();
@@ -160,13 +160,13 @@ fn read_folder(root: &Path, folder: &Path, module: &[String], sources: &mut BTre
         let of_module = if ["mod", "lib", "main"].contains(&name.as_str()) { module.to_vec() } else { child };
         let path = folder.join(path.file_name().unwrap()).to_str().unwrap().to_owned();
         let tokens = without_tests(tokens(&fs::read_to_string(root.join(&path)).unwrap()));
-        // The program is the library's crate here: it names the library as others do.
+        // The program is treated as part of the library's crate: it names the library as others do.
         let of_module = if name == "main" { [module, &["main".to_owned()]].concat() } else { of_module };
         sources.insert(of_module, Source { path, uses: uses(&tokens), tokens });
     }
 }
 
-/// The text, `use` apart: its words, and its paths, which begin with a crate, `self` or `super`, or any name (it may be a module's).
+/// Words and paths of the code without `use` declarations; a path begins with a crate, `self`, `super`, or any name (it may be a module's).
 fn text(tokens: &[Token]) -> (BTreeSet<&str>, Vec<Vec<String>>) {
     let (mut words, mut paths) = (BTreeSet::new(), vec![]);
     let mut at = 0;
@@ -186,7 +186,7 @@ fn text(tokens: &[Token]) -> (BTreeSet<&str>, Vec<Vec<String>>) {
     (words, paths)
 }
 
-/// The path that begins at a token, and the token behind it.
+/// The path that begins at a token, and the index after it.
 fn path_at(tokens: &[Token], mut at: usize) -> (Vec<String>, usize) {
     let mut path = vec![];
     while let Some(word) = tokens.get(at).and_then(Token::word) {

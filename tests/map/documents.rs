@@ -1,4 +1,4 @@
-//! What the documents say of the code, to be held against it: paths, links, the map, the drawing of arrows, the invariants.
+//! Statements of the documents about the code: paths, links, the map, the drawing of arrows, the invariants.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -13,7 +13,7 @@ pub fn text(path: impl AsRef<Path>) -> String {
     fs::read_to_string(&path).unwrap_or_else(|why| panic!("{}: {why}", path.display()))
 }
 
-/// The documents, by their paths.
+/// Paths of the documents.
 pub fn documents() -> Vec<PathBuf> {
     let docs = fs::read_dir(root().join("docs")).unwrap();
     let docs = docs.map(|entry| Path::new("docs").join(entry.unwrap().file_name()));
@@ -28,20 +28,20 @@ pub fn section(text: &str, heading: &str) -> String {
     behind.split("\n## ").next().unwrap().to_owned()
 }
 
-/// The blocks of plain text of a section.
+/// Blocks of plain text in a section.
 fn blocks(section: &str) -> Vec<&str> {
     section.split("```text\n").skip(1).map(|block| block.split("```").next().unwrap()).collect()
 }
 
-/// A line of the map: the folder it stands in, and the names before the gap.
+/// A line of the map: its folder, and the names before the gap.
 #[derive(Debug)]
 pub struct Line {
     pub folder: PathBuf,
     pub names: Vec<String>,
 }
 
-/// The map, line by line: names begin at the margin (crates), two spaces in (rooms) or four (rooms within the room before); what is
-/// indented further goes on with the line before.
+/// Lines of the map: names begin at the margin (crates), two spaces in (rooms) or four (parts of the room before); deeper
+/// indentation continues the line before.
 pub fn map(architecture: &str) -> Vec<Line> {
     let section = section(architecture, "Map of the code");
     let mut found = vec![];
@@ -67,7 +67,7 @@ pub fn map(architecture: &str) -> Vec<Line> {
     found
 }
 
-/// The arrows of a drawing, each with the name that its line begins with: `{a, b} → c → d`, chains apart by two spaces.
+/// Arrows of the drawing, each with the name at the start of its line: `{a, b} → c → d`; chains are separated by two spaces.
 pub fn drawn(architecture: &str) -> Vec<(String, String, String)> {
     let section = section(architecture, "Arrows");
     let mut of = String::new();
@@ -100,20 +100,20 @@ pub fn rows(section: &str) -> Vec<Vec<String>> {
     rows.map(|row| row.trim_matches('|').split(" | ").map(|cell| cell.trim().to_owned()).collect()).collect()
 }
 
-/// What stands in a text between backticks, code blocks apart.
+/// Text between backticks, except in code blocks.
 pub fn quoted(text: &str) -> Vec<&str> {
     let prose = text.split("```").step_by(2);
     prose.flat_map(|prose| prose.split('`').skip(1).step_by(2)).collect()
 }
 
-/// Where links of a text lead, those to the web apart: a path, and a heading in it.
+/// Targets of a text's links, except those to the web: a path, and a heading in it.
 pub fn links(text: &str) -> Vec<(&str, Option<&str>)> {
     let targets = text.split("](").skip(1).filter_map(|behind| behind.split(')').next());
     let targets = targets.filter(|target| !target.contains("://"));
     targets.map(|target| target.split_once('#').map_or((target, None), |(at, to)| (at, Some(to)))).collect()
 }
 
-/// The headings of a text as links name them.
+/// Anchors of a text's headings.
 pub fn anchors(text: &str) -> BTreeSet<String> {
     let headings = text.lines().filter(|line| line.starts_with('#'));
     let anchor = |heading: &str| -> String {
@@ -124,7 +124,7 @@ pub fn anchors(text: &str) -> BTreeSet<String> {
     headings.map(anchor).collect()
 }
 
-/// Every test that is ignored: its file, relative to the repository, and its name.
+/// Every ignored test: its file, relative to the repository, and its name.
 pub fn ignored_tests() -> Vec<(PathBuf, String)> {
     let mut folders = ["src", "kernels", "tests"].map(|folder| root().join(folder)).to_vec();
     let mut found = vec![];

@@ -1,4 +1,4 @@
-//! A format that a run writes its particles in is named where ARCHITECTURE.md says, and nowhere else.
+//! File formats of particles are named in the files that ARCHITECTURE.md lists, and nowhere else.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -9,19 +9,19 @@ use crate::documents::{root, text};
 use crate::recipes::recipe;
 use stripmine_physics::io::FORMATS;
 
-/// Other files that name one, each with the reason.
+/// Other files that name a format, each with the reason.
 const OTHERS: [(&str, &str); 1] = [(
     "kernels/physics/src/method/langevin/quantities.rs",
-    "the help of a quantity says where velocities of another moment are",
+    "the help of a quantity names the file with velocities of another moment",
 )];
 
-/// The module of the format that scenes start from and that frames in memory are of: others use it, too.
+/// The format of start files and of frames in memory, which others use too.
 const FRAMES: &str = "kernels/physics/src/io/extxyz";
 
-/// Displacements are summed up here.
+/// File that accumulates displacements.
 const SUMS: &str = "kernels/physics/src/run/structured.rs";
 
-/// The files of the crates that have some words, comments and tests apart.
+/// Files of the crates that contain some words, outside comments and tests.
 fn naming(words: &[String]) -> BTreeSet<String> {
     let mut folders: Vec<_> = CRATES.iter().map(|it| root().join(it.folder)).collect();
     let mut found = BTreeSet::new();
@@ -42,8 +42,8 @@ fn naming(words: &[String]) -> BTreeSet<String> {
     found
 }
 
-/// A format takes the two files of the recipe: nothing but its own file has its key and the name of what it writes, and nothing but
-/// the list uses what is in that file.
+/// A format touches the two files of the recipe: only its own file contains its key and the name of its output, and only
+/// the list uses that file.
 #[test]
 fn a_format_is_named_where_the_recipe_says() {
     let (_, places) = recipe("A format of trajectories");
@@ -69,7 +69,7 @@ fn a_format_is_named_where_the_recipe_says() {
     assert!(files.len() > 3 && files.contains(example), "{files:?}");
 }
 
-/// Data of particles are asked for where they are written or summed up, and by nothing between that and the method.
+/// Data of particles are requested only by the code that writes or accumulates them, and by nothing between it and the method.
 #[test]
 fn data_of_particles_are_asked_for_where_they_are_written() {
     let (_, places) = recipe("Data of each particle");

@@ -1,8 +1,8 @@
-//! What can be said of arrows, whatever is at their ends.
+//! Algorithms on arrows between any names.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Everything that can be reached from each name, itself only by a circle.
+/// All names reachable from each name; a name reaches itself only through a circle.
 pub fn reached<'a>(
     arrows: impl IntoIterator<Item = (&'a str, &'a str)>,
 ) -> BTreeMap<&'a str, BTreeSet<&'a str>> {
@@ -21,7 +21,7 @@ pub fn reached<'a>(
     next.keys().map(from).collect()
 }
 
-/// The circles: names that reach each other, in order, each circle once.
+/// Circles: names that reach each other, in order, each circle once.
 pub fn circles<'a>(arrows: impl IntoIterator<Item = (&'a str, &'a str)>) -> BTreeSet<Vec<&'a str>> {
     let reached = reached(arrows);
     let reaches = |from: &str, to: &str| reached.get(from).is_some_and(|found| found.contains(to));

@@ -1,4 +1,4 @@
-//! What ARCHITECTURE.md says of the code is true: crates, rooms, arrows, walls; and every path that the documents name exists.
+//! Statements of ARCHITECTURE.md about the code are true: crates, rooms, arrows, limits; and every path named by the documents exists.
 
 mod budgets;
 mod code;
@@ -15,8 +15,8 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-/// All that the lower crates depend on: none of it reads a command line, draws, or writes pages. And the package for Python, which does
-/// without the laboratory.
+/// Complete dependencies of the lower crates, none of which reads a command line, draws, or writes pages; and of the package for Python, which does
+/// not need the laboratory.
 const DEPENDENCIES: [(&str, &[&str]); 3] = [
     ("kernels", &["libm", "memmap2", "pulp", "rand", "rayon", "serde", "thiserror", "wide"]),
     (
@@ -50,7 +50,7 @@ const DEPENDENCIES: [(&str, &[&str]); 3] = [
     ),
 ];
 
-/// Circles of files that there are, each with the reason.
+/// Known circles of files, each with the reason.
 const KNOWN_CIRCLES: [(&[&str], &str); 5] = [
     (
         &["kernels/src/backend/dispatch.rs", "kernels/src/backend/precision.rs"],
@@ -62,7 +62,7 @@ const KNOWN_CIRCLES: [(&[&str], &str); 5] = [
     ),
     (
         &["kernels/physics/src/method/entry.rs", "kernels/physics/src/method/trials.rs"],
-        "an entry states its trials, and a setting is held against what is prepared",
+        "an entry states its trials, and a setting is checked against the prepared scene",
     ),
     (
         &[
@@ -81,7 +81,7 @@ const KNOWN_CIRCLES: [(&[&str], &str); 5] = [
 const METHODS: [&str; 4] = ["hard_disks", "langevin", "lattice_md", "nbody"];
 const FOLDERS_OF_METHODS: [&str; 2] = ["kernels/physics/src/method", "src/laboratory"];
 
-/// The files that may name a method's: the lists, and two that hold one method against another. And the one file of a method that others use.
+/// Files that may name a method: the lists, and two that compare methods; and the one file of a method that others use.
 const LISTS: [&str; 4] = [
     "kernels/physics/src/method/list.rs",
     "src/laboratory/mod.rs",
@@ -94,7 +94,7 @@ fn code() -> Code {
     Code::read(root())
 }
 
-/// The rooms of a crate: its files and folders, without the two that hold it together.
+/// Rooms of a crate: its files and folders, except `lib` and `main`.
 fn rooms(of: Crate) -> BTreeSet<String> {
     let entries = fs::read_dir(root().join(of.folder)).unwrap();
     let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
@@ -102,7 +102,7 @@ fn rooms(of: Crate) -> BTreeSet<String> {
     names.filter(|name| !["lib", "main"].contains(&name.as_str())).collect()
 }
 
-/// Arrows between rooms of each crate, and between crates: whose, from, to, and the files.
+/// Arrows between rooms of each crate, and between crates: crate, user, used, and the files.
 fn arrows_of_rooms(arrows: &BTreeSet<Arrow>) -> Vec<(&str, &str, &str, &Arrow)> {
     let of = |arrow| {
         let (from, to): &(String, String) = arrow;
@@ -117,8 +117,9 @@ fn arrows_of_rooms(arrows: &BTreeSet<Arrow>) -> Vec<(&str, &str, &str, &Arrow)> 
     arrows.filter(|(_, from, to, _)| from != to && is_room(from) && is_room(to)).collect()
 }
 
-/// Every arrow of the code follows arrows that are drawn, every drawn arrow is one of the code, and none of them closes a circle: so
-/// that no arrow goes up.
+/// The arrows of the code are the drawn ones, directly or along a chain, and every drawn arrow occurs in the code. The drawing has no circle, so no
+/// arrow
+/// goes up.
 #[test]
 fn arrows_of_the_code_are_those_that_are_drawn() {
     let (drawn, code) = (drawn(&text("ARCHITECTURE.md")), code());
@@ -126,7 +127,7 @@ fn arrows_of_the_code_are_those_that_are_drawn() {
     let found = arrows_of_rooms(&arrows);
     assert!(found.len() > 500, "{} arrows", found.len());
     for of in CRATES.iter().map(|it| it.short).chain(["crates"]) {
-        // A drawn arrow is "is used by".
+        // A drawn arrow means "is used by".
         let drawn = drawn.iter().filter(|(name, ..)| name == of);
         let drawn: Vec<(&str, &str)> = drawn.map(|(_, used, user)| (user.as_str(), used.as_str())).collect();
         assert_eq!(graph::circles(drawn.iter().copied()), BTreeSet::new(), "{of}: the drawing has circles");
@@ -142,7 +143,7 @@ fn arrows_of_the_code_are_those_that_are_drawn() {
     }
 }
 
-/// What a manifest names in its lists of dependencies, those of tests apart.
+/// Dependencies listed in a manifest, except those of tests.
 fn dependencies(manifest: &str) -> impl Iterator<Item = &str> {
     let sections = manifest.split("\n[").filter(|section| !section.starts_with("dev-"));
     sections.flat_map(|section| {
@@ -150,12 +151,12 @@ fn dependencies(manifest: &str) -> impl Iterator<Item = &str> {
         let lines = section.lines().skip(1).filter(|line| line.contains('=') && !line.starts_with('#'));
         let names = lines.map(|line| line.split([' ', '.', '=']).next().unwrap());
         let listed = names.filter(|_| heading.ends_with("dependencies"));
-        // Or a section of its own.
+        // A dependency may have its own section.
         listed.chain(heading.split_once("dependencies.").map(|(_, name)| name))
     })
 }
 
-/// The kernels name neither physics nor laboratory, and neither the physics nor the package for Python names the laboratory; none of them
+/// The kernels name neither physics nor laboratory, the physics and the package for Python do not name the laboratory, and none of them
 /// depends on a crate beyond its list.
 #[test]
 fn lower_crates_know_nothing_of_higher_ones() {
@@ -170,7 +171,7 @@ fn lower_crates_know_nothing_of_higher_ones() {
         let is_allowed = ["std", "core", "alloc"].contains(&name)
             || is_laboratory
             || DEPENDENCIES.iter().any(|(_, names)| names.iter().any(|it| it.replace('-', "_") == name))
-            // Names in scope: what an enumeration or a trait has.
+            // Names in scope: variants of an enumeration, items of a trait.
             || name.starts_with(char::is_uppercase);
         assert!(is_allowed, "{path} uses {name}");
     }
@@ -179,8 +180,8 @@ fn lower_crates_know_nothing_of_higher_ones() {
     assert!(up.is_empty(), "{up:#?}");
 }
 
-/// No files use each other in a circle, but for the known ones. A module and the files of its folder are one: they may name what it
-/// defines for them all.
+/// Circles of files are the known ones. A module and the files of its folder count as one: they may name shared definitions of
+/// the module.
 #[test]
 fn there_is_no_circle_of_files() {
     let all = code().arrows();
@@ -195,10 +196,10 @@ fn there_is_no_circle_of_files() {
     let new: Vec<_> = found.difference(&known).collect();
     assert!(new.is_empty(), "new circles: {new:#?}");
     let gone: Vec<_> = known.difference(&found).collect();
-    assert!(gone.is_empty(), "no circles any more, to be struck off the list: {gone:#?}");
+    assert!(gone.is_empty(), "known circles that no longer exist; remove them from the list: {gone:#?}");
 }
 
-/// No file names a method but those of its own folders and the lists.
+/// Only a method's own folders and the lists name it.
 #[test]
 fn methods_are_named_by_lists_only() {
     let method = |path: &str| {
@@ -213,7 +214,7 @@ fn methods_are_named_by_lists_only() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// Every room of the crates is a line of the map, and every name of a line is there.
+/// Every room of the crates has a line in the map, and every name of a line exists.
 #[test]
 fn the_map_names_every_room_and_nothing_else() {
     let map = map(&text("ARCHITECTURE.md"));
@@ -228,7 +229,7 @@ fn the_map_names_every_room_and_nothing_else() {
     }
 }
 
-/// Every path that a document names exists, and every link leads to a file and to a heading that are there.
+/// Every path named by a document exists, and every link leads to an existing file and heading.
 #[test]
 fn paths_in_documents_exist() {
     let roots = ["src/", "kernels/", "python/", "benches/", "tests/", "reports/", "docs/"];
@@ -251,7 +252,7 @@ fn paths_in_documents_exist() {
     }
 }
 
-/// Every invariant names the test that holds it, which is there, or is said to be untested.
+/// Every invariant names an existing test, or is marked as untested.
 #[test]
 fn invariants_name_their_tests() {
     let rows = rows(&section(&text("ARCHITECTURE.md"), "Invariants"));
@@ -274,7 +275,7 @@ fn invariants_name_their_tests() {
     }
 }
 
-/// The README is short, and shows the command that the checks run.
+/// The README is short, and contains the command that the checks run.
 #[test]
 fn the_readme_is_short_and_has_the_test_command_alone_on_a_line() {
     let text = text("README.md");
@@ -282,18 +283,18 @@ fn the_readme_is_short_and_has_the_test_command_alone_on_a_line() {
     assert!(text.lines().any(|line| line == "cargo test --workspace"));
 }
 
-/// The list of long suites is the one that docs/report.md prints, and each line has a command and what it tests.
+/// The list of long suites equals the one in docs/report.md, and each line has a command and a description.
 #[test]
 fn long_suites_are_those_of_the_documents() {
     let list = text(".ci/long-suites");
     assert!(section(&text("docs/report.md"), "The long suites").contains(&format!("```text\n{list}```\n")));
     for suite in list.lines() {
         let parts: Vec<&str> = suite.split("   ").filter(|part| !part.trim().is_empty()).collect();
-        assert_eq!(parts.len(), 2, "a command, three spaces or more, what it tests: {suite}");
+        assert_eq!(parts.len(), 2, "expected a command, three or more spaces, a description: {suite}");
     }
 }
 
-/// Every test that is ignored for its length runs in a long suite, chosen by its file and, where the suite has a filter, by its name.
+/// Every test ignored for its length runs in a long suite, selected by its file and, where the suite has a filter, by its name.
 #[test]
 fn every_ignored_test_is_in_a_long_suite() {
     let list = text(".ci/long-suites");

@@ -1,9 +1,9 @@
-//! The number of files that a recipe of ARCHITECTURE.md states is that of a commit.
+//! Numbers of files in the recipes of ARCHITECTURE.md equal those of real commits.
 
 use crate::documents::{quoted, root, section, text};
 use std::process::Command;
 
-/// Recipes with a number of files: the commit made for each, by its subject. All but the pair law were taken back at once.
+/// Recipes with a number of files: the subject of the commit made for each. All but the pair law were reverted at once.
 const COUNTED: [(&str, &str); 6] = [
     ("A pair law", "Yukawa pairs in Langevin scenes: law.kind = \"yukawa\" with law.screening"),
     ("A key of scenes", "Files of a key of scenes, to count them: particles.angle of an ellipse"),
@@ -16,7 +16,7 @@ const COUNTED: [(&str, &str); 6] = [
 /// Numbers in words, from one.
 const WORDS: [&str; 6] = ["one file", "two files", "three files", "four files", "five files", "six files"];
 
-/// The text of a recipe, and the files and folders of the crates that it names.
+/// Text of a recipe, and the files and folders of the crates that it names.
 pub fn recipe(name: &str) -> (String, Vec<String>) {
     let recipes = section(&text("ARCHITECTURE.md"), "Files to touch for");
     let recipe = recipes.split("\n- ").find(|item| item.starts_with(&format!("*{name}*"))).unwrap();
@@ -24,7 +24,7 @@ pub fn recipe(name: &str) -> (String, Vec<String>) {
     (recipe.to_owned(), places.map(str::to_owned).collect())
 }
 
-/// The answer of git; nothing without git or a history.
+/// Output of git; `None` without git or a history.
 fn git(arguments: &[&str]) -> Option<String> {
     let output = Command::new("git").arg("-C").arg(root()).args(arguments).output().ok()?;
     output.status.success().then(|| String::from_utf8(output.stdout).unwrap())
@@ -36,7 +36,7 @@ fn is_counted(path: &str) -> bool {
     !is_document && !path.starts_with("tests/") && !path.contains("/tests/")
 }
 
-/// The files that the commit with a subject changed; nothing where the history does not reach so far.
+/// Files changed by the commit with a subject; `None` if the history does not reach so far.
 fn files(subject: &str) -> Option<Vec<String>> {
     let log = git(&["log", "--format=%H %s", "--fixed-strings", &format!("--grep={subject}")])?;
     let commit = log.lines().find_map(|line| line.split_once(' ').filter(|(_, it)| *it == subject))?.0;
@@ -44,7 +44,7 @@ fn files(subject: &str) -> Option<Vec<String>> {
     Some(changed.lines().filter(|path| is_counted(path)).map(str::to_owned).collect())
 }
 
-/// A number in bold stands for the files of its commit, and a recipe without a commit states none.
+/// A number in bold is the number of files of its commit, and a recipe without a commit has none.
 #[test]
 fn recipes_state_the_files_of_their_commits() {
     let recipes = section(&text("ARCHITECTURE.md"), "Files to touch for");

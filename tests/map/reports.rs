@@ -1,25 +1,25 @@
-//! The committed report: short, in words and numbers for a reader.
+//! Length and language of the committed report.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use stripmine::report::Section;
 use stripmine::results::Folder;
 
-/// Words of question, expectation and answer of an item at most: all else is folded.
+/// Largest number of words of an item's question, expectation and answer; everything else is folded.
 const WORDS: usize = 120;
-/// Decimals of a number in a sentence at most.
+/// Largest number of decimals in a sentence.
 const DECIMALS: usize = 9;
-/// Bytes of the pages at most: of the short one for each item, and for each claim that failed and stands on its first screen.
+/// Largest sizes of the pages in bytes: of the short one for each item, plus [`FAILED`] for each failed claim on its first screen.
 const PAGES: [(&str, usize); 2] = [("README.md", 1_100), ("index.html", 1_200_000)];
 const FAILED: usize = 400;
-/// Bytes of the page with charts for each claim.
+/// Further bytes of the page with charts for each claim.
 const CLAIM: usize = 700;
 
 fn reports() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("reports")
 }
 
-/// Every section of the report, as its page shows it.
+/// All sections of the report, as its page shows them.
 fn sections() -> Vec<Section> {
     let folder = Folder::of_another(&reports());
     let items =
@@ -48,14 +48,14 @@ fn an_item_is_read_in_a_minute() {
     }
 }
 
-/// What is wrong with numbers in a sentence, for a reader.
+/// First number of a sentence that is hard to read: too many decimals, or 1 with a plural.
 fn clumsy(text: &str) -> Option<String> {
     let words: Vec<&str> = text.split([' ', '\u{a0}']).collect();
     let long = words.iter().find(|word| {
         let decimals = word.split_once('.').map_or("", |(_, decimals)| decimals);
         decimals.chars().take_while(char::is_ascii_digit).count() > DECIMALS
     });
-    // `1 layers`; `1 of 1 runs`. Letters with an s at their end that are no plural are few.
+    // `1 layers`; `1 of 1 runs`. Few words with a final s are no plural.
     let plural = |word: &str| {
         let word = word.trim_end_matches(['.', ',', ';', ':', ')']);
         word.len() > 3
@@ -81,7 +81,7 @@ fn numbers_in_sentences_are_for_readers() {
     }
 }
 
-/// Entries of a legend at most.
+/// Largest number of entries of a legend.
 const ENTRIES: usize = 7;
 
 #[test]

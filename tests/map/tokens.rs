@@ -1,4 +1,4 @@
-//! Rust text as words and signs: enough to find `use` declarations and paths.
+//! Rust code as words and signs: enough to find `use` declarations and paths.
 
 /// A word (names, keywords, numbers), `::`, or any other sign.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,7 +21,7 @@ impl Token {
     }
 }
 
-/// A name that a `use` declaration binds, what it stands for, and whether it is handed on (`pub use`).
+/// A name that a `use` declaration binds, its target, and true if it is re-exported (`pub use`).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Use {
     pub name: String,
@@ -29,7 +29,7 @@ pub struct Use {
     pub handed_on: bool,
 }
 
-/// A text without comments, strings and characters, as tokens.
+/// Tokens of a text without comments, strings and characters.
 pub fn tokens(text: &str) -> Vec<Token> {
     let mut found = vec![];
     let mut rest = text;
@@ -63,7 +63,7 @@ pub fn tokens(text: &str) -> Vec<Token> {
     found
 }
 
-/// The length of a string in quotes.
+/// Length of a string in quotes.
 fn string(text: &str) -> usize {
     let mut is_escaped = false;
     for (at, c) in text.char_indices().skip(1) {
@@ -77,7 +77,7 @@ fn string(text: &str) -> usize {
     text.len()
 }
 
-/// The length of a raw string, `r"…"` or `r#"…"#`, where one begins.
+/// Length of a raw string, `r"…"` or `r#"…"#`, if one begins here.
 fn raw_string(text: &str) -> Option<usize> {
     let behind = text.strip_prefix("br").or_else(|| text.strip_prefix('r'))?;
     let hashes = behind.len() - behind.trim_start_matches('#').len();
@@ -86,7 +86,7 @@ fn raw_string(text: &str) -> Option<usize> {
     Some(text.len() - inside.len() + inside.find(&end)? + end.len())
 }
 
-/// The length of a character in quotes; of a lifetime, its quote.
+/// Length of a character in quotes; for a lifetime, of its quote.
 fn character(text: &str) -> usize {
     let mut chars = text.char_indices().skip(1);
     match (chars.next(), chars.next()) {
@@ -98,7 +98,7 @@ fn character(text: &str) -> usize {
     }
 }
 
-/// Without the items that stand behind `#[cfg(test)]` or `#[cfg(all(test, …))]`.
+/// Removes items after `#[cfg(test)]` or `#[cfg(all(test, …))]`.
 pub fn without_tests(tokens: Vec<Token>) -> Vec<Token> {
     let mut kept = vec![];
     let mut at = 0;
@@ -122,7 +122,7 @@ fn is_of_tests(tokens: &[Token]) -> bool {
     cfg.is("cfg") && rest.first().is_some_and(|it| it.is("test"))
 }
 
-/// Behind an item and its attributes: its semicolon, or its last brace.
+/// Index after an item and its attributes: after its semicolon or last brace.
 fn end_of_item(tokens: &[Token], start: usize) -> usize {
     let mut depth = 0;
     for (at, token) in tokens.iter().enumerate().skip(start) {
@@ -137,11 +137,11 @@ fn end_of_item(tokens: &[Token], start: usize) -> usize {
     tokens.len()
 }
 
-/// The names that `use` declarations bind; `*` for all of a module.
+/// Names that `use` declarations bind; `*` for all of a module.
 pub fn uses(tokens: &[Token]) -> Vec<Use> {
     let mut found = vec![];
     for (at, token) in tokens.iter().enumerate() {
-        // `use<'a>` in a type is none.
+        // `use<'a>` in a type does not declare anything.
         let is_use = token.is("use") && matches!(tokens.get(at + 1), Some(Token::Word(_) | Token::Path));
         if is_use {
             let is_private = at == 0 || matches!(tokens[at - 1], Token::Sign(';' | '}' | '{' | ']'));
@@ -152,7 +152,7 @@ pub fn uses(tokens: &[Token]) -> Vec<Use> {
     found
 }
 
-/// One branch of a tree of names, up to its `,`, `}` or `;`.
+/// Reads one branch of a tree of names, up to its `,`, `}` or `;`.
 fn tree<'a>(
     tokens: &mut std::iter::Peekable<impl Iterator<Item = &'a Token>>,
     stem: &[String],

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Builds the program with MPI and runs scenes on 1 to 4 ranks: the same files to the byte, a rank that dies, a run that goes on on another number of
-# ranks, a rank that cannot begin, what is refused.
+# Builds the program with MPI and runs scenes on 1 to 4 ranks: the same files to the byte, a rank that dies, a run that resumes on another number of
+# ranks, a rank that cannot start, refusals.
 #
 #   tests/mpi/check.sh [ENVIRONMENT_FOLDER]
 #
-# Takes the MPI and libclang of the system, or else those of a virtual environment, which needs Python 3 and, for the first time, a network. Where
-# neither can be had it says SKIPPED. Exits with 1 if anything is not as it should be.
+# Uses the MPI and libclang of the system, or else those of a virtual environment, which needs Python 3 and, the first time, a network. If neither
+# is available, prints SKIPPED. Exits with 1 if a check fails.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
@@ -25,7 +25,7 @@ if ! command -v mpicc >/dev/null || ! command -v mpiexec >/dev/null; then
 fi
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
 
-# As tests are built: what these need beside it is there already.
+# Built like the tests, so that their dependencies are reused.
 cargo test --manifest-path "$root/Cargo.toml" --workspace --features stripmine/mpi --locked --no-run --test ranks
 stripmine=${CARGO_TARGET_DIR:-$root/target}/debug/stripmine
 failed=0
@@ -54,7 +54,7 @@ for number in "${!scenes[@]}"; do
     echo "${scene[0]}: the same rows and frames on 1 to 4 ranks"
 done
 
-# A rank that dies ends the others within seconds, and the run goes on on another number of ranks to the same bytes.
+# A rank that dies ends the others within seconds, and the run resumes on another number of ranks with the same bytes.
 long=(bench --set particles.count=20000 --set run.steps=4000 --set run.thermo_every=100 --set run.checkpoint_every=200 --quiet --threads 1)
 "$stripmine" run "${long[@]}" --out whole >/dev/null
 timeout 300 mpiexec -n 3 "$stripmine" run "${long[@]}" --out killed >/dev/null 2>&1 &
@@ -69,37 +69,37 @@ for _ in $(seq 100); do
     sleep 0.1
 done
 if kill -0 "$launched" 2>/dev/null; then
-    bad "ranks go on ten seconds after one of them was killed"
+    bad "ranks continue ten seconds after one of them was killed"
     kill -9 "$launched"
 fi
-wait "$launched" && bad "a run that lost a rank ends well"
+wait "$launched" && bad "a run that lost a rank reports success"
 mpi -n 2 "$stripmine" run "${long[@]}" --out killed --resume >/dev/null || bad "a resumption"
-cmp whole/thermo.csv killed/thermo.csv || bad "a run that went on on another number of ranks"
-echo "a rank that dies: the others end, and the run goes on on another number of ranks to the same rows"
+cmp whole/thermo.csv killed/thermo.csv || bad "a run resumed on another number of ranks"
+echo "a rank that dies: the others end, and the run resumes on another number of ranks with the same rows"
 
-# Seeds are dealt out, and what they say together is what one process says.
+# Seeds are distributed, and their joint result is that of one process.
 seeds=(hard-disks --set run.time=5 --seeds 5 --quiet --threads 1)
 "$stripmine" run "${seeds[@]}" --out one >/dev/null
 mpi -n 3 "$stripmine" run "${seeds[@]}" --out three >/dev/null || bad "seeds"
 for seed in 1 2 3 4 5; do
     cmp "one/seed-$seed/thermo.csv" "three/seed-$seed/thermo.csv" || bad "seed $seed"
 done
-# Seeds that are refused leave what earlier runs said together; it is gone while new ones run.
-if mpi -n 3 "$stripmine" run "${seeds[@]}" --out three >/dev/null 2>&1; then bad "seeds are written over"; fi
-[[ -e three/seeds.json ]] || bad "seeds.json is gone though nothing was run"
+# Refused seeds leave the joint result of earlier runs; it is removed while new ones run.
+if mpi -n 3 "$stripmine" run "${seeds[@]}" --out three >/dev/null 2>&1; then bad "seeds are overwritten"; fi
+[[ -e three/seeds.json ]] || bad "seeds.json is missing although nothing was run"
 timeout 300 mpiexec -n 3 "$stripmine" run "${seeds[@]}" --set run.time=1e6 --out three --overwrite >/dev/null 2>&1 &
 launched=$!
 for _ in $(seq 100); do
     [[ -e three/seeds.json ]] || break
     sleep 0.1
 done
-[[ ! -e three/seeds.json ]] || bad "seeds.json of earlier runs stays beside new ones"
-kill -0 "$launched" 2>/dev/null || bad "seeds of a long time end at once"
+[[ ! -e three/seeds.json ]] || bad "seeds.json of earlier runs stays next to new ones"
+kill -0 "$launched" 2>/dev/null || bad "a long run with seeds ends at once"
 kill "$launched" 2>/dev/null || true
 wait "$launched" || true
 echo "seeds: the same runs on 1 and 3 ranks"
 
-# Studies and items are made together, and are what one process makes.
+# Studies and items are made jointly, with the same result as in one process.
 study=(two-discs --over stiffness --size 4 --seeds 1 --budget 30 --quiet --threads 1)
 "$stripmine" chart stability "${study[@]}" --out map-one >/dev/null
 mpi -n 3 "$stripmine" chart stability "${study[@]}" --out map-three >/dev/null || bad "a map"
@@ -116,14 +116,14 @@ refused() {
     local word=$1 said
     shift
     if said=$("$@" 2>&1); then bad "$* is not refused"; fi
-    [[ $said == *"$word"* ]] || bad "$* says: $said"
+    [[ $said == *"$word"* ]] || bad "$* prints: $said"
 }
 refused "bands of rows" mpi -n 4 "$stripmine" run dense-gas --quiet --out many
 refused "one after the other" mpi -n 2 "$stripmine" run hard-disks --quiet --out events
 refused "--ranks was given" mpi -n 2 "$stripmine" run dense-gas --quiet --ranks 2 --out twice
 echo "refused: too many ranks, hard discs, ranks twice"
 
-# Rank 1 of three does something else than the others: all end with one exit code, and one message names the rank.
+# Rank 1 of three behaves differently: all end with one exit code, and one message names the rank.
 one_differs() {
     local code=$1 words=$2 first=$3 others=$4 said status=0
     cat >differs.sh <<EOF
@@ -135,7 +135,7 @@ EOF
     chmod +x differs.sh
     said=$(timeout 60 mpiexec -n 3 ./differs.sh 2>&1) || status=$?
     [[ $status == "$code" && $said == *"error: rank 1"*"$words"* && $(grep -c "error:" <<<"$said") == 1 ]] ||
-        bad "rank 1: $first; the others: $others: exit code $status in place of $code, and: $said"
+        bad "rank 1: $first; the others: $others: exit code $status instead of $code, and: $said"
 }
 program="exec \"$stripmine\""
 limit="ulimit -v 300000"
@@ -151,11 +151,11 @@ one_differs 2 "0.907" "$program bench lattice --packing-fraction 2 --quiet" "ben
 one_differs 3 "ulimit -v" "$limit" "bench lattice --steps 10 --repeats 1 --particles 200000"
 one_differs 3 "none.toml" "$program chart stability none.toml --out o8" "chart stability two-discs --size 3 --seeds 1 --budget 5 --out o8"
 one_differs 4 "differs from rank 0" "$program reproduce --only mask --out o9" "reproduce --only table --out o9"
-# One that joins no other leaves them waiting, which they say.
+# A rank that joins no other leaves them waiting, and they report it.
 said=$(timeout 40 mpiexec -n 3 sh -c "[ \"\${PMI_RANK:-\$OMPI_COMM_WORLD_RANK}\" = 1 ] && exec $stripmine --version; exec $stripmine run dense-gas --out o10" 2>&1) || true
 [[ $said == *"rank 0 of 3 has waited"* ]] || bad "a rank with --version: $said"
 for out in o[1-9]*; do
-    [[ ! -e $out/thermo.csv ]] || bad "$out: a run that could not begin has written rows"
+    [[ ! -e $out/thermo.csv ]] || bad "$out: a run that could not start has written rows"
 done
-echo "a rank that cannot begin, or does something else: all end, and the message names it"
+echo "a rank that cannot start, or behaves differently: all end, and the message names it"
 exit $failed

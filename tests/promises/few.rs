@@ -1,4 +1,4 @@
-//! Few particles in every kind of box, resumed at random moments: the state and all that is observed of it are those of one piece.
+//! Few particles in every kind of box, resumed at random moments: the state and all observables are those of a run in one piece.
 
 use super::ways::ways;
 use rand::RngExt;
@@ -11,12 +11,12 @@ use stripmine_physics::method::langevin::laws::PairLaw;
 use stripmine_physics::method::{Clock, METHODS, Prepared, Purpose, Simulation, Snapshot, Until, load};
 use stripmine_physics::words::Words;
 
-/// Most particles of a scene.
+/// Largest number of particles of a scene.
 const MOST: usize = 12;
-/// Moments at which a run is resumed.
+/// Number of moments at which a run is resumed.
 const CUTS: u32 = 5;
 
-/// Scenes of a method, of which each draws another.
+/// Generator of random scenes of a method.
 type Scenes = fn(&mut Stream) -> String;
 
 const METHOD_SCENES: [(&str, Scenes, usize); 4] = [
@@ -26,11 +26,11 @@ const METHOD_SCENES: [(&str, Scenes, usize); 4] = [
     ("nbody", bodies, 4),
 ];
 
-/// Keys whose words are tried beside engines and searches.
+/// Keys whose words are tried in addition to engines and searches.
 const CHOICES: [(&str, &str); 4] =
     [("machine", "precision"), ("integrator", "kind"), ("machine", "coordinates"), ("machine", "execution")];
 
-/// What is compared.
+/// State and observables that are compared.
 #[derive(Debug, PartialEq)]
 struct Seen {
     clock: Clock,
@@ -50,9 +50,9 @@ fn seen(simulation: &dyn Simulation) -> Seen {
     }
 }
 
-/// Holds `times` as many scenes of each method as the quick share has; how many runs were resumed how often.
+/// Tests `times` as many scenes of each method as the quick share; returns the numbers of runs and of resumptions.
 pub fn hold(times: usize) -> [usize; 2] {
-    let folder = tempfile::tempdir().expect("there is room");
+    let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("scene.toml");
     let mut stream = Stream::new(53, Of::Test, 0);
     let mut held = [0; 2];
@@ -61,7 +61,7 @@ pub fn hold(times: usize) -> [usize; 2] {
         let ways = ways(entry, &CHOICES);
         for _ in 0..count * times {
             let text = scene(&mut stream);
-            fs::write(&path, &text).expect("there is room");
+            fs::write(&path, &text).expect("a temporary folder");
             for way in &ways {
                 let Ok((prepared, _)) = load(path.to_str().expect("a plain path"), way, METHODS) else {
                     continue;
@@ -74,7 +74,7 @@ pub fn hold(times: usize) -> [usize; 2] {
     held
 }
 
-/// Runs a scene in one piece and in several, and compares both at each cut; how often it was resumed.
+/// Runs a scene in one piece and in several, and compares both at each cut; returns the number of resumptions.
 fn resumed(prepared: &Prepared, stream: &mut Stream, what: &str) -> usize {
     let start = || prepared.start(Purpose::Run).unwrap_or_else(|error| panic!("{error:?}: {what}"));
     let (mut whole, mut parts) = (start(), start());
@@ -89,7 +89,7 @@ fn resumed(prepared: &Prepared, stream: &mut Stream, what: &str) -> usize {
             }
             _ => Until::Steps(whole.clock().steps + stream.random_range(1..30)),
         };
-        // What comes to no end of its own, such as events where there are none, ends at a time.
+        // An end that may never be reached, such as a number of events, is combined with a time.
         let until = match moment {
             Until::Events(_) => vec![moment, Until::Time(whole.clock().time + 1.0)],
             _ => vec![moment],
@@ -113,7 +113,7 @@ fn one_of<T: Clone>(stream: &mut Stream, all: &[T]) -> T {
     all[stream.random_range(0..all.len())].clone()
 }
 
-/// Discs in a box: places that do not overlap, velocities of which some are none, as a list.
+/// Listed discs in a box: positions without overlap, velocities of which some are zero.
 struct Discs {
     sides: [f64; 2],
     periodic: [bool; 2],
@@ -152,7 +152,7 @@ fn discs(stream: &mut Stream, periodic: [bool; 2], least: f64) -> Discs {
 }
 
 impl Discs {
-    /// The sections of a scene, without what follows.
+    /// First sections of a scene.
     fn text(&self, method: &str, domain: &str) -> String {
         let Discs { sides, periodic, positions, velocities, radii } = self;
         format!(

@@ -1,13 +1,13 @@
-//! Readers of their own for the files of a run: nothing of the program that wrote them.
+//! Independent readers for the files of a run: they share no code with the program.
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-/// Where particles are, by id.
+/// Positions of particles, by id.
 pub type Places = BTreeMap<u32, [f64; 3]>;
 
-/// A frame of a text format: its number, its time where the format has one, and its particles.
+/// A frame of a text format: its number, its time if the format has one, and its particles.
 pub struct TextFrame {
     pub number: u64,
     pub time: Option<f64>,
@@ -15,7 +15,7 @@ pub struct TextFrame {
 }
 
 impl TextFrame {
-    /// Its number, the bits of its time, and its places.
+    /// Number, bits of the time, and positions.
     pub fn text(&self) -> (u64, u64, Places) {
         (self.number, self.time.expect("it has one").to_bits(), self.places.clone())
     }
@@ -32,17 +32,17 @@ pub struct GsdFrame {
     /// The centre of the box.
     centre: [f64; 3],
     ids: Vec<u32>,
-    /// As the schema has them, from the centre of the box, and as they are.
+    /// Positions as in the schema, relative to the centre of the box.
     single: Vec<[f32; 3]>,
     double: Vec<[f64; 3]>,
-    /// Periods moved, where that is followed.
+    /// Periods moved, if they are tracked.
     images: Option<Vec<[i32; 3]>>,
-    /// What is logged of the frame itself.
+    /// Logged quantities of the frame itself.
     pub logged: BTreeMap<String, f64>,
 }
 
 impl GsdFrame {
-    /// As of a [`TextFrame`].
+    /// Number, bits of the time, and positions, as of a [`TextFrame`].
     pub fn text(&self) -> (u64, u64, Places) {
         (
             self.number,
@@ -51,7 +51,7 @@ impl GsdFrame {
         )
     }
 
-    /// The mean square displacement since another frame, as other programs have it by images.
+    /// The mean square displacement since another frame, computed from images as other programs do.
     pub fn displacement_since(&self, start: &GsdFrame) -> Option<f64> {
         let images = self.images.as_ref().filter(|_| self.ids == start.ids)?;
         let way = |(number, image): (usize, &[i32; 3])| -> f64 {
@@ -64,7 +64,7 @@ impl GsdFrame {
         Some(images.iter().enumerate().map(way).sum::<f64>() / images.len() as f64)
     }
 
-    /// What other programs read is what is there, and in the box.
+    /// Checks that positions in single precision equal those in double precision and are inside the box.
     pub fn single_is_as_double(&self, label: &str) {
         assert!(
             self.sides[2] == 0.0 && self.dimensions == 2 || self.sides[2] > 0.0 && self.dimensions == 3,
@@ -84,7 +84,7 @@ impl GsdFrame {
     }
 }
 
-/// The frames of a GSD file, by what the format's own description says.
+/// Frames of a GSD file, read by the description of the format.
 pub fn gsd(path: &Path) -> Vec<GsdFrame> {
     let bytes = fs::read(path).expect("it is there");
     let wide = |at: usize| u64::from_le_bytes(bytes[at..at + 8].try_into().expect("eight bytes")) as usize;
@@ -122,7 +122,7 @@ pub fn gsd(path: &Path) -> Vec<GsdFrame> {
         let (columns, double) = doubles(*find(frame, "log/particles/position").expect("positions"));
         let exact = |name| doubles(*find(frame, name).expect(name)).1;
         let (corner, sides) = (exact("log/box/corner"), exact("log/box/sides"));
-        // Where there is no box it is about the origin.
+        // Without a box positions are relative to the origin.
         let centre =
             |axis: usize| if sides[axis].is_finite() { corner[axis] + 0.5 * sides[axis] } else { 0.0 };
         let own = chunks.range((frame, "log/")..(frame, "log0")).filter(|(_, (code, ..))| *code == 10);
@@ -162,10 +162,10 @@ fn number<T: std::str::FromStr>(text: &str) -> T
 where
     T::Err: std::fmt::Debug,
 {
-    text.parse().unwrap_or_else(|error| panic!("`{text}` is no number: {error:?}"))
+    text.parse().unwrap_or_else(|error| panic!("`{text}` is not a number: {error:?}"))
 }
 
-/// The columns and rows of a table.
+/// Columns and rows of a table.
 pub fn table(path: &Path) -> (Vec<String>, Vec<Vec<f64>>) {
     let text = fs::read_to_string(path).expect("it is there");
     let mut lines = text.lines();

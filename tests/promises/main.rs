@@ -1,4 +1,4 @@
-//! What every method promises, with every engine, for every file, however often a run is stopped.
+//! Promises of every method, with every engine, for every file, however often a run is stopped.
 
 mod few;
 mod files;
@@ -35,7 +35,7 @@ fn runs_of_few_particles_resume() {
     assert!(runs > 200 && resumed > 3 * runs, "{runs} runs, resumed {resumed} times");
 }
 
-/// The same for many more scenes.
+/// Resumes many more scenes than [`runs_of_few_particles_resume`].
 #[test]
 #[ignore = "long: cargo test --release --test promises -- --ignored --nocapture"]
 fn many_runs_of_few_particles_resume() {

@@ -1,15 +1,15 @@
-//! Presets made short, and how they end.
+//! Shortened presets, and their final states.
 
 use std::sync::atomic::AtomicBool;
 use stripmine_physics::method::{Clock, Entry, Every, Methods, Prepared, Purpose, Until, load};
 use stripmine_physics::particles::Particles;
 use stripmine_physics::scene::Kind;
 
-/// Runs of more particles are made of this many.
+/// Runs with more particles than `MANY` are reduced to `FEWER`.
 const MANY: usize = 500;
 const FEWER: usize = 200;
-/// What makes a preset short: fewer particles, a part of its length, all files, rows and frames that are due at several moments, of
-/// which the end is none for frames.
+/// Overrides that shorten a preset: fewer particles, a part of its length, all files, and rows and frames due at several moments; no
+/// frame is due at the end.
 pub fn shortened(methods: Methods, entry: &'static Entry, preset: &str) -> Vec<String> {
     let prepared = |overrides: &[String]| load(preset, overrides, methods).map(|(prepared, _)| prepared);
     let whole = prepared(&[]).expect("a preset is a scene");
@@ -19,7 +19,7 @@ pub fn shortened(methods: Methods, entry: &'static Entry, preset: &str) -> Vec<S
         .section("output")
         .filter(|key| key.kind == Kind::Switch)
         .map(|key| format!("output.{}=true", key.name))
-        // Some files are not of every scene.
+        // Some scenes do not have every file.
         .filter(|asked| prepared(std::slice::from_ref(asked)).is_ok())
         .collect();
     let fewer = [overrides.clone(), vec![format!("particles.count={FEWER}")]].concat();
@@ -31,7 +31,7 @@ pub fn shortened(methods: Methods, entry: &'static Entry, preset: &str) -> Vec<S
         Until::Events(events) => format!("run.events={}", events / 100),
         Until::Time(time) => format!("run.time={:?}", time / 8.0),
     });
-    let short = prepared(&overrides).expect("it is a scene that is short");
+    let short = prepared(&overrides).expect("a shortened scene");
     let (clock, ..) = end_of(&short);
     let every = |parts: f64| match short.schedule.rows {
         Every::Time(_) => format!("{:?}", clock.time / parts),
@@ -45,14 +45,14 @@ pub fn shortened(methods: Methods, entry: &'static Entry, preset: &str) -> Vec<S
     overrides
 }
 
-/// How a scene ends that nothing is written of: when, with which particles, and their positions alone.
+/// Final state of a scene run without files: clock, particles, and their positions.
 pub fn end_of(prepared: &Prepared) -> (Clock, Particles, Vec<[f32; 3]>) {
     let mut simulation = prepared.start(Purpose::Run).expect("it starts");
-    simulation.advance(&[prepared.schedule.until], &AtomicBool::new(false)).expect("it does not break");
+    simulation.advance(&[prepared.schedule.until], &AtomicBool::new(false)).expect("it does not fail");
     (simulation.clock(), simulation.particles(), simulation.per_particle().positions())
 }
 
-/// The moments at which something is due up to the end, that of the start among them.
+/// Moments at which something is due, from the start to the end.
 pub fn moments(every: Every, end: &Clock) -> Vec<f64> {
     let (every, end) = match every {
         Every::Time(every) => (every, end.time),

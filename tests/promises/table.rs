@@ -1,7 +1,7 @@
-//! One table of promises over all methods: whatever is in a list of methods is in it, with all its presets and engines.
+//! Table of promises over all methods: it covers every method of a list, with all its presets and engines.
 //!
-//! A scene, made short, is run whole; interrupted at random moments and gone on with; killed and gone on with. Every file has
-//! as many frames and rows as the scene says, ends with the final state, and is the same bytes each time; so is the summary, but for times.
+//! A shortened scene is run whole; interrupted at random moments and resumed; killed and resumed. Every file has
+//! as many frames and rows as the scene states, ends with the final state, and has the same bytes each time; so has the summary, except for times.
 
 use super::files::{GsdFrame, Places, TextFrame, dcd, extended_xyz, gsd, lammps_dump, table};
 use super::short::{end_of, moments, shortened};
@@ -25,33 +25,33 @@ use stripmine_physics::method::{Entry, Every, Methods, Prepared, Schedule, load}
 use stripmine_physics::particles::Particles;
 use stripmine_physics::run::{Ending, Existing, Job, run};
 
-/// How much of the table is held.
+/// Part of the table that is tested.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Extent {
-    /// Every preset as it runs by default, in every way; every other engine of a method on one preset, whole and interrupted.
+    /// Every preset with its default settings, with all tests; every other engine of a method on one preset, whole and interrupted.
     Quick,
     /// Everything, at twenty times as many moments.
     Full,
 }
 
-/// Cases at a time: most of the time goes by until files are on the disk.
+/// Cases that run at a time: most of the time is spent waiting for files to reach the disk.
 const AT_A_TIME: usize = 6;
 
-/// What the files of a run are, where it has all, beside those of the formats.
+/// Files of a run with all outputs, in addition to those of the formats.
 const FILES: [&str; 3] = ["thermo.csv", "events.csv", "scene.toml"];
-/// What a summary says of its session alone.
+/// Entries of a summary that belong to one session.
 const OF_THE_SESSION: [&str; 5] = ["begun", "ended", "seconds", "phases", "notes"];
 
-/// A scene made short, and a way to run it.
+/// A shortened scene with one configuration.
 struct Case {
     entry: &'static Entry,
     preset: &'static str,
     overrides: Vec<String>,
-    /// Whether it is what the preset is by default: then its pictures and words are looked at, too.
+    /// True for the preset's default settings; their pictures and messages are tested too.
     is_plain: bool,
 }
 
-/// What has been held.
+/// Numbers of tested cases.
 #[derive(Debug, Default)]
 pub struct Held {
     pub presets: usize,
@@ -65,7 +65,7 @@ pub struct Held {
     pub pictures: usize,
 }
 
-/// Holds the table over some methods; `command` is the program with them.
+/// Tests the table for some methods; `command` is the program with these methods.
 pub fn hold(methods: Methods, command: fn() -> Command, extent: Extent) -> Held {
     let cases: Vec<Case> = methods.iter().flat_map(|entry| cases(methods, entry, extent)).collect();
     let presets: BTreeSet<&str> = cases.iter().map(|case| case.preset).collect();
@@ -116,7 +116,7 @@ fn cases(methods: Methods, entry: &'static Entry, extent: Extent) -> Vec<Case> {
     cases
 }
 
-/// The files of a run that the physics alone decides, those of every format among them.
+/// Files of a run that depend on the physics only, including those of every format.
 fn files() -> impl Iterator<Item = &'static str> {
     FILES.into_iter().chain(FORMATS.iter().map(|format| format.file))
 }
@@ -125,7 +125,7 @@ fn places(particles: &Particles) -> Places {
     particles.all().iter().map(|particle| (particle.id, particle.position)).collect()
 }
 
-/// What a summary says of the physics.
+/// Summary without the entries of the session.
 fn of_physics(mut summary: Value) -> Value {
     OF_THE_SESSION.into_iter().for_each(|name| summary[name] = Value::Null);
     summary
@@ -146,8 +146,8 @@ impl Case {
     }
 
     fn hold(&self, methods: Methods, command: fn() -> Command, extent: Extent) -> Held {
-        let folder = tempfile::tempdir().expect("there is room");
-        let (prepared, _) = load(self.preset, &self.overrides, methods).expect("it was a scene before");
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let (prepared, _) = load(self.preset, &self.overrides, methods).expect("a valid scene");
         let path = folder.path().join("whole");
         let (_, words) = self.session(&prepared, &path, None);
         let mut held = Held { runs: 1, sessions: 1, ..Held::default() };
@@ -174,8 +174,8 @@ impl Case {
         held
     }
 
-    /// Begins or goes on, and is interrupted when the run has said so often how far it has come; whether it is done, and how often
-    /// that was.
+    /// Starts or resumes a run, and interrupts it when it has reported its progress `stop` times. Returns true if it is complete, and the number of
+    /// reports.
     fn session(&self, prepared: &Prepared, folder: &Path, stop: Option<u64>) -> (bool, u64) {
         let (is_interrupted, mut words) = (AtomicBool::new(false), 0);
         let progress = |_, _| {
@@ -189,7 +189,7 @@ impl Case {
         (matches!(ending, Ending::Done(_)), words)
     }
 
-    /// Interrupted three times, at random.
+    /// Runs a scene with three interruptions at random moments.
     fn interrupted(&self, prepared: &Prepared, folder: &Path, words: u64, stream: &mut Stream) -> usize {
         for stops in 0..3 {
             let stop = stream.random_range(1..(words / 2).max(2));
@@ -215,7 +215,7 @@ impl Case {
         String::from_utf8(output.stdout).expect("it prints text")
     }
 
-    /// Killed as soon as there is a checkpoint, and gone on with; whether it was not over yet.
+    /// Kills a run once it has a checkpoint, and resumes it; returns 1 if it was not yet complete.
     fn killed(&self, command: fn() -> Command, folder: &Path) -> usize {
         let go = |more: &[&str]| {
             let mut command = self.command(command, &["run"]);
@@ -227,7 +227,7 @@ impl Case {
         while !folder.join("run.checkpoint").exists() && child.try_wait().expect("it is there").is_none() {
             thread::sleep(std::time::Duration::from_millis(1));
         }
-        // It may be over.
+        // It may have ended.
         let _ = child.kill();
         let was_killed = child.wait().expect("it is there").code().is_none();
         let words = self.output(&mut go(&["--resume"]));
@@ -235,7 +235,7 @@ impl Case {
         usize::from(was_killed)
     }
 
-    /// What a run says at its end is what its summary says.
+    /// Checks that the closing words of a run agree with its summary.
     fn closing_words(&self, words: &str, summary: &Value) {
         let line = words.lines().next().unwrap_or_default();
         let parts: Vec<&str> = line.split([',', ':']).collect();
@@ -247,7 +247,7 @@ impl Case {
         assert!((time - known).abs() <= 1e-8 * known, "{}: {line}: {known}", self.label());
     }
 
-    /// The same bytes and the same summary.
+    /// Checks that files and summary of both runs are equal.
     fn same(&self, way: &str, whole: &Path, parts: &Path) {
         for name in files() {
             let [one, other] = [whole, parts].map(|folder| fs::read(folder.join(name)).ok());
@@ -257,7 +257,7 @@ impl Case {
         assert_eq!(one, other, "{}: the summary differs, {way}", self.label());
     }
 
-    /// As many frames and rows as the scene says, the last ones those of the end.
+    /// Checks that a run has as many frames and rows as its scene states, and that the last ones show the end.
     fn files(&self, prepared: &Prepared, folder: &Path, held: &mut Held) {
         let Schedule { rows, snapshots, .. } = prepared.schedule;
         let (clock, particles, positions) = end_of(prepared);
@@ -296,7 +296,7 @@ impl Case {
             );
         }
         assert!(ends[0] != ends[1], "{label}: nothing moves");
-        // Evenly apart: without an end that is between two snapshots.
+        // At equal intervals: the end, which is between two snapshots, has no frame.
         let frames = dcd(&folder.join("trajectory.dcd"));
         let even = moments(snapshots, &clock);
         assert_eq!(frames.len(), even.len(), "{label}: trajectory.dcd");
@@ -312,13 +312,13 @@ impl Case {
             frame.single_is_as_double(&label);
             let logged = frame.logged.get("msd").filter(|msd| !msd.is_nan());
             if let (Some(&msd), Some(found)) = (logged, frame.displacement_since(&frames[0])) {
-                // One of places that have not moved is of their rounding.
+                // The displacement of particles that have not moved is their rounding error.
                 let digit = if label.contains("f32") || label.contains("mixed") { 1e-6 } else { 1e-15 };
                 let rounding = frame.exact_sides.iter().map(|side| (digit * side).powi(2)).sum::<f64>();
                 assert!((found - msd).abs() <= 1e-12 * msd + rounding, "{label}: {found} and {msd}");
             }
         }
-        // Where a row is of the moment of a frame, the frame has it.
+        // A frame at the moment of a row contains the row.
         let rows: Vec<(&str, f64)> =
             (columns.iter().map(String::as_str).zip(table[0].iter().copied())).collect();
         for (name, value) in rows.into_iter().filter(|(name, _)| !["step", "time"].contains(name)) {
@@ -349,15 +349,15 @@ impl Case {
         held.files += files().filter(|name| folder.join(name).exists()).count();
     }
 
-    /// Every format that the scene asks for has a file, and frames that are read again are those of the text; how many frames there
-    /// are in all.
+    /// Checks that every requested format has a file, and that frames read back equal those of the text; returns the total number of
+    /// frames.
     fn formats(&self, prepared: &Prepared, folder: &Path, texts: &[(u64, u64, Places)]) -> usize {
         let mut frames = 0;
         for format in FORMATS {
             let (label, path) = (format!("{}: {}", self.label(), format.file), folder.join(format.file));
             let is_asked = prepared.output.asks_for(format);
             assert_eq!(fs::metadata(&path).is_ok_and(|file| file.len() > 0), is_asked, "{label}");
-            // Some formats are of scenes in a box alone.
+            // Some formats require scenes in a box.
             assert!(is_asked || format.needs_box, "{label}");
             if let FrameWriting::Growing(_) = format.writing {
                 frames += usize::from(is_asked) * texts.len();
@@ -373,18 +373,18 @@ impl Case {
         frames
     }
 
-    /// Curves and, where they are read, particles.
+    /// Draws curves and, if a trajectory is read, particles; returns the number of pictures.
     fn pictures(&self, command: fn() -> Command, run: &Path) -> usize {
         let plots = run.with_extension("plots");
         let mut plot = command();
-        // Asked for by name, for in a short run not every quantity changes.
+        // Requested by name, since in a short run not every quantity changes.
         let curve =
             self.entry.quantities.iter().find(|it| it.name != "time").expect("something is observed").name;
         self.output(plot.arg("plot").arg(run).args(["--columns", curve, "--out"]).arg(&plots));
         let names: Vec<String> = fs::read_dir(&plots)
             .expect("there are pictures")
             .map(|file| file.expect("a file").file_name().into_string().expect("a name"))
-            // Which of them are the program's own.
+            // List of the program's own files.
             .filter(|name| name != "plot.files")
             .collect();
         for kind in ["svg", "png"] {
@@ -397,9 +397,9 @@ impl Case {
         names.len()
     }
 
-    /// Beside itself a scene is the same.
+    /// Checks that `compare` finds a scene equal to itself.
     fn itself(&self, command: fn() -> Command) {
-        let against = self.overrides.last().expect("it was made short");
+        let against = self.overrides.last().expect("an override");
         let mut compare = self.command(command, &["compare"]);
         let found = self.output(compare.args(["--json", "--against", against]));
         let found: Value = serde_json::from_str(&found).expect("JSON");
@@ -407,7 +407,7 @@ impl Case {
         assert!(found["looks"].as_array().is_some_and(|looks| looks.len() > 2), "{}: {found}", self.label());
     }
 
-    /// What is said before the run is what the run says.
+    /// Checks that `scene check` agrees with the summary of the run.
     fn check(&self, command: fn() -> Command, folder: &Path) {
         let mut check = self.command(command, &["scene", "check"]);
         let found: Value = serde_json::from_str(&self.output(check.arg("--json"))).expect("JSON");
@@ -424,7 +424,7 @@ impl Case {
         }
         let said = found.as_object().expect("facts");
         let of_the_step = summary["foreseen"].as_object().expect("facts");
-        // The origin of the box is not that of the program; a run knows of more warnings.
+        // The origin of the box is not that of the program; a run may have further warnings.
         let others = ["origin", "warnings"];
         for (name, value) in said.iter().filter(|(name, _)| !others.contains(&name.as_str())) {
             let ours = summary.get(name).or(of_the_step.get(name));

@@ -1,9 +1,9 @@
-//! The ways to run the scenes of a method: its engines, its searches, and whatever else a key leaves to choose.
+//! Configurations for the scenes of a method: its engines, its searches, and the choices of further keys.
 
 use stripmine_physics::method::Entry;
 use stripmine_physics::scene::Kind;
 
-/// Overrides that give a key each of its words; the first one gives none.
+/// Overrides that set a key to each of its words; the first one is empty.
 pub fn words(entry: &Entry, section: &str, name: &str) -> Vec<Vec<String>> {
     let words = match entry.vocabulary.keys.key(section, name).map(|key| key.kind) {
         Some(Kind::Choice(words)) => words,
@@ -13,7 +13,7 @@ pub fn words(entry: &Entry, section: &str, name: &str) -> Vec<Vec<String>> {
     std::iter::once(vec![]).chain(given.map(|word| vec![format!("{section}.{name}={word}")])).collect()
 }
 
-/// Every engine with every search, then each of the other keys alone.
+/// Every engine with every search, then each choice of the other keys alone.
 pub fn ways(entry: &Entry, others: &[(&str, &str)]) -> Vec<Vec<String>> {
     let searches = words(entry, "search", "by");
     let engines = words(entry, "machine", "engine").into_iter();

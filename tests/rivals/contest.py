@@ -1,4 +1,4 @@
-"""One density and size: LAMMPS and ours over the same steps of the same gas, in turns."""
+"""Contest at one density and size: LAMMPS and ours over the same steps of the same gas, in turns."""
 
 import json
 import pathlib
@@ -10,16 +10,16 @@ from environment import said
 IN_LAMMPS = pathlib.Path(__file__).with_name("in_lammps.py")
 # Steps after which positions of both are compared: contacts have come and gone, and chaos has not yet taken over.
 COMPARED = 300
-# More discs than these are not compared one by one: what holds for fewer holds for them.
+# Larger systems are not compared disc by disc: agreement of smaller ones is enough.
 COMPARED_DISCS = 100_000
-# Rivals make their lists again now and then: fewer steps may meet no such step at all.
+# Rivals rebuild their lists now and then: fewer steps may contain no rebuild.
 LEAST_STEPS = 200
-# Seconds that nothing here takes.
+# Time limit in seconds, which no call reaches.
 LONGEST = 900
 
 
 class Refused(Exception):
-    """A program that gave no result, with what it said."""
+    """A program that gave no result, with its message."""
 
 
 def run(call, variables=None):
@@ -36,11 +36,11 @@ class Contest:
         self.asked, self.python, self.variables, self.folder = asked, python, variables, folder
         self.fraction, self.particles = fraction, particles
         self.steps = asked.steps or max(LEAST_STEPS, 10_000_000 // particles)
-        # As `stripmine bench` has it.
+        # As in `stripmine bench`.
         self.equilibration = max(200, self.steps // 10)
 
     def state(self, steps):
-        """The bench scene after some steps, as a data file."""
+        """Writes the bench scene after some steps as a data file."""
         scene = {
             "particles.count": self.particles,
             "particles.packing_fraction": self.fraction,
@@ -70,11 +70,11 @@ class Contest:
         return json.loads(run(call))
 
     def rate(self, seconds, particles):
-        """Million particle-steps a second."""
+        """Rate in million particle-steps a second."""
         return 1e-6 * particles * self.steps / seconds
 
     def held(self, ways):
-        """The contest: figures of LAMMPS and of each of our ways."""
+        """Runs the contest and returns the figures of LAMMPS and of each of our configurations."""
         start = self.state(0)
         compared = {"apart": None, "moved": None}
         if self.particles <= COMPARED_DISCS:
@@ -107,10 +107,10 @@ class Contest:
         return dict(zip(("what", "precision", "integrator"), way)) | {"refused": why}
 
     def entry(self, way, runs, rival_rates):
-        """One of our ways over the rounds, with the state after the last."""
+        """Entry of one of our configurations over the rounds, with the state after the last."""
         last = runs[-1]
         rates = [self.rate(r["cpu_seconds"], r["particles"]) for r in runs]
-        # Phases are timed by the wall: shares of the processor's time.
+        # Phases are measured in wall time and scaled to processor time.
         each = 1e9 * last["cpu_seconds"] / last["seconds"] / (last["particles"] * self.steps)
         return dict(zip(("what", "precision", "integrator"), way)) | {
             "execution": last["execution"],

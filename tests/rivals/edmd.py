@@ -1,20 +1,20 @@
 #!/usr/bin/env python3
-"""Stripmine against EDMD (Smallenburg 2022) on elastic hard discs in a periodic box, in alternating runs on one core. Optional: no
+"""Compares Stripmine with EDMD (Smallenburg 2022) on elastic hard discs in a periodic box, in alternating runs on one core. Optional: no
 test needs it.
 
     python3 tests/rivals/edmd.py --edmd CHECKOUT [--out FOLDER] [--rounds 3]
     python3 tests/rivals/edmd.py --edmd CHECKOUT --quick            the smaller size, about a minute
 
-Without a checkout it is cloned; where that is not possible, or there is no C compiler, the script says so and ends without an error.
+Without a checkout EDMD is cloned; if that is not possible, or there is no C compiler, the script reports it and ends without an error.
 
-The rival is its program `Single`: one event a particle, a list of neighbours with a shell of its own for each, a calendar. It is of
-spheres: `edmd_planar.py` takes the third coordinate out of its text, `in_edmd.c` starts and measures it. It is compiled for this
-processor with its own flags. At each density and size it has the best shell of its lists, then the best block and the best horizon of
-its calendar, by a scan; shells have the shortest arrays of neighbours that suffice.
+The rival is EDMD's program `Single`: one event a particle, a list of neighbours with its own shell for each, a calendar. It is written for
+spheres: `edmd_planar.py` removes the third coordinate from its source, `in_edmd.c` starts and measures it. It is compiled for this
+processor with its own flags. At each density and size a scan finds the best shell of its lists, then the best block and the best horizon of
+its calendar; shells have the shortest arrays of neighbours that suffice.
 
-Both begin with Maxwell's velocities on a hexagonal lattice, in its order in memory, and are measured after the same number of
-collisions. Rates are million collisions a second of processor time, one thread. That both are the same fluid is shown by
-Z = pV/NkT, of the virial of all their collisions. Memory is the most that lay in the machine at once, at the largest size.
+Both start with Maxwell's velocities on a hexagonal lattice, in its order in memory, and are measured after the same number of
+collisions. Rates are million collisions a second of processor time, one thread. Z = pV/NkT, from the virial of all collisions,
+shows that both are the same fluid. Memory is the peak resident memory, at the largest size.
 """
 
 import argparse
@@ -35,30 +35,30 @@ from provenance import git, is_traceable
 from report import contest, result, same, shown, write
 
 SOURCE = "https://github.com/FSmallenburg/EDMD"
-# Those of its Makefile.
+# Flags of its Makefile.
 FLAGS = ["-Ofast", "-funroll-loops", "-march=native"]
 UNIT = "million collisions a second of processor time, one thread"
 PACKING_FRACTIONS = [0.1, 0.3, 0.5, 0.65, 0.7]
 PARTICLES = [2500, 250_000]
-# Where memory is compared: a size of the source's, at one density.
+# Memory is compared at the size of the paper, at one density.
 LARGEST, LARGEST_FRACTION = 2_500_000, 0.5
 SHELLS = [1.2, 1.3, 1.4, 1.5, 1.7, 1.85, 2.0, 2.25, 2.5, 3.0, 4.0, 6.0]
 BLOCKS = [0.3, 1, 3, 10, 30]
 HORIZONS = [1, 4, 16]
-# Shells beyond one that reaches less than this part of the best rate are not tried.
+# Larger shells are skipped after one that reaches less than this part of the best rate.
 MUCH_SLOWER = 0.8
 # Lengths of a disc's array of neighbours.
 NEIGHBOURS = [8, 12, 16, 24, 32, 48, 64, 96, 128, 192]
-# By how much of its excess over 1 the rivals' Z may differ.
+# Largest difference of Z between the rivals, relative to its excess over 1.
 WITHIN = 0.02
-# Seconds that nothing here takes.
+# Time limit in seconds, which no call reaches.
 LONGEST = 1200
 
 Setting = collections.namedtuple("Setting", "shell block horizon")
 
 
 def checkout(folder, asked):
-    """The checkout that was asked for, or a clone."""
+    """The given checkout, or a clone."""
     if asked is None:
         call = ["git", "clone", "--quiet", "--depth", "1", SOURCE, str(folder / "edmd")]
         try:
@@ -81,18 +81,18 @@ def run(call):
 
 
 class Edmd:
-    """The rival in two dimensions; a program for every shell and length of the arrays of neighbours."""
+    """EDMD in two dimensions; one program for every shell and length of the arrays of neighbours."""
 
     def __init__(self, source, folder):
         self.folder, self.single = folder, source / "Single"
         self.version = git(source, "describe", "--always", "--dirty", "--abbrev=12") or "of no commit"
         self.compiler = next(filter(None, map(shutil.which, ("gcc", "clang"))), None)
         if self.compiler is None:
-            raise Unavailable("there is neither gcc nor clang")
+            raise Unavailable("neither gcc nor clang is installed")
         (folder / "planar.c").write_text(planar(self.single))
 
     def build(self):
-        """How it is compiled."""
+        """Compiler and flags."""
         return f"Single in two dimensions, {run([self.compiler, '--version']).splitlines()[0]} {' '.join(FLAGS)}"
 
     def program(self, shell, neighbours):
@@ -103,7 +103,7 @@ class Edmd:
         return made
 
     def measured(self, system, setting, seed, collisions):
-        """A measurement by the shortest arrays of neighbours that suffice."""
+        """Measures with the shortest arrays of neighbours that suffice."""
         particles, fraction = system
         for neighbours in NEIGHBOURS:
             call = [self.program(setting.shell, neighbours), particles, fraction, seed, setting.block, setting.horizon]
@@ -116,7 +116,7 @@ class Edmd:
         raise SystemExit(f"error: EDMD with {particles} discs at {fraction}, {setting}: {said(done.stderr + done.stdout)}")
 
     def tuned(self, system, shells, collisions):
-        """The fastest setting: of the shells, then of the blocks, then of the horizons."""
+        """Finds the fastest setting: first the shell, then the block, then the horizon."""
         rates = {}
 
         def tried(setting):
@@ -135,7 +135,7 @@ class Edmd:
 
 
 def equilibration(collisions):
-    """As `stripmine bench` has it."""
+    """Equilibration as in `stripmine bench`."""
     return max(200, collisions // 10)
 
 
@@ -144,7 +144,7 @@ def rate(found):
 
 
 def amount(particles):
-    """Collisions of a measurement: enough for Z to settle with few discs, and some for every disc with many."""
+    """Collisions of a measurement: enough for a precise Z with few discs, and several for every disc with many."""
     return min(max(2_000_000, 40 * particles), 10_000_000)
 
 
@@ -155,9 +155,9 @@ def ours(stripmine, particles, fraction, collisions):
 
 
 def held(edmd, asked, particles, fraction):
-    """A density and size: the contest, what both must agree in, the memory of both, our instructions."""
+    """Measures a density and size: the contest, the checks of agreement, the memory of both, our instruction set."""
     collisions = amount(particles)
-    # Ours has as many discs as its lattice has places; the rival has as many.
+    # Our lattice of the start rounds the number of discs; the rival gets the same number.
     system = (ours(asked.stripmine, particles, fraction, 1000)["particles"], fraction)
     setting = edmd.tuned(system, SHELLS[::2] if asked.quick else SHELLS, collisions // 4)
     theirs, own = [], []
@@ -178,7 +178,7 @@ def held(edmd, asked, particles, fraction):
 
 
 def of_the_report(edmd, parts):
-    """The contests as the report has them, with the memory at the largest size."""
+    """The contests in the format of the report, with the memory at the largest size."""
     contests, agreement, memory, sets = zip(*parts)
     largest = max(it["particles"] for it in memory)
     found = result("EDMD", edmd.version, edmd.build(), sets[0], UNIT, list(contests), list(agreement))
@@ -189,23 +189,23 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--edmd", type=pathlib.Path, help=f"a checkout of {SOURCE}")
     parser.add_argument("--packing-fraction", type=float, nargs="+", default=PACKING_FRACTIONS)
-    parser.add_argument("--particles", type=int, nargs="+", help="at least; by default also as many as the source has, at one density")
+    parser.add_argument("--particles", type=int, nargs="+", help="lower bounds; by default also the number of the paper, at one density")
     parser.add_argument("--rounds", type=int, help="3 by default, 2 if quick")
     parser.add_argument("--quick", action="store_true", help="the smaller size, two rounds, fewer shells")
-    parser.add_argument("--core", type=int, help="of both; the last one by default")
+    parser.add_argument("--core", type=int, help="core for both; by default the last one")
     parser.add_argument("--stripmine", default="target/release/stripmine")
     parser.add_argument("--out", type=pathlib.Path, help="folder for contests.json")
     asked = parser.parse_args()
     asked.rounds = asked.rounds or (2 if asked.quick else 3)
     if asked.out and not is_traceable(asked.out):
-        print(f"error: the results in {asked.out} are committed, but this checkout has changes that are in no commit", file=sys.stderr)
+        print(f"error: the results in {asked.out} are committed, but this checkout has uncommitted changes", file=sys.stderr)
         print("  help: commit them and build again, or choose another --out", file=sys.stderr)
         return 2
     if not pathlib.Path(asked.stripmine).exists():
-        print(f"skipped: there is no {asked.stripmine}: cargo build --release")
+        print(f"skipped: {asked.stripmine} does not exist: cargo build --release")
         return 0
     if hasattr(os, "sched_setaffinity"):
-        # Whatever is started from here stays there too.
+        # Child processes inherit the core.
         os.sched_setaffinity(0, {max(os.sched_getaffinity(0)) if asked.core is None else asked.core})
     sizes = asked.particles or (PARTICLES[:1] if asked.quick else PARTICLES)
     systems = list(itertools.product(sizes, asked.packing_fraction))
@@ -216,7 +216,7 @@ def main():
             folder = pathlib.Path(folder)
             edmd = Edmd(checkout(folder, asked.edmd), folder)
         except Unavailable as why:
-            print(f"skipped: EDMD cannot be had here: {why}")
+            print(f"skipped: EDMD is not available: {why}")
             return 0
         except Changed as why:
             raise SystemExit(f"error: {why}") from why
@@ -224,13 +224,13 @@ def main():
         for particles, fraction in systems:
             print(f"packing fraction {fraction}, {particles} discs", file=sys.stderr, flush=True)
             parts.append(held(edmd, asked, particles, fraction))
-            # What is there is written, whatever becomes of the rest.
+            # Intermediate results are written, in case a later measurement fails.
             found = of_the_report(edmd, parts)
             if asked.out:
                 write(asked.out, found)
     print(shown(found))
     for it in found["memory"]:
-        print(f"memory, {it['system']}, {it['particles']}: {it['ours'] / 1e6:.0f} beside {it['theirs'] / 1e6:.0f} MB")
+        print(f"memory, {it['system']}, {it['particles']}: {it['ours'] / 1e6:.0f} and {it['theirs'] / 1e6:.0f} MB")
     return 0
 
 

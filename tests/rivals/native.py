@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A Python with LAMMPS built for this processor, as a rival at its best. Optional: no test needs it.
+"""Builds a Python with LAMMPS compiled for this processor, as the fastest rival. Optional: no test needs it.
 
     python3 tests/rivals/native.py FOLDER [--source CHECKOUT]
     python3 tests/rivals/lammps.py --python FOLDER/bin/python
@@ -21,7 +21,7 @@ PACKAGES = ["GRANULAR", "OPT"]
 
 
 def debian(folder):
-    """Debian's source package, unpacked."""
+    """Downloads and unpacks Debian's source package."""
     listed = pathlib.Path("/etc/apt/sources.list.d/stripmine-sources.sources")
     for known in sorted(pathlib.Path("/etc/apt/sources.list.d").glob("*.sources")):
         listed.write_text(known.read_text().replace("Types: deb\n", "Types: deb-src\n"))

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Stripmine against the Rust crate `particular` on softened gravity of every pair, in alternating runs on one core. Optional: no
+"""Compares Stripmine with the Rust crate `particular` on softened gravity of every pair, in alternating runs on one core. Optional: no
 test needs it.
 
     python3 tests/rivals/particular.py [--out FOLDER] [--rounds 3] [--stripmine PROGRAM]
 
 Builds `tests/rivals/particular` for this processor (`-C target-cpu=native`, link-time optimisation) in a folder among this
-machine's temporary files; where the crate cannot be had the script says so and ends without an error. Rates are directed
-interactions a second, N² counted, of one thread: the crate's by sweeps over bodies that rest, ours by whole leapfrog steps of
-bodies that move. Both have Plummer spheres with softening 0.01.
+machine's temporary files; if the crate is not available the script reports it and ends without an error. Rates are directed
+interactions a second, N² counted, of one thread: for the crate by sweeps over bodies at rest, for ours by whole leapfrog steps of
+moving bodies. Both use Plummer spheres with softening 0.01.
 """
 
 import argparse
@@ -23,12 +23,12 @@ from provenance import is_traceable
 from report import contest, result, shown, write
 
 CRATE = pathlib.Path(__file__).with_name("particular")
-# Ours by the precision of theirs.
+# Our precision for each of theirs.
 OURS = {"f32": "mixed", "f64": "f64"}
 
 
 def built():
-    """The rival's program."""
+    """Builds the rival's program and returns its path."""
     folder = pathlib.Path(tempfile.gettempdir()) / "stripmine-particular"
     variables = dict(os.environ, RUSTFLAGS="-C target-cpu=native", CARGO_TARGET_DIR=str(folder))
     call = ["cargo", "build", "--release", "--quiet", "--locked"]
@@ -46,7 +46,7 @@ def answer(call):
 
 
 def held(rival, stripmine, bodies, precision, rounds):
-    """Alternating runs; rates in 10⁹ a second."""
+    """Runs both in turns; rates in 10⁹ a second."""
     ours, theirs, error = [], [], 0.0
     for _ in range(rounds):
         found = answer([rival, bodies, precision, 2])
@@ -67,11 +67,11 @@ def main():
     parser.add_argument("--out", type=pathlib.Path, help="folder for contests.json")
     asked = parser.parse_args()
     if asked.out and not is_traceable(asked.out):
-        sys.exit(f"error: the results in {asked.out} are committed, but this checkout has changes that are in no commit")
+        sys.exit(f"error: the results in {asked.out} are committed, but this checkout has uncommitted changes")
     try:
         rival = built()
     except OSError as why:
-        print(f"skipped: the crate cannot be had here: {why}")
+        print(f"skipped: the crate is not available: {why}")
         return
     contests = [held(rival, asked.stripmine, bodies, precision, asked.rounds) for bodies in asked.bodies for precision in OURS]
     unit = "10⁹ directed interactions a second, one thread"

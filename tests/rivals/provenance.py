@@ -1,4 +1,4 @@
-"""Where results come from, whether they may be written over committed ones, and the folder they are written to."""
+"""Provenance of results, the check that they may replace committed ones, and the folder that they are written to."""
 
 import datetime
 import functools
@@ -9,13 +9,13 @@ import shlex
 import subprocess
 import sys
 
-# What the results depend on, from the top of the checkout: the source without these results, which it ships.
+# Sources of the results, from the top of the checkout: without these results, which the source ships.
 SOURCES = [f":/{name}" for name in ("src", "kernels", "build.rs", "Cargo.toml", "Cargo.lock", "tests/rivals")]
 SOURCES.append(":(exclude,top)src/study/rivals/measured")
 
 
 def git(folder, *arguments):
-    """What git says in a folder; nothing where there is no git, or no checkout."""
+    """Output of git in a folder; empty without git or a checkout."""
     try:
         done = subprocess.run(["git", "-C", str(folder), *arguments], capture_output=True, text=True)
     except OSError:
@@ -24,14 +24,14 @@ def git(folder, *arguments):
 
 
 def is_traceable(out):
-    """Whether results may go there: over committed ones only those of a committed source."""
+    """True if results may be written there: only a committed source may overwrite committed results."""
     changed = git(pathlib.Path(__file__).parent, "status", "--porcelain", "--", *SOURCES)
     return not (changed and git(out, "ls-files", "--", "."))
 
 
 @functools.cache
 def provenance():
-    """Where results come from: the commit of this checkout, before any result is written there, the whole command line, the processor."""
+    """Provenance of results: the commit of this checkout before any result is written, the whole command line, the processor."""
     commit = git(pathlib.Path(__file__).parent, "describe", "--always", "--dirty", "--abbrev=12") or None
     listed = pathlib.Path("/proc/cpuinfo")
     lines = listed.read_text().splitlines() if listed.exists() else []
@@ -41,7 +41,7 @@ def provenance():
 
 
 def write(folder, files):
-    """Writes files into a folder of their own, beside the list of them and where they come from."""
+    """Writes files into their own folder, with a list of them and their provenance."""
     source = provenance()
     folder.mkdir(parents=True, exist_ok=True)
     for name, text in files.items():

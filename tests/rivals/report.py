@@ -1,7 +1,7 @@
-"""What every script here writes for the report: contests.json, beside where it comes from.
+"""Output of all scripts for the report: contests.json, with its provenance.
 
-A contest: the system, its particles, our way, the rates of every round of ours and of the rival, in `unit`. `same` holds what both
-must agree in: what, ours, theirs, and by how much they may differ.
+A contest has the system, its particles, our configuration, and the rates of every round of ours and of the rival, in `unit`. `same` lists
+numbers that must agree: name, ours, theirs, and the largest difference.
 """
 
 import json
@@ -27,11 +27,11 @@ def result(rival, version, build, instruction_set, unit, contests, agreement):
 
 
 def shown(found):
-    """A line for each contest."""
+    """Returns a line for each contest and each check of agreement."""
     lines = [f"{found['rival']} {found['version']} ({found['build']}); {found['unit']}"]
     for it in found["contests"]:
         ours, theirs, ratio = (statistics.median(it[key]) for key in ("ours", "theirs", "ratios"))
-        lines.append(f"{it['system']}, {it['particles']}, {it['way']}: {ours:.3g} beside {theirs:.3g}, ratio {ratio:.2f}")
+        lines.append(f"{it['system']}, {it['particles']}, {it['way']}: {ours:.3g} against {theirs:.3g}, ratio {ratio:.2f}")
     lines += [f"{it['what']}: {it['ours']:.6g} and {it['theirs']:.6g} (within {it['within']:.2g})" for it in found["same"]]
     return "\n".join(lines)
 

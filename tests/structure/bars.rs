@@ -1,17 +1,17 @@
-//! Bars hold the truth as often as they say; where nothing can be said, nothing is; runs are joined.
+//! Coverage of error bars of structure functions; functions that cannot be estimated report nothing; runs are joined.
 
 use super::{headline, names, rows, run, stripmine};
 use serde_json::Value;
 use std::fs;
 use stripmine_physics::structure::{observable, widening};
 
-/// What is known of a lag.
+/// Exact value at a lag.
 type Exact = fn(f64) -> f64;
 
 /// Free particles in a bath with kT/γ = 1 and τ = 1: 4 D (t − τ (1 − exp(−t/τ))), 2 D exp(−t/τ)/τ and D = 1.
 const EXACT: [(&str, Exact); 2] = [("msd", |t| 4.0 * (t - 1.0 + (-t).exp())), ("vacf", |t| 2.0 * (-t).exp())];
 
-/// Of every lag of msd and vacf, and of D by each, how far off the truth runs with seeds of their own are, in bars.
+/// Deviations from the truth, in error bars, of runs with different seeds: for every lag of msd and vacf, and for D from each.
 fn misses(seeds: u32) -> Vec<(String, Vec<f64>)> {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
@@ -40,7 +40,7 @@ fn missed(misses: &[f64]) -> usize {
     misses.iter().filter(|miss| miss.abs() > 1.0).count()
 }
 
-/// Of twenty runs, bars of 95 % miss the truth in at most four, and none by three times as much.
+/// In twenty runs, error bars of 95 % miss the truth at most four times, and never by three times their width.
 #[test]
 fn free_particles_diffuse_by_the_formula() {
     for (what, misses) in misses(20) {
@@ -50,8 +50,8 @@ fn free_particles_diffuse_by_the_formula() {
     }
 }
 
-/// Of a hundred runs, bars of 95 % miss the truth in at most eleven at any lag, and at all lags together in six of a hundred at most.
-/// At one lag five are to be expected, and eleven or fewer in 99 of 100 trials.
+/// In a hundred runs, error bars of 95 % miss the truth at most eleven times at any lag, and on average over all lags at most six and a half times.
+/// At one lag five are expected, and eleven or fewer in 99 of 100 trials.
 #[test]
 #[ignore = "long: cargo test --release --test structure -- --ignored"]
 fn bars_hold_the_truth_at_every_lag() {
@@ -65,13 +65,13 @@ fn bars_hold_the_truth_at_every_lag() {
     assert!(worst <= 11 && (2.0..=6.5).contains(&mean), "worst {worst}, mean {mean}");
 }
 
-/// By hand: overlap in squares. Blocks as long as the lag have a sixth in common with the next, those four times as long a thirtieth.
+/// By hand: overlap in squares. Blocks as long as the lag share a sixth with the next, those four times as long a thirtieth.
 #[test]
 fn bars_are_wider_where_blocks_share_what_ends_in_the_next() {
     let of =
         |lag, length, n: usize| widening(lag, length, n).powi(2) * (1.0 - 2.0 / n as f64 * rho(lag, length));
     fn rho(lag: u64, length: u64) -> f64 {
-        // Sums over begins in a block and the next, by the trapezium.
+        // Sums over starts in a block and the next, by the trapezium rule.
         let overlap = |apart: f64| (1.0 - apart / lag as f64).max(0.0).powi(2);
         let parts = 400;
         let at = |k: usize| (k as f64 + 0.5) / parts as f64 * length as f64;
@@ -89,7 +89,7 @@ fn bars_are_wider_where_blocks_share_what_ends_in_the_next() {
     }
 }
 
-/// Where velocities are forgotten from row to row, their integral is not said to be D.
+/// If velocities decorrelate within a row, their integral is not reported as D.
 #[test]
 fn rows_too_far_apart_give_no_integral() {
     let folder = tempfile::tempdir().unwrap();
@@ -110,7 +110,7 @@ fn rows_too_far_apart_give_no_integral() {
     assert_eq!(of("msd")["headlines"].as_array().unwrap().len(), 1);
 }
 
-/// Several runs are joined place by place: the mean of theirs, by all ways to ask for it.
+/// Several runs are joined point by point: the mean of their values, for every way to request it.
 #[test]
 fn runs_with_seeds_of_their_own_are_joined() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! Every function of a moment beside naive sums, in boxes of every kind.
+//! Every function of one moment compared with naive sums, in boxes of every kind.
 
 use super::open_top::ideal_above_floor;
 use super::{ideal, ideal_in_channel, ideal_of};
@@ -8,7 +8,7 @@ use stripmine_kernels::noise::{Purpose, Stream};
 use stripmine_physics::particles::{Particle, Particles};
 use stripmine_physics::structure::{Observable, Over, Seen, Setting, observable, seen};
 
-/// The discs of a box with the ways between them, by the nearest images.
+/// Discs of a box, with the vectors between them by the nearest images.
 struct Seeing {
     setting: Setting,
     discs: Vec<Particle>,
@@ -28,7 +28,7 @@ impl Seeing {
         self.distance(a, b) < 1.5 * (self.discs[a].radius + self.discs[b].radius)
     }
 
-    /// ψ6 of a disc over its six nearest.
+    /// ψ6 of a disc over its six nearest neighbours.
     fn order(&self, own: usize) -> [f64; 2] {
         let mut others: Vec<usize> = self.others(own).collect();
         others.sort_by(|&a, &b| self.distance(own, a).total_cmp(&self.distance(own, b)));
@@ -41,7 +41,7 @@ impl Seeing {
         })
     }
 
-    /// The naive value at a place; none where there is nothing to be seen.
+    /// The naive value at a point of the function; `None` without data.
     fn naive(&self, observable: &Observable, place: &[f64]) -> Option<f64> {
         let (count, domain) = (self.discs.len() as f64, &self.setting.domain);
         let all = || 0..self.discs.len();
@@ -164,7 +164,7 @@ fn functions_are_naive_sums_in_every_box() {
                     None => assert!(name == "g(r)" || weight == 0.0, "{which}: {name} at {place:?}"),
                 }
             }
-            assert!(largest[0] <= 1e-9 * largest[1].max(1e-3), "{which}: {name} is off by {}", largest[0]);
+            assert!(largest[0] <= 1e-9 * largest[1].max(1e-3), "{which}: {name} differs by {}", largest[0]);
             let all = || 0..seeing.discs.len();
             if name == "coordination" {
                 let naive =

@@ -1,17 +1,17 @@
-//! Small scenes whose values are known by hand or by theory.
+//! Small scenes whose values are known by hand or from theory.
 
 use super::{headline, rows, run, stripmine, summed};
 use std::f64::consts::TAU;
 use std::fs;
 use std::path::Path;
 
-/// A scene as a file.
+/// Writes a scene to a file and returns its name.
 fn scene(folder: &Path, name: &str, text: &str) -> String {
     fs::write(folder.join(name), text).unwrap();
     name.to_owned()
 }
 
-/// A scene of hard discs that are listed.
+/// A scene of listed hard discs.
 fn listed(sides: [f64; 2], radii: &[f64], places: &[[f64; 2]]) -> String {
     format!(
         "format = 2\nunits = \"reduced\"\n[method]\nkind = \"hard-disks\"\n[domain]\nsides = {sides:?}\n[particles]\ngenerate = \
@@ -24,7 +24,7 @@ fn structure(names: &[&str]) -> String {
     format!("output.structure={names:?}")
 }
 
-/// Sixteen discs on a lattice of 3 × 6: S = 16 where both the period along the axis fits, and 0 at every other wave vector.
+/// Sixteen discs on a lattice of 3 × 6: S = 16 at multiples of the lattice's wave vector along each axis, and 0 at every other wave vector.
 #[test]
 fn waves_of_a_rectangular_lattice_are_at_its_periods() {
     let folder = tempfile::tempdir().unwrap();
@@ -46,7 +46,7 @@ fn waves_of_a_rectangular_lattice_are_at_its_periods() {
         let most = sides.map(|side| (25.0 * side / TAU) as usize);
         assert_eq!(found.len(), most[0] + most[1], "{sides:?}");
         for [kx, ky, value, bar] in found {
-            // Along x the period is 3, along y 6.
+            // The period is 3 along x, and 6 along y.
             let (number, period) = if ky == 0.0 { (kx, TAU / 3.0) } else { (ky, TAU / 6.0) };
             let is_peak = (number / period - (number / period).round()).abs() < 1e-9;
             let expected = if is_peak { all.len() as f64 } else { 0.0 };
@@ -55,7 +55,7 @@ fn waves_of_a_rectangular_lattice_are_at_its_periods() {
     }
 }
 
-/// A disc of radius 6 with thirty of 0.5 around it: these touch two of their kind and the large one, which has thirty neighbours. The
+/// A disc of radius 6 with thirty of 0.5 around it: the small ones touch two of their kind and the large one, which has thirty neighbours. The
 /// same by hand for 26 around one of radius 5.
 #[test]
 fn large_discs_have_all_their_neighbours() {
@@ -84,7 +84,7 @@ fn large_discs_have_all_their_neighbours() {
         }
         assert!(summed(folder.path(), "ring", "coordination")["doubt"].is_null());
     }
-    // A disc alone and at rest has no order and no velocities, which is said and not 0.
+    // A single disc at rest has no order and no velocities; this is reported instead of 0.
     let name = scene(folder.path(), "alone.toml", &listed([9.0; 2], &[0.5], &[[4.0, 4.0]]));
     run(folder.path(), &name, "alone", &[&structure(&["psi6", "g(r)", "density(x)", "velocities"])], &[]);
     for name in ["psi6", "g(r)", "velocities"] {
@@ -92,14 +92,14 @@ fn large_discs_have_all_their_neighbours() {
         assert!(said["headlines"].as_array().unwrap().is_empty(), "{said}");
         assert!(said["doubt"].as_str().unwrap().starts_with("there was no value in"), "{said}");
     }
-    // One slice has all of it; of the others nothing tells how seldom a disc is there.
+    // One slice contains the disc; for the others, nothing shows how rarely a disc is there.
     let density: Vec<[f64; 3]> = rows(folder.path(), "alone", "density(x)");
     assert_eq!(density.iter().filter(|[_, density, bar]| *density > 0.0 && *bar == 0.0).count(), 1);
     assert_eq!(density.iter().filter(|[_, density, bar]| *density == 0.0 && bar.is_nan()).count(), 99);
 }
 
-/// Pairs 1.11 apart on a square lattice of 2.79: by hand a disc has one other at 1.11 and four at 2.79, so that the second peak is higher, by
-/// 4/2.79 to 1/1.11. The first one is meant.
+/// Pairs 1.11 apart on a square lattice of 2.79: by hand a disc has one other at 1.11 and four at 2.79, so the second peak is higher, by
+/// 4/2.79 to 1/1.11. The first one is reported.
 #[test]
 fn the_first_peak_is_not_the_highest_one() {
     let folder = tempfile::tempdir().unwrap();
@@ -118,7 +118,7 @@ fn the_first_peak_is_not_the_highest_one() {
     assert!((place - 1.11).abs() < 1e-9 && (height / at(1.11) - 1.0).abs() < 1e-12, "{place} {height}");
 }
 
-/// A gas between walls that are discs has g = 1, in channels of two widths in boxes of two heights.
+/// A gas between walls of discs has g = 1, in channels of two widths and boxes of two heights.
 #[test]
 fn a_gas_in_a_channel_has_no_structure() {
     let folder = tempfile::tempdir().unwrap();
@@ -151,8 +151,9 @@ const FREE: &str = "format = 2\nunits = \"reduced\"\n[method]\nkind = \"langevin
                     \"mesh\"\ncount = 100\nradius = 0.05\nmass = 1.0\ntemperature = 1.0\nseed = 7\n[law]\nkind = \"none\"\ndrag = 0.2\n\
                     bath_temperature = 1.0\n[integrator]\ndt = 0.02\n[run]\ntime = 4000.0\nthermo_every = 500\nsnapshot_every = 0\n";
 
-/// Free particles in a bath: D = kT/γ, also where they cross the box between two rows; where lags are too short, no D but the time that
-/// would do; and after that time D. Hard discs so thin that they seldom meet: D by Enskog.
+/// Free particles in a bath: D = kT/γ, also if they cross the box between two rows; if lags are too short, the required time is reported instead of
+/// D,
+/// and a run of that time reports D. Hard discs so thin that they rarely collide: D by Enskog.
 #[test]
 fn diffusion_is_told_where_it_is() {
     let folder = tempfile::tempdir().unwrap();
@@ -165,7 +166,7 @@ fn diffusion_is_told_where_it_is() {
     assert!((d - 5.0).abs() < 1.5 * bar && bar < 0.8, "{d} ± {bar}");
     let said = summed(folder, "far", "vacf")["doubt"].as_str().unwrap().to_owned();
     assert!(said.contains("rows too far apart"), "{said}");
-    // Too short, and as long as is said to be enough.
+    // Too short, and as long as reported to be enough.
     for (name, sets, exact) in [
         ("bath", vec!["law.drag=1.0", "run.time=40.0", "run.thermo_every=1", "integrator.dt=0.05"], 1.0),
         ("slow", vec!["law.drag=0.1", "run.time=100.0", "run.thermo_every=10", "integrator.dt=0.05"], 10.0),
@@ -179,7 +180,7 @@ fn diffusion_is_told_where_it_is() {
             let doubt = said["doubt"].as_str().unwrap();
             let (_, time) = doubt.split_once("until about time ").unwrap_or_else(|| panic!("{doubt}"));
             enough = enough.max(time.split(' ').next().unwrap().parse().unwrap());
-            // Of τ = 1/γ.
+            // In units of τ = 1/γ.
             assert!((50.0..2000.0).contains(&(enough / exact)), "{doubt}");
         }
         let time = format!("run.time={:?}", (enough / 0.5).ceil() * 0.5);
@@ -189,7 +190,7 @@ fn diffusion_is_told_where_it_is() {
             assert!((d - exact).abs() < 2.0 * bar && bar < 0.5 * exact, "{name} {observable}: {d} ± {bar}");
         }
     }
-    // Between closed sides nothing diffuses for ever.
+    // Between closed sides displacements are bounded.
     let sets = [
         "domain.periodic=[true, false]",
         "particles.generate=\"random\"",
@@ -206,7 +207,7 @@ fn diffusion_is_told_where_it_is() {
     }
 }
 
-/// What is doubtful is said wherever a number would be read.
+/// Doubts are reported in every output that contains the number.
 #[test]
 fn doubts_are_said_wherever_numbers_are_read() {
     let folder = tempfile::tempdir().unwrap();

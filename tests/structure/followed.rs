@@ -1,10 +1,10 @@
-//! Discs across periodic sides: the way of each in steps so small that the shortest one between two of them is its own.
+//! Discs across periodic sides: their paths in steps so small that the nearest image of the next position is the right one.
 
 use std::sync::atomic::AtomicBool;
 use stripmine_physics::method::{METHODS, Purpose, Simulation, Until, load};
 use stripmine_physics::particles::States;
 
-/// Steps of a run, and where it is put into a checkpoint and taken up again.
+/// Steps of a run, and the step at which it is saved to a checkpoint and resumed.
 const STEPS: u64 = 400;
 const RESUMED_AT: u64 = 170;
 
@@ -78,7 +78,7 @@ fn discs_are_followed_across_periodic_sides() {
             }
         }
         assert!(crossed > 0, "{named}: nothing crossed a side");
-        // A run in which displacements were not asked for counts from here.
+        // A run without displacements starts to count from here.
         let (without, _) = load(scene, &sets, METHODS).unwrap();
         let mut plain = without.start(Purpose::Run).unwrap();
         plain

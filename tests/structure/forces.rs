@@ -1,4 +1,4 @@
-//! Forces between discs and the stress they make: beside naive sums, the pressure that runs observe, and the weight of what lies above.
+//! Forces between discs and their stress, compared with naive sums, with the observed pressure, and with the weight of a heap.
 
 use super::{ideal, stripmine};
 use std::fs;
@@ -14,7 +14,7 @@ use stripmine_physics::structure::{Look, PairForces, Seen, Setting, forces_on_ea
 
 const NAMES: [&str; 3] = ["stress_xx(x,y)", "stress_xy(x,y)", "stress_yy(x,y)"];
 
-/// The components cell by cell.
+/// Components of the stress, cell by cell.
 fn stress(setting: Setting, discs: &Particles, forces: &PairForces) -> [Vec<f64>; 3] {
     let observables = NAMES.map(|name| observable(name).unwrap());
     let mut look = Look::new(setting, discs, observables.into_iter());
@@ -26,7 +26,7 @@ fn stress(setting: Setting, discs: &Particles, forces: &PairForces) -> [Vec<f64>
     })
 }
 
-/// A force of no law in particular, which the velocities have part in: it is neither along the line of the centres nor even.
+/// An arbitrary force that depends on the velocities: it is neither along the line of the centres nor even.
 fn made_up() -> PairForces {
     let of = |pair: &Pair| {
         let [one, two] = pair.bodies;
@@ -38,7 +38,7 @@ fn made_up() -> PairForces {
     PairForces { reach: 2.5, of: Arc::new(of) }
 }
 
-/// Discs of their own velocities, spins and masses, every seventh of which is a wall.
+/// Discs with different velocities, spins and masses, every seventh of which is a wall.
 fn varied(periodic: [bool; 2], seed: u64) -> (Setting, Particles) {
     let mut random = Stream::new(seed, Noise::Test, 0);
     let (setting, discs) = ideal(&mut random, [23.0, 17.0], periodic, 700);
@@ -53,7 +53,7 @@ fn varied(periodic: [bool; 2], seed: u64) -> (Setting, Particles) {
     (setting, Particles::new(discs))
 }
 
-/// Every pair looked at, its two halves in the cells of its discs.
+/// The stress is the sum over all pairs, half of it in the cell of each disc.
 #[test]
 fn a_stress_is_that_of_looking_at_all_pairs() {
     for (periodic, seed) in [([true, true], 1), ([true, false], 2), ([false, false], 3)] {
@@ -94,7 +94,7 @@ fn a_stress_is_that_of_looking_at_all_pairs() {
                 let square = x * x + y * y;
                 let force = [x / square - turn * y, y / square + turn * x];
                 [at, other].into_iter().for_each(|disc| on_each[disc] += force[0].hypot(force[1]));
-                // The way leads to the other disc, and the force is odd in it.
+                // The vector leads to the other disc, and the force is odd in it.
                 for axis in [0, 1] {
                     net[other][axis] += force[axis];
                     net[at][axis] -= force[axis];
@@ -129,7 +129,7 @@ fn a_stress_is_that_of_looking_at_all_pairs() {
     }
 }
 
-/// The same bits on any number of threads.
+/// The stress has the same bits on any number of threads.
 #[test]
 fn a_stress_is_the_same_on_any_number_of_threads() {
     let (setting, discs) = varied([true, false], 4);
@@ -141,8 +141,8 @@ fn a_stress_is_the_same_on_any_number_of_threads() {
     assert!(of(1) == of(3));
 }
 
-/// Over a box without walls, half the trace of the stress is the pressure that the method observes, in another way. Beside the motion,
-/// which a bath is observed by at another moment of the step.
+/// In a box without walls, half the trace of the stress is the pressure that the method observes, computed differently. The kinetic part is excluded,
+/// which a bath observes at another moment of the step.
 #[test]
 fn the_mean_stress_is_the_pressure() {
     for scene in ["langevin-dense", "dense-gas", "wide-sizes"] {
@@ -185,7 +185,7 @@ fn a_heap_bears_its_weight() {
     assert!((found / held - 1.0).abs() < 0.01, "{found} {held}");
 }
 
-/// In a run: three files with places and bars, a map of each, and particles coloured by force; hard discs have none.
+/// A run writes three files with positions and error bars, a map of each, and particles coloured by force; hard discs have no forces.
 #[test]
 fn a_run_has_its_stress_in_files_and_pictures() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,5 +1,8 @@
-//! The structure that a run sums up: against theory (here), against naive sums (`oracles`) in boxes of every kind (`boxes`), below an open top (`open_top`), its bars (`bars`), small
-//! scenes whose values are known (`cases`), discs across periodic sides (`followed`), and the same in however many sessions.
+//! Structure functions of a run: compared with theory (here), with naive sums (`oracles`) in boxes of every kind (`boxes`), below an open top
+//! (`open_top`),
+//! their error bars (`bars`), small scenes with known values (`cases`), discs across periodic sides (`followed`), forces (`forces`), and independence
+//! of the
+//! number of sessions.
 
 mod bars;
 mod boxes;
@@ -26,12 +29,12 @@ fn stripmine(folder: &Path, arguments: &[&str]) -> Output {
     command.current_dir(folder).args(arguments).arg("--quiet").output().unwrap()
 }
 
-/// All that hard discs have too: all but what takes forces.
+/// Functions available for hard discs: all that need no forces.
 fn names() -> Vec<&'static str> {
     NAMES.into_iter().filter(|name| !name.starts_with("stress")).collect()
 }
 
-/// A run that sums everything up, at every row and snapshot.
+/// Runs a scene with all these functions, sampled at every row and snapshot.
 fn run(folder: &Path, scene: &str, out: &str, sets: &[&str], more: &[&str]) {
     let all = format!("output.structure={:?}", names());
     let sets = [&[all.as_str(), "output.structure_share=1000.0"], sets].concat();
@@ -41,7 +44,7 @@ fn run(folder: &Path, scene: &str, out: &str, sets: &[&str], more: &[&str]) {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
-/// The rows of a file: what the function is over, mean and bar.
+/// Rows of a function's file: its arguments, mean and error bar.
 fn rows<const COLUMNS: usize>(folder: &Path, out: &str, name: &str) -> Vec<[f64; COLUMNS]> {
     let text = fs::read_to_string(folder.join(out).join(observable(name).unwrap().file)).unwrap();
     let numbers = |line: &str| line.split(',').map(|number| number.parse().unwrap()).collect::<Vec<f64>>();
@@ -52,25 +55,25 @@ fn of_name(list: &Value, name: &str) -> Value {
     list.as_array().unwrap().iter().find(|it| it["name"] == name).unwrap_or(&Value::Null).clone()
 }
 
-/// What the summary of a run says of an observable.
+/// Entry of an observable in the summary of a run.
 fn summed(folder: &Path, out: &str, name: &str) -> Value {
     let text = fs::read_to_string(folder.join(out).join("summary.json")).unwrap();
     let summary: Value = serde_json::from_str(&text).unwrap();
     of_name(&summary["structure"], name)
 }
 
-/// Mean and bar of a headline.
+/// Mean and error bar of a headline.
 fn headline(folder: &Path, out: &str, name: &str, what: &str) -> [f64; 2] {
     let found = of_name(&summed(folder, out, name)["headlines"], what);
     ["mean", "bar"].map(|key| found[key].as_f64().unwrap())
 }
 
-/// Points anywhere in a box, in which no disc's centre comes nearer to a closed side than its radius.
+/// An ideal gas in a box: random points, at least a radius away from closed sides.
 fn ideal(random: &mut Stream, sides: [f64; 2], periodic: [bool; 2], count: u32) -> (Setting, Particles) {
     ideal_of(random, sides, periodic, &vec![0.5; count as usize])
 }
 
-/// The same of discs of some radii.
+/// An ideal gas of discs with given radii.
 fn ideal_of(
     random: &mut Stream,
     sides: [f64; 2],
@@ -94,7 +97,7 @@ fn disc(id: u32, kind: Kind, [x, y]: [f64; 2], radius: f64) -> Particle {
     Particle { id, kind, position: [x, y, 0.0], velocity, angle: 0.0, omega: 0.0, radius, mass: 1.0 }
 }
 
-/// Points anywhere in a channel between rows of wall discs, below and above which nothing is.
+/// An ideal gas in a channel between rows of wall discs; the space behind the walls is empty.
 fn ideal_in_channel(random: &mut Stream) -> (Setting, Particles) {
     let (sides, radius) = ([20.0, 12.0], 0.4);
     let walls = (0..20).flat_map(|column| [3.0, 9.0].map(|y| [f64::from(column) + 0.5, y]));
@@ -117,9 +120,9 @@ fn values(name: &str, setting: &Setting, discs: &Particles) -> Vec<f64> {
     values
 }
 
-/// In periodic and in closed boxes, of one size and of two, and between wall discs, an ideal gas has g(r) = 1 and S(k) = 1 at every
-/// distance and wave vector: four times the error of each at most, and all errors together as large as they should be. Pairs are those
-/// of looking at all.
+/// In periodic and in closed boxes, with one size and two, and between wall discs, an ideal gas has g(r) = 1 and S(k) = 1 at every
+/// distance and wave vector: within four times the error of each, and with the expected sum of all errors. Pairs are those
+/// of a search over all pairs.
 #[test]
 fn an_ideal_gas_has_no_structure() {
     let mut random = Stream::new(1, Purpose::Test, 0);
@@ -138,7 +141,7 @@ fn an_ideal_gas_has_no_structure() {
         let made: Vec<(Setting, Particles)> = (0..LOOKS).map(|_| of(which)).collect();
         let (setting, _) = &made[0];
         for name in ["g(r)", "S(k)"].into_iter().take(if setting.domain.is_periodic(0) { 2 } else { 1 }) {
-            // What an ideal gas has is found once for a run, and here for each look.
+            // The reference of the ideal gas is computed once for a run, but here for each sample.
             let looks = if which == 4 && name == "g(r)" { &made[..50] } else { &made[..] };
             let looks: Vec<Vec<f64>> = looks
                 .iter()
@@ -150,7 +153,7 @@ fn an_ideal_gas_has_no_structure() {
                     values(name, setting, discs)
                 })
                 .collect();
-            // Where there are next to no pairs, errors are not normal.
+            // With very few pairs, errors are not normal.
             let places = if name == "g(r)" { 20..looks[0].len() } else { 0..looks[0].len() };
             let scores: Vec<f64> = places
                 .map(|place| {
@@ -169,7 +172,7 @@ fn an_ideal_gas_has_no_structure() {
     }
 }
 
-/// A hexagonal crystal: six neighbours, |Ψ6| = 1, and S(k) = N where a wave has its period.
+/// A hexagonal crystal has six neighbours, |Ψ6| = 1, and S(k) = N at its periods.
 #[test]
 fn a_crystal_is_in_order() {
     let (columns, rows) = (12_u32, 14_u32);
@@ -198,7 +201,7 @@ fn a_crystal_is_in_order() {
         let sum = |part: fn(f64) -> f64| discs.grains().iter().map(|disc| part(angle(disc))).sum::<f64>();
         let naive = (sum(f64::cos).powi(2) + sum(f64::sin).powi(2)) / f64::from(columns * rows);
         assert!((value - naive).abs() < 1e-6, "{vector:?}: {value} {naive}");
-        // Two rows to a period along y, and two columns, of which every other row is half a column off.
+        // Two rows to a period along y, and two columns, since every other row is shifted by half a column.
         let peaks = [0, 1].map(|axis| {
             let periods = (vector[axis] * domain.length(axis) / TAU).round() as usize;
             periods.is_multiple_of([24, 14][axis])
@@ -238,7 +241,7 @@ fn hard_discs_touch_as_often_as_their_pressure_says() {
         (density - maxwell).abs() > 2.0 * error + 1e-3
     });
     assert!(far.count() < 3);
-    // S(k → 0) is the compressibility of the fluid, far below 1; far out it is 1.
+    // S(k → 0) is the compressibility of the fluid, far below 1; at large k it is 1.
     let waves: Vec<[f64; 4]> = rows(folder, "a", "S(k)");
     let last = waves[waves.len() - 50..].iter().map(|wave| wave[2]).sum::<f64>() / 50.0;
     assert!(waves[0][2] < 0.15 && (last - 1.0).abs() < 0.1, "{:?} {last}", waves[0]);
@@ -246,7 +249,7 @@ fn hard_discs_touch_as_often_as_their_pressure_says() {
     assert!(global < 0.05, "{global}");
 }
 
-/// A run in two sessions writes the same files, whether all of it is asked for from the start on or not.
+/// A run in two sessions writes the same files, whether or not all functions are requested from the start.
 #[test]
 fn two_sessions_write_the_same() {
     let folder = tempfile::tempdir().unwrap();
@@ -269,7 +272,7 @@ fn two_sessions_write_the_same() {
             let [one, two] = [&one, &two].map(|out| fs::read_to_string(folder.join(out).join(file)).unwrap());
             assert!(one == two && one.lines().count() > 5, "{scene} {name}:\n{one}");
         }
-        // Asked for later: it begins then.
+        // Requested later: it starts then.
         let third = format!("{scene}-third");
         run(folder, scene, &third, &[closer, &[half, "output.structure=[]"]].concat(), &[]);
         run(folder, scene, &third, &[closer, &[whole]].concat(), &["--resume"]);
@@ -278,7 +281,7 @@ fn two_sessions_write_the_same() {
     }
 }
 
-/// Waves run along a periodic side: a box without one has no S(k), whether its top is open or not.
+/// Waves need a periodic side: a box without one has no S(k), with an open top or without.
 #[test]
 fn waves_need_a_periodic_side() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! Functions in a box with an open top: hand sums, and the ideal gas that stays at its heights.
+//! Functions in a box with an open top: hand sums, and the ideal gas with fixed heights.
 
 use super::{disc, rows, run, values};
 use rand::RngExt;
@@ -8,7 +8,7 @@ use stripmine_physics::domain::Domain;
 use stripmine_physics::particles::{Kind, Particles};
 use stripmine_physics::structure::{Setting, observable, seen};
 
-/// Points anywhere along a floor, of which the density falls with the height: some are above the height of the box.
+/// Random points along a floor, whose density decreases with height: some are above the height of the box.
 pub fn ideal_above_floor(random: &mut Stream, periodic: [bool; 2], radii: &[f64]) -> (Setting, Particles) {
     let (origin, sides, scale) = ([-3.0, 1.0], [20.0, 15.0], 6.0);
     let disc = |(id, &radius): (u32, &f64)| {
@@ -38,11 +38,11 @@ fn functions_below_an_open_top_are_hand_sums() {
     let domain = Domain::planar([0.0; 2], [10.0, 20.0], [true, false]);
     let setting = Setting::with_open_top(domain, &discs);
     for (name, at, expected) in [
-        // Two discs that stand anywhere along the floor: one pair at the same height, one that is 1.21 apart in height.
+        // Two discs at random positions along the floor: one pair at the same height, one with a height difference of 1.21.
         ("g(r)", 60, 28.427734870543713),
         ("g(r)", 100, 110.99487026449597),
         ("g(r)", 150, 0.0),
-        // Along x three discs are at one place, one is 2.01 from it: (10 + 6 cos 2.01k)/4 at k = 2π/10.
+        // Along x three discs are at one position, one is 2.01 from it: (10 + 6 cos 2.01k)/4 at k = 2π/10.
         ("S(k)", 0, 2.9545529044491614),
         ("coordination", 0, 0.5),
         ("coordination", 1, 0.5),
@@ -76,13 +76,14 @@ fn functions_below_an_open_top_are_hand_sums() {
             "{name} {at}: {found}, not {expected}"
         );
     }
-    // Weights: of a slice without a disc none, of slices along the floor their area.
+    // Weights: zero for a slice without a disc, the area for slices along the floor.
     let weights = |name: &str| seen(observable(name).unwrap(), setting, &discs)[1].clone();
     assert_eq!([weights("flow(y)")[2], weights("flow(y)")[99]], [2.0, 0.0]);
     assert!((weights("density(x)")[0] - 267.1).abs() < 1e-9);
 }
 
-/// Pairs of the ideal gas by sums over all pairs of heights: the chance of two uniform places along the floor, by a sum over places.
+/// Pairs of the ideal gas by sums over all pairs of heights, with the distribution of two uniform positions along the floor from a sum over
+/// positions.
 #[test]
 fn the_ideal_gas_below_an_open_top_keeps_its_heights() {
     let mut random = Stream::new(9, Purpose::Test, 0);
@@ -93,7 +94,7 @@ fn the_ideal_gas_below_an_open_top_keeps_its_heights() {
         let (setting, discs) = ideal_above_floor(&mut random, periodic, &radii);
         let [g, pairs] = seen(observable("g(r)").unwrap(), setting, &discs);
         let (width, length) = (setting.diameter / 50.0, setting.domain.length(0));
-        // Even places along the floor, of one disc one more than of the other, so that their differences are even too.
+        // Even positions along the floor, one more for one disc than for the other, so that their differences are even too.
         let place = |at: usize, of: usize, radius: f64| match periodic[0] {
             true => (at as f64 + 0.5) / of as f64 * length,
             false => radius + (at as f64 + 0.5) / of as f64 * (length - 2.0 * radius),
@@ -115,7 +116,7 @@ fn the_ideal_gas_below_an_open_top_keeps_its_heights() {
                 .clone()
         };
         let all = discs.all();
-        // Bins joined by ten: places are finite.
+        // Bins joined by ten, since the number of positions is finite.
         let bins = pairs.len() / 10;
         let mut naive = vec![0.0; bins];
         for (number, one) in all.iter().enumerate() {
@@ -138,13 +139,13 @@ fn the_ideal_gas_below_an_open_top_keeps_its_heights() {
         }
         let whole = [pairs.iter().sum::<f64>(), naive.iter().sum()];
         assert!(pairs.len() % 10 == 0 && (whole[0] / whole[1] - 1.0).abs() < 2e-3, "{whole:?}");
-        // The gas is one of this kind: its own g(r) is 1 within the noise of its pairs.
+        // The sample is such a gas: its own g(r) is 1 within the noise of its pairs.
         let own = g.iter().zip(&pairs).map(|(g, pairs)| g * pairs).sum::<f64>();
         assert!((own - whole[0]).abs() < 4.0 * whole[0].sqrt(), "{own} {whole:?}");
     }
 }
 
-/// Two discs far above a floor, one twice as fast: displacements go across the sides, and velocities stay.
+/// Two discs far above a floor, one twice as fast: displacements continue across the sides, and velocities are constant.
 #[test]
 fn motion_below_an_open_top_is_that_of_free_discs() {
     let folder = tempfile::tempdir().unwrap();

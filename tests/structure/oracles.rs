@@ -1,4 +1,4 @@
-//! What is found fast, beside naive sums.
+//! Fast algorithms compared with naive sums.
 
 use super::{ideal, values};
 use rand::RngExt;
@@ -9,7 +9,7 @@ use stripmine_physics::structure::{
     Asks, Look, Motion, OBSERVABLES, Seen, observable, pair_counts, pair_counts_of_all, seen, strides,
 };
 
-/// Hexatic order and neighbours of discs anywhere, by looking at all of them: the six nearest sorted by their distance, the angle of each.
+/// Hexatic order and neighbours of random discs, by a search over all of them: the six nearest sorted by distance, the angle of each.
 #[test]
 fn order_and_neighbours_are_those_of_looking_at_all() {
     let mut random = Stream::new(2, Purpose::Test, 0);
@@ -48,7 +48,7 @@ fn order_and_neighbours_are_those_of_looking_at_all() {
     }
 }
 
-/// One look at everything, again and again with the same memory, is each alone; and it is the same however many threads there are.
+/// A sample of all functions, repeated with the same memory, equals separate samples of each, on any number of threads.
 #[test]
 fn looks_share_what_they_find() {
     let mut random = Stream::new(3, Purpose::Test, 0);
@@ -82,7 +82,7 @@ fn looks_share_what_they_find() {
     }
 }
 
-/// Waves of discs anywhere, each by the sine and cosine of its angle.
+/// Waves of random discs, with the sine and cosine of each angle.
 #[test]
 fn waves_are_those_of_sines_and_cosines() {
     let mut random = Stream::new(4, Purpose::Test, 0);
@@ -92,7 +92,7 @@ fn waves_are_those_of_sines_and_cosines() {
         let Seen::Once { over, asks: Asks::Waves, .. } = observable.seen else { unreachable!() };
         let vectors = over.places(&setting);
         let [found, _] = seen(observable, setting, &discs);
-        // 25 of a diameter are 226 and 171 waves.
+        // Up to 25 of a diameter there are 226 and 171 waves.
         assert_eq!(vectors.len(), if periodic[0] { 226 + 171 } else { 171 });
         for (vector, found) in vectors.iter().zip(found) {
             let angle = |disc: &Particle| vector[0] * disc.position[0] + vector[1] * disc.position[1];
@@ -101,7 +101,7 @@ fn waves_are_those_of_sines_and_cosines() {
             assert!((found - naive).abs() < 1e-9 * (1.0 + naive), "{periodic:?} {vector:?}: {found} {naive}");
         }
     }
-    // Of a long side the longest 128 waves, and as many others up to the shortest.
+    // For a long side, the longest 128 waves, and as many others down to the shortest.
     let (setting, discs) = ideal(&mut random, [1000.0, 9.0], [true, false], 10);
     let Seen::Once { over, .. } = observable("S(k)").unwrap().seen else { unreachable!() };
     let periods = over.places(&setting).into_iter().map(|vector| vector[0] * 1000.0 / TAU);
@@ -114,7 +114,7 @@ fn waves_are_those_of_sines_and_cosines() {
     assert!(values("S(k)", &setting, &discs).iter().all(|it| it.is_finite()));
 }
 
-/// Density, flow and temperature in each slice, slice by slice.
+/// Density, flow and temperature of each slice, computed separately.
 #[test]
 fn profiles_are_those_of_looking_at_each_slice() {
     let mut random = Stream::new(5, Purpose::Test, 0);
@@ -137,7 +137,7 @@ fn profiles_are_those_of_looking_at_each_slice() {
             let (count, mass) = (there.len() as f64, sum(&|it| it.mass));
             assert!((density[slice] - count * 100.0 / domain.area()).abs() < 1e-12);
             let mean = [0, 1].map(|along| sum(&|it| it.mass * it.velocity[along]) / mass);
-            // Momentum counts by its mass, and energy by its freedoms: nothing where there is none.
+            // Weights: the mass for momentum, the degrees of freedom for energy; zero without discs.
             assert!((masses[slice] - mass).abs() < 1e-12);
             assert!(count == 0.0 || (flow[slice] - mean[1 - axis]).abs() < 1e-12);
             let beside = sum(&|it| {
@@ -154,7 +154,7 @@ fn profiles_are_those_of_looking_at_each_slice() {
     }
 }
 
-/// Every pair of looks at every lag, with all of them kept; a disc is lost on the way.
+/// Every pair of samples at every lag, with all samples stored; one disc is lost on the way.
 #[test]
 fn motion_is_that_of_all_looks_kept() {
     let mut random = Stream::new(6, Purpose::Test, 0);
@@ -200,12 +200,12 @@ fn motion_is_that_of_all_looks_kept() {
     assert!((motion.times()[2] - 1.0).abs() < 1e-12);
 }
 
-/// Looks of a lag are so many looks apart.
+/// Distance between the samples of a lag.
 fn power_of(lag: u64) -> u64 {
     if lag < 8 { 1 } else { 1 << (lag.ilog2() - 2) }
 }
 
-/// Looks are so far apart that they take no more than their share of the work, which is counted.
+/// Samples are spaced so that they take at most their share of the work, which is counted.
 #[test]
 fn looks_take_no_more_than_their_share() {
     let mut random = Stream::new(7, Purpose::Test, 0);
@@ -213,7 +213,7 @@ fn looks_take_no_more_than_their_share() {
     let all: Vec<_> = OBSERVABLES.iter().collect();
     let some = [observable("msd").unwrap()];
     let of = |observables, share, work| strides(observables, &setting, 500, share, work);
-    assert_eq!(of(&all, 0.05, [0.0; 2]), [1; 2], "work that is not known");
+    assert_eq!(of(&all, 0.05, [0.0; 2]), [1; 2], "unknown work");
     assert_eq!(of(&all, 1000.0, [1200.0, 12_000.0]), [1; 2]);
     let [rows, snapshots] = of(&all, 0.05, [1200.0, 12_000.0]);
     assert!(rows > 1 && snapshots > 1, "{rows} {snapshots}");

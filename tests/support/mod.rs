@@ -62,7 +62,7 @@ pub fn gas(least: usize, packing_fraction: f64, seed: u64) -> (Model, Particles)
     (model, particles)
 }
 
-/// The same gas by the source's own program, which has no clamp and measures positions from the origin.
+/// The gas of [`gas`] for BP93's own program, which has no clamp and measures positions from the origin.
 pub fn printed_gas(least: usize, packing_fraction: f64, seed: u64) -> (Model, Particles) {
     let (model, particles) = gas(least, packing_fraction, seed);
     let contact = Contact { cohesionless: false, ..model.contact };
@@ -70,7 +70,7 @@ pub fn printed_gas(least: usize, packing_fraction: f64, seed: u64) -> (Model, Pa
     (Model { text: ProgramText::Printed, contact, coordinates, ..model }, particles)
 }
 
-/// A running simulation. Compiled in the library, so that test files build fast.
+/// Starts a simulation. Compiled in the library, so that test files build fast.
 pub fn simulate(
     precision: Precision,
     (model, particles): &(Model, Particles),
@@ -86,7 +86,7 @@ pub fn advance(method: &mut Grains, steps: u64) {
     }
 }
 
-/// The steps of a model in a box of `cells` cells of side 0.5 whose corner is the origin: no damping, no friction.
+/// A model in a box of `cells` cells of side 0.5 whose corner is the origin: no damping, no friction.
 pub fn arena(cells: [usize; 2], periodic: bool, discs: &[Particle]) -> (Model, Particles) {
     let (mut model, _) = gas(12, 0.5, 1);
     model.shape = LatticeShape::new(cells[0], cells[1], &model.mask, [periodic; 2]).unwrap();

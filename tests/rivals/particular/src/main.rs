@@ -1,7 +1,7 @@
 //! Rate and force error of the crate `particular`: `in-particular BODIES f32|f64 SECONDS`, one line of JSON.
 //!
-//! A Plummer sphere of equal masses, softening 0.01. The error is the largest of 512 accelerations' errors over the largest
-//! acceleration, against sums in double precision over the positions as the kernel sees them.
+//! Uses a Plummer sphere of equal masses, softening 0.01. The error is the largest of 512 accelerations' errors over the largest
+//! acceleration, compared with sums in double precision over the positions that the kernel reads.
 
 use particular::ComputeMethod;
 use particular::math::{DVec3, Vec3};
@@ -42,7 +42,7 @@ fn error(positions: &[[f64; 3]], mass: f64, found: impl Fn(usize) -> [f64; 3]) -
     let (mut largest, mut error) = (0.0_f64, 0.0_f64);
     let step = positions.len().div_ceil(SAMPLED);
     for (body, own) in positions.iter().enumerate().step_by(step) {
-        // With the digits that additions lose.
+        // Compensated summation.
         let (mut sum, mut lost) = ([0.0; 3], [0.0; 3]);
         for other in positions {
             let d: [f64; 3] = std::array::from_fn(|k| other[k] - own[k]);
@@ -62,7 +62,7 @@ fn error(positions: &[[f64; 3]], mass: f64, found: impl Fn(usize) -> [f64; 3]) -
     error / largest
 }
 
-/// Sweeps for a time: interactions a second, and what the last sweep gave.
+/// Sweeps for a time: interactions a second, and the result of the last sweep.
 fn sweeps<R>(bodies: usize, seconds: f64, mut sweep: impl FnMut() -> R) -> (f64, R) {
     let mut last = sweep();
     let (begun, mut count) = (Instant::now(), 0);
@@ -95,7 +95,7 @@ fn main() {
     println!("{{\"bodies\": {bodies}, \"rate\": {rate:e}, \"error\": {error:e}}}");
 }
 
-/// A vector in double precision.
+/// Conversion of a vector to double precision.
 trait Widened {
     fn widened(&self) -> [f64; 3];
 }
